@@ -1,0 +1,18 @@
+# Imported targets SuiteSparse::CHOLMOD and SuiteSparse::UMFPACK.
+include(FindPackageHandleStandardArgs)
+find_path(SuiteSparse_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse)
+set(SuiteSparse_REQUIRED SuiteSparse_INCLUDE_DIR)
+foreach(part CHOLMOD UMFPACK)
+  string(TOLOWER ${part} name)
+  find_library(SuiteSparse_${part}_LIBRARY ${name})
+  list(APPEND SuiteSparse_REQUIRED SuiteSparse_${part}_LIBRARY)
+endforeach()
+find_package_handle_standard_args(SuiteSparse REQUIRED_VARS ${SuiteSparse_REQUIRED})
+foreach(part CHOLMOD UMFPACK)
+  if(SuiteSparse_FOUND AND NOT TARGET SuiteSparse::${part})
+    add_library(SuiteSparse::${part} UNKNOWN IMPORTED)
+    set_target_properties(SuiteSparse::${part} PROPERTIES
+      IMPORTED_LOCATION "${SuiteSparse_${part}_LIBRARY}"
+      INTERFACE_INCLUDE_DIRECTORIES "${SuiteSparse_INCLUDE_DIR}")
+  endif()
+endforeach()

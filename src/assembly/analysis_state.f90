@@ -1,0 +1,35 @@
+!> The state of an analysis at one time. Two of them exist, converged and trial: accepting an
+!> increment is one swap, cutting it back is one copy.
+module analysis_state
+  use kinds, only: rk
+  use joint_law, only: joint_state
+  implicit none
+  private
+  public :: state, energy_balance, vibration_mode
+
+  !> Energies since the start of the analysis [J]. `error` is the imbalance over the largest energy.
+  type :: energy_balance
+    real(rk) :: external = 0.0_rk, kinetic = 0.0_rk, strain = 0.0_rk, damping = 0.0_rk
+    real(rk) :: friction = 0.0_rk, fracture = 0.0_rk
+    real(rk) :: numerical = 0.0_rk !< taken by the time stepping, from its own formula
+    real(rk) :: error = 0.0_rk
+  end type energy_balance
+
+  type :: state
+    integer :: step = 0, increment = 0, iterations = 0
+    logical :: is_last_of_step = .false.
+    real(rk) :: step_time = 0.0_rk, total_time = 0.0_rk, increment_size = 0.0_rk !< [s]
+    real(rk) :: residual = 0.0_rk !< out-of-balance over the reference force
+    real(rk), allocatable :: u(:, :) !< displacement, relative to the base [m]; (3, nodes)
+    real(rk), allocatable :: v(:, :), a(:, :) !< (3, nodes) [m/s], [m/s2]
+    real(rk), allocatable :: reaction(:, :) !< (3, nodes), zero where nothing is fixed [N]
+    type(joint_state), allocatable :: joints(:) !< one for each joint of the problem
+    type(energy_balance) :: energy
+  end type state
+
+  type :: vibration_mode
+    real(rk) :: hz = 0.0_rk
+    real(rk) :: effective_mass(3) = 0.0_rk !< in x, y, z [kg]
+    real(rk), allocatable :: shape(:, :) !< (3, nodes), unit modal mass
+  end type vibration_mode
+end module analysis_state

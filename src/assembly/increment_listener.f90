@@ -1,0 +1,36 @@
+!> Who wants to hear of every increment: the solvers call, the results layer answers.
+module increment_listener
+  use errors, only: error_type
+  use problem_definition, only: problem
+  use analysis_state, only: state, vibration_mode
+  implicit none
+  private
+  public :: listener
+
+  type, abstract :: listener
+  contains
+    procedure(increment_done), deferred :: increment_done
+    procedure(modes_found), deferred :: modes_found
+  end type listener
+
+  abstract interface
+    !> An increment has converged; increment 0 is the state at the start of a dynamic step.
+    subroutine increment_done(self, scene, now, error)
+      import :: listener, problem, state, error_type
+      class(listener), intent(inout) :: self
+      type(problem), intent(in) :: scene
+      type(state), intent(in) :: now
+      type(error_type), allocatable, intent(out) :: error
+    end subroutine increment_done
+
+    !> A *FREQUENCY step has found its modes.
+    subroutine modes_found(self, scene, step, modes, error)
+      import :: listener, problem, vibration_mode, error_type
+      class(listener), intent(inout) :: self
+      type(problem), intent(in) :: scene
+      integer, intent(in) :: step
+      type(vibration_mode), intent(in) :: modes(:)
+      type(error_type), allocatable, intent(out) :: error
+    end subroutine modes_found
+  end interface
+end module increment_listener

@@ -1,0 +1,30 @@
+!> The problem: what the keywords fill and the solvers read. Effects are guests in its lists.
+module problem_definition
+  use dam_mesh, only: mesh
+  use mesh_sets, only: named_set, surface
+  use amplitudes, only: amplitude
+  use step_plan, only: step, initial_value
+  use material_law, only: material
+  use joint_points, only: joint
+  use applied_load, only: load_slot
+  implicit none
+  private
+  public :: problem
+
+  !> Immutable once the deck is read.
+  type :: problem
+    character(:), allocatable :: deck_file !< as given on the command line
+    character(:), allocatable :: heading
+    type(mesh) :: mesh
+    type(named_set), allocatable :: node_sets(:), element_sets(:)
+    type(surface), allocatable :: surfaces(:)
+    type(amplitude), allocatable :: amplitudes(:)
+    type(material), allocatable :: materials(:)
+    logical :: has_lumped_mass = .false.
+    type(joint), allocatable :: joints(:)
+    type(load_slot), allocatable :: loads(:)
+    type(initial_value), allocatable :: initial_values(:)
+    type(step), allocatable :: steps(:)
+    integer :: upstream_surface = 0 !< surface of the first reservoir, 0 for none
+  end type problem
+end module problem_definition

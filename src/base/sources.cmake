@@ -1,0 +1,4 @@
+set(sources
+  kinds.f90
+  errors.f90
+)

@@ -1,0 +1,49 @@
+!> The specification of a keyword: the one place from which the parser's checks, the messages and
+!> `keyway --keywords` are made.
+module keyword_spec
+  use kinds, only: rk
+  implicit none
+  private
+  public :: keyword, field
+  public :: kind_real, kind_integer, kind_word, kind_flag, kind_choice, kind_text, kind_reference
+  public :: available, later, without_effect
+
+  !> What a field may hold.
+  integer, parameter :: kind_real = 1, kind_integer = 2, kind_word = 3, kind_flag = 4
+  integer, parameter :: kind_choice = 5 !< one word of `choices`
+  integer, parameter :: kind_text = 6 !< anything, kept as it is (file names)
+  integer, parameter :: kind_reference = 7 !< a number, or the name of a set
+
+  !> What the program does with a keyword.
+  integer, parameter :: available = 1
+  integer, parameter :: later = 2 !< known, an error: 'not available yet'
+  integer, parameter :: without_effect = 3 !< understood, a warning
+
+  !> A parameter of the keyword line, or a column of its data lines.
+  type :: field
+    character(:), allocatable :: name !< upper case for parameters
+    integer :: kind = kind_real
+    character(:), allocatable :: meaning !< a short sentence
+    character(:), allocatable :: unit !< '' where there is none
+    character(:), allocatable :: default !< '' where there is none
+    character(:), allocatable :: choices !< words separated by ' | '
+    logical :: is_required = .false.
+    real(rk) :: lowest = -huge(1.0_rk), highest = huge(1.0_rk) !< allowed range
+    logical :: excludes_lowest = .false., excludes_highest = .false. !< range is open there
+  end type field
+
+  !> A keyword of the deck.
+  type :: keyword
+    character(:), allocatable :: name !< upper case, without the star
+    character(:), allocatable :: meaning !< one or two sentences
+    character(:), allocatable :: family !< 'mesh', 'material', 'joint', 'step', 'load', 'output', ..
+    character(:), allocatable :: example !< lines of a deck, separated by new_line
+    character(:), allocatable :: place !< 'model', 'step', 'anywhere', 'material'
+    integer :: status = available
+    type(field), allocatable :: parameters(:)
+    type(field), allocatable :: columns(:) !< of one data line
+    logical :: repeats_columns = .false. !< a line may hold the columns several times
+    logical :: checks_own_data = .false. !< the handler reads the data lines itself
+    integer :: fewest_lines = 0, most_lines = huge(1) !< of data
+  end type keyword
+end module keyword_spec

@@ -1,0 +1,3 @@
+set(sources
+  keyword_spec.f90
+)

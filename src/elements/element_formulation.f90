@@ -1,0 +1,42 @@
+!> What every solid element can do: give its strain-displacement operator at its points.
+!>
+!> All else (stiffness, forces, strains) is generic: K = sum w B^T D B (+ hourglass control),
+!> f = sum w B^T sigma, eps = B u. Blocks of elements are handled in one call.
+module element_formulation
+  use kinds, only: rk
+  implicit none
+  private
+  public :: solid_element
+
+  type, abstract :: solid_element
+    character(8) :: name = '' !< as in the deck: 'C3D8', ...
+    integer :: num_points = 8 !< integration points
+  contains
+    procedure(strain_operator), deferred :: strain_operator
+    procedure :: add_stabilisation
+  end type solid_element
+
+  abstract interface
+    !> B and the volume of each point, for a block of elements.
+    subroutine strain_operator(self, x, d, b, weight, status)
+      import :: solid_element, rk
+      class(solid_element), intent(in) :: self
+      real(rk), intent(in) :: x(:, :, :) !< (3, 8, elements) node coordinates [m]
+      real(rk), intent(in) :: d(6, 6) !< elastic stiffness (incompatible modes need it) [Pa]
+      real(rk), intent(out) :: b(:, :, :, :) !< (6, 24, points, elements) [1/m]
+      real(rk), intent(out) :: weight(:, :) !< (points, elements) volumes [m3]
+      integer, intent(out) :: status(:) !< (elements) 0, or the corner where the Jacobian is <= 0
+    end subroutine strain_operator
+  end interface
+
+contains
+
+  !> Adds a stiffness that stabilises the element, where it needs one (hourglass control).
+  subroutine add_stabilisation(self, x, d, ke)
+    class(solid_element), intent(in) :: self
+    real(rk), intent(in) :: x(:, :, :) !< (3, 8, elements) [m]
+    real(rk), intent(in) :: d(6, 6) !< elastic stiffness [Pa]
+    real(rk), intent(inout) :: ke(:, :, :) !< (24, 24, elements) [N/m]
+    if (.false.) ke(1, 1, 1) = ke(1, 1, 1) + x(1, 1, 1)*d(1, 1)*self%num_points
+  end subroutine add_stabilisation
+end module element_formulation

@@ -1,0 +1,64 @@
+!> What every joint law can do: traction from relative displacement, for a block of points.
+!>
+!> Local axes at a point: 1 normal (from master to slave), 2 and 3 in the plane of the joint.
+!> Signs: opening and tension positive.
+module joint_law
+  use kinds, only: rk
+  implicit none
+  private
+  public :: traction_law, joint_state, state_open, state_stick, state_slip, state_bonded
+
+  integer, parameter :: state_open = 0, state_stick = 1, state_slip = 2, state_bonded = 3
+
+  !> History of all points of one joint; two of them exist, converged and trial.
+  type :: joint_state
+    real(rk), allocatable :: jump(:, :) !< (3, points) relative displacement [m]
+    real(rk), allocatable :: traction(:, :) !< (3, points) by the law at `jump` [Pa]
+    real(rk), allocatable :: slip(:, :) !< (2, points) irrecoverable sliding [m]
+    logical, allocatable :: is_broken(:) !< tensile strength lost
+    integer, allocatable :: status(:) !< open, stick, slip or bonded
+    real(rk), allocatable :: friction_work(:) !< dissipated so far [J/m2]
+  end type joint_state
+
+  !> A joint law. `update` answers with the law's own traction (for the residual that decides
+  !> convergence) and with the traction and tangent of the augmented form (for the next iterate):
+  !> in Newton's iteration the traction follows iterate + tangent*(correction of the jump).
+  type, abstract :: traction_law
+    character(:), allocatable :: name !< upper case
+  contains
+    procedure(reference_stiffness), deferred :: reference_stiffness
+    procedure(update), deferred :: update
+    procedure(stored_energy), deferred :: stored_energy
+  end type traction_law
+
+  abstract interface
+    !> Stiffness of the closed, sticking joint: normal and the two tangents [Pa/m].
+    pure subroutine reference_stiffness(self, k)
+      import :: traction_law, rk
+      class(traction_law), intent(in) :: self
+      real(rk), intent(out) :: k(3)
+    end subroutine reference_stiffness
+
+    !> Tractions at a trial jump. `multiplier` is the friction of the last iterate (tangential
+    !> traction), `scale` the r of the augmented form [Pa/m].
+    pure subroutine update(self, jump, old, multiplier, scale, new, iterate, tangent)
+      import :: traction_law, joint_state, rk
+      class(traction_law), intent(in) :: self
+      real(rk), intent(in) :: jump(:, :) !< (3, points) trial [m]
+      type(joint_state), intent(in) :: old !< converged history
+      real(rk), intent(in) :: multiplier(:, :) !< (2, points) [Pa]
+      real(rk), intent(in) :: scale(:) !< (points) [Pa/m]
+      type(joint_state), intent(inout) :: new !< history at the trial jump, law's own traction
+      real(rk), intent(out) :: iterate(:, :) !< (3, points) traction of the augmented form [Pa]
+      real(rk), intent(out) :: tangent(:, :, :) !< (3, 3, points) [Pa/m], unsymmetric
+    end subroutine update
+
+    !> Elastic energy stored per area [J/m2].
+    pure subroutine stored_energy(self, state, energy)
+      import :: traction_law, joint_state, rk
+      class(traction_law), intent(in) :: self
+      type(joint_state), intent(in) :: state
+      real(rk), intent(out) :: energy(:) !< (points)
+    end subroutine stored_energy
+  end interface
+end module joint_law

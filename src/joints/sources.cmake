@@ -1,0 +1,3 @@
+set(sources
+  joint_law.f90
+)

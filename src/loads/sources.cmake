@@ -1,0 +1,3 @@
+set(sources
+  applied_load.f90
+)

@@ -1,0 +1,3 @@
+set(sources
+  material_law.f90
+)

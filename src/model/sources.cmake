@@ -1,0 +1,6 @@
+set(sources
+  dam_mesh.f90
+  mesh_sets.f90
+  amplitudes.f90
+  step_plan.f90
+)

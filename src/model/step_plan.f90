@@ -1,0 +1,79 @@
+!> What the user asked for in each step: procedure, loads, supports, requests. Plain data, filled by
+!> the keywords, read by the solvers.
+module step_plan
+  use kinds, only: rk
+  implicit none
+  private
+  public :: step, step_load, step_fixity, print_request, field_request, step_controls
+  public :: initial_value
+
+  !> A load at work in a step. Its factor goes from `start_factor` (end of the step before) to
+  !> `end_factor` over a static step, and is `end_factor` at once in a dynamic one; with an
+  !> amplitude it is end_factor*amplitude(t). A load that was removed ends at 0.
+  type :: step_load
+    integer :: load = 0 !< position in the problem's list of loads
+    real(rk) :: start_factor = 0.0_rk
+    real(rk) :: end_factor = 1.0_rk
+    integer :: amplitude = 0 !< position in the problem's list of amplitudes, 0 for none
+  end type step_load
+
+  !> One prescribed degree of freedom; the same rule of time as a load. The value at the start of
+  !> the step is the displacement reached before.
+  type :: step_fixity
+    integer :: node = 0 !< position in the mesh
+    integer :: dof = 0 !< 1..3
+    real(rk) :: value = 0.0_rk !< displacement at the end of the step [m]
+    integer :: amplitude = 0 !< 0 for none
+  end type step_fixity
+
+  !> *NODE PRINT, *EL PRINT or *JOINT PRINT.
+  type :: print_request
+    character(:), allocatable :: kind !< 'NODE', 'ELEMENT' or 'JOINT'
+    character(:), allocatable :: name !< of the set or joint, upper case; part of the file's name
+    integer, allocatable :: members(:) !< positions of nodes, elements or joint
+    integer, allocatable :: near_nodes(:) !< *JOINT PRINT, NSET: only the points nearest to them
+    character(8), allocatable :: fields(:) !< 'U', 'V', 'S', ...
+    integer :: frequency = 1 !< every so many increments
+  end type print_request
+
+  !> *NODE FILE, *EL FILE, *NODE OUTPUT, *ELEMENT OUTPUT: fields of the VTK series and job.h5.
+  type :: field_request
+    character(8), allocatable :: fields(:)
+    integer :: frequency = 1
+  end type field_request
+
+  !> *CONTROLS; the defaults are documented in the keyword's specification.
+  type :: step_controls
+    real(rk) :: residual_tolerance = 1.0e-6_rk !< out-of-balance over the reference force
+    real(rk) :: increment_tolerance = 1.0e-6_rk !< last correction over the increment
+    integer :: max_iterations = 15
+    character(16) :: joint_solver = 'AUTO' !< 'CONDENSED', 'FULL' or 'AUTO'
+    character(16) :: joint_forces = 'HHT' !< how joint forces are weighted in time
+  end type step_controls
+
+  type :: initial_value
+    logical :: is_velocity = .false. !< else a displacement
+    integer :: node = 0, dof = 0
+    real(rk) :: value = 0.0_rk
+  end type initial_value
+
+  type :: step
+    character(:), allocatable :: name
+    character(:), allocatable :: procedure !< 'STATIC', 'DYNAMIC' or 'FREQUENCY'
+    integer :: line = 0 !< of the procedure's card, for messages
+    real(rk) :: first_increment = 1.0_rk, duration = 1.0_rk !< [s]
+    real(rk) :: smallest_increment = 0.0_rk, largest_increment = huge(1.0_rk) !< [s]
+    logical :: is_direct = .false. !< increments of fixed size
+    integer :: max_increments = 100000 !< *STEP, INC
+    real(rk) :: alpha = -0.05_rk !< HHT
+    integer :: num_modes = 0 !< *FREQUENCY
+    real(rk) :: damping_ratio = 0.0_rk !< *DAMPING in a step; 0 for none
+    real(rk) :: damping_f1 = 0.0_rk, damping_f2 = 0.0_rk !< [Hz]
+    type(step_load), allocatable :: loads(:) !< all loads at work, also those kept from before
+    type(step_fixity), allocatable :: fixities(:) !< all supports, also those kept from before
+    type(print_request), allocatable :: prints(:)
+    type(field_request), allocatable :: outputs(:)
+    character(8), allocatable :: envelope(:) !< fields of *ENVELOPE
+    type(step_controls) :: controls
+  end type step
+end module step_plan

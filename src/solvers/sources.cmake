@@ -1,0 +1,3 @@
+set(sources
+  linear_solver.f90
+)
