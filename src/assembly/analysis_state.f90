@@ -17,6 +17,8 @@ module analysis_state
 
   type :: state
     integer :: step = 0, increment = 0, iterations = 0
+    integer :: cutbacks = 0 !< in this step so far
+    integer :: num_unknowns = 0 !< free unknowns of the step's system
     logical :: is_last_of_step = .false.
     real(rk) :: step_time = 0.0_rk, total_time = 0.0_rk, increment_size = 0.0_rk !< [s]
     real(rk) :: residual = 0.0_rk !< out-of-balance over the reference force
