@@ -1,0 +1,14 @@
+# Language standard and warnings of every Fortran and C source.
+option(KEYWAY_WERROR "Treat warnings as errors" OFF)
+
+function(set_warnings target)
+  set(fortran -std=f2008 -fimplicit-none -Wall -Wextra -Wimplicit-interface)
+  set(c -Wall -Wextra)
+  # Each release of GCC warns of something new; errors only where the project is kept free of them.
+  if(KEYWAY_WERROR AND CMAKE_Fortran_COMPILER_VERSION MATCHES "^12\\.")
+    list(APPEND fortran -Werror)
+    list(APPEND c -Werror)
+  endif()
+  target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:Fortran>:${fortran}>
+                                           $<$<COMPILE_LANGUAGE:C>:${c}>)
+endfunction()
