@@ -1,0 +1,98 @@
+!> Faults of the deck: where, what is wrong, what was expected.
+!>
+!> One list collects them all while the deck is read; `render` (in `render_diagnostics`) is the one
+!> place that turns them into lines for people.
+module diagnostics
+  implicit none
+  private
+  public :: place, diagnostic, diagnostic_list
+  public :: severity_error, severity_warning, severity_ignored
+
+  integer, parameter :: severity_error = 1 !< the deck is wrong
+  integer, parameter :: severity_warning = 2 !< the deck is odd
+  integer, parameter :: severity_ignored = 3 !< understood, has no effect here
+
+  !> A spot in the deck.
+  type :: place
+    character(:), allocatable :: file !< as the user named it
+    integer :: line = 0 !< from 1; 0: the file as a whole
+    integer :: column = 0 !< from 1, in bytes; 0: the line as a whole
+    integer :: length = 0 !< of the word meant, in bytes
+    character(:), allocatable :: keyword !< upper case, without the star; '' where there is none
+    character(:), allocatable :: source !< the line of the deck
+  end type place
+
+  !> One fault or remark.
+  type :: diagnostic
+    integer :: severity = severity_error
+    type(place) :: spot
+    character(:), allocatable :: problem !< what is wrong
+    character(:), allocatable :: expected !< what was expected, '' where that says nothing
+    character(:), allocatable :: nearest !< a known word that is near, or ''
+    type(place) :: first !< second spot: 'first defined here'; no file where there is none
+  end type diagnostic
+
+  !> Everything found in a deck, in the order found.
+  type :: diagnostic_list
+    integer :: num_errors = 0 !< all, also those beyond the `most_kept` that are kept
+    integer :: num_warnings = 0 !< warnings and ignored input
+    type(diagnostic), allocatable :: errors(:) !< the first `num_kept` are in use
+    type(diagnostic), allocatable :: warnings(:) !< the first `num_warnings` are in use
+    integer :: num_kept = 0
+  contains
+    procedure :: add
+    procedure :: has_errors
+  end type diagnostic_list
+
+  integer, parameter :: most_kept = 20 !< errors; contract: at most 20 are shown in one go
+
+contains
+
+  !> Adds one fault or remark.
+  subroutine add(self, severity, spot, problem, expected, nearest, first)
+    class(diagnostic_list), intent(inout) :: self
+    integer, intent(in) :: severity !< one of the severities above
+    type(place), intent(in) :: spot !< where
+    character(*), intent(in) :: problem !< what is wrong
+    character(*), intent(in), optional :: expected !< what was expected
+    character(*), intent(in), optional :: nearest !< a known word that is near
+    type(place), intent(in), optional :: first !< where the same was defined before
+    type(diagnostic) :: new
+    new%severity = severity
+    new%spot = spot
+    new%problem = problem
+    new%expected = ''
+    new%nearest = ''
+    if (present(expected)) new%expected = expected
+    if (present(nearest)) new%nearest = nearest
+    if (present(first)) new%first = first
+    if (severity == severity_error) then
+      self%num_errors = self%num_errors + 1
+      if (self%num_kept < most_kept) call append(self%errors, self%num_kept, new)
+    else
+      call append(self%warnings, self%num_warnings, new)
+    end if
+  end subroutine add
+
+  !> The deck cannot be run.
+  pure logical function has_errors(self)
+    class(diagnostic_list), intent(in) :: self
+    has_errors = self%num_errors > 0
+  end function has_errors
+
+  !> Puts an entry at the end of a growing list.
+  subroutine append(list, num_used, new)
+    type(diagnostic), allocatable, intent(inout) :: list(:)
+    integer, intent(inout) :: num_used !< entries in use
+    type(diagnostic), intent(in) :: new
+    type(diagnostic), allocatable :: longer(:)
+    if (.not. allocated(list)) allocate (list(8))
+    if (num_used == size(list)) then
+      allocate (longer(2*num_used))
+      longer(:num_used) = list
+      call move_alloc(longer, list)
+    end if
+    num_used = num_used + 1
+    list(num_used) = new
+  end subroutine append
+end module diagnostics
