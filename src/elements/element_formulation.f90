@@ -20,6 +20,7 @@ module element_formulation
     !> B and the volume of each point, for a block of elements.
     subroutine strain_operator(self, x, d, b, weight, status)
       import :: solid_element, rk
+      implicit none
       class(solid_element), intent(in) :: self
       real(rk), intent(in) :: x(:, :, :) !< (3, 8, elements) node coordinates [m]
       real(rk), intent(in) :: d(6, 6) !< elastic stiffness (incompatible modes need it) [Pa]

@@ -6,7 +6,8 @@ module joint_law
   use kinds, only: rk
   implicit none
   private
-  public :: traction_law, joint_state, state_open, state_stick, state_slip, state_bonded
+  public :: traction_law, joint_state, allocate_state
+  public :: state_open, state_stick, state_slip, state_bonded
 
   integer, parameter :: state_open = 0, state_stick = 1, state_slip = 2, state_bonded = 3
 
@@ -18,6 +19,7 @@ module joint_law
     logical, allocatable :: is_broken(:) !< tensile strength lost
     integer, allocatable :: status(:) !< open, stick, slip or bonded
     real(rk), allocatable :: friction_work(:) !< dissipated so far [J/m2]
+    real(rk), allocatable :: fracture_work(:) !< set free when the strength was lost [J/m2]
   end type joint_state
 
   !> A joint law. `update` answers with the law's own traction (for the residual that decides
@@ -25,16 +27,28 @@ module joint_law
   !> in Newton's iteration the traction follows iterate + tangent*(correction of the jump).
   type, abstract :: traction_law
     character(:), allocatable :: name !< upper case
+    real(rk) :: gap = 0.0_rk !< initial gap [m]; the opening of a point is jump(1) + gap
   contains
+    procedure(start_state), deferred :: start_state
     procedure(reference_stiffness), deferred :: reference_stiffness
     procedure(update), deferred :: update
     procedure(stored_energy), deferred :: stored_energy
   end type traction_law
 
   abstract interface
+    !> History of a joint that has not moved yet, as the law wants it.
+    pure subroutine start_state(self, num_points, state)
+      import :: traction_law, joint_state
+      implicit none
+      class(traction_law), intent(in) :: self
+      integer, intent(in) :: num_points
+      type(joint_state), intent(out) :: state
+    end subroutine start_state
+
     !> Stiffness of the closed, sticking joint: normal and the two tangents [Pa/m].
     pure subroutine reference_stiffness(self, k)
       import :: traction_law, rk
+      implicit none
       class(traction_law), intent(in) :: self
       real(rk), intent(out) :: k(3)
     end subroutine reference_stiffness
@@ -43,6 +57,7 @@ module joint_law
     !> traction), `scale` the r of the augmented form [Pa/m].
     pure subroutine update(self, jump, old, multiplier, scale, new, iterate, tangent)
       import :: traction_law, joint_state, rk
+      implicit none
       class(traction_law), intent(in) :: self
       real(rk), intent(in) :: jump(:, :) !< (3, points) trial [m]
       type(joint_state), intent(in) :: old !< converged history
@@ -56,9 +71,23 @@ module joint_law
     !> Elastic energy stored per area [J/m2].
     pure subroutine stored_energy(self, state, energy)
       import :: traction_law, joint_state, rk
+      implicit none
       class(traction_law), intent(in) :: self
       type(joint_state), intent(in) :: state
       real(rk), intent(out) :: energy(:) !< (points)
     end subroutine stored_energy
   end interface
+
+contains
+
+  !> Room for the history of the points of one joint, all zero.
+  pure subroutine allocate_state(num_points, state)
+    integer, intent(in) :: num_points
+    type(joint_state), intent(out) :: state
+    allocate (state%jump(3, num_points), state%traction(3, num_points), source=0.0_rk)
+    allocate (state%slip(2, num_points), source=0.0_rk)
+    allocate (state%friction_work(num_points), state%fracture_work(num_points), source=0.0_rk)
+    allocate (state%is_broken(num_points), source=.false.)
+    allocate (state%status(num_points), source=state_open)
+  end subroutine allocate_state
 end module joint_law

@@ -17,6 +17,7 @@ module material_law
     !> The undamaged stiffness, constant in the material.
     pure subroutine elastic_stiffness(self, d)
       import :: stress_law, rk
+      implicit none
       class(stress_law), intent(in) :: self
       real(rk), intent(out) :: d(6, 6) !< [Pa]
     end subroutine elastic_stiffness
@@ -24,6 +25,7 @@ module material_law
     !> Stress and state at the end of the increment, for a block of points.
     subroutine update(self, strain, length, old_state, new_state, stress, tangent, status)
       import :: stress_law, rk
+      implicit none
       class(stress_law), intent(in) :: self
       real(rk), intent(in) :: strain(:, :) !< (6, points), end of the increment
       real(rk), intent(in) :: length(:) !< characteristic length of each point [m]
