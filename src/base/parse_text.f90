@@ -11,8 +11,8 @@ module parse_text
   integer, parameter :: largest_power = 22 !< 10**22 is the last exact power of ten
   integer, parameter :: largest_magnitude = 307 !< decades of a normal real, up and down
   integer, parameter :: longest_exponent = 100000 !< more is clipped: too large anyway
-  integer :: i_power
-  real(rk), parameter :: power_of_ten(0:largest_power) = [(10.0_rk**i_power, i_power=0, largest_power)]
+  integer :: i !< counter of the next line only
+  real(rk), parameter :: power_of_ten(0:largest_power) = [(10.0_rk**i, i=0, largest_power)]
   character, parameter :: tab = achar(9)
 
   !> A number taken apart: digits*10**exponent.
@@ -28,6 +28,8 @@ module parse_text
     !> C library: nearest double of a decimal number.
     pure function strtod(text, tail) result(value) bind(C, name='strtod')
       import :: c_char, c_double, c_ptr
+      implicit none
+      ! allow(C071) a C string has no length
       character(kind=c_char), intent(in) :: text(*)
       type(c_ptr), intent(in), value :: tail
       real(c_double) :: value

@@ -1,39 +1,27 @@
 !> A card: one keyword line of the deck with its parameters and data lines.
 !>
-!> A card owns the bytes of its lines and knows the place of every word, so that a message can point
-!> at it. Getters fall back to the default of the specification the card was checked against; they
-!> never fail: `check_card` has told about every word that is not what it should be.
-!> Data lines and their fields count from 1.
+!> A card owns its lines and knows the place of every word, so that a message can point at it.
+!> Getters fall back to the default of the specification the card was checked against; they never
+!> fail: `check_card` has told about every word that is not what it should be.
+!> Data lines and their fields count from 1; names of parameters are upper case.
 module deck_card
-  use diagnostics, only: diagnostic_list, place
-  use keyword_spec, only: keyword
+  use card_lines, only: line_store
+  use diagnostics, only: diagnostic_list, place, severity_error, severity_ignored, severity_warning
+  use keyword_spec, only: column_default, keyword, parameter_default
   use kinds, only: rk
+  use parse_text, only: parse_integer, parse_real, upper_case
   implicit none
   private
-  public :: card, card_parameter, card_row, file_name
-
-  !> Name of a file the card has lines of.
-  type :: file_name
-    character(:), allocatable :: path !< as the user named it
-  end type file_name
-
-  !> A line of the card: of the keyword itself or of data.
-  type :: card_row
-    integer :: file = 1 !< index into `files`
-    integer :: number = 0 !< line in that file
-    integer :: first = 1, last = 0 !< its bytes in `body`
-    integer :: first_field = 1 !< its first field in `field_first`
-    integer :: num_fields = 0 !< empty ones at the end do not count
-  end type card_row
+  public :: card, card_parameter
 
   !> KEY=VALUE or the flag KEY.
   type :: card_parameter
     character(:), allocatable :: name !< upper case, single blanks
-    integer :: row = 1 !< where it stands
-    integer :: first = 1, last = 0 !< bytes of the name in `body`
-    integer :: value_row = 1 !< where the value stands
-    integer :: value_first = 1, value_last = 0 !< bytes of the value in `body`, without quotes
+    integer :: row = 1 !< line of the name
+    integer :: first = 1, last = 0 !< bytes of the name
     logical :: has_value = .false. !< there is a '='
+    integer :: value_row = 1 !< line of the value
+    integer :: value_first = 1, value_last = 0 !< bytes of the value, without quotes
   end type card_parameter
 
   !> One keyword of the deck with all it says.
@@ -41,13 +29,8 @@ module deck_card
     character(:), allocatable :: keyword !< upper case, single blanks, without the star
     integer :: num_lines = 0 !< data lines
     type(keyword) :: spec !< what it was checked against
-    ! Below: filled by deck_lexer, read through the procedures.
-    character(:), allocatable :: body !< the lines of the card, one after the other
-    type(file_name), allocatable :: files(:)
-    integer :: num_heads = 1 !< lines the keyword takes; data lines follow in `rows`
-    type(card_row), allocatable :: rows(:)
-    type(card_parameter), allocatable :: parameters(:)
-    integer, allocatable :: field_first(:), field_last(:) !< bytes of each field, without quotes
+    type(card_parameter), allocatable :: parameters(:) !< in the order of the deck
+    type(line_store) :: lines !< its bytes and their places
   contains
     procedure :: has
     procedure :: text
@@ -75,184 +58,244 @@ module deck_card
     procedure :: ignore
   end type card
 
-  interface
-    !> The keyword line holds the parameter or flag.
-    pure module function has(self, name) result(is_given)
-      class(card), intent(in) :: self
-      character(*), intent(in) :: name !< upper case
-      logical :: is_given
-    end function has
+contains
 
-    !> Value of a parameter as written, without quotes; its default where it is not given.
-    pure module function text(self, name) result(value)
-      class(card), intent(in) :: self
-      character(*), intent(in) :: name !< upper case
-      character(:), allocatable :: value
-    end function text
+  !> The keyword line holds the parameter or flag.
+  pure logical function has(self, name)
+    class(card), intent(in) :: self
+    character(*), intent(in) :: name
+    has = self%find_parameter(name) > 0
+  end function has
 
-    !> Value of a parameter in upper case; its default where it is not given.
-    pure module function word(self, name) result(value)
-      class(card), intent(in) :: self
-      character(*), intent(in) :: name !< upper case
-      character(:), allocatable :: value
-    end function word
+  !> Index into `parameters`, 0 where the keyword line has no such parameter.
+  pure integer function find_parameter(self, name) result(found)
+    class(card), intent(in) :: self
+    character(*), intent(in) :: name
+    integer :: i
+    found = 0
+    if (.not. allocated(self%parameters)) return
+    do i = 1, size(self%parameters)
+      if (self%parameters(i)%name == name) found = i
+    end do
+  end function find_parameter
 
-    !> Number given to a parameter; its default where it is not given, zero without a default.
-    pure module function real_of(self, name) result(value)
-      class(card), intent(in) :: self
-      character(*), intent(in) :: name !< upper case
-      real(rk) :: value
-    end function real_of
+  !> Value of a parameter as written, without quotes; its default where it is not given.
+  pure function text(self, name) result(value)
+    class(card), intent(in) :: self
+    character(*), intent(in) :: name
+    character(:), allocatable :: value
+    integer :: i
+    i = self%find_parameter(name)
+    value = ''
+    if (i > 0) then
+      value = self%lines%body(self%parameters(i)%value_first:self%parameters(i)%value_last)
+    end if
+    if (len(value) == 0) value = parameter_default(self%spec, name)
+  end function text
 
-    !> Integer given to a parameter; its default where it is not given, zero without a default.
-    pure module function integer_of(self, name) result(value)
-      class(card), intent(in) :: self
-      character(*), intent(in) :: name !< upper case
-      integer :: value
-    end function integer_of
+  !> Value of a parameter in upper case; its default where it is not given.
+  pure function word(self, name) result(value)
+    class(card), intent(in) :: self
+    character(*), intent(in) :: name
+    character(:), allocatable :: value
+    value = upper_case(self%text(name))
+  end function word
 
-    !> Fields of a data line; empty ones at its end do not count.
-    pure module function num_fields(self, line) result(count)
-      class(card), intent(in) :: self
-      integer, intent(in) :: line !< data line
-      integer :: count
-    end function num_fields
+  !> Number given to a parameter; its default where it is not given, zero without a default.
+  pure real(rk) function real_of(self, name) result(value)
+    class(card), intent(in) :: self
+    character(*), intent(in) :: name
+    logical :: is_number
+    call parse_real(self%text(name), value, is_number)
+  end function real_of
 
-    !> A field as written, without quotes and outer blanks; default of its column where it is empty.
-    pure module function text_at(self, line, field) result(value)
-      class(card), intent(in) :: self
-      integer, intent(in) :: line, field !< data line and field
-      character(:), allocatable :: value
-    end function text_at
+  !> Integer given to a parameter; its default where it is not given, zero without a default.
+  pure integer function integer_of(self, name) result(value)
+    class(card), intent(in) :: self
+    character(*), intent(in) :: name
+    logical :: is_integer
+    call parse_integer(self%text(name), value, is_integer)
+  end function integer_of
 
-    !> A field in upper case; default of its column where it is empty.
-    pure module function word_at(self, line, field) result(value)
-      class(card), intent(in) :: self
-      integer, intent(in) :: line, field !< data line and field
-      character(:), allocatable :: value
-    end function word_at
+  !> Fields of a data line; empty ones at its end do not count.
+  pure integer function num_fields(self, line)
+    class(card), intent(in) :: self
+    integer, intent(in) :: line
+    num_fields = 0
+    if (line >= 1 .and. line <= self%num_lines) then
+      num_fields = self%lines%rows(self%lines%num_heads + line)%num_fields
+    end if
+  end function num_fields
 
-    !> A number; default of its column (or zero) where the field is empty or no number.
-    pure module function real_at(self, line, field) result(value)
-      class(card), intent(in) :: self
-      integer, intent(in) :: line, field !< data line and field
-      real(rk) :: value
-    end function real_at
+  !> A field as written, without quotes and outer blanks; default of its column where it is empty.
+  pure function text_at(self, line, field) result(value)
+    class(card), intent(in) :: self
+    integer, intent(in) :: line, field
+    character(:), allocatable :: value
+    integer :: first, last
+    call self%lines%find_field(line, field, first, last)
+    if (first > last) then
+      value = column_default(self%spec, field)
+    else
+      value = self%lines%body(first:last)
+    end if
+  end function text_at
 
-    !> An integer; default of its column (or zero) where the field is empty or no integer.
-    pure module function integer_at(self, line, field) result(value)
-      class(card), intent(in) :: self
-      integer, intent(in) :: line, field !< data line and field
-      integer :: value
-    end function integer_at
+  !> A field in upper case; default of its column where it is empty.
+  pure function word_at(self, line, field) result(value)
+    class(card), intent(in) :: self
+    integer, intent(in) :: line, field
+    character(:), allocatable :: value
+    value = upper_case(self%text_at(line, field))
+  end function word_at
 
-    !> Nothing is written there.
-    pure module function is_empty_at(self, line, field) result(is_empty)
-      class(card), intent(in) :: self
-      integer, intent(in) :: line, field !< data line and field
-      logical :: is_empty
-    end function is_empty_at
+  !> A number; default of its column (or zero) where the field is empty or no number.
+  pure real(rk) function real_at(self, line, field) result(value)
+    class(card), intent(in) :: self
+    integer, intent(in) :: line, field
+    integer :: first, last
+    logical :: is_number
+    call self%lines%find_field(line, field, first, last)
+    call parse_real(self%lines%body(first:last), value, is_number)
+    if (.not. is_number) call parse_real(column_default(self%spec, field), value, is_number)
+  end function real_at
 
-    !> The field holds a number.
-    pure module function is_real_at(self, line, field) result(is_real)
-      class(card), intent(in) :: self
-      integer, intent(in) :: line, field !< data line and field
-      logical :: is_real
-    end function is_real_at
+  !> An integer; default of its column (or zero) where the field is empty or no integer.
+  pure integer function integer_at(self, line, field) result(value)
+    class(card), intent(in) :: self
+    integer, intent(in) :: line, field
+    integer :: first, last
+    logical :: is_integer
+    call self%lines%find_field(line, field, first, last)
+    call parse_integer(self%lines%body(first:last), value, is_integer)
+    if (.not. is_integer) call parse_integer(column_default(self%spec, field), value, is_integer)
+  end function integer_at
 
-    !> The field holds an integer.
-    pure module function is_integer_at(self, line, field) result(is_integer)
-      class(card), intent(in) :: self
-      integer, intent(in) :: line, field !< data line and field
-      logical :: is_integer
-    end function is_integer_at
+  !> Nothing is written there.
+  pure logical function is_empty_at(self, line, field)
+    class(card), intent(in) :: self
+    integer, intent(in) :: line, field
+    integer :: first, last
+    call self%lines%find_field(line, field, first, last)
+    is_empty_at = first > last
+  end function is_empty_at
 
-    !> The data line ends in a comma (for keywords whose data go on in the next line).
-    pure module function ends_in_comma(self, line) result(ends_so)
-      class(card), intent(in) :: self
-      integer, intent(in) :: line !< data line
-      logical :: ends_so
-    end function ends_in_comma
+  !> The field holds a number.
+  pure logical function is_real_at(self, line, field)
+    class(card), intent(in) :: self
+    integer, intent(in) :: line, field
+    integer :: first, last
+    real(rk) :: value
+    call self%lines%find_field(line, field, first, last)
+    call parse_real(self%lines%body(first:last), value, is_real_at)
+  end function is_real_at
 
-    !> Index into `parameters`, 0 where the keyword line has no such parameter.
-    pure module function find_parameter(self, name) result(index)
-      class(card), intent(in) :: self
-      character(*), intent(in) :: name !< upper case
-      integer :: index
-    end function find_parameter
+  !> The field holds an integer.
+  pure logical function is_integer_at(self, line, field)
+    class(card), intent(in) :: self
+    integer, intent(in) :: line, field
+    integer :: first, last, value
+    call self%lines%find_field(line, field, first, last)
+    call parse_integer(self%lines%body(first:last), value, is_integer_at)
+  end function is_integer_at
 
-    !> Place of the keyword itself.
-    pure module function place_of_card(self) result(spot)
-      class(card), intent(in) :: self
-      type(place) :: spot
-    end function place_of_card
+  !> The data line ends in a comma (for keywords whose data go on in the next line).
+  pure logical function ends_in_comma(self, line)
+    class(card), intent(in) :: self
+    integer, intent(in) :: line
+    ends_in_comma = self%lines%ends_in_comma(line)
+  end function ends_in_comma
 
-    !> Place of the value of a parameter (of the keyword where it is not given).
-    pure module function place_of(self, name) result(spot)
-      class(card), intent(in) :: self
-      character(*), intent(in) :: name !< upper case
-      type(place) :: spot
-    end function place_of
+  !> Place of the keyword itself.
+  pure function place_of_card(self) result(spot)
+    class(card), intent(in) :: self
+    type(place) :: spot
+    spot = self%lines%spot_of_keyword(self%keyword)
+  end function place_of_card
 
-    !> Place of a field; of the whole data line where `field` is 0, of its end where it is missing.
-    pure module function place_at(self, line, field) result(spot)
-      class(card), intent(in) :: self
-      integer, intent(in) :: line, field !< data line and field
-      type(place) :: spot
-    end function place_at
+  !> Place of the value of a parameter; of its name without a value, of the keyword without both.
+  pure function place_of(self, name) result(spot)
+    class(card), intent(in) :: self
+    character(*), intent(in) :: name
+    type(place) :: spot
+    integer :: i
+    i = self%find_parameter(name)
+    if (i == 0) then
+      spot = self%place()
+    else
+      associate (given => self%parameters(i))
+        if (given%value_first <= given%value_last) then
+          spot = self%lines%spot(given%value_row, given%value_first, given%value_last, self%keyword)
+        else
+          spot = self%lines%spot(given%row, given%first, given%last, self%keyword)
+        end if
+      end associate
+    end if
+  end function place_of
 
-    !> 'file:line' of a data line, of the keyword for `line` = 0.
-    pure module function file_and_line(self, line) result(name)
-      class(card), intent(in) :: self
-      integer, intent(in) :: line !< data line
-      character(:), allocatable :: name
-    end function file_and_line
+  !> Place of a field: of the whole data line for field 0, of the line's end where it is missing.
+  pure function place_at(self, line, field) result(spot)
+    class(card), intent(in) :: self
+    integer, intent(in) :: line, field
+    type(place) :: spot
+    spot = self%lines%spot_of_field(line, field, self%keyword)
+  end function place_at
 
-    !> Adds an error that points at the keyword.
-    module subroutine fault(self, faults, problem, expected, nearest, first)
-      class(card), intent(in) :: self
-      type(diagnostic_list), intent(inout) :: faults
-      character(*), intent(in) :: problem !< what is wrong
-      character(*), intent(in), optional :: expected !< what was expected
-      character(*), intent(in), optional :: nearest !< a known word that is near
-      type(place), intent(in), optional :: first !< where the same was defined before
-    end subroutine fault
+  !> 'file:line' of a data line, of the keyword for `line` = 0.
+  pure function file_and_line(self, line) result(name)
+    class(card), intent(in) :: self
+    integer, intent(in) :: line
+    character(:), allocatable :: name
+    name = self%lines%file_and_line(line)
+  end function file_and_line
 
-    !> Adds an error that points at the value of a parameter.
-    module subroutine fault_parameter(self, faults, name, problem, expected, nearest, first)
-      class(card), intent(in) :: self
-      type(diagnostic_list), intent(inout) :: faults
-      character(*), intent(in) :: name !< of the parameter, upper case
-      character(*), intent(in) :: problem !< what is wrong
-      character(*), intent(in), optional :: expected !< what was expected
-      character(*), intent(in), optional :: nearest !< a known word that is near
-      type(place), intent(in), optional :: first !< where the same was defined before
-    end subroutine fault_parameter
+  !> Adds an error that points at the keyword.
+  subroutine fault(self, faults, problem, expected, nearest, first)
+    class(card), intent(in) :: self
+    type(diagnostic_list), intent(inout) :: faults
+    character(*), intent(in) :: problem !< what is wrong
+    character(*), intent(in), optional :: expected !< what was expected
+    character(*), intent(in), optional :: nearest !< a known word that is near, or ''
+    type(place), intent(in), optional :: first !< where the same was defined before
+    call faults%add(severity_error, self%place(), problem, expected, nearest, first)
+  end subroutine fault
 
-    !> Adds an error that points at a field of a data line.
-    module subroutine fault_at(self, faults, line, field, problem, expected, nearest, first)
-      class(card), intent(in) :: self
-      type(diagnostic_list), intent(inout) :: faults
-      integer, intent(in) :: line, field !< data line and field; field 0: the line as a whole
-      character(*), intent(in) :: problem !< what is wrong
-      character(*), intent(in), optional :: expected !< what was expected
-      character(*), intent(in), optional :: nearest !< a known word that is near
-      type(place), intent(in), optional :: first !< where the same was defined before
-    end subroutine fault_at
+  !> Adds an error that points at the value of a parameter; arguments as in `fault`.
+  subroutine fault_parameter(self, faults, name, problem, expected, nearest, first)
+    class(card), intent(in) :: self
+    type(diagnostic_list), intent(inout) :: faults
+    character(*), intent(in) :: name !< of the parameter
+    character(*), intent(in) :: problem
+    character(*), intent(in), optional :: expected, nearest
+    type(place), intent(in), optional :: first
+    call faults%add(severity_error, self%place_of(name), problem, expected, nearest, first)
+  end subroutine fault_parameter
 
-    !> Adds a warning that points at the keyword.
-    module subroutine warn(self, faults, problem, expected)
-      class(card), intent(in) :: self
-      type(diagnostic_list), intent(inout) :: faults
-      character(*), intent(in) :: problem !< what is odd
-      character(*), intent(in), optional :: expected !< what was expected
-    end subroutine warn
+  !> Adds an error that points at a field (0: the whole line); arguments as in `fault`.
+  subroutine fault_at(self, faults, line, field, problem, expected, nearest, first)
+    class(card), intent(in) :: self
+    type(diagnostic_list), intent(inout) :: faults
+    integer, intent(in) :: line, field !< data line and field
+    character(*), intent(in) :: problem
+    character(*), intent(in), optional :: expected, nearest
+    type(place), intent(in), optional :: first
+    call faults%add(severity_error, self%place_at(line, field), problem, expected, nearest, first)
+  end subroutine fault_at
 
-    !> Notes that the keyword has no effect here (`ignored_input` of job.json).
-    module subroutine ignore(self, faults, why)
-      class(card), intent(in) :: self
-      type(diagnostic_list), intent(inout) :: faults
-      character(*), intent(in) :: why !< 'has no effect here'
-    end subroutine ignore
-  end interface
+  !> Adds a warning that points at the keyword.
+  subroutine warn(self, faults, problem, expected)
+    class(card), intent(in) :: self
+    type(diagnostic_list), intent(inout) :: faults
+    character(*), intent(in) :: problem !< what is odd
+    character(*), intent(in), optional :: expected !< what was expected
+    call faults%add(severity_warning, self%place(), problem, expected)
+  end subroutine warn
+
+  !> Notes that the keyword has no effect here (`ignored_input` of job.json).
+  subroutine ignore(self, faults, why)
+    class(card), intent(in) :: self
+    type(diagnostic_list), intent(inout) :: faults
+    character(*), intent(in) :: why !< 'has no effect here'
+    call faults%add(severity_ignored, self%place(), why)
+  end subroutine ignore
 end module deck_card

@@ -5,6 +5,7 @@ module keyword_spec
   implicit none
   private
   public :: keyword, field
+  public :: parameter_default, column_default, column_of_field
   public :: kind_real, kind_integer, kind_word, kind_flag, kind_choice, kind_text, kind_reference
   public :: available, later, without_effect
 
@@ -46,4 +47,43 @@ module keyword_spec
     logical :: checks_own_data = .false. !< the handler reads the data lines itself
     integer :: fewest_lines = 0, most_lines = huge(1) !< of data
   end type keyword
+contains
+
+  !> Default of a parameter, '' where there is none.
+  pure function parameter_default(spec, name) result(default)
+    type(keyword), intent(in) :: spec
+    character(*), intent(in) :: name !< upper case
+    character(:), allocatable :: default
+    integer :: i
+    default = ''
+    if (.not. allocated(spec%parameters)) return
+    do i = 1, size(spec%parameters)
+      if (spec%parameters(i)%name /= name) cycle
+      if (allocated(spec%parameters(i)%default)) default = spec%parameters(i)%default
+    end do
+  end function parameter_default
+
+  !> Default of the column a field of a data line belongs to, '' where there is none.
+  pure function column_default(spec, number) result(default)
+    type(keyword), intent(in) :: spec
+    integer, intent(in) :: number !< of the field, from 1
+    character(:), allocatable :: default
+    integer :: column
+    default = ''
+    column = column_of_field(spec, number)
+    if (column == 0) return
+    if (allocated(spec%columns(column)%default)) default = spec%columns(column)%default
+  end function column_default
+
+  !> Column a field of a data line belongs to, 0 where it has none.
+  pure integer function column_of_field(spec, number) result(column)
+    type(keyword), intent(in) :: spec
+    integer, intent(in) :: number !< of the field, from 1
+    column = 0
+    if (.not. allocated(spec%columns)) return
+    if (size(spec%columns) == 0) return
+    column = number
+    if (spec%repeats_columns) column = 1 + mod(number - 1, size(spec%columns))
+    if (column > size(spec%columns)) column = 0
+  end function column_of_field
 end module keyword_spec

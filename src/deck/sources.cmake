@@ -1,5 +1,6 @@
 set(sources
   keyword_spec.f90
+  card_lines.f90
   deck_card.f90
-  deck_card_impl.f90
+  card_check.f90
 )
