@@ -1,0 +1,138 @@
+"""Checks the layers of the sources.
+
+A module uses its own layer and earlier ones; no two modules use each other; a file bears the name
+of its module; the lists sources.cmake name every file and no other.
+
+usage: check_layers.py [ROOT]
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from fortran_source import parent_name, sources_under, unit_name, uses
+
+LAYERS = (
+    "base deck model materials joints elements interfaces loads assembly solvers results keywords "
+    "app"
+).split()
+# Modules of the compiler and of the libraries.
+FOREIGN = {"iso_fortran_env", "iso_c_binding", "omp_lib", "hdf5", "h5lt", "ieee_arithmetic"}
+# CMake fills these in (cmake/BuildInfo.cmake).
+TEMPLATES = "*.f90.in"
+
+
+@dataclass(frozen=True)
+class Source:
+    """A file of a layer and what it says of itself."""
+
+    path: Path
+    layer: str
+    unit: str
+    parent: str | None
+    uses: tuple[tuple[int, str], ...]
+
+
+def read_sources(root: Path) -> tuple[list[Source], list[str]]:
+    """All files under src, and the faults of their places and names."""
+    found, faults = [], []
+    folder = root / "src"
+    for path in sources_under(folder) + sorted(folder.rglob(TEMPLATES)):
+        place = path.relative_to(root)
+        layer = path.relative_to(folder).parts[0]
+        if layer not in LAYERS:
+            faults.append(f"{place}: '{layer}' is no layer")
+            continue
+        text = path.read_text(encoding="utf-8")
+        unit = unit_name(text) or ""
+        stem = path.name.split(".")[0]
+        if unit != stem and not (layer == "app" and stem == "main"):
+            faults.append(f"{place}: holds '{unit}'; file and module bear the same name")
+        found.append(Source(place, layer, unit, parent_name(text), tuple(uses(text))))
+    return found, faults
+
+
+def check_directions(sources: list[Source]) -> list[str]:
+    """Uses of later layers and of modules that do not exist."""
+    layer_of = {s.unit: s.layer for s in sources}
+    faults = []
+    for source in sources:
+        for line, name in source.uses:
+            if name in FOREIGN:
+                continue
+            if name not in layer_of:
+                faults.append(f"{source.path}:{line}: there is no module '{name}'")
+            elif LAYERS.index(layer_of[name]) > LAYERS.index(source.layer):
+                faults.append(
+                    f"{source.path}:{line}: layer '{source.layer}' uses '{name}' of the later "
+                    f"layer '{layer_of[name]}'"
+                )
+    return faults
+
+
+def check_cycles(sources: list[Source]) -> list[str]:
+    """Modules that reach themselves; a submodule counts as a part of its module."""
+    part_of = {s.unit: s.parent or s.unit for s in sources}
+    graph: dict[str, set[str]] = {}
+    for source in sources:
+        targets = graph.setdefault(part_of[source.unit], set())
+        targets |= {part_of[n] for _, n in source.uses if n in part_of} - {part_of[source.unit]}
+    faults, state = [], {}
+
+    def visit(module: str, trail: list[str]) -> None:
+        state[module] = "open"
+        for target in sorted(graph.get(module, ())):
+            if state.get(target) == "open":
+                ring = [*trail, module][[*trail, module].index(target) :]
+                faults.append("modules use each other: " + " -> ".join([*ring, target]))
+            elif target not in state:
+                visit(target, [*trail, module])
+        state[module] = "done"
+
+    for module in sorted(graph):
+        if module not in state:
+            visit(module, [])
+    return faults
+
+
+def check_lists(root: Path) -> list[str]:
+    """Differences between the lists sources.cmake and the files."""
+    faults = []
+    for layer in LAYERS:
+        list_file = root / "src" / layer / "sources.cmake"
+        if not list_file.is_file():
+            faults.append(f"src/{layer}: has no sources.cmake")
+            continue
+        text = re.sub(r"#.*", "", list_file.read_text(encoding="utf-8"))
+        listed = re.findall(r"[\w./-]+\.(?:f90|c)\b", text)
+        present = {
+            str(p.relative_to(list_file.parent))
+            for p in list_file.parent.rglob("*")
+            if p.suffix in {".f90", ".c"}
+        }
+        place = f"src/{layer}/sources.cmake"
+        faults += [f"{place}: '{n}' is listed and not there" for n in sorted({*listed} - present)]
+        faults += [f"{place}: '{n}' is not listed" for n in sorted(present - {*listed})]
+        faults += [f"{place}: '{n}' twice" for n in sorted({*listed}) if listed.count(n) > 1]
+    return faults
+
+
+def check(root: Path) -> list[str]:
+    """Every fault found under ROOT/src."""
+    sources, faults = read_sources(root)
+    return faults + check_directions(sources) + check_cycles(sources) + check_lists(root)
+
+
+def main(arguments: list[str]) -> int:
+    root = Path(arguments[0]) if arguments else Path(__file__).resolve().parent.parent
+    faults = check(root)
+    for fault in faults:
+        print(fault)
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

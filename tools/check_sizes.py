@@ -1,0 +1,116 @@
+"""Checks sizes and leftovers of the sources.
+
+usage: check_sizes.py [ROOT]
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from fortran_source import bare, procedures, sources_under
+
+MAX_FILE = 400
+MAX_PROCEDURE = 60
+MAX_KERNEL = 100
+MAX_ARGUMENTS = 8
+MAX_NESTING = 4
+
+# Straight-line kernels that may have MAX_KERNEL lines; anything else is to be split.
+KERNELS: set[str] = set()
+# Tables of constants, which may be long.
+TABLES: set[str] = set()
+# Procedures whose arguments another program fixes.
+FIXED_ARGUMENTS: set[str] = {"umat"}
+
+MARKS = ("TO" + "DO", "FIX" + "ME", "X" * 3, "HA" + "CK", "W" + "IP")
+LEFTOVERS = re.compile(r"\b(?:" + "|".join(MARKS) + r")\b|^(?:<{7}|>{7}|={7})(?: |$)")
+
+
+def check_lengths(place: str, text: str) -> list[str]:
+    """Files that are too long, and what was left in them."""
+    lines = text.splitlines()
+    faults = []
+    if len(lines) > MAX_FILE and place not in TABLES:
+        faults.append(f"{place}: {len(lines)} lines, at most {MAX_FILE}")
+    for number, line in enumerate(lines, 1):
+        if found := LEFTOVERS.search(line):
+            faults.append(f"{place}:{number}: leftover '{found[0].strip()}'")
+        if line != line.rstrip():
+            faults.append(f"{place}:{number}: blanks at the end of the line")
+        if "\t" in line:
+            faults.append(f"{place}:{number}: a tab")
+    return faults
+
+
+def check_fortran(place: str, text: str) -> list[str]:
+    """Procedures that are too long, too deep or take too much."""
+    faults = []
+    for procedure in procedures(text):
+        where = f"{place}:{procedure.line}: {procedure.name}"
+        limit = MAX_KERNEL if procedure.name in KERNELS else MAX_PROCEDURE
+        if procedure.lines > limit:
+            faults.append(f"{where} has {procedure.lines} lines, at most {limit}")
+        if len(procedure.arguments) > MAX_ARGUMENTS and procedure.name not in FIXED_ARGUMENTS:
+            count = len(procedure.arguments)
+            faults.append(f"{where} has {count} arguments, at most {MAX_ARGUMENTS}")
+        if procedure.deepest > MAX_NESTING:
+            faults.append(f"{where} nests {procedure.deepest} deep, at most {MAX_NESTING}")
+    for number, line in enumerate(text.splitlines(), 1):
+        if re.match(r"^(?:if\s*\(.*\)\s*)?stop\b", bare(line)) and "/app/" not in place:
+            faults.append(f"{place}:{number}: only src/app ends the program")
+    return faults
+
+
+def check_python(place: str, text: str) -> list[str]:
+    """Functions that are too long or take too much."""
+    faults = []
+    for node in ast.walk(ast.parse(text)):
+        if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            continue
+        where = f"{place}:{node.lineno}: {node.name}"
+        length = (node.end_lineno or node.lineno) - node.lineno + 1
+        if length > MAX_PROCEDURE:
+            faults.append(f"{where} has {length} lines, at most {MAX_PROCEDURE}")
+        count = len(node.args.posonlyargs) + len(node.args.args) + len(node.args.kwonlyargs)
+        if count > MAX_ARGUMENTS:
+            faults.append(f"{where} has {count} arguments, at most {MAX_ARGUMENTS}")
+    return faults
+
+
+def files(root: Path) -> Iterator[Path]:
+    """Sources of the program, its tests and its tools."""
+    for folder in ("src", "tests", "tools"):
+        top = root / folder
+        yield from sources_under(top)
+        yield from sorted(p for p in top.rglob("*.py") if "__pycache__" not in p.parts)
+        yield from sorted(top.rglob("*.c"))
+
+
+def check(root: Path) -> list[str]:
+    """Every fault found under ROOT."""
+    faults = []
+    for path in files(root):
+        place = str(path.relative_to(root))
+        text = path.read_text(encoding="utf-8")
+        faults += check_lengths(place, text)
+        if path.suffix == ".f90":
+            faults += check_fortran(place, text)
+        elif path.suffix == ".py":
+            faults += check_python(place, text)
+    return faults
+
+
+def main(arguments: list[str]) -> int:
+    root = Path(arguments[0]) if arguments else Path(__file__).resolve().parent.parent
+    faults = check(root)
+    for fault in faults:
+        print(fault)
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
