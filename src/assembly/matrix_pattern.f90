@@ -1,16 +1,166 @@
-!> The pattern of all symmetric matrices of a step: lower triangle by columns, free unknowns first.
+!> The pattern of all matrices of a step, by columns, free unknowns first.
 !>
-!> Stiffness, mass and damping share one pattern; each is only an array of values.
+!> Stiffness, mass and damping share one pattern; each is only an array of values. Symmetric
+!> matrices keep the lower triangle; an unsymmetric tangent has a full pattern of its own.
 module matrix_pattern
+  use kinds, only: rk
   implicit none
   private
-  public :: pattern
+  public :: pattern, position_of, add_block, multiply, diagonal, full_pattern, spread_values
 
   type :: pattern
     integer :: num_free = 0 !< free unknowns come first
     integer :: num_total = 0 !< free and prescribed
+    integer :: num_jumps = 0 !< last of the free ones; a factor keeps them last
+    logical :: is_symmetric = .true. !< lower triangle only
     integer, allocatable :: column_start(:) !< (num_total + 1), 1-based
-    integer, allocatable :: row(:) !< ascending in each column, the diagonal first
+    integer, allocatable :: row(:) !< ascending in each column (symmetric: the diagonal first)
     integer, allocatable :: free_entries(:) !< entries of each column in rows <= num_free
   end type pattern
+
+contains
+
+  !> Where an entry of a column is kept, 0 when the pattern has no such entry.
+  pure integer function position_of(matrix, row, column) result(found)
+    type(pattern), intent(in) :: matrix
+    integer, intent(in) :: row, column !< symmetric: row >= column
+    integer :: low, high
+    low = matrix%column_start(column)
+    high = matrix%column_start(column + 1) - 1
+    found = 0
+    if (low > high) return
+    do while (low < high)
+      found = (low + high)/2
+      if (matrix%row(found) < row) then
+        low = found + 1
+      else
+        high = found
+      end if
+    end do
+    found = merge(low, 0, matrix%row(low) == row)
+  end function position_of
+
+  !> Adds a small dense matrix; the pattern must hold its entries. Of a symmetric pattern only the
+  !> lower triangle is added, so the block must be symmetric (or its lower part be meant).
+  pure subroutine add_block(matrix, unknown, block, values)
+    type(pattern), intent(in) :: matrix
+    integer, intent(in) :: unknown(:) !< ascending, each once
+    real(rk), intent(in) :: block(:, :) !< (unknowns, unknowns)
+    real(rk), intent(inout) :: values(:)
+    integer :: i, j, k, first
+    do j = 1, size(unknown)
+      first = merge(j, 1, matrix%is_symmetric)
+      k = position_of(matrix, unknown(first), unknown(j))
+      values(k) = values(k) + block(first, j)
+      do i = first + 1, size(unknown)
+        ! Unknowns of one node follow each other: try the next entry before searching.
+        k = k + 1
+        if (matrix%row(k) /= unknown(i)) k = position_of(matrix, unknown(i), unknown(j))
+        values(k) = values(k) + block(i, j)
+      end do
+    end do
+  end subroutine add_block
+
+  !> y = A q over all unknowns, prescribed ones included.
+  pure subroutine multiply(matrix, values, q, y)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: values(:)
+    real(rk), intent(in) :: q(:) !< (num_total)
+    real(rk), intent(out) :: y(:) !< (num_total)
+    integer :: j, k
+    real(rk) :: sum_j
+    y = 0.0_rk
+    if (matrix%is_symmetric) then
+      do j = 1, matrix%num_total
+        k = matrix%column_start(j)
+        sum_j = values(k)*q(j)
+        do k = k + 1, matrix%column_start(j + 1) - 1
+          sum_j = sum_j + values(k)*q(matrix%row(k))
+          y(matrix%row(k)) = y(matrix%row(k)) + values(k)*q(j)
+        end do
+        y(j) = y(j) + sum_j
+      end do
+    else
+      do j = 1, matrix%num_total
+        do k = matrix%column_start(j), matrix%column_start(j + 1) - 1
+          y(matrix%row(k)) = y(matrix%row(k)) + values(k)*q(j)
+        end do
+      end do
+    end if
+  end subroutine multiply
+
+  !> The diagonal.
+  pure subroutine diagonal(matrix, values, d)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: values(:)
+    real(rk), intent(out) :: d(:) !< (num_total)
+    integer :: j
+    do j = 1, matrix%num_total
+      d(j) = values(position_of(matrix, j, j))
+    end do
+  end subroutine diagonal
+
+  !> The full pattern (both triangles) of a symmetric one.
+  pure subroutine full_pattern(lower, full)
+    type(pattern), intent(in) :: lower !< symmetric
+    type(pattern), intent(out) :: full
+    integer :: j, k, i
+    integer, allocatable :: next(:)
+    full%num_free = lower%num_free
+    full%num_total = lower%num_total
+    full%num_jumps = lower%num_jumps
+    full%is_symmetric = .false.
+    allocate (full%column_start(lower%num_total + 1), next(lower%num_total))
+    allocate (full%row(2*size(lower%row) - lower%num_total))
+    next = lower%column_start(2:) - lower%column_start(:lower%num_total) - 1
+    do k = 1, size(lower%row)
+      next(lower%row(k)) = next(lower%row(k)) + 1
+    end do
+    full%column_start(1) = 1
+    do j = 1, lower%num_total
+      full%column_start(j + 1) = full%column_start(j) + next(j)
+    end do
+    next = full%column_start(:lower%num_total)
+    ! Column j of the lower triangle is row j of the upper one. Columns are passed in ascending
+    ! order, so that rows above the diagonal arrive before j's own and all stay ascending.
+    do j = 1, lower%num_total
+      do k = lower%column_start(j), lower%column_start(j + 1) - 1
+        i = lower%row(k)
+        full%row(next(j)) = i
+        next(j) = next(j) + 1
+        if (i == j) cycle
+        full%row(next(i)) = j
+        next(i) = next(i) + 1
+      end do
+    end do
+    full%free_entries = [(count_free(full, j), j=1, full%num_total)]
+  end subroutine full_pattern
+
+  !> Entries of a column in free rows.
+  pure integer function count_free(matrix, column)
+    type(pattern), intent(in) :: matrix
+    integer, intent(in) :: column
+    count_free = count(matrix%row(matrix%column_start(column): &
+                                  matrix%column_start(column + 1) - 1) <= matrix%num_free)
+  end function count_free
+
+  !> Writes the values of a symmetric matrix into the full pattern.
+  pure subroutine spread_values(lower, values, full, full_values)
+    type(pattern), intent(in) :: lower, full
+    real(rk), intent(in) :: values(:)
+    real(rk), intent(out) :: full_values(:)
+    integer :: i, j, k
+    integer, allocatable :: next(:)
+    next = full%column_start(:full%num_total)
+    do j = 1, lower%num_total
+      do k = lower%column_start(j), lower%column_start(j + 1) - 1
+        i = lower%row(k)
+        full_values(next(j)) = values(k)
+        next(j) = next(j) + 1
+        if (i == j) cycle
+        full_values(next(i)) = values(k)
+        next(i) = next(i) + 1
+      end do
+    end do
+  end subroutine spread_values
 end module matrix_pattern

@@ -3,4 +3,8 @@ set(sources
   analysis_state.f90
   increment_listener.f90
   matrix_pattern.f90
+  pattern_builder.f90
+  constraint_elimination.f90
+  joint_operator.f90
+  damping_rayleigh.f90
 )

@@ -4,4 +4,6 @@ set(sources
   mesh_faces.f90
   amplitudes.f90
   step_plan.f90
+  dof_numbering.f90
+  jump_links.f90
 )

@@ -1,0 +1,246 @@
+!> Builds the pattern of the matrices from what couples the nodes.
+!>
+!> A cell is a list of nodes that are coupled with each other: a solid element, or a point of a
+!> joint. Unknowns are handled in groups (those of one node, one jump), which keeps this fast.
+module pattern_builder
+  use dam_mesh, only: mesh
+  use joint_points, only: joint
+  use dof_numbering, only: numbering
+  use matrix_pattern, only: pattern
+  implicit none
+  private
+  public :: build_pattern, cell_list, list_cells
+
+  !> Lists of nodes, one after the other.
+  type :: cell_list
+    integer, allocatable :: first(:) !< (cells + 1)
+    integer, allocatable :: node(:)
+  end type cell_list
+
+  !> Rows of integers, one after the other.
+  type :: table
+    integer, allocatable :: first(:), item(:)
+  end type table
+
+contains
+
+  !> The cells of a model: its solid elements and the points of its joints.
+  subroutine list_cells(model, joints, cells)
+    type(mesh), intent(in) :: model
+    type(joint), intent(in) :: joints(:)
+    type(cell_list), intent(out) :: cells
+    integer :: e, j, p, num_cells, num_items
+    logical, allocatable :: is_solid(:)
+    is_solid = model%material_of_element > 0
+    num_cells = count(is_solid)
+    num_items = 8*num_cells
+    do j = 1, size(joints)
+      num_cells = num_cells + joints(j)%num_points
+      num_items = num_items + size(joints(j)%master) + size(joints(j)%slave)
+    end do
+    allocate (cells%first(num_cells + 1), cells%node(num_items))
+    cells%first(1) = 1
+    num_cells = 0
+    do e = 1, model%num_elements
+      if (is_solid(e)) call add_cell(pack(model%nodes(:, e), model%nodes(:, e) > 0))
+    end do
+    do j = 1, size(joints)
+      do p = 1, joints(j)%num_points
+        call add_cell([joints(j)%master(:, p), joints(j)%slave(:, p)])
+      end do
+    end do
+    cells%first = cells%first(:num_cells + 1)
+  contains
+    subroutine add_cell(nodes)
+      integer, intent(in) :: nodes(:)
+      num_cells = num_cells + 1
+      cells%first(num_cells + 1) = cells%first(num_cells) + size(nodes)
+      cells%node(cells%first(num_cells):cells%first(num_cells + 1) - 1) = nodes
+    end subroutine add_cell
+  end subroutine list_cells
+
+  !> The lower triangle of everything that the cells couple.
+  subroutine build_pattern(numbers, cells, matrix)
+    type(numbering), intent(in) :: numbers
+    type(cell_list), intent(in) :: cells
+    type(pattern), intent(out) :: matrix
+    integer, allocatable :: group(:), first_unknown(:)
+    type(table) :: groups_of_cell, cells_of_group, neighbours
+    call group_unknowns(numbers, group, first_unknown)
+    call list_groups(numbers, cells, group, size(first_unknown) - 1, groups_of_cell)
+    call transpose_table(groups_of_cell, size(first_unknown) - 1, cells_of_group)
+    call list_neighbours(groups_of_cell, cells_of_group, neighbours)
+    matrix%num_free = numbers%num_free
+    matrix%num_total = numbers%num_total
+    matrix%num_jumps = numbers%num_jumps
+    call expand_groups(first_unknown, neighbours, matrix)
+  end subroutine build_pattern
+
+  !> Unknowns that always come together: neighbours in number, of one node and one class.
+  pure subroutine group_unknowns(numbers, group, first_unknown)
+    type(numbering), intent(in) :: numbers
+    integer, allocatable, intent(out) :: group(:) !< (unknowns)
+    integer, allocatable, intent(out) :: first_unknown(:) !< (groups + 1)
+    integer :: j, num_groups, first_jump
+    allocate (group(numbers%num_total), first_unknown(numbers%num_total + 1))
+    num_groups = 0
+    first_jump = numbers%num_free - numbers%num_jumps + 1
+    do j = 1, numbers%num_total
+      if (starts_group(j)) then
+        num_groups = num_groups + 1
+        first_unknown(num_groups) = j
+      end if
+      group(j) = num_groups
+    end do
+    first_unknown(num_groups + 1) = numbers%num_total + 1
+    first_unknown = first_unknown(:num_groups + 1)
+  contains
+    pure logical function starts_group(j)
+      integer, intent(in) :: j
+      starts_group = j == 1 .or. j == first_jump .or. j == numbers%num_free + 1
+      if (starts_group) return
+      starts_group = numbers%node(j) /= numbers%node(j - 1) &
+                     .or. numbers%direction(j) <= numbers%direction(j - 1)
+    end function starts_group
+  end subroutine group_unknowns
+
+  !> The groups that each cell touches, each once, through T.
+  subroutine list_groups(numbers, cells, group, num_groups, groups_of_cell)
+    type(numbering), intent(in) :: numbers
+    type(cell_list), intent(in) :: cells
+    integer, intent(in) :: group(:), num_groups
+    type(table), intent(out) :: groups_of_cell
+    integer, allocatable :: last_cell(:)
+    integer :: c, n, k, pass, num_items
+    allocate (groups_of_cell%first(size(cells%first)), last_cell(num_groups))
+    do pass = 1, 2
+      last_cell = 0
+      num_items = 0
+      do c = 1, size(cells%first) - 1
+        groups_of_cell%first(c) = num_items + 1
+        do n = cells%first(c), cells%first(c + 1) - 1
+          do k = numbers%row_start(3*cells%node(n) - 2), numbers%row_start(3*cells%node(n) + 1) - 1
+            associate (g => group(numbers%unknown(k)))
+              if (last_cell(g) == c) cycle
+              last_cell(g) = c
+              num_items = num_items + 1
+              if (pass == 2) groups_of_cell%item(num_items) = g
+            end associate
+          end do
+        end do
+      end do
+      groups_of_cell%first(size(cells%first)) = num_items + 1
+      if (pass == 1) allocate (groups_of_cell%item(num_items))
+    end do
+  end subroutine list_groups
+
+  !> Which rows hold each item.
+  pure subroutine transpose_table(rows, num_columns, columns)
+    type(table), intent(in) :: rows
+    integer, intent(in) :: num_columns
+    type(table), intent(out) :: columns
+    integer :: i, k
+    integer, allocatable :: next(:)
+    allocate (columns%first(num_columns + 1), columns%item(size(rows%item)))
+    columns%first = 0
+    do k = 1, size(rows%item)
+      columns%first(rows%item(k) + 1) = columns%first(rows%item(k) + 1) + 1
+    end do
+    columns%first(1) = 1
+    do i = 1, num_columns
+      columns%first(i + 1) = columns%first(i) + columns%first(i + 1)
+    end do
+    next = columns%first
+    do i = 1, size(rows%first) - 1
+      do k = rows%first(i), rows%first(i + 1) - 1
+        columns%item(next(rows%item(k))) = i
+        next(rows%item(k)) = next(rows%item(k)) + 1
+      end do
+    end do
+  end subroutine transpose_table
+
+  !> The groups with higher numbers that share a cell with each group, ascending.
+  subroutine list_neighbours(groups_of_cell, cells_of_group, neighbours)
+    type(table), intent(in) :: groups_of_cell, cells_of_group
+    type(table), intent(out) :: neighbours
+    integer, allocatable :: last_group(:)
+    integer :: g, c, k, pass, num_items
+    allocate (neighbours%first(size(cells_of_group%first)), last_group(size(cells_of_group%first)))
+    do pass = 1, 2
+      last_group = 0
+      num_items = 0
+      do g = 1, size(cells_of_group%first) - 1
+        neighbours%first(g) = num_items + 1
+        do c = cells_of_group%first(g), cells_of_group%first(g + 1) - 1
+          associate (cell => cells_of_group%item(c))
+            do k = groups_of_cell%first(cell), groups_of_cell%first(cell + 1) - 1
+              associate (other => groups_of_cell%item(k))
+                if (other <= g .or. last_group(other) == g) cycle
+                last_group(other) = g
+                num_items = num_items + 1
+                if (pass == 2) neighbours%item(num_items) = other
+              end associate
+            end do
+          end associate
+        end do
+        if (pass == 2) call sort(neighbours%item(neighbours%first(g):num_items))
+      end do
+      neighbours%first(size(neighbours%first)) = num_items + 1
+      if (pass == 1) allocate (neighbours%item(num_items))
+    end do
+  end subroutine list_neighbours
+
+  !> Sorts a short list by insertion.
+  pure subroutine sort(list)
+    integer, intent(inout) :: list(:)
+    integer :: i, k, item
+    do i = 2, size(list)
+      item = list(i)
+      do k = i - 1, 1, -1
+        if (list(k) <= item) exit
+        list(k + 1) = list(k)
+      end do
+      list(k + 1) = item
+    end do
+  end subroutine sort
+
+  !> Writes the pattern of unknowns from that of groups.
+  pure subroutine expand_groups(first_unknown, neighbours, matrix)
+    integer, intent(in) :: first_unknown(:)
+    type(table), intent(in) :: neighbours
+    type(pattern), intent(inout) :: matrix
+    integer :: g, j, k, i, pass, num_entries
+    allocate (matrix%column_start(matrix%num_total + 1), matrix%free_entries(matrix%num_total))
+    do pass = 1, 2
+      num_entries = 0
+      matrix%free_entries = 0
+      do g = 1, size(first_unknown) - 1
+        do j = first_unknown(g), first_unknown(g + 1) - 1
+          matrix%column_start(j) = num_entries + 1
+          call add_rows(j, first_unknown(g + 1) - 1)
+          do k = neighbours%first(g), neighbours%first(g + 1) - 1
+            i = neighbours%item(k)
+            call add_rows(first_unknown(i), first_unknown(i + 1) - 1)
+          end do
+        end do
+      end do
+      matrix%column_start(matrix%num_total + 1) = num_entries + 1
+      if (pass == 1) allocate (matrix%row(num_entries))
+    end do
+  contains
+    !> A run of rows in the column under way.
+    pure subroutine add_rows(first, last)
+      integer, intent(in) :: first, last
+      integer :: row
+      if (pass == 2) then
+        do row = first, last
+          matrix%row(num_entries + 1 + row - first) = row
+        end do
+      end if
+      num_entries = num_entries + last - first + 1
+      if (last <= matrix%num_free) then
+        matrix%free_entries(j) = matrix%free_entries(j) + last - first + 1
+      end if
+    end subroutine add_rows
+  end subroutine expand_groups
+end module pattern_builder
