@@ -1,4 +1,4 @@
-!> The dependent dofs of a step: the seat where joints, later ties and equations, meet the numbering.
+!> The dependent dofs of a step: where joints, later ties and equations, meet the numbering.
 module constraint_elimination
   use kinds, only: rk
   use errors, only: error_type

@@ -151,7 +151,7 @@ contains
     real(rk), intent(out) :: full_values(:)
     integer :: i, j, k
     integer, allocatable :: next(:)
-    next = full%column_start(:full%num_total)
+    allocate (next, source=full%column_start(:full%num_total))
     do j = 1, lower%num_total
       do k = lower%column_start(j), lower%column_start(j + 1) - 1
         i = lower%row(k)

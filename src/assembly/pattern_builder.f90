@@ -31,7 +31,7 @@ contains
     type(cell_list), intent(out) :: cells
     integer :: e, j, p, num_cells, num_items
     logical, allocatable :: is_solid(:)
-    is_solid = model%material_of_element > 0
+    allocate (is_solid, source=model%material_of_element > 0)
     num_cells = count(is_solid)
     num_items = 8*num_cells
     do j = 1, size(joints)
@@ -150,7 +150,7 @@ contains
     do i = 1, num_columns
       columns%first(i + 1) = columns%first(i) + columns%first(i + 1)
     end do
-    next = columns%first
+    allocate (next, source=columns%first)
     do i = 1, size(rows%first) - 1
       do k = rows%first(i), rows%first(i + 1) - 1
         columns%item(next(rows%item(k))) = i
@@ -205,7 +205,7 @@ contains
   end subroutine sort
 
   !> Writes the pattern of unknowns from that of groups.
-  pure subroutine expand_groups(first_unknown, neighbours, matrix)
+  subroutine expand_groups(first_unknown, neighbours, matrix)
     integer, intent(in) :: first_unknown(:)
     type(table), intent(in) :: neighbours
     type(pattern), intent(inout) :: matrix
@@ -229,7 +229,7 @@ contains
     end do
   contains
     !> A run of rows in the column under way.
-    pure subroutine add_rows(first, last)
+    subroutine add_rows(first, last)
       integer, intent(in) :: first, last
       integer :: row
       if (pass == 2) then

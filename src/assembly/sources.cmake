@@ -5,6 +5,6 @@ set(sources
   matrix_pattern.f90
   pattern_builder.f90
   constraint_elimination.f90
-  joint_operator.f90
+  joint_stiffness.f90
   damping_rayleigh.f90
 )

@@ -22,12 +22,12 @@ contains
     type(linear_links), intent(out) :: links
     logical, allocatable :: is_held(:)
     integer :: p
-    is_held = any(is_fixed, 1)
+    allocate (is_held, source=any(is_fixed, 1))
     call choose_pairs(slave, master, is_used, is_held, links)
     allocate (links%jump_node(links%num_jumps), links%dof(links%num_jumps))
     allocate (links%first(links%num_jumps + 1), links%term(4*links%num_jumps))
     allocate (links%coefficient(4*links%num_jumps))
-    links%first = [(1 + 4*(p - 1), p=1, links%num_jumps + 1)]
+    links%first(:) = [(1 + 4*(p - 1), p=1, links%num_jumps + 1)]
     call walk_trees(slave, master, rotation, is_held, links)
   end subroutine link_pairs
 
@@ -41,8 +41,9 @@ contains
     integer :: p, a, b
     allocate (links%first_jump(size(slave)))
     links%first_jump = 0
-    tree_is_held = is_held
-    parent = [(p, p=1, size(is_used))]
+    allocate (tree_is_held, source=is_held)
+    allocate (parent(size(is_used)))
+    parent(:) = [(p, p=1, size(is_used))]
     do p = 1, size(slave)
       if (.not. (is_used(slave(p)) .and. is_used(master(p)))) cycle
       call find_root(parent, slave(p), a)
@@ -134,7 +135,7 @@ contains
     do node = 1, num_nodes
       first(node + 1) = first(node) + first(node + 1)
     end do
-    next = first
+    allocate (next, source=first)
     allocate (edge(first(num_nodes + 1) - 1))
     do p = 1, size(slave)
       if (first_jump(p) == 0) cycle

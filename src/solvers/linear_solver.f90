@@ -8,6 +8,7 @@ module linear_solver
   public :: equation_solver
 
   type, abstract :: equation_solver
+    integer :: failed_unknown = 0 !< whose pivot made the last factorisation fail, 0 for none
   contains
     procedure(analyse), deferred :: analyse
     procedure(factorise), deferred :: factorise

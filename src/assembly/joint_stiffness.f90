@@ -1,0 +1,59 @@
+!> Adds the stiffness of joints, given the rows of their jump operator B (v = B q).
+module joint_stiffness
+  use kinds, only: rk
+  use matrix_pattern, only: pattern, add_block
+  implicit none
+  private
+  public :: add_joint_stiffness
+
+contains
+
+  !> Adds B^T (area D) B, point by point. In a symmetric matrix the symmetric part of D counts.
+  subroutine add_joint_stiffness(row_start, unknown, coefficient, area, tangent, matrix, values)
+    integer, intent(in) :: row_start(:) !< (3*points + 1) rows of B; 3*(point - 1) + 1: opening
+    integer, intent(in) :: unknown(:) !< columns of B
+    real(rk), intent(in) :: coefficient(:) !< values of B
+    real(rk), intent(in) :: area(:) !< (points) [m2]
+    real(rk), intent(in) :: tangent(:, :, :) !< (3, 3, points) D [Pa/m]
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(inout) :: values(:)
+    integer, allocatable :: column(:)
+    real(rk), allocatable :: b(:, :)
+    real(rk) :: d(3, 3)
+    integer :: p, first, last
+    do p = 1, size(area)
+      d = tangent(:, :, p)
+      if (matrix%is_symmetric) d = 0.5_rk*(d + transpose(d))
+      first = row_start(3*p - 2)
+      last = row_start(3*p + 1) - 1
+      call gather_rows(row_start(3*p - 2:3*p + 1) - first + 1, unknown(first:last), &
+                       coefficient(first:last), column, b)
+      call add_block(matrix, column, area(p)*matmul(transpose(b), matmul(d, b)), values)
+    end do
+  end subroutine add_joint_stiffness
+
+  !> The three rows of a point as a dense matrix on the unknowns that it touches.
+  subroutine gather_rows(start, unknown, coefficient, column, b)
+    integer, intent(in) :: start(4) !< of each row in the lists that follow
+    integer, intent(in) :: unknown(:)
+    real(rk), intent(in) :: coefficient(:)
+    integer, allocatable, intent(out) :: column(:) !< the unknowns, ascending
+    real(rk), allocatable, intent(out) :: b(:, :) !< (3, columns)
+    integer :: i, k, last
+    allocate (column(0))
+    last = 0
+    do while (any(unknown > last))
+      last = minval(unknown, mask=unknown > last)
+      column = [column, last]
+    end do
+    allocate (b(3, size(column)))
+    b = 0.0_rk
+    do i = 1, 3
+      do k = start(i), start(i + 1) - 1
+        associate (place => count(column <= unknown(k)))
+          b(i, place) = b(i, place) + coefficient(k)
+        end associate
+      end do
+    end do
+  end subroutine gather_rows
+end module joint_stiffness

@@ -1,0 +1,95 @@
+!> T of chains of joints, loops and supports; expand and reduce are transposed to each other.
+program test_dof_numbering
+  use kinds, only: rk
+  use errors, only: error_type
+  use testing, only: test_log, check, check_close, check_text
+  use dof_numbering, only: numbering, linear_links, number_unknowns
+  use jump_links, only: link_pairs
+  implicit none
+  type(test_log) :: log
+  log%suite = 'dof_numbering'
+  call chain_of_joints()
+  call loop_and_supports()
+  call transposed()
+  write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
+  if (log%failed > 0) error stop 1
+contains
+
+  !> Rotation about e3 by an angle whose cosine and sine are 0.6 and 0.8.
+  pure function turned() result(r)
+    real(rk) :: r(3, 3)
+    r = reshape([0.6_rk, -0.8_rk, 0.0_rk, 0.8_rk, 0.6_rk, 0.0_rk, 0.0_rk, 0.0_rk, 1.0_rk], [3, 3])
+  end function turned
+
+  !> Numbers five nodes, of which the last is used by no element.
+  subroutine number_five(slave, master, is_fixed, numbers)
+    integer, intent(in) :: slave(:), master(:)
+    logical, intent(in) :: is_fixed(3, 5)
+    type(numbering), intent(out) :: numbers
+    type(linear_links) :: links
+    type(error_type), allocatable :: error
+    logical :: is_used(5)
+    is_used = [.true., .true., .true., .true., .false.]
+    call link_pairs(slave, master, spread(turned(), 3, size(slave)), is_used, is_fixed, links)
+    call number_unknowns(is_used, is_fixed, links, numbers, error)
+    call check(log, allocated(error) .eqv. .false., 'numbering succeeds')
+  end subroutine number_five
+
+  subroutine chain_of_joints()
+    type(numbering) :: numbers
+    logical :: is_fixed(3, 5)
+    real(rk), allocatable :: q(:)
+    real(rk) :: u(3, 5), d(3)
+    integer :: k
+    is_fixed = .false.
+    is_fixed(3, 4) = .true.
+    ! Node 1 is the root of 2, and 2 of 3, though the pairs come the other way round.
+    call number_five([3, 2], [2, 1], is_fixed, numbers)
+    call check(log, numbers%num_free == 11 .and. numbers%num_total == 12, '3 + 2 + 6 free, 1 fixed')
+    call check(log, all(numbers%first_jump == [6, 9]), 'jumps stand last among the free')
+    q = [(real(k, rk), k=1, 12)]
+    call numbers%expand(q, u)
+    d = matmul(turned(), u(:, 3) - u(:, 2)) - q(6:8)
+    call check_close(log, norm2(d), 0.0_rk, 1.0e-14_rk, 'the jump of pair 1 is its unknown')
+    d = matmul(turned(), u(:, 2) - u(:, 1)) - q(9:11)
+    call check_close(log, norm2(d), 0.0_rk, 1.0e-14_rk, 'the jump of pair 2 is its unknown')
+    call check_close(log, norm2(u(:, 5)), 0.0_rk, 0.0_rk, 'a node without elements rests')
+    call check_text(log, numbers%describe(12, [10, 20, 30, 40, 50]), 'node 40, direction 3', &
+                    'a prescribed unknown')
+    call check_text(log, numbers%describe(7, [10, 20, 30, 40, 50]), 'joint slip 1 at node 30', &
+                    'a jump')
+  end subroutine chain_of_joints
+
+  subroutine loop_and_supports()
+    type(numbering) :: numbers
+    logical :: is_fixed(3, 5)
+    is_fixed = .false.
+    call number_five([2, 3, 1, 4, 5], [1, 2, 3, 4, 1], is_fixed, numbers)
+    call check(log, all(numbers%first_jump(:2) > 0) .and. all(numbers%first_jump(3:) == 0), &
+               'no jump closes a loop, none within a node, none to an unused node')
+    is_fixed(1, 1) = .true.
+    is_fixed(2, 2) = .true.
+    call number_five([2, 3], [1, 2], is_fixed, numbers)
+    call check(log, numbers%first_jump(1) == 0 .and. numbers%first_jump(2) > 0, &
+               'no jump between two supports')
+    call number_five([2], [4], is_fixed, numbers)
+    call check(log, numbers%first_jump(1) > 0, 'a held slave becomes the root')
+  end subroutine loop_and_supports
+
+  subroutine transposed()
+    type(numbering) :: numbers
+    logical :: is_fixed(3, 5)
+    real(rk) :: u(3, 5), f(3, 5)
+    real(rk), allocatable :: q(:), r(:)
+    integer :: k
+    is_fixed = .false.
+    is_fixed(:, 2) = .true.
+    call number_five([2, 3, 4], [1, 2, 3], is_fixed, numbers)
+    f = reshape([(sin(real(k, rk)), k=1, 15)], [3, 5])
+    allocate (r(numbers%num_total))
+    q = [(cos(real(k, rk)), k=1, numbers%num_total)]
+    call numbers%expand(q, u)
+    call numbers%reduce(f, r)
+    call check_close(log, dot_product(q, r), sum(u*f), 1.0e-14_rk, 'q.(T^T f) = (T q).f')
+  end subroutine transposed
+end program test_dof_numbering
