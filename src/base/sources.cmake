@@ -1,6 +1,13 @@
 set(sources
   kinds.f90
-  diagnostics.f90
-  parse_text.f90
   errors.f90
+  parse_text.f90
+  write_text.f90
+  nearest_words.f90
+  diagnostics.f90
+  diagnostic_text.f90
+  timer.f90
+  logging.f90
+  small_matrix.f90
+  tensor6.f90
 )

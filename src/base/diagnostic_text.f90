@@ -1,0 +1,147 @@
+!> The one renderer of diagnostics: what a person reads about a fault of the deck.
+!>
+!>     dam.inp:12: *ELASTIC: found '31 GPa'; expected Young's modulus, a number > 0 [Pa]
+!>        12 | 31 GPa, 0.2
+!>           | ^^^^^^
+module diagnostic_text
+  use diagnostics, only: diagnostic, diagnostic_list, place, severity_error
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: text_of_errors, text_of_warnings, text_of_diagnostic
+
+  integer, parameter :: widest_line = 100 !< letters of a deck line that are shown
+  integer, parameter :: margin = 30 !< letters shown before the word when a line is cut
+  integer, parameter :: number_width = 5 !< room for the line number
+  character, parameter :: tab = achar(9)
+
+contains
+
+  !> Every error that was kept and how many more there are; '' without errors.
+  pure function text_of_errors(list) result(text)
+    type(diagnostic_list), intent(in) :: list
+    character(:), allocatable :: text !< lines with new_line between them, none at the end
+    integer :: i
+    text = ""
+    do i = 1, list%num_kept
+      if (i > 1) text = text//new_line("a")
+      text = text//text_of_diagnostic(list%errors(i))
+    end do
+    if (list%num_errors > list%num_kept) then
+      text = text//new_line("a")//"and "//as_text(list%num_errors - list%num_kept)//" more"
+    end if
+  end function text_of_errors
+
+  !> Every warning and every note on ignored input, without the deck lines; '' without any.
+  pure function text_of_warnings(list) result(text)
+    type(diagnostic_list), intent(in) :: list
+    character(:), allocatable :: text !< lines with new_line between them, none at the end
+    integer :: i
+    text = ""
+    do i = 1, list%num_warnings
+      if (i > 1) text = text//new_line("a")
+      text = text//headline(list%warnings(i))
+    end do
+  end function text_of_warnings
+
+  !> One fault: the headline, the line of the deck, carets, and where the same was defined before.
+  pure function text_of_diagnostic(fault) result(text)
+    type(diagnostic), intent(in) :: fault
+    character(:), allocatable :: text
+    text = headline(fault)//excerpt(fault%spot)
+    if (allocated(fault%first%file)) then
+      text = text//new_line("a")//"  first defined here: "//fault%first%file//":"// &
+             as_text(fault%first%line)//excerpt(fault%first)
+    end if
+  end function text_of_diagnostic
+
+  !> file:line: *KEYWORD: what is wrong; what was expected.
+  pure function headline(fault) result(text)
+    type(diagnostic), intent(in) :: fault
+    character(:), allocatable :: text
+    text = fault%spot%file//": "
+    if (fault%spot%line > 0) text = fault%spot%file//":"//as_text(fault%spot%line)//": "
+    if (allocated(fault%spot%keyword)) then
+      if (len(fault%spot%keyword) > 0) text = text//"*"//fault%spot%keyword//": "
+    end if
+    if (fault%severity /= severity_error) text = text//"warning: "
+    text = text//printable(fault%problem)
+    if (len(fault%expected) > 0) text = text//"; expected "//fault%expected
+    if (len(fault%nearest) > 0) text = text//"; did you mean '"//fault%nearest//"'?"
+  end function headline
+
+  !> The line of the deck and carets below the word; '' where no line is known.
+  pure function excerpt(spot) result(text)
+    type(place), intent(in) :: spot
+    character(:), allocatable :: text
+    integer :: first, last
+    text = ""
+    if (.not. allocated(spot%source) .or. spot%line == 0) return
+    first = 1
+    last = len_trim(spot%source)
+    if (last > widest_line) then
+      first = max(1, min(spot%column - margin, last - widest_line + 1))
+      last = min(last, first + widest_line - 1)
+    end if
+    text = new_line("a")//line_label(as_text(spot%line))//printable(spot%source(first:last))
+    if (spot%column == 0 .or. spot%length == 0) return
+    text = text//new_line("a")//line_label("")//blank_like(spot, first)// &
+           carets(spot, last)
+  end function excerpt
+
+  !> '   12 | '
+  pure function line_label(number) result(text)
+    character(*), intent(in) :: number !< of the line, or ''
+    character(:), allocatable :: text
+    text = repeat(" ", max(number_width - len(number), 0))//number//" | "
+  end function line_label
+
+  !> Blanks as wide as what stands before the word: tabs stay, letters of several bytes count once.
+  pure function blank_like(spot, first) result(text)
+    type(place), intent(in) :: spot
+    integer, intent(in) :: first !< first byte of the line that is shown
+    character(:), allocatable :: text
+    integer :: i
+    text = ""
+    do i = first, spot%column - 1
+      if (i > len(spot%source)) then
+        text = text//" "
+      else if (spot%source(i:i) == tab) then
+        text = text//tab
+      else if (.not. continues_letter(spot%source(i:i))) then
+        text = text//" "
+      end if
+    end do
+  end function blank_like
+
+  !> A caret for each letter of the word that is shown.
+  pure function carets(spot, last) result(text)
+    type(place), intent(in) :: spot
+    integer, intent(in) :: last !< last byte of the line that is shown
+    character(:), allocatable :: text
+    integer :: i
+    text = "^"
+    do i = spot%column + 1, min(spot%column + spot%length - 1, last)
+      if (.not. continues_letter(spot%source(i:i))) text = text//"^"
+    end do
+  end function carets
+
+  !> The byte is a later one of a letter in UTF-8.
+  pure logical function continues_letter(byte)
+    character, intent(in) :: byte
+    continues_letter = iand(ichar(byte), 192) == 128
+  end function continues_letter
+
+  !> The text with control letters, which could upset a terminal, turned to '?'; tabs stay.
+  pure function printable(text) result(clean)
+    character(*), intent(in) :: text
+    character(len(text)) :: clean
+    integer :: i
+    clean = text
+    do i = 1, len(text)
+      if (ichar(text(i:i)) < 32 .and. text(i:i) /= tab .or. ichar(text(i:i)) == 127) then
+        clean(i:i) = "?"
+      end if
+    end do
+  end function printable
+end module diagnostic_text

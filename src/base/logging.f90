@@ -1,0 +1,128 @@
+!> What a run says: to job.log, and to people on stderr.
+!>
+!> On a terminal the progress of a run stays in one line that is written over; through a pipe it is
+!> plain lines. Quiet: stderr holds errors only.
+module logging
+  use, intrinsic :: iso_c_binding, only: c_int
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use errors, only: error_type, raise, system_failed
+  implicit none
+  private
+  public :: run_log
+
+  character, parameter :: return = achar(13) !< goes back to the start of the line
+  integer(c_int), parameter :: standard_error = 2 !< its file descriptor
+
+  !> The log of a run.
+  type :: run_log
+    integer :: unit = 0 !< of the file; 0: there is none
+    logical :: is_quiet = .false. !< only errors go to stderr
+    logical :: is_terminal = .false. !< stderr is a terminal
+    logical :: has_failed = .false. !< a line could not be written to the file (disk full)
+    integer :: width_in_place = 0 !< letters of the progress line that stands on the terminal
+  contains
+    procedure :: open => open_log
+    procedure :: say
+    procedure :: note
+    procedure :: progress
+    procedure :: complain
+    procedure :: close => close_log
+  end type run_log
+
+  interface
+    !> C library: 1 where the file descriptor is a terminal.
+    function isatty(descriptor) result(answer) bind(C, name="isatty")
+      import :: c_int
+      implicit none
+      integer(c_int), intent(in), value :: descriptor
+      integer(c_int) :: answer
+    end function isatty
+  end interface
+
+contains
+
+  !> Opens the log; without a path lines go to stderr only.
+  subroutine open_log(self, is_quiet, error, path)
+    class(run_log), intent(inout) :: self
+    logical, intent(in) :: is_quiet !< say nothing on stderr
+    type(error_type), allocatable, intent(out) :: error
+    character(*), intent(in), optional :: path !< of the file, written over
+    character(200) :: reason
+    integer :: status
+    self%is_quiet = is_quiet
+    self%is_terminal = isatty(standard_error) == 1
+    if (.not. present(path)) return
+    open (newunit=self%unit, file=path, status="replace", action="write", iostat=status, &
+          iomsg=reason)
+    if (status == 0) return
+    self%unit = 0
+    call raise(error, "cannot write the log '"//path//"': "//trim(reason), system_failed)
+  end subroutine open_log
+
+  !> A line for the file and for people.
+  subroutine say(self, line)
+    class(run_log), intent(inout) :: self
+    character(*), intent(in) :: line !< may hold several lines
+    call self%note(line)
+    if (.not. self%is_quiet) call show(self, line)
+  end subroutine say
+
+  !> A line for the file only.
+  subroutine note(self, line)
+    class(run_log), intent(inout) :: self
+    character(*), intent(in) :: line !< may hold several lines
+    integer :: status
+    if (self%unit == 0) return
+    write (self%unit, "(a)", iostat=status) line
+    if (status == 0) flush (self%unit, iostat=status)
+    if (status /= 0) self%has_failed = .true.
+  end subroutine note
+
+  !> A line about an increment: takes the place of the one before on a terminal.
+  subroutine progress(self, line)
+    class(run_log), intent(inout) :: self
+    character(*), intent(in) :: line
+    integer :: num_over
+    call self%note(line)
+    if (self%is_quiet) return
+    if (.not. self%is_terminal) then
+      call show(self, line)
+      return
+    end if
+    num_over = max(self%width_in_place - len(line), 0)
+    write (error_unit, "(3a)", advance="no") return, line, repeat(" ", num_over)
+    flush (error_unit)
+    self%width_in_place = len(line)
+  end subroutine progress
+
+  !> An error: for the file and for people, quiet or not.
+  subroutine complain(self, line)
+    class(run_log), intent(inout) :: self
+    character(*), intent(in) :: line !< may hold several lines
+    call self%note(line)
+    call show(self, line)
+  end subroutine complain
+
+  !> Ends the progress line and closes the file.
+  subroutine close_log(self)
+    class(run_log), intent(inout) :: self
+    call end_progress(self)
+    if (self%unit /= 0) close (self%unit)
+    self%unit = 0
+  end subroutine close_log
+
+  !> Writes to stderr, below the progress line.
+  subroutine show(self, line)
+    class(run_log), intent(inout) :: self
+    character(*), intent(in) :: line
+    call end_progress(self)
+    write (error_unit, "(a)") line
+  end subroutine show
+
+  !> Leaves the progress line where it stands and goes on below it.
+  subroutine end_progress(self)
+    class(run_log), intent(inout) :: self
+    if (self%width_in_place > 0) write (error_unit, "(a)") ""
+    self%width_in_place = 0
+  end subroutine end_progress
+end module logging

@@ -1,0 +1,120 @@
+!> Symmetric tensors as six numbers, ordered 11 22 33 12 13 23; shear components are those of the
+!> tensor (stress), not engineering shear.
+module tensor6
+  use kinds, only: rk
+  use small_matrix, only: cross_product
+  implicit none
+  private
+  public :: trace, second_invariant, third_invariant, von_mises, principal_values, as_matrix
+
+  real(rk), parameter :: pi = acos(-1.0_rk)
+
+contains
+
+  !> Sum of the direct components.
+  pure real(rk) function trace(t)
+    real(rk), intent(in) :: t(6)
+    trace = t(1) + t(2) + t(3)
+  end function trace
+
+  !> J2 = s:s/2 of the deviator s.
+  pure real(rk) function second_invariant(t) result(j2)
+    real(rk), intent(in) :: t(6)
+    j2 = ((t(1) - t(2))**2 + (t(2) - t(3))**2 + (t(3) - t(1))**2)/6.0_rk + sum(t(4:6)**2)
+  end function second_invariant
+
+  !> J3 = det s of the deviator s.
+  pure real(rk) function third_invariant(t) result(j3)
+    real(rk), intent(in) :: t(6)
+    real(rk) :: s(3)
+    s = t(1:3) - trace(t)/3.0_rk
+    j3 = s(1)*s(2)*s(3) + 2.0_rk*t(4)*t(5)*t(6) - s(1)*t(6)**2 - s(2)*t(5)**2 - s(3)*t(4)**2
+  end function third_invariant
+
+  !> Equivalent stress of von Mises.
+  pure real(rk) function von_mises(t)
+    real(rk), intent(in) :: t(6)
+    von_mises = sqrt(3.0_rk*second_invariant(t))
+  end function von_mises
+
+  !> The tensor as a 3 x 3 matrix.
+  pure function as_matrix(t) result(matrix)
+    real(rk), intent(in) :: t(6)
+    real(rk) :: matrix(3, 3)
+    matrix = reshape([t(1), t(4), t(5), t(4), t(2), t(6), t(5), t(6), t(3)], [3, 3])
+  end function as_matrix
+
+  !> Principal values, the largest first; accurate to roundoff also where values coincide.
+  !>
+  !> Scherzinger and Dohrmann, Comput. Methods Appl. Mech. Engrg. 197 (2008) 4007-4015: the value
+  !> that is farthest from the two others comes from the angle of Lode, the two others from the
+  !> 2 x 2 problem in the plane normal to its axis.
+  pure function principal_values(t) result(values)
+    real(rk), intent(in) :: t(6)
+    real(rk) :: values(3)
+    real(rk) :: mean, scale, s(6), apart, first(3), second(3), matrix(3, 3), in_plane(2)
+    mean = trace(t)/3.0_rk
+    s = t - [mean, mean, mean, 0.0_rk, 0.0_rk, 0.0_rk]
+    scale = maxval(abs(s))
+    values = mean
+    if (scale <= tiny(1.0_rk)/epsilon(1.0_rk)) return
+    s = s/scale
+    apart = most_distinct(s)
+    matrix = as_matrix(s)
+    call span_normal_plane(matrix, apart, first, second)
+    in_plane = values_of_pair(dot_product(first, matmul(matrix, first)), &
+                              dot_product(second, matmul(matrix, second)), &
+                              dot_product(first, matmul(matrix, second)))
+    if (apart >= in_plane(1)) then
+      values = [apart, in_plane]
+    else
+      values = [in_plane, apart]
+    end if
+    values = mean + scale*values
+  end function principal_values
+
+  !> Principal value of a deviator that is farthest from the two others.
+  pure real(rk) function most_distinct(s) result(value)
+    real(rk), intent(in) :: s(6) !< deviator, not zero
+    real(rk) :: j2, angle
+    j2 = second_invariant(s)
+    angle = 0.5_rk*third_invariant(s)*(3.0_rk/j2)**1.5_rk
+    angle = acos(max(-1.0_rk, min(1.0_rk, angle)))/3.0_rk
+    if (angle > pi/6.0_rk) angle = angle + 2.0_rk*pi/3.0_rk
+    value = 2.0_rk*sqrt(j2/3.0_rk)*cos(angle)
+  end function most_distinct
+
+  !> Two unit vectors normal to each other and to the axis of a single principal value.
+  pure subroutine span_normal_plane(matrix, value, first, second)
+    real(rk), intent(in) :: matrix(3, 3), value !< the tensor and its principal value
+    real(rk), intent(out) :: first(3), second(3)
+    real(rk) :: columns(3, 3), axis(3), candidate(3), largest
+    integer :: i, pivot
+    columns = matrix
+    do i = 1, 3
+      columns(i, i) = columns(i, i) - value
+    end do
+    pivot = maxloc(sum(columns**2, dim=1), dim=1)
+    first = columns(:, pivot)/norm2(columns(:, pivot))
+    largest = -1.0_rk
+    do i = 1, 3
+      if (i == pivot) cycle
+      candidate = columns(:, i) - dot_product(first, columns(:, i))*first
+      if (sum(candidate**2) <= largest) cycle
+      largest = sum(candidate**2)
+      second = candidate
+    end do
+    second = second/sqrt(largest)
+    axis = cross_product(first, second)
+    second = cross_product(axis/norm2(axis), first)
+  end subroutine span_normal_plane
+
+  !> Eigenvalues of [a c; c b], the larger first, without cancellation.
+  pure function values_of_pair(a, b, c) result(values)
+    real(rk), intent(in) :: a, b, c
+    real(rk) :: values(2), middle, radius
+    middle = 0.5_rk*(a + b)
+    radius = hypot(0.5_rk*(a - b), c)
+    values = [middle + radius, middle - radius]
+  end function values_of_pair
+end module tensor6
