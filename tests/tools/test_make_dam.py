@@ -1,0 +1,58 @@
+"""The deck that make_dam writes."""
+
+import make_dam
+import numpy as np
+
+
+def write_deck(folder, *options):
+    deck = folder / "dam.inp"
+    small = ["--arc", "14", "--levels", "6", "--bottom", "2", "--thick", "2"]
+    assert make_dam.main(["-o", str(deck), *small, *options]) == 0
+    return deck.read_text(), (folder / "dam_mesh.inp").read_text()
+
+
+def data_of(text, keyword):
+    """Data lines below the first card that starts with `keyword`."""
+    lines = text.splitlines()
+    start = next(i for i, line in enumerate(lines) if line.startswith(keyword)) + 1
+    stop = next(i for i in range(start, len(lines)) if lines[i].startswith("*"))
+    return lines[start:stop]
+
+
+def test_deck_and_mesh_hold_what_was_asked(tmp_path):
+    deck, mesh = write_deck(tmp_path, "--joints", "2")
+    assert "*INCLUDE, INPUT=dam_mesh.inp" in deck
+    assert deck.count("*JOINT, NAME=JOINT") == 2
+    for word in ("ELSET=DAM", "ELSET=ROCK", "ELSET=JOINT2", "NSET=FIXED", "NAME=UPSTREAM"):
+        assert word in mesh
+
+
+def test_ids_are_unique_and_nodes_known(tmp_path):
+    _, mesh = write_deck(tmp_path)
+    nodes = {int(line.split(",")[0]) for line in data_of(mesh, "*NODE")}
+    elements = []
+    for name in ("DAM", "ROCK", "JOINT1", "JOINT2"):
+        kind = "JOINT8" if name.startswith("JOINT") else "C3D8"
+        elements += data_of(mesh, f"*ELEMENT, TYPE={kind}, ELSET={name}")
+    rows = np.array([[int(word) for word in line.split(",")] for line in elements])
+    assert len(np.unique(rows[:, 0])) == len(rows)
+    assert set(rows[:, 1:].ravel()) == nodes
+
+
+def test_same_options_same_bytes(tmp_path):
+    (tmp_path / "a").mkdir(), (tmp_path / "b").mkdir()
+    assert write_deck(tmp_path / "a") == write_deck(tmp_path / "b")
+
+
+def test_motion_makes_a_dynamic_step(tmp_path):
+    motion = tmp_path / "x.txt"
+    motion.write_text("0.\n0.\n")
+    deck, _ = write_deck(tmp_path, "--motion", str(motion), "--duration", "3")
+    assert "INPUT=x.txt, FORMAT=VALUES, DT=0.01" in deck
+    assert "*BASE MOTION, DOF=1, AMPLITUDE=MOTION_X" in deck
+    assert "0.01, 3\n" in deck
+
+
+def test_bad_shape_is_refused_with_a_message(tmp_path, capsys):
+    assert make_dam.main(["-o", str(tmp_path / "x.inp"), "--levels", "40"]) == 2
+    assert "elements along the arc" in capsys.readouterr().err

@@ -1,0 +1,1 @@
+"""Meshes, ground motions and pictures for Keyway decks and results."""

@@ -1,0 +1,76 @@
+"""Stations along an arch dam and the levels they own: the developed mesh of one half.
+
+Stations are vertical planes, counted from the crown (0) to the end of the crest. A station's
+lowest node lies on the abutment; above it come the common levels. Where the abutment climbs by a
+level within one column of elements, the lowest element of that column is a wedge.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .arch_shape import ArchShape
+
+
+@dataclass(frozen=True)
+class Stations:
+    """One half of the developed mesh, crown included."""
+
+    levels: np.ndarray  # heights [m], shape (levels + 1)
+    angle: np.ndarray  # of each station [rad]
+    foot_slot: np.ndarray  # level slot of each station's lowest node
+    foot_z: np.ndarray  # its height [m]; between levels for the stations inside a step
+
+    @property
+    def count(self) -> int:
+        """Number of columns of elements in the half."""
+        return len(self.angle) - 1
+
+    def height_of(self, station: int) -> np.ndarray:
+        """Heights of the station's nodes from the foot to the crest [m]."""
+        above = self.levels[self.foot_slot[station] + 1 :]
+        return np.concatenate(([self.foot_z[station]], above))
+
+
+def place_stations(shape: ArchShape, num_arc: int, num_height: int, num_bottom: int) -> Stations:
+    """Stations of one half: num_arc columns in the whole dam, num_bottom of them on flat ground."""
+    if num_arc % 2 or num_bottom % 2:
+        raise ValueError("the numbers of elements along the arc and on the bottom must be even")
+    if (shape.bottom_width > 0.0) != (num_bottom > 0):
+        raise ValueError("elements on the valley's bottom and a bottom width come together or not at all")
+    flat, climbing = num_bottom // 2, (num_arc - num_bottom) // 2
+    if climbing < num_height:
+        raise ValueError(
+            f"elements along the arc: at least {2 * num_height + num_bottom} are needed for "
+            f"{num_height} over the height, found {num_arc}"
+        )
+    levels = np.linspace(0.0, shape.height, num_height + 1)
+    foot_slot, foot_z, x = [0] * (flat + 1), [0.0] * (flat + 1), []
+    columns_of_level = np.diff(np.linspace(0, climbing, num_height + 1).round().astype(int))
+    for level, columns in enumerate(columns_of_level):
+        for part in range(1, columns + 1):
+            is_last = part == columns
+            climb = levels[level + 1] - levels[level]
+            foot_slot.append(level + 1 if is_last else level)
+            foot_z.append(levels[level + 1] if is_last else levels[level] + climb * part / columns)
+    x = np.linspace(0.0, shape.bottom_width / 2.0, flat + 1)
+    radius, crown = shape.upstream_radius(0.0), shape.upstream_crown(0.0)
+    on_bottom = np.arctan2(x, shape.crest_radius - (crown + radius - np.sqrt(radius**2 - x**2)))
+    on_slope = shape.abutment_angle(np.array(foot_z[flat + 1 :]))
+    return Stations(levels, np.concatenate((on_bottom, on_slope)), np.array(foot_slot), np.array(foot_z))
+
+
+def joint_stations(shape: ArchShape, stations: Stations, num_joints: int) -> list[int]:
+    """Signed stations (negative: left half) nearest to equal parts of the crest's arc."""
+    arc = shape.crest_radius * stations.angle
+    found = []
+    for joint in range(num_joints):
+        target = shape.crest_arc * ((joint + 1) / (num_joints + 1) - 0.5)
+        station = int(np.argmin(np.abs(arc - abs(target))))
+        found.append(station if target > 0.0 else -station)
+    inside = [abs(s) for s in found if stations.foot_slot[abs(s)] < len(stations.levels) - 1]
+    if len(set(found)) < num_joints or len(inside) < num_joints:
+        raise ValueError(f"{num_joints} joints do not fit into {2 * stations.count} columns of elements")
+    return found

@@ -1,0 +1,171 @@
+#!/usr/bin/env python3
+"""Write the deck of a parametric double-curvature arch dam in a V-shaped valley.
+
+The deck is NAME.inp with its mesh in NAME_mesh.inp. Without options: a dam of 135.5 m with two
+contraction joints. Example:
+
+    tools/make_dam.py -o my_dam/dam.inp --height 200 --crest-arc 500 --joints 4 \\
+        --motion acc_x.txt acc_y.txt acc_z.txt
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+from keyway_tools.arch_dam import DamOptions, build_arch_dam
+from keyway_tools.arch_deck import DeckOptions, arch_dam_deck, header
+from keyway_tools.arch_rock import RockOptions
+from keyway_tools.arch_shape import ArchShape
+from keyway_tools.deck_text import mesh_deck
+from keyway_tools.mesh_quality import find_faults, report
+
+ELEMENT_TYPES = ("C3D8", "C3D8B", "C3D8I", "C3D8R")
+
+
+def add_shape_options(parser: argparse.ArgumentParser) -> None:
+    """Options that become an ArchShape."""
+    default = ArchShape()
+    group = parser.add_argument_group("shape of the dam and the valley [m, deg]")
+    for name, text in (
+        ("height", "of the crown cantilever"),
+        ("crest-arc", "length of the crest along its upstream edge"),
+        ("crest-thickness", "at the crest"),
+        ("base-thickness", "at the foot of the crown"),
+        ("crest-angle", "central angle of the crest"),
+        ("base-radius-ratio", "upstream radius at the base over that at the crest"),
+        ("crest-overhang", "slope of the upstream crown at the crest"),
+        ("vertical-tangent", "depth over height where the upstream crown is vertical"),
+        ("bottom-width", "of the valley; 0 for a sharp V"),
+    ):
+        value = getattr(default, name.replace("-", "_"))
+        group.add_argument(f"--{name}", type=float, default=value, help=f"{text} ({value:g})")
+
+
+def add_mesh_options(parser: argparse.ArgumentParser) -> None:
+    """Options that become DamOptions and RockOptions."""
+    dam, rock = DamOptions(), RockOptions()
+    group = parser.add_argument_group("mesh")
+    for name, value, text in (
+        ("arc", dam.num_arc, "elements along the arc, even, at least 2 * HEIGHT + BOTTOM"),
+        ("levels", dam.num_height, "elements over the height"),
+        ("thick", dam.num_thick, "elements through the thickness"),
+        ("bottom", dam.num_bottom, "elements on the valley's flat bottom, even"),
+        ("joints", dam.num_joints, "contraction joints"),
+        ("rock-upstream", rock.num_upstream, "layers of rock upstream of the heel"),
+        ("rock-downstream", rock.num_downstream, "layers of rock downstream of the toe"),
+        ("rock-deep", rock.num_deep, "layers of rock below and beside the dam"),
+    ):
+        group.add_argument(f"--{name}", type=int, default=value, help=f"{text} ({value})")
+    group.add_argument("--extent", type=float, default=rock.extent, help="of the rock, in dam heights (1)")
+    group.add_argument("--no-rock", action="store_true", help="fix the abutment instead")
+    group.add_argument("--element", choices=ELEMENT_TYPES, default="C3D8", help="of dam and rock (C3D8)")
+
+
+def add_deck_options(parser: argparse.ArgumentParser) -> None:
+    """Options that become DeckOptions."""
+    group = parser.add_argument_group("materials, loads and steps (SI)")
+    group.add_argument("--title", default=DeckOptions.title)
+    group.add_argument("--concrete", type=float, nargs=3, metavar=("E", "NU", "RHO"), default=DeckOptions.concrete)
+    group.add_argument("--rock", type=float, nargs=2, metavar=("E", "NU"), default=DeckOptions.rock)
+    group.add_argument("--kn", type=float, help="normal stiffness of the joints [Pa/m] (E / 0.02 m)")
+    group.add_argument("--kt", type=float, help="shear stiffness [Pa/m] (kn / (2 (1 + nu)))")
+    group.add_argument("--strength", type=float, default=0.0, help="tensile strength of the joints [Pa] (0)")
+    group.add_argument("--friction", type=float, default=0.6, help="of the joints (0.6)")
+    group.add_argument("--cohesion", type=float, default=0.0, help="of the joints [Pa] (0)")
+    group.add_argument("--bonded", action="store_true", help="joints that never open: the run without joints")
+    group.add_argument("--water", type=float, default=105.0, help="depth of the water [m]; 0: empty (105)")
+    group.add_argument("--added-mass", choices=("DIAGONAL", "NORMAL"), default="DIAGONAL")
+    group.add_argument("--motion", nargs="+", default=[], metavar="FILE", help="accelerations along x, y, z [m/s2]")
+    group.add_argument("--motion-dt", type=float, default=0.01, help="step of the files [s] (0.01)")
+    group.add_argument("--duration", type=float, default=10.0, help="of the dynamic step [s] (10)")
+    group.add_argument("--increment", type=float, default=0.01, help="of the dynamic step [s] (0.01)")
+    group.add_argument("--damping", type=float, nargs=3, default=DeckOptions.damping, metavar=("RATIO", "F1", "F2"))
+    group.add_argument("--modes", type=int, default=0, help="natural modes to find in a step of their own (0)")
+
+
+def read_options(arguments: list[str] | None) -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("-o", "--output", type=Path, default=Path("arch_dam.inp"), help="deck (arch_dam.inp)")
+    add_shape_options(parser)
+    add_mesh_options(parser)
+    add_deck_options(parser)
+    return parser.parse_args(arguments)
+
+
+def mesh_options_of(chosen: argparse.Namespace) -> DamOptions:
+    """DamOptions from the command line."""
+    rock = RockOptions(
+        extent=chosen.extent,
+        num_upstream=chosen.rock_upstream,
+        num_downstream=chosen.rock_downstream,
+        num_deep=chosen.rock_deep,
+    )
+    return DamOptions(
+        num_arc=chosen.arc,
+        num_height=chosen.levels,
+        num_thick=chosen.thick,
+        num_bottom=chosen.bottom,
+        num_joints=chosen.joints,
+        rock=None if chosen.no_rock else rock,
+    )
+
+
+def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
+    """DeckOptions from the command line; motion files relative to the deck."""
+    folder = chosen.output.parent
+    return DeckOptions(
+        title=chosen.title,
+        element_type=chosen.element,
+        concrete=tuple(chosen.concrete),
+        rock=tuple(chosen.rock),
+        normal_stiffness=chosen.kn,
+        shear_stiffness=chosen.kt,
+        tensile_strength=chosen.strength,
+        friction=chosen.friction,
+        cohesion=chosen.cohesion,
+        has_joint_law=not chosen.bonded,
+        water_depth=chosen.water if chosen.water > 0.0 else None,
+        added_mass_direction=chosen.added_mass,
+        motions=tuple(Path(os.path.relpath(file, folder)).as_posix() for file in chosen.motion),
+        motion_dt=chosen.motion_dt,
+        duration=chosen.duration,
+        increment=chosen.increment,
+        damping=tuple(chosen.damping),
+        num_modes=chosen.modes,
+    )
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Write the deck and its mesh; print the report."""
+    chosen = read_options(arguments)
+    names = [name for name in ArchShape.__dataclass_fields__]
+    try:
+        shape = ArchShape(**{name: getattr(chosen, name) for name in names})
+        mesh_options, options = mesh_options_of(chosen), deck_options_of(chosen)
+        mesh = build_arch_dam(shape, mesh_options)
+    except ValueError as fault:
+        print(f"make_dam: {fault}", file=sys.stderr)
+        return 2
+    faults = find_faults(mesh)
+    if faults:
+        print("make_dam: the mesh is not sound:\n  " + "\n  ".join(faults), file=sys.stderr)
+        return 1
+    chosen.output.parent.mkdir(parents=True, exist_ok=True)
+    mesh_file = chosen.output.with_name(chosen.output.stem + "_mesh.inp")
+    types = {name: options.element_type for name in mesh.brick_sets}
+    mesh_file.write_text(mesh_deck(mesh, types, f"Mesh of {chosen.output.name}, made by tools/make_dam.py"))
+    heading = header(mesh, shape, mesh_options, options)
+    chosen.output.write_text(arch_dam_deck(mesh, heading, mesh_file.name, options))
+    free = 3 * (len(mesh.x) - len(mesh.node_sets["FIXED"]))
+    print(report(mesh))
+    print(f"{len(mesh.x)} nodes, {len(mesh.bricks)} bricks, {len(mesh.joints)} joint elements, {free} unknowns")
+    print(f"wrote {chosen.output} and {mesh_file}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
