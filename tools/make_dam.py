@@ -16,7 +16,8 @@ import sys
 from pathlib import Path
 
 from keyway_tools.arch_dam import DamOptions, build_arch_dam
-from keyway_tools.arch_deck import DeckOptions, arch_dam_deck, header
+from keyway_tools.arch_deck import DeckOptions, arch_dam_deck
+from keyway_tools.arch_header import header
 from keyway_tools.arch_rock import RockOptions
 from keyway_tools.arch_shape import ArchShape
 from keyway_tools.deck_text import mesh_deck
@@ -59,37 +60,66 @@ def add_mesh_options(parser: argparse.ArgumentParser) -> None:
         ("rock-deep", rock.num_deep, "layers of rock below and beside the dam"),
     ):
         group.add_argument(f"--{name}", type=int, default=value, help=f"{text} ({value})")
-    group.add_argument("--extent", type=float, default=rock.extent, help="of the rock, in dam heights (1)")
+    group.add_argument(
+        "--extent", type=float, default=rock.extent, help="of the rock, in dam heights (1)"
+    )
     group.add_argument("--no-rock", action="store_true", help="fix the abutment instead")
-    group.add_argument("--element", choices=ELEMENT_TYPES, default="C3D8", help="of dam and rock (C3D8)")
+    group.add_argument(
+        "--element", choices=ELEMENT_TYPES, default="C3D8", help="of dam and rock (C3D8)"
+    )
 
 
 def add_deck_options(parser: argparse.ArgumentParser) -> None:
     """Options that become DeckOptions."""
     group = parser.add_argument_group("materials, loads and steps (SI)")
     group.add_argument("--title", default=DeckOptions.title)
-    group.add_argument("--concrete", type=float, nargs=3, metavar=("E", "NU", "RHO"), default=DeckOptions.concrete)
+    group.add_argument(
+        "--note", action="append", default=[], help="'Head: text' for the header; may be repeated"
+    )
+    group.add_argument(
+        "--concrete", type=float, nargs=3, metavar=("E", "NU", "RHO"), default=DeckOptions.concrete
+    )
     group.add_argument("--rock", type=float, nargs=2, metavar=("E", "NU"), default=DeckOptions.rock)
-    group.add_argument("--kn", type=float, help="normal stiffness of the joints [Pa/m] (E / 0.02 m)")
+    group.add_argument(
+        "--kn", type=float, help="normal stiffness of the joints [Pa/m] (E / 0.02 m)"
+    )
     group.add_argument("--kt", type=float, help="shear stiffness [Pa/m] (kn / (2 (1 + nu)))")
-    group.add_argument("--strength", type=float, default=0.0, help="tensile strength of the joints [Pa] (0)")
+    group.add_argument(
+        "--strength", type=float, default=0.0, help="tensile strength of the joints [Pa] (0)"
+    )
     group.add_argument("--friction", type=float, default=0.6, help="of the joints (0.6)")
     group.add_argument("--cohesion", type=float, default=0.0, help="of the joints [Pa] (0)")
-    group.add_argument("--bonded", action="store_true", help="joints that never open: the run without joints")
-    group.add_argument("--water", type=float, default=105.0, help="depth of the water [m]; 0: empty (105)")
+    group.add_argument(
+        "--bonded", action="store_true", help="joints that never open: the run without joints"
+    )
+    group.add_argument(
+        "--water", type=float, default=105.0, help="depth of the water [m]; 0: empty (105)"
+    )
     group.add_argument("--added-mass", choices=("DIAGONAL", "NORMAL"), default="DIAGONAL")
-    group.add_argument("--motion", nargs="+", default=[], metavar="FILE", help="accelerations along x, y, z [m/s2]")
+    group.add_argument(
+        "--motion", nargs="+", default=[], metavar="FILE", help="accelerations along x, y, z [m/s2]"
+    )
     group.add_argument("--motion-dt", type=float, default=0.01, help="step of the files [s] (0.01)")
     group.add_argument("--duration", type=float, default=10.0, help="of the dynamic step [s] (10)")
-    group.add_argument("--increment", type=float, default=0.01, help="of the dynamic step [s] (0.01)")
-    group.add_argument("--damping", type=float, nargs=3, default=DeckOptions.damping, metavar=("RATIO", "F1", "F2"))
-    group.add_argument("--modes", type=int, default=0, help="natural modes to find in a step of their own (0)")
+    group.add_argument(
+        "--increment", type=float, default=0.01, help="of the dynamic step [s] (0.01)"
+    )
+    group.add_argument(
+        "--damping", type=float, nargs=3, default=DeckOptions.damping, metavar=("RATIO", "F1", "F2")
+    )
+    group.add_argument(
+        "--modes", type=int, default=0, help="natural modes to find in a step of their own (0)"
+    )
 
 
 def read_options(arguments: list[str] | None) -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("-o", "--output", type=Path, default=Path("arch_dam.inp"), help="deck (arch_dam.inp)")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument(
+        "-o", "--output", type=Path, default=Path("arch_dam.inp"), help="deck (arch_dam.inp)"
+    )
     add_shape_options(parser)
     add_mesh_options(parser)
     add_deck_options(parser)
@@ -157,12 +187,15 @@ def main(arguments: list[str] | None = None) -> int:
     chosen.output.parent.mkdir(parents=True, exist_ok=True)
     mesh_file = chosen.output.with_name(chosen.output.stem + "_mesh.inp")
     types = {name: options.element_type for name in mesh.brick_sets}
-    mesh_file.write_text(mesh_deck(mesh, types, f"Mesh of {chosen.output.name}, made by tools/make_dam.py"))
-    heading = header(mesh, shape, mesh_options, options)
+    mesh_file.write_text(
+        mesh_deck(mesh, types, f"Mesh of {chosen.output.name}, made by tools/make_dam.py")
+    )
+    heading = header(mesh, shape, mesh_options, options.title, tuple(chosen.note))
     chosen.output.write_text(arch_dam_deck(mesh, heading, mesh_file.name, options))
     free = 3 * (len(mesh.x) - len(mesh.node_sets["FIXED"]))
     print(report(mesh))
-    print(f"{len(mesh.x)} nodes, {len(mesh.bricks)} bricks, {len(mesh.joints)} joint elements, {free} unknowns")
+    counts = f"{len(mesh.x)} nodes, {len(mesh.bricks)} bricks, {len(mesh.joints)} joint elements"
+    print(f"{counts}, {free} unknowns")
     print(f"wrote {chosen.output} and {mesh_file}")
     return 0
 

@@ -75,7 +75,12 @@ def test_exterior_volume_is_the_sum_of_bricks(mesh):
         for u in (-1.0, 1.0):
             for v in (-1.0, 1.0):
                 r, s = u / np.sqrt(3.0), v / np.sqrt(3.0)
-                weights = np.array([(1 - r) * (1 - s), (1 + r) * (1 - s), (1 + r) * (1 + s), (1 - r) * (1 + s)]) / 4
+                weights = (
+                    np.array(
+                        [(1 - r) * (1 - s), (1 + r) * (1 - s), (1 + r) * (1 + s), (1 - r) * (1 + s)]
+                    )
+                    / 4
+                )
                 d_r = np.array([-(1 - s), 1 - s, 1 + s, -(1 + s)]) / 4
                 d_s = np.array([-(1 - r), -(1 + r), 1 + r, 1 - r]) / 4
                 corners = np.array([a, b, c, d])
@@ -135,7 +140,9 @@ def test_dam_has_the_heights_and_thicknesses_asked_for():
         y = crown[crown[:, 2] == z, 1]
         assert np.ptp(y) == pytest.approx(thickness, rel=1e-12)
     edge = mesh.x[mesh.node_sets["CREST"]]
-    edge = edge[np.isclose(np.hypot(edge[:, 0], edge[:, 1] - shape.crest_radius), shape.crest_radius)]
+    edge = edge[
+        np.isclose(np.hypot(edge[:, 0], edge[:, 1] - shape.crest_radius), shape.crest_radius)
+    ]
     angle = np.arctan2(edge[:, 0], shape.crest_radius - edge[:, 1])
     assert np.ptp(angle) * shape.crest_radius == pytest.approx(shape.crest_arc, rel=1e-12)
 

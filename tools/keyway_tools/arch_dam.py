@@ -1,12 +1,12 @@
 """Mesh of a double-curvature arch dam with contraction joints on a block of rock.
 
-    from keyway_tools.arch_dam import DamOptions, build_arch_dam
-    mesh = build_arch_dam(ArchShape(), DamOptions(num_joints=2))
+from keyway_tools.arch_dam import DamOptions, build_arch_dam
+mesh = build_arch_dam(ArchShape(), DamOptions(num_joints=2))
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -25,7 +25,8 @@ class DamOptions:
     num_thick: int = 3
     num_bottom: int = 4  # of num_arc, on the flat bottom of the valley
     num_joints: int = 2
-    rock: RockOptions | None = RockOptions()  # None: no rock, the abutment is the fixed boundary
+    # None: no rock, the abutment is the fixed boundary
+    rock: RockOptions | None = field(default_factory=RockOptions)
 
     def __post_init__(self) -> None:
         for name in ("num_arc", "num_height", "num_thick"):
@@ -40,7 +41,9 @@ class DamNodes:
     the foot. The foot is shared, so that the joint ends in the rock.
     """
 
-    def __init__(self, shape: ArchShape, stations: Stations, options: DamOptions, joints: list[int]):
+    def __init__(
+        self, shape: ArchShape, stations: Stations, options: DamOptions, joints: list[int]
+    ):
         self.stations, self.num_thick = stations, options.num_thick
         self.top = options.num_height
         self.joints = joints
@@ -101,7 +104,9 @@ def _column_polygons(nodes: DamNodes, column: int) -> list[list[np.ndarray]]:
         edge = high[column + 1, start]
         polygons.append([low[column, start], high[column + 1, right_foot], edge, edge])
     for k in range(start, nodes.top):
-        polygons.append([low[column, k], high[column + 1, k], high[column + 1, k + 1], low[column, k + 1]])
+        polygons.append(
+            [low[column, k], high[column + 1, k], high[column + 1, k + 1], low[column, k + 1]]
+        )
     return polygons
 
 
@@ -120,7 +125,7 @@ def _dam_bricks(nodes: DamNodes) -> tuple[np.ndarray, list[tuple[int, int]], lis
 
 
 def _joint_elements(nodes: DamNodes, station: int) -> np.ndarray:
-    """JOINT8 elements of one station: master face on the left, normal along the arc to the right."""
+    """JOINT8 elements of one station: master on the left, normal to the right."""
     left, right, elements = nodes.left, nodes.right, []
     for k in range(nodes.foot(station), nodes.top):
         for j in range(nodes.num_thick):

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .arch_dam import DamOptions
-from .arch_shape import ArchShape
 from .deck_text import comment
 from .mesh_data import BrickMesh
-from .mesh_quality import report
 
 
 @dataclass(frozen=True)
@@ -36,53 +33,13 @@ class DeckOptions:
     damping: tuple[float, float, float] = (0.05, 2.0, 10.0)  # ratio at two frequencies [Hz]
     num_modes: int = 0  # > 0: a *FREQUENCY step between the static and the dynamic one
     picture_frequency: int = 10  # increments between two states of the VTK series
-    notes: str = ""  # more assumptions for the header
-
-
-def header(mesh: BrickMesh, shape: ArchShape, mesh_options: DamOptions, options: DeckOptions) -> str:
-    """What the deck holds and every assumption behind it."""
-    rock = mesh_options.rock
-    text = [
-        options.title,
-        "",
-        "Units: m, kg, s, N, Pa. x across the valley, y downstream, z up; z = 0 at the crown's foot.",
-        f"Dam: height {shape.height} m, crest arc {shape.crest_arc} m along its upstream edge, thickness",
-        f"  {shape.crest_thickness} m (crest) to {shape.base_thickness} m (base), linear in the height.",
-        f"Assumed: circular arches, central angle of the crest {shape.crest_angle} deg (upstream radius",
-        f"  {shape.crest_radius:.3f} m at the crest, {shape.base_radius_ratio} times that at the base, linear between);",
-        "  the upstream face of the crown is a parabola in the depth d below the crest:",
-        f"  y = -{shape.crest_overhang} d + {shape.crest_overhang} d^2 / (2 * {shape.vertical_tangent} * height).",
-        f"Valley: V of straight walls, {shape.bottom_width} m wide at the bottom and"
-        f" {2 * shape.crest_half_width:.2f} m at the crest (assumed);",
-        "  upstream and downstream of the dam it runs on straight along y.",
-        f"Mesh: {mesh_options.num_arc} x {mesh_options.num_height} x {mesh_options.num_thick} elements"
-        " (arc, height, thickness); wedges (corners 3 = 4, 7 = 8) where the",
-        "  abutment climbs by a level; symmetric about x = 0 to the last bit.",
-    ]
-    if rock is not None:
-        text += [
-            f"Rock: to {rock.extent} dam heights beside, below, upstream and downstream; massless (no *DENSITY), outer",
-            "  faces fixed, ground surface free, without initial stress; no water load on the valley.",
-        ]
-    if mesh.joint_sets:
-        text += [
-            f"Joints: {len(mesh.joint_sets)}, vertical planes through the axis of the crest's upstream arc, same mesh on both",
-            "  sides (classical joint). The foot row is shared with the rock: the joint ends there.",
-        ]
-    text += [
-        "Gravity acts on the finished dam at once (no stages of building, no grouting).",
-        *options.notes.splitlines(),
-        "",
-        report(mesh),
-    ]
-    return "\n".join(text)
 
 
 def arch_dam_deck(mesh: BrickMesh, heading: str, mesh_file: str, options: DeckOptions) -> str:
     """Main file of the deck; the mesh comes in by *INCLUDE."""
     parts = [comment(heading), "*HEADING", options.title, f"*INCLUDE, INPUT={mesh_file}"]
     parts += _materials(mesh, options) + _joints(mesh, options)
-    parts += ["*BOUNDARY", "FIXED, 1, 3"] + _amplitudes(options) + _static_step(mesh, options)
+    parts += ["*BOUNDARY", "FIXED, 1, 3", *_amplitudes(options), *_static_step(mesh, options)]
     if options.num_modes > 0:
         parts += ["**", "** Natural modes: joints closed, added mass of the water included"]
         parts += ["*STEP, NAME=MODES", "*FREQUENCY", str(options.num_modes), "*END STEP"]
@@ -93,7 +50,13 @@ def arch_dam_deck(mesh: BrickMesh, heading: str, mesh_file: str, options: DeckOp
 
 def _materials(mesh: BrickMesh, options: DeckOptions) -> list[str]:
     modulus, poisson, density = options.concrete
-    parts = ["*MATERIAL, NAME=CONCRETE", "*DENSITY", f"{density}", "*ELASTIC", f"{modulus:g}, {poisson}"]
+    parts = [
+        "*MATERIAL, NAME=CONCRETE",
+        "*DENSITY",
+        f"{density}",
+        "*ELASTIC",
+        f"{modulus:g}, {poisson}",
+    ]
     parts += ["*SOLID SECTION, ELSET=DAM, MATERIAL=CONCRETE"]
     if "ROCK" in mesh.brick_sets:
         parts += ["*MATERIAL, NAME=ROCK", "*ELASTIC", f"{options.rock[0]:g}, {options.rock[1]}"]
@@ -114,9 +77,10 @@ def _joints(mesh: BrickMesh, options: DeckOptions) -> list[str]:
     if shear is not None:
         law += f", KT={shear:g}"
     strength = options.tensile_strength if options.has_joint_law else 1.0e12
-    law += f", TENSILE STRENGTH={strength:g}, FRICTION={options.friction:g}, COHESION={options.cohesion:g}"
+    law += f", TENSILE STRENGTH={strength:g}"
+    law += f", FRICTION={options.friction:g}, COHESION={options.cohesion:g}"
     names = mesh.joint_sets
-    return [law] + [f"*JOINT, NAME={name}, LAW=CONTRACTION, ELSET={name}" for name in names]
+    return [law, *(f"*JOINT, NAME={name}, LAW=CONTRACTION, ELSET={name}" for name in names)]
 
 
 def _amplitudes(options: DeckOptions) -> list[str]:
@@ -155,6 +119,8 @@ def _dynamic_step(mesh: BrickMesh, options: DeckOptions) -> list[str]:
     parts += ["*STEP, NAME=EARTHQUAKE, INC=1000000", f"*DYNAMIC, DIRECT, ALPHA={options.alpha:g}"]
     parts += [f"{options.increment:g}, {options.duration:g}"]
     parts += [f"*DAMPING, RATIO={ratio:g}, F1={f1:g}, F2={f2:g}"]
-    for dof, name in enumerate(("MOTION_X", "MOTION_Y", "MOTION_Z")[: len(options.motions)], start=1):
+    for dof, name in enumerate(
+        ("MOTION_X", "MOTION_Y", "MOTION_Z")[: len(options.motions)], start=1
+    ):
         parts += [f"*BASE MOTION, DOF={dof}, AMPLITUDE={name}, TYPE=ACCELERATION"]
     return parts + _requests(mesh, options) + ["*END STEP"]

@@ -41,7 +41,9 @@ def grade(count: int, growth: float) -> np.ndarray:
     return shares
 
 
-def build_rock(mesh: BrickMesh, abutment: np.ndarray, shape: ArchShape, options: RockOptions) -> None:
+def build_rock(
+    mesh: BrickMesh, abutment: np.ndarray, shape: ArchShape, options: RockOptions
+) -> None:
     """Append the rock to the mesh; `abutment` holds its nodes, shape (stations, thickness)."""
     count = (len(abutment) - 1) // 2
     surface = _ground_surface(mesh.x[abutment[count:]], shape, options)
@@ -97,7 +99,7 @@ def _extrude(surface: np.ndarray, shape: ArchShape, options: RockOptions) -> np.
 
 
 def _box_outline(num_stations: int, shape: ArchShape, options: RockOptions) -> np.ndarray:
-    """x and z of the box's boundary for each station: from below the crown to the end of the crest."""
+    """x and z of the box's boundary for each station, from below the crown to the crest's end."""
     reach = options.extent * shape.height
     width, depth = shape.crest_half_width + reach, reach
     share_of_bottom = width / (width + depth + shape.height)

@@ -1,8 +1,7 @@
 """Shape of a double-curvature arch dam: crown cantilever, circular arches, V-shaped valley.
 
-Axes: x across the valley (0 at the crown, positive to the right of one who looks upstream to
-downstream would be -x; the shape is symmetric, so it does not matter), y downstream, z up with 0
-at the foot of the crown. The crest's upstream edge passes through (0, 0, height).
+Axes: x across the valley with 0 at the crown, y downstream, z up with 0 at the foot of the crown.
+The crest's upstream edge passes through (0, 0, height).
 
 Every vertical plane through the centre axis of the crest's upstream arc is a mesh plane, so
 contraction joints are vertical planes that are radial at the crest.
@@ -45,7 +44,9 @@ class ArchShape:
             )
         widest = max(self.bottom_width / 2.0, 0.0)
         if widest >= self.upstream_radius(0.0):
-            raise ValueError("the arch at the base does not span the valley: raise base_radius_ratio")
+            raise ValueError(
+                "the arch at the base does not span the valley: raise base_radius_ratio"
+            )
 
     @property
     def crest_radius(self) -> float:

@@ -39,7 +39,9 @@ def place_stations(shape: ArchShape, num_arc: int, num_height: int, num_bottom: 
     if num_arc % 2 or num_bottom % 2:
         raise ValueError("the numbers of elements along the arc and on the bottom must be even")
     if (shape.bottom_width > 0.0) != (num_bottom > 0):
-        raise ValueError("elements on the valley's bottom and a bottom width come together or not at all")
+        raise ValueError(
+            "elements on the valley's bottom and a bottom width come together or not at all"
+        )
     flat, climbing = num_bottom // 2, (num_arc - num_bottom) // 2
     if climbing < num_height:
         raise ValueError(
@@ -59,7 +61,9 @@ def place_stations(shape: ArchShape, num_arc: int, num_height: int, num_bottom: 
     radius, crown = shape.upstream_radius(0.0), shape.upstream_crown(0.0)
     on_bottom = np.arctan2(x, shape.crest_radius - (crown + radius - np.sqrt(radius**2 - x**2)))
     on_slope = shape.abutment_angle(np.array(foot_z[flat + 1 :]))
-    return Stations(levels, np.concatenate((on_bottom, on_slope)), np.array(foot_slot), np.array(foot_z))
+    return Stations(
+        levels, np.concatenate((on_bottom, on_slope)), np.array(foot_slot), np.array(foot_z)
+    )
 
 
 def joint_stations(shape: ArchShape, stations: Stations, num_joints: int) -> list[int]:
@@ -72,5 +76,7 @@ def joint_stations(shape: ArchShape, stations: Stations, num_joints: int) -> lis
         found.append(station if target > 0.0 else -station)
     inside = [abs(s) for s in found if stations.foot_slot[abs(s)] < len(stations.levels) - 1]
     if len(set(found)) < num_joints or len(inside) < num_joints:
-        raise ValueError(f"{num_joints} joints do not fit into {2 * stations.count} columns of elements")
+        raise ValueError(
+            f"{num_joints} joints do not fit into {2 * stations.count} columns of elements"
+        )
     return found

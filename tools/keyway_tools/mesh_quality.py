@@ -9,7 +9,16 @@ import numpy as np
 from .mesh_data import BrickMesh
 
 _CORNER = np.array(
-    [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)],
+    [
+        (-1, -1, -1),
+        (1, -1, -1),
+        (1, 1, -1),
+        (-1, 1, -1),
+        (-1, -1, 1),
+        (1, -1, 1),
+        (1, 1, 1),
+        (-1, 1, 1),
+    ],
     dtype=float,
 )
 _EDGES = np.array(
@@ -70,11 +79,13 @@ def measure(mesh: BrickMesh, name: str) -> Quality:
     part = BrickMesh(mesh.x, mesh.bricks[members], mesh.joints)
     corner = corner_jacobians(part)
     inside = jacobians(part, gauss_points())
-    edge = np.linalg.norm(part.x[part.bricks[:, _EDGES[:, 0]]] - part.x[part.bricks[:, _EDGES[:, 1]]], axis=2)
+    edge = np.linalg.norm(
+        part.x[part.bricks[:, _EDGES[:, 0]]] - part.x[part.bricks[:, _EDGES[:, 1]]], axis=2
+    )
     edge[edge == 0.0] = np.nan
     scaled = np.full(corner.shape, np.nan)
     for k in range(8):
-        sides = np.any(_EDGES == k, axis=1)
+        sides = [e for e, ends in enumerate(_EDGES) if k in ends]
         scaled[:, k] = 8.0 * corner[:, k] / edge[:, sides].prod(axis=1)
     return Quality(
         name=name,
@@ -94,7 +105,9 @@ def find_faults(mesh: BrickMesh) -> list[str]:
     faults = []
     corner = corner_jacobians(mesh)
     for brick, place in np.argwhere(corner <= 0.0)[:5]:
-        faults.append(f"brick {brick + 1}: Jacobian {corner[brick, place]:.3g} m3 at corner {place + 1}")
+        faults.append(
+            f"brick {brick + 1}: Jacobian {corner[brick, place]:.3g} m3 at corner {place + 1}"
+        )
     if len(mesh.joints):
         gap = np.abs(mesh.x[mesh.joints[:, :4]] - mesh.x[mesh.joints[:, 4:]]).max()
         if gap > 0.0:
@@ -108,11 +121,16 @@ def find_faults(mesh: BrickMesh) -> list[str]:
 
 def report(mesh: BrickMesh) -> str:
     """Table of the figures of every set, for the screen and the deck's header."""
-    rows = ["set    bricks wedges     volume m3  min Jac m3  min scaled  5 % scaled  max aspect  mean edge m"]
+    heads = ("set", "bricks", "wedges", "volume m3", "min Jac. m3", "min scaled", "5 % scaled")
+    heads += ("max aspect", "mean edge m")
+    rows = [heads]
     for name in mesh.brick_sets:
         q = measure(mesh, name)
-        rows.append(
-            f"{name:<6} {q.count:6d} {q.wedges:6d} {q.volume:13.6g} {q.smallest_jacobian:11.4g} "
-            f"{q.smallest_scaled:11.3f} {q.scaled_5_percent:11.3f} {q.largest_aspect:11.2f} {q.mean_edge:12.2f}"
-        )
-    return "\n".join(rows)
+        row = (name, f"{q.count}", f"{q.wedges}", f"{q.volume:.6g}", f"{q.smallest_jacobian:.4g}")
+        row += (f"{q.smallest_scaled:.3f}", f"{q.scaled_5_percent:.3f}")
+        rows.append((*row, f"{q.largest_aspect:.1f}", f"{q.mean_edge:.2f}"))
+    widths = [max(len(row[k]) for row in rows) for k in range(len(heads))]
+    return "\n".join(
+        "  ".join(word.rjust(width) for word, width in zip(row, widths, strict=True))
+        for row in rows
+    )

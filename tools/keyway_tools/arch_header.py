@@ -1,0 +1,75 @@
+"""The header of an arch dam's deck: what it holds and every assumption behind it."""
+
+from __future__ import annotations
+
+import textwrap
+
+from .arch_dam import DamOptions
+from .arch_shape import ArchShape
+from .mesh_data import BrickMesh
+from .mesh_quality import report
+
+WIDTH = 96
+
+
+def paragraph(head: str, text: str) -> list[str]:
+    """Lines of a paragraph that starts with a bold word and hangs by two blanks."""
+    return textwrap.wrap(f"{head}: {text}", WIDTH, subsequent_indent="  ", break_on_hyphens=False)
+
+
+def header(
+    mesh: BrickMesh, shape: ArchShape, options: DamOptions, title: str, notes: tuple[str, ...]
+) -> str:
+    """Title, axes, shape, mesh, rock, joints, notes and the report on the mesh."""
+    lines = [title, ""]
+    lines += paragraph("Axes", "x across the valley, y downstream, z up; z = 0 at the crown's foot")
+    lines += _shape_lines(shape)
+    lines += paragraph(
+        "Mesh",
+        f"{options.num_arc} x {options.num_height} x {options.num_thick} elements (arc, height, "
+        "thickness), wedges (corners 3 = 4, 7 = 8) where the abutment climbs by a level; "
+        "left-right symmetric to the last bit",
+    )
+    if options.rock is not None:
+        lines += paragraph(
+            "Rock",
+            f"to {options.rock.extent} dam heights beside, below, upstream and downstream; "
+            "massless (no *DENSITY), linear, outer faces fixed, ground surface free, no initial "
+            "stress, no water load on the valley (all assumed)",
+        )
+    if mesh.joint_sets:
+        lines += paragraph(
+            "Joints",
+            f"{len(mesh.joint_sets)} vertical planes through the axis of the crest's upstream arc, "
+            "at equal parts of the crest (places assumed), same mesh on both sides (classical "
+            "joint); the foot row is shared with the rock, where the joint ends",
+        )
+    lines += paragraph(
+        "Weight", "acts on the finished dam at once: no stages of building, no grouting (assumed)"
+    )
+    for note in notes:
+        lines += paragraph(*note.split(": ", 1))
+    return "\n".join([*lines, "", report(mesh)])
+
+
+def _shape_lines(shape: ArchShape) -> list[str]:
+    """Lines on the dam and its valley."""
+    dam = (
+        f"height {shape.height} m, crest arc {shape.crest_arc} m along its upstream edge, "
+        f"thickness {shape.crest_thickness} m (crest) to {shape.base_thickness} m (base), linear between "
+        "(the law between is assumed)"
+    )
+    curves = (
+        f"circular arches; central angle of the crest {shape.crest_angle} deg, that is an upstream "
+        f"radius of {shape.crest_radius:.3f} m; at the base {shape.base_radius_ratio} of that, "
+        "linear between; the upstream face of the crown is a parabola in the depth d below the "
+        f"crest, y = -{shape.crest_overhang} d "
+        f"+ {shape.crest_overhang} d^2 / (2 * {shape.vertical_tangent} * height)"
+    )
+    valley = (
+        f"V of straight walls (in x), {shape.bottom_width} m wide at the bottom and "
+        f"{2.0 * shape.crest_half_width:.2f} m at the crest; up- and downstream of the dam it runs "
+        "straight on along y"
+    )
+    lines = paragraph("Dam", dam) + paragraph("Curvature (assumed)", curves)
+    return lines + paragraph("Valley (assumed)", valley)
