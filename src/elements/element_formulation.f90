@@ -22,11 +22,11 @@ module element_formulation
       import :: solid_element, rk
       implicit none
       class(solid_element), intent(in) :: self
-      real(rk), intent(in) :: x(:, :, :) !< (3, 8, elements) node coordinates [m]
+      real(rk), contiguous, intent(in) :: x(:, :, :) !< (3, 8, elements) node coordinates [m]
       real(rk), intent(in) :: d(6, 6) !< elastic stiffness (incompatible modes need it) [Pa]
-      real(rk), intent(out) :: b(:, :, :, :) !< (6, 24, points, elements) [1/m]
-      real(rk), intent(out) :: weight(:, :) !< (points, elements) volumes [m3]
-      integer, intent(out) :: status(:) !< (elements) 0, or the corner where the Jacobian is <= 0
+      real(rk), contiguous, intent(out) :: b(:, :, :, :) !< (6, 24, points, elements) [1/m]
+      real(rk), contiguous, intent(out) :: weight(:, :) !< (points, elements) volumes [m3]
+      integer, intent(out) :: status(:) !< (elements) 0, or the worst corner when a Jacobian is <= 0
     end subroutine strain_operator
   end interface
 
@@ -35,9 +35,9 @@ contains
   !> Adds a stiffness that stabilises the element, where it needs one (hourglass control).
   subroutine add_stabilisation(self, x, d, ke)
     class(solid_element), intent(in) :: self
-    real(rk), intent(in) :: x(:, :, :) !< (3, 8, elements) [m]
+    real(rk), contiguous, intent(in) :: x(:, :, :) !< (3, 8, elements) [m]
     real(rk), intent(in) :: d(6, 6) !< elastic stiffness [Pa]
-    real(rk), intent(inout) :: ke(:, :, :) !< (24, 24, elements) [N/m]
+    real(rk), contiguous, intent(inout) :: ke(:, :, :) !< (24, 24, elements) [N/m]
     if (.false.) ke(1, 1, 1) = ke(1, 1, 1) + x(1, 1, 1)*d(1, 1)*self%num_points
   end subroutine add_stabilisation
 end module element_formulation

@@ -1,3 +1,5 @@
 set(sources
   material_law.f90
+  material_elastic.f90
+  material_catalogue.f90
 )

@@ -1,0 +1,98 @@
+!> C3D8I: the hexahedron with incompatible modes, which bends without locking.
+!>
+!> The modes 1 - xi_i**2 are differentiated with the Jacobian of the centre, scaled by the ratio of
+!> determinants, so that their mean strain is zero and the patch test passes. They are condensed
+!> with the elastic stiffness, which leaves an operator B of the 24 displacements alone.
+!> Source: Taylor, Beresford, Wilson, Int. J. Num. Meth. Engng 10 (1976) 1211.
+module element_hex8_incompatible
+  use kinds, only: rk
+  use element_formulation, only: solid_element
+  use element_hex8, only: hex8_gradients
+  use gauss_rules, only: hex_point
+  use shape_hex8, only: derivative_at, invert3, strain_rows
+  implicit none
+  private
+  public :: incompatible_hexahedron
+
+  type, extends(solid_element) :: incompatible_hexahedron
+  contains
+    procedure :: strain_operator
+  end type incompatible_hexahedron
+
+contains
+
+  !> B + B_i A with the modes A = -K_ii**-1 K_iu that the displacements call up.
+  subroutine strain_operator(self, x, d, b, weight, status)
+    class(incompatible_hexahedron), intent(in) :: self
+    real(rk), contiguous, intent(in) :: x(:, :, :)
+    real(rk), intent(in) :: d(6, 6)
+    real(rk), contiguous, intent(out) :: b(:, :, :, :)
+    real(rk), contiguous, intent(out) :: weight(:, :)
+    integer, intent(out) :: status(:)
+    real(rk) :: gradient(3, 8, 8), mode(6, 9, 8), amplitude(9, 24)
+    integer :: e, q
+    do e = 1, size(x, 3)
+      call hex8_gradients(x(:, :, e), gradient, weight(:, e), status(e))
+      if (status(e) /= 0) cycle
+      do q = 1, self%num_points
+        call strain_rows(gradient(:, :, q), b(:, :, q, e))
+      end do
+      call mode_strains(x(:, :, e), weight(:, e), mode)
+      call mode_amplitudes(mode, b(:, :, :, e), d, weight(:, e), amplitude)
+      do q = 1, self%num_points
+        b(:, :, q, e) = b(:, :, q, e) + matmul(mode(:, :, q), amplitude)
+      end do
+    end do
+  end subroutine strain_operator
+
+  !> Strains of the nine modes at the points.
+  pure subroutine mode_strains(x, weight, mode)
+    real(rk), intent(in) :: x(3, 8) !< [m]
+    real(rk), intent(in) :: weight(8) !< determinants at the points [m3]
+    real(rk), intent(out) :: mode(6, 9, 8) !< [1/m]
+    real(rk) :: inverse(3, 3), centre_determinant, gradient(3, 3)
+    integer :: q, i
+    call invert3(matmul(derivative_at([0.0_rk, 0.0_rk, 0.0_rk]), transpose(x)), inverse, &
+                 centre_determinant)
+    do q = 1, 8
+      do i = 1, 3
+        gradient(:, i) = -2.0_rk*hex_point(i, q)*(centre_determinant/weight(q))*inverse(:, i)
+      end do
+      call strain_rows(gradient, mode(:, :, q))
+    end do
+  end subroutine mode_strains
+
+  !> A = -K_ii**-1 K_iu.
+  pure subroutine mode_amplitudes(mode, b, d, weight, amplitude)
+    real(rk), intent(in) :: mode(6, 9, 8), b(6, 24, 8), d(6, 6), weight(8)
+    real(rk), intent(out) :: amplitude(9, 24)
+    real(rk) :: k(9, 9), stress(9, 6)
+    integer :: q
+    k = 0.0_rk
+    amplitude = 0.0_rk
+    do q = 1, 8
+      stress = -weight(q)*matmul(transpose(mode(:, :, q)), d)
+      k = k - matmul(stress, mode(:, :, q))
+      amplitude = amplitude + matmul(stress, b(:, :, q))
+    end do
+    call solve_positive(k, amplitude)
+  end subroutine mode_amplitudes
+
+  !> Solves K X = B in place by Cholesky's factor; K is positive definite and overwritten.
+  pure subroutine solve_positive(k, b)
+    real(rk), intent(inout) :: k(9, 9), b(9, 24)
+    integer :: i, j
+    do j = 1, 9
+      k(j, j) = sqrt(k(j, j) - sum(k(j, :j - 1)**2))
+      do i = j + 1, 9
+        k(i, j) = (k(i, j) - sum(k(i, :j - 1)*k(j, :j - 1)))/k(j, j)
+      end do
+    end do
+    do i = 1, 9
+      b(i, :) = (b(i, :) - matmul(k(i, :i - 1), b(:i - 1, :)))/k(i, i)
+    end do
+    do i = 9, 1, -1
+      b(i, :) = (b(i, :) - matmul(k(i + 1:, i), b(i + 1:, :)))/k(i, i)
+    end do
+  end subroutine solve_positive
+end module element_hex8_incompatible

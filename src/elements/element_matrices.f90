@@ -1,0 +1,160 @@
+!> Matrices and vectors of blocks of solid elements, the same for all formulations.
+!>
+!> Blocks of 32 to 64 elements keep the operators in the second-level cache; each block is one call
+!> of the formulation.
+module element_matrices
+  use kinds, only: rk
+  use element_formulation, only: solid_element
+  use gauss_rules, only: hex_point
+  use shape_hex8, only: derivative_at, gradient_at, shape_at
+  implicit none
+  private
+  public :: stiffness_matrices, consistent_masses, nodal_volumes, strains_at_points, stress_forces
+
+  integer, parameter :: num_dofs = 24
+
+contains
+
+  !> K = sum w B^T D B (+ hourglass control) of each element of a block.
+  subroutine stiffness_matrices(element, x, d, ke, status)
+    class(solid_element), intent(in) :: element
+    real(rk), contiguous, intent(in) :: x(:, :, :) !< (3, 8, elements) [m]
+    real(rk), intent(in) :: d(6, 6) !< elastic stiffness [Pa]
+    real(rk), contiguous, intent(out) :: ke(:, :, :) !< (24, 24, elements), symmetric [N/m]
+    integer, intent(out) :: status(:) !< (elements) 0, or the worst corner when a Jacobian is <= 0
+    real(rk), allocatable :: b(:, :, :, :), weight(:, :)
+    integer :: e
+    allocate (b(6, num_dofs, element%num_points, size(x, 3)))
+    allocate (weight(element%num_points, size(x, 3)))
+    call element%strain_operator(x, d, b, weight, status)
+    do e = 1, size(x, 3)
+      if (status(e) /= 0) then
+        ke(:, :, e) = 0.0_rk
+      else
+        call integrate_stiffness(element%num_points, b(:, :, :, e), d, weight(:, e), ke(:, :, e))
+      end if
+    end do
+    call element%add_stabilisation(x, d, ke)
+  end subroutine stiffness_matrices
+
+  !> K of one element as one product of 24 x 6p and 6p x 24, columns in groups of eight below the
+  !> diagonal.
+  pure subroutine integrate_stiffness(num_points, b, d, weight, k)
+    integer, intent(in) :: num_points
+    real(rk), intent(in) :: b(6, num_dofs, num_points)
+    real(rk), intent(in) :: d(6, 6), weight(num_points)
+    real(rk), intent(out) :: k(num_dofs, num_dofs)
+    real(rk) :: bt(num_dofs, 6*num_points), wdb(num_dofs, 6*num_points)
+    integer :: q, i, j, row
+    do q = 1, num_points
+      row = 6*(q - 1)
+      do i = 1, 6
+        bt(:, row + i) = b(i, :, q)
+      end do
+      do i = 1, 6
+        wdb(:, row + i) = weight(q)*(bt(:, row + 1)*d(1, i) + bt(:, row + 2)*d(2, i) &
+                                     + bt(:, row + 3)*d(3, i) + bt(:, row + 4)*d(4, i) &
+                                     + bt(:, row + 5)*d(5, i) + bt(:, row + 6)*d(6, i))
+      end do
+    end do
+    call multiply_columns(6*num_points, bt, wdb, k)
+    do j = 2, num_dofs
+      k(:j - 1, j) = k(j, :j - 1)
+    end do
+  end subroutine integrate_stiffness
+
+  !> K = A C^T for a symmetric result: whole columns 1-8, then what lies below for the rest.
+  pure subroutine multiply_columns(inner, a, c, k)
+    integer, intent(in) :: inner
+    real(rk), intent(in) :: a(num_dofs, inner), c(num_dofs, inner)
+    real(rk), intent(out) :: k(num_dofs, num_dofs)
+    integer, parameter :: group = 8
+    real(rk) :: acc(group, 4)
+    integer :: i, j, m, l
+    do i = 1, num_dofs, group
+      do j = 1, i + group - 1, 4
+        acc = 0.0_rk
+        do m = 1, inner
+          do l = 1, 4
+            acc(:, l) = acc(:, l) + a(i:i + group - 1, m)*c(j + l - 1, m)
+          end do
+        end do
+        k(i:i + group - 1, j:j + 3) = acc
+      end do
+    end do
+  end subroutine multiply_columns
+
+  !> rho * integral of N_a N_b over each element; the same for the three directions.
+  pure subroutine consistent_masses(x, density, mass)
+    real(rk), contiguous, intent(in) :: x(:, :, :) !< (3, 8, elements) [m]
+    real(rk), intent(in) :: density !< [kg/m3]
+    real(rk), contiguous, intent(out) :: mass(:, :, :) !< (8, 8, elements) [kg]
+    real(rk) :: weight, n(8)
+    integer :: e, q, a
+    mass = 0.0_rk
+    do e = 1, size(x, 3)
+      do q = 1, 8
+        n = shape_at(hex_point(:, q))
+        weight = density*determinant_at(x(:, :, e), q)
+        do a = 1, 8
+          mass(:, a, e) = mass(:, a, e) + (weight*n(a))*n
+        end do
+      end do
+    end do
+  end subroutine consistent_masses
+
+  !> Integral of N_a over each element: the nodes' shares of the volume. Times rho it is the lumped
+  !> mass (row sums, never negative), times rho g the consistent weight.
+  pure subroutine nodal_volumes(x, volume)
+    real(rk), contiguous, intent(in) :: x(:, :, :) !< (3, 8, elements) [m]
+    real(rk), contiguous, intent(out) :: volume(:, :) !< (8, elements) [m3]
+    integer :: e, q
+    volume = 0.0_rk
+    do e = 1, size(x, 3)
+      do q = 1, 8
+        volume(:, e) = volume(:, e) + determinant_at(x(:, :, e), q)*shape_at(hex_point(:, q))
+      end do
+    end do
+  end subroutine nodal_volumes
+
+  !> Determinant of the Jacobian at a Gauss point [m3].
+  pure real(rk) function determinant_at(x, q) result(determinant)
+    real(rk), intent(in) :: x(3, 8)
+    integer, intent(in) :: q
+    real(rk) :: gradient(3, 8)
+    call gradient_at(x, derivative_at(hex_point(:, q)), gradient, determinant)
+  end function determinant_at
+
+  !> eps = B u at the points of each element.
+  pure subroutine strains_at_points(b, u, strain)
+    real(rk), contiguous, intent(in) :: b(:, :, :, :) !< (6, 24, points, elements) [1/m]
+    real(rk), contiguous, intent(in) :: u(:, :) !< (24, elements) [m]
+    real(rk), contiguous, intent(out) :: strain(:, :, :) !< (6, points, elements)
+    integer :: e, q, i
+    do e = 1, size(b, 4)
+      do q = 1, size(b, 3)
+        strain(:, q, e) = 0.0_rk
+        do i = 1, num_dofs
+          strain(:, q, e) = strain(:, q, e) + b(:, i, q, e)*u(i, e)
+        end do
+      end do
+    end do
+  end subroutine strains_at_points
+
+  !> f = sum w B^T sigma of each element (without hourglass forces).
+  pure subroutine stress_forces(b, weight, stress, force)
+    real(rk), contiguous, intent(in) :: b(:, :, :, :) !< (6, 24, points, elements) [1/m]
+    real(rk), contiguous, intent(in) :: weight(:, :) !< (points, elements) [m3]
+    real(rk), contiguous, intent(in) :: stress(:, :, :) !< (6, points, elements) [Pa]
+    real(rk), contiguous, intent(out) :: force(:, :) !< (24, elements) [N]
+    integer :: e, q, i
+    force = 0.0_rk
+    do e = 1, size(b, 4)
+      do q = 1, size(b, 3)
+        do i = 1, num_dofs
+          force(i, e) = force(i, e) + weight(q, e)*sum(b(:, i, q, e)*stress(:, q, e))
+        end do
+      end do
+    end do
+  end subroutine stress_forces
+end module element_matrices

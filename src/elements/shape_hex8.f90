@@ -1,0 +1,155 @@
+!> The trilinear 8-node hexahedron: shape functions, gradients, and whether its corners are sound.
+module shape_hex8
+  use kinds, only: rk
+  use gauss_rules, only: hex_point
+  implicit none
+  private
+  public :: corner, shape_at, derivative_at, gradient_at, mean_gradient, strain_rows
+  public :: corner_fault, corner_of_point, corners_from_points, invert3
+
+  !> Natural coordinates of the corners.
+  real(rk), parameter :: corner(3, 8) = reshape(real([-1, -1, -1, 1, -1, -1, 1, 1, -1, &
+                                                      -1, 1, -1, -1, -1, 1, 1, -1, 1, &
+                                                      1, 1, 1, -1, 1, 1], rk), [3, 8])
+
+  !> The corner next to each integration point.
+  integer, parameter :: corner_of_point(8) = [1, 2, 4, 3, 5, 6, 8, 7]
+
+  !> The ends of the three edges of each corner, in right-handed order.
+  integer, parameter :: edge_end(3, 8) = reshape([2, 4, 5, 3, 1, 6, 4, 2, 7, 1, 3, 8, &
+                                                  8, 6, 1, 5, 7, 2, 6, 8, 3, 7, 5, 4], [3, 8])
+
+  !> A Jacobian below this part of the product of the edges counts as zero.
+  real(rk), parameter :: flat_corner = 1.0e-10_rk
+
+contains
+
+  !> Shape functions at a point.
+  pure function shape_at(xi) result(n)
+    real(rk), intent(in) :: xi(3) !< natural coordinates
+    real(rk) :: n(8)
+    n = 0.125_rk*(1.0_rk + corner(1, :)*xi(1))*(1.0_rk + corner(2, :)*xi(2)) &
+        *(1.0_rk + corner(3, :)*xi(3))
+  end function shape_at
+
+  !> Their derivatives in the natural coordinates.
+  pure function derivative_at(xi) result(dn)
+    real(rk), intent(in) :: xi(3) !< natural coordinates
+    real(rk) :: dn(3, 8)
+    real(rk) :: s(3, 8)
+    s(1, :) = 1.0_rk + corner(1, :)*xi(1)
+    s(2, :) = 1.0_rk + corner(2, :)*xi(2)
+    s(3, :) = 1.0_rk + corner(3, :)*xi(3)
+    dn(1, :) = 0.125_rk*corner(1, :)*s(2, :)*s(3, :)
+    dn(2, :) = 0.125_rk*corner(2, :)*s(1, :)*s(3, :)
+    dn(3, :) = 0.125_rk*corner(3, :)*s(1, :)*s(2, :)
+  end function derivative_at
+
+  !> Gradients of the shape functions in space, and the determinant of the Jacobian.
+  pure subroutine gradient_at(x, dn, gradient, determinant)
+    real(rk), intent(in) :: x(3, 8) !< corners [m]
+    real(rk), intent(in) :: dn(3, 8) !< derivatives in the natural coordinates
+    real(rk), intent(out) :: gradient(3, 8) !< [1/m]
+    real(rk), intent(out) :: determinant !< [m3]
+    real(rk) :: jacobian(3, 3), inverse(3, 3)
+    integer :: a, i, j
+    do j = 1, 3
+      do i = 1, 3
+        jacobian(i, j) = sum(dn(i, :)*x(j, :))
+      end do
+    end do
+    call invert3(jacobian, inverse, determinant)
+    do a = 1, 8
+      gradient(:, a) = inverse(:, 1)*dn(1, a) + inverse(:, 2)*dn(2, a) + inverse(:, 3)*dn(3, a)
+    end do
+  end subroutine gradient_at
+
+  !> Inverse and determinant; the inverse is zero where the determinant is.
+  pure subroutine invert3(matrix, inverse, determinant)
+    real(rk), intent(in) :: matrix(3, 3)
+    real(rk), intent(out) :: inverse(3, 3)
+    real(rk), intent(out) :: determinant
+    real(rk) :: m(3, 3), scale
+    m = matrix
+    inverse(:, 1) = [m(2, 2)*m(3, 3) - m(2, 3)*m(3, 2), m(2, 3)*m(3, 1) - m(2, 1)*m(3, 3), &
+                     m(2, 1)*m(3, 2) - m(2, 2)*m(3, 1)]
+    inverse(:, 2) = [m(1, 3)*m(3, 2) - m(1, 2)*m(3, 3), m(1, 1)*m(3, 3) - m(1, 3)*m(3, 1), &
+                     m(1, 2)*m(3, 1) - m(1, 1)*m(3, 2)]
+    inverse(:, 3) = [m(1, 2)*m(2, 3) - m(1, 3)*m(2, 2), m(1, 3)*m(2, 1) - m(1, 1)*m(2, 3), &
+                     m(1, 1)*m(2, 2) - m(1, 2)*m(2, 1)]
+    determinant = sum(m(1, :)*inverse(:, 1))
+    scale = 0.0_rk
+    if (abs(determinant) > tiny(scale)) scale = 1.0_rk/determinant
+    inverse = inverse*scale
+  end subroutine invert3
+
+  !> Gradients averaged over the volume (exact), and the volume.
+  pure subroutine mean_gradient(gradient, weight, mean, volume)
+    real(rk), intent(in) :: gradient(3, 8, 8) !< at the 2 x 2 x 2 points [1/m]
+    real(rk), intent(in) :: weight(8) !< volume of each point [m3]
+    real(rk), intent(out) :: mean(3, 8) !< [1/m]
+    real(rk), intent(out) :: volume !< [m3]
+    integer :: q
+    mean = 0.0_rk
+    do q = 1, 8
+      mean = mean + weight(q)*gradient(:, :, q)
+    end do
+    volume = sum(weight)
+    mean = mean/volume
+  end subroutine mean_gradient
+
+  !> Strain-displacement rows (order 11 22 33 12 13 23) of shape functions with these gradients.
+  pure subroutine strain_rows(gradient, b)
+    real(rk), contiguous, intent(in) :: gradient(:, :) !< (3, functions) [1/m]
+    real(rk), contiguous, intent(out) :: b(:, :) !< (6, 3*functions) [1/m]
+    integer :: a, i
+    b = 0.0_rk
+    do a = 1, size(gradient, 2)
+      i = 3*a - 2
+      b(1, i) = gradient(1, a)
+      b(4, i) = gradient(2, a)
+      b(5, i) = gradient(3, a)
+      b(2, i + 1) = gradient(2, a)
+      b(4, i + 1) = gradient(1, a)
+      b(6, i + 1) = gradient(3, a)
+      b(3, i + 2) = gradient(3, a)
+      b(5, i + 2) = gradient(1, a)
+      b(6, i + 2) = gradient(2, a)
+    end do
+  end subroutine strain_rows
+
+  !> The corner with the lowest Jacobian when that is zero or negative, 0 for a sound element.
+  !>
+  !> An element can be integrated as long as the Jacobian is positive at its points (the patch of
+  !> MacNeal & Harder has a negative corner); a bad corner is worth a warning. Corners on collapsed
+  !> edges (wedges made by repeated nodes) have no Jacobian and are passed over.
+  pure integer function corner_fault(x) result(fault)
+    real(rk), intent(in) :: x(3, 8) !< [m]
+    real(rk) :: edge(3, 3), inverse(3, 3), jacobian, lowest, lengths
+    integer :: a, i
+    fault = 0
+    lowest = flat_corner
+    do a = 1, 8
+      do i = 1, 3
+        edge(:, i) = x(:, edge_end(i, a)) - x(:, a)
+      end do
+      lengths = norm2(edge(:, 1))*norm2(edge(:, 2))*norm2(edge(:, 3))
+      if (lengths <= 0.0_rk) cycle
+      call invert3(edge, inverse, jacobian)
+      if (jacobian/lengths >= lowest) cycle
+      lowest = jacobian/lengths
+      fault = a
+    end do
+  end function corner_fault
+
+  !> Matrix that carries values from the 2 x 2 x 2 points to the corners (exact for trilinear ones).
+  pure function corners_from_points() result(matrix)
+    real(rk) :: matrix(8, 8) !< (corner, point)
+    integer :: a
+    do a = 1, 8
+      matrix(a, :) = 0.125_rk*(1.0_rk + 3.0_rk*corner(1, a)*hex_point(1, :)) &
+                     *(1.0_rk + 3.0_rk*corner(2, a)*hex_point(2, :)) &
+                     *(1.0_rk + 3.0_rk*corner(3, a)*hex_point(3, :))
+    end do
+  end function corners_from_points
+end module shape_hex8

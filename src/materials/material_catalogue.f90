@@ -1,0 +1,27 @@
+!> The single list of materials: the keyword that brings each in, and its maker.
+module material_catalogue
+  use kinds, only: rk
+  use material_elastic, only: elastic_law
+  use material_law, only: stress_law
+  implicit none
+  private
+  public :: material_kinds, make_stress_law
+
+  !> Keywords below *MATERIAL that choose a law.
+  character(32), parameter :: material_kinds(1) = ['ELASTIC                         ']
+
+contains
+
+  !> Makes the law of a keyword out of its constants; stays unallocated when it is not in the list.
+  subroutine make_stress_law(keyword, constants, law)
+    character(*), intent(in) :: keyword !< upper case, without the star
+    real(rk), intent(in) :: constants(:) !< in the order of the keyword: E [Pa], nu
+    class(stress_law), allocatable, intent(out) :: law
+    select case (keyword)
+    case ('ELASTIC')
+      law = elastic_law(young=constants(1), poisson=constants(2))
+    case default
+      return
+    end select
+  end subroutine make_stress_law
+end module material_catalogue
