@@ -1,13 +1,18 @@
 !> Who wants to hear of every increment: the solvers call, the results layer answers.
 module increment_listener
   use errors, only: error_type
+  use logging, only: run_log
+  use timer, only: ledger
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
   implicit none
   private
   public :: listener
 
+  !> Solvers also write what people should know to its log, and their time to its ledger.
   type, abstract :: listener
+    type(run_log) :: log
+    type(ledger) :: costs
   contains
     procedure(increment_done), deferred :: increment_done
     procedure(modes_found), deferred :: modes_found
@@ -17,6 +22,7 @@ module increment_listener
     !> An increment has converged; increment 0 is the state at the start of a dynamic step.
     subroutine increment_done(self, scene, now, error)
       import :: listener, problem, state, error_type
+      implicit none
       class(listener), intent(inout) :: self
       type(problem), intent(in) :: scene
       type(state), intent(in) :: now
@@ -26,6 +32,7 @@ module increment_listener
     !> A *FREQUENCY step has found its modes.
     subroutine modes_found(self, scene, step, modes, error)
       import :: listener, problem, vibration_mode, error_type
+      implicit none
       class(listener), intent(inout) :: self
       type(problem), intent(in) :: scene
       integer, intent(in) :: step
