@@ -19,6 +19,7 @@ module linear_solver
     !> Orders the unknowns and plans the factor; once per pattern.
     subroutine analyse(self, matrix, error)
       import :: equation_solver, pattern, error_type
+      implicit none
       class(equation_solver), intent(inout) :: self
       type(pattern), intent(in) :: matrix
       type(error_type), allocatable, intent(out) :: error
@@ -28,6 +29,7 @@ module linear_solver
     !> names the unknown.
     subroutine factorise(self, matrix, values, error)
       import :: equation_solver, pattern, error_type, rk
+      implicit none
       class(equation_solver), intent(inout) :: self
       type(pattern), intent(in) :: matrix
       real(rk), intent(in) :: values(:)
@@ -37,6 +39,7 @@ module linear_solver
     !> Solves for each column of `b`, in place.
     subroutine solve(self, b, error)
       import :: equation_solver, error_type, rk
+      implicit none
       class(equation_solver), intent(inout) :: self
       real(rk), intent(inout) :: b(:, :) !< (free unknowns, right-hand sides)
       type(error_type), allocatable, intent(out) :: error

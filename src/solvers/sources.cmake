@@ -1,3 +1,11 @@
 set(sources
   linear_solver.f90
+  blas_bridge.c
+  blas_threads.f90
+  metis_bridge.c
+  nested_dissection.f90
+  cholmod_bridge.c
+  solver_cholmod.f90
+  solver_umfpack.f90
+  solver_catalogue.f90
 )

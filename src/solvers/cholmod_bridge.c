@@ -1,0 +1,150 @@
+/* The few calls of CHOLMOD that solver_cholmod needs, behind plain arguments, so that Fortran does
+ * not have to know the structures, which differ from version to version. */
+#include <cholmod.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct keyway_cholmod {
+  cholmod_common common;
+  cholmod_factor *factor;
+  cholmod_dense *x, *y, *e; /* workspace of the solves */
+};
+
+/* The lower triangle of a matrix: 0-based columns of `used` entries each, with room behind them. */
+static cholmod_sparse view(int n, const int *start, const int *used, const int *row,
+                           const double *values)
+{
+  cholmod_sparse a;
+  memset(&a, 0, sizeof a);
+  a.nrow = a.ncol = (size_t)n;
+  a.nzmax = (size_t)start[n];
+  a.p = (void *)start;
+  a.nz = (void *)used;
+  a.i = (void *)row;
+  a.x = (void *)values;
+  a.stype = -1;
+  a.itype = CHOLMOD_INT;
+  a.xtype = values ? CHOLMOD_REAL : CHOLMOD_PATTERN;
+  a.dtype = CHOLMOD_DOUBLE;
+  a.sorted = 1;
+  a.packed = 0;
+  return a;
+}
+
+/* NULL when there is no memory. */
+void *keyway_cholmod_start(void)
+{
+  struct keyway_cholmod *c = calloc(1, sizeof *c);
+  if (!c) return NULL;
+  cholmod_start(&c->common);
+  c->common.print = 0;
+  c->common.supernodal = CHOLMOD_SUPERNODAL;
+  c->common.final_ll = 1;
+  c->common.nmethods = 1;
+  c->common.postorder = 1;
+  c->common.quick_return_if_not_posdef = 1;
+  return c;
+}
+
+void keyway_cholmod_finish(void *handle)
+{
+  struct keyway_cholmod *c = handle;
+  if (!c) return;
+  cholmod_free_dense(&c->x, &c->common);
+  cholmod_free_dense(&c->y, &c->common);
+  cholmod_free_dense(&c->e, &c->common);
+  cholmod_free_factor(&c->factor, &c->common);
+  cholmod_finish(&c->common);
+  free(c);
+}
+
+/* Plans the factor. `order` lists the unknowns in the order of elimination, 0-based; NULL leaves it
+ * to CHOLMOD's own METIS. Returns CHOLMOD's status, 0 for success. */
+int keyway_cholmod_analyse(void *handle, int n, const int *start, const int *used, const int *row,
+                           const int *order)
+{
+  struct keyway_cholmod *c = handle;
+  cholmod_sparse a = view(n, start, used, row, NULL);
+  cholmod_free_factor(&c->factor, &c->common);
+  c->common.method[0].ordering = order ? CHOLMOD_GIVEN : CHOLMOD_METIS;
+  c->factor = cholmod_analyze_p(&a, (int *)order, NULL, 0, &c->common);
+  if (!c->factor) return c->common.status ? c->common.status : -1;
+  return 0;
+}
+
+/* The smallest square of a pivot over the entry it came from, and its column. */
+static double smallest_pivot(const cholmod_factor *l, const int *start, const double *values,
+                             int *column)
+{
+  const int *super = l->super, *pi = l->pi, *px = l->px, *perm = l->Perm;
+  const double *x = l->x;
+  double smallest = 1.0;
+  *column = 0;
+  for (size_t s = 0; s < l->nsuper; s++) {
+    size_t stride = (size_t)(pi[s + 1] - pi[s]) + 1;
+    for (int k = super[s]; k < super[s + 1]; k++) {
+      double pivot = x[(size_t)px[s] + (size_t)(k - super[s]) * stride];
+      double ratio = pivot * pivot / values[start[perm[k]]];
+      if (!(ratio >= smallest)) {
+        smallest = ratio;
+        *column = perm[k];
+      }
+    }
+  }
+  return smallest;
+}
+
+/* Factors. Returns CHOLMOD's status: 0 success, 1 not positive definite, negative errors. `column`
+ * is the 0-based unknown whose pivot failed or is smallest, `ratio` that pivot over the diagonal
+ * entry. */
+int keyway_cholmod_factorise(void *handle, int n, const int *start, const int *used,
+                             const int *row, const double *values, int *column, double *ratio)
+{
+  struct keyway_cholmod *c = handle;
+  cholmod_sparse a = view(n, start, used, row, values);
+  *column = 0;
+  *ratio = 0.0;
+  if (!cholmod_factorize(&a, c->factor, &c->common)) return c->common.status;
+  if (c->common.status == CHOLMOD_NOT_POSDEF) {
+    if (c->factor->minor < c->factor->n) *column = ((int *)c->factor->Perm)[c->factor->minor];
+    return 1;
+  }
+  if (c->common.status == CHOLMOD_OK && c->factor->is_super)
+    *ratio = smallest_pivot(c->factor, start, values, column);
+  return c->common.status;
+}
+
+/* Solves for `columns` right-hand sides of length n, in place. Returns 0 for success. */
+int keyway_cholmod_solve(void *handle, int n, int columns, double *b)
+{
+  struct keyway_cholmod *c = handle;
+  cholmod_dense rhs;
+  memset(&rhs, 0, sizeof rhs);
+  rhs.nrow = rhs.d = (size_t)n;
+  rhs.ncol = (size_t)columns;
+  rhs.nzmax = (size_t)n * (size_t)columns;
+  rhs.x = b;
+  rhs.xtype = CHOLMOD_REAL;
+  rhs.dtype = CHOLMOD_DOUBLE;
+  if (!cholmod_solve2(CHOLMOD_A, c->factor, &rhs, NULL, &c->x, NULL, &c->y, &c->e, &c->common))
+    return c->common.status ? c->common.status : -1;
+  memcpy(b, c->x->x, rhs.nzmax * sizeof(double));
+  return 0;
+}
+
+/* Entries of the factor as planned, bytes held now and at the peak. */
+void keyway_cholmod_statistics(void *handle, double *entries, double *bytes, double *peak)
+{
+  struct keyway_cholmod *c = handle;
+  *entries = c->common.lnz;
+  *bytes = (double)c->common.memory_inuse;
+  *peak = (double)c->common.memory_usage;
+}
+
+/* The order of elimination in use, 0-based. */
+void keyway_cholmod_order(void *handle, int n, int *order)
+{
+  struct keyway_cholmod *c = handle;
+  memcpy(order, c->factor->Perm, (size_t)n * sizeof(int));
+}

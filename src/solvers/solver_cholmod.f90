@@ -1,0 +1,204 @@
+!> Symmetric positive definite equations by CHOLMOD: supernodal L L^T, METIS, the jumps last.
+module solver_cholmod
+  use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_int, c_loc, c_null_ptr, c_ptr
+  use kinds, only: rk
+  use errors, only: error_type, raise, system_failed
+  use matrix_pattern, only: pattern
+  use linear_solver, only: equation_solver
+  use nested_dissection, only: dissect
+  use blas_threads, only: use_many_threads, use_one_thread
+  implicit none
+  private
+  public :: cholmod_solver
+
+  integer, parameter :: most_columns = 32 !< solved at once, which bounds the workspace
+
+  !> A pivot so much smaller than its diagonal entry is roundoff: the matrix is singular.
+  real(rk), parameter :: smallest_ratio = 1.0e-14_rk
+
+  type, extends(equation_solver) :: cholmod_solver
+    logical :: uses_own_order = .false. !< CHOLMOD orders by itself, jumps anywhere
+    type(c_ptr), private :: handle = c_null_ptr
+    integer, private :: num_free = 0
+    integer(c_int), allocatable, private :: start(:), row(:) !< pattern, 0-based
+  contains
+    procedure :: analyse, factorise, solve, statistics, elimination_order
+    final :: release
+  end type cholmod_solver
+
+  interface
+    function keyway_cholmod_start() result(handle) bind(c)
+      import :: c_ptr
+      implicit none
+      type(c_ptr) :: handle
+    end function keyway_cholmod_start
+
+    subroutine keyway_cholmod_finish(handle) bind(c)
+      import :: c_ptr
+      implicit none
+      type(c_ptr), value :: handle
+    end subroutine keyway_cholmod_finish
+
+    function keyway_cholmod_analyse(handle, n, start, used, row, order) result(status) bind(c)
+      import :: c_ptr, c_int
+      implicit none
+      type(c_ptr), value :: handle
+      integer(c_int), value :: n
+      integer(c_int), intent(in) :: start(n + 1), used(n), row(start(n + 1))
+      type(c_ptr), value :: order
+      integer(c_int) :: status
+    end function keyway_cholmod_analyse
+
+    function keyway_cholmod_factorise(handle, n, start, used, row, values, column, ratio) &
+      result(status) bind(c)
+      import :: c_ptr, c_int, c_double
+      implicit none
+      type(c_ptr), value :: handle
+      integer(c_int), value :: n
+      integer(c_int), intent(in) :: start(n + 1), used(n), row(start(n + 1))
+      real(c_double), intent(in) :: values(start(n + 1))
+      integer(c_int), intent(out) :: column
+      real(c_double), intent(out) :: ratio
+      integer(c_int) :: status
+    end function keyway_cholmod_factorise
+
+    function keyway_cholmod_solve(handle, n, columns, b) result(status) bind(c)
+      import :: c_ptr, c_int, c_double
+      implicit none
+      type(c_ptr), value :: handle
+      integer(c_int), value :: n, columns
+      real(c_double), intent(inout) :: b(n, columns)
+      integer(c_int) :: status
+    end function keyway_cholmod_solve
+
+    subroutine keyway_cholmod_statistics(handle, entries, bytes, peak) bind(c)
+      import :: c_ptr, c_double
+      implicit none
+      type(c_ptr), value :: handle
+      real(c_double), intent(out) :: entries, bytes, peak
+    end subroutine keyway_cholmod_statistics
+
+    subroutine keyway_cholmod_order(handle, n, order) bind(c)
+      import :: c_ptr, c_int
+      implicit none
+      type(c_ptr), value :: handle
+      integer(c_int), value :: n
+      integer(c_int), intent(out) :: order(n)
+    end subroutine keyway_cholmod_order
+  end interface
+
+contains
+
+  !> Orders the free unknowns and plans the factor.
+  subroutine analyse(self, matrix, error)
+    class(cholmod_solver), intent(inout) :: self
+    type(pattern), intent(in) :: matrix !< symmetric
+    type(error_type), allocatable, intent(out) :: error
+    integer(c_int), allocatable, target :: order(:)
+    integer :: status
+    if (.not. c_associated(self%handle)) self%handle = keyway_cholmod_start()
+    if (.not. c_associated(self%handle)) then
+      call raise(error, 'no memory for the equation solver', system_failed)
+      return
+    end if
+    self%num_free = matrix%num_free
+    if (self%num_free == 0) return
+    call shift_pattern(matrix, self%start, self%row)
+    if (self%uses_own_order) then
+      status = keyway_cholmod_analyse(self%handle, self%num_free, self%start, matrix%free_entries, &
+                                      self%row, c_null_ptr)
+    else
+      call dissect(matrix, order, error)
+      if (allocated(error)) return
+      order(:) = order - 1
+      status = keyway_cholmod_analyse(self%handle, self%num_free, self%start, matrix%free_entries, &
+                                      self%row, c_loc(order))
+    end if
+    if (status /= 0) call raise(error, 'no memory to plan the factor of the stiffness', &
+                                system_failed)
+  end subroutine analyse
+
+  !> Columns and rows of the free part, counted from 0 as CHOLMOD does.
+  pure subroutine shift_pattern(matrix, start, row)
+    type(pattern), intent(in) :: matrix
+    integer(c_int), allocatable, intent(out) :: start(:), row(:)
+    integer :: num_entries
+    num_entries = matrix%column_start(matrix%num_free + 1) - 1
+    allocate (start(matrix%num_free + 1), row(num_entries))
+    start(:) = matrix%column_start(:matrix%num_free + 1) - 1
+    row(:) = matrix%row(:num_entries) - 1
+  end subroutine shift_pattern
+
+  !> Factors the free part. A matrix that is not positive definite, or singular but for roundoff, is
+  !> an error; `failed_unknown` names the unknown.
+  subroutine factorise(self, matrix, values, error)
+    class(cholmod_solver), intent(inout) :: self
+    type(pattern), intent(in) :: matrix !< as analysed
+    real(rk), intent(in) :: values(:)
+    type(error_type), allocatable, intent(out) :: error
+    integer(c_int) :: status, column
+    real(rk) :: ratio
+    self%failed_unknown = 0
+    if (self%num_free == 0) return
+    call use_many_threads()
+    status = keyway_cholmod_factorise(self%handle, self%num_free, self%start, matrix%free_entries, &
+                                      self%row, values, column, ratio)
+    call use_one_thread()
+    if (status == 1 .or. (status == 0 .and. .not. ratio > smallest_ratio)) then
+      self%failed_unknown = column + 1
+      call raise(error, 'the stiffness is singular or not positive definite')
+    else if (status == -2) then
+      call raise(error, 'no memory for the factor of the stiffness', system_failed)
+    else if (status /= 0) then
+      call raise(error, 'CHOLMOD failed to factor the stiffness', system_failed)
+    end if
+  end subroutine factorise
+
+  !> Solves for each column of `b`, in place.
+  subroutine solve(self, b, error)
+    class(cholmod_solver), intent(inout) :: self
+    real(rk), intent(inout) :: b(:, :) !< (num_free, right-hand sides)
+    type(error_type), allocatable, intent(out) :: error
+    integer :: first, last, num_columns
+    integer(c_int) :: status
+    if (self%num_free == 0) return
+    num_columns = size(b, 2)
+    if (num_columns > 1) call use_many_threads()
+    status = 0
+    do first = 1, num_columns, most_columns
+      last = min(first + most_columns - 1, num_columns)
+      status = keyway_cholmod_solve(self%handle, self%num_free, last - first + 1, b(:, first:last))
+      if (status /= 0) exit
+    end do
+    if (num_columns > 1) call use_one_thread()
+    if (status /= 0) call raise(error, 'no memory to solve the equations', system_failed)
+  end subroutine solve
+
+  !> What the factor costs.
+  subroutine statistics(self, entries, bytes, peak_bytes)
+    class(cholmod_solver), intent(in) :: self
+    real(rk), intent(out) :: entries !< of L
+    real(rk), intent(out) :: bytes, peak_bytes !< held now, and at most so far
+    entries = 0.0_rk
+    bytes = 0.0_rk
+    peak_bytes = 0.0_rk
+    if (c_associated(self%handle)) call keyway_cholmod_statistics(self%handle, entries, bytes, &
+                                                                  peak_bytes)
+  end subroutine statistics
+
+  !> The order in which the unknowns are eliminated.
+  subroutine elimination_order(self, order)
+    class(cholmod_solver), intent(in) :: self
+    integer, allocatable, intent(out) :: order(:) !< (num_free)
+    allocate (order(self%num_free))
+    call keyway_cholmod_order(self%handle, self%num_free, order)
+    order(:) = order + 1
+  end subroutine elimination_order
+
+  !> Gives the memory of CHOLMOD back.
+  subroutine release(self)
+    type(cholmod_solver), intent(inout) :: self
+    call keyway_cholmod_finish(self%handle)
+    self%handle = c_null_ptr
+  end subroutine release
+end module solver_cholmod

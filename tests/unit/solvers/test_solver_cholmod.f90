@@ -1,0 +1,77 @@
+!> CHOLMOD on a box of springs: solutions, refactoring, several columns, the failing unknown.
+program test_solver_cholmod
+  use kinds, only: rk
+  use errors, only: error_type
+  use testing, only: test_log, check, check_close
+  use matrix_pattern, only: pattern, multiply, position_of
+  use solver_cholmod, only: cholmod_solver
+  use spring_box, only: make_box
+  implicit none
+  type(test_log) :: log
+  log%suite = 'solver_cholmod'
+  call solutions()
+  call failures()
+  write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
+  if (log%failed > 0) error stop 1
+contains
+
+  subroutine solutions()
+    type(pattern) :: matrix
+    type(cholmod_solver) :: solver
+    type(error_type), allocatable :: error
+    real(rk), allocatable :: values(:), q(:, :), b(:, :)
+    integer, allocatable :: order(:)
+    integer :: j, pass
+    call make_box(matrix, values, 30)
+    call solver%analyse(matrix, error)
+    call check(log, allocated(error) .eqv. .false., 'analyse')
+    call solver%elimination_order(order)
+    call check(log, all(order(matrix%num_free - 29:) > matrix%num_free - 30), 'jumps stay last')
+    do pass = 1, 2
+      values = values*pass
+      call solver%factorise(matrix, values, error)
+      call check(log, allocated(error) .eqv. .false., 'factorise')
+      allocate (q(matrix%num_total, 40), b(matrix%num_free, 40))
+      q = reshape([(sin(real(j, rk)), j=1, size(q))], shape(q))
+      q(matrix%num_free + 1:, :) = 0.0_rk
+      do j = 1, size(q, 2)
+        call product_of_free(matrix, values, q(:, j), b(:, j))
+      end do
+      call solver%solve(b, error)
+      call check_close(log, maxval(abs(b - q(:matrix%num_free, :))), 0.0_rk, 1.0e-11_rk, 'K^-1 K q')
+      deallocate (q, b)
+    end do
+  end subroutine solutions
+
+  !> The free part of K q.
+  subroutine product_of_free(matrix, values, q, b)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: values(:), q(:)
+    real(rk), intent(out) :: b(:)
+    real(rk) :: y(size(q))
+    call multiply(matrix, values, q, y)
+    b = y(:size(b))
+  end subroutine product_of_free
+
+  subroutine failures()
+    type(pattern) :: matrix
+    type(cholmod_solver) :: solver
+    type(error_type), allocatable :: error
+    real(rk), allocatable :: values(:)
+    integer :: k
+    call make_box(matrix, values, 0)
+    call solver%analyse(matrix, error)
+    k = position_of(matrix, 77, 77)
+    values(k) = -1.0_rk
+    call solver%factorise(matrix, values, error)
+    call check(log, allocated(error) .and. solver%failed_unknown == 77, 'a negative pivot is named')
+    call make_box(matrix, values, 0)
+    ! Unknown 5 is cut off from the others.
+    values(matrix%column_start(5):matrix%column_start(6) - 1) = 0.0_rk
+    do k = 1, 4
+      if (position_of(matrix, 5, k) > 0) values(position_of(matrix, 5, k)) = 0.0_rk
+    end do
+    call solver%factorise(matrix, values, error)
+    call check(log, allocated(error) .and. solver%failed_unknown == 5, 'a floating one is named')
+  end subroutine failures
+end program test_solver_cholmod

@@ -1,0 +1,81 @@
+!> A box of 6 x 6 x 6 nodes, whose cells are webs of springs: a small symmetric positive matrix.
+module spring_box
+  use kinds, only: rk
+  use errors, only: error_type
+  use dof_numbering, only: numbering, linear_links, number_unknowns
+  use matrix_pattern, only: pattern, add_block
+  use pattern_builder, only: cell_list, build_pattern
+  implicit none
+  private
+  public :: make_box
+
+  integer, parameter :: side = 6
+
+contains
+
+  !> The nodes of the lowest layer are fixed; the last free unknowns are taken for jumps.
+  subroutine make_box(matrix, values, num_jumps)
+    type(pattern), intent(out) :: matrix
+    real(rk), allocatable, intent(out) :: values(:)
+    integer, intent(in) :: num_jumps
+    type(numbering) :: numbers
+    type(linear_links) :: links
+    type(cell_list) :: cells
+    type(error_type), allocatable :: error
+    logical :: is_used(side**3), is_fixed(3, side**3)
+    integer :: c
+    call list_box(cells)
+    is_used = .true.
+    is_fixed = .false.
+    is_fixed(:, :side**2) = .true.
+    call number_unknowns(is_used, is_fixed, links, numbers, error)
+    if (allocated(error)) error stop 'spring_box: numbering'
+    call build_pattern(numbers, cells, matrix)
+    matrix%num_jumps = num_jumps
+    allocate (values(size(matrix%row)))
+    values = 0.0_rk
+    do c = 1, size(cells%first) - 1
+      call add_springs(numbers, cells%node(cells%first(c):cells%first(c + 1) - 1), matrix, values)
+    end do
+  end subroutine make_box
+
+  subroutine list_box(cells)
+    type(cell_list), intent(out) :: cells
+    integer, parameter :: num_cells = (side - 1)**3
+    integer :: i, j, k, c, corner
+    allocate (cells%first(num_cells + 1), cells%node(8*num_cells))
+    cells%first(:) = [(1 + 8*(c - 1), c=1, num_cells + 1)]
+    c = 0
+    do k = 0, side - 2
+      do j = 0, side - 2
+        do i = 0, side - 2
+          corner = 1 + i + side*(j + side*k)
+          cells%node(8*c + 1:8*c + 4) = [corner, corner + 1, corner + side, corner + side + 1]
+          cells%node(8*c + 5:8*c + 8) = cells%node(8*c + 1:8*c + 4) + side**2
+          c = c + 1
+        end do
+      end do
+    end do
+  end subroutine list_box
+
+  !> Every unknown of the cell against every other.
+  subroutine add_springs(numbers, nodes, matrix, values)
+    type(numbering), intent(in) :: numbers
+    integer, intent(in) :: nodes(8)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(inout) :: values(:)
+    integer :: unknown(24), sorted(24), k
+    real(rk) :: block(24, 24)
+    do k = 1, 8
+      unknown(3*k - 2:3*k) = numbers%unknown(numbers%row_start(3*nodes(k) - 2) + [0, 1, 2])
+    end do
+    do k = 1, 24
+      sorted(count(unknown <= unknown(k))) = unknown(k)
+    end do
+    block = -1.0_rk
+    do k = 1, 24
+      block(k, k) = 23.1_rk
+    end do
+    call add_block(matrix, sorted, block, values)
+  end subroutine add_springs
+end module spring_box
