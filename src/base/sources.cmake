@@ -9,5 +9,6 @@ set(sources
   timer.f90
   logging.f90
   small_matrix.f90
+  dense_factor.f90
   tensor6.f90
 )

@@ -8,4 +8,12 @@ set(sources
   solver_cholmod.f90
   solver_umfpack.f90
   solver_catalogue.f90
+  joint_operator.f90
+  joint_forces.f90
+  equilibrium.f90
+  equilibrium_linear.f90
+  joint_iteration.f90
+  joint_compliance.f90
+  newton_condensed.f90
+  condensation.f90
 )

@@ -1,0 +1,77 @@
+!> The balance of forces of an implicit step, static or dynamic:
+!>
+!>   K_eff x + weight*B^T (area t(v)) = rhs,   v = offset + B x      (theory.md, section 8)
+!>
+!> for the free unknowns x. Three ways solve it: linear (without joints), condensed and full Newton.
+module equilibrium
+  use kinds, only: rk
+  use errors, only: error_type
+  use matrix_pattern, only: pattern
+  use joint_law, only: joint_state
+  use joint_points, only: joint
+  use joint_operator, only: jump_operator
+  use linear_solver, only: equation_solver
+  use step_plan, only: step_controls
+  implicit none
+  private
+  public :: equilibrium_solver, force_balance, balance_outcome
+
+  !> The right-hand side and what is known beforehand.
+  type :: force_balance
+    real(rk), allocatable :: rhs(:) !< (free unknowns) [N]
+    real(rk), allocatable :: offset(:, :) !< (3, points) jumps at x = 0 [m]
+    real(rk), allocatable :: guess(:, :) !< (3, points) jumps near the solution [m]
+    logical :: starts_bonded = .false. !< the first iterate takes every joint as closed and sticking
+    real(rk) :: reference = 0.0_rk !< largest force of the bulk so far [N]
+  end type force_balance
+
+  !> How the iteration went.
+  type :: balance_outcome
+    logical :: has_converged = .false.
+    integer :: iterations = 0
+    real(rk) :: residual = 0.0_rk !< out-of-balance over the reference force
+    real(rk) :: correction = 0.0_rk !< that the out-of-balance still asks for, over the increment
+    integer :: worst_point = 0 !< of the joints, where the out-of-balance is largest
+  end type balance_outcome
+
+  type, abstract :: equilibrium_solver
+    class(equation_solver), allocatable :: factor !< of the symmetric, positive definite matrix
+    type(step_controls) :: controls
+    real(rk) :: weight = 1.0_rk !< of the joint forces
+    integer :: num_factorisations = 0
+  contains
+    procedure(prepare), deferred :: prepare
+    procedure(solve), deferred :: solve
+  end type equilibrium_solver
+
+  abstract interface
+    !> Takes a new K_eff and weight: after a change of the increment's size.
+    subroutine prepare(self, matrix, values, weight, joints, operator, error)
+      import :: equilibrium_solver, pattern, rk, joint, jump_operator, error_type
+      implicit none
+      class(equilibrium_solver), intent(inout) :: self
+      type(pattern), intent(in) :: matrix
+      real(rk), intent(in) :: values(:) !< K_eff without joints
+      real(rk), intent(in) :: weight
+      type(joint), intent(in) :: joints(:)
+      type(jump_operator), intent(in) :: operator
+      type(error_type), allocatable, intent(out) :: error
+    end subroutine prepare
+
+    !> Solves the balance. An iteration that does not converge is no error.
+    subroutine solve(self, balance, joints, operator, old, new, x, outcome, error)
+      import :: equilibrium_solver, force_balance, balance_outcome, rk, joint, jump_operator, &
+        joint_state, error_type
+      implicit none
+      class(equilibrium_solver), intent(inout) :: self
+      type(force_balance), intent(in) :: balance
+      type(joint), intent(in) :: joints(:)
+      type(jump_operator), intent(in) :: operator
+      type(joint_state), intent(in) :: old(:) !< converged histories
+      type(joint_state), intent(inout) :: new(:) !< histories at the solution
+      real(rk), intent(out) :: x(:) !< (all unknowns) prescribed ones return as zero
+      type(balance_outcome), intent(out) :: outcome
+      type(error_type), allocatable, intent(out) :: error
+    end subroutine solve
+  end interface
+end module equilibrium

@@ -1,0 +1,55 @@
+!> The balance without joints: one solve with the factor, no iteration.
+module equilibrium_linear
+  use kinds, only: rk
+  use errors, only: error_type
+  use matrix_pattern, only: pattern
+  use joint_law, only: joint_state
+  use joint_points, only: joint
+  use joint_operator, only: jump_operator
+  use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
+  implicit none
+  private
+  public :: linear_equilibrium
+
+  type, extends(equilibrium_solver) :: linear_equilibrium
+  contains
+    procedure :: prepare, solve
+  end type linear_equilibrium
+
+contains
+
+  !> Factors K_eff.
+  subroutine prepare(self, matrix, values, weight, joints, operator, error)
+    class(linear_equilibrium), intent(inout) :: self
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: values(:) !< K_eff
+    real(rk), intent(in) :: weight
+    type(joint), intent(in) :: joints(:) !< none
+    type(jump_operator), intent(in) :: operator
+    type(error_type), allocatable, intent(out) :: error
+    self%weight = weight*min(size(joints), operator%num_points)
+    call self%factor%factorise(matrix, values, error)
+    self%num_factorisations = self%num_factorisations + 1
+  end subroutine prepare
+
+  !> x = K_eff^-1 rhs.
+  subroutine solve(self, balance, joints, operator, old, new, x, outcome, error)
+    class(linear_equilibrium), intent(inout) :: self
+    type(force_balance), intent(in) :: balance
+    type(joint), intent(in) :: joints(:) !< none
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    type(joint_state), intent(inout) :: new(:)
+    real(rk), intent(out) :: x(:)
+    type(balance_outcome), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: b(:, :)
+    b = reshape(balance%rhs, [size(balance%rhs), 1])
+    call self%factor%solve(b, error)
+    x = 0.0_rk
+    x(:size(b, 1)) = b(:, 1)
+    if (size(joints) > 0 .and. operator%num_points > 0) new = old
+    outcome%has_converged = .true.
+    outcome%iterations = 1
+  end subroutine solve
+end module equilibrium_linear

@@ -1,0 +1,106 @@
+!> The compliance of a factored structure on the points of its joints, G = B K_0^-1 B^T, and the
+!> scale of the friction iteration that follows from it.
+module joint_compliance
+  use kinds, only: rk
+  use errors, only: error_type
+  use linear_solver, only: equation_solver
+  use joint_operator, only: jump_operator
+  use dense_factor, only: lu_factor, factorise_dense, solve_dense
+  implicit none
+  private
+  public :: find_compliance, friction_scale
+
+  integer, parameter :: block_size = 48 !< right-hand sides solved at once
+  real(rk), parameter :: scale_factor = 0.4_rk !< r over the structure's own stiffness (section 2.3)
+  !> Part of the joint's stiffness that is kept when its own is taken out of G, so that a block held
+  !> by nothing but its joints has a stiffness too.
+  real(rk), parameter :: kept_stiffness = 1.0e-4_rk
+
+contains
+
+  !> G by blocks of solves with the factor.
+  subroutine find_compliance(factor, operator, num_free, compliance, error)
+    class(equation_solver), intent(inout) :: factor !< of K_0
+    type(jump_operator), intent(in) :: operator
+    integer, intent(in) :: num_free
+    real(rk), allocatable, intent(out) :: compliance(:, :) !< (3*points, 3*points) [m/N]
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: b(:, :)
+    integer :: m, first, last, row
+    m = 3*operator%num_points
+    allocate (compliance(m, m), b(num_free, min(block_size, m)))
+    do first = 1, m, block_size
+      last = min(first + block_size - 1, m)
+      b = 0.0_rk
+      do row = first, last
+        call spread_row(operator, row, b(:, row - first + 1))
+      end do
+      call factor%solve(b, error)
+      if (allocated(error)) return
+      do row = first, last
+        call apply_rows(operator, b(:, row - first + 1), compliance(:, row))
+      end do
+    end do
+    compliance = 0.5_rk*(compliance + transpose(compliance))
+  end subroutine find_compliance
+
+  !> One row of B as a column over the free unknowns.
+  pure subroutine spread_row(operator, row, column)
+    type(jump_operator), intent(in) :: operator
+    integer, intent(in) :: row
+    real(rk), intent(inout) :: column(:) !< zero on entry
+    integer :: k
+    do k = operator%row_start(row), operator%row_start(row + 1) - 1
+      if (operator%unknown(k) <= size(column)) column(operator%unknown(k)) = operator%coefficient(k)
+    end do
+  end subroutine spread_row
+
+  !> B times a column over the free unknowns.
+  pure subroutine apply_rows(operator, column, product)
+    type(jump_operator), intent(in) :: operator
+    real(rk), intent(in) :: column(:)
+    real(rk), intent(out) :: product(:) !< (3*points)
+    integer :: row, k
+    do row = 1, size(product)
+      product(row) = 0.0_rk
+      do k = operator%row_start(row), operator%row_start(row + 1) - 1
+        if (operator%unknown(k) > size(column)) cycle
+        product(row) = product(row) + operator%coefficient(k)*column(operator%unknown(k))
+      end do
+    end do
+  end subroutine apply_rows
+
+  !> r of the augmented friction per area: a part of the structure's own tangential stiffness at
+  !> each point, never more than the joint's. The structure alone, without joints, has the
+  !> compliance G (I - W k_ref G)^-1, W = weight*area.
+  subroutine friction_scale(compliance, operator, reference, weight, scale)
+    real(rk), intent(in) :: compliance(:, :) !< G with the closed joints [m/N]
+    type(jump_operator), intent(in) :: operator
+    real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
+    real(rk), intent(in) :: weight !< of the joint forces
+    real(rk), allocatable, intent(out) :: scale(:) !< (points) [Pa/m]
+    type(lu_factor) :: factor
+    real(rk), allocatable :: matrix(:, :), alone(:, :)
+    real(rk) :: joint_stiffness, own
+    integer :: m, p, i, row
+    m = size(compliance, 1)
+    allocate (matrix(m, m), scale(operator%num_points))
+    do p = 1, operator%num_points
+      do i = 1, 3
+        row = 3*(p - 1) + i
+        joint_stiffness = (1.0_rk - kept_stiffness)*weight*operator%area(p)*reference(i, p)
+        matrix(:, row) = -joint_stiffness*compliance(:, row)
+        matrix(row, row) = 1.0_rk + matrix(row, row)
+      end do
+    end do
+    alone = transpose(compliance)
+    matrix = transpose(matrix)
+    call factorise_dense(matrix, factor)
+    call solve_dense(factor, alone)
+    do p = 1, operator%num_points
+      row = 3*(p - 1)
+      own = 2.0_rk/(weight*operator%area(p)*(alone(row + 2, row + 2) + alone(row + 3, row + 3)))
+      scale(p) = min(scale_factor*own, minval(reference(2:3, p)))
+    end do
+  end subroutine friction_scale
+end module joint_compliance

@@ -1,0 +1,127 @@
+!> The laws of all joints at once: tractions, tangents and energies of all points of the operator.
+module joint_forces
+  use kinds, only: rk
+  use joint_law, only: joint_state
+  use joint_points, only: joint
+  use joint_operator, only: jump_operator
+  implicit none
+  private
+  public :: joint_field, joint_work, start_joints, reference_stiffness
+  public :: evaluate_joints, gather_tractions, gather_jumps, linear_tractions, sum_joint_work
+
+  !> What the laws say at a trial jump, all points of all joints in one row.
+  type :: joint_field
+    real(rk), allocatable :: jump(:, :) !< (3, points) where the laws were evaluated [m]
+    real(rk), allocatable :: multiplier(:, :) !< (2, points) friction of the last iterate [Pa]
+    real(rk), allocatable :: scale(:) !< (points) r of the augmented form [Pa/m]
+    real(rk), allocatable :: traction(:, :) !< (3, points) the laws' own [Pa]
+    real(rk), allocatable :: iterate(:, :) !< (3, points) of the augmented form [Pa]
+    real(rk), allocatable :: tangent(:, :, :) !< (3, 3, points) [Pa/m]
+    real(rk), allocatable :: response(:, :) !< (3, points) jumps by the balance as linearised [m]
+    real(rk), allocatable :: start_jump(:, :) !< (3, points) of the converged state before [m]
+    real(rk) :: start_force = 0.0_rk !< 2-norm of area*traction of the converged state [N]
+  end type joint_field
+
+  !> Energies of all joints [J].
+  type :: joint_work
+    real(rk) :: stored = 0.0_rk, friction = 0.0_rk, fracture = 0.0_rk
+  end type joint_work
+
+contains
+
+  !> Histories of joints that have not moved yet.
+  subroutine start_joints(joints, states)
+    type(joint), intent(in) :: joints(:)
+    type(joint_state), allocatable, intent(out) :: states(:)
+    integer :: j
+    allocate (states(size(joints)))
+    do j = 1, size(joints)
+      call joints(j)%law%start_state(joints(j)%num_points, states(j))
+    end do
+  end subroutine start_joints
+
+  !> Stiffness of the closed, sticking joint at every point.
+  subroutine reference_stiffness(joints, operator, stiffness)
+    type(joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    real(rk), allocatable, intent(out) :: stiffness(:, :) !< (3, points) [Pa/m]
+    real(rk) :: k(3)
+    integer :: j, p
+    allocate (stiffness(3, operator%num_points))
+    do j = 1, size(joints)
+      call joints(j)%law%reference_stiffness(k)
+      do p = operator%first_point(j), operator%first_point(j + 1) - 1
+        stiffness(:, p) = k
+      end do
+    end do
+  end subroutine reference_stiffness
+
+  !> Evaluates all laws at `field%jump` with `field%multiplier` and `field%scale`.
+  subroutine evaluate_joints(joints, operator, old, field, new)
+    type(joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:) !< converged histories
+    type(joint_field), intent(inout) :: field
+    type(joint_state), intent(inout) :: new(:) !< trial histories
+    integer :: j, first, last
+    do j = 1, size(joints)
+      first = operator%first_point(j)
+      last = operator%first_point(j + 1) - 1
+      associate (jump => field%jump(:, first:last), multiplier => field%multiplier(:, first:last))
+        call joints(j)%law%update(jump, old(j), multiplier, field%scale(first:last), new(j), &
+                                  field%iterate(:, first:last), field%tangent(:, :, first:last))
+      end associate
+    end do
+    call gather_tractions(operator, new, field%traction)
+  end subroutine evaluate_joints
+
+  !> The laws' tractions of all points.
+  subroutine gather_tractions(operator, states, traction)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: states(:)
+    real(rk), intent(out) :: traction(:, :) !< (3, points) [Pa]
+    integer :: j
+    do j = 1, size(states)
+      traction(:, operator%first_point(j):operator%first_point(j + 1) - 1) = states(j)%traction
+    end do
+  end subroutine gather_tractions
+
+  !> The jumps of all points.
+  subroutine gather_jumps(operator, states, jump)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: states(:)
+    real(rk), intent(out) :: jump(:, :) !< (3, points) [m]
+    integer :: j
+    do j = 1, size(states)
+      jump(:, operator%first_point(j):operator%first_point(j + 1) - 1) = states(j)%jump
+    end do
+  end subroutine gather_jumps
+
+  !> The tractions that a linearised iteration has solved for: iterate + tangent*correction.
+  pure subroutine linear_tractions(field, correction, traction)
+    type(joint_field), intent(in) :: field
+    real(rk), intent(in) :: correction(:, :) !< (3, points) of the jumps [m]
+    real(rk), intent(out) :: traction(:, :) !< (3, points) [Pa]
+    integer :: p
+    do p = 1, size(correction, 2)
+      traction(:, p) = field%iterate(:, p) + matmul(field%tangent(:, :, p), correction(:, p))
+    end do
+  end subroutine linear_tractions
+
+  !> Energies stored and dissipated in all joints.
+  subroutine sum_joint_work(joints, states, work)
+    type(joint), intent(in) :: joints(:)
+    type(joint_state), intent(in) :: states(:)
+    type(joint_work), intent(out) :: work
+    real(rk), allocatable :: stored(:)
+    integer :: j
+    do j = 1, size(joints)
+      allocate (stored(joints(j)%num_points))
+      call joints(j)%law%stored_energy(states(j), stored)
+      work%stored = work%stored + dot_product(joints(j)%area, stored)
+      work%friction = work%friction + dot_product(joints(j)%area, states(j)%friction_work)
+      work%fracture = work%fracture + dot_product(joints(j)%area, states(j)%fracture_work)
+      deallocate (stored)
+    end do
+  end subroutine sum_joint_work
+end module joint_forces

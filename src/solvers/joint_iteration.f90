@@ -1,0 +1,109 @@
+!> What the iterations on joint forces share, condensed or full: the linearisation of the laws about
+!> a trial jump and the measure of what is still out of balance.
+module joint_iteration
+  use kinds, only: rk
+  use joint_law, only: joint_state
+  use joint_points, only: joint
+  use joint_operator, only: jump_operator
+  use joint_forces, only: joint_field, evaluate_joints, gather_tractions, gather_jumps
+  use equilibrium, only: force_balance, balance_outcome
+  implicit none
+  private
+  public :: start_iteration, relief, measure_residual, measure_correction, closed_tangent
+  public :: stiffness_floor
+
+  !> Stiffness left to open and sliding points in the iteration matrix, over the closed joint's: a
+  !> block that touches nothing for an iterate moves far, but stays in reach. The balance itself is
+  !> judged without it.
+  real(rk), parameter :: stiffness_floor = 1.0e-10_rk
+  !> Joint forces below this part of the bulk's largest force are measured against the latter.
+  real(rk), parameter :: smallest_share = 1.0e-6_rk
+  !> An increment of the jumps below this part of the jumps is measured against the latter.
+  real(rk), parameter :: smallest_increment = 1.0e-3_rk
+
+contains
+
+  !> Linearises the laws about the guess: as they are, or all closed and sticking.
+  subroutine start_iteration(balance, joints, operator, reference, scale, old, field, new)
+    type(force_balance), intent(in) :: balance
+    type(joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    real(rk), intent(in) :: reference(:, :) !< (3, points) stiffness of the closed joint [Pa/m]
+    real(rk), intent(in) :: scale(:) !< (points) r of the augmented form [Pa/m]
+    type(joint_state), intent(in) :: old(:)
+    type(joint_field), intent(out) :: field
+    type(joint_state), intent(inout) :: new(:)
+    integer :: n
+    n = operator%num_points
+    allocate (field%traction(3, n), field%iterate(3, n), field%tangent(3, 3, n))
+    allocate (field%start_jump(3, n))
+    field%scale = scale
+    field%jump = balance%guess
+    field%response = balance%guess
+    call gather_tractions(operator, old, field%traction)
+    call gather_jumps(operator, old, field%start_jump)
+    field%start_force = norm2(spread(operator%area, 1, 3)*field%traction)
+    field%multiplier = field%traction(2:3, :)
+    if (.not. balance%starts_bonded) then
+      call evaluate_joints(joints, operator, old, field, new)
+      return
+    end if
+    field%tangent = closed_tangent(reference)
+    field%iterate = reference*field%jump
+  end subroutine start_iteration
+
+  !> Tangents of closed, sticking joints.
+  pure function closed_tangent(reference) result(tangent)
+    real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
+    real(rk) :: tangent(3, 3, size(reference, 2)) !< [Pa/m]
+    integer :: p, i
+    tangent = 0.0_rk
+    do p = 1, size(reference, 2)
+      do i = 1, 3
+        tangent(i, i, p) = reference(i, p)
+      end do
+    end do
+  end function closed_tangent
+
+  !> What the closed joint would carry beyond the law, k_ref (v - offset) - t: the traction that is
+  !> moved to the right-hand side when k_ref stands on the left.
+  pure function relief(reference, jump, offset, traction) result(excess)
+    real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
+    real(rk), intent(in) :: jump(:, :), offset(:, :) !< (3, points) [m]
+    real(rk), intent(in) :: traction(:, :) !< (3, points) [Pa]
+    real(rk) :: excess(3, size(jump, 2)) !< [Pa]
+    excess = reference*(jump - offset) - traction
+  end function relief
+
+  !> Joint forces out of balance, laws against linearised, over the joint forces' own size.
+  subroutine measure_residual(operator, field, linear, bulk_force, outcome)
+    type(jump_operator), intent(in) :: operator
+    type(joint_field), intent(in) :: field !< at the new jumps
+    real(rk), intent(in) :: linear(:, :) !< (3, points) tractions of the linearised solution [Pa]
+    real(rk), intent(in) :: bulk_force !< reference force of the bulk [N]
+    type(balance_outcome), intent(inout) :: outcome
+    real(rk) :: unbalance(operator%num_points), force, own
+    integer :: p
+    own = 0.0_rk
+    do p = 1, operator%num_points
+      unbalance(p) = operator%area(p)*norm2(field%traction(:, p) - linear(:, p))
+      own = own + sum((operator%area(p)*field%traction(:, p))**2)
+    end do
+    force = max(sqrt(own), field%start_force, smallest_share*bulk_force, tiny(1.0_rk))
+    outcome%residual = norm2(unbalance)/force
+    outcome%worst_point = maxloc(unbalance, 1)
+  end subroutine measure_residual
+
+  !> The correction of the jumps that is still asked for, over their increment; decides convergence.
+  pure subroutine measure_correction(field, correction, tolerance, outcome)
+    type(joint_field), intent(in) :: field
+    real(rk), intent(in) :: correction(:, :) !< (3, points) [m]
+    real(rk), intent(in) :: tolerance
+    type(balance_outcome), intent(inout) :: outcome
+    real(rk) :: increment
+    increment = max(norm2(field%jump - field%start_jump), smallest_increment*norm2(field%jump), &
+                    tiny(1.0_rk))
+    outcome%correction = norm2(correction)/increment
+    outcome%has_converged = outcome%correction <= tolerance
+  end subroutine measure_correction
+end module joint_iteration

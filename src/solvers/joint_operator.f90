@@ -1,0 +1,162 @@
+!> The joints as one operator on the unknowns: jumps v = B q in local axes, three rows per point,
+!> and forces B^T (area t). A pair of nodes with jump unknowns sees them alone: v = d exactly.
+module joint_operator
+  use kinds, only: rk
+  use joint_points, only: joint
+  use dof_numbering, only: numbering
+  use matrix_pattern, only: pattern
+  use joint_stiffness, only: add_joint_stiffness
+  implicit none
+  private
+  public :: jump_operator, build_jump_operator
+
+  !> B by rows. Points of all joints stand one after the other.
+  type :: jump_operator
+    integer :: num_points = 0
+    integer, allocatable :: first_point(:) !< (joints + 1)
+    real(rk), allocatable :: area(:) !< (points) [m2]
+    integer, allocatable :: row_start(:) !< (3*points + 1); row 3*(point - 1) + 1: opening
+    integer, allocatable :: unknown(:) !< columns of B
+    real(rk), allocatable :: coefficient(:) !< values of B
+  contains
+    procedure :: jumps, add_forces, add_stiffness
+  end type jump_operator
+
+contains
+
+  !> Makes B from the points of the joints and T. Pairs of nodes are counted through all nodal
+  !> joints, as in the numbering's `first_jump`.
+  subroutine build_jump_operator(numbers, joints, operator)
+    type(numbering), intent(in) :: numbers
+    type(joint), intent(in) :: joints(:)
+    type(jump_operator), intent(out) :: operator
+    integer :: j, p, pair, point
+    allocate (operator%first_point(size(joints) + 1))
+    operator%first_point(1) = 1
+    do j = 1, size(joints)
+      operator%first_point(j + 1) = operator%first_point(j) + joints(j)%num_points
+    end do
+    operator%num_points = operator%first_point(size(joints) + 1) - 1
+    allocate (operator%area(operator%num_points), operator%row_start(3*operator%num_points + 1))
+    allocate (operator%unknown(9*operator%num_points), operator%coefficient(9*operator%num_points))
+    operator%row_start = 1
+    pair = 0
+    do j = 1, size(joints)
+      do p = 1, joints(j)%num_points
+        if (joints(j)%is_nodal) pair = pair + 1
+        point = operator%first_point(j) + p - 1
+        operator%area(point) = joints(j)%area(p)
+        call add_rows(joints(j), p, merge(pair, 0, joints(j)%is_nodal), numbers, point, operator)
+      end do
+    end do
+    operator%unknown = operator%unknown(:operator%row_start(3*operator%num_points + 1) - 1)
+    operator%coefficient = operator%coefficient(:size(operator%unknown))
+  end subroutine build_jump_operator
+
+  !> The three rows of B of one point.
+  subroutine add_rows(seam, p, pair, numbers, point, operator)
+    type(joint), intent(in) :: seam
+    integer, intent(in) :: p !< point of the joint
+    integer, intent(in) :: pair !< of nodes, 0 for none
+    type(numbering), intent(in) :: numbers
+    integer, intent(in) :: point !< of the operator
+    type(jump_operator), intent(inout) :: operator
+    integer :: i, jump, next
+    jump = 0
+    if (pair > 0) jump = numbers%first_jump(pair)
+    do i = 1, 3
+      next = operator%row_start(3*point - 3 + i)
+      if (jump > 0) then
+        call add_term(jump + i - 1, 1.0_rk)
+      else
+        call add_faces(seam%rotation(i, :, p))
+      end if
+      operator%row_start(3*point - 2 + i) = next
+    end do
+  contains
+    !> Slave minus master along one local axis.
+    subroutine add_faces(axis)
+      real(rk), intent(in) :: axis(3)
+      integer :: a, direction
+      do a = 1, size(seam%shape, 1)
+        do direction = 1, 3
+          call add_dof(seam%slave(a, p), direction, axis(direction)*seam%shape(a, p))
+          call add_dof(seam%master(a, p), direction, -axis(direction)*seam%shape(a, p))
+        end do
+      end do
+    end subroutine add_faces
+
+    !> One physical dof through its unknowns.
+    subroutine add_dof(node, direction, factor)
+      integer, intent(in) :: node, direction
+      real(rk), intent(in) :: factor
+      integer :: k, dof
+      if (.not. abs(factor) > 0.0_rk) return
+      dof = 3*(node - 1) + direction
+      do k = numbers%row_start(dof), numbers%row_start(dof + 1) - 1
+        call add_term(numbers%unknown(k), factor*numbers%coefficient(k))
+      end do
+    end subroutine add_dof
+
+    !> Adds to the row under way.
+    subroutine add_term(column, value)
+      integer, intent(in) :: column
+      real(rk), intent(in) :: value
+      integer :: k
+      do k = operator%row_start(3*point - 3 + i), next - 1
+        if (operator%unknown(k) /= column) cycle
+        operator%coefficient(k) = operator%coefficient(k) + value
+        return
+      end do
+      if (next > size(operator%unknown)) then
+        operator%unknown = [operator%unknown, spread(0, 1, next)]
+        operator%coefficient = [operator%coefficient, spread(0.0_rk, 1, next)]
+      end if
+      operator%unknown(next) = column
+      operator%coefficient(next) = value
+      next = next + 1
+    end subroutine add_term
+  end subroutine add_rows
+
+  !> v = B q.
+  pure subroutine jumps(self, q, v)
+    class(jump_operator), intent(in) :: self
+    real(rk), intent(in) :: q(:) !< (num_total)
+    real(rk), intent(out) :: v(:, :) !< (3, points) [m]
+    integer :: p, i, k
+    v = 0.0_rk
+    do p = 1, self%num_points
+      do i = 1, 3
+        do k = self%row_start(3*p - 3 + i), self%row_start(3*p - 2 + i) - 1
+          v(i, p) = v(i, p) + self%coefficient(k)*q(self%unknown(k))
+        end do
+      end do
+    end do
+  end subroutine jumps
+
+  !> f = f + B^T (area t).
+  pure subroutine add_forces(self, traction, f)
+    class(jump_operator), intent(in) :: self
+    real(rk), intent(in) :: traction(:, :) !< (3, points) [Pa]
+    real(rk), intent(inout) :: f(:) !< (num_total) [N]
+    integer :: p, i, k
+    do p = 1, self%num_points
+      do i = 1, 3
+        do k = self%row_start(3*p - 3 + i), self%row_start(3*p - 2 + i) - 1
+          f(self%unknown(k)) = f(self%unknown(k)) &
+                               + self%coefficient(k)*self%area(p)*traction(i, p)
+        end do
+      end do
+    end do
+  end subroutine add_forces
+
+  !> Adds B^T (area D) B to a matrix of the step.
+  subroutine add_stiffness(self, tangent, matrix, values)
+    class(jump_operator), intent(in) :: self
+    real(rk), intent(in) :: tangent(:, :, :) !< (3, 3, points) D [Pa/m]
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(inout) :: values(:)
+    call add_joint_stiffness(self%row_start, self%unknown, self%coefficient, self%area, tangent, &
+                             matrix, values)
+  end subroutine add_stiffness
+end module joint_operator

@@ -1,0 +1,136 @@
+!> Newton's iteration on the jumps alone, through the compliance G = B K_0^-1 B^T of the structure
+!> with closed joints (theory.md, 8.1).
+!>
+!> With D = weight*area*(k_ref - tangent) a correction d of the jumps answers to
+!>   d = r + G D d,   r = what the balance gives with the closed joint's stiffness.
+!> Only rows where D differs from zero ask for a solution: z = D d there, (I - D G) z = D r.
+!> The iterates are those of full Newton.
+module newton_condensed
+  use kinds, only: rk
+  use joint_law, only: joint_state
+  use joint_points, only: joint
+  use joint_operator, only: jump_operator
+  use joint_forces, only: joint_field, evaluate_joints, linear_tractions
+  use joint_iteration, only: measure_residual, measure_correction, stiffness_floor
+  use dense_factor, only: lu_factor, factorise_dense, solve_dense
+  use equilibrium, only: force_balance, balance_outcome
+  use step_plan, only: step_controls
+  implicit none
+  private
+  public :: condensed_joints, iterate
+
+  type :: condensed_joints
+    real(rk) :: weight = 1.0_rk !< of the joint forces in the balance
+    real(rk), allocatable :: compliance(:, :) !< G (3*points, 3*points) [m/N]
+    real(rk), allocatable :: reference(:, :) !< (3, points) k_ref [Pa/m]
+    real(rk), allocatable :: scale(:) !< (points) r of the augmented friction [Pa/m]
+  end type condensed_joints
+
+  !> A tangent that differs from k_ref on some rows.
+  type :: changed_tangent
+    real(rk), allocatable :: change(:, :, :) !< (3, 3, points) D [N/m]
+    integer, allocatable :: row(:) !< rows of D that are not zero
+    type(lu_factor) :: factor !< of I - D G on these rows
+  end type changed_tangent
+
+contains
+
+  !> Iterates until the laws agree with the balance. On return `field%jump` and `field%iterate` hold
+  !> the jumps and the tractions of the balance as solved, `new` the laws at these jumps.
+  subroutine iterate(self, controls, balance, joints, operator, old, field, new, outcome)
+    type(condensed_joints), intent(in) :: self
+    type(step_controls), intent(in) :: controls
+    type(force_balance), intent(in) :: balance
+    type(joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    type(joint_field), intent(inout) :: field !< linearised; its response is that of k_ref
+    type(joint_state), intent(inout) :: new(:)
+    type(balance_outcome), intent(out) :: outcome
+    type(changed_tangent) :: tangent
+    real(rk), dimension(3, operator%num_points) :: correction, linear
+    do while (outcome%iterations < controls%max_iterations)
+      outcome%iterations = outcome%iterations + 1
+      call change_tangent(self, operator%area, field%tangent, tangent)
+      call correct(self, tangent, field%response - field%jump, correction)
+      call linear_tractions(field, correction, linear)
+      field%response = field%jump + correction
+      field%jump = field%response
+      field%multiplier = linear(2:3, :)
+      call evaluate_joints(joints, operator, old, field, new)
+      call measure_residual(operator, field, linear, balance%reference, outcome)
+      if (outcome%residual <= controls%residual_tolerance) then
+        call correct(self, tangent, excess_jump(field%traction), correction)
+        call measure_correction(field, correction, controls%increment_tolerance, outcome)
+      end if
+      if (outcome%has_converged) exit
+      field%response = field%jump + excess_jump(field%iterate)
+    end do
+    field%iterate = linear
+  contains
+    !> Jumps that answer to tractions other than those the balance was solved with.
+    function excess_jump(traction) result(answer)
+      real(rk), intent(in) :: traction(:, :) !< (3, points) [Pa]
+      real(rk) :: answer(3, size(traction, 2)) !< [m]
+      real(rk) :: force(3, size(traction, 2))
+      force = self%weight*spread(operator%area, 1, 3)*(linear - traction)
+      answer = reshape(matmul(self%compliance, pack(force, .true.)), shape(answer))
+    end function excess_jump
+  end subroutine iterate
+
+  !> Picks the rows whose tangent differs from k_ref and factors I - D G on them.
+  subroutine change_tangent(self, area, tangent, changed)
+    type(condensed_joints), intent(in) :: self
+    real(rk), intent(in) :: area(:) !< (points) [m2]
+    real(rk), intent(in) :: tangent(:, :, :) !< (3, 3, points) [Pa/m]
+    type(changed_tangent), intent(out) :: changed
+    real(rk), allocatable :: matrix(:, :)
+    integer :: p, i, k, l, first, num_rows
+    allocate (changed%change(3, 3, size(area)), changed%row(3*size(area)))
+    num_rows = 0
+    do p = 1, size(area)
+      changed%change(:, :, p) = -tangent(:, :, p)
+      do i = 1, 3
+        changed%change(i, i, p) = changed%change(i, i, p) + self%reference(i, p)
+        if (.not. any(abs(changed%change(i, :, p)) > 0.0_rk)) cycle
+        changed%change(i, i, p) = changed%change(i, i, p) - stiffness_floor*self%reference(i, p)
+        num_rows = num_rows + 1
+        changed%row(num_rows) = 3*(p - 1) + i
+      end do
+      changed%change(:, :, p) = self%weight*area(p)*changed%change(:, :, p)
+    end do
+    changed%row = changed%row(:num_rows)
+    allocate (matrix(num_rows, num_rows))
+    do l = 1, num_rows
+      do k = 1, num_rows
+        p = (changed%row(k) + 2)/3
+        first = 3*(p - 1)
+        matrix(k, l) = -dot_product(changed%change(changed%row(k) - first, :, p), &
+                                    self%compliance(first + 1:first + 3, changed%row(l)))
+      end do
+      matrix(l, l) = matrix(l, l) + 1.0_rk
+    end do
+    call factorise_dense(matrix, changed%factor)
+  end subroutine change_tangent
+
+  !> The correction d of the jumps: d = r + G z on the rows that differ from k_ref.
+  subroutine correct(self, changed, response, correction)
+    type(condensed_joints), intent(in) :: self
+    type(changed_tangent), intent(in) :: changed
+    real(rk), intent(in) :: response(:, :) !< (3, points) r [m]
+    real(rk), intent(out), target, contiguous :: correction(:, :) !< (3, points) d [m]
+    real(rk), pointer :: flat(:)
+    real(rk) :: z(size(changed%row), 1)
+    integer :: k, p
+    do k = 1, size(changed%row)
+      p = (changed%row(k) + 2)/3
+      z(k, 1) = dot_product(changed%change(changed%row(k) - 3*(p - 1), :, p), response(:, p))
+    end do
+    call solve_dense(changed%factor, z)
+    correction = response
+    flat(1:size(correction)) => correction
+    do k = 1, size(changed%row)
+      flat = flat + self%compliance(:, changed%row(k))*z(k, 1)
+    end do
+  end subroutine correct
+end module newton_condensed
