@@ -16,9 +16,9 @@ from pathlib import Path
 from fortran_source import parent_name, sources_under, unit_name, uses
 
 LAYERS = (
-    "base deck model materials joints elements interfaces loads assembly solvers results keywords "
-    "app"
-).split()
+    *("base", "deck", "model", "materials", "joints", "elements", "interfaces", "loads"),
+    *("assembly", "solvers", "results", "keywords", "app"),
+)
 # Modules of the compiler and of the libraries.
 FOREIGN = {"iso_fortran_env", "iso_c_binding", "omp_lib", "hdf5", "h5lt", "ieee_arithmetic"}
 # CMake fills these in (cmake/BuildInfo.cmake).

@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
-import check_layers
 import pytest
+
+import check_layers
 
 
 def plant(root: Path, files: dict[str, str]) -> Path:

@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
-import check_sizes
 import pytest
+
+import check_sizes
 from fortran_source import procedures
 
 
