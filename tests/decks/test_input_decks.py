@@ -1,0 +1,47 @@
+"""Every deck under input/ runs through tools/batch.py, and a second run gives the same numbers."""
+
+from pathlib import Path
+
+import pytest
+
+import batch
+import compare
+from harness import ROOT
+
+# Decks that take longer than a minute.
+LONG = {"xingbiling_matching"}
+DECKS = {p.stem: p for p in sorted((ROOT / "input").rglob("*.inp")) if batch.has_step(p)}
+SHORT = [name for name in DECKS if name not in LONG]
+
+
+def run_batch(names: list[str], folder: Path, program: Path, *options: str) -> int:
+    decks = [str(DECKS[name]) for name in names]
+    return batch.main([*decks, "-o", str(folder), "--program", str(program), *options])
+
+
+@pytest.fixture(scope="module")
+def first_runs(tmp_path_factory, program_path) -> Path:
+    folder = tmp_path_factory.mktemp("input_decks")
+    assert run_batch(SHORT, folder, program_path, "-j", "2", "--threads", "1") == 0
+    return folder
+
+
+@pytest.mark.skipif(not SHORT, reason="no decks")
+def test_a_second_batch_runs_nothing(first_runs, program_path, capsys):
+    assert run_batch(SHORT, first_runs, program_path, "--threads", "1") == 0
+    assert capsys.readouterr().out.count("(kept)") == len(SHORT)
+
+
+@pytest.mark.parametrize("name", SHORT)
+def test_a_run_on_two_threads_agrees(first_runs, program_path, tmp_path, name):
+    assert run_batch([name], tmp_path, program_path, "--threads", "2") == 0
+    same = [str(first_runs / name), str(tmp_path / name)]
+    # Sums over threads differ in the last digits; joints near a limit may carry that further.
+    tolerances = ["--by-column", "--rel", "1e-6", "--abs", "1e-9"]
+    assert compare.main([*same, *tolerances, "--ignore", "*iterations", "--ignore", "*.x.*"]) == 0
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("name", sorted(LONG & DECKS.keys()))
+def test_long_deck_runs(tmp_path, program_path, name):
+    assert run_batch([name], tmp_path, program_path) == 0

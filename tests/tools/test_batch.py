@@ -1,0 +1,153 @@
+"""batch.py with a made-up program in place of keyway: what is run, kept, ended and reported."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import batch
+
+BATCH = Path(batch.__file__)
+
+# Acts by the first line of the deck: `ok VALUE`, `fail CODE`, `sleep SECONDS` or `crash`.
+PROGRAM = """#!{python}
+import json, os, signal, sys, time
+from pathlib import Path
+if sys.argv[1] == "--version":
+    print("fake 1"); sys.exit()
+deck, folder = Path(sys.argv[-1]), Path(sys.argv[2])
+with open(folder.parent / "calls.txt", "a") as calls:
+    print(deck.stem, *sys.argv[3:-1], file=calls)
+verb, _, value = deck.read_text().splitlines()[0].removeprefix("** ").partition(" ")
+if verb == "sleep":
+    time.sleep(float(value))
+if verb == "crash":
+    os.kill(os.getpid(), signal.SIGSEGV)
+if verb == "fail":
+    print("deck:1: wrong"); sys.exit(int(value))
+summary = {{"program": {{}}, "status": "finished", "message": "",
+    "envelopes": {{"S1": {{"anywhere": {{"value": float(value or 0)}}}}}}}}
+(folder / (deck.stem + ".json")).write_text(json.dumps(summary))
+"""
+
+
+@pytest.fixture
+def place(tmp_path, monkeypatch):
+    """A folder with the program, decks made by `deck(name, line)`, and the calls it saw."""
+    program = tmp_path / "keyway"
+    program.write_text(PROGRAM.format(python=sys.executable))
+    program.chmod(0o755)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def deck(place: Path, name: str, line: str, more: str = "") -> str:
+    path = place / f"{name}.inp"
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(f"** {line}\n{more}*STEP\n")
+    return str(path)
+
+
+def run(*arguments: str) -> int:
+    return batch.main([*arguments, "--program", "keyway", "--json", "table.json"])
+
+
+def table(place: Path) -> dict[str, dict]:
+    records = json.loads((place / "table.json").read_text())
+    return {Path(r["folder"]).name: r for r in records}
+
+
+def calls(place: Path) -> list[str]:
+    path = place / "results/calls.txt"
+    return path.read_text().splitlines() if path.exists() else []
+
+
+def test_table_and_exit_codes(place, capsys):
+    good, bad = deck(place, "good", "ok 2.5e6"), deck(place, "bad", "fail 2")
+    stopped, crash = deck(place, "stopped", "fail 1"), deck(place, "crash", "crash")
+    assert run(good, "-j", "2") == 0
+    assert run(good, bad, stopped, crash, "-j", "2") == 1
+    found = table(place)
+    assert {name: r["status"] for name, r in found.items()} == {
+        "good": "finished",
+        "bad": "bad deck",
+        "stopped": "stopped",
+        "crash": "killed by SIGSEGV",
+    }
+    assert found["good"]["was_kept"]
+    assert found["good"]["extremes"]["S1"] == 2.5e6
+    assert found["good"]["peak_memory_mb"] > 0
+    text = capsys.readouterr().out
+    assert "2.5e+06" in text
+    assert "bad: deck:1: wrong" in text
+
+
+def test_finished_deck_is_not_run_again(place):
+    (place / "mesh.inp").write_text("*NODE\n")
+    dam = deck(place, "dam", "ok 1", "*INCLUDE, INPUT=mesh.inp\n")
+    for _ in range(2):
+        assert run(dam) == 0
+    assert len(calls(place)) == 1
+    (place / "mesh.inp").write_text("*NODE\n1, 0, 0, 0\n")
+    assert run(dam) == 0
+    assert len(calls(place)) == 2
+    assert run(dam, "--again") == 0
+    assert len(calls(place)) == 3
+    assert batch.main([dam, "--program", "keyway", "--threads", "3", "--", "-q"]) == 0
+    assert calls(place)[-1] == "dam -j 3 -q"
+    assert len(calls(place)) == 4
+
+
+def test_failed_deck_is_run_again(place):
+    dam = deck(place, "dam", "fail 1")
+    assert run(dam) == 1
+    assert run(dam) == 1
+    assert len(calls(place)) == 2
+
+
+def test_folders_and_decks_of_one_name(place):
+    for folder in ("low", "high"):
+        deck(place, f"{folder}/dam", "ok 1")
+        (place / folder / "mesh.inp").write_text("*NODE\n")
+    assert run("low", "high") == 0
+    assert set(table(place)) == {"low_dam", "high_dam"}
+
+
+def test_timeout(place):
+    assert run(deck(place, "slow", "sleep 30"), "--timeout", "0.5") == 1
+    assert table(place)["slow"]["status"] == "timed out"
+
+
+def test_interruption_ends_the_children_and_goes_on_later(place):
+    decks = [
+        deck(place, "first", "ok 1"),
+        deck(place, "slow", "sleep 60"),
+        deck(place, "c", "ok 3"),
+    ]
+    command = [sys.executable, str(BATCH), *decks, "--program", "keyway", "--json", "table.json"]
+    child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    for _ in range(200):
+        if len(calls(place)) == 2:
+            break
+        time.sleep(0.05)
+    os.kill(child.pid, signal.SIGINT)
+    assert child.wait(timeout=15) == batch.EXIT_INTERRUPTED
+    found = {name: r["status"] for name, r in table(place).items()}
+    assert found == {"first": "finished", "slow": "interrupted", "c": "not run"}
+    deck(place, "slow", "ok 2")
+    assert run(*decks) == 0
+    assert [line.split()[0] for line in calls(place)] == ["first", "slow", "slow", "c"]
+
+
+@pytest.mark.parametrize("arguments", [["nothing.inp"], ["."], ["x.inp", "-j", "0"]])
+def test_usage(place, arguments):
+    try:
+        code = run(*arguments)
+    except SystemExit as stop:
+        code = stop.code
+    assert code == 2

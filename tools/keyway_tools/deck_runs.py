@@ -1,0 +1,194 @@
+"""Runs decks as child processes and keeps a record of each run beside its results."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+import signal
+import subprocess
+import threading
+import time
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from keyway_tools.results_folder import ResultsFolder
+
+RECORD = ".batch.json"
+EXTREMES = ("S1", "S3", "OPENING")
+# What the exit code of the program says (DECK, "Running").
+STATUS_OF_CODE = {0: "finished", 1: "stopped", 2: "bad deck", 3: "system failed"}
+GRACE = 10.0  # seconds between the request to end and the end by force
+
+
+@dataclass
+class Record:
+    """How a run went."""
+
+    deck: str
+    folder: str
+    status: str
+    digest: str = ""
+    options: list[str] = field(default_factory=list)
+    exit_code: int | None = None
+    wall_s: float | None = None
+    peak_memory_mb: float | None = None
+    extremes: dict[str, float | None] = field(default_factory=dict)
+    message: str = ""
+    was_kept: bool = False  # from an earlier call
+
+    def write(self) -> None:
+        text = json.dumps(asdict(self), indent=2)
+        (Path(self.folder) / RECORD).write_text(text + "\n", encoding="utf-8")
+
+
+def files_of(deck: Path) -> list[Path]:
+    """The deck and every file it names with INPUT=, in the order they are met."""
+    found, waiting = [], [deck.resolve()]
+    while waiting:
+        path = waiting.pop(0)
+        if path in found:
+            continue
+        found.append(path)
+        if path.suffix.lower() == ".at2" or not path.is_file():
+            continue
+        text = path.read_text(encoding="utf-8", errors="replace")
+        for line in re.findall(r"^[ \t]*\*(?!\*).*$", text, re.MULTILINE):
+            for name in re.findall(r"\bINPUT\s*=\s*(\"[^\"]*\"|[^,\s]+)", line, re.IGNORECASE):
+                waiting.append((path.parent / name.strip('"')).resolve())
+    return found
+
+
+def digest_of(deck: Path, program: str) -> str:
+    """Changes with the deck, the files it includes and the version of the program."""
+    total = hashlib.sha256(program.encode())
+    for path in files_of(deck):
+        total.update(path.name.encode())
+        total.update(path.read_bytes() if path.is_file() else b"missing")
+    return total.hexdigest()
+
+
+def earlier_record(folder: Path) -> Record | None:
+    """The record of an earlier run in the folder, if it can be read."""
+    try:
+        return Record(**json.loads((folder / RECORD).read_text(encoding="utf-8")))
+    except (OSError, ValueError, TypeError):
+        return None
+
+
+class DeckRunner:
+    """Runs one deck after another for any number of threads, until it is told to end."""
+
+    def __init__(self, program: Path, options: list[str], timeout: float | None = None):
+        self.program = program
+        self.options = options
+        self.timeout = timeout
+        self.version = version_of(program)
+        self.is_ending = False
+        self._children: set[subprocess.Popen[bytes]] = set()
+        self._lock = threading.Lock()
+
+    def run(self, deck: Path, folder: Path, again: bool = False) -> Record:
+        """Runs the deck, or returns the record of an equal run that finished."""
+        record = Record(str(deck), str(folder), "not run", options=self.options)
+        record.digest = digest_of(deck, self.version)
+        earlier = earlier_record(folder)
+        if earlier and not again and is_same(earlier, record):
+            earlier.was_kept = True
+            earlier.deck, earlier.folder = record.deck, record.folder
+            return earlier
+        if self.is_ending:
+            return record
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / RECORD).unlink(missing_ok=True)
+        self._execute(deck, record)
+        read_summary(deck, record)
+        record.write()
+        return record
+
+    def _execute(self, deck: Path, record: Record) -> None:
+        command = [str(self.program), "-o", record.folder, *self.options, str(deck)]
+        start = time.monotonic()
+        with open(Path(record.folder) / "batch.out", "wb") as output:
+            child = subprocess.Popen(
+                command, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )  # fmt: skip
+        with self._lock:
+            self._children.add(child)
+        watch = threading.Timer(self.timeout, self._end, [child]) if self.timeout else None
+        if watch:
+            watch.start()
+        # wait4 instead of child.wait: it tells the memory of this child alone.
+        _, status, usage = os.wait4(child.pid, 0)
+        with self._lock:
+            self._children.discard(child)
+            child.returncode = os.waitstatus_to_exitcode(status)
+        if watch:
+            watch.cancel()
+        record.wall_s = round(time.monotonic() - start, 3)
+        record.peak_memory_mb = round(usage.ru_maxrss / 1024, 1)
+        record.exit_code = child.returncode
+        record.status = self._status(child.returncode, record.wall_s)
+
+    def _status(self, code: int, wall: float) -> str:
+        if self.is_ending and code != 0:
+            return "interrupted"
+        if self.timeout and wall >= self.timeout and code != 0:
+            return "timed out"
+        if code < 0:
+            return f"killed by {signal.Signals(-code).name}"
+        return STATUS_OF_CODE.get(code, f"exit code {code}")
+
+    def _end(self, child: subprocess.Popen[bytes]) -> None:
+        """Asks one child to end, and makes it end if it does not."""
+        for sign, patience in ((signal.SIGTERM, GRACE), (signal.SIGKILL, 0.0)):
+            with self._lock:
+                if child not in self._children:
+                    return
+                os.killpg(child.pid, sign)
+            until = time.monotonic() + patience
+            while child in self._children and time.monotonic() < until:
+                time.sleep(0.05)
+
+    def end(self) -> None:
+        """Ends the running children; those that wait are not begun."""
+        self.is_ending = True
+        for child in list(self._children):
+            self._end(child)
+
+
+def is_same(earlier: Record, wanted: Record) -> bool:
+    """Whether an earlier run finished with the same deck, program and options."""
+    return (earlier.status, earlier.digest, earlier.options) == (
+        "finished",
+        wanted.digest,
+        wanted.options,
+    )
+
+
+def version_of(program: Path) -> str:
+    command = [str(program), "--version"]
+    done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    return done.stdout.strip()
+
+
+def read_summary(deck: Path, record: Record) -> None:
+    """Takes extremes and message from the summary, where the run came so far as to write one."""
+    try:
+        results = ResultsFolder(record.folder, deck.stem)
+        summary: dict[str, Any] = results.summary
+    except (OSError, ValueError):
+        last = (Path(record.folder) / "batch.out").read_text(errors="replace").strip().splitlines()
+        record.message = last[0] if last else ""
+        return
+    # The system's figure counts the moment before the program took over from its parent, too.
+    memory = (summary.get("ledger") or {}).get("peak_memory_mb")
+    record.peak_memory_mb = memory or record.peak_memory_mb
+    envelopes = summary.get("envelopes") or {}
+    for name in EXTREMES:
+        extreme = (envelopes.get(name) or {}).get("anywhere") or {}
+        record.extremes[name] = extreme.get("value")
+    record.message = summary.get("message") or ""
