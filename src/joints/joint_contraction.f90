@@ -1,0 +1,242 @@
+!> A contraction joint: tensile strength lost for good, unilateral contact, Coulomb friction.
+!>
+!> Source: Eqs 9-13 with NOTES 3-6. Bonded, the joint is linear in all directions until the normal
+!> opening exceeds strength/k_n. Broken, it carries k_n times the closing and no tension; tangential
+!> traction sticks elastically with k_t up to mu p + c and slips there. While the joint is open its
+!> slip follows the motion, so that traction starts from zero when it closes again.
+!>
+!> Friction in Newton's iteration: the status is decided on z = lambda + r (v_t - s - lambda/k_t),
+!> lambda the tangential traction of the last iterate. Where |z| > mu p + c, one Newton step on
+!> lambda - (mu p + c) z/|z| = 0 gives the next traction. At a solution this is the return map and
+!> its consistent tangent; on the way it does not cycle, which the return map does.
+module joint_contraction
+  use joint_law, only: allocate_state, joint_state, state_bonded, state_open, state_slip, &
+                       state_stick, traction_law
+  use kinds, only: rk
+  use slip_dissipation, only: closing_work, opening_work, sliding_work
+  implicit none
+  private
+  public :: contraction_law
+
+  type, extends(traction_law) :: contraction_law
+    real(rk) :: normal_stiffness = 0.0_rk !< k_n [Pa/m]; 0: from the solid, see complete_stiffness
+    real(rk) :: tangent_stiffness = 0.0_rk !< k_t [Pa/m]; 0: from the solid
+    real(rk) :: strength = 0.0_rk !< q_on [Pa]
+    real(rk) :: friction = 0.0_rk !< mu
+    real(rk) :: cohesion = 0.0_rk !< c of the closed joint [Pa]
+    real(rk) :: thickness = 0.02_rk !< for the default of k_n [m]; NOTES 3
+  contains
+    procedure :: start_state
+    procedure :: reference_stiffness
+    procedure :: update
+    procedure :: stored_energy
+    procedure :: complete_stiffness
+  end type contraction_law
+
+  !> What the history holds of one point.
+  type :: point_state
+    real(rk) :: jump(3), traction(3), slip(2), friction_work, fracture_work
+    logical :: is_broken
+    integer :: status
+  end type point_state
+
+contains
+
+  !> k_n = E/thickness and k_t = k_n/(2 (1 + nu)) where the deck gave none (NOTES 3).
+  pure subroutine complete_stiffness(self, young, poisson)
+    class(contraction_law), intent(inout) :: self
+    real(rk), intent(in) :: young !< of the solid on the slave side [Pa]
+    real(rk), intent(in) :: poisson
+    if (self%normal_stiffness <= 0.0_rk) self%normal_stiffness = young/self%thickness
+    if (self%tangent_stiffness <= 0.0_rk) then
+      self%tangent_stiffness = self%normal_stiffness/(2.0_rk*(1.0_rk + poisson))
+    end if
+  end subroutine complete_stiffness
+
+  !> Bonded where there is strength, else closed without pressure, else open by the gap.
+  pure subroutine start_state(self, num_points, state)
+    class(contraction_law), intent(in) :: self
+    integer, intent(in) :: num_points
+    type(joint_state), intent(out) :: state
+    call allocate_state(num_points, state)
+    state%is_broken = self%strength <= 0.0_rk
+    state%status = state_stick
+    if (self%strength > 0.0_rk) state%status = state_bonded
+    if (self%gap > 0.0_rk) state%status = state_open
+  end subroutine start_state
+
+  !> k_n, k_t, k_t.
+  pure subroutine reference_stiffness(self, k)
+    class(contraction_law), intent(in) :: self
+    real(rk), intent(out) :: k(3)
+    k = [self%normal_stiffness, self%tangent_stiffness, self%tangent_stiffness]
+  end subroutine reference_stiffness
+
+  !> Elastic energy of the springs at the tractions of the state.
+  pure subroutine stored_energy(self, state, energy)
+    class(contraction_law), intent(in) :: self
+    type(joint_state), intent(in) :: state
+    real(rk), intent(out) :: energy(:)
+    real(rk) :: k(3)
+    call self%reference_stiffness(k)
+    energy = 0.5_rk*(state%traction(1, :)**2/k(1) + state%traction(2, :)**2/k(2) &
+                     + state%traction(3, :)**2/k(3))
+  end subroutine stored_energy
+
+  !> The law at all points of a joint.
+  pure subroutine update(self, jump, old, multiplier, scale, new, iterate, tangent)
+    class(contraction_law), intent(in) :: self
+    real(rk), intent(in) :: jump(:, :)
+    type(joint_state), intent(in) :: old
+    real(rk), intent(in) :: multiplier(:, :)
+    real(rk), intent(in) :: scale(:)
+    type(joint_state), intent(inout) :: new
+    real(rk), intent(out) :: iterate(:, :)
+    real(rk), intent(out) :: tangent(:, :, :)
+    type(point_state) :: before, after
+    integer :: p
+    do p = 1, size(jump, 2)
+      before = point_state(old%jump(:, p), old%traction(:, p), old%slip(:, p), &
+                           old%friction_work(p), old%fracture_work(p), old%is_broken(p), &
+                           old%status(p))
+      after = before
+      after%jump = jump(:, p)
+      if (.not. before%is_broken .and. jump(1, p)*self%normal_stiffness <= self%strength) then
+        call stay_bonded(self, after, iterate(:, p), tangent(:, :, p))
+      else if (jump(1, p) + self%gap > 0.0_rk) then
+        call open_point(self, before, after, iterate(:, p), tangent(:, :, p))
+      else
+        call close_point(self, before, after)
+        call augment(self, before%slip, after, multiplier(:, p), scale(p), iterate(:, p), &
+                     tangent(:, :, p))
+      end if
+      new%jump(:, p) = after%jump
+      new%traction(:, p) = after%traction
+      new%slip(:, p) = after%slip
+      new%friction_work(p) = after%friction_work
+      new%fracture_work(p) = after%fracture_work
+      new%is_broken(p) = after%is_broken
+      new%status(p) = after%status
+    end do
+  end subroutine update
+
+  !> The intact joint: three springs.
+  pure subroutine stay_bonded(law, point, iterate, tangent)
+    type(contraction_law), intent(in) :: law
+    type(point_state), intent(inout) :: point
+    real(rk), intent(out) :: iterate(3), tangent(3, 3)
+    real(rk) :: k(3)
+    integer :: i
+    call law%reference_stiffness(k)
+    point%traction = k*point%jump
+    point%status = state_bonded
+    iterate = point%traction
+    tangent = 0.0_rk
+    do i = 1, 3
+      tangent(i, i) = k(i)
+    end do
+  end subroutine stay_bonded
+
+  !> The open joint carries nothing. If it was bonded, the energy stored at the moment of breaking
+  !> is set free; if it was closed, what friction held is used up on the way.
+  pure subroutine open_point(law, before, point, iterate, tangent)
+    type(contraction_law), intent(in) :: law
+    type(point_state), intent(in) :: before
+    type(point_state), intent(inout) :: point
+    real(rk), intent(out) :: iterate(3), tangent(3, 3)
+    real(rk) :: k(3), share, step(3), opening
+    call law%reference_stiffness(k)
+    step = point%jump - before%jump
+    opening = before%jump(1) + law%gap
+    if (.not. before%is_broken) then
+      share = (law%strength/k(1) - before%jump(1))/step(1)
+      point%fracture_work = before%fracture_work + 0.5_rk*sum(k*(before%jump + share*step)**2)
+    else if (opening <= 0.0_rk) then
+      point%friction_work = before%friction_work &
+                            + opening_work(before%traction(2:3), slip_limit(law, opening), &
+                                           -opening/step(1)*step(2:3), law%cohesion, k(2))
+    end if
+    point%traction = 0.0_rk
+    point%slip = point%jump(2:3)
+    point%is_broken = .true.
+    point%status = state_open
+    iterate = 0.0_rk
+    tangent = 0.0_rk
+  end subroutine open_point
+
+  !> The closed joint by the law itself: pressure, and the return map of friction.
+  pure subroutine close_point(law, before, point)
+    type(contraction_law), intent(in) :: law
+    type(point_state), intent(in) :: before
+    type(point_state), intent(inout) :: point
+    real(rk) :: opening, old_opening, limit, k, trial(2), size_of_trial
+    opening = point%jump(1) + law%gap
+    old_opening = before%jump(1) + law%gap
+    limit = slip_limit(law, opening)
+    k = law%tangent_stiffness
+    trial = k*(point%jump(2:3) - before%slip)
+    size_of_trial = norm2(trial)
+    point%traction(1) = law%normal_stiffness*opening
+    if (size_of_trial <= limit .and. limit > 0.0_rk) then
+      point%traction(2:3) = trial
+      point%status = state_stick
+      return
+    end if
+    point%traction(2:3) = limit*trial/max(size_of_trial, tiny(limit))
+    point%slip = point%jump(2:3) - point%traction(2:3)/k
+    point%status = state_slip
+    if (size_of_trial <= limit) point%status = state_stick
+    if (old_opening > 0.0_rk) then
+      point%friction_work = before%friction_work &
+                            + closing_work(trial, limit, old_opening/(old_opening - opening), k)
+    else
+      point%friction_work = before%friction_work &
+                            + sliding_work(before%traction(2:3), slip_limit(law, old_opening), &
+                                           trial, limit, k)
+    end if
+  end subroutine close_point
+
+  !> Traction and tangent for the next iterate of the closed joint.
+  pure subroutine augment(law, slip, point, multiplier, scale, iterate, tangent)
+    type(contraction_law), intent(in) :: law
+    real(rk), intent(in) :: slip(2) !< converged
+    type(point_state), intent(in) :: point
+    real(rk), intent(in) :: multiplier(2), scale
+    real(rk), intent(out) :: iterate(3), tangent(3, 3)
+    real(rk) :: k, z(2), size_of_z, limit, e(2), rest(2), rho, softening
+    k = law%tangent_stiffness
+    limit = slip_limit(law, point%jump(1) + law%gap)
+    z = multiplier + scale*(point%jump(2:3) - slip - multiplier/k)
+    size_of_z = norm2(z)
+    iterate(1) = point%traction(1)
+    tangent = 0.0_rk
+    tangent(1, 1) = law%normal_stiffness
+    if (size_of_z <= limit .and. .not. is_frictionless(law)) then
+      iterate(2:3) = k*(point%jump(2:3) - slip)
+      tangent(2, 2) = k
+      tangent(3, 3) = k
+      return
+    end if
+    e = z/max(size_of_z, tiny(limit))
+    rho = limit/max(size_of_z, tiny(limit))
+    softening = 1.0_rk/(1.0_rk - rho*(1.0_rk - scale/k))
+    rest = multiplier - dot_product(e, multiplier)*e
+    iterate(2:3) = limit*e + (1.0_rk - softening)*rest
+    tangent(2:3, 1) = -law%friction*law%normal_stiffness*e
+    tangent(2, 2:3) = softening*rho*scale*([1.0_rk, 0.0_rk] - e(1)*e)
+    tangent(3, 2:3) = softening*rho*scale*([0.0_rk, 1.0_rk] - e(2)*e)
+  end subroutine augment
+
+  !> Largest tangential traction of the closed joint: mu p + c [Pa].
+  pure real(rk) function slip_limit(law, opening)
+    type(contraction_law), intent(in) :: law
+    real(rk), intent(in) :: opening !< <= 0 [m]
+    slip_limit = law%cohesion - law%friction*law%normal_stiffness*opening
+  end function slip_limit
+
+  !> Whether the joint never carries shear once broken.
+  pure logical function is_frictionless(law)
+    type(contraction_law), intent(in) :: law
+    is_frictionless = law%friction <= 0.0_rk .and. law%cohesion <= 0.0_rk
+  end function is_frictionless
+end module joint_contraction
