@@ -7,4 +7,8 @@ set(sources
   constraint_elimination.f90
   joint_stiffness.f90
   damping_rayleigh.f90
+  element_blocks.f90
+  scatter_matrix.f90
+  assemble_elements.f90
+  assemble_forces.f90
 )

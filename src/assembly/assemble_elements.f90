@@ -1,0 +1,177 @@
+!> Sums the matrices of the solid elements: stiffness, mass and damping.
+!>
+!> Threads integrate blocks of elements; each block is added in its turn, so that the sums do not
+!> depend on the number of threads.
+module assemble_elements
+  use kinds, only: rk
+  use errors, only: error_type, raise
+  use problem_definition, only: problem
+  use dof_numbering, only: numbering
+  use matrix_pattern, only: pattern
+  use element_formulation, only: solid_element
+  use element_catalogue, only: make_solid
+  use element_matrices, only: stiffness_matrices, consistent_masses, nodal_volumes
+  use element_blocks, only: block_list, list_blocks
+  use scatter_matrix, only: scatter_nodes
+  implicit none
+  private
+  public :: assemble_stiffness, assemble_mass, assemble_damping, add_nodal_mass
+
+contains
+
+  !> K of the elements, elastic, without joints.
+  subroutine assemble_stiffness(scene, numbers, matrix, values, error)
+    type(problem), intent(in) :: scene
+    type(numbering), intent(in) :: numbers
+    type(pattern), intent(in) :: matrix
+    real(rk), allocatable, intent(out) :: values(:) !< [N/m]
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: one(size(scene%materials)), zero(size(scene%materials))
+    one = 1.0_rk
+    zero = 0.0_rk
+    call sum_elements(scene, numbers, one, zero, matrix, values, error)
+  end subroutine assemble_stiffness
+
+  !> M of the elements, consistent or lumped as the problem says, without added mass.
+  subroutine assemble_mass(scene, numbers, matrix, values, error)
+    type(problem), intent(in) :: scene
+    type(numbering), intent(in) :: numbers
+    type(pattern), intent(in) :: matrix
+    real(rk), allocatable, intent(out) :: values(:) !< [kg]
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: zero(size(scene%materials))
+    zero = 0.0_rk
+    call sum_elements(scene, numbers, zero, scene%materials%density, matrix, values, error)
+  end subroutine assemble_mass
+
+  !> C = sum of alpha M + beta K of the elements: the materials' own Rayleigh damping and that of
+  !> the step together.
+  subroutine assemble_damping(scene, numbers, alpha, beta, matrix, values, error)
+    type(problem), intent(in) :: scene
+    type(numbering), intent(in) :: numbers
+    real(rk), intent(in) :: alpha, beta !< of the step [1/s], [s]
+    type(pattern), intent(in) :: matrix
+    real(rk), allocatable, intent(out) :: values(:) !< [N s/m]
+    type(error_type), allocatable, intent(out) :: error
+    call sum_elements(scene, numbers, scene%materials%beta + beta, &
+                      (scene%materials%alpha + alpha)*scene%materials%density, matrix, values, &
+                      error)
+  end subroutine assemble_damping
+
+  !> Adds masses of nodes (3 x 3 blocks), as of water that moves with them.
+  subroutine add_nodal_mass(numbers, blocks, matrix, values)
+    type(numbering), intent(in) :: numbers
+    real(rk), intent(in) :: blocks(:, :, :) !< (3, 3, nodes), symmetric [kg]
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(inout) :: values(:)
+    integer :: node
+    do node = 1, size(blocks, 3)
+      if (maxval(abs(blocks(:, :, node))) > 0.0_rk) then
+        call scatter_nodes(numbers, [node], blocks(:, :, node), matrix, values)
+      end if
+    end do
+  end subroutine add_nodal_mass
+
+  !> Sum of stiffness*K_e + density*M_e (M_e of unit density).
+  subroutine sum_elements(scene, numbers, stiffness, density, matrix, values, error)
+    type(problem), intent(in) :: scene
+    type(numbering), intent(in) :: numbers
+    real(rk), intent(in) :: stiffness(:), density(:) !< (materials)
+    type(pattern), intent(in) :: matrix
+    real(rk), allocatable, intent(out) :: values(:)
+    type(error_type), allocatable, intent(out) :: error
+    type(block_list) :: blocks
+    real(rk), allocatable :: ke(:, :, :)
+    integer :: i, k, bad_element, bad_corner
+    allocate (values(size(matrix%row)))
+    values = 0.0_rk
+    bad_element = 0
+    bad_corner = 0
+    call list_blocks(scene, blocks)
+    !$omp parallel do ordered schedule(static, 1) default(none) private(k, ke) &
+    !$omp shared(scene, numbers, stiffness, density, matrix, values, blocks, bad_element, bad_corner)
+    do i = 1, blocks%num_blocks
+      call integrate_block(scene, blocks%element(blocks%first(i):blocks%first(i + 1) - 1), &
+                           stiffness, density, ke, bad_element, bad_corner)
+      !$omp ordered
+      do k = blocks%first(i), blocks%first(i + 1) - 1
+        call scatter_nodes(numbers, scene%mesh%nodes(:, blocks%element(k)), &
+                           ke(:, :, k - blocks%first(i) + 1), matrix, values)
+      end do
+      !$omp end ordered
+    end do
+    !$omp end parallel do
+    if (bad_element > 0) call report_jacobian(scene%mesh%element_id(bad_element), bad_corner, error)
+  end subroutine sum_elements
+
+  !> The matrices of a block; names an element whose Jacobian is not positive.
+  subroutine integrate_block(scene, elements, stiffness, density, ke, bad_element, bad_corner)
+    type(problem), intent(in) :: scene
+    integer, intent(in) :: elements(:) !< of one kind and one material
+    real(rk), intent(in) :: stiffness(:), density(:) !< (materials)
+    real(rk), allocatable, intent(out) :: ke(:, :, :) !< (24, 24, elements)
+    integer, intent(inout) :: bad_element, bad_corner !< shared by the threads
+    class(solid_element), allocatable :: element
+    real(rk), allocatable :: x(:, :, :)
+    real(rk) :: d(6, 6)
+    integer :: status(size(elements)), e, material
+    material = scene%mesh%material_of_element(elements(1))
+    allocate (x(3, 8, size(elements)), ke(24, 24, size(elements)))
+    do e = 1, size(elements)
+      x(:, :, e) = scene%mesh%x(:, scene%mesh%nodes(:, elements(e)))
+    end do
+    if (abs(stiffness(material)) > 0.0_rk) then
+      call make_solid(scene%mesh%element_type(elements(1)), element)
+      call scene%materials(material)%law%elastic_stiffness(d)
+      call stiffness_matrices(element, x, stiffness(material)*d, ke, status)
+      if (any(status /= 0)) then
+        e = findloc(status /= 0, .true., 1)
+        !$omp critical
+        if (bad_element == 0 .or. elements(e) < bad_element) then
+          bad_element = elements(e)
+          bad_corner = status(e)
+        end if
+        !$omp end critical
+      end if
+    else
+      ke = 0.0_rk
+    end if
+    if (abs(density(material)) > 0.0_rk) then
+      call add_masses(x, density(material), scene%has_lumped_mass, ke)
+    end if
+  end subroutine integrate_block
+
+  !> Adds the masses of a block, the same in the three directions.
+  subroutine add_masses(x, density, is_lumped, ke)
+    real(rk), contiguous, intent(in) :: x(:, :, :)
+    real(rk), intent(in) :: density
+    logical, intent(in) :: is_lumped
+    real(rk), intent(inout) :: ke(:, :, :)
+    real(rk), allocatable :: mass(:, :, :), volume(:, :)
+    integer :: e, a, i
+    allocate (mass(8, 8, size(x, 3)))
+    if (is_lumped) then
+      allocate (volume(8, size(x, 3)))
+      call nodal_volumes(x, volume)
+      mass = 0.0_rk
+      do a = 1, 8
+        mass(a, a, :) = density*volume(a, :)
+      end do
+    else
+      call consistent_masses(x, density, mass)
+    end if
+    do e = 1, size(x, 3)
+      do i = 1, 3
+        ke(i::3, i::3, e) = ke(i::3, i::3, e) + mass(:, :, e)
+      end do
+    end do
+  end subroutine add_masses
+
+  subroutine report_jacobian(element_id, corner, error)
+    integer, intent(in) :: element_id, corner
+    type(error_type), allocatable, intent(out) :: error
+    character(80) :: message
+    write (message, '(2(a,i0))') 'element ', element_id, ': Jacobian not positive at corner ', corner
+    call raise(error, trim(message))
+  end subroutine report_jacobian
+end module assemble_elements

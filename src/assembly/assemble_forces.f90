@@ -1,0 +1,86 @@
+!> What the loads bring to the equations: reduced forces, added mass, acceleration of the base.
+module assemble_forces
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use step_plan, only: step_load
+  use dof_numbering, only: numbering
+  use matrix_pattern, only: pattern, multiply
+  implicit none
+  private
+  public :: assemble_force, sum_added_mass, sum_base_acceleration, rigid_translation, inertia_force
+
+contains
+
+  !> T^T f of one load at factor 1.
+  subroutine assemble_force(scene, load, numbers, force)
+    type(problem), intent(in) :: scene
+    integer, intent(in) :: load !< position in the problem's list
+    type(numbering), intent(in) :: numbers
+    real(rk), intent(out) :: force(:) !< (num_total) [N]
+    real(rk), allocatable :: nodal(:, :), density(:)
+    allocate (nodal(3, scene%mesh%num_nodes), density(scene%mesh%num_elements))
+    nodal = 0.0_rk
+    density = 0.0_rk
+    where (scene%mesh%material_of_element > 0)
+      density = scene%materials(max(scene%mesh%material_of_element, 1))%density
+    end where
+    call scene%loads(load)%item%add_force(scene%mesh, density, nodal)
+    call numbers%reduce(nodal, force)
+  end subroutine assemble_force
+
+  !> The mass that the loads of a step add to the nodes; not scaled by their factors in time, but a
+  !> load that was removed adds nothing.
+  subroutine sum_added_mass(scene, loads, blocks)
+    type(problem), intent(in) :: scene
+    type(step_load), intent(in) :: loads(:)
+    real(rk), allocatable, intent(out) :: blocks(:, :, :) !< (3, 3, nodes) [kg]
+    integer :: k
+    allocate (blocks(3, 3, scene%mesh%num_nodes))
+    blocks = 0.0_rk
+    do k = 1, size(loads)
+      if (abs(loads(k)%end_factor) <= 0.0_rk) cycle
+      call scene%loads(loads(k)%load)%item%add_added_mass(scene%mesh, blocks)
+    end do
+  end subroutine sum_added_mass
+
+  !> Acceleration of the base, the sum over the loads of a step.
+  subroutine sum_base_acceleration(scene, loads, factors, acceleration)
+    type(problem), intent(in) :: scene
+    type(step_load), intent(in) :: loads(:)
+    real(rk), intent(in) :: factors(:) !< (loads) now
+    real(rk), intent(out) :: acceleration(3) !< [m/s2]
+    real(rk) :: pattern_of_load(3)
+    integer :: k
+    acceleration = 0.0_rk
+    do k = 1, size(loads)
+      pattern_of_load = 0.0_rk
+      call scene%loads(loads(k)%load)%item%add_base_acceleration(pattern_of_load)
+      acceleration = acceleration + factors(k)*pattern_of_load
+    end do
+  end subroutine sum_base_acceleration
+
+  !> The unknowns when the whole model, supports included, moves by one in a direction: no jumps.
+  pure subroutine rigid_translation(numbers, direction, r)
+    type(numbering), intent(in) :: numbers
+    integer, intent(in) :: direction !< 1..3
+    real(rk), intent(out) :: r(:) !< (num_total)
+    integer :: first_jump
+    first_jump = numbers%num_free - numbers%num_jumps + 1
+    r = merge(1.0_rk, 0.0_rk, numbers%direction == direction)
+    r(first_jump:numbers%num_free) = 0.0_rk
+  end subroutine rigid_translation
+
+  !> -M r: the force of a unit acceleration of the base in a direction.
+  subroutine inertia_force(numbers, matrix, mass, direction, force)
+    type(numbering), intent(in) :: numbers
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:) !< values, added mass included
+    integer, intent(in) :: direction !< 1..3
+    real(rk), intent(out) :: force(:) !< (num_total) [kg]
+    real(rk), allocatable :: r(:)
+    allocate (r(numbers%num_total))
+    call rigid_translation(numbers, direction, r)
+    call multiply(matrix, mass, r, force)
+    force = -force
+  end subroutine inertia_force
+end module assemble_forces

@@ -1,0 +1,127 @@
+!> A curved plate like an arch dam, fixed at the bottom, with vertical joints between its blocks.
+module arch_scene
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use material_law, only: material
+  use material_elastic, only: elastic_law
+  use joint_points, only: joint
+  use step_plan, only: step_fixity
+  implicit none
+  private
+  public :: make_arch
+
+contains
+
+  !> Blocks of the same size side by side; each pair of neighbours is one joint of node pairs.
+  subroutine make_arch(across, along, over, num_blocks, scene, fixities)
+    integer, intent(in) :: across, along, over !< elements: thickness, arc of one block, height
+    integer, intent(in) :: num_blocks
+    type(problem), intent(out) :: scene
+    type(step_fixity), allocatable, intent(out) :: fixities(:)
+    integer :: b, k, i
+    call make_material(scene)
+    call make_mesh(across, along, over, num_blocks, scene)
+    allocate (scene%joints(num_blocks - 1), scene%loads(0))
+    do b = 1, num_blocks - 1
+      call make_joint(across, along, over, b, num_blocks, scene, scene%joints(b))
+    end do
+    allocate (fixities(3*count(scene%mesh%x(3, :) <= 0.0_rk)))
+    k = 0
+    do b = 1, scene%mesh%num_nodes
+      if (scene%mesh%x(3, b) > 0.0_rk) cycle
+      do i = 1, 3
+        k = k + 1
+        fixities(k)%node = b
+        fixities(k)%dof = i
+      end do
+    end do
+  end subroutine make_arch
+
+  subroutine make_material(scene)
+    type(problem), intent(inout) :: scene
+    allocate (scene%materials(1))
+    scene%materials(1)%density = 2400.0_rk
+    scene%materials(1)%young = 31.0e9_rk
+    scene%materials(1)%poisson = 0.2_rk
+    allocate (scene%materials(1)%law, source=elastic_law(young=31.0e9_rk, poisson=0.2_rk))
+  end subroutine make_material
+
+  subroutine make_mesh(across, along, over, num_blocks, scene)
+    integer, intent(in) :: across, along, over, num_blocks
+    type(problem), intent(inout) :: scene
+    integer :: b, i, j, k, e
+    associate (m => scene%mesh)
+      m%num_nodes = num_blocks*(along + 1)*(across + 1)*(over + 1)
+      m%num_elements = num_blocks*along*across*over
+      allocate (m%x(3, m%num_nodes), m%nodes(8, m%num_elements), m%element_type(m%num_elements))
+      allocate (m%material_of_element(m%num_elements), m%section_of_element(m%num_elements))
+      m%node_id = [(i, i=1, m%num_nodes)]
+      m%element_id = [(i, i=1, m%num_elements)]
+      m%element_type = 'C3D8'
+      m%material_of_element = 1
+      m%section_of_element = 1
+      e = 0
+      do b = 1, num_blocks
+        do k = 0, over
+          do j = 0, along
+            do i = 0, across
+              m%x(:, node_at(b, i, j, k)) = &
+                place(real(i, rk)/across, (b - 1 + real(j, rk)/along)/num_blocks, real(k, rk)/over)
+              if (i == across .or. j == along .or. k == over) cycle
+              e = e + 1
+              m%nodes(:, e) = [node_at(b, i, j, k), node_at(b, i + 1, j, k), &
+                               node_at(b, i + 1, j + 1, k), node_at(b, i, j + 1, k), &
+                               node_at(b, i, j, k + 1), node_at(b, i + 1, j, k + 1), &
+                               node_at(b, i + 1, j + 1, k + 1), node_at(b, i, j + 1, k + 1)]
+            end do
+          end do
+        end do
+      end do
+    end associate
+  contains
+    pure integer function node_at(block, i, j, k)
+      integer, intent(in) :: block, i, j, k
+      node_at = 1 + i + (across + 1)*(j + (along + 1)*(k + (over + 1)*(block - 1)))
+    end function node_at
+  end subroutine make_mesh
+
+  !> A sector of 100 degrees, radius 150 m, 100 m high, thickness from 30 to 8 m.
+  pure function place(depth, arc, height) result(x)
+    real(rk), intent(in) :: depth, arc, height !< 0..1
+    real(rk) :: x(3), radius, angle
+    radius = 150.0_rk - (depth - 0.5_rk)*(30.0_rk - 22.0_rk*height)
+    angle = (arc - 0.5_rk)*1.745_rk
+    x = [-radius*sin(angle), radius*cos(angle), 100.0_rk*height]
+  end function place
+
+  !> The pairs between block b (master) and the next (slave), above the fixed bottom.
+  subroutine make_joint(across, along, over, b, num_blocks, scene, seam)
+    integer, intent(in) :: across, along, over, b, num_blocks
+    type(problem), intent(in) :: scene
+    type(joint), intent(out) :: seam
+    real(rk) :: angle
+    integer :: i, k, p, nodes_of_block
+    nodes_of_block = (across + 1)*(along + 1)*(over + 1)
+    angle = (real(b, rk)/num_blocks - 0.5_rk)*1.745_rk
+    seam%num_points = (across + 1)*over
+    allocate (seam%master(1, seam%num_points), seam%slave(1, seam%num_points))
+    allocate (seam%shape(1, seam%num_points), seam%rotation(3, 3, seam%num_points))
+    allocate (seam%area(seam%num_points))
+    p = 0
+    do k = 1, over
+      do i = 0, across
+        p = p + 1
+        seam%master(1, p) = 1 + i + (across + 1)*(along + (along + 1)*k) + (b - 1)*nodes_of_block
+        seam%slave(1, p) = 1 + i + (across + 1)*(along + 1)*k + b*nodes_of_block
+      end do
+    end do
+    seam%x = scene%mesh%x(:, seam%master(1, :))
+    seam%shape = 1.0_rk
+    seam%area = 2000.0_rk/seam%num_points
+    do p = 1, seam%num_points
+      seam%rotation(1, :, p) = [-cos(angle), -sin(angle), 0.0_rk]
+      seam%rotation(2, :, p) = [sin(angle), -cos(angle), 0.0_rk]
+      seam%rotation(3, :, p) = [0.0_rk, 0.0_rk, 1.0_rk]
+    end do
+  end subroutine make_joint
+end module arch_scene
