@@ -89,7 +89,8 @@ contains
     bad_corner = 0
     call list_blocks(scene, blocks)
     !$omp parallel do ordered schedule(static, 1) default(none) private(k, ke) &
-    !$omp shared(scene, numbers, stiffness, density, matrix, values, blocks, bad_element, bad_corner)
+    !$omp shared(scene, numbers, stiffness, density, matrix, values, blocks) &
+    !$omp shared(bad_element, bad_corner)
     do i = 1, blocks%num_blocks
       call integrate_block(scene, blocks%element(blocks%first(i):blocks%first(i + 1) - 1), &
                            stiffness, density, ke, bad_element, bad_corner)
@@ -167,11 +168,13 @@ contains
     end do
   end subroutine add_masses
 
+  !> Names an element by the user's number.
   subroutine report_jacobian(element_id, corner, error)
     integer, intent(in) :: element_id, corner
     type(error_type), allocatable, intent(out) :: error
     character(80) :: message
-    write (message, '(2(a,i0))') 'element ', element_id, ': Jacobian not positive at corner ', corner
+    write (message, '(a,i0,a,i0)') 'element ', element_id, &
+      ': Jacobian not positive at corner ', corner
     call raise(error, trim(message))
   end subroutine report_jacobian
 end module assemble_elements

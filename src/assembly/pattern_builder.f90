@@ -111,27 +111,33 @@ contains
     integer, intent(in) :: group(:), num_groups
     type(table), intent(out) :: groups_of_cell
     integer, allocatable :: last_cell(:)
-    integer :: c, n, k, pass, num_items
+    integer :: c, pass, num_items
     allocate (groups_of_cell%first(size(cells%first)), last_cell(num_groups))
     do pass = 1, 2
       last_cell = 0
       num_items = 0
       do c = 1, size(cells%first) - 1
         groups_of_cell%first(c) = num_items + 1
-        do n = cells%first(c), cells%first(c + 1) - 1
-          do k = numbers%row_start(3*cells%node(n) - 2), numbers%row_start(3*cells%node(n) + 1) - 1
-            associate (g => group(numbers%unknown(k)))
-              if (last_cell(g) == c) cycle
-              last_cell(g) = c
-              num_items = num_items + 1
-              if (pass == 2) groups_of_cell%item(num_items) = g
-            end associate
-          end do
-        end do
+        call add_groups(cells%node(cells%first(c):cells%first(c + 1) - 1))
       end do
       groups_of_cell%first(size(cells%first)) = num_items + 1
       if (pass == 1) allocate (groups_of_cell%item(num_items))
     end do
+  contains
+    !> The groups of the cell under way, counted in the first pass.
+    subroutine add_groups(nodes)
+      integer, intent(in) :: nodes(:)
+      integer :: n, k, g
+      do n = 1, size(nodes)
+        do k = numbers%row_start(3*nodes(n) - 2), numbers%row_start(3*nodes(n) + 1) - 1
+          g = group(numbers%unknown(k))
+          if (last_cell(g) == c) cycle
+          last_cell(g) = c
+          num_items = num_items + 1
+          if (pass == 2) groups_of_cell%item(num_items) = g
+        end do
+      end do
+    end subroutine add_groups
   end subroutine list_groups
 
   !> Which rows hold each item.
@@ -164,30 +170,35 @@ contains
     type(table), intent(in) :: groups_of_cell, cells_of_group
     type(table), intent(out) :: neighbours
     integer, allocatable :: last_group(:)
-    integer :: g, c, k, pass, num_items
+    integer :: g, pass, num_items
     allocate (neighbours%first(size(cells_of_group%first)), last_group(size(cells_of_group%first)))
     do pass = 1, 2
       last_group = 0
       num_items = 0
       do g = 1, size(cells_of_group%first) - 1
         neighbours%first(g) = num_items + 1
-        do c = cells_of_group%first(g), cells_of_group%first(g + 1) - 1
-          associate (cell => cells_of_group%item(c))
-            do k = groups_of_cell%first(cell), groups_of_cell%first(cell + 1) - 1
-              associate (other => groups_of_cell%item(k))
-                if (other <= g .or. last_group(other) == g) cycle
-                last_group(other) = g
-                num_items = num_items + 1
-                if (pass == 2) neighbours%item(num_items) = other
-              end associate
-            end do
-          end associate
-        end do
+        call add_neighbours(cells_of_group%item(cells_of_group%first(g): &
+                                                cells_of_group%first(g + 1) - 1))
         if (pass == 2) call sort(neighbours%item(neighbours%first(g):num_items))
       end do
       neighbours%first(size(neighbours%first)) = num_items + 1
       if (pass == 1) allocate (neighbours%item(num_items))
     end do
+  contains
+    !> The neighbours of the group under way, counted in the first pass.
+    subroutine add_neighbours(cells)
+      integer, intent(in) :: cells(:) !< that hold the group
+      integer :: c, k, other
+      do c = 1, size(cells)
+        do k = groups_of_cell%first(cells(c)), groups_of_cell%first(cells(c) + 1) - 1
+          other = groups_of_cell%item(k)
+          if (other <= g .or. last_group(other) == g) cycle
+          last_group(other) = g
+          num_items = num_items + 1
+          if (pass == 2) neighbours%item(num_items) = other
+        end do
+      end do
+    end subroutine add_neighbours
   end subroutine list_neighbours
 
   !> Sorts a short list by insertion.

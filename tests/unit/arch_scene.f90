@@ -60,25 +60,30 @@ contains
       m%element_type = 'C3D8'
       m%material_of_element = 1
       m%section_of_element = 1
-      e = 0
-      do b = 1, num_blocks
-        do k = 0, over
-          do j = 0, along
-            do i = 0, across
-              m%x(:, node_at(b, i, j, k)) = &
-                place(real(i, rk)/across, (b - 1 + real(j, rk)/along)/num_blocks, real(k, rk)/over)
-              if (i == across .or. j == along .or. k == over) cycle
-              e = e + 1
-              m%nodes(:, e) = [node_at(b, i, j, k), node_at(b, i + 1, j, k), &
-                               node_at(b, i + 1, j + 1, k), node_at(b, i, j + 1, k), &
-                               node_at(b, i, j, k + 1), node_at(b, i + 1, j, k + 1), &
-                               node_at(b, i + 1, j + 1, k + 1), node_at(b, i, j + 1, k + 1)]
-            end do
-          end do
+    end associate
+    e = 0
+    do b = 1, num_blocks
+      do k = 0, over
+        do j = 0, along
+          call add_row()
         end do
       end do
-    end associate
+    end do
   contains
+    !> Nodes, and elements where there is room for them, through the thickness.
+    subroutine add_row()
+      do i = 0, across
+        scene%mesh%x(:, node_at(b, i, j, k)) = &
+          place(real(i, rk)/across, (b - 1 + real(j, rk)/along)/num_blocks, real(k, rk)/over)
+        if (i == across .or. j == along .or. k == over) cycle
+        e = e + 1
+        scene%mesh%nodes(:, e) = [node_at(b, i, j, k), node_at(b, i + 1, j, k), &
+                                  node_at(b, i + 1, j + 1, k), node_at(b, i, j + 1, k), &
+                                  node_at(b, i, j, k + 1), node_at(b, i + 1, j, k + 1), &
+                                  node_at(b, i + 1, j + 1, k + 1), node_at(b, i, j + 1, k + 1)]
+      end do
+    end subroutine add_row
+
     pure integer function node_at(block, i, j, k)
       integer, intent(in) :: block, i, j, k
       node_at = 1 + i + (across + 1)*(j + (along + 1)*(k + (over + 1)*(block - 1)))
@@ -91,7 +96,7 @@ contains
     real(rk) :: x(3), radius, angle
     radius = 150.0_rk - (depth - 0.5_rk)*(30.0_rk - 22.0_rk*height)
     angle = (arc - 0.5_rk)*1.745_rk
-    x = [-radius*sin(angle), radius*cos(angle), 100.0_rk*height]
+    x = [radius*sin(angle), radius*cos(angle), 100.0_rk*height]
   end function place
 
   !> The pairs between block b (master) and the next (slave), above the fixed bottom.
@@ -119,8 +124,8 @@ contains
     seam%shape = 1.0_rk
     seam%area = 2000.0_rk/seam%num_points
     do p = 1, seam%num_points
-      seam%rotation(1, :, p) = [-cos(angle), -sin(angle), 0.0_rk]
-      seam%rotation(2, :, p) = [sin(angle), -cos(angle), 0.0_rk]
+      seam%rotation(1, :, p) = [cos(angle), -sin(angle), 0.0_rk]
+      seam%rotation(2, :, p) = [sin(angle), cos(angle), 0.0_rk]
       seam%rotation(3, :, p) = [0.0_rk, 0.0_rk, 1.0_rk]
     end do
   end subroutine make_joint

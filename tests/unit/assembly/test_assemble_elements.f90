@@ -70,7 +70,7 @@ contains
     end do
   end subroutine rigid_motion
 
-  !> A jump of one whole block (no strain within it) costs nothing above the fixed layer.
+  !> The jumps only change the names of the motions: the energy is that of the blocks apart.
   subroutine energy_of_blocks()
     real(rk), allocatable :: q(:), y(:), u(:, :)
     integer :: k
