@@ -10,4 +10,5 @@ set(sources
   element_catalogue.f90
   element_matrices.f90
   joint_points.f90
+  element_joint8.f90
 )

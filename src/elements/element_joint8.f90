@@ -1,0 +1,285 @@
+!> JOINT8: two faces of four nodes that lie on each other, nodes 1-4 master and 5-8 slave.
+!>
+!> The normal points from master to slave: out of the solid behind the master face, into the one
+!> behind the slave face; where neither has a solid, by the right-hand rule of nodes 1-2-3-4.
+!> Nodal integration (Lobatto) makes one point of each pair of nodes, with the area that belongs to
+!> it; it keeps the traction of stiff joints free of the oscillation that Gauss points bring.
+module element_joint8
+  use dam_mesh, only: mesh
+  use element_catalogue, only: is_solid
+  use errors, only: error_type, raise
+  use gauss_rules, only: quad_point
+  use joint_points, only: joint
+  use kinds, only: rk
+  use mesh_faces, only: face_nodes, face_table, face_vector, find_face, insert_face, open_table
+  use shape_quad4, only: cross, facet_point
+  implicit none
+  private
+  public :: build_joint_points, find_attached_solids, local_axes
+
+  !> Two nodes of a pair may lie apart by this part of the facet's longer diagonal.
+  real(rk), parameter :: coincidence = 1.0e-4_rk
+
+  !> Elements that share a pair of nodes make one point of it unless their normals differ by more
+  !> than 30 degrees.
+  real(rk), parameter :: same_plane = 0.5_rk*sqrt(3.0_rk)
+
+  !> A normal this close to the vertical takes slip 1 along x.
+  real(rk), parameter :: vertical = 1.0e-6_rk
+
+contains
+
+  !> Fills the geometry of a joint; its name and law are the caller's.
+  !> Fails when a pair of nodes does not coincide, a facet has no area, or the solids of both sides
+  !> lie on one side.
+  subroutine build_joint_points(model, elements, is_nodal, built, error)
+    type(mesh), intent(in) :: model
+    integer, intent(in) :: elements(:) !< positions of JOINT8 elements
+    logical, intent(in) :: is_nodal !< pairs of nodes, else 2 x 2 Gauss points
+    type(joint), intent(inout) :: built
+    type(error_type), allocatable, intent(out) :: error
+    integer, allocatable :: solid(:, :), side(:)
+    integer :: e
+    allocate (side(size(elements)))
+    call find_attached_solids(model, elements, solid, side)
+    do e = 1, size(elements)
+      call check_facet(model, elements(e), side(e), error)
+      if (allocated(error)) return
+    end do
+    built%is_nodal = is_nodal
+    if (is_nodal) then
+      call gather_pairs(model, elements, side, built)
+    else
+      call gather_gauss_points(model, elements, side, built)
+    end if
+  end subroutine build_joint_points
+
+  !> The solids behind the faces of JOINT8 elements, and which way the normal goes.
+  subroutine find_attached_solids(model, elements, solid, side)
+    type(mesh), intent(in) :: model
+    integer, intent(in) :: elements(:) !< positions of JOINT8 elements
+    integer, allocatable, intent(out) :: solid(:, :) !< (2, elements) behind master, slave; 0: none
+    integer, intent(out) :: side(:) !< 1: normal by nodes 1-2-3-4, -1: against it, 0: contradiction
+    type(face_table) :: table
+    integer, allocatable :: way(:, :)
+    integer :: e, i, face, number, nodes(4)
+
+    allocate (solid(2, size(elements)), way(2, size(elements)), source=0)
+    call open_table(model%num_nodes, 2*size(elements), table)
+    do e = 1, size(elements)
+      call insert_face(table, model%nodes(1:4, elements(e)), number)
+      call insert_face(table, model%nodes(5:8, elements(e)), number)
+    end do
+    do e = 1, model%num_elements
+      if (.not. is_solid(model%element_type(e))) cycle
+      do face = 1, 6
+        nodes = face_nodes(model, e, face)
+        number = find_face(table, nodes)
+        do while (number > 0)
+          i = (number + 1)/2
+          call attach(model, e, face, elements(i), solid(2 - mod(number, 2), i), &
+                      way(2 - mod(number, 2), i))
+          number = find_face(table, nodes, number)
+        end do
+      end do
+    end do
+    side = way(1, :)
+    where (side == 0) side = -way(2, :)
+    where (way(1, :)*way(2, :) > 0) side = 0
+    where (way(1, :) == 0 .and. way(2, :) == 0) side = 1
+  end subroutine find_attached_solids
+
+  !> Notes that a solid's face lies on a joint's; a face between two solids tells nothing.
+  subroutine attach(model, element, face, joint_element, solid, way)
+    type(mesh), intent(in) :: model
+    integer, intent(in) :: element, face !< the solid and its face
+    integer, intent(in) :: joint_element
+    integer, intent(inout) :: solid !< found before, 0 for none
+    integer, intent(inout) :: way !< 1: the solid's normal goes with nodes 1-2-3-4 of the joint
+    real(rk) :: along
+    along = dot_product(face_vector(model%x(:, face_nodes(model, element, face))), &
+                        face_vector(model%x(:, model%nodes(1:4, joint_element))))
+    if (solid == 0) then
+      way = merge(1, -1, along > 0.0_rk)
+    else
+      way = 0
+    end if
+    solid = element
+  end subroutine attach
+
+  !> A sound facet has an area, pairs that coincide, and solids on its two sides.
+  subroutine check_facet(model, element, side, error)
+    type(mesh), intent(in) :: model
+    integer, intent(in) :: element !< position
+    integer, intent(in) :: side !< 0: contradiction
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: x(3, 8), diagonal, distance
+    integer :: a
+    x = model%x(:, model%nodes(:, element))
+    diagonal = max(norm2(x(:, 3) - x(:, 1)), norm2(x(:, 4) - x(:, 2)))
+    do a = 1, 4
+      distance = norm2(x(:, a + 4) - x(:, a))
+      if (distance <= coincidence*diagonal) cycle
+      call raise(error, 'JOINT8 element '//text(model%element_id(element))//': nodes ' &
+                 //text(model%node_id(model%nodes(a, element)))//' and ' &
+                 //text(model%node_id(model%nodes(a + 4, element)))//' lie ' &
+                 //length_text(distance)//' m apart; its two faces must coincide')
+      return
+    end do
+    if (norm2(face_vector(x(:, 1:4))) <= coincidence*diagonal**2) then
+      call raise(error, 'JOINT8 element '//text(model%element_id(element))//' has no area')
+    else if (side == 0) then
+      call raise(error, 'JOINT8 element '//text(model%element_id(element)) &
+                 //': the solids of its master and slave face lie on the same side')
+    end if
+  end subroutine check_facet
+
+  !> A whole number as a text.
+  pure function text(number)
+    integer, intent(in) :: number
+    character(:), allocatable :: text
+    character(12) :: buffer
+    write (buffer, '(i0)') number
+    text = trim(buffer)
+  end function text
+
+  !> A length as a text [m].
+  pure function length_text(length)
+    real(rk), intent(in) :: length
+    character(:), allocatable :: length_text
+    character(12) :: buffer
+    write (buffer, '(es10.3)') length
+    length_text = trim(adjustl(buffer))
+  end function length_text
+
+  !> One point for each pair of nodes and plane: areas add up, normals are averaged.
+  subroutine gather_pairs(model, elements, side, built)
+    type(mesh), intent(in) :: model
+    integer, intent(in) :: elements(:), side(:)
+    type(joint), intent(inout) :: built
+    integer, allocatable :: newest(:), next(:)
+    real(rk), allocatable :: normal(:, :)
+    real(rk) :: share(3, 4)
+    integer :: e, a, p, master, slave
+
+    call open_points(1, 4*size(elements), built)
+    allocate (newest(model%num_nodes), next(4*size(elements)), source=0)
+    allocate (normal(3, 4*size(elements)), source=0.0_rk)
+    do e = 1, size(elements)
+      share = side(e)*corner_shares(model%x(:, model%nodes(1:4, elements(e))))
+      do a = 1, 4
+        master = model%nodes(a, elements(e))
+        slave = model%nodes(a + 4, elements(e))
+        if (master == slave) cycle
+        p = newest(master)
+        do while (p > 0)
+          if (built%slave(1, p) == slave .and. dot_product(normal(:, p), share(:, a)) &
+              >= same_plane*norm2(normal(:, p))*norm2(share(:, a))) exit
+          p = next(p)
+        end do
+        if (p == 0) then
+          built%num_points = built%num_points + 1
+          p = built%num_points
+          next(p) = newest(master)
+          newest(master) = p
+          built%master(1, p) = master
+          built%slave(1, p) = slave
+          built%x(:, p) = model%x(:, master)
+        end if
+        normal(:, p) = normal(:, p) + share(:, a)
+        built%area(p) = built%area(p) + norm2(share(:, a))
+      end do
+    end do
+    built%shape = 1.0_rk
+    call close_points(normal, built)
+  end subroutine gather_pairs
+
+  !> Area vectors that belong to the corners of a facet: integrals of N_a n dA [m2].
+  pure function corner_shares(x) result(share)
+    real(rk), intent(in) :: x(3, 4) !< [m]
+    real(rk) :: share(3, 4)
+    real(rk) :: n(4), area(3)
+    integer :: q, a
+    share = 0.0_rk
+    do q = 1, size(quad_point, 2)
+      call facet_point(x, q, n, area)
+      do a = 1, 4
+        share(:, a) = share(:, a) + n(a)*area
+      end do
+    end do
+  end function corner_shares
+
+  !> Four points an element, each seeing the four pairs.
+  subroutine gather_gauss_points(model, elements, side, built)
+    type(mesh), intent(in) :: model
+    integer, intent(in) :: elements(:), side(:)
+    type(joint), intent(inout) :: built
+    real(rk), allocatable :: normal(:, :)
+    real(rk) :: x(3, 4), n(4), area(3)
+    integer :: e, q, p, nodes(8)
+
+    call open_points(4, 4*size(elements), built)
+    allocate (normal(3, 4*size(elements)))
+    do e = 1, size(elements)
+      nodes = model%nodes(:, elements(e))
+      if (all(nodes(:4) == nodes(5:))) cycle
+      x = model%x(:, nodes(:4))
+      do q = 1, 4
+        call facet_point(x, q, n, area)
+        built%num_points = built%num_points + 1
+        p = built%num_points
+        built%master(:, p) = nodes(:4)
+        built%slave(:, p) = nodes(5:)
+        built%shape(:, p) = n
+        built%x(:, p) = matmul(x, n)
+        built%area(p) = norm2(area)
+        normal(:, p) = side(e)*area
+      end do
+    end do
+    call close_points(normal, built)
+  end subroutine gather_gauss_points
+
+  !> Room for points.
+  subroutine open_points(nodes_a_side, capacity, built)
+    integer, intent(in) :: nodes_a_side, capacity
+    type(joint), intent(inout) :: built
+    built%num_points = 0
+    built%master = reshape([integer ::], [nodes_a_side, capacity], pad=[0])
+    built%slave = built%master
+    built%shape = reshape([real(rk) ::], [nodes_a_side, capacity], pad=[0.0_rk])
+    built%x = reshape([real(rk) ::], [3, capacity], pad=[0.0_rk])
+    built%area = built%x(1, :)
+  end subroutine open_points
+
+  !> Cuts the room to size and makes the local axes out of the normals.
+  subroutine close_points(normal, built)
+    real(rk), intent(in) :: normal(:, :) !< (3, capacity), of any length
+    type(joint), intent(inout) :: built
+    integer :: p, n
+    n = built%num_points
+    built%master = built%master(:, :n)
+    built%slave = built%slave(:, :n)
+    built%shape = built%shape(:, :n)
+    built%x = built%x(:, :n)
+    built%area = built%area(:n)
+    if (allocated(built%rotation)) deallocate (built%rotation)
+    allocate (built%rotation(3, 3, n))
+    do p = 1, n
+      built%rotation(:, :, p) = local_axes(normal(:, p))
+    end do
+  end subroutine close_points
+
+  !> Rows: normal, slip 1 (horizontal; x when the normal is vertical), slip 2 = normal x slip 1.
+  pure function local_axes(direction) result(rotation)
+    real(rk), intent(in) :: direction(3) !< along the normal, of any length
+    real(rk) :: rotation(3, 3)
+    real(rk) :: n(3), s(3)
+    n = direction/norm2(direction)
+    s = [-n(2), n(1), 0.0_rk]
+    if (norm2(s) <= vertical) s = [1.0_rk, 0.0_rk, 0.0_rk] - n(1)*n
+    s = s/norm2(s)
+    rotation(1, :) = n
+    rotation(2, :) = s
+    rotation(3, :) = cross(n, s)
+  end function local_axes
+end module element_joint8
