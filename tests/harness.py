@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-
 from keyway_tools.results_folder import ResultsFolder, Table
 
 if sys.version_info >= (3, 11):

@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import pytest
-
 from harness import check_case, read_case
 
 CASES = [read_case(path) for path in sorted(Path(__file__).parent.glob("*/case.toml"))]

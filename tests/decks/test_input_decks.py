@@ -2,10 +2,9 @@
 
 from pathlib import Path
 
-import pytest
-
 import batch
 import compare
+import pytest
 from harness import ROOT
 
 # Decks that take longer than a minute.

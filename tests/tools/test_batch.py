@@ -8,15 +8,13 @@ import sys
 import time
 from pathlib import Path
 
-import pytest
-
 import batch
+import pytest
 
 BATCH = Path(batch.__file__)
 
 # Acts by the first line of the deck: `ok VALUE`, `fail CODE`, `sleep SECONDS` or `crash`.
-PROGRAM = """#!{python}
-import json, os, signal, sys, time
+PROGRAM = """import json, os, signal, sys, time
 from pathlib import Path
 if sys.argv[1] == "--version":
     print("fake 1"); sys.exit()
@@ -30,8 +28,8 @@ if verb == "crash":
     os.kill(os.getpid(), signal.SIGSEGV)
 if verb == "fail":
     print("deck:1: wrong"); sys.exit(int(value))
-summary = {{"program": {{}}, "status": "finished", "message": "",
-    "envelopes": {{"S1": {{"anywhere": {{"value": float(value or 0)}}}}}}}}
+summary = {"program": {}, "status": "finished", "message": "",
+    "envelopes": {"S1": {"anywhere": {"value": float(value or 0)}}}}
 (folder / (deck.stem + ".json")).write_text(json.dumps(summary))
 """
 
@@ -39,8 +37,10 @@ summary = {{"program": {{}}, "status": "finished", "message": "",
 @pytest.fixture
 def place(tmp_path, monkeypatch):
     """A folder with the program, decks made by `deck(name, line)`, and the calls it saw."""
-    program = tmp_path / "keyway"
-    program.write_text(PROGRAM.format(python=sys.executable))
+    script, program = tmp_path / "fake.py", tmp_path / "keyway"
+    script.write_text(PROGRAM)
+    # Not as the script's first line: the interpreter's path may hold blanks.
+    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{script}" "$@"\n')
     program.chmod(0o755)
     monkeypatch.chdir(tmp_path)
     return tmp_path

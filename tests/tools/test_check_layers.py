@@ -2,9 +2,8 @@
 
 from pathlib import Path
 
-import pytest
-
 import check_layers
+import pytest
 
 
 def plant(root: Path, files: dict[str, str]) -> Path:

@@ -2,9 +2,8 @@
 
 from pathlib import Path
 
-import pytest
-
 import check_sizes
+import pytest
 from fortran_source import procedures
 
 

@@ -3,7 +3,6 @@
 import json
 
 import pytest
-
 from harness import Run, fault_of, find_value, read_case
 
 TABLE = "step,time,node,U1\n1,0.5,7,1.0\n1,1.0,7,-3.0\n1,1.0,9,2.0\n"
