@@ -8,6 +8,8 @@ set(sources
   solver_cholmod.f90
   solver_umfpack.f90
   solver_catalogue.f90
+  arpack.f90
+  eigen_modes.f90
   joint_operator.f90
   joint_forces.f90
   equilibrium.f90

@@ -1,0 +1,214 @@
+!> Frequencies and modes: K phi = (2 pi f)^2 M phi by shift-invert at zero.
+!>
+!> M may be singular (massless rock, jumps of light joints). With few unknowns that carry mass the
+!> problem is condensed onto them and solved as a dense one, else by Lanczos.
+module eigen_modes
+  use kinds, only: rk
+  use errors, only: error_type, raise
+  use dof_numbering, only: numbering
+  use matrix_pattern, only: pattern, multiply, diagonal
+  use analysis_state, only: vibration_mode
+  use assemble_forces, only: inertia_force
+  use linear_solver, only: equation_solver
+  use arpack, only: lanczos
+  implicit none
+  private
+  public :: find_modes
+
+  integer, parameter :: few = 200 !< unknowns with mass: dense
+  real(rk), parameter :: smallest_share = 1.0e-12_rk !< of the largest 1/f^2; below: no mode
+  real(rk), parameter :: largest_residual = 1.0e-6_rk !< |K phi - w^2 M phi| over |K phi|
+  real(rk), parameter :: two_pi = 2.0_rk*acos(-1.0_rk)
+
+  interface
+    subroutine dsygv(itype, jobz, uplo, n, a, lda, b, ldb, w, work, lwork, info)
+      import :: rk
+      implicit none
+      integer, intent(in) :: itype, n, lda, ldb, lwork
+      character, intent(in) :: jobz, uplo
+      real(rk), intent(inout) :: a(lda, n), b(ldb, n)
+      real(rk), intent(out) :: w(n), work(lwork)
+      integer, intent(out) :: info
+    end subroutine dsygv
+  end interface
+
+contains
+
+  !> The lowest modes, ascending, of unit modal mass, with their effective masses.
+  subroutine find_modes(matrix, numbers, stiffness, mass, solver, num_modes, modes, error)
+    type(pattern), intent(in) :: matrix
+    type(numbering), intent(in) :: numbers
+    real(rk), intent(in) :: stiffness(:) !< values of K, closed joints included
+    real(rk), intent(in) :: mass(:) !< values of M, added mass included
+    class(equation_solver), intent(inout) :: solver !< holds the factor of `stiffness`
+    integer, intent(in) :: num_modes
+    type(vibration_mode), allocatable, intent(out) :: modes(:)
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: lambda(:), phi(:, :), d(:)
+    integer, allocatable :: massive(:)
+    integer :: j
+    allocate (d(matrix%num_total))
+    call diagonal(matrix, mass, d)
+    allocate (massive, source=pack([(j, j=1, matrix%num_free)], d(:matrix%num_free) > 0.0_rk))
+    if (size(massive) < num_modes) then
+      call refuse(num_modes, size(massive), error)
+      return
+    end if
+    allocate (lambda(num_modes), phi(matrix%num_free, num_modes))
+    if (size(massive) <= max(few, num_modes + 1)) then
+      call condense(matrix, mass, solver, massive, lambda, phi, error)
+    else
+      call lanczos(matrix, mass, solver, min(2*num_modes + 10, size(massive)), lambda, phi, error)
+    end if
+    if (allocated(error)) return
+    call sort_modes(lambda, phi)
+    call check_residuals(matrix, stiffness, mass, lambda, phi, error)
+    if (allocated(error)) return
+    call describe_modes(matrix, numbers, mass, lambda, phi, modes)
+  end subroutine find_modes
+
+  !> More modes were asked than there can be.
+  subroutine refuse(num_modes, num_massive, error)
+    integer, intent(in) :: num_modes, num_massive
+    type(error_type), allocatable, intent(out) :: error
+    character(120) :: text
+    write (text, '(2(i0,a))') num_modes, ' modes were asked for, but only ', num_massive, &
+      ' free degrees of freedom carry mass'
+    call raise(error, trim(text))
+  end subroutine refuse
+
+  !> Dense: G M y = y/lambda with G the flexibility of the unknowns that carry mass.
+  subroutine condense(matrix, mass, solver, massive, lambda, phi, error)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:)
+    class(equation_solver), intent(inout) :: solver
+    integer, intent(in) :: massive(:)
+    real(rk), intent(out) :: lambda(:), phi(:, :)
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: g(:, :), m(:, :), mu(:), work(:)
+    integer :: k, n, status
+    n = size(massive)
+    allocate (mu(n), work(70*n))
+    call condense_mass(matrix, mass, solver, massive, g, m, error)
+    if (allocated(error)) return
+    ! The vectors overwrite m and are scaled to y^T G^-1 y = 1, so that y^T M y = mu.
+    call dsygv(3, 'V', 'L', n, m, n, g, n, mu, work, size(work), status)
+    if (status /= 0) then
+      call raise(error, 'the dense eigenvalue problem failed')
+    else if (mu(n - size(lambda) + 1) < smallest_share*mu(n)) then
+      call refuse(size(lambda), count(mu >= smallest_share*mu(n)), error)
+    end if
+    if (allocated(error)) return
+    do k = 1, size(lambda)
+      lambda(k) = 1.0_rk/mu(n + 1 - k)
+      call spread_mode(matrix, mass, solver, massive, sqrt(lambda(k))*m(:, n + 1 - k), lambda(k), &
+                       phi(:, k:k), error)
+      if (allocated(error)) return
+    end do
+  end subroutine condense
+
+  !> Flexibility and mass of the unknowns that carry mass.
+  subroutine condense_mass(matrix, mass, solver, massive, g, m, error)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:)
+    class(equation_solver), intent(inout) :: solver
+    integer, intent(in) :: massive(:)
+    real(rk), allocatable, intent(out) :: g(:, :), m(:, :) !< (massive, massive)
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: x(:, :), y(:)
+    integer :: k
+    allocate (g(size(massive), size(massive)), m(size(massive), size(massive)))
+    allocate (x(matrix%num_total, 1), y(matrix%num_total))
+    do k = 1, size(massive)
+      x = 0.0_rk
+      x(massive(k), 1) = 1.0_rk
+      call multiply(matrix, mass, x(:, 1), y)
+      m(:, k) = y(massive)
+      call solver%solve(x(:matrix%num_free, :), error)
+      if (allocated(error)) return
+      g(:, k) = x(massive, 1)
+    end do
+  end subroutine condense_mass
+
+  !> The whole mode from its part with mass: phi = lambda K^-1 M phi.
+  subroutine spread_mode(matrix, mass, solver, massive, part, lambda, phi, error)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:)
+    class(equation_solver), intent(inout) :: solver
+    integer, intent(in) :: massive(:)
+    real(rk), intent(in) :: part(:), lambda
+    real(rk), intent(out) :: phi(:, :) !< (num_free, 1)
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: x(:), y(:)
+    allocate (x(matrix%num_total), y(matrix%num_total))
+    x = 0.0_rk
+    x(massive) = lambda*part
+    call multiply(matrix, mass, x, y)
+    phi(:, 1) = y(:matrix%num_free)
+    call solver%solve(phi, error)
+  end subroutine spread_mode
+
+  !> Ascending; the largest component of each mode is positive.
+  pure subroutine sort_modes(lambda, phi)
+    real(rk), intent(inout) :: lambda(:), phi(:, :)
+    real(rk), allocatable :: swap(:)
+    real(rk) :: lowest
+    integer :: k, other
+    do k = 1, size(lambda)
+      other = k - 1 + minloc(lambda(k:), 1)
+      lowest = lambda(other)
+      lambda(other) = lambda(k)
+      lambda(k) = lowest
+      allocate (swap(size(phi, 1)), source=phi(:, other))
+      phi(:, other) = phi(:, k)
+      phi(:, k) = swap
+      if (swap(maxloc(abs(swap), 1)) < 0.0_rk) phi(:, k) = -swap
+      deallocate (swap)
+    end do
+  end subroutine sort_modes
+
+  !> Fails when a mode does not satisfy its equation.
+  subroutine check_residuals(matrix, stiffness, mass, lambda, phi, error)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: stiffness(:), mass(:), lambda(:), phi(:, :)
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: x(:), elastic(:), inertia(:)
+    character(80) :: text
+    integer :: k
+    allocate (x(matrix%num_total), elastic(matrix%num_total), inertia(matrix%num_total))
+    x = 0.0_rk
+    do k = 1, size(lambda)
+      x(:matrix%num_free) = phi(:, k)
+      call multiply(matrix, stiffness, x, elastic)
+      call multiply(matrix, mass, x, inertia)
+      elastic(matrix%num_free + 1:) = 0.0_rk
+      inertia(matrix%num_free + 1:) = 0.0_rk
+      if (norm2(elastic - lambda(k)*inertia) <= largest_residual*norm2(elastic)) cycle
+      write (text, '(a,i0,a)') 'mode ', k, ' does not satisfy its equation'
+      call raise(error, trim(text))
+      return
+    end do
+  end subroutine check_residuals
+
+  !> Frequencies, shapes on the nodes, effective masses (phi^T M r)^2.
+  subroutine describe_modes(matrix, numbers, mass, lambda, phi, modes)
+    type(pattern), intent(in) :: matrix
+    type(numbering), intent(in) :: numbers
+    real(rk), intent(in) :: mass(:), lambda(:), phi(:, :)
+    type(vibration_mode), allocatable, intent(out) :: modes(:)
+    real(rk), allocatable :: force(:, :), q(:)
+    integer :: k, i
+    allocate (modes(size(lambda)), force(matrix%num_total, 3), q(matrix%num_total))
+    do i = 1, 3
+      call inertia_force(numbers, matrix, mass, i, force(:, i))
+    end do
+    q = 0.0_rk
+    do k = 1, size(lambda)
+      q(:matrix%num_free) = phi(:, k)
+      modes(k)%hz = sqrt(lambda(k))/two_pi
+      modes(k)%effective_mass = matmul(q, force)**2
+      allocate (modes(k)%shape(3, numbers%num_nodes))
+      call numbers%expand(q, modes(k)%shape)
+    end do
+  end subroutine describe_modes
+end module eigen_modes
