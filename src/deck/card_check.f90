@@ -2,33 +2,12 @@
 module card_check
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
-  use keyword_spec, only: keyword
-  use parse_text, only: without_blanks
+  use keyword_spec, only: find_spec, keyword
   implicit none
   private
-  public :: check_card, match_card, find_spec
+  public :: check_card, match_card
 
 contains
-
-  !> Position of the specification a card belongs to; names compare with blanks removed.
-  !>
-  !> Where two keywords share a name (*DAMPING of a material and of a step), the one whose `place`
-  !> is the given one is found, else the first.
-  pure integer function find_spec(specs, name, where_it_stands) result(found)
-    type(keyword), intent(in) :: specs(:)
-    character(*), intent(in) :: name !< upper case, without the star
-    character(*), intent(in), optional :: where_it_stands !< 'model', 'step', 'material', ..
-    character(:), allocatable :: wanted
-    integer :: i
-    found = 0
-    wanted = without_blanks(name)
-    do i = size(specs), 1, -1
-      if (without_blanks(specs(i)%name) /= wanted) cycle
-      found = i
-      if (.not. present(where_it_stands) .or. .not. allocated(specs(i)%place)) cycle
-      if (specs(i)%place == where_it_stands) return
-    end do
-  end function find_spec
 
   !> Finds the keyword of a card. Unknown or not yet available: an error; without effect: noted.
   subroutine match_card(the_card, specs, faults, found, where_it_stands)

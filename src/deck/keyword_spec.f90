@@ -2,10 +2,11 @@
 !> `keyway --keywords` are made.
 module keyword_spec
   use kinds, only: rk
+  use parse_text, only: without_blanks
   implicit none
   private
   public :: keyword, field
-  public :: parameter_default, column_default, column_of_field
+  public :: parameter_default, column_default, column_of_field, find_spec
   public :: kind_real, kind_integer, kind_word, kind_flag, kind_choice, kind_text, kind_reference
   public :: available, later, without_effect
 
@@ -48,6 +49,26 @@ module keyword_spec
     integer :: fewest_lines = 0, most_lines = huge(1) !< of data
   end type keyword
 contains
+
+  !> Position of the specification a card belongs to; names compare with blanks removed.
+  !>
+  !> Where two keywords share a name (*DAMPING of a material and of a step), the one whose `place`
+  !> is the given one is found, else the first.
+  pure integer function find_spec(specs, name, where_it_stands) result(found)
+    type(keyword), intent(in) :: specs(:)
+    character(*), intent(in) :: name !< upper case, without the star
+    character(*), intent(in), optional :: where_it_stands !< 'model', 'step', 'material', ..
+    character(:), allocatable :: wanted
+    integer :: i
+    found = 0
+    wanted = without_blanks(name)
+    do i = size(specs), 1, -1
+      if (without_blanks(specs(i)%name) /= wanted) cycle
+      found = i
+      if (.not. present(where_it_stands) .or. .not. allocated(specs(i)%place)) cycle
+      if (specs(i)%place == where_it_stands) return
+    end do
+  end function find_spec
 
   !> Default of a parameter, '' where there is none.
   pure function parameter_default(spec, name) result(default)
