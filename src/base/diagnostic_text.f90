@@ -22,13 +22,13 @@ contains
     type(diagnostic_list), intent(in) :: list
     character(:), allocatable :: text !< lines with new_line between them, none at the end
     integer :: i
-    text = ""
+    text = ''
     do i = 1, list%num_kept
-      if (i > 1) text = text//new_line("a")
+      if (i > 1) text = text//new_line('a')
       text = text//text_of_diagnostic(list%errors(i))
     end do
     if (list%num_errors > list%num_kept) then
-      text = text//new_line("a")//"and "//as_text(list%num_errors - list%num_kept)//" more"
+      text = text//new_line('a')//'and '//as_text(list%num_errors - list%num_kept)//' more'
     end if
   end function text_of_errors
 
@@ -37,9 +37,9 @@ contains
     type(diagnostic_list), intent(in) :: list
     character(:), allocatable :: text !< lines with new_line between them, none at the end
     integer :: i
-    text = ""
+    text = ''
     do i = 1, list%num_warnings
-      if (i > 1) text = text//new_line("a")
+      if (i > 1) text = text//new_line('a')
       text = text//headline(list%warnings(i))
     end do
   end function text_of_warnings
@@ -50,7 +50,7 @@ contains
     character(:), allocatable :: text
     text = headline(fault)//excerpt(fault%spot)
     if (allocated(fault%first%file)) then
-      text = text//new_line("a")//"  first defined here: "//fault%first%file//":"// &
+      text = text//new_line('a')//'  first defined here: '//fault%first%file//':'// &
              as_text(fault%first%line)//excerpt(fault%first)
     end if
   end function text_of_diagnostic
@@ -59,14 +59,14 @@ contains
   pure function headline(fault) result(text)
     type(diagnostic), intent(in) :: fault
     character(:), allocatable :: text
-    text = fault%spot%file//": "
-    if (fault%spot%line > 0) text = fault%spot%file//":"//as_text(fault%spot%line)//": "
+    text = fault%spot%file//': '
+    if (fault%spot%line > 0) text = fault%spot%file//':'//as_text(fault%spot%line)//': '
     if (allocated(fault%spot%keyword)) then
-      if (len(fault%spot%keyword) > 0) text = text//"*"//fault%spot%keyword//": "
+      if (len(fault%spot%keyword) > 0) text = text//'*'//fault%spot%keyword//': '
     end if
-    if (fault%severity /= severity_error) text = text//"warning: "
+    if (fault%severity /= severity_error) text = text//'warning: '
     text = text//printable(fault%problem)
-    if (len(fault%expected) > 0) text = text//"; expected "//fault%expected
+    if (len(fault%expected) > 0) text = text//'; expected '//fault%expected
     if (len(fault%nearest) > 0) text = text//"; did you mean '"//fault%nearest//"'?"
   end function headline
 
@@ -75,7 +75,7 @@ contains
     type(place), intent(in) :: spot
     character(:), allocatable :: text
     integer :: first, last
-    text = ""
+    text = ''
     if (.not. allocated(spot%source) .or. spot%line == 0) return
     first = 1
     last = len_trim(spot%source)
@@ -83,9 +83,9 @@ contains
       first = max(1, min(spot%column - margin, last - widest_line + 1))
       last = min(last, first + widest_line - 1)
     end if
-    text = new_line("a")//line_label(as_text(spot%line))//printable(spot%source(first:last))
+    text = new_line('a')//line_label(as_text(spot%line))//printable(spot%source(first:last))
     if (spot%column == 0 .or. spot%length == 0) return
-    text = text//new_line("a")//line_label("")//blank_like(spot, first)// &
+    text = text//new_line('a')//line_label('')//blank_like(spot, first)// &
            carets(spot, last)
   end function excerpt
 
@@ -93,7 +93,7 @@ contains
   pure function line_label(number) result(text)
     character(*), intent(in) :: number !< of the line, or ''
     character(:), allocatable :: text
-    text = repeat(" ", max(number_width - len(number), 0))//number//" | "
+    text = repeat(' ', max(number_width - len(number), 0))//number//' | '
   end function line_label
 
   !> Blanks as wide as what stands before the word: tabs stay, letters of several bytes count once.
@@ -102,14 +102,14 @@ contains
     integer, intent(in) :: first !< first byte of the line that is shown
     character(:), allocatable :: text
     integer :: i
-    text = ""
+    text = ''
     do i = first, spot%column - 1
       if (i > len(spot%source)) then
-        text = text//" "
+        text = text//' '
       else if (spot%source(i:i) == tab) then
         text = text//tab
       else if (.not. continues_letter(spot%source(i:i))) then
-        text = text//" "
+        text = text//' '
       end if
     end do
   end function blank_like
@@ -120,9 +120,9 @@ contains
     integer, intent(in) :: last !< last byte of the line that is shown
     character(:), allocatable :: text
     integer :: i
-    text = "^"
+    text = '^'
     do i = spot%column + 1, min(spot%column + spot%length - 1, last)
-      if (.not. continues_letter(spot%source(i:i))) text = text//"^"
+      if (.not. continues_letter(spot%source(i:i))) text = text//'^'
     end do
   end function carets
 
@@ -140,7 +140,7 @@ contains
     clean = text
     do i = 1, len(text)
       if (ichar(text(i:i)) < 32 .and. text(i:i) /= tab .or. ichar(text(i:i)) == 127) then
-        clean(i:i) = "?"
+        clean(i:i) = '?'
       end if
     end do
   end function printable

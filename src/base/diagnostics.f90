@@ -61,8 +61,8 @@ contains
     new%severity = severity
     new%spot = spot
     new%problem = problem
-    new%expected = ""
-    new%nearest = ""
+    new%expected = ''
+    new%nearest = ''
     if (present(expected)) new%expected = expected
     if (present(nearest)) new%nearest = nearest
     if (present(first)) new%first = first

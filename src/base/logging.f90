@@ -31,7 +31,7 @@ module logging
 
   interface
     !> C library: 1 where the file descriptor is a terminal.
-    function isatty(descriptor) result(answer) bind(C, name="isatty")
+    function isatty(descriptor) result(answer) bind(C, name='isatty')
       import :: c_int
       implicit none
       integer(c_int), intent(in), value :: descriptor
@@ -52,7 +52,7 @@ contains
     self%is_quiet = is_quiet
     self%is_terminal = isatty(standard_error) == 1
     if (.not. present(path)) return
-    open (newunit=self%unit, file=path, status="replace", action="write", iostat=status, &
+    open (newunit=self%unit, file=path, status='replace', action='write', iostat=status, &
           iomsg=reason)
     if (status == 0) return
     self%unit = 0
@@ -73,7 +73,7 @@ contains
     character(*), intent(in) :: line !< may hold several lines
     integer :: status
     if (self%unit == 0) return
-    write (self%unit, "(a)", iostat=status) line
+    write (self%unit, '(a)', iostat=status) line
     if (status == 0) flush (self%unit, iostat=status)
     if (status /= 0) self%has_failed = .true.
   end subroutine note
@@ -90,7 +90,7 @@ contains
       return
     end if
     num_over = max(self%width_in_place - len(line), 0)
-    write (error_unit, "(3a)", advance="no") return, line, repeat(" ", num_over)
+    write (error_unit, '(3a)', advance='no') return, line, repeat(' ', num_over)
     flush (error_unit)
     self%width_in_place = len(line)
   end subroutine progress
@@ -116,13 +116,13 @@ contains
     class(run_log), intent(inout) :: self
     character(*), intent(in) :: line
     call end_progress(self)
-    write (error_unit, "(a)") line
+    write (error_unit, '(a)') line
   end subroutine show
 
   !> Leaves the progress line where it stands and goes on below it.
   subroutine end_progress(self)
     class(run_log), intent(inout) :: self
-    if (self%width_in_place > 0) write (error_unit, "(a)") ""
+    if (self%width_in_place > 0) write (error_unit, '(a)') ''
     self%width_in_place = 0
   end subroutine end_progress
 end module logging

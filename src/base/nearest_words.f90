@@ -5,7 +5,7 @@ module nearest_words
   private
   public :: nearest_word, nearest_choice, word_distance
 
-  character(*), parameter :: separator = "|" !< between the words of a list of choices
+  character(*), parameter :: separator = '|' !< between the words of a list of choices
 
 contains
 
@@ -17,7 +17,7 @@ contains
     character(*), intent(in) :: candidates(:) !< known words; blanks at their ends do not count
     character(:), allocatable :: nearest
     integer :: i, distance, smallest
-    nearest = ""
+    nearest = ''
     smallest = most_changes(word) + 1
     do i = 1, size(candidates)
       if (abs(len_trim(candidates(i)) - len_trim(word)) >= smallest) cycle

@@ -26,7 +26,7 @@ module parse_text
 
   interface
     !> C library: nearest double of a decimal number.
-    pure function strtod(text, tail) result(value) bind(C, name="strtod")
+    pure function strtod(text, tail) result(value) bind(C, name='strtod')
       import :: c_char, c_double, c_ptr
       implicit none
       ! allow(C071) a C string has no length
@@ -77,11 +77,11 @@ contains
     is_integer = .false.
     call find_ends(text, first, last)
     if (first > last) return
-    if (scan(text(first:first), "+-") == 1) first = first + 1
+    if (scan(text(first:first), '+-') == 1) first = first + 1
     if (first > last) return
     total = 0
     do position = first, last
-      digit = iachar(text(position:position)) - iachar("0")
+      digit = iachar(text(position:position)) - iachar('0')
       if (digit < 0 .or. digit > 9) return
       total = 10*total + digit
       if (total > huge(value)) return
@@ -89,7 +89,7 @@ contains
     is_integer = .true.
     value = int(total)
     if (first > 1) then
-      if (text(first - 1:first - 1) == "-") value = -value
+      if (text(first - 1:first - 1) == '-') value = -value
     end if
   end subroutine parse_integer
 
@@ -103,18 +103,18 @@ contains
     is_number = .false.
     call find_ends(text, position, last)
     if (position > last) return
-    if (text(position:position) == "-" .or. text(position:position) == "+") then
-      parts%is_negative = text(position:position) == "-"
+    if (text(position:position) == '-' .or. text(position:position) == '+') then
+      parts%is_negative = text(position:position) == '-'
       position = position + 1
     end if
     num_seen = 0
     has_point = .false.
     do while (position <= last)
-      digit = iachar(text(position:position)) - iachar("0")
+      digit = iachar(text(position:position)) - iachar('0')
       if (digit >= 0 .and. digit <= 9) then
         num_seen = num_seen + 1
         call add_digit(parts, digit, has_point)
-      else if (text(position:position) == "." .and. .not. has_point) then
+      else if (text(position:position) == '.' .and. .not. has_point) then
         has_point = .true.
       else
         exit
@@ -148,19 +148,19 @@ contains
     integer :: position, digit, power
     is_right = len(tail) == 0
     if (is_right) return
-    if (scan(tail(1:1), "eEdD") == 0) return
+    if (scan(tail(1:1), 'eEdD') == 0) return
     position = 2
     if (len(tail) > 1) then
-      if (scan(tail(2:2), "+-") == 1) position = 3
+      if (scan(tail(2:2), '+-') == 1) position = 3
     end if
     if (position > len(tail)) return
     power = 0
     do position = position, len(tail)
-      digit = iachar(tail(position:position)) - iachar("0")
+      digit = iachar(tail(position:position)) - iachar('0')
       if (digit < 0 .or. digit > 9) return
       power = min(10*power + digit, longest_exponent)
     end do
-    if (tail(2:2) == "-") power = -power
+    if (tail(2:2) == '-') power = -power
     parts%exponent = parts%exponent + power
     is_right = .true.
   end subroutine add_exponent
@@ -173,7 +173,7 @@ contains
     integer :: i
     do i = 1, len(text)
       letters(i) = text(i:i)
-      if (scan(text(i:i), "dD") == 1) letters(i) = "e"
+      if (scan(text(i:i), 'dD') == 1) letters(i) = 'e'
     end do
     letters(len(text) + 1) = c_null_char
     value = strtod(letters, c_null_ptr)
@@ -186,11 +186,11 @@ contains
     first = 1
     last = len(text)
     do while (first <= last)
-      if (text(first:first) /= " " .and. text(first:first) /= tab) exit
+      if (text(first:first) /= ' ' .and. text(first:first) /= tab) exit
       first = first + 1
     end do
     do while (last >= first)
-      if (text(last:last) /= " " .and. text(last:last) /= tab) exit
+      if (text(last:last) /= ' ' .and. text(last:last) /= tab) exit
       last = last - 1
     end do
   end subroutine find_ends
@@ -202,7 +202,7 @@ contains
     integer :: i
     do i = 1, len(text)
       upper(i:i) = text(i:i)
-      if (text(i:i) >= "a" .and. text(i:i) <= "z") upper(i:i) = achar(iachar(text(i:i)) - 32)
+      if (text(i:i) >= 'a' .and. text(i:i) <= 'z') upper(i:i) = achar(iachar(text(i:i)) - 32)
     end do
   end function upper_case
 
@@ -216,10 +216,10 @@ contains
     used = 0
     was_blank = .true.
     do i = 1, len(text)
-      is_blank = text(i:i) == " " .or. text(i:i) == tab
+      is_blank = text(i:i) == ' ' .or. text(i:i) == tab
       if (.not. (is_blank .and. was_blank)) then
         used = used + 1
-        room(used:used) = merge(" ", text(i:i), is_blank)
+        room(used:used) = merge(' ', text(i:i), is_blank)
       end if
       was_blank = is_blank
     end do
@@ -234,7 +234,7 @@ contains
     integer :: i, used
     used = 0
     do i = 1, len(text)
-      if (text(i:i) == " " .or. text(i:i) == tab) cycle
+      if (text(i:i) == ' ' .or. text(i:i) == tab) cycle
       used = used + 1
       room(used:used) = text(i:i)
     end do

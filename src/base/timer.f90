@@ -39,14 +39,14 @@ contains
 
   !> Most memory the process has held so far [MB]; 0 where the system does not tell.
   real(rk) function peak_memory() result(megabytes)
-    character(*), parameter :: wanted = "VmHWM:"
+    character(*), parameter :: wanted = 'VmHWM:'
     character(256) :: line
     integer :: unit, status
     megabytes = 0.0_rk
-    open (newunit=unit, file="/proc/self/status", status="old", action="read", iostat=status)
+    open (newunit=unit, file='/proc/self/status', status='old', action='read', iostat=status)
     if (status /= 0) return
     do
-      read (unit, "(a)", iostat=status) line
+      read (unit, '(a)', iostat=status) line
       if (status /= 0) exit
       if (index(line, wanted) /= 1) cycle
       read (line(len(wanted) + 1:), *, iostat=status) megabytes ! followed by 'kB'

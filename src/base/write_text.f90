@@ -27,7 +27,7 @@ contains
     integer(long), intent(in) :: number
     character(:), allocatable :: text
     character(20) :: room
-    write (room, "(i0)") number
+    write (room, '(i0)') number
     text = trim(room)
   end function long_as_text
 
@@ -38,18 +38,18 @@ contains
     character(32) :: room
     character(12) :: style
     integer :: split, exponent
-    write (room, "(es13.5e3)") number
-    split = index(room, "E")
+    write (room, '(es13.5e3)') number
+    split = index(room, 'E')
     if (split == 0) then ! Inf, NaN
       text = trim(adjustl(room))
       return
     end if
-    read (room(split + 1:split + 4), "(i4)") exponent
+    read (room(split + 1:split + 4), '(i4)') exponent
     if (exponent < lowest_plain .or. exponent > highest_plain) then
       text = without_zeros(trim(adjustl(room(:split - 1))))
-      if (exponent /= 0) text = text//"e"//integer_as_text(exponent)
+      if (exponent /= 0) text = text//'e'//integer_as_text(exponent)
     else
-      write (style, "(a,i0,a)") "(f32.", num_decimals - exponent, ")"
+      write (style, '(a,i0,a)') '(f32.', num_decimals - exponent, ')'
       write (room, style) number
       text = without_zeros(trim(adjustl(room)))
     end if
@@ -60,8 +60,8 @@ contains
     character(*), intent(in) :: number !< holds a point
     character(:), allocatable :: text
     integer :: last
-    last = verify(number, "0", back=.true.)
-    if (number(last:last) == ".") last = last - 1
+    last = verify(number, '0', back=.true.)
+    if (number(last:last) == '.') last = last - 1
     text = number(:last)
   end function without_zeros
 end module write_text

@@ -17,7 +17,7 @@ contains
     integer, intent(out) :: found !< position in `specs`; 0: there is nothing to do for this card
     character(*), intent(in), optional :: where_it_stands !< see `find_spec`
     found = find_spec(specs, the_card%keyword, where_it_stands)
-    if (found == 0) call the_card%fault(faults, "unknown keyword")
+    if (found == 0) call the_card%fault(faults, 'unknown keyword')
   end subroutine match_card
 
   !> Compares a card with its specification, keeps the specification in the card.

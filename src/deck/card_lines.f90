@@ -96,8 +96,8 @@ contains
     type(place) :: spot
     integer :: star, comma, last
     associate (head => self%body(self%rows(1)%first:self%rows(1)%last))
-      star = max(index(head, "*"), 1)
-      comma = index(head, ",")
+      star = max(index(head, '*'), 1)
+      comma = index(head, ',')
       if (comma == 0) comma = len(head) + 1
       last = len_trim(head(:comma - 1))
     end associate
@@ -113,8 +113,8 @@ contains
     integer :: row
     row = 1
     if (line > 0) row = self%num_heads + line
-    write (number, "(i0)") self%rows(row)%number
-    name = self%files(self%rows(row)%file)%path//":"//trim(number)
+    write (number, '(i0)') self%rows(row)%number
+    name = self%files(self%rows(row)%file)%path//':'//trim(number)
   end function file_and_line
 
   !> The data line ends in a comma.
@@ -123,9 +123,9 @@ contains
     integer, intent(in) :: line !< data line
     integer :: last
     associate (row => self%rows(self%num_heads + line))
-      last = verify(self%body(row%first:row%last), " "//achar(9), back=.true.)
+      last = verify(self%body(row%first:row%last), ' '//achar(9), back=.true.)
       ends_in_comma = last > 0
-      if (last > 0) ends_in_comma = self%body(row%first + last - 1:row%first + last - 1) == ","
+      if (last > 0) ends_in_comma = self%body(row%first + last - 1:row%first + last - 1) == ','
     end associate
   end function ends_in_comma
 end module card_lines

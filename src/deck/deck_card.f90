@@ -86,7 +86,7 @@ contains
     character(:), allocatable :: value
     integer :: i
     i = self%find_parameter(name)
-    value = ""
+    value = ''
     if (i > 0) then
       value = self%lines%body(self%parameters(i)%value_first:self%parameters(i)%value_last)
     end if

@@ -15,19 +15,19 @@ contains
     character(200) :: message
     integer(long) :: num_bytes
     integer :: unit, status
-    reason = ""
-    open (newunit=unit, file=path, access="stream", form="unformatted", status="old", &
-          action="read", iostat=status, iomsg=message)
+    reason = ''
+    open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
+          action='read', iostat=status, iomsg=message)
     if (status /= 0) then
       reason = cause(message)
       return
     end if
     inquire (unit=unit, size=num_bytes)
     if (num_bytes < 0 .or. num_bytes >= huge(1)) then
-      reason = "not a file of less than 2 GB"
+      reason = 'not a file of less than 2 GB'
     else
       allocate (character(num_bytes) :: text)
-      message = ""
+      message = ''
       if (num_bytes > 0) read (unit, iostat=status, iomsg=message) text
       if (status /= 0) reason = cause(message)
     end if
@@ -39,7 +39,7 @@ contains
     character(*), intent(in) :: message
     character(:), allocatable :: reason
     reason = trim(message(index(message, "': ") + merge(3, 1, index(message, "': ") > 0):))
-    if (len(reason) == 0) reason = "it is no file"
+    if (len(reason) == 0) reason = 'it is no file'
   end function cause
 
   !> Path of a file that is named in another: relative paths start where that one is.
@@ -48,10 +48,10 @@ contains
     character(*), intent(in) :: name !< as it is named
     character(:), allocatable :: joined
     joined = name
-    if (name(1:1) /= "/") joined = path(:index(path, "/", back=.true.))//name
-    do while (index(joined, "/./") > 0)
-      joined = joined(:index(joined, "/./"))//joined(index(joined, "/./") + 3:)
+    if (name(1:1) /= '/') joined = path(:index(path, '/', back=.true.))//name
+    do while (index(joined, '/./') > 0)
+      joined = joined(:index(joined, '/./'))//joined(index(joined, '/./') + 3:)
     end do
-    if (index(joined, "./") == 1 .and. index(path, "./") /= 1) joined = joined(3:)
+    if (index(joined, './') == 1 .and. index(path, './') /= 1) joined = joined(3:)
   end function path_beside
 end module deck_file

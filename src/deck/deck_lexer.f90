@@ -50,8 +50,8 @@ contains
     if (source%lines(1)%is_keyword) return
     associate (line => source%lines(1))
       call faults%add(severity_error, &
-                      spot_in_source(source, line, 1, line%last - line%first + 1, ""), &
-                      "data above the first keyword", "a line that begins with '*'")
+                      spot_in_source(source, line, 1, line%last - line%first + 1, ''), &
+                      'data above the first keyword', "a line that begins with '*'")
     end associate
   end subroutine fault_headless_data
 
@@ -137,7 +137,7 @@ contains
     goes_on = .false.
     associate (body => new%lines%body, origin => new%lines%rows(row))
       i = new%lines%rows(row - 1)%last
-      if (body(i:i) /= ",") return
+      if (body(i:i) /= ',') return
       spec = find_spec(specs, new%keyword)
       position = 1
       associate (line => body(origin%first:origin%last))
@@ -150,7 +150,7 @@ contains
                       specs(spec)%parameters(i)%name == single_blanks(upper_case(line(first:last)))
           end do
         end if
-        goes_on = goes_on .or. index(line, "=") > 0
+        goes_on = goes_on .or. index(line, '=') > 0
       end associate
     end associate
   end function goes_on
@@ -191,7 +191,7 @@ contains
       if (given%value_first <= given%value_last .and. (quote == "'" .or. quote == '"')) then
         call faults%add(severity_error, &
                         new%lines%spot(given%row, given%value_first, given%value_last, &
-                                       new%keyword), "a quote is not closed")
+                                       new%keyword), 'a quote is not closed')
       end if
     end associate
     if (new%has(given%name)) then
@@ -229,7 +229,7 @@ contains
     integer :: i
     num_commas = 0
     do i = 1, len(new%lines%body)
-      if (new%lines%body(i:i) == ",") num_commas = num_commas + 1
+      if (new%lines%body(i:i) == ',') num_commas = num_commas + 1
     end do
   end function count_commas
 

@@ -61,8 +61,8 @@ contains
     call find_or_load(path, named_at, source, faults, file)
     if (file == 0) return
     if (any(parents == file) .or. size(parents) > deepest) then
-      call faults%add(severity_error, named_at, "the file includes itself", &
-                      "files that do not name each other in a circle")
+      call faults%add(severity_error, named_at, 'the file includes itself', &
+                      'files that do not name each other in a circle')
       return
     end if
     call find_lines(source%files(file)%text, file, lines)
@@ -134,7 +134,7 @@ contains
         lines(num_used)%file = file
         lines(num_used)%number = number
         lines(num_used)%first = first
-        lines(num_used)%is_keyword = text(begin:begin) == "*"
+        lines(num_used)%is_keyword = text(begin:begin) == '*'
       end if
       first = last + 2
     end do
@@ -172,7 +172,7 @@ contains
   pure logical function counts(line)
     character(*), intent(in) :: line !< without blanks around it
     counts = len(line) > 0
-    if (len(line) > 1) counts = line(1:2) /= "**"
+    if (len(line) > 1) counts = line(1:2) /= '**'
   end function counts
 
   !> The line is *INCLUDE.
@@ -183,10 +183,10 @@ contains
     is_include = .false.
     if (.not. line%is_keyword) return
     associate (text => source%files(line%file)%text(line%first:line%last))
-      star = index(text, "*")
-      comma = index(text, ",")
+      star = index(text, '*')
+      comma = index(text, ',')
       if (comma == 0) comma = len(text) + 1
-      is_include = without_blanks(upper_case(text(star + 1:comma - 1))) == "INCLUDE"
+      is_include = without_blanks(upper_case(text(star + 1:comma - 1))) == 'INCLUDE'
     end associate
   end function is_include
 
@@ -199,20 +199,20 @@ contains
     type(place), intent(out) :: spot !< of the name
     integer, intent(out) :: num_heads !< lines it takes
     integer :: i
-    name = ""
+    name = ''
     num_heads = 1
-    spot = spot_in_source(source, lines(1), 1, lines(1)%last - lines(1)%first + 1, "INCLUDE")
+    spot = spot_in_source(source, lines(1), 1, lines(1)%last - lines(1)%first + 1, 'INCLUDE')
     if (size(lines) > 1) then
       associate (text => source%files(lines(2)%file)%text)
-        if (text(lines(1)%last:lines(1)%last) == "," .and. .not. lines(2)%is_keyword .and. &
-            index(text(lines(2)%first:lines(2)%last), "=") > 0) num_heads = 2
+        if (text(lines(1)%last:lines(1)%last) == ',' .and. .not. lines(2)%is_keyword .and. &
+            index(text(lines(2)%first:lines(2)%last), '=') > 0) num_heads = 2
       end associate
     end if
     do i = 1, num_heads
       call read_include_words(source, lines(i), i == 1, faults, name, spot)
     end do
     if (len(name) > 0) return
-    call faults%add(severity_error, spot, "no file is named", "INPUT=file")
+    call faults%add(severity_error, spot, 'no file is named', 'INPUT=file')
   end subroutine read_include
 
   !> Reads the parameters in one line of *INCLUDE.
@@ -231,13 +231,13 @@ contains
         call next_word(text, position, first, last)
         if (first > last) cycle
         call split_parameter(text, first, last, equals, key_last, value_first, value_last)
-        if (upper_case(text(first:key_last)) == "INPUT") then
+        if (upper_case(text(first:key_last)) == 'INPUT') then
           name = text(value_first:value_last)
-          spot = spot_in_source(source, line, value_first, value_last, "INCLUDE")
+          spot = spot_in_source(source, line, value_first, value_last, 'INCLUDE')
         else
           call faults%add(severity_error, &
-                          spot_in_source(source, line, first, key_last, "INCLUDE"), &
-                          "unknown parameter '"//text(first:key_last)//"'", "INPUT=file")
+                          spot_in_source(source, line, first, key_last, 'INCLUDE'), &
+                          "unknown parameter '"//text(first:key_last)//"'", 'INPUT=file')
         end if
       end do
     end associate

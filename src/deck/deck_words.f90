@@ -23,12 +23,12 @@ contains
     may_open = .true.
     i = position
     do while (i <= len(line))
-      if (line(i:i) == ",") exit
+      if (line(i:i) == ',') exit
       if (is_blank(line(i:i))) then
         if (last < first) first = i + 1
       else
         if (may_open) i = closing_quote(line, i)
-        may_open = line(i:i) == "="
+        may_open = line(i:i) == '='
         last = i
       end if
       i = i + 1
@@ -66,7 +66,7 @@ contains
   !> A blank or a tab.
   elemental logical function is_blank(letter)
     character, intent(in) :: letter
-    is_blank = letter == " " .or. letter == tab
+    is_blank = letter == ' ' .or. letter == tab
   end function is_blank
 
   !> Splits KEY=VALUE: bounds of both parts in the line, without blanks and without quotes.
@@ -79,7 +79,7 @@ contains
     key_last = last
     value_first = last + 1
     value_last = last
-    equals = index(line(first:last), "=")
+    equals = index(line(first:last), '=')
     if (equals == 0) return
     equals = first + equals - 1
     key_last = equals - 1

@@ -76,7 +76,7 @@ contains
     character(*), intent(in) :: name !< upper case
     character(:), allocatable :: default
     integer :: i
-    default = ""
+    default = ''
     if (.not. allocated(spec%parameters)) return
     do i = 1, size(spec%parameters)
       if (spec%parameters(i)%name /= name) cycle
@@ -90,7 +90,7 @@ contains
     integer, intent(in) :: number !< of the field, from 1
     character(:), allocatable :: default
     integer :: column
-    default = ""
+    default = ''
     column = column_of_field(spec, number)
     if (column == 0) return
     if (allocated(spec%columns(column)%default)) default = spec%columns(column)%default
