@@ -1,3 +1,10 @@
 set(sources
   applied_load.f90
+  wetted_facet.f90
+  load_point.f90
+  load_gravity.f90
+  load_pressure.f90
+  load_reservoir.f90
+  load_base_motion.f90
+  load_catalogue.f90
 )

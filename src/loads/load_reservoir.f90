@@ -1,0 +1,111 @@
+!> *RESERVOIR: hydrostatic pressure on the wetted part of a surface, and the water that moves with
+!> it.
+!>
+!> Added mass by Westergaard (NOTES 17): 7/8 rho sqrt(H y) per area, y the depth of the point and H
+!> that of the reservoir; integrated with the shape functions over the wetted area, so that the
+!> total over a vertical face of any mesh is 7/12 rho H**2 a metre. A node moves it along its
+!> normal, the mean of its wetted facets weighted by area: m n n^T, or only the diagonal of that.
+module load_reservoir
+  use applied_load, only: load
+  use dam_mesh, only: mesh
+  use kinds, only: rk
+  use mesh_faces, only: face_nodes
+  use mesh_sets, only: surface
+  use wetted_facet, only: water_body, wet_facet, wet_the_facet
+  implicit none
+  private
+  public :: reservoir_load, wetted_area
+
+  real(rk), parameter :: westergaard = 7.0_rk/8.0_rk !< NOTES 17
+
+  type, extends(load) :: reservoir_load
+    type(surface) :: faces !< upstream face; its dry part does not count
+    type(water_body) :: water
+    real(rk) :: density = 1000.0_rk !< of water [kg/m3]
+    real(rk) :: gravity = 9.81_rk !< [m/s2]
+    logical :: is_hydrostatic = .true. !< presses on the surface
+    logical :: has_added_mass = .false. !< Westergaard
+    logical :: is_diagonal = .true. !< m n_k**2 on each axis, else m n n^T
+  contains
+    procedure :: add_force
+    procedure :: add_added_mass
+  end type reservoir_load
+
+contains
+
+  !> Minus rho g times the integral of y N_a n.
+  subroutine add_force(self, model, density, force)
+    class(reservoir_load), intent(in) :: self
+    type(mesh), intent(in) :: model
+    real(rk), intent(in) :: density(:)
+    real(rk), intent(inout) :: force(:, :)
+    type(wet_facet) :: wet
+    integer :: i, a, nodes(4)
+    if (.not. self%is_hydrostatic) return
+    do i = 1, size(self%faces%element)
+      nodes = face_nodes(model, self%faces%element(i), self%faces%face(i))
+      call wet_the_facet(model%x(:, nodes), self%water, wet)
+      do a = 1, 4
+        force(:, nodes(a)) = force(:, nodes(a)) - self%density*self%gravity*wet%head(:, a)
+      end do
+    end do
+    if (.false.) force(1, 1) = density(1)
+  end subroutine add_force
+
+  !> Blocks m n n^T or their diagonal at the wetted nodes.
+  subroutine add_added_mass(self, model, blocks)
+    class(reservoir_load), intent(in) :: self
+    type(mesh), intent(in) :: model
+    real(rk), intent(inout) :: blocks(:, :, :)
+    real(rk), allocatable :: normal(:, :), mass(:)
+    real(rk) :: n(3)
+    integer :: node, i, j
+    if (.not. self%has_added_mass) return
+    call gather_water(self, model, normal, mass)
+    do node = 1, model%num_nodes
+      if (mass(node) <= 0.0_rk) cycle
+      n = normal(:, node)/norm2(normal(:, node))
+      do j = 1, 3
+        do i = 1, 3
+          if (self%is_diagonal .and. i /= j) cycle
+          blocks(i, j, node) = blocks(i, j, node) + mass(node)*n(i)*n(j)
+        end do
+      end do
+    end do
+  end subroutine add_added_mass
+
+  !> Area vector and mass of the water at each node.
+  subroutine gather_water(self, model, normal, mass)
+    class(reservoir_load), intent(in) :: self
+    type(mesh), intent(in) :: model
+    real(rk), allocatable, intent(out) :: normal(:, :) !< (3, nodes) of any length
+    real(rk), allocatable, intent(out) :: mass(:) !< (nodes) [kg]
+    type(wet_facet) :: wet
+    real(rk) :: factor
+    integer :: i, a, nodes(4)
+    allocate (normal(3, model%num_nodes), mass(model%num_nodes), source=0.0_rk)
+    factor = westergaard*self%density*sqrt(self%water%level - self%water%bed)
+    do i = 1, size(self%faces%element)
+      nodes = face_nodes(model, self%faces%element(i), self%faces%face(i))
+      call wet_the_facet(model%x(:, nodes), self%water, wet)
+      do a = 1, 4
+        normal(:, nodes(a)) = normal(:, nodes(a)) + wet%area(:, a)
+        mass(nodes(a)) = mass(nodes(a)) + factor*wet%root(a)
+      end do
+    end do
+  end subroutine gather_water
+
+  !> Size of the wetted part of the surface [m2]; 0 when the reservoir does not reach it.
+  pure real(rk) function wetted_area(self, model) result(area)
+    type(reservoir_load), intent(in) :: self
+    type(mesh), intent(in) :: model
+    type(wet_facet) :: wet
+    integer :: i, nodes(4)
+    area = 0.0_rk
+    do i = 1, size(self%faces%element)
+      nodes = face_nodes(model, self%faces%element(i), self%faces%face(i))
+      call wet_the_facet(model%x(:, nodes), self%water, wet)
+      area = area + norm2(sum(wet%area, 2))
+    end do
+  end function wetted_area
+end module load_reservoir
