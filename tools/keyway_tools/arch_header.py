@@ -56,8 +56,8 @@ def _shape_lines(shape: ArchShape) -> list[str]:
     """Lines on the dam and its valley."""
     dam = (
         f"height {shape.height} m, crest arc {shape.crest_arc} m along its upstream edge, "
-        f"thickness {shape.crest_thickness} m (crest) to {shape.base_thickness} m (base), linear between "
-        "(the law between is assumed)"
+        f"thickness {shape.crest_thickness} m (crest) to {shape.base_thickness} m (base), "
+        "linear between (the law between is assumed)"
     )
     curves = (
         f"circular arches; central angle of the crest {shape.crest_angle} deg, that is an upstream "

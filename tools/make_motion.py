@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""Make a three-component ground motion that fits a design spectrum.
+
+Writes PREFIX_x.txt, PREFIX_y.txt, PREFIX_z.txt (accelerations in m/s2 for *AMPLITUDE, INPUT=...),
+PREFIX.json (options and misfits), PREFIX_spectra.png and PREFIX_records.png. The same seed gives
+the same record. Default target: the spectrum of the Chinese standard for hydraulic structures
+(NB 35047-2015, GB 51247-2018) for arch dams on hard rock: beta = 1 at T = 0, 2.5 from 0.1 s to
+T_g = 0.2 s, then 2.5 (T_g / T)^0.6, not below 0.5; vertical 2/3 of the horizontal acceleration.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+from keyway_tools.design_spectrum import VERTICAL_SHARE, DesignSpectrum
+from keyway_tools.ground_motion import MotionOptions, final_motion, fit_motion
+from keyway_tools.motion_files import (
+    GRAVITY,
+    plot_records,
+    plot_spectra,
+    write_amplitude,
+    write_summary,
+)
+
+
+def read_options(arguments: list[str] | None) -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    spectrum, times = DesignSpectrum(), MotionOptions()
+    parser.add_argument("-o", "--output", type=Path, default=Path("motion"), help="PREFIX (motion)")
+    parser.add_argument("--seed", type=int, default=1, help="of the random phases (1)")
+    parser.add_argument("--pga", type=float, default=0.269, help="horizontal peak [g] (0.269)")
+    parser.add_argument("--vertical", type=float, default=VERTICAL_SHARE, help="share (2/3)")
+    parser.add_argument("--plateau", type=float, default=spectrum.plateau, help="beta_max (2.5)")
+    parser.add_argument("--tg", type=float, default=spectrum.corner, help="T_g [s] (0.2)")
+    parser.add_argument("--decay", type=float, default=spectrum.decay, help="exponent (0.6)")
+    parser.add_argument("--duration", type=float, default=times.duration, help="[s] (10)")
+    parser.add_argument("--dt", type=float, default=times.dt, help="[s] (0.01)")
+    parser.add_argument("--rise", type=float, help="end of the envelope's rise [s] (0.1 duration)")
+    parser.add_argument("--strong", type=float, help="end of its level part [s] (0.6 duration)")
+    parser.add_argument("--format", choices=("VALUES", "PAIRS"), default="VALUES", dest="layout")
+    parser.add_argument("--no-pictures", action="store_true")
+    return parser.parse_args(arguments)
+
+
+def times_of(chosen: argparse.Namespace) -> MotionOptions:
+    """MotionOptions from the command line."""
+    if chosen.dt <= 0.0 or chosen.duration < 50.0 * chosen.dt:
+        raise ValueError("dt must be > 0 and the duration at least 50 dt")
+    rise = 0.1 * chosen.duration if chosen.rise is None else chosen.rise
+    strong = 0.6 * chosen.duration if chosen.strong is None else chosen.strong
+    if not 0.0 < rise <= strong < chosen.duration:
+        raise ValueError("0 < rise <= strong < duration must hold")
+    return MotionOptions(
+        duration=chosen.duration,
+        dt=chosen.dt,
+        rise=rise,
+        strong=strong,
+        taper=0.04 * chosen.duration,
+        shortest_period=max(0.04, 4.0 * chosen.dt),
+    )
+
+
+def print_facts(name: str, motion, peak: float, options: MotionOptions) -> None:
+    """One line a component: misfits, peaks, rest at the end."""
+    ends = peak * final_motion(motion.acceleration, options.dt)
+    velocity = peak * options.dt * np.abs(np.cumsum(motion.acceleration)).max()
+    print(
+        f"{name}: mean misfit {100.0 * motion.mean_misfit:.2f} %, largest "
+        f"{100.0 * np.abs(motion.misfit).max():.2f} %; peak {peak / GRAVITY:.4f} g, "
+        f"{velocity:.3f} m/s; at the end {ends[0]:.1e} m/s, {ends[1]:.1e} m"
+    )
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Fit the three components and write them."""
+    chosen = read_options(arguments)
+    try:
+        options = times_of(chosen)
+    except ValueError as fault:
+        print(f"make_motion: {fault}", file=sys.stderr)
+        return 2
+    spectrum = DesignSpectrum(chosen.plateau, chosen.tg, chosen.decay)
+    horizontal = chosen.pga * GRAVITY
+    peaks = {"x": horizontal, "y": horizontal, "z": chosen.vertical * horizontal}
+    motions = {
+        name: fit_motion(spectrum, [chosen.seed, k], options) for k, name in enumerate(peaks)
+    }
+    chosen.output.parent.mkdir(parents=True, exist_ok=True)
+    prefix = chosen.output
+    for name, motion in motions.items():
+        file = prefix.with_name(f"{prefix.name}_{name}.txt")
+        write_amplitude(file, peaks[name] * motion.acceleration, options.dt, chosen.layout)
+        print_facts(name, motion, peaks[name], options)
+    correlation = np.corrcoef([motion.acceleration for motion in motions.values()])
+    print(f"largest correlation of two components {np.abs(correlation - np.eye(3)).max():.2f}")
+    facts = {"seed": chosen.seed, "pga_g": chosen.pga, "format": chosen.layout}
+    facts |= {"spectrum": asdict(spectrum), "record": asdict(options)}
+    write_summary(prefix.with_name(f"{prefix.name}.json"), motions, facts)
+    if not chosen.no_pictures:
+        spectra = prefix.with_name(f"{prefix.name}_spectra.png")
+        records = prefix.with_name(f"{prefix.name}_records.png")
+        print("wrote", plot_spectra(spectra, motions, peaks))
+        print("wrote", plot_records(records, motions, peaks, options.dt))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
