@@ -40,7 +40,8 @@ def mesh_deck(mesh: BrickMesh, element_types: dict[str, str], header: str) -> st
 
     Bricks are numbered from 1 in the order of the mesh, joint elements after them.
     """
-    lines = [comment(header), "*NODE", *node_lines(mesh.x)]
+    lines = [comment(header)] if header else []
+    lines += ["*NODE", *node_lines(mesh.x)]
     for name, members in mesh.brick_sets.items():
         lines.append(f"*ELEMENT, TYPE={element_types[name]}, ELSET={name}")
         lines.extend(element_lines(int(members[0]) + 1, mesh.bricks[members]))
@@ -55,3 +56,9 @@ def mesh_deck(mesh: BrickMesh, element_types: dict[str, str], header: str) -> st
         lines.append(f"*SURFACE, NAME={name}, TYPE=ELEMENT")
         lines.extend(f"{brick + 1}, S{face}" for brick, face in faces)
     return "\n".join(lines) + "\n"
+
+
+def small_deck(head: str, mesh: BrickMesh, element_type: str, cards: str) -> str:
+    """Header, mesh, then the cards of materials and steps."""
+    name = next(iter(mesh.brick_sets))
+    return comment(head) + "\n" + mesh_deck(mesh, {name: element_type}, "") + cards.lstrip("\n")

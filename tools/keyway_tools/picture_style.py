@@ -35,7 +35,7 @@ _STYLE = {
     "legend.frameon": False,
     "legend.fontsize": 9.0,
     "figure.constrained_layout.use": True,
-    "savefig.dpi": 150,
+    "savefig.dpi": 120,
 }
 
 

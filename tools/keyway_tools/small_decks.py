@@ -1,0 +1,15 @@
+"""The small decks of input/: each shows one thing and names the number to expect."""
+
+from __future__ import annotations
+
+from .decks_dynamic import monolith_frequencies, sliding_base, sliding_block
+from .decks_static import block_on_joint, cantilever, gravity_column
+
+SMALL_DECKS = {
+    "cantilever.inp": cantilever,
+    "gravity_column.inp": gravity_column,
+    "block_on_joint.inp": block_on_joint,
+    "sliding_block.inp": sliding_block,
+    "sliding_block_base.txt": sliding_base,
+    "monolith_frequencies.inp": monolith_frequencies,
+}
