@@ -1,0 +1,90 @@
+!> Folders, and files that are never seen half written.
+module file_system
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
+  use errors, only: error_type, raise, system_failed
+  implicit none
+  private
+  public :: make_folder, write_whole_file, safe_name, base_name
+
+  interface
+    !> POSIX mkdir.
+    function c_mkdir(path, mode) bind(c, name='mkdir') result(status)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int), value :: mode
+      integer(c_int) :: status
+    end function c_mkdir
+
+    !> C rename: replaces `to` in one move.
+    function c_rename(from, to) bind(c, name='rename') result(status)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: from(*), to(*)
+      integer(c_int) :: status
+    end function c_rename
+  end interface
+
+  integer, parameter :: mode_of_folders = int(o'755')
+
+contains
+
+  !> Makes a folder and those above it; one that exists already is fine.
+  subroutine make_folder(path, error)
+    character(*), intent(in) :: path
+    type(error_type), allocatable, intent(out) :: error
+    integer :: i, unit, status
+    do i = 2, len(path)
+      if (path(i:i) == '/') status = c_mkdir(path(:i - 1)//c_null_char, int(mode_of_folders, c_int))
+    end do
+    status = c_mkdir(path//c_null_char, int(mode_of_folders, c_int))
+    open (newunit=unit, file=path//'/.keyway_probe', status='replace', iostat=status)
+    if (status == 0) close (unit, status='delete')
+    if (status /= 0) call raise(error, "cannot write in the folder '"//path//"'", system_failed)
+  end subroutine make_folder
+
+  !> Writes a file beside its place and moves it there, so that a reader finds the old one or the
+  !> new one, both whole.
+  subroutine write_whole_file(path, text, error)
+    character(*), intent(in) :: path, text
+    type(error_type), allocatable, intent(out) :: error
+    character(:), allocatable :: beside
+    integer :: unit, status
+    beside = path//'.part'
+    open (newunit=unit, file=beside, access='stream', form='unformatted', status='replace', &
+          action='write', iostat=status)
+    if (status == 0) then
+      write (unit, iostat=status) text
+      if (status == 0) then
+        close (unit, iostat=status)
+      else
+        close (unit, status='delete')
+      end if
+    end if
+    if (status == 0) status = c_rename(beside//c_null_char, path//c_null_char)
+    if (status /= 0) call raise(error, "cannot write '"//path//"' (disk full?)", system_failed)
+  end subroutine write_whole_file
+
+  !> A name that is safe in a file's name: letters, digits, '_', '-' and '.'; others become '_'.
+  pure function safe_name(name) result(safe)
+    character(*), intent(in) :: name
+    character(len(name)) :: safe
+    integer :: i
+    do i = 1, len(name)
+      select case (name(i:i))
+      case ('A':'Z', 'a':'z', '0':'9', '_', '-', '.')
+        safe(i:i) = name(i:i)
+      case default
+        safe(i:i) = '_'
+      end select
+    end do
+  end function safe_name
+
+  !> The name of a file without its folder and its ending: the job's name.
+  pure function base_name(path) result(name)
+    character(*), intent(in) :: path
+    character(:), allocatable :: name
+    integer :: dot
+    name = path(index(path, '/', back=.true.) + 1:)
+    dot = index(name, '.', back=.true.)
+    if (dot > 1) name = name(:dot - 1)
+  end function base_name
+end module file_system

@@ -1,0 +1,67 @@
+!> The only place that reorders: from Keyway's order of tensors to VTK's, and the codes of its cells.
+module vtk_order
+  use kinds, only: rk
+  implicit none
+  private
+  public :: tensor_in_vtk_order, cell_of_solid, cell_hexahedron, cell_wedge, cell_quad
+
+  integer, parameter :: cell_quad = 9, cell_hexahedron = 12, cell_wedge = 13
+
+contains
+
+  !> From 11 22 33 12 13 23 to VTK's XX YY ZZ XY YZ XZ.
+  pure function tensor_in_vtk_order(tensor) result(ordered)
+    real(rk), intent(in) :: tensor(:, :) !< (6, n)
+    real(rk) :: ordered(6, size(tensor, 2))
+    ordered(:4, :) = tensor(:4, :)
+    ordered(5, :) = tensor(6, :)
+    ordered(6, :) = tensor(5, :)
+  end function tensor_in_vtk_order
+
+  !> The cell of an 8-node solid and its nodes: a hexahedron has the same order of nodes; one whose
+  !> nodes repeat so that an edge has shrunk on two opposite faces is drawn as a wedge, and any
+  !> other as a hexahedron with repeated nodes.
+  pure subroutine cell_of_solid(nodes, kind, corners, num_corners)
+    integer, intent(in) :: nodes(8)
+    integer, intent(out) :: kind, corners(8), num_corners
+    !> Rings of corners round two opposite faces, right-handed about the way from one to the other.
+    integer, parameter :: near(4, 3) = reshape([1, 2, 3, 4, 1, 4, 8, 5, 1, 5, 6, 2], [4, 3])
+    integer, parameter :: far(4, 3) = reshape([5, 6, 7, 8, 2, 3, 7, 6, 4, 8, 7, 3], [4, 3])
+    integer :: ring, k, next
+    kind = cell_hexahedron
+    corners = nodes
+    num_corners = 8
+    if (num_distinct(nodes) /= 6) return
+    do ring = 1, 3
+      do k = 1, 4
+        next = mod(k, 4) + 1
+        if (nodes(near(k, ring)) /= nodes(near(next, ring))) cycle
+        if (nodes(far(k, ring)) /= nodes(far(next, ring))) cycle
+        kind = cell_wedge
+        num_corners = 6
+        corners = 0
+        corners(:3) = nodes(without(near(:, ring), next))
+        corners(4:6) = nodes(without(far(:, ring), next))
+        return
+      end do
+    end do
+  end subroutine cell_of_solid
+
+  !> The ring without its member number `gone`.
+  pure function without(ring, gone) result(triangle)
+    integer, intent(in) :: ring(4), gone
+    integer :: triangle(3)
+    triangle(:gone - 1) = ring(:gone - 1)
+    triangle(gone:) = ring(gone + 1:)
+  end function without
+
+  !> How many of the nodes differ.
+  pure integer function num_distinct(nodes) result(count)
+    integer, intent(in) :: nodes(:)
+    integer :: a
+    count = 0
+    do a = 1, size(nodes)
+      if (.not. any(nodes(:a - 1) == nodes(a))) count = count + 1
+    end do
+  end function num_distinct
+end module vtk_order
