@@ -4,12 +4,14 @@ module file_system
   use errors, only: error_type, raise, system_failed
   implicit none
   private
-  public :: make_folder, write_whole_file, safe_name, base_name
+  public :: make_folder, write_whole_file, move_file, safe_name, base_name
 
   interface
     !> POSIX mkdir.
     function c_mkdir(path, mode) bind(c, name='mkdir') result(status)
       import :: c_char, c_int
+      implicit none
+      ! allow(assumed-size)
       character(kind=c_char), intent(in) :: path(*)
       integer(c_int), value :: mode
       integer(c_int) :: status
@@ -18,6 +20,8 @@ module file_system
     !> C rename: replaces `to` in one move.
     function c_rename(from, to) bind(c, name='rename') result(status)
       import :: c_char, c_int
+      implicit none
+      ! allow(assumed-size)
       character(kind=c_char), intent(in) :: from(*), to(*)
       integer(c_int) :: status
     end function c_rename
@@ -59,9 +63,21 @@ contains
         close (unit, status='delete')
       end if
     end if
-    if (status == 0) status = c_rename(beside//c_null_char, path//c_null_char)
-    if (status /= 0) call raise(error, "cannot write '"//path//"' (disk full?)", system_failed)
+    if (status == 0) then
+      call move_file(beside, path, error)
+    else
+      call raise(error, "cannot write '"//path//"' (disk full?)", system_failed)
+    end if
   end subroutine write_whole_file
+
+  !> Renames a file; an old one of the new name is replaced in the same move.
+  subroutine move_file(from, to, error)
+    character(*), intent(in) :: from, to
+    type(error_type), allocatable, intent(out) :: error
+    if (c_rename(from//c_null_char, to//c_null_char) /= 0) then
+      call raise(error, "cannot write '"//to//"'", system_failed)
+    end if
+  end subroutine move_file
 
   !> A name that is safe in a file's name: letters, digits, '_', '-' and '.'; others become '_'.
   pure function safe_name(name) result(safe)

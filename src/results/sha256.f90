@@ -10,29 +10,20 @@ module sha256
   integer(long), parameter :: mask = int(z'FFFFFFFF', long)
   integer, parameter :: block_size = 64 !< bytes
 
-  !> Fractional parts of the cube roots of the first 64 primes.
-  integer(long), parameter :: round_constant(64) = [ &
-    int(z'428a2f98', long), int(z'71374491', long), int(z'b5c0fbcf', long), int(z'e9b5dba5', long), &
-    int(z'3956c25b', long), int(z'59f111f1', long), int(z'923f82a4', long), int(z'ab1c5ed5', long), &
-    int(z'd807aa98', long), int(z'12835b01', long), int(z'243185be', long), int(z'550c7dc3', long), &
-    int(z'72be5d74', long), int(z'80deb1fe', long), int(z'9bdc06a7', long), int(z'c19bf174', long), &
-    int(z'e49b69c1', long), int(z'efbe4786', long), int(z'0fc19dc6', long), int(z'240ca1cc', long), &
-    int(z'2de92c6f', long), int(z'4a7484aa', long), int(z'5cb0a9dc', long), int(z'76f988da', long), &
-    int(z'983e5152', long), int(z'a831c66d', long), int(z'b00327c8', long), int(z'bf597fc7', long), &
-    int(z'c6e00bf3', long), int(z'd5a79147', long), int(z'06ca6351', long), int(z'14292967', long), &
-    int(z'27b70a85', long), int(z'2e1b2138', long), int(z'4d2c6dfc', long), int(z'53380d13', long), &
-    int(z'650a7354', long), int(z'766a0abb', long), int(z'81c2c92e', long), int(z'92722c85', long), &
-    int(z'a2bfe8a1', long), int(z'a81a664b', long), int(z'c24b8b70', long), int(z'c76c51a3', long), &
-    int(z'd192e819', long), int(z'd6990624', long), int(z'f40e3585', long), int(z'106aa070', long), &
-    int(z'19a4c116', long), int(z'1e376c08', long), int(z'2748774c', long), int(z'34b0bcb5', long), &
-    int(z'391c0cb3', long), int(z'4ed8aa4a', long), int(z'5b9cca4f', long), int(z'682e6ff3', long), &
-    int(z'748f82ee', long), int(z'78a5636f', long), int(z'84c87814', long), int(z'8cc70208', long), &
-    int(z'90befffa', long), int(z'a4506ceb', long), int(z'bef9a3f7', long), int(z'c67178f2', long)]
+  !> Fractional parts of the cube roots of the first 64 primes, 8 hexadecimal digits each.
+  character(*), parameter :: round_digits = &
+                             '428a2f9871374491b5c0fbcfe9b5dba53956c25b59f111f1923f82a4ab1c5ed5'// &
+                             'd807aa9812835b01243185be550c7dc372be5d7480deb1fe9bdc06a7c19bf174'// &
+                             'e49b69c1efbe47860fc19dc6240ca1cc2de92c6f4a7484aa5cb0a9dc76f988da'// &
+                             '983e5152a831c66db00327c8bf597fc7c6e00bf3d5a7914706ca635114292967'// &
+                             '27b70a852e1b21384d2c6dfc53380d13650a7354766a0abb81c2c92e92722c85'// &
+                             'a2bfe8a1a81a664bc24b8b70c76c51a3d192e819d6990624f40e3585106aa070'// &
+                             '19a4c1161e376c082748774c34b0bcb5391c0cb34ed8aa4a5b9cca4f682e6ff3'// &
+                             '748f82ee78a5636f84c878148cc7020890befffaa4506cebbef9a3f7c67178f2'
 
   !> Fractional parts of the square roots of the first 8 primes.
-  integer(long), parameter :: start_value(8) = [ &
-    int(z'6a09e667', long), int(z'bb67ae85', long), int(z'3c6ef372', long), int(z'a54ff53a', long), &
-    int(z'510e527f', long), int(z'9b05688c', long), int(z'1f83d9ab', long), int(z'5be0cd19', long)]
+  character(*), parameter :: start_digits = &
+                             '6a09e667bb67ae853c6ef372a54ff53a510e527f9b05688c1f83d9ab5be0cd19'
 
 contains
 
@@ -57,16 +48,17 @@ contains
     character(*), intent(in) :: bytes
     character(64) :: digest
     character(2*block_size) :: tail
-    integer(long) :: sum(8)
+    integer(long) :: sum(8), round_constant(64)
     integer :: i, whole, num_tail
-    sum = start_value
+    read (start_digits, '(8z8)') sum
+    read (round_digits, '(64z8)') round_constant
     whole = len(bytes)/block_size
     do i = 1, whole
-      call add_block(sum, bytes((i - 1)*block_size + 1:i*block_size))
+      call add_block(round_constant, sum, bytes((i - 1)*block_size + 1:i*block_size))
     end do
     call pad(bytes(whole*block_size + 1:), int(len(bytes), long), tail, num_tail)
     do i = 1, num_tail
-      call add_block(sum, tail((i - 1)*block_size + 1:i*block_size))
+      call add_block(round_constant, sum, tail((i - 1)*block_size + 1:i*block_size))
     end do
     write (digest, '(8z8.8)') sum
     do i = 1, len(digest)
@@ -78,7 +70,7 @@ contains
   pure subroutine pad(rest, num_bytes, tail, num_blocks)
     character(*), intent(in) :: rest !< shorter than a block
     integer(long), intent(in) :: num_bytes !< of the whole text
-    character(*), intent(out) :: tail
+    character(2*block_size), intent(out) :: tail
     integer, intent(out) :: num_blocks
     integer :: i, last
     tail = repeat(achar(0), len(tail))
@@ -92,7 +84,8 @@ contains
   end subroutine pad
 
   !> The compression of one block.
-  pure subroutine add_block(sum, text)
+  pure subroutine add_block(round_constant, sum, text)
+    integer(long), intent(in) :: round_constant(64)
     integer(long), intent(inout) :: sum(8)
     character(block_size), intent(in) :: text
     integer(long) :: w(64), h(8), first, second

@@ -1,4 +1,4 @@
-!> The only place that reorders: from Keyway's order of tensors to VTK's, and the codes of its cells.
+!> The only place that reorders: from Keyway's order of tensors to VTK's; codes of VTK's cells.
 module vtk_order
   use kinds, only: rk
   implicit none

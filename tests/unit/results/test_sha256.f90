@@ -12,7 +12,8 @@ program test_sha256
   call check_text(log, digest_of_text('abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq'), &
                   '248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1', 'two blocks')
   call check_text(log, digest_of_text(repeat('a', 1000)), &
-                  '41edece42d63e8d9bf515a9ba6932e1c20cbc9f5a5d134645adb5db1b9737ea3', '1000 letters')
+                  '41edece42d63e8d9bf515a9ba6932e1c'// &
+                  '20cbc9f5a5d134645adb5db1b9737ea3', '1000 letters')
   print '(i0,a,i0,a)', log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
 end program test_sha256

@@ -1,0 +1,59 @@
+!> *ENVELOPE: maxima over the time of a step on every node, and their extremes over all steps.
+module envelopes
+  use kinds, only: rk
+  use extremes, only: extremes_by_face
+  implicit none
+  private
+  public :: envelope, open_envelope, note_envelope, name_of_field
+
+  !> One quantity: 'S1' (largest principal tension), 'S3' (largest compression, the most negative),
+  !> 'OPENING' or 'U' (length of the displacement).
+  type :: envelope
+    character(8) :: name = ''
+    logical :: wants_smallest = .false.
+    logical :: is_empty = .true. !< nothing noted in this step
+    real(rk), allocatable :: value(:), time(:) !< (nodes), of this step
+    type(extremes_by_face) :: largest !< of all steps that asked for it
+  end type envelope
+
+contains
+
+  !> Starts a step; the extremes of earlier steps are kept.
+  subroutine open_envelope(item, name, num_nodes)
+    type(envelope), intent(inout) :: item
+    character(*), intent(in) :: name
+    integer, intent(in) :: num_nodes
+    item%name = name
+    item%wants_smallest = name == 'S3'
+    item%is_empty = .true.
+    if (.not. allocated(item%value)) allocate (item%value(num_nodes), item%time(num_nodes))
+    item%value = 0.0_rk
+    item%time = 0.0_rk
+  end subroutine open_envelope
+
+  !> Takes note of the values on the nodes at one time.
+  subroutine note_envelope(item, values, time)
+    type(envelope), intent(inout) :: item
+    real(rk), intent(in) :: values(:) !< (nodes)
+    real(rk), intent(in) :: time !< total time [s]
+    if (item%is_empty) then
+      item%value = values
+      item%time = time
+    else if (item%wants_smallest) then
+      where (values < item%value) item%time = time
+      item%value = min(values, item%value)
+    else
+      where (values > item%value) item%time = time
+      item%value = max(values, item%value)
+    end if
+    item%is_empty = .false.
+  end subroutine note_envelope
+
+  !> The name of the field in files: 'S1_MAX', 'S3_MIN', ...
+  pure function name_of_field(item) result(name)
+    type(envelope), intent(in) :: item
+    character(:), allocatable :: name
+    name = trim(item%name)//'_MAX'
+    if (item%wants_smallest) name = trim(item%name)//'_MIN'
+  end function name_of_field
+end module envelopes

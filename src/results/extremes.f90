@@ -1,0 +1,51 @@
+!> The largest (or smallest) value seen so far, with its time and place: anywhere and on each face.
+module extremes
+  use kinds, only: rk
+  implicit none
+  private
+  public :: extreme, extremes_by_face, face_names, note_values
+
+  !> The order of `extremes_by_face%at`.
+  character(10), parameter :: face_names(3) = ['anywhere  ', 'upstream  ', 'downstream']
+
+  type :: extreme
+    logical :: is_found = .false.
+    real(rk) :: value = 0.0_rk
+    real(rk) :: time = 0.0_rk !< total time [s]
+    real(rk) :: x(3) = 0.0_rk !< [m]
+  end type extreme
+
+  type :: extremes_by_face
+    type(extreme) :: at(3) !< anywhere, upstream, downstream
+  end type extremes_by_face
+
+contains
+
+  !> Takes note of the values at one time. Equal values keep the earlier time and place.
+  subroutine note_values(record, values, x, is_upstream, is_downstream, time, wants_smallest)
+    type(extremes_by_face), intent(inout) :: record
+    real(rk), intent(in) :: values(:)
+    real(rk), intent(in) :: x(:, :) !< (3, size of `values`) [m]
+    logical, intent(in) :: is_upstream(:), is_downstream(:)
+    real(rk), intent(in) :: time !< [s]
+    logical, intent(in) :: wants_smallest
+    real(rk) :: way
+    integer :: i
+    way = merge(-1.0_rk, 1.0_rk, wants_smallest)
+    do i = 1, size(values)
+      call note_value(record%at(1), values(i), way)
+      if (is_upstream(i)) call note_value(record%at(2), values(i), way)
+      if (is_downstream(i)) call note_value(record%at(3), values(i), way)
+    end do
+
+  contains
+
+    !> Keeps value `i` when it goes further `way` than what was kept.
+    subroutine note_value(kept, value, way)
+      type(extreme), intent(inout) :: kept
+      real(rk), intent(in) :: value, way
+      if (kept%is_found .and. way*(value - kept%value) <= 0.0_rk) return
+      kept = extreme(.true., value, time, x(:, i))
+    end subroutine note_value
+  end subroutine note_values
+end module extremes

@@ -1,0 +1,69 @@
+!> What every writer of results can do. The defaults do nothing.
+module result_writer
+  use errors, only: error_type
+  use problem_definition, only: problem
+  use analysis_state, only: state, vibration_mode
+  use run_records, only: run_record
+  implicit none
+  private
+  public :: writer, is_due, starts_analysis
+
+  type, abstract :: writer
+  contains
+    procedure(write_increment), deferred :: write_increment
+    procedure :: write_modes
+    procedure :: finish
+  end type writer
+
+  abstract interface
+    !> An increment has converged.
+    subroutine write_increment(self, scene, now, record, error)
+      import :: writer, problem, state, run_record, error_type
+      implicit none
+      class(writer), intent(inout) :: self
+      type(problem), intent(in) :: scene
+      type(state), intent(in) :: now
+      type(run_record), intent(inout) :: record !< stresses are made on demand
+      type(error_type), allocatable, intent(out) :: error
+    end subroutine write_increment
+  end interface
+
+contains
+
+  !> A *FREQUENCY step has found its modes.
+  subroutine write_modes(self, scene, step, modes, error)
+    class(writer), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    integer, intent(in) :: step
+    type(vibration_mode), intent(in) :: modes(:)
+    type(error_type), allocatable, intent(out) :: error
+    if (.false.) call self%finish(scene, error)
+    if (.false.) print *, size(modes), step
+  end subroutine write_modes
+
+  !> The analysis has ended, well or not: everything must be on the disk.
+  subroutine finish(self, scene, error)
+    class(writer), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(error_type), allocatable, intent(out) :: error
+    if (.false.) call self%finish(scene, error)
+  end subroutine finish
+
+  !> Is this increment one of a request? Every `frequency`-th, and the last of a step. Increment 0
+  !> repeats the end of the step before; it counts only where there is none.
+  pure logical function is_due(now, frequency)
+    type(state), intent(in) :: now
+    integer, intent(in) :: frequency
+    if (now%increment == 0) then
+      is_due = starts_analysis(now)
+    else
+      is_due = now%is_last_of_step .or. mod(now%increment, max(1, frequency)) == 0
+    end if
+  end function is_due
+
+  !> True for the state from which the whole analysis starts.
+  pure logical function starts_analysis(now)
+    type(state), intent(in) :: now
+    starts_analysis = now%increment == 0 .and. now%total_time <= 0.0_rk
+  end function starts_analysis
+end module result_writer

@@ -1,0 +1,148 @@
+!> What a run knows of itself beyond one increment: faces of the dam, maxima, warnings; and the
+!> stresses of the present increment. All writers read it.
+module run_records
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use analysis_state, only: state
+  use dam_faces, only: dam_skin, find_dam_faces
+  use envelopes, only: envelope, open_envelope, note_envelope
+  use extremes, only: note_values
+  use joint_readings, only: joint_record, open_joint_record, note_joint, opening_at_points, &
+    opening_at_nodes
+  use stress_fields, only: recovered_fields
+  implicit none
+  private
+  public :: run_record, text_item
+
+  type :: text_item
+    character(:), allocatable :: text
+  end type text_item
+
+  type :: run_record
+    type(recovered_fields) :: stresses
+    type(dam_skin) :: skin
+    type(joint_record), allocatable :: joints(:)
+    type(envelope), allocatable :: envelopes(:) !< all ever asked for
+    integer, allocatable :: active(:) !< those of the present step
+    type(text_item), allocatable :: warnings(:)
+    integer :: step = 0 !< the present step
+  contains
+    procedure :: open => open_record
+    procedure :: begin_step
+    procedure :: note
+    procedure :: warn_once
+    procedure, private :: note_one
+  end type run_record
+
+contains
+
+  !> Finds the faces of the dam and starts empty.
+  subroutine open_record(self, scene)
+    class(run_record), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    integer :: j
+    call find_dam_faces(scene, self%skin)
+    allocate (self%joints(size(scene%joints)), self%envelopes(0), self%active(0), self%warnings(0))
+    do j = 1, size(scene%joints)
+      call open_joint_record(scene%joints(j), self%skin, self%joints(j))
+    end do
+  end subroutine open_record
+
+  !> Opens the envelopes of a step.
+  subroutine begin_step(self, scene, step)
+    class(run_record), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    integer, intent(in) :: step
+    type(envelope) :: fresh
+    integer :: i, k
+    self%step = step
+    self%active = [integer ::]
+    if (.not. allocated(scene%steps(step)%envelope)) return
+    do i = 1, size(scene%steps(step)%envelope)
+      associate (name => scene%steps(step)%envelope(i))
+        select case (name)
+        case ('S1', 'S3', 'OPENING', 'U')
+          k = findloc(self%envelopes%name, name, dim=1)
+          if (k == 0) self%envelopes = [self%envelopes, fresh]
+          if (k == 0) k = size(self%envelopes)
+          call open_envelope(self%envelopes(k), name, scene%mesh%num_nodes)
+          self%active = [self%active, k]
+        case default
+          call self%warn_once('*ENVELOPE: there is no '//trim(name)//' in this analysis')
+        end select
+      end associate
+    end do
+  end subroutine begin_step
+
+  !> Takes note of an increment: maxima of joints always, envelopes where the step asks.
+  subroutine note(self, scene, now)
+    class(run_record), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    integer :: j, i
+    call self%stresses%forget()
+    do j = 1, size(scene%joints)
+      call note_joint(self%joints(j), scene%joints(j), now%joints(j), now%total_time)
+    end do
+    do i = 1, size(self%active)
+      call self%note_one(scene, now, self%envelopes(self%active(i)))
+    end do
+  end subroutine note
+
+  !> One envelope.
+  subroutine note_one(self, scene, now, item)
+    class(run_record), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(envelope), intent(inout) :: item
+    integer :: j
+    select case (item%name)
+    case ('S1')
+      call self%stresses%need_principals(scene, now)
+      call note_nodes(self%stresses%node_principal(1, :))
+    case ('S3')
+      call self%stresses%need_principals(scene, now)
+      call note_nodes(self%stresses%node_principal(3, :))
+    case ('U')
+      call self%stresses%need_plan(scene)
+      call note_nodes(norm2(now%u, dim=1))
+    case ('OPENING')
+      call note_envelope(item, max(0.0_rk, opening_at_nodes(scene, now)), now%total_time)
+      do j = 1, size(scene%joints)
+        call note_values(item%largest, &
+                         max(0.0_rk, opening_at_points(scene%joints(j), now%joints(j))), &
+                         scene%joints(j)%x, self%joints(j)%is_upstream, &
+                         self%joints(j)%is_downstream, now%total_time, wants_smallest=.false.)
+      end do
+    end select
+
+  contains
+
+    !> A quantity that lives on the nodes of solids.
+    subroutine note_nodes(values)
+      real(rk), intent(in) :: values(:)
+      integer, allocatable :: solid_nodes(:)
+      integer :: n
+      associate (start => self%stresses%plan%node_start)
+        solid_nodes = pack([(n, n=1, size(values))], start(2:) > start(:size(start) - 1))
+      end associate
+      call note_envelope(item, values, now%total_time)
+      call note_values(item%largest, values(solid_nodes), scene%mesh%x(:, solid_nodes), &
+                       self%skin%is_upstream(solid_nodes), self%skin%is_downstream(solid_nodes), &
+                       now%total_time, item%wants_smallest)
+    end subroutine note_nodes
+  end subroutine note_one
+
+  !> Keeps a warning, each text once.
+  subroutine warn_once(self, text)
+    class(run_record), intent(inout) :: self
+    character(*), intent(in) :: text
+    type(text_item) :: item
+    integer :: i
+    do i = 1, size(self%warnings)
+      if (self%warnings(i)%text == text) return
+    end do
+    item%text = text
+    self%warnings = [self%warnings, item]
+  end subroutine warn_once
+end module run_records

@@ -1,0 +1,228 @@
+!> Strains and stresses at the points of the solid elements, and on the nodes.
+!>
+!> At the points: eps = B u with the element's own operator, sigma by the material's law. On the
+!> nodes: the trilinear field through the eight points, carried to the corners, averaged over the
+!> elements of one section; where sections meet the one defined first rules. A wedge is a hexahedron
+!> with repeated nodes; an element of one point is constant.
+module stress_recovery
+  use kinds, only: rk
+  use element_formulation, only: solid_element
+  use element_catalogue, only: make_solid_element
+  use problem_definition, only: problem
+  use dam_faces, only: is_solid
+  implicit none
+  private
+  public :: recovery_plan, make_recovery_plan, recover_points, average_at_nodes, max_points
+
+  integer, parameter :: max_points = 8 !< integration points an element may have
+  integer, parameter :: block_size = 32 !< elements whose operators fit a core's cache together
+
+  type :: formulation_slot
+    class(solid_element), allocatable :: item
+  end type formulation_slot
+
+  !> Elements of one formulation and one material, handled in one call.
+  type :: element_block
+    integer :: formulation = 0, material = 0
+    integer, allocatable :: solids(:) !< positions in the list of solids
+  end type element_block
+
+  !> What depends on the mesh only; made when somebody first asks for stresses.
+  type :: recovery_plan
+    integer :: num_solids = 0
+    integer, allocatable :: element_of_solid(:), solid_of_element(:) !< 0: not a solid
+    integer, allocatable :: num_points(:) !< (solids)
+    type(formulation_slot), allocatable :: formulations(:)
+    type(element_block), allocatable :: blocks(:)
+    integer, allocatable :: node_start(:) !< (nodes + 1) where a node's corners start
+    integer, allocatable :: corner(:) !< 8 (solid - 1) + corner, of the section that rules the node
+  end type recovery_plan
+
+contains
+
+  !> Lists the solids, sorts them into blocks and links nodes to corners.
+  subroutine make_recovery_plan(scene, plan)
+    type(problem), intent(in) :: scene
+    type(recovery_plan), intent(out) :: plan
+    integer :: e, s
+    plan%element_of_solid = pack([(e, e=1, scene%mesh%num_elements)], &
+                                 is_solid(scene%mesh%element_type))
+    plan%num_solids = size(plan%element_of_solid)
+    allocate (plan%solid_of_element(scene%mesh%num_elements), source=0)
+    do s = 1, plan%num_solids
+      plan%solid_of_element(plan%element_of_solid(s)) = s
+    end do
+    call sort_into_blocks(scene, plan)
+    call link_corners(scene, plan)
+  end subroutine make_recovery_plan
+
+  !> Blocks of equal formulation and material.
+  subroutine sort_into_blocks(scene, plan)
+    type(problem), intent(in) :: scene
+    type(recovery_plan), intent(inout) :: plan
+    character(8), allocatable :: names(:)
+    integer, allocatable :: kind_of(:), group(:)
+    integer :: s, kind, m, first, last, num_blocks
+    allocate (names(0), kind_of(plan%num_solids), plan%num_points(plan%num_solids))
+    do s = 1, plan%num_solids
+      associate (name => scene%mesh%element_type(plan%element_of_solid(s)))
+        if (.not. any(names == name)) names = [names, name]
+        kind_of(s) = findloc(names, name, dim=1)
+      end associate
+    end do
+    allocate (plan%formulations(size(names)))
+    do kind = 1, size(names)
+      call make_solid_element(names(kind), plan%formulations(kind)%item)
+    end do
+    do s = 1, plan%num_solids
+      plan%num_points(s) = plan%formulations(kind_of(s))%item%num_points
+    end do
+    allocate (plan%blocks(plan%num_solids/block_size + size(names)*size(scene%materials)))
+    num_blocks = 0
+    do kind = 1, size(names)
+      do m = 1, size(scene%materials)
+        group = pack([(s, s=1, plan%num_solids)], kind_of == kind .and. &
+                     scene%mesh%material_of_element(plan%element_of_solid) == m)
+        do first = 1, size(group), block_size
+          last = min(size(group), first + block_size - 1)
+          num_blocks = num_blocks + 1
+          plan%blocks(num_blocks) = element_block(kind, m, group(first:last))
+        end do
+      end do
+    end do
+    plan%blocks = plan%blocks(:num_blocks)
+  end subroutine sort_into_blocks
+
+  !> For each node the corners of the elements that decide its stress.
+  subroutine link_corners(scene, plan)
+    type(problem), intent(in) :: scene
+    type(recovery_plan), intent(inout) :: plan
+    integer, allocatable :: ruler(:), next(:)
+    integer :: s, a, node, section, n
+    allocate (ruler(scene%mesh%num_nodes), source=huge(1))
+    allocate (plan%node_start(scene%mesh%num_nodes + 1), source=0)
+    do s = 1, plan%num_solids
+      section = scene%mesh%section_of_element(plan%element_of_solid(s))
+      do a = 1, 8
+        node = scene%mesh%nodes(a, plan%element_of_solid(s))
+        ruler(node) = min(ruler(node), section)
+      end do
+    end do
+    allocate (plan%corner(8*plan%num_solids), source=0)
+    call walk(counting=.true.)
+    plan%node_start(1) = 1
+    do n = 1, scene%mesh%num_nodes
+      plan%node_start(n + 1) = plan%node_start(n) + plan%node_start(n + 1)
+    end do
+    next = plan%node_start
+    call walk(counting=.false.)
+
+  contains
+
+    !> Visits the corners that count, first to count them, then to store them.
+    subroutine walk(counting)
+      logical, intent(in) :: counting
+      do s = 1, plan%num_solids
+        section = scene%mesh%section_of_element(plan%element_of_solid(s))
+        do a = 1, 8
+          node = scene%mesh%nodes(a, plan%element_of_solid(s))
+          if (section /= ruler(node)) cycle
+          if (counting) then
+            plan%node_start(node + 1) = plan%node_start(node + 1) + 1
+          else
+            plan%corner(next(node)) = 8*(s - 1) + a
+            next(node) = next(node) + 1
+          end if
+        end do
+      end do
+    end subroutine walk
+  end subroutine link_corners
+
+  !> Strain and stress at the points of all solids; threads over blocks, each its own elements.
+  subroutine recover_points(scene, plan, u, strain, stress)
+    type(problem), intent(in) :: scene
+    type(recovery_plan), intent(in) :: plan
+    real(rk), intent(in) :: u(:, :) !< (3, nodes) [m]
+    real(rk), intent(out) :: strain(:, :, :) !< (6, max_points, solids)
+    real(rk), intent(out) :: stress(:, :, :) !< (6, max_points, solids) [Pa]
+    integer :: i
+    !$omp parallel do default(none) shared(scene, plan, u, strain, stress) schedule(dynamic, 4)
+    do i = 1, size(plan%blocks)
+      call recover_block(scene, plan, plan%blocks(i), u, strain, stress)
+    end do
+    !$omp end parallel do
+  end subroutine recover_points
+
+  !> One block.
+  subroutine recover_block(scene, plan, part, u, strain, stress)
+    type(problem), intent(in) :: scene
+    type(recovery_plan), intent(in) :: plan
+    type(element_block), intent(in) :: part
+    real(rk), intent(in) :: u(:, :)
+    real(rk), intent(inout) :: strain(:, :, :), stress(:, :, :)
+    real(rk), allocatable :: b(:, :, :, :), x(:, :, :), weight(:, :)
+    integer, allocatable :: status(:)
+    real(rk) :: d(6, 6), moved(24)
+    integer :: k, q, s, n, nodes(8)
+    n = size(part%solids)
+    associate (formulation => plan%formulations(part%formulation)%item)
+      allocate (b(6, 24, formulation%num_points, n), weight(formulation%num_points, n))
+      allocate (x(3, 8, n), status(n))
+      do k = 1, n
+        x(:, :, k) = scene%mesh%x(:, scene%mesh%nodes(:, plan%element_of_solid(part%solids(k))))
+      end do
+      call scene%materials(part%material)%law%elastic_stiffness(d)
+      call formulation%strain_operator(x, d, b, weight, status)
+      do k = 1, n
+        s = part%solids(k)
+        nodes = scene%mesh%nodes(:, plan%element_of_solid(s))
+        moved = reshape(u(:, nodes), [24])
+        do q = 1, formulation%num_points
+          strain(:, q, s) = matmul(b(:, :, q, k), moved)
+          stress(:, q, s) = matmul(d, strain(:, q, s))
+        end do
+      end do
+    end associate
+  end subroutine recover_block
+
+  !> Carries a tensor from the points to the nodes; nodes without a solid get zero.
+  subroutine average_at_nodes(plan, at_points, at_nodes)
+    type(recovery_plan), intent(in) :: plan
+    real(rk), intent(in) :: at_points(:, :, :) !< (6, max_points, solids)
+    real(rk), intent(out) :: at_nodes(:, :) !< (6, nodes)
+    real(rk) :: to_corner(max_points, 8), sum(6)
+    integer :: node, i, s, a, count
+    to_corner = points_to_corners()
+    !$omp parallel do default(none) schedule(static) shared(plan, at_points, at_nodes, to_corner) &
+    !$omp private(i, s, a, count, sum)
+    do node = 1, size(at_nodes, 2)
+      sum = 0.0_rk
+      do i = plan%node_start(node), plan%node_start(node + 1) - 1
+        s = (plan%corner(i) - 1)/8 + 1
+        a = plan%corner(i) - 8*(s - 1)
+        if (plan%num_points(s) == max_points) then
+          sum = sum + matmul(at_points(:, :, s), to_corner(:, a))
+        else
+          sum = sum + at_points(:, 1, s)
+        end if
+      end do
+      count = plan%node_start(node + 1) - plan%node_start(node)
+      at_nodes(:, node) = sum/max(1, count)
+    end do
+    !$omp end parallel do
+  end subroutine average_at_nodes
+
+  !> Weights of the 2x2x2 points at the corners: the trilinear functions of the cube of points,
+  !> whose corners lie at 1/sqrt(3), taken at the element's corners.
+  pure function points_to_corners() result(weight)
+    real(rk) :: weight(max_points, 8)
+    integer, parameter :: side(3, 8) = reshape([-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1, &
+                                                -1, -1, 1, 1, -1, 1, 1, 1, 1, -1, 1, 1], [3, 8])
+    integer :: a, q
+    do a = 1, 8
+      do q = 1, max_points
+        weight(q, a) = product(1.0_rk + sqrt(3.0_rk)*side(:, a)*point_side(:, q))/8.0_rk
+      end do
+    end do
+  end function points_to_corners
+end module stress_recovery

@@ -1,0 +1,67 @@
+!> job_energy.csv: the energy balance of every increment.
+module write_energy
+  use errors, only: error_type
+  use problem_definition, only: problem
+  use analysis_state, only: state
+  use run_records, only: run_record
+  use result_writer, only: writer, is_due
+  use csv_files, only: csv_file
+  implicit none
+  private
+  public :: energy_file
+
+  type, extends(writer) :: energy_file
+    private
+    type(csv_file) :: file
+  contains
+    procedure :: open => open_energy
+    procedure :: write_increment => write_energies
+    procedure :: finish => close_energy
+  end type energy_file
+
+contains
+
+  !> Starts the file. `stem` is the folder and the job's name.
+  subroutine open_energy(self, stem, error)
+    class(energy_file), intent(inout) :: self
+    character(*), intent(in) :: stem
+    type(error_type), allocatable, intent(out) :: error
+    call self%file%open(stem//'_energy.csv', 'step,increment,time,external,kinetic,strain,'// &
+                        'damping,friction,fracture,numerical,error', error)
+  end subroutine open_energy
+
+  !> One row.
+  subroutine write_energies(self, scene, now, record, error)
+    class(energy_file), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(run_record), intent(inout) :: record
+    type(error_type), allocatable, intent(out) :: error
+    integer :: i
+    if (.false.) call record%begin_step(scene, now%step)
+    if (.not. is_due(now, 1)) return
+    associate (e => now%energy, lines => self%file%lines)
+      call lines%add_integer(now%step)
+      call lines%add(',')
+      call lines%add_integer(now%increment)
+      associate (row => [now%total_time, e%external, e%kinetic, e%strain, e%damping, e%friction, &
+                         e%fracture, e%numerical, e%error])
+        do i = 1, size(row)
+          call lines%add(',')
+          call lines%add_real(row(i))
+        end do
+      end associate
+      call lines%add(new_line('a'))
+    end associate
+    call self%file%save(error)
+  end subroutine write_energies
+
+  !> Closes the file.
+  subroutine close_energy(self, scene, error)
+    class(energy_file), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(error_type), allocatable, intent(out) :: error
+    if (.false.) call close_energy(self, scene, error)
+    call self%file%close()
+  end subroutine close_energy
+end module write_energy

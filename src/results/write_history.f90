@@ -1,0 +1,195 @@
+!> *NODE PRINT, *EL PRINT, *JOINT PRINT: one CSV file for each set or joint, over all steps.
+module write_history
+  use errors, only: error_type
+  use problem_definition, only: problem
+  use analysis_state, only: state
+  use step_plan, only: print_request
+  use run_records, only: run_record
+  use result_writer, only: writer, is_due
+  use history_rows, only: name_part, header_of, columns_of, add_node_rows, add_element_rows, &
+    add_joint_rows
+  use csv_files, only: csv_file
+  use file_system, only: safe_name
+  implicit none
+  private
+  public :: history_files, open_histories
+
+  !> One file. Its columns are all fields that any step asks for.
+  type, extends(csv_file) :: history_file
+    character(:), allocatable :: kind, name
+    character(8), allocatable :: fields(:)
+    integer :: joint = 0 !< position of the joint, 0 for other kinds
+  end type history_file
+
+  type, extends(writer) :: history_files
+    private
+    type(history_file), allocatable :: files(:)
+  contains
+    procedure :: write_increment => write_rows
+    procedure :: finish => close_files
+  end type history_files
+
+contains
+
+  !> Opens a file for each set and joint that a step prints. `stem` is the folder and the job's name.
+  subroutine open_histories(scene, stem, record, histories, error)
+    type(problem), intent(in) :: scene
+    character(*), intent(in) :: stem
+    type(run_record), intent(inout) :: record
+    type(history_files), intent(out) :: histories
+    type(error_type), allocatable, intent(out) :: error
+    integer :: s, r, f
+    allocate (histories%files(0))
+    do s = 1, size(scene%steps)
+      if (.not. allocated(scene%steps(s)%prints)) cycle
+      do r = 1, size(scene%steps(s)%prints)
+        call add_request(scene%steps(s)%prints(r), record, histories%files)
+      end do
+    end do
+    do f = 1, size(histories%files)
+      associate (file => histories%files(f))
+        call file%open(stem//'_'//name_part(file%kind)//'_'//safe_name(file%name)//'.csv', &
+                       header_of(file%kind, file%fields), error)
+        if (allocated(error)) return
+      end associate
+    end do
+  end subroutine open_histories
+
+  !> Adds the request's fields to its file; makes the file when it is new.
+  subroutine add_request(request, record, files)
+    type(print_request), intent(in) :: request
+    type(run_record), intent(inout) :: record
+    type(history_file), allocatable, intent(inout) :: files(:)
+    type(history_file), allocatable :: more(:)
+    integer :: f, i
+    f = find_file(files, request)
+    if (f == 0) then
+      f = size(files) + 1
+      allocate (more(f))
+      more(:f - 1) = files
+      more(f)%kind = request%kind
+      more(f)%name = request%name
+      if (request%kind == 'JOINT') more(f)%joint = request%members(1)
+      allocate (more(f)%fields(0))
+      call move_alloc(more, files)
+    end if
+    do i = 1, size(request%fields)
+      if (any(files(f)%fields == request%fields(i))) cycle
+      if (columns_of(request%kind, request%fields(i)) /= '') then
+        files(f)%fields = [files(f)%fields, request%fields(i)]
+      else if (request%kind /= 'JOINT') then
+        call record%warn_once(trim(request%fields(i))//' of '//request%name// &
+                              ' is not printed: this analysis does not have it')
+      end if
+    end do
+  end subroutine add_request
+
+  !> Position of the file of a request, 0 when there is none yet.
+  pure integer function find_file(files, request) result(found)
+    type(history_file), intent(in) :: files(:)
+    type(print_request), intent(in) :: request
+    integer :: f
+    found = 0
+    do f = 1, size(files)
+      if (files(f)%kind == request%kind .and. files(f)%name == request%name) found = f
+    end do
+  end function find_file
+
+  !> Rows of all files that are due.
+  subroutine write_rows(self, scene, now, record, error)
+    class(history_files), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(run_record), intent(inout) :: record
+    type(error_type), allocatable, intent(out) :: error
+    integer, allocatable :: chosen(:)
+    integer :: f
+    do f = 1, size(self%files)
+      associate (file => self%files(f))
+        call choose_members(scene, now, file, chosen)
+        if (size(chosen) == 0) cycle
+        select case (file%kind)
+        case ('NODE')
+          call add_node_rows(file%lines, scene, now, file%fields, chosen)
+        case ('ELEMENT')
+          call record%stresses%need_points(scene, now)
+          call add_element_rows(file%lines, scene, now, record%stresses, file%fields, chosen)
+        case default
+          call add_joint_rows(file%lines, scene, now, file%joint, chosen)
+        end select
+        call file%save(error)
+        if (allocated(error)) return
+      end associate
+    end do
+  end subroutine write_rows
+
+  !> Members that due requests of this step want in the file: nodes, elements or points of a joint.
+  subroutine choose_members(scene, now, file, chosen)
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(history_file), intent(in) :: file
+    integer, allocatable, intent(out) :: chosen(:)
+    integer :: r
+    chosen = [integer ::]
+    if (.not. allocated(scene%steps(now%step)%prints)) return
+    do r = 1, size(scene%steps(now%step)%prints)
+      associate (request => scene%steps(now%step)%prints(r))
+        if (request%kind /= file%kind .or. request%name /= file%name) cycle
+        if (.not. is_due(now, request%frequency)) cycle
+        if (file%kind == 'JOINT') then
+          chosen = united(chosen, points_of(scene, request, file%joint))
+        else
+          chosen = united(chosen, request%members)
+        end if
+      end associate
+    end do
+  end subroutine choose_members
+
+  !> Points of a joint: the nearest to each named node, or all where none is named.
+  pure function points_of(scene, request, joint) result(points)
+    type(problem), intent(in) :: scene
+    type(print_request), intent(in) :: request
+    integer, intent(in) :: joint
+    integer, allocatable :: points(:)
+    integer :: p, i
+    logical :: is_near(scene%joints(joint)%num_points)
+    is_near = .true.
+    if (allocated(request%near_nodes)) is_near = size(request%near_nodes) == 0
+    if (.not. all(is_near)) then
+      do i = 1, size(request%near_nodes)
+        associate (here => scene%mesh%x(:, request%near_nodes(i)), x => scene%joints(joint)%x)
+          p = minloc((x(1, :) - here(1))**2 + (x(2, :) - here(2))**2 + (x(3, :) - here(3))**2, dim=1)
+          is_near(p) = .true.
+        end associate
+      end do
+    end if
+    points = pack([(p, p=1, size(is_near))], is_near)
+  end function points_of
+
+  !> Both lists, each member once; in the order of the first, or ascending when both hold some.
+  pure function united(first, second) result(both)
+    integer, intent(in) :: first(:), second(:)
+    integer, allocatable :: both(:)
+    logical, allocatable :: is_in(:)
+    integer :: i
+    both = first
+    if (size(first) == 0) both = second
+    if (size(first) == 0 .or. size(second) == 0) return
+    allocate (is_in(max(maxval(first), maxval(second))), source=.false.)
+    is_in(first) = .true.
+    is_in(second) = .true.
+    both = pack([(i, i=1, size(is_in))], is_in)
+  end function united
+
+  !> Closes the files.
+  subroutine close_files(self, scene, error)
+    class(history_files), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(error_type), allocatable, intent(out) :: error
+    integer :: f
+    if (.false.) call close_files(self, scene, error)
+    do f = 1, size(self%files)
+      call self%files(f)%close()
+    end do
+  end subroutine close_files
+end module write_history
