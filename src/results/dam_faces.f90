@@ -8,10 +8,11 @@ module dam_faces
   use dam_mesh, only: mesh
   use mesh_sets, only: surface
   use mesh_faces, only: face_nodes, face_vector, face_centre, find_exterior, mark_covered
+  use element_catalogue, only: is_solid
   use problem_definition, only: problem
   implicit none
   private
-  public :: dam_skin, find_dam_faces, is_solid
+  public :: dam_skin, find_dam_faces
 
   !> A face is downstream when the cosine between its normal and the nearest upstream one is less.
   real(rk), parameter :: largest_cosine = -0.3_rk
@@ -22,12 +23,6 @@ module dam_faces
   end type dam_skin
 
 contains
-
-  !> True for the 8-node solids.
-  elemental logical function is_solid(element_type)
-    character(*), intent(in) :: element_type
-    is_solid = index(element_type, 'C3D8') == 1
-  end function is_solid
 
   !> Marks the nodes of both faces; none where the problem has no reservoir.
   subroutine find_dam_faces(scene, skin)

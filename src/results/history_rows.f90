@@ -3,7 +3,7 @@ module history_rows
   use kinds, only: rk
   use problem_definition, only: problem
   use analysis_state, only: state
-  use principal_stress, only: principal_values
+  use tensor6, only: principal_values
   use joint_readings, only: opening_at_points
   use stress_fields, only: recovered_fields
   use text_buffers, only: text_buffer
@@ -26,7 +26,7 @@ contains
     case default
       text = 'joint'
     end select
-  end function infix
+  end function name_part
 
   !> The header line.
   pure function header_of(kind, fields) result(header)
@@ -169,7 +169,7 @@ contains
     type(state), intent(in) :: now
     integer, intent(in) :: joint !< position in the problem
     integer, intent(in) :: points(:)
-    real(rk), allocatable :: opening(:)
+    real(rk) :: opening(scene%joints(joint)%num_points)
     integer :: k, p
     opening = opening_at_points(scene%joints(joint), now%joints(joint))
     do k = 1, size(points)

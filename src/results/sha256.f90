@@ -48,10 +48,11 @@ contains
     character(*), intent(in) :: bytes
     character(64) :: digest
     character(2*block_size) :: tail
+    character(8*(8 + 64)) :: digits
     integer(long) :: sum(8), round_constant(64)
     integer :: i, whole, num_tail
-    read (start_digits, '(8z8)') sum
-    read (round_digits, '(64z8)') round_constant
+    digits = start_digits//round_digits
+    read (digits, '(72z8)') sum, round_constant
     whole = len(bytes)/block_size
     do i = 1, whole
       call add_block(round_constant, sum, bytes((i - 1)*block_size + 1:i*block_size))

@@ -3,6 +3,22 @@ set(sources
   json_writer.f90
   sha256.f90
   file_system.f90
-  principal_stress.f90
   vtk_order.f90
+  dam_faces.f90
+  extremes.f90
+  joint_readings.f90
+  stress_recovery.f90
+  stress_fields.f90
+  envelopes.f90
+  run_records.f90
+  result_writer.f90
+  csv_files.f90
+  history_rows.f90
+  write_history.f90
+  write_energy.f90
+  requested_fields.f90
+  joint_surface.f90
+  vtu_files.f90
+  pvd_files.f90
+  write_vtk.f90
 )

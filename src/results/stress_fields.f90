@@ -3,7 +3,7 @@ module stress_fields
   use kinds, only: rk
   use problem_definition, only: problem
   use analysis_state, only: state
-  use principal_stress, only: principal_values
+  use tensor6, only: principal_values
   use stress_recovery, only: recovery_plan, make_recovery_plan, recover_points, average_at_nodes, &
     max_points
   implicit none

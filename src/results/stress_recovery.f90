@@ -7,9 +7,10 @@
 module stress_recovery
   use kinds, only: rk
   use element_formulation, only: solid_element
-  use element_catalogue, only: make_solid_element
+  use element_catalogue, only: is_solid, make_solid
+  use element_matrices, only: strains_at_points
+  use shape_hex8, only: corners_from_points
   use problem_definition, only: problem
-  use dam_faces, only: is_solid
   implicit none
   private
   public :: recovery_plan, make_recovery_plan, recover_points, average_at_nodes, max_points
@@ -72,7 +73,7 @@ contains
     end do
     allocate (plan%formulations(size(names)))
     do kind = 1, size(names)
-      call make_solid_element(names(kind), plan%formulations(kind)%item)
+      call make_solid(names(kind), plan%formulations(kind)%item)
     end do
     do s = 1, plan%num_solids
       plan%num_points(s) = plan%formulations(kind_of(s))%item%num_points
@@ -160,29 +161,28 @@ contains
     type(element_block), intent(in) :: part
     real(rk), intent(in) :: u(:, :)
     real(rk), intent(inout) :: strain(:, :, :), stress(:, :, :)
-    real(rk), allocatable :: b(:, :, :, :), x(:, :, :), weight(:, :)
+    real(rk), allocatable :: b(:, :, :, :), x(:, :, :), moved(:, :), weight(:, :), found(:, :, :)
     integer, allocatable :: status(:)
-    real(rk) :: d(6, 6), moved(24)
-    integer :: k, q, s, n, nodes(8)
+    real(rk) :: d(6, 6)
+    integer :: k, q, n, points, nodes(8)
     n = size(part%solids)
-    associate (formulation => plan%formulations(part%formulation)%item)
-      allocate (b(6, 24, formulation%num_points, n), weight(formulation%num_points, n))
-      allocate (x(3, 8, n), status(n))
-      do k = 1, n
-        x(:, :, k) = scene%mesh%x(:, scene%mesh%nodes(:, plan%element_of_solid(part%solids(k))))
+    points = plan%formulations(part%formulation)%item%num_points
+    allocate (b(6, 24, points, n), weight(points, n), found(6, points, n))
+    allocate (x(3, 8, n), moved(24, n), status(n))
+    do k = 1, n
+      nodes = scene%mesh%nodes(:, plan%element_of_solid(part%solids(k)))
+      x(:, :, k) = scene%mesh%x(:, nodes)
+      moved(:, k) = reshape(u(:, nodes), [24])
+    end do
+    call scene%materials(part%material)%law%elastic_stiffness(d)
+    call plan%formulations(part%formulation)%item%strain_operator(x, d, b, weight, status)
+    call strains_at_points(b, moved, found)
+    do k = 1, n
+      strain(:, :points, part%solids(k)) = found(:, :, k)
+      do q = 1, points
+        stress(:, q, part%solids(k)) = matmul(d, found(:, q, k))
       end do
-      call scene%materials(part%material)%law%elastic_stiffness(d)
-      call formulation%strain_operator(x, d, b, weight, status)
-      do k = 1, n
-        s = part%solids(k)
-        nodes = scene%mesh%nodes(:, plan%element_of_solid(s))
-        moved = reshape(u(:, nodes), [24])
-        do q = 1, formulation%num_points
-          strain(:, q, s) = matmul(b(:, :, q, k), moved)
-          stress(:, q, s) = matmul(d, strain(:, q, s))
-        end do
-      end do
-    end associate
+    end do
   end subroutine recover_block
 
   !> Carries a tensor from the points to the nodes; nodes without a solid get zero.
@@ -192,7 +192,7 @@ contains
     real(rk), intent(out) :: at_nodes(:, :) !< (6, nodes)
     real(rk) :: to_corner(max_points, 8), sum(6)
     integer :: node, i, s, a, count
-    to_corner = points_to_corners()
+    to_corner = transpose(corners_from_points())
     !$omp parallel do default(none) schedule(static) shared(plan, at_points, at_nodes, to_corner) &
     !$omp private(i, s, a, count, sum)
     do node = 1, size(at_nodes, 2)
@@ -211,18 +211,4 @@ contains
     end do
     !$omp end parallel do
   end subroutine average_at_nodes
-
-  !> Weights of the 2x2x2 points at the corners: the trilinear functions of the cube of points,
-  !> whose corners lie at 1/sqrt(3), taken at the element's corners.
-  pure function points_to_corners() result(weight)
-    real(rk) :: weight(max_points, 8)
-    integer, parameter :: side(3, 8) = reshape([-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1, &
-                                                -1, -1, 1, 1, -1, 1, 1, 1, 1, -1, 1, 1], [3, 8])
-    integer :: a, q
-    do a = 1, 8
-      do q = 1, max_points
-        weight(q, a) = product(1.0_rk + sqrt(3.0_rk)*side(:, a)*point_side(:, q))/8.0_rk
-      end do
-    end do
-  end function points_to_corners
 end module stress_recovery

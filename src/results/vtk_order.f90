@@ -3,7 +3,8 @@ module vtk_order
   use kinds, only: rk
   implicit none
   private
-  public :: tensor_in_vtk_order, cell_of_solid, cell_hexahedron, cell_wedge, cell_quad
+  public :: tensor_in_vtk_order, tensor_names_in_vtk_order, cell_of_solid
+  public :: cell_hexahedron, cell_wedge, cell_quad
 
   integer, parameter :: cell_quad = 9, cell_hexahedron = 12, cell_wedge = 13
 
@@ -17,6 +18,13 @@ contains
     ordered(5, :) = tensor(6, :)
     ordered(6, :) = tensor(5, :)
   end function tensor_in_vtk_order
+
+  !> 'S11,S22,S33,S12,S23,S13' for the tensor S.
+  pure function tensor_names_in_vtk_order(name) result(list)
+    character(*), intent(in) :: name
+    character(:), allocatable :: list
+    list = name//'11,'//name//'22,'//name//'33,'//name//'12,'//name//'23,'//name//'13'
+  end function tensor_names_in_vtk_order
 
   !> The cell of an 8-node solid and its nodes: a hexahedron has the same order of nodes; one whose
   !> nodes repeat so that an edge has shrunk on two opposite faces is drawn as a wedge, and any

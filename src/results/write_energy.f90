@@ -1,6 +1,6 @@
 !> job_energy.csv: the energy balance of every increment.
 module write_energy
-  use errors, only: error_type
+  use errors, only: error_type, raise
   use problem_definition, only: problem
   use analysis_state, only: state
   use run_records, only: run_record
@@ -61,7 +61,7 @@ contains
     class(energy_file), intent(inout) :: self
     type(problem), intent(in) :: scene
     type(error_type), allocatable, intent(out) :: error
-    if (.false.) call close_energy(self, scene, error)
+    if (.false.) call raise(error, scene%deck_file)
     call self%file%close()
   end subroutine close_energy
 end module write_energy

@@ -1,6 +1,6 @@
 !> *NODE PRINT, *EL PRINT, *JOINT PRINT: one CSV file for each set or joint, over all steps.
 module write_history
-  use errors, only: error_type
+  use errors, only: error_type, raise
   use problem_definition, only: problem
   use analysis_state, only: state
   use step_plan, only: print_request
@@ -187,7 +187,7 @@ contains
     type(problem), intent(in) :: scene
     type(error_type), allocatable, intent(out) :: error
     integer :: f
-    if (.false.) call close_files(self, scene, error)
+    if (.false.) call raise(error, scene%deck_file)
     do f = 1, size(self%files)
       call self%files(f)%close()
     end do

@@ -1,0 +1,66 @@
+!> The list of a VTK series with times (.pvd), readable at any moment of the run.
+module pvd_files
+  use kinds, only: rk
+  use errors, only: error_type
+  use text_buffers, only: text_buffer, text_of
+  use file_system, only: write_whole_file
+  implicit none
+  private
+  public :: pvd_file
+
+  character, parameter :: nl = new_line('a')
+
+  type :: pvd_file
+    private
+    character(:), allocatable :: path
+    character(:), allocatable :: folder !< of the listed files, relative to this one
+    type(text_buffer) :: entries
+  contains
+    procedure :: open => open_pvd
+    procedure :: add => add_entry
+  end type pvd_file
+
+contains
+
+  !> The file comes into being with its first entry.
+  subroutine open_pvd(self, path, folder)
+    class(pvd_file), intent(inout) :: self
+    character(*), intent(in) :: path
+    character(*), intent(in) :: folder
+    self%path = path
+    self%folder = folder
+  end subroutine open_pvd
+
+  !> Adds a file and writes the list anew.
+  subroutine add_entry(self, time, name, error)
+    class(pvd_file), intent(inout) :: self
+    real(rk), intent(in) :: time !< total time [s]
+    character(*), intent(in) :: name
+    type(error_type), allocatable, intent(out) :: error
+    call self%entries%add('<DataSet timestep="'//text_of(time)//'" part="0" file="'// &
+                          escaped(self%folder//name)//'"/>'//nl)
+    call write_whole_file(self%path, '<?xml version="1.0"?>'//nl//'<VTKFile type="Collection" '// &
+                          'version="1.0" byte_order="LittleEndian">'//nl//'<Collection>'//nl// &
+                          self%entries%contents()//'</Collection>'//nl//'</VTKFile>'//nl, error)
+  end subroutine add_entry
+
+  !> A text as the value of an XML attribute.
+  pure function escaped(text) result(safe)
+    character(*), intent(in) :: text
+    character(:), allocatable :: safe
+    integer :: i
+    safe = ''
+    do i = 1, len(text)
+      select case (text(i:i))
+      case ('&')
+        safe = safe//'&amp;'
+      case ('<')
+        safe = safe//'&lt;'
+      case ('"')
+        safe = safe//'&quot;'
+      case default
+        safe = safe//text(i:i)
+      end select
+    end do
+  end function escaped
+end module pvd_files

@@ -1,0 +1,109 @@
+!> Which fields an increment shall write, and their values on the nodes.
+module requested_fields
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use analysis_state, only: state
+  use joint_readings, only: opening_at_nodes
+  use run_records, only: run_record
+  use result_writer, only: is_due
+  implicit none
+  private
+  public :: list_due_fields, field_on_nodes, components_of
+
+contains
+
+  !> Fields of all requests that are due, each once; those that this procedure does not have are
+  !> left out with one warning.
+  subroutine list_due_fields(scene, now, record, fields)
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(run_record), intent(inout) :: record
+    character(8), allocatable, intent(out) :: fields(:)
+    integer :: r, i
+    allocate (fields(0))
+    if (.not. allocated(scene%steps(now%step)%outputs)) return
+    do r = 1, size(scene%steps(now%step)%outputs)
+      associate (request => scene%steps(now%step)%outputs(r))
+        if (.not. is_due(now, request%frequency)) cycle
+        do i = 1, size(request%fields)
+          if (any(fields == request%fields(i))) cycle
+          if (is_available(scene, now, request%fields(i))) then
+            fields = [fields, request%fields(i)]
+          else
+            call record%warn_once('step '//scene%steps(now%step)%name//' does not have the field '// &
+                                  trim(request%fields(i))//'; it is not written')
+          end if
+        end do
+      end associate
+    end do
+  end subroutine list_due_fields
+
+  !> Does this analysis have the field now?
+  pure logical function is_available(scene, now, name)
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    character(*), intent(in) :: name
+    select case (name)
+    case ('U', 'S', 'E', 'SP')
+      is_available = .true.
+    case ('RF')
+      is_available = allocated(now%reaction)
+    case ('V')
+      is_available = allocated(now%v) .and. scene%steps(now%step)%procedure == 'DYNAMIC'
+    case ('A')
+      is_available = allocated(now%a) .and. scene%steps(now%step)%procedure == 'DYNAMIC'
+    case ('OPENING')
+      is_available = size(scene%joints) > 0
+    case default
+      is_available = .false.
+    end select
+  end function is_available
+
+  !> The values of a field on the nodes, tensors in the order 11 22 33 12 13 23.
+  subroutine field_on_nodes(scene, now, record, name, values)
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(run_record), intent(inout) :: record
+    character(*), intent(in) :: name !< one that is available
+    real(rk), allocatable, intent(out) :: values(:, :) !< (components, nodes)
+    select case (name)
+    case ('U')
+      values = now%u
+    case ('V')
+      values = now%v
+    case ('A')
+      values = now%a
+    case ('RF')
+      values = now%reaction
+    case ('S')
+      call record%stresses%need_nodes(scene, now)
+      values = record%stresses%node_stress
+    case ('E')
+      call record%stresses%need_nodes(scene, now)
+      values = record%stresses%node_strain
+    case ('SP')
+      call record%stresses%need_principals(scene, now)
+      values = record%stresses%node_principal
+    case ('OPENING')
+      values = reshape(opening_at_nodes(scene, now), [1, scene%mesh%num_nodes])
+    end select
+  end subroutine field_on_nodes
+
+  !> Names of the components, with commas between, in the order of `field_on_nodes`.
+  pure function components_of(name) result(list)
+    character(*), intent(in) :: name
+    character(:), allocatable :: list
+    character(2), parameter :: suffix(6) = ['11', '22', '33', '12', '13', '23']
+    integer :: i
+    list = ''
+    select case (name)
+    case ('U', 'V', 'A', 'RF', 'SP')
+      list = trim(name)//'1,'//trim(name)//'2,'//trim(name)//'3'
+    case ('S', 'E')
+      do i = 1, 6
+        list = list//','//trim(name)//suffix(i)
+      end do
+      list = list(2:)
+    end select
+  end function components_of
+end module requested_fields

@@ -1,0 +1,210 @@
+!> The VTK series: job_vtk/job_NNNN.vtu with job.pvd, the joints' surfaces, envelopes and modes.
+module write_vtk
+  use kinds, only: rk
+  use errors, only: error_type
+  use problem_definition, only: problem
+  use analysis_state, only: state, vibration_mode
+  use element_catalogue, only: is_solid
+  use run_records, only: run_record
+  use result_writer, only: writer
+  use requested_fields, only: list_due_fields, field_on_nodes, components_of
+  use envelopes, only: name_of_field
+  use joint_surface, only: drawn_joints, find_drawn_joints, values_on_corners, num_values
+  use vtk_order, only: tensor_in_vtk_order, tensor_names_in_vtk_order, cell_of_solid, cell_quad
+  use vtu_files, only: vtu_file
+  use pvd_files, only: pvd_file
+  use text_buffers, only: text_of
+  use file_system, only: make_folder
+  implicit none
+  private
+  public :: vtk_series, open_vtk
+
+  type, extends(writer) :: vtk_series
+    private
+    character(:), allocatable :: folder !< '.../job_vtk/'
+    character(:), allocatable :: job
+    logical :: has_grid = .false. !< the arrays below and the folder are there
+    integer :: num_frames = 0
+    integer, allocatable :: connectivity(:), ends(:), kinds(:), elements(:) !< of the solids' cells
+    type(drawn_joints) :: joints
+    type(pvd_file) :: frames, joint_frames
+  contains
+    procedure :: write_increment => write_frame
+    procedure :: write_modes => write_mode_shapes
+    procedure :: write_envelopes
+    procedure, private :: prepare
+    procedure, private :: start_grid
+    procedure, private :: write_joints
+  end type vtk_series
+
+contains
+
+  !> Nothing is written before something is due. `results` is the folder with a slash at its end.
+  subroutine open_vtk(results, job, series)
+    character(*), intent(in) :: results, job
+    type(vtk_series), intent(out) :: series
+    series%folder = results//job//'_vtk/'
+    series%job = job
+    call series%frames%open(results//job//'.pvd', job//'_vtk/')
+    call series%joint_frames%open(results//job//'_joints.pvd', job//'_vtk/')
+  end subroutine open_vtk
+
+  !> One file of the series, when a request is due.
+  subroutine write_frame(self, scene, now, record, error)
+    class(vtk_series), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(run_record), intent(inout) :: record
+    type(error_type), allocatable, intent(out) :: error
+    character(8), allocatable :: fields(:)
+    type(vtu_file) :: file
+    integer :: i
+    call list_due_fields(scene, now, record, fields)
+    if (size(fields) == 0) return
+    call self%prepare(scene, error)
+    if (allocated(error)) return
+    self%num_frames = self%num_frames + 1
+    call self%start_grid(scene, file)
+    do i = 1, size(fields)
+      call put_field(file, scene, now, record, fields(i))
+    end do
+    call file%save(self%folder//frame_name(self%job, self%num_frames), error)
+    if (allocated(error)) return
+    call self%frames%add(now%total_time, frame_name(self%job, self%num_frames), error)
+    if (allocated(error) .or. .not. any(fields == 'OPENING')) return
+    call self%write_joints(scene, now, error)
+  end subroutine write_frame
+
+  !> One field on the nodes.
+  subroutine put_field(file, scene, now, record, name)
+    type(vtu_file), intent(inout) :: file
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(run_record), intent(inout) :: record
+    character(*), intent(in) :: name
+    real(rk), allocatable :: values(:, :)
+    call field_on_nodes(scene, now, record, name, values)
+    if (size(values, 1) == 6) then
+      call file%put_point_reals(trim(name), tensor_in_vtk_order(values), &
+                                tensor_names_in_vtk_order(trim(name)))
+    else
+      call file%put_point_reals(trim(name), values, components_of(name))
+    end if
+  end subroutine put_field
+
+  !> The joints' surfaces, with a series of their own.
+  subroutine write_joints(self, scene, now, error)
+    class(vtk_series), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: values(num_values, size(self%joints%node))
+    character(:), allocatable :: name
+    type(vtu_file) :: file
+    integer :: i, num_quads
+    num_quads = size(self%joints%element)
+    if (num_quads == 0) return
+    call values_on_corners(scene, now, self%joints, values)
+    call file%start(scene%mesh%x(:, self%joints%node), reshape(self%joints%quad - 1, &
+                                                               [4*num_quads]), &
+                    [(4*i, i=1, num_quads)], [(cell_quad, i=1, num_quads)])
+    call file%put_point_integers('NODE_ID', scene%mesh%node_id(self%joints%node))
+    call file%put_point_reals('OPENING', values(1:1, :), '')
+    call file%put_point_reals('SLIP', values(2:3, :), 'SLIP1,SLIP2')
+    call file%put_point_reals('TRACTION', values(4:6, :), 'TN,T1,T2')
+    call file%put_cell_integers('JOINT', self%joints%joint)
+    call file%put_cell_integers('ELEMENT_ID', scene%mesh%element_id(self%joints%element))
+    name = frame_name(self%job//'_joints', self%num_frames)
+    call file%save(self%folder//name, error)
+    if (.not. allocated(error)) call self%joint_frames%add(now%total_time, name, error)
+  end subroutine write_joints
+
+  !> The envelopes of a step in one file; nothing where the step has none.
+  subroutine write_envelopes(self, scene, record, error)
+    class(vtk_series), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(run_record), intent(in) :: record
+    type(error_type), allocatable, intent(out) :: error
+    type(vtu_file) :: file
+    integer :: i
+    if (size(record%active) == 0) return
+    if (any(record%envelopes(record%active)%is_empty)) return
+    call self%prepare(scene, error)
+    if (allocated(error)) return
+    call self%start_grid(scene, file)
+    do i = 1, size(record%active)
+      associate (item => record%envelopes(record%active(i)))
+        call file%put_point_reals(name_of_field(item), reshape(item%value, [1, size(item%value)]), '')
+        call file%put_point_reals(name_of_field(item)//'_TIME', &
+                                  reshape(item%time, [1, size(item%time)]), '')
+      end associate
+    end do
+    call file%save(self%folder//self%job//'_envelope_step'//text_of(record%step)//'.vtu', error)
+  end subroutine write_envelopes
+
+  !> All mode shapes of a *FREQUENCY step in one file.
+  subroutine write_mode_shapes(self, scene, step, modes, error)
+    class(vtk_series), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    integer, intent(in) :: step
+    type(vibration_mode), intent(in) :: modes(:)
+    type(error_type), allocatable, intent(out) :: error
+    type(vtu_file) :: file
+    character(5) :: number
+    integer :: i
+    call self%prepare(scene, error)
+    if (allocated(error)) return
+    call self%start_grid(scene, file)
+    do i = 1, size(modes)
+      write (number, '(i5.2)') i
+      call file%put_point_reals('MODE_'//trim(adjustl(number)), modes(i)%shape, 'U1,U2,U3')
+    end do
+    call file%save(self%folder//self%job//'_modes_step'//text_of(step)//'.vtu', error)
+  end subroutine write_mode_shapes
+
+  !> Makes the folder and the cells, once.
+  subroutine prepare(self, scene, error)
+    class(vtk_series), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(error_type), allocatable, intent(out) :: error
+    integer :: e, c, last, corners(8), num_corners
+    if (self%has_grid) return
+    call make_folder(self%folder(:len(self%folder) - 1), error)
+    if (allocated(error)) return
+    self%elements = pack([(e, e=1, scene%mesh%num_elements)], is_solid(scene%mesh%element_type))
+    allocate (self%connectivity(8*size(self%elements)))
+    allocate (self%ends(size(self%elements)), self%kinds(size(self%elements)))
+    last = 0
+    do c = 1, size(self%elements)
+      call cell_of_solid(scene%mesh%nodes(:, self%elements(c)), self%kinds(c), corners, num_corners)
+      self%connectivity(last + 1:last + num_corners) = corners(:num_corners) - 1
+      last = last + num_corners
+      self%ends(c) = last
+    end do
+    self%connectivity = self%connectivity(:last)
+    call find_drawn_joints(scene, self%joints)
+    self%has_grid = .true.
+  end subroutine prepare
+
+  !> Starts a file with the solids, their materials and the numbers of the deck.
+  subroutine start_grid(self, scene, file)
+    class(vtk_series), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(vtu_file), intent(inout) :: file
+    call file%start(scene%mesh%x, self%connectivity, self%ends, self%kinds)
+    call file%put_point_integers('NODE_ID', scene%mesh%node_id)
+    call file%put_cell_integers('MATERIAL', scene%mesh%material_of_element(self%elements))
+    call file%put_cell_integers('ELEMENT_ID', scene%mesh%element_id(self%elements))
+  end subroutine start_grid
+
+  !> 'job_0001.vtu'
+  pure function frame_name(stem, number) result(name)
+    character(*), intent(in) :: stem
+    integer, intent(in) :: number
+    character(:), allocatable :: name
+    character(12) :: digits
+    write (digits, '(i4.4)') number
+    if (number > 9999) write (digits, '(i0)') number
+    name = stem//'_'//trim(digits)//'.vtu'
+  end function frame_name
+end module write_vtk
