@@ -21,4 +21,8 @@ set(sources
   vtu_files.f90
   pvd_files.f90
   write_vtk.f90
+  hdf5_files.f90
+  hdf5_tables.f90
+  hdf5_model.f90
+  write_hdf5.f90
 )

@@ -1,0 +1,54 @@
+!> Tables of an HDF5 file that grow by a row an increment; rows gather in memory between flushes.
+module hdf5_tables
+  use kinds, only: rk
+  use hdf5_files, only: hdf5_file
+  implicit none
+  private
+  public :: growing_table
+
+  integer, parameter :: capacity = 256 !< rows kept in memory
+
+  type :: growing_table
+    private
+    character(:), allocatable :: path
+    real(rk), allocatable :: rows(:, :) !< (columns, capacity)
+    integer :: num_kept = 0, num_written = 0
+  contains
+    procedure :: start
+    procedure :: add
+    procedure :: bring_out
+  end type growing_table
+
+contains
+
+  !> Makes the empty table in the file.
+  subroutine start(self, file, path, columns)
+    class(growing_table), intent(inout) :: self
+    type(hdf5_file), intent(inout) :: file
+    character(*), intent(in) :: path
+    character(*), intent(in) :: columns !< their names, with commas between
+    integer :: i
+    self%path = path
+    allocate (self%rows(1 + count([(columns(i:i) == ",", i=1, len(columns))]), capacity))
+    call file%start_table(path, columns)
+  end subroutine start
+
+  !> Adds a row.
+  subroutine add(self, file, row)
+    class(growing_table), intent(inout) :: self
+    type(hdf5_file), intent(inout) :: file
+    real(rk), intent(in) :: row(:)
+    if (self%num_kept == capacity) call self%bring_out(file)
+    self%num_kept = self%num_kept + 1
+    self%rows(:, self%num_kept) = row
+  end subroutine add
+
+  !> Moves the rows from memory to the file.
+  subroutine bring_out(self, file)
+    class(growing_table), intent(inout) :: self
+    type(hdf5_file), intent(inout) :: file
+    call file%extend_table(self%path, self%rows(:, :self%num_kept), self%num_written)
+    self%num_written = self%num_written + self%num_kept
+    self%num_kept = 0
+  end subroutine bring_out
+end module hdf5_tables

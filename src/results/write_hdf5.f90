@@ -1,0 +1,265 @@
+!> job.h5: the model, requested fields, histories, modes and envelopes (layout: docs/results.md).
+module write_hdf5
+  use kinds, only: rk
+  use errors, only: error_type, raise, system_failed
+  use timer, only: wall_clock
+  use build_info, only: program_version
+  use problem_definition, only: problem
+  use analysis_state, only: state, vibration_mode
+  use run_records, only: run_record
+  use joint_readings, only: opening_at_points
+  use result_writer, only: writer, is_due
+  use requested_fields, only: list_due_fields, field_on_nodes, components_of
+  use envelopes, only: name_of_field
+  use hdf5_files, only: hdf5_file
+  use hdf5_tables, only: growing_table
+  use hdf5_model, only: write_model
+  use file_system, only: safe_name
+  implicit none
+  private
+  public :: hdf5_results, open_hdf5
+
+  integer, parameter :: layout_version = 1
+  real(rk), parameter :: seconds_between_flushes = 2.0_rk
+
+  type, extends(writer) :: hdf5_results
+    private
+    type(hdf5_file) :: file
+    character(:), allocatable :: path
+    integer :: step = 0 !< whose group is there
+    real(rk) :: flushed_at = 0.0_rk !< by the wall clock [s]
+    type(growing_table) :: increments, energies
+    type(growing_table), allocatable :: joints(:)
+  contains
+    procedure :: write_increment => write_data
+    procedure :: write_modes => write_mode_data
+    procedure :: write_envelopes => write_envelope_data
+    procedure :: finish => close_data
+    procedure, private :: enter_step
+    procedure, private :: add_history
+    procedure, private :: add_fields
+    procedure, private :: bring_out
+  end type hdf5_results
+
+contains
+
+  !> Starts the file with the model. `stem` is the folder and the job's name.
+  subroutine open_hdf5(scene, stem, record, results, error)
+    type(problem), intent(in) :: scene
+    character(*), intent(in) :: stem
+    type(run_record), intent(in) :: record
+    type(hdf5_results), intent(out) :: results
+    type(error_type), allocatable, intent(out) :: error
+    integer :: j
+    results%path = stem//".h5"
+    associate (file => results%file)
+      call file%create(results%path)
+      call file%set("/", "program", "Keyway "//program_version)
+      call file%set("/", "deck", scene%deck_file)
+      call file%set("/", "layout", layout_version)
+      call write_model(file, scene, record)
+      call file%make_group("/steps")
+      call file%make_group("/history")
+      call file%make_group("/history/joints")
+      call results%increments%start(file, "/history/increments", &
+                                    "step,increment,time,size,iterations,residual")
+      call results%energies%start(file, "/history/energy", "step,increment,time,external,"// &
+                                  "kinetic,strain,damping,friction,fracture,numerical,error")
+      allocate (results%joints(size(scene%joints)))
+      do j = 1, size(scene%joints)
+        call results%joints(j)%start(file, "/history/joints/"//safe_name(scene%joints(j)%name), &
+                                     "step,increment,time,opening,slip,pressure")
+      end do
+    end associate
+    call results%bring_out(error)
+  end subroutine open_hdf5
+
+  !> Histories of every increment, and the fields that are due.
+  subroutine write_data(self, scene, now, record, error)
+    class(hdf5_results), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(run_record), intent(inout) :: record
+    type(error_type), allocatable, intent(out) :: error
+    character(8), allocatable :: fields(:)
+    call self%enter_step(scene, now%step)
+    if (is_due(now, 1)) call self%add_history(scene, now)
+    call list_due_fields(scene, now, record, fields)
+    if (size(fields) > 0) call self%add_fields(scene, now, record, fields)
+    if (size(fields) > 0 .or. wall_clock() - self%flushed_at > seconds_between_flushes) then
+      call self%bring_out(error)
+    end if
+  end subroutine write_data
+
+  !> Rows of the histories.
+  subroutine add_history(self, scene, now)
+    class(hdf5_results), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    real(rk) :: time(3), slip, opening, pressure
+    integer :: j
+    time = [real(now%step, rk), real(now%increment, rk), now%total_time]
+    call self%increments%add(self%file, [time, now%increment_size, real(now%iterations, rk), &
+                                         now%residual])
+    associate (e => now%energy)
+      call self%energies%add(self%file, [time, e%external, e%kinetic, e%strain, e%damping, &
+                                         e%friction, e%fracture, e%numerical, e%error])
+    end associate
+    do j = 1, size(scene%joints)
+      associate (joint => now%joints(j))
+        opening = max(0.0_rk, maxval(opening_at_points(scene%joints(j), joint)))
+        slip = max(0.0_rk, maxval(hypot(joint%slip(1, :), joint%slip(2, :))))
+        pressure = max(0.0_rk, -minval(joint%traction(1, :)))
+        call self%joints(j)%add(self%file, [time, opening, slip, pressure])
+      end associate
+    end do
+  end subroutine add_history
+
+  !> The group of one increment.
+  subroutine add_fields(self, scene, now, record, fields)
+    class(hdf5_results), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(run_record), intent(inout) :: record
+    character(8), intent(in) :: fields(:)
+    character(:), allocatable :: group
+    real(rk), allocatable :: values(:, :)
+    integer :: i
+    group = step_group(now%step)//"/increments/"//padded(now%increment, 6)
+    call self%file%make_group(group)
+    call self%file%set(group, "step", now%step)
+    call self%file%set(group, "increment", now%increment)
+    call self%file%set(group, "time", now%total_time)
+    call self%file%set(group, "step_time", now%step_time)
+    do i = 1, size(fields)
+      call field_on_nodes(scene, now, record, fields(i), values)
+      associate (path => group//"/"//trim(fields(i)))
+        if (size(values, 1) == 1) then
+          call self%file%put(path, values(1, :))
+        else
+          call self%file%put(path, values)
+          call self%file%set(path, "components", components_of(fields(i)))
+        end if
+      end associate
+    end do
+    if (any(fields == "OPENING")) call add_joints(self%file, scene, now, group//"/joints")
+  end subroutine add_fields
+
+  !> All points of all joints.
+  subroutine add_joints(file, scene, now, group)
+    type(hdf5_file), intent(inout) :: file
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    character(*), intent(in) :: group
+    character(:), allocatable :: place
+    integer :: j
+    call file%make_group(group)
+    do j = 1, size(scene%joints)
+      place = group//"/"//safe_name(scene%joints(j)%name)
+      call file%make_group(place)
+      call file%put(place//"/opening", opening_at_points(scene%joints(j), now%joints(j)))
+      call file%put(place//"/slip", now%joints(j)%slip)
+      call file%put(place//"/traction", now%joints(j)%traction)
+      call file%put(place//"/state", now%joints(j)%status)
+    end do
+  end subroutine add_joints
+
+  !> Frequencies, effective masses and shapes of a *FREQUENCY step.
+  subroutine write_mode_data(self, scene, step, modes, error)
+    class(hdf5_results), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    integer, intent(in) :: step
+    type(vibration_mode), intent(in) :: modes(:)
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: mass(:, :), shapes(:, :, :)
+    integer :: i
+    call self%enter_step(scene, step)
+    allocate (mass(3, size(modes)), shapes(3, scene%mesh%num_nodes, size(modes)))
+    do i = 1, size(modes)
+      mass(:, i) = modes(i)%effective_mass
+      shapes(:, :, i) = modes(i)%shape
+    end do
+    associate (group => step_group(step)//"/modes")
+      call self%file%make_group(group)
+      call self%file%put(group//"/hz", modes%hz)
+      call self%file%put(group//"/effective_mass", mass)
+      call self%file%put(group//"/shape", shapes)
+    end associate
+    call self%bring_out(error)
+  end subroutine write_mode_data
+
+  !> The envelopes of the step that has ended.
+  subroutine write_envelope_data(self, record, error)
+    class(hdf5_results), intent(inout) :: self
+    type(run_record), intent(in) :: record
+    type(error_type), allocatable, intent(out) :: error
+    character(:), allocatable :: group
+    integer :: i
+    if (size(record%active) == 0) return
+    if (any(record%envelopes(record%active)%is_empty)) return
+    group = step_group(record%step)//"/envelopes"
+    call self%file%make_group(group)
+    do i = 1, size(record%active)
+      associate (item => record%envelopes(record%active(i)))
+        call self%file%put(group//"/"//name_of_field(item), item%value)
+        call self%file%put(group//"/"//name_of_field(item)//"_TIME", item%time)
+      end associate
+    end do
+    call self%bring_out(error)
+  end subroutine write_envelope_data
+
+  !> Closes the file.
+  subroutine close_data(self, scene, error)
+    class(hdf5_results), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(error_type), allocatable, intent(out) :: error
+    if (self%file%id == 0 .or. size(scene%steps) < self%step) return
+    call self%bring_out(error)
+    call self%file%close()
+  end subroutine close_data
+
+  !> Makes the group of a step when it begins.
+  subroutine enter_step(self, scene, step)
+    class(hdf5_results), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    integer, intent(in) :: step
+    if (self%step == step) return
+    self%step = step
+    call self%file%make_group(step_group(step))
+    call self%file%set(step_group(step), "name", scene%steps(step)%name)
+    call self%file%set(step_group(step), "procedure", scene%steps(step)%procedure)
+    call self%file%make_group(step_group(step)//"/increments")
+  end subroutine enter_step
+
+  !> Rows to the file, file to the disk.
+  subroutine bring_out(self, error)
+    class(hdf5_results), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: error
+    integer :: j
+    call self%increments%bring_out(self%file)
+    call self%energies%bring_out(self%file)
+    do j = 1, size(self%joints)
+      call self%joints(j)%bring_out(self%file)
+    end do
+    call self%file%flush()
+    self%flushed_at = wall_clock()
+    if (self%file%has_failed) call raise(error, "cannot write '"//self%path//"' (disk full?)", &
+                                         system_failed)
+  end subroutine bring_out
+
+  !> '/steps/0001'
+  pure function step_group(step) result(path)
+    integer, intent(in) :: step
+    character(:), allocatable :: path
+    path = "/steps/"//padded(step, 4)
+  end function step_group
+
+  !> A number with zeros in front.
+  pure function padded(number, width) result(digits)
+    integer, intent(in) :: number, width
+    character(width) :: digits
+    character(20) :: format
+    write (format, "(a,i0,a,i0,a)") "(i", width, ".", width, ")"
+    write (digits, format) number
+  end function padded
+end module write_hdf5
