@@ -4,7 +4,7 @@ module file_system
   use errors, only: error_type, raise, system_failed
   implicit none
   private
-  public :: make_folder, write_whole_file, move_file, safe_name, base_name
+  public :: make_folder, write_whole_file, move_file, safe_name, file_name, base_name
 
   interface
     !> POSIX mkdir.
@@ -94,12 +94,19 @@ contains
     end do
   end function safe_name
 
+  !> The name of a file without its folder.
+  pure function file_name(path) result(name)
+    character(*), intent(in) :: path
+    character(:), allocatable :: name
+    name = path(index(path, "/", back=.true.) + 1:)
+  end function file_name
+
   !> The name of a file without its folder and its ending: the job's name.
   pure function base_name(path) result(name)
     character(*), intent(in) :: path
     character(:), allocatable :: name
     integer :: dot
-    name = path(index(path, '/', back=.true.) + 1:)
+    name = file_name(path)
     dot = index(name, '.', back=.true.)
     if (dot > 1) name = name(:dot - 1)
   end function base_name

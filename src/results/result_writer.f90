@@ -1,7 +1,7 @@
 !> What every writer of results can do. The defaults do nothing.
 module result_writer
   use kinds, only: rk
-  use errors, only: error_type, raise
+  use errors, only: error_type
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
   use run_records, only: run_record
@@ -32,13 +32,14 @@ module result_writer
 contains
 
   !> A *FREQUENCY step has found its modes.
-  subroutine write_modes(self, scene, step, modes, error)
+  subroutine write_modes(self, scene, step, modes, record, error)
     class(writer), intent(inout) :: self
     type(problem), intent(in) :: scene
     integer, intent(in) :: step
     type(vibration_mode), intent(in) :: modes(:)
+    type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
-    if (size(modes) < 0 .and. step < 0) call self%finish(scene, error)
+    if (.false.) call self%write_modes(scene, step, modes, record, error)
   end subroutine write_modes
 
   !> The analysis has ended, well or not: everything must be on the disk.
@@ -46,7 +47,7 @@ contains
     class(writer), intent(inout) :: self
     type(problem), intent(in) :: scene
     type(error_type), allocatable, intent(out) :: error
-    if (.false.) call raise(error, scene%deck_file, merge(1, 2, same_type_as(self, self)))
+    if (.false.) call self%finish(scene, error)
   end subroutine finish
 
   !> Is this increment one of a request? Every `frequency`-th, and the last of a step. Increment 0

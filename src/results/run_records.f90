@@ -25,12 +25,14 @@ module run_records
     type(envelope), allocatable :: envelopes(:) !< all ever asked for
     integer, allocatable :: active(:) !< those of the present step
     type(text_item), allocatable :: warnings(:)
+    type(text_item), allocatable :: files(:) !< names of what was written, beside job.json
     integer :: step = 0 !< the present step
   contains
     procedure :: open => open_record
     procedure :: begin_step
     procedure :: note
     procedure :: warn_once
+    procedure :: list_file
     procedure, private :: note_one
   end type run_record
 
@@ -42,7 +44,8 @@ contains
     type(problem), intent(in) :: scene
     integer :: j
     call find_dam_faces(scene, self%skin)
-    allocate (self%joints(size(scene%joints)), self%envelopes(0), self%active(0), self%warnings(0))
+    allocate (self%joints(size(scene%joints)), self%envelopes(0), self%active(0))
+    allocate (self%warnings(0), self%files(0))
     do j = 1, size(scene%joints)
       call open_joint_record(scene%joints(j), self%skin, self%joints(j))
     end do
@@ -137,12 +140,28 @@ contains
   subroutine warn_once(self, text)
     class(run_record), intent(inout) :: self
     character(*), intent(in) :: text
-    type(text_item) :: item
-    integer :: i
-    do i = 1, size(self%warnings)
-      if (self%warnings(i)%text == text) return
-    end do
-    item%text = text
-    self%warnings = [self%warnings, item]
+    call add_once(self%warnings, text)
   end subroutine warn_once
+
+  !> Lists a file among the results.
+  subroutine list_file(self, path)
+    class(run_record), intent(inout) :: self
+    character(*), intent(in) :: path !< relative to the folder of the results
+    call add_once(self%files, path)
+  end subroutine list_file
+
+  !> Adds a text that is not there yet.
+  subroutine add_once(list, text)
+    type(text_item), allocatable, intent(inout) :: list(:)
+    character(*), intent(in) :: text
+    type(text_item), allocatable :: longer(:)
+    integer :: i
+    do i = 1, size(list)
+      if (list(i)%text == text) return
+    end do
+    allocate (longer(size(list) + 1))
+    longer(:size(list)) = list
+    longer(size(longer))%text = text
+    call move_alloc(longer, list)
+  end subroutine add_once
 end module run_records

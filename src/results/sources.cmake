@@ -25,4 +25,7 @@ set(sources
   hdf5_tables.f90
   hdf5_model.f90
   write_hdf5.f90
+  run_summaries.f90
+  summary_json.f90
+  result_files.f90
 )

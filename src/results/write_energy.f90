@@ -6,6 +6,7 @@ module write_energy
   use run_records, only: run_record
   use result_writer, only: writer, is_due
   use csv_files, only: csv_file
+  use file_system, only: file_name
   implicit none
   private
   public :: energy_file
@@ -22,10 +23,12 @@ module write_energy
 contains
 
   !> Starts the file. `stem` is the folder and the job's name.
-  subroutine open_energy(self, stem, error)
+  subroutine open_energy(self, stem, record, error)
     class(energy_file), intent(inout) :: self
     character(*), intent(in) :: stem
+    type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
+    call record%list_file(file_name(stem)//"_energy.csv")
     call self%file%open(stem//'_energy.csv', 'step,increment,time,external,kinetic,strain,'// &
                         'damping,friction,fracture,numerical,error', error)
   end subroutine open_energy

@@ -14,7 +14,7 @@ module write_hdf5
   use hdf5_files, only: hdf5_file
   use hdf5_tables, only: growing_table
   use hdf5_model, only: write_model
-  use file_system, only: safe_name
+  use file_system, only: safe_name, file_name
   implicit none
   private
   public :: hdf5_results, open_hdf5
@@ -47,11 +47,12 @@ contains
   subroutine open_hdf5(scene, stem, record, results, error)
     type(problem), intent(in) :: scene
     character(*), intent(in) :: stem
-    type(run_record), intent(in) :: record
+    type(run_record), intent(inout) :: record
     type(hdf5_results), intent(out) :: results
     type(error_type), allocatable, intent(out) :: error
     integer :: j
     results%path = stem//".h5"
+    call record%list_file(file_name(results%path))
     associate (file => results%file)
       call file%create(results%path)
       call file%set("/", "program", "Keyway "//program_version)
@@ -165,11 +166,12 @@ contains
   end subroutine add_joints
 
   !> Frequencies, effective masses and shapes of a *FREQUENCY step.
-  subroutine write_mode_data(self, scene, step, modes, error)
+  subroutine write_mode_data(self, scene, step, modes, record, error)
     class(hdf5_results), intent(inout) :: self
     type(problem), intent(in) :: scene
     integer, intent(in) :: step
     type(vibration_mode), intent(in) :: modes(:)
+    type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: mass(:, :), shapes(:, :, :)
     integer :: i
@@ -186,6 +188,7 @@ contains
       call self%file%put(group//"/shape", shapes)
     end associate
     call self%bring_out(error)
+    call record%list_file(file_name(self%path))
   end subroutine write_mode_data
 
   !> The envelopes of the step that has ended.

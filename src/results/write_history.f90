@@ -9,7 +9,7 @@ module write_history
   use history_rows, only: name_part, header_of, columns_of, add_node_rows, add_element_rows, &
     add_joint_rows
   use csv_files, only: csv_file
-  use file_system, only: safe_name
+  use file_system, only: safe_name, file_name
   implicit none
   private
   public :: history_files, open_histories
@@ -51,6 +51,7 @@ contains
         call file%open(stem//'_'//name_part(file%kind)//'_'//safe_name(file%name)//'.csv', &
                        header_of(file%kind, file%fields), error)
         if (allocated(error)) return
+        call record%list_file(file_name(file%path))
       end associate
     end do
   end subroutine open_histories

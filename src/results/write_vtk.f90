@@ -71,8 +71,9 @@ contains
     call file%save(self%folder//frame_name(self%job, self%num_frames), error)
     if (allocated(error)) return
     call self%frames%add(now%total_time, frame_name(self%job, self%num_frames), error)
+    call record%list_file(self%job//".pvd")
     if (allocated(error) .or. .not. any(fields == 'OPENING')) return
-    call self%write_joints(scene, now, error)
+    call self%write_joints(scene, now, record, error)
   end subroutine write_frame
 
   !> One field on the nodes.
@@ -93,10 +94,11 @@ contains
   end subroutine put_field
 
   !> The joints' surfaces, with a series of their own.
-  subroutine write_joints(self, scene, now, error)
+  subroutine write_joints(self, scene, now, record, error)
     class(vtk_series), intent(inout) :: self
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
+    type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     real(rk) :: values(num_values, size(self%joints%node))
     character(:), allocatable :: name
@@ -117,13 +119,14 @@ contains
     name = frame_name(self%job//'_joints', self%num_frames)
     call file%save(self%folder//name, error)
     if (.not. allocated(error)) call self%joint_frames%add(now%total_time, name, error)
+    call record%list_file(self%job//"_joints.pvd")
   end subroutine write_joints
 
   !> The envelopes of a step in one file; nothing where the step has none.
   subroutine write_envelopes(self, scene, record, error)
     class(vtk_series), intent(inout) :: self
     type(problem), intent(in) :: scene
-    type(run_record), intent(in) :: record
+    type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     type(vtu_file) :: file
     integer :: i
@@ -139,15 +142,27 @@ contains
                                   reshape(item%time, [1, size(item%time)]), '')
       end associate
     end do
-    call file%save(self%folder//self%job//'_envelope_step'//text_of(record%step)//'.vtu', error)
+    call save_listed(self, file, "_envelope_step"//text_of(record%step)//".vtu", record, error)
   end subroutine write_envelopes
 
+  !> Saves a file that stands for itself, and lists it among the results.
+  subroutine save_listed(self, file, ending, record, error)
+    class(vtk_series), intent(in) :: self
+    type(vtu_file), intent(inout) :: file
+    character(*), intent(in) :: ending !< of the name
+    type(run_record), intent(inout) :: record
+    type(error_type), allocatable, intent(out) :: error
+    call file%save(self%folder//self%job//ending, error)
+    call record%list_file(self%job//"_vtk/"//self%job//ending)
+  end subroutine save_listed
+
   !> All mode shapes of a *FREQUENCY step in one file.
-  subroutine write_mode_shapes(self, scene, step, modes, error)
+  subroutine write_mode_shapes(self, scene, step, modes, record, error)
     class(vtk_series), intent(inout) :: self
     type(problem), intent(in) :: scene
     integer, intent(in) :: step
     type(vibration_mode), intent(in) :: modes(:)
+    type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     type(vtu_file) :: file
     character(5) :: number
@@ -159,7 +174,7 @@ contains
       write (number, '(i5.2)') i
       call file%put_point_reals('MODE_'//trim(adjustl(number)), modes(i)%shape, 'U1,U2,U3')
     end do
-    call file%save(self%folder//self%job//'_modes_step'//text_of(step)//'.vtu', error)
+    call save_listed(self, file, "_modes_step"//text_of(step)//".vtu", record, error)
   end subroutine write_mode_shapes
 
   !> Makes the folder and the cells, once.

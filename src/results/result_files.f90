@@ -1,0 +1,239 @@
+!> The listener that writes all results of a run into one folder.
+!>
+!> Order of use: `open`, then the solvers call it, then `finish`, also after a failure.
+module result_files
+  use kinds, only: rk
+  use errors, only: error_type
+  use diagnostics, only: diagnostic_list
+  use timer, only: wall_clock
+  use write_text, only: as_text
+  use problem_definition, only: problem
+  use analysis_state, only: state, vibration_mode
+  use increment_listener, only: listener
+  use run_records, only: run_record
+  use run_summaries, only: run_summary
+  use result_writer, only: starts_analysis
+  use write_history, only: history_files, open_histories
+  use write_energy, only: energy_file
+  use write_vtk, only: vtk_series, open_vtk
+  use write_hdf5, only: hdf5_results, open_hdf5
+  use summary_json, only: write_summary
+  use sha256, only: digest_of_file
+  use file_system, only: base_name, make_folder
+  implicit none
+  private
+  public :: result_folder
+
+  real(rk), parameter :: seconds_between_summaries = 5.0_rk
+
+  type, extends(listener) :: result_folder
+    type(run_summary) :: summary
+    type(run_record) :: record
+    character(:), allocatable :: stem !< folder and job's name
+    logical, private :: is_open = .false.
+    logical, private :: has_unwritten_envelopes = .false.
+    real(rk), private :: summarised_at = 0.0_rk !< by the wall clock [s]
+    integer, private :: num_warnings_said = 0
+    type(history_files), private :: histories
+    type(energy_file), private :: energies
+    type(vtk_series), private :: pictures
+    type(hdf5_results), private :: data
+  contains
+    procedure :: open => open_results
+    procedure :: increment_done
+    procedure :: modes_found
+    procedure :: finish
+    procedure, private :: open_writers
+    procedure, private :: enter_step
+    procedure, private :: write_increment
+    procedure, private :: write_envelopes
+    procedure, private :: say_warnings
+    procedure, private :: summarise
+  end type result_folder
+
+contains
+
+  !> Opens all files. `remarks` are the warnings of the deck; `started_at` is when the run began.
+  subroutine open_results(self, scene, folder, remarks, started_at, error)
+    class(result_folder), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    character(*), intent(in) :: folder !< made when it is not there
+    type(diagnostic_list), intent(in) :: remarks
+    real(rk), intent(in) :: started_at !< by the wall clock [s]
+    type(error_type), allocatable, intent(out) :: error
+    call self%costs%start("open results", "output")
+    self%summary%remarks = remarks
+    self%summary%started_at = started_at
+    self%summary%message = ""
+    self%summary%deck_digest = digest_of_file(scene%deck_file)
+    allocate (self%summary%steps(0))
+    self%stem = folder//"/"//base_name(scene%deck_file)
+    call self%record%open(scene)
+    call make_folder(folder, error)
+    if (.not. allocated(error)) call self%open_writers(scene, folder, error)
+    self%is_open = .not. allocated(error)
+    call self%costs%stop("open results")
+    if (self%is_open) call self%summarise(scene, error)
+  end subroutine open_results
+
+  !> One writer after the other.
+  subroutine open_writers(self, scene, folder, error)
+    class(result_folder), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    character(*), intent(in) :: folder
+    type(error_type), allocatable, intent(out) :: error
+    call open_histories(scene, self%stem, self%record, self%histories, error)
+    if (allocated(error)) return
+    call self%energies%open(self%stem, self%record, error)
+    if (allocated(error)) return
+    call open_hdf5(scene, self%stem, self%record, self%data, error)
+    if (allocated(error)) return
+    call open_vtk(folder//"/", base_name(scene%deck_file), self%pictures)
+  end subroutine open_writers
+
+  !> An increment has converged: maxima, files, log.
+  subroutine increment_done(self, scene, now, error)
+    class(result_folder), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(error_type), allocatable, intent(out) :: error
+    if (now%step /= self%record%step) call self%enter_step(scene, now%step)
+    call self%costs%start("envelopes", "output")
+    call self%record%note(scene, now)
+    self%has_unwritten_envelopes = size(self%record%active) > 0
+    call self%summary%note(now)
+    call self%costs%stop("envelopes")
+    call self%write_increment(scene, now, error)
+    if (allocated(error)) return
+    if (now%is_last_of_step) call self%write_envelopes(scene, error)
+    if (allocated(error)) return
+    if (now%increment > 0 .or. starts_analysis(now)) call self%log%progress(line_of(now))
+    call self%say_warnings()
+    if (wall_clock() - self%summarised_at > seconds_between_summaries) then
+      call self%summarise(scene, error)
+    end if
+  end subroutine increment_done
+
+  !> Every writer in turn, each with its line in the ledger.
+  subroutine write_increment(self, scene, now, error)
+    class(result_folder), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(error_type), allocatable, intent(out) :: error
+    call self%costs%start("write CSV", "output")
+    call self%energies%write_increment(scene, now, self%record, error)
+    if (.not. allocated(error)) then
+      call self%histories%write_increment(scene, now, self%record, error)
+    end if
+    call self%costs%stop("write CSV")
+    if (allocated(error)) return
+    call self%costs%start("write HDF5", "output")
+    call self%data%write_increment(scene, now, self%record, error)
+    call self%costs%stop("write HDF5")
+    if (allocated(error)) return
+    call self%costs%start("write VTK", "output")
+    call self%pictures%write_increment(scene, now, self%record, error)
+    call self%costs%stop("write VTK")
+  end subroutine write_increment
+
+  !> A *FREQUENCY step has found its modes.
+  subroutine modes_found(self, scene, step, modes, error)
+    class(result_folder), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    integer, intent(in) :: step
+    type(vibration_mode), intent(in) :: modes(:)
+    type(error_type), allocatable, intent(out) :: error
+    integer :: i
+    call self%enter_step(scene, step)
+    call self%summary%note_modes(modes)
+    do i = 1, size(modes)
+      call self%log%say("step "//as_text(step)//"  mode "//as_text(i)//"  "// &
+                        as_text(modes(i)%hz)//" Hz")
+    end do
+    call self%data%write_modes(scene, step, modes, self%record, error)
+    if (allocated(error)) return
+    call self%pictures%write_modes(scene, step, modes, self%record, error)
+    if (.not. allocated(error)) call self%summarise(scene, error)
+  end subroutine modes_found
+
+  !> A step begins.
+  subroutine enter_step(self, scene, step)
+    class(result_folder), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    integer, intent(in) :: step
+    call self%record%begin_step(scene, step)
+    call self%summary%begin_step(scene, step)
+  end subroutine enter_step
+
+  !> The envelopes of the step, once.
+  subroutine write_envelopes(self, scene, error)
+    class(result_folder), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(error_type), allocatable, intent(out) :: error
+    if (.not. self%has_unwritten_envelopes) return
+    self%has_unwritten_envelopes = .false.
+    call self%data%write_envelopes(self%record, error)
+    if (allocated(error)) return
+    call self%pictures%write_envelopes(scene, self%record, error)
+  end subroutine write_envelopes
+
+  !> The run has ended. Everything that can still be written is; the first failure is reported.
+  subroutine finish(self, scene, status, message, error)
+    class(result_folder), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    character(*), intent(in) :: status !< 'finished' or 'stopped'
+    character(*), intent(in) :: message !< why it stopped; '' when it finished
+    type(error_type), allocatable, intent(out) :: error
+    type(error_type), allocatable :: failure
+    if (.not. self%is_open) return
+    self%is_open = .false.
+    self%summary%status = status
+    self%summary%message = message
+    call self%write_envelopes(scene, error)
+    call self%histories%finish(scene, failure)
+    call keep_first(error, failure)
+    call self%energies%finish(scene, failure)
+    call keep_first(error, failure)
+    call self%data%finish(scene, failure)
+    call keep_first(error, failure)
+    call self%say_warnings()
+    call self%summarise(scene, failure)
+    call keep_first(error, failure)
+  end subroutine finish
+
+  !> Keeps the first of two failures.
+  subroutine keep_first(error, failure)
+    type(error_type), allocatable, intent(inout) :: error, failure
+    if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
+  end subroutine keep_first
+
+  !> Says the warnings of the run that were not said yet.
+  subroutine say_warnings(self)
+    class(result_folder), intent(inout) :: self
+    integer :: i
+    do i = self%num_warnings_said + 1, size(self%record%warnings)
+      call self%log%say("warning: "//self%record%warnings(i)%text)
+    end do
+    self%num_warnings_said = size(self%record%warnings)
+  end subroutine say_warnings
+
+  !> Writes job.json.
+  subroutine summarise(self, scene, error)
+    class(result_folder), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(error_type), allocatable, intent(out) :: error
+    call write_summary(self%stem//".json", scene, self%summary, self%record, self%costs, error)
+    self%summarised_at = wall_clock()
+  end subroutine summarise
+
+  !> One line about an increment: step, increment, time, iterations, residual, energy error.
+  function line_of(now) result(line)
+    type(state), intent(in) :: now
+    character(:), allocatable :: line
+    character(120) :: room
+    write (room, "(a,i0,a,i0,a,g0.6,a,i0,a,es8.1,a,f0.4,a)") "step ", now%step, "  increment ", &
+      now%increment, "  time ", now%total_time, "  iterations ", now%iterations, "  residual ", &
+      now%residual, "  energy error ", 100.0_rk*now%energy%error, " %"
+    line = trim(room)
+  end function line_of
+end module result_files

@@ -1,0 +1,101 @@
+!> What job.json tells of a run, gathered while it goes.
+module run_summaries
+  use kinds, only: rk
+  use diagnostics, only: diagnostic_list
+  use problem_definition, only: problem
+  use analysis_state, only: state, energy_balance, vibration_mode
+  implicit none
+  private
+  public :: run_summary, step_summary
+
+  !> One step that has begun.
+  type :: step_summary
+    integer :: step = 0 !< position in the problem
+    real(rk) :: time = 0.0_rk !< of the step, reached so far [s]
+    integer :: increments = 0, iterations = 0, cutbacks = 0
+    integer :: most_iterations = 0 !< in one increment
+    real(rk) :: largest_residual = 0.0_rk, largest_error = 0.0_rk !< error of the energy balance
+    type(energy_balance) :: energy !< at its end [J]
+    type(vibration_mode), allocatable :: modes(:) !< without shapes
+  end type step_summary
+
+  type :: run_summary
+    character(8) :: status = "running" !< 'finished', 'stopped'
+    character(:), allocatable :: message
+    character(:), allocatable :: deck_digest
+    type(diagnostic_list) :: remarks !< warnings and ignored input of the deck
+    integer :: num_unknowns = 0
+    real(rk) :: started_at = 0.0_rk !< by the wall clock [s]
+    type(step_summary), allocatable :: steps(:)
+  contains
+    procedure :: begin_step
+    procedure :: note
+    procedure :: note_modes
+  end type run_summary
+
+contains
+
+  !> A step begins.
+  subroutine begin_step(self, scene, step)
+    class(run_summary), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    integer, intent(in) :: step
+    type(step_summary) :: fresh
+    fresh%step = step
+    allocate (fresh%modes(0))
+    self%steps = [self%steps, fresh]
+    if (self%num_unknowns == 0) self%num_unknowns = count_unknowns(scene, step)
+  end subroutine begin_step
+
+  !> Displacements of nodes that belong to an element, without the prescribed ones.
+  integer function count_unknowns(scene, step) result(count_free)
+    type(problem), intent(in) :: scene
+    integer, intent(in) :: step
+    logical :: is_free(3, scene%mesh%num_nodes)
+    integer :: e, a, i
+    is_free = .false.
+    do e = 1, scene%mesh%num_elements
+      do a = 1, size(scene%mesh%nodes, 1)
+        if (scene%mesh%nodes(a, e) > 0) is_free(:, scene%mesh%nodes(a, e)) = .true.
+      end do
+    end do
+    associate (fixities => scene%steps(step)%fixities)
+      do i = 1, size(fixities)
+        is_free(fixities(i)%dof, fixities(i)%node) = .false.
+      end do
+    end associate
+    count_free = count(is_free)
+  end function count_unknowns
+
+  !> An increment of the last step that has begun.
+  subroutine note(self, now)
+    class(run_summary), intent(inout) :: self
+    type(state), intent(in) :: now
+    if (now%num_unknowns > 0) self%num_unknowns = now%num_unknowns
+    associate (last => self%steps(size(self%steps)))
+      last%time = now%step_time
+      last%increments = now%increment
+      last%iterations = last%iterations + now%iterations
+      last%cutbacks = now%cutbacks
+      last%energy = now%energy
+      last%most_iterations = max(last%most_iterations, now%iterations)
+      last%largest_residual = max(last%largest_residual, now%residual)
+      last%largest_error = max(last%largest_error, abs(now%energy%error))
+    end associate
+  end subroutine note
+
+  !> The modes of the last step that has begun.
+  subroutine note_modes(self, modes)
+    class(run_summary), intent(inout) :: self
+    type(vibration_mode), intent(in) :: modes(:)
+    integer :: i
+    associate (last => self%steps(size(self%steps)))
+      deallocate (last%modes)
+      allocate (last%modes(size(modes)))
+      do i = 1, size(modes)
+        last%modes(i)%hz = modes(i)%hz
+        last%modes(i)%effective_mass = modes(i)%effective_mass
+      end do
+    end associate
+  end subroutine note_modes
+end module run_summaries

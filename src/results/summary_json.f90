@@ -1,0 +1,309 @@
+!> job.json: the summary of a run, readable at any moment.
+module summary_json
+  use kinds, only: rk
+  use errors, only: error_type
+  use build_info, only: program_version, compiler, libraries
+  use diagnostics, only: severity_ignored
+  use diagnostic_text, only: headline
+  use timer, only: ledger, wall_clock, peak_memory
+  use problem_definition, only: problem
+  use extremes, only: extremes_by_face, face_names
+  use run_records, only: run_record
+  use run_summaries, only: run_summary, step_summary
+  use json_writer, only: json_text
+  use file_system, only: write_whole_file
+  implicit none
+  private
+  public :: write_summary
+
+contains
+
+  !> Writes the file anew.
+  subroutine write_summary(path, scene, summary, record, costs, error)
+    character(*), intent(in) :: path
+    type(problem), intent(in) :: scene
+    type(run_summary), intent(in) :: summary
+    type(run_record), intent(in) :: record
+    type(ledger), intent(in) :: costs
+    type(error_type), allocatable, intent(out) :: error
+    type(json_text) :: json
+    call json%open_object()
+    call put_program(json)
+    call json%put_text(trim(summary%status), "status")
+    call json%put_text(summary%message, "message")
+    call json%open_object("deck")
+    call json%put_text(scene%deck_file, "file")
+    call json%put_text(summary%deck_digest, "sha256")
+    call json%close_object()
+    call put_model(json, scene, summary)
+    call put_effects(json, scene)
+    call put_remarks(json, summary, record)
+    call put_steps(json, scene, summary)
+    call put_envelopes(json, record)
+    call put_joints(json, scene, record)
+    call put_accuracy(json, summary)
+    call put_costs(json, costs, wall_clock() - summary%started_at)
+    call put_files(json, record)
+    call json%close_object()
+    call write_whole_file(path, json%contents(), error)
+  end subroutine write_summary
+
+  !> The program and what it was built from.
+  subroutine put_program(json)
+    type(json_text), intent(inout) :: json
+    integer :: start, comma
+    call json%open_object("program")
+    call json%put_text("Keyway", "name")
+    call json%put_text(program_version, "version")
+    call json%put_text(compiler, "compiler")
+    call json%open_array("libraries")
+    start = 1
+    do while (start <= len(libraries))
+      comma = index(libraries(start:)//",", ",")
+      call json%put_text(trim(adjustl(libraries(start:start + comma - 2))))
+      start = start + comma
+    end do
+    call json%close_array()
+    call json%close_object()
+  end subroutine put_program
+
+  !> Counts.
+  subroutine put_model(json, scene, summary)
+    type(json_text), intent(inout) :: json
+    type(problem), intent(in) :: scene
+    type(run_summary), intent(in) :: summary
+    call json%open_object("model")
+    call json%put_integer(scene%mesh%num_nodes, "nodes")
+    call json%put_integer(scene%mesh%num_elements, "elements")
+    call json%put_integer(summary%num_unknowns, "unknowns")
+    call json%put_integer(size(scene%joints), "joints")
+    call json%put_integer(size(scene%materials), "materials")
+    call json%close_object()
+  end subroutine put_model
+
+  !> The guests of the model: loads, joints, damping.
+  subroutine put_effects(json, scene)
+    type(json_text), intent(inout) :: json
+    type(problem), intent(in) :: scene
+    integer :: i
+    call json%open_array("effects")
+    do i = 1, size(scene%loads)
+      call put_effect(scene%loads(i)%item%name, scene%loads(i)%item%kind)
+    end do
+    do i = 1, size(scene%joints)
+      call put_effect(scene%joints(i)%name, "joint")
+    end do
+    do i = 1, size(scene%materials)
+      if (max(scene%materials(i)%alpha, scene%materials(i)%beta) > 0.0_rk) then
+        call put_effect(scene%materials(i)%name, "damping")
+      end if
+    end do
+    do i = 1, size(scene%steps)
+      if (scene%steps(i)%damping_ratio > 0.0_rk) call put_effect(scene%steps(i)%name, "damping")
+    end do
+    call json%close_array()
+
+  contains
+
+    !> One of them.
+    subroutine put_effect(name, kind)
+      character(*), intent(in) :: name, kind
+      call json%open_object()
+      call json%put_text(name, "name")
+      call json%put_text(kind, "kind")
+      call json%close_object()
+    end subroutine put_effect
+  end subroutine put_effects
+
+  !> Ignored input, and the warnings of the deck and of the run.
+  subroutine put_remarks(json, summary, record)
+    type(json_text), intent(inout) :: json
+    type(run_summary), intent(in) :: summary
+    type(run_record), intent(in) :: record
+    integer :: i
+    call json%open_array("ignored_input")
+    do i = 1, summary%remarks%num_warnings
+      associate (remark => summary%remarks%warnings(i))
+        if (remark%severity /= severity_ignored) cycle
+        call json%open_object()
+        call json%put_text(remark%spot%file, "file")
+        call json%put_integer(remark%spot%line, "line")
+        call json%put_text(remark%spot%keyword, "keyword")
+        call json%put_text(remark%problem, "why")
+        call json%close_object()
+      end associate
+    end do
+    call json%close_array()
+    call json%open_array("warnings")
+    do i = 1, summary%remarks%num_warnings
+      if (summary%remarks%warnings(i)%severity == severity_ignored) cycle
+      call json%put_text(headline(summary%remarks%warnings(i)))
+    end do
+    do i = 1, size(record%warnings)
+      call json%put_text(record%warnings(i)%text)
+    end do
+    call json%close_array()
+  end subroutine put_remarks
+
+  !> All steps that have begun.
+  subroutine put_steps(json, scene, summary)
+    type(json_text), intent(inout) :: json
+    type(problem), intent(in) :: scene
+    type(run_summary), intent(in) :: summary
+    integer :: i
+    call json%open_array("steps")
+    do i = 1, size(summary%steps)
+      associate (part => summary%steps(i), plan => scene%steps(summary%steps(i)%step))
+        call json%open_object()
+        call json%put_text(plan%name, "name")
+        call json%put_text(lower(plan%procedure), "procedure")
+        call json%put_real(part%time, "time")
+        call json%put_integer(part%increments, "increments")
+        call json%put_integer(part%iterations, "iterations")
+        call json%put_integer(part%cutbacks, "cutbacks")
+        call put_modes(json, part)
+        call put_energy(json, part)
+        call json%close_object()
+      end associate
+    end do
+    call json%close_array()
+  end subroutine put_steps
+
+  !> Frequencies of a step; an empty list where it sought none.
+  subroutine put_modes(json, part)
+    type(json_text), intent(inout) :: json
+    type(step_summary), intent(in) :: part
+    integer :: i
+    call json%open_array("frequencies")
+    do i = 1, size(part%modes)
+      call json%open_object()
+      call json%put_integer(i, "mode")
+      call json%put_real(part%modes(i)%hz, "hz")
+      call json%put_reals(part%modes(i)%effective_mass, "effective_mass")
+      call json%close_object()
+    end do
+    call json%close_array()
+  end subroutine put_modes
+
+  !> Energies at the end of a step; the error is the largest in it.
+  subroutine put_energy(json, part)
+    type(json_text), intent(inout) :: json
+    type(step_summary), intent(in) :: part
+    call json%open_object("energy")
+    call json%put_real(part%energy%external, "external")
+    call json%put_real(part%energy%kinetic, "kinetic")
+    call json%put_real(part%energy%strain, "strain")
+    call json%put_real(part%energy%damping, "damping")
+    call json%put_real(part%energy%friction, "friction")
+    call json%put_real(part%energy%fracture, "fracture")
+    call json%put_real(part%energy%numerical, "numerical")
+    call json%put_real(part%largest_error, "error")
+    call json%close_object()
+  end subroutine put_energy
+
+  !> Extremes of *ENVELOPE over all steps that asked for it.
+  subroutine put_envelopes(json, record)
+    type(json_text), intent(inout) :: json
+    type(run_record), intent(in) :: record
+    integer :: i
+    call json%open_object("envelopes")
+    do i = 1, size(record%envelopes)
+      call put_extremes(json, trim(record%envelopes(i)%name), record%envelopes(i)%largest)
+    end do
+    call json%close_object()
+  end subroutine put_envelopes
+
+  !> Extremes of each joint.
+  subroutine put_joints(json, scene, record)
+    type(json_text), intent(inout) :: json
+    type(problem), intent(in) :: scene
+    type(run_record), intent(in) :: record
+    integer :: j
+    call json%open_object("joints")
+    do j = 1, size(scene%joints)
+      call json%open_object(scene%joints(j)%name)
+      call put_extremes(json, "opening", record%joints(j)%opening)
+      call put_extremes(json, "slip", record%joints(j)%slip)
+      call put_extremes(json, "pressure", record%joints(j)%pressure)
+      call json%close_object()
+    end do
+    call json%close_object()
+  end subroutine put_joints
+
+  !> Anywhere, upstream, downstream: those that exist.
+  subroutine put_extremes(json, name, found)
+    type(json_text), intent(inout) :: json
+    character(*), intent(in) :: name
+    type(extremes_by_face), intent(in) :: found
+    integer :: i
+    call json%open_object(name)
+    do i = 1, size(found%at)
+      if (.not. found%at(i)%is_found) cycle
+      call json%open_object(trim(face_names(i)))
+      call json%put_real(found%at(i)%value, "value")
+      call json%put_real(found%at(i)%time, "time")
+      call json%put_reals(found%at(i)%x, "x")
+      call json%close_object()
+    end do
+    call json%close_object()
+  end subroutine put_extremes
+
+  !> How well the equations were met.
+  subroutine put_accuracy(json, summary)
+    type(json_text), intent(inout) :: json
+    type(run_summary), intent(in) :: summary
+    call json%open_object("accuracy")
+    call json%put_real(maxval([0.0_rk, summary%steps%largest_residual]), "largest_residual")
+    call json%put_real(maxval([0.0_rk, summary%steps%largest_error]), "largest_energy_error")
+    call json%put_integer(maxval([0, summary%steps%most_iterations]), "most_iterations")
+    call json%close_object()
+  end subroutine put_accuracy
+
+  !> The ledger of time and memory.
+  subroutine put_costs(json, costs, seconds)
+    type(json_text), intent(inout) :: json
+    type(ledger), intent(in) :: costs
+    real(rk), intent(in) :: seconds !< since the start of the run
+    integer :: i
+    call json%open_object("ledger")
+    call json%put_real(seconds, "wall_s")
+    call json%put_real(peak_memory(), "peak_memory_mb")
+    call json%open_array("parts")
+    if (allocated(costs%parts)) then
+      do i = 1, size(costs%parts)
+        call json%open_object()
+        call json%put_text(costs%parts(i)%name, "name")
+        call json%put_text(costs%parts(i)%kind, "kind")
+        call json%put_real(costs%parts(i)%wall_time, "wall_s")
+        call json%put_real(costs%parts(i)%memory, "memory_mb")
+        call json%put_integer(costs%parts(i)%num_calls, "calls")
+        call json%close_object()
+      end do
+    end if
+    call json%close_array()
+    call json%close_object()
+  end subroutine put_costs
+
+  !> Names of the files beside this one.
+  subroutine put_files(json, record)
+    type(json_text), intent(inout) :: json
+    type(run_record), intent(in) :: record
+    integer :: i
+    call json%open_array("files")
+    do i = 1, size(record%files)
+      call json%put_text(record%files(i)%text)
+    end do
+    call json%close_array()
+  end subroutine put_files
+
+  !> In lower case.
+  pure function lower(text) result(small)
+    character(*), intent(in) :: text
+    character(len(text)) :: small
+    integer :: i
+    small = text
+    do i = 1, len(text)
+      if (text(i:i) >= "A" .and. text(i:i) <= "Z") small(i:i) = achar(iachar(text(i:i)) + 32)
+    end do
+  end function lower
+end module summary_json
