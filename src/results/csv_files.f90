@@ -43,13 +43,13 @@ contains
   subroutine save(self, error)
     class(csv_file), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: error
-    integer :: status, ignored
+    integer :: status, status_of_cut
     if (self%lines%length == 0) return
     write (self%unit, iostat=status) self%lines%room(:self%lines%length)
     if (status == 0) flush (self%unit, iostat=status)
     if (status /= 0) then
-      read (self%unit, pos=self%good_size + 1, iostat=ignored)
-      endfile (self%unit, iostat=ignored)
+      read (self%unit, pos=self%good_size + 1, iostat=status_of_cut)
+      if (status_of_cut == 0) endfile (self%unit)
       call raise(error, "cannot write '"//self%path//"' (disk full?)", system_failed)
     end if
     self%good_size = self%good_size + self%lines%length
@@ -59,8 +59,7 @@ contains
   !> Closes the file.
   subroutine close_csv(self)
     class(csv_file), intent(inout) :: self
-    integer :: ignored
-    if (self%unit /= 0) close (self%unit, iostat=ignored)
+    if (self%unit /= 0) close (self%unit)
     self%unit = 0
   end subroutine close_csv
 end module csv_files

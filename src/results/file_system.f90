@@ -98,7 +98,7 @@ contains
   pure function file_name(path) result(name)
     character(*), intent(in) :: path
     character(:), allocatable :: name
-    name = path(index(path, "/", back=.true.) + 1:)
+    name = path(index(path, '/', back=.true.) + 1:)
   end function file_name
 
   !> The name of a file without its folder and its ending: the job's name.

@@ -3,14 +3,15 @@
 !> Arrays keep Fortran's memory, so that h5py sees (3, nodes) as (nodes, 3). A failure is kept in
 !> `has_failed` and asked for once after a group of calls.
 module hdf5_files
-  use hdf5, only: hid_t, hsize_t, size_t, h5open_f, h5eset_auto_f, h5fcreate_f, h5fclose_f, &
-    h5fflush_f, h5f_acc_trunc_f, h5f_scope_global_f, h5gcreate_f, h5gclose_f, h5screate_simple_f, &
-    h5screate_f, h5sclose_f, h5s_scalar_f, h5s_unlimited_f, h5s_select_set_f, &
-    h5sselect_hyperslab_f, h5dcreate_f, h5dopen_f, h5dwrite_f, h5dclose_f, h5dget_space_f, &
-    h5dset_extent_f, h5pcreate_f, h5pclose_f, h5p_dataset_create_f, h5pset_chunk_f, &
-    h5acreate_f, h5awrite_f, h5aclose_f, h5oopen_f, h5oclose_f, h5tcopy_f, h5tset_size_f, &
-    h5tset_strpad_f, h5tclose_f, h5t_str_nullpad_f, h5t_native_double, h5t_native_integer, &
-    h5t_c_s1
+  use hdf5, only: hid_t, hsize_t, size_t, h5open_f, h5eset_auto_f, h5fcreate_f, h5fclose_f
+  use hdf5, only: h5fflush_f, h5f_acc_trunc_f, h5f_scope_global_f, h5gcreate_f, h5gclose_f
+  use hdf5, only: h5screate_simple_f, h5screate_f, h5sclose_f, h5s_scalar_f
+  use hdf5, only: h5s_unlimited_f, h5s_select_set_f, h5sselect_hyperslab_f, h5dcreate_f
+  use hdf5, only: h5dopen_f, h5dwrite_f, h5dclose_f, h5dget_space_f, h5dset_extent_f
+  use hdf5, only: h5pcreate_f, h5pclose_f, h5p_dataset_create_f, h5pset_chunk_f
+  use hdf5, only: h5acreate_f, h5awrite_f, h5aclose_f, h5oopen_f, h5oclose_f, h5tcopy_f
+  use hdf5, only: h5tset_size_f, h5tset_strpad_f, h5tclose_f, h5t_str_nullpad_f
+  use hdf5, only: h5t_native_double, h5t_native_integer, h5t_c_s1
   use kinds, only: rk
   implicit none
   private

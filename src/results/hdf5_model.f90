@@ -20,14 +20,14 @@ contains
     type(run_record), intent(in) :: record
     integer :: j
     call write_mesh(file, scene)
-    call file%make_group("/sets")
-    call write_sets(file, "/sets/nodes", scene%node_sets, scene%mesh%node_id)
-    call write_sets(file, "/sets/elements", scene%element_sets, scene%mesh%element_id)
+    call file%make_group('/sets')
+    call write_sets(file, '/sets/nodes', scene%node_sets, scene%mesh%node_id)
+    call write_sets(file, '/sets/elements', scene%element_sets, scene%mesh%element_id)
     call write_surfaces(file, scene)
-    call file%make_group("/faces")
-    call file%put("/faces/upstream", merge(1, 0, record%skin%is_upstream))
-    call file%put("/faces/downstream", merge(1, 0, record%skin%is_downstream))
-    call file%make_group("/joints")
+    call file%make_group('/faces')
+    call file%put('/faces/upstream', merge(1, 0, record%skin%is_upstream))
+    call file%put('/faces/downstream', merge(1, 0, record%skin%is_downstream))
+    call file%make_group('/joints')
     do j = 1, size(scene%joints)
       call write_joint(file, scene, scene%joints(j), record%joints(j))
     end do
@@ -42,15 +42,15 @@ contains
     do m = 1, size(scene%materials)
       names(m) = scene%materials(m)%name
     end do
-    call file%make_group("/mesh")
-    call file%put("/mesh/node_id", scene%mesh%node_id)
-    call file%put("/mesh/x", scene%mesh%x)
-    call file%put("/mesh/element_id", scene%mesh%element_id)
-    call file%put_texts("/mesh/element_type", scene%mesh%element_type)
-    call file%put("/mesh/connectivity", scene%mesh%nodes - 1)
-    call file%put("/mesh/material", scene%mesh%material_of_element - 1)
-    call file%put("/mesh/section", scene%mesh%section_of_element - 1)
-    call file%put_texts("/mesh/material_names", names)
+    call file%make_group('/mesh')
+    call file%put('/mesh/node_id', scene%mesh%node_id)
+    call file%put('/mesh/x', scene%mesh%x)
+    call file%put('/mesh/element_id', scene%mesh%element_id)
+    call file%put_texts('/mesh/element_type', scene%mesh%element_type)
+    call file%put('/mesh/connectivity', scene%mesh%nodes - 1)
+    call file%put('/mesh/material', scene%mesh%material_of_element - 1)
+    call file%put('/mesh/section', scene%mesh%section_of_element - 1)
+    call file%put_texts('/mesh/material_names', names)
   end subroutine write_mesh
 
   !> Sets of nodes or elements, by the numbers of the deck.
@@ -62,7 +62,7 @@ contains
     integer :: i
     call file%make_group(group)
     do i = 1, size(sets)
-      call file%put(group//"/"//safe_name(sets(i)%name), id(sets(i)%members))
+      call file%put(group//'/'//safe_name(sets(i)%name), id(sets(i)%members))
     end do
   end subroutine write_sets
 
@@ -71,10 +71,10 @@ contains
     type(hdf5_file), intent(inout) :: file
     type(problem), intent(in) :: scene
     integer :: i
-    call file%make_group("/sets/surfaces")
+    call file%make_group('/sets/surfaces')
     do i = 1, size(scene%surfaces)
       associate (faces => scene%surfaces(i))
-        call file%put("/sets/surfaces/"//safe_name(faces%name), &
+        call file%put('/sets/surfaces/'//safe_name(faces%name), &
                       transpose(reshape([scene%mesh%element_id(faces%element), faces%face], &
                                         [size(faces%face), 2])))
       end associate
@@ -88,16 +88,16 @@ contains
     type(joint), intent(in) :: item
     type(joint_record), intent(in) :: faces
     character(:), allocatable :: group
-    group = "/joints/"//safe_name(item%name)
+    group = '/joints/'//safe_name(item%name)
     call file%make_group(group)
-    call file%set(group, "gap", item%law%gap)
-    call file%put(group//"/x", item%x)
-    call file%put(group//"/area", item%area)
-    call file%put(group//"/rotation", item%rotation)
-    call file%put(group//"/shape", item%shape)
-    call file%put(group//"/master", reshape(scene%mesh%node_id([item%master]), shape(item%master)))
-    call file%put(group//"/slave", reshape(scene%mesh%node_id([item%slave]), shape(item%slave)))
-    call file%put(group//"/upstream", merge(1, 0, faces%is_upstream))
-    call file%put(group//"/downstream", merge(1, 0, faces%is_downstream))
+    call file%set(group, 'gap', item%law%gap)
+    call file%put(group//'/x', item%x)
+    call file%put(group//'/area', item%area)
+    call file%put(group//'/rotation', item%rotation)
+    call file%put(group//'/shape', item%shape)
+    call file%put(group//'/master', reshape(scene%mesh%node_id([item%master]), shape(item%master)))
+    call file%put(group//'/slave', reshape(scene%mesh%node_id([item%slave]), shape(item%slave)))
+    call file%put(group//'/upstream', merge(1, 0, faces%is_upstream))
+    call file%put(group//'/downstream', merge(1, 0, faces%is_downstream))
   end subroutine write_joint
 end module hdf5_model

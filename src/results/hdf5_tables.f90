@@ -29,7 +29,7 @@ contains
     character(*), intent(in) :: columns !< their names, with commas between
     integer :: i
     self%path = path
-    allocate (self%rows(1 + count([(columns(i:i) == ",", i=1, len(columns))]), capacity))
+    allocate (self%rows(1 + count([(columns(i:i) == ',', i=1, len(columns))]), capacity))
     call file%start_table(path, columns)
   end subroutine start
 

@@ -54,7 +54,6 @@ contains
     character(:), allocatable :: columns
     character(2), parameter :: tensor(6) = ['11', '22', '33', '12', '13', '23']
     integer :: i
-    columns = ''
     select case (kind//' '//name)
     case ('NODE U', 'NODE V', 'NODE A')
       columns = ','//trim(name)//'1,'//trim(name)//'2,'//trim(name)//'3'
@@ -63,9 +62,12 @@ contains
     case ('ELEMENT SP')
       columns = ',SP1,SP2,SP3'
     case ('ELEMENT S', 'ELEMENT E')
+      columns = ''
       do i = 1, 6
         columns = columns//','//trim(name)//tensor(i)
       end do
+    case default
+      columns = ''
     end select
   end function columns_of
 
@@ -126,6 +128,8 @@ contains
       if (allocated(now%a)) value = now%a(:, node)
     case ('RF')
       if (allocated(now%reaction)) value = now%reaction(:, node)
+    case default
+      value = 0.0_rk
     end select
   end function node_value
 
@@ -155,6 +159,8 @@ contains
             call add_reals(lines, stresses%point_strain(:, q, s))
           case ('SP')
             call add_reals(lines, principal_values(stresses%point_stress(:, q, s)))
+          case default
+            cycle
           end select
         end do
         call lines%add(new_line('a'))

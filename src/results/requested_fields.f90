@@ -30,7 +30,7 @@ contains
           if (is_available(scene, now, request%fields(i))) then
             fields = [fields, request%fields(i)]
           else
-            call record%warn_once('step '//scene%steps(now%step)%name//' does not have the field '// &
+            call record%warn_once('step '//scene%steps(now%step)%name//' has no field '// &
                                   trim(request%fields(i))//'; it is not written')
           end if
         end do
@@ -86,6 +86,8 @@ contains
       values = record%stresses%node_principal
     case ('OPENING')
       values = reshape(opening_at_nodes(scene, now), [1, scene%mesh%num_nodes])
+    case default
+      error stop 'field_on_nodes: a field that is not available'
     end select
   end subroutine field_on_nodes
 
@@ -95,15 +97,17 @@ contains
     character(:), allocatable :: list
     character(2), parameter :: suffix(6) = ['11', '22', '33', '12', '13', '23']
     integer :: i
-    list = ''
     select case (name)
     case ('U', 'V', 'A', 'RF', 'SP')
       list = trim(name)//'1,'//trim(name)//'2,'//trim(name)//'3'
     case ('S', 'E')
+      list = ''
       do i = 1, 6
         list = list//','//trim(name)//suffix(i)
       end do
       list = list(2:)
+    case default
+      list = ''
     end select
   end function components_of
 end module requested_fields

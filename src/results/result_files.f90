@@ -61,18 +61,18 @@ contains
     type(diagnostic_list), intent(in) :: remarks
     real(rk), intent(in) :: started_at !< by the wall clock [s]
     type(error_type), allocatable, intent(out) :: error
-    call self%costs%start("open results", "output")
+    call self%costs%start('open results', 'output')
     self%summary%remarks = remarks
     self%summary%started_at = started_at
-    self%summary%message = ""
+    self%summary%message = ''
     self%summary%deck_digest = digest_of_file(scene%deck_file)
     allocate (self%summary%steps(0))
-    self%stem = folder//"/"//base_name(scene%deck_file)
+    self%stem = folder//'/'//base_name(scene%deck_file)
     call self%record%open(scene)
     call make_folder(folder, error)
     if (.not. allocated(error)) call self%open_writers(scene, folder, error)
     self%is_open = .not. allocated(error)
-    call self%costs%stop("open results")
+    call self%costs%stop('open results')
     if (self%is_open) call self%summarise(scene, error)
   end subroutine open_results
 
@@ -88,7 +88,7 @@ contains
     if (allocated(error)) return
     call open_hdf5(scene, self%stem, self%record, self%data, error)
     if (allocated(error)) return
-    call open_vtk(folder//"/", base_name(scene%deck_file), self%pictures)
+    call open_vtk(folder//'/', base_name(scene%deck_file), self%pictures)
   end subroutine open_writers
 
   !> An increment has converged: maxima, files, log.
@@ -98,11 +98,11 @@ contains
     type(state), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
     if (now%step /= self%record%step) call self%enter_step(scene, now%step)
-    call self%costs%start("envelopes", "output")
+    call self%costs%start('envelopes', 'output')
     call self%record%note(scene, now)
     self%has_unwritten_envelopes = size(self%record%active) > 0
     call self%summary%note(now)
-    call self%costs%stop("envelopes")
+    call self%costs%stop('envelopes')
     call self%write_increment(scene, now, error)
     if (allocated(error)) return
     if (now%is_last_of_step) call self%write_envelopes(scene, error)
@@ -120,20 +120,20 @@ contains
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
-    call self%costs%start("write CSV", "output")
+    call self%costs%start('write CSV', 'output')
     call self%energies%write_increment(scene, now, self%record, error)
     if (.not. allocated(error)) then
       call self%histories%write_increment(scene, now, self%record, error)
     end if
-    call self%costs%stop("write CSV")
+    call self%costs%stop('write CSV')
     if (allocated(error)) return
-    call self%costs%start("write HDF5", "output")
+    call self%costs%start('write HDF5', 'output')
     call self%data%write_increment(scene, now, self%record, error)
-    call self%costs%stop("write HDF5")
+    call self%costs%stop('write HDF5')
     if (allocated(error)) return
-    call self%costs%start("write VTK", "output")
+    call self%costs%start('write VTK', 'output')
     call self%pictures%write_increment(scene, now, self%record, error)
-    call self%costs%stop("write VTK")
+    call self%costs%stop('write VTK')
   end subroutine write_increment
 
   !> A *FREQUENCY step has found its modes.
@@ -147,8 +147,8 @@ contains
     call self%enter_step(scene, step)
     call self%summary%note_modes(modes)
     do i = 1, size(modes)
-      call self%log%say("step "//as_text(step)//"  mode "//as_text(i)//"  "// &
-                        as_text(modes(i)%hz)//" Hz")
+      call self%log%say('step '//as_text(step)//'  mode '//as_text(i)//'  '// &
+                        as_text(modes(i)%hz)//' Hz')
     end do
     call self%data%write_modes(scene, step, modes, self%record, error)
     if (allocated(error)) return
@@ -212,7 +212,7 @@ contains
     class(result_folder), intent(inout) :: self
     integer :: i
     do i = self%num_warnings_said + 1, size(self%record%warnings)
-      call self%log%say("warning: "//self%record%warnings(i)%text)
+      call self%log%say('warning: '//self%record%warnings(i)%text)
     end do
     self%num_warnings_said = size(self%record%warnings)
   end subroutine say_warnings
@@ -222,7 +222,7 @@ contains
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: scene
     type(error_type), allocatable, intent(out) :: error
-    call write_summary(self%stem//".json", scene, self%summary, self%record, self%costs, error)
+    call write_summary(self%stem//'.json', scene, self%summary, self%record, self%costs, error)
     self%summarised_at = wall_clock()
   end subroutine summarise
 
@@ -231,9 +231,9 @@ contains
     type(state), intent(in) :: now
     character(:), allocatable :: line
     character(120) :: room
-    write (room, "(a,i0,a,i0,a,g0.6,a,i0,a,es8.1,a,f0.4,a)") "step ", now%step, "  increment ", &
-      now%increment, "  time ", now%total_time, "  iterations ", now%iterations, "  residual ", &
-      now%residual, "  energy error ", 100.0_rk*now%energy%error, " %"
+    write (room, '(a,i0,a,i0,a,g0.6,a,i0,a,es8.1,a,f0.4,a)') 'step ', now%step, '  increment ', &
+      now%increment, '  time ', now%total_time, '  iterations ', now%iterations, '  residual ', &
+      now%residual, '  energy error ', 100.0_rk*now%energy%error, ' %'
     line = trim(room)
   end function line_of
 end module result_files

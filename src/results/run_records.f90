@@ -8,7 +8,7 @@ module run_records
   use envelopes, only: envelope, open_envelope, note_envelope
   use extremes, only: note_values
   use joint_readings, only: joint_record, open_joint_record, note_joint, opening_at_points, &
-    opening_at_nodes
+                            opening_at_nodes
   use stress_fields, only: recovered_fields
   implicit none
   private
@@ -117,6 +117,8 @@ contains
                          scene%joints(j)%x, self%joints(j)%is_upstream, &
                          self%joints(j)%is_downstream, now%total_time, wants_smallest=.false.)
       end do
+    case default
+      error stop 'note_one: an envelope without a rule'
     end select
 
   contains

@@ -20,7 +20,7 @@ module run_summaries
   end type step_summary
 
   type :: run_summary
-    character(8) :: status = "running" !< 'finished', 'stopped'
+    character(8) :: status = 'running' !< 'finished', 'stopped'
     character(:), allocatable :: message
     character(:), allocatable :: deck_digest
     type(diagnostic_list) :: remarks !< warnings and ignored input of the deck

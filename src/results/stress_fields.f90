@@ -5,7 +5,7 @@ module stress_fields
   use analysis_state, only: state
   use tensor6, only: principal_values
   use stress_recovery, only: recovery_plan, make_recovery_plan, recover_points, average_at_nodes, &
-    max_points
+                             max_points
   implicit none
   private
   public :: recovered_fields, principals

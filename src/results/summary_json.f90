@@ -29,11 +29,11 @@ contains
     type(json_text) :: json
     call json%open_object()
     call put_program(json)
-    call json%put_text(trim(summary%status), "status")
-    call json%put_text(summary%message, "message")
-    call json%open_object("deck")
-    call json%put_text(scene%deck_file, "file")
-    call json%put_text(summary%deck_digest, "sha256")
+    call json%put_text(trim(summary%status), 'status')
+    call json%put_text(summary%message, 'message')
+    call json%open_object('deck')
+    call json%put_text(scene%deck_file, 'file')
+    call json%put_text(summary%deck_digest, 'sha256')
     call json%close_object()
     call put_model(json, scene, summary)
     call put_effects(json, scene)
@@ -52,14 +52,14 @@ contains
   subroutine put_program(json)
     type(json_text), intent(inout) :: json
     integer :: start, comma
-    call json%open_object("program")
-    call json%put_text("Keyway", "name")
-    call json%put_text(program_version, "version")
-    call json%put_text(compiler, "compiler")
-    call json%open_array("libraries")
+    call json%open_object('program')
+    call json%put_text('Keyway', 'name')
+    call json%put_text(program_version, 'version')
+    call json%put_text(compiler, 'compiler')
+    call json%open_array('libraries')
     start = 1
     do while (start <= len(libraries))
-      comma = index(libraries(start:)//",", ",")
+      comma = index(libraries(start:)//',', ',')
       call json%put_text(trim(adjustl(libraries(start:start + comma - 2))))
       start = start + comma
     end do
@@ -72,12 +72,12 @@ contains
     type(json_text), intent(inout) :: json
     type(problem), intent(in) :: scene
     type(run_summary), intent(in) :: summary
-    call json%open_object("model")
-    call json%put_integer(scene%mesh%num_nodes, "nodes")
-    call json%put_integer(scene%mesh%num_elements, "elements")
-    call json%put_integer(summary%num_unknowns, "unknowns")
-    call json%put_integer(size(scene%joints), "joints")
-    call json%put_integer(size(scene%materials), "materials")
+    call json%open_object('model')
+    call json%put_integer(scene%mesh%num_nodes, 'nodes')
+    call json%put_integer(scene%mesh%num_elements, 'elements')
+    call json%put_integer(summary%num_unknowns, 'unknowns')
+    call json%put_integer(size(scene%joints), 'joints')
+    call json%put_integer(size(scene%materials), 'materials')
     call json%close_object()
   end subroutine put_model
 
@@ -86,20 +86,20 @@ contains
     type(json_text), intent(inout) :: json
     type(problem), intent(in) :: scene
     integer :: i
-    call json%open_array("effects")
+    call json%open_array('effects')
     do i = 1, size(scene%loads)
       call put_effect(scene%loads(i)%item%name, scene%loads(i)%item%kind)
     end do
     do i = 1, size(scene%joints)
-      call put_effect(scene%joints(i)%name, "joint")
+      call put_effect(scene%joints(i)%name, 'joint')
     end do
     do i = 1, size(scene%materials)
       if (max(scene%materials(i)%alpha, scene%materials(i)%beta) > 0.0_rk) then
-        call put_effect(scene%materials(i)%name, "damping")
+        call put_effect(scene%materials(i)%name, 'damping')
       end if
     end do
     do i = 1, size(scene%steps)
-      if (scene%steps(i)%damping_ratio > 0.0_rk) call put_effect(scene%steps(i)%name, "damping")
+      if (scene%steps(i)%damping_ratio > 0.0_rk) call put_effect(scene%steps(i)%name, 'damping')
     end do
     call json%close_array()
 
@@ -109,8 +109,8 @@ contains
     subroutine put_effect(name, kind)
       character(*), intent(in) :: name, kind
       call json%open_object()
-      call json%put_text(name, "name")
-      call json%put_text(kind, "kind")
+      call json%put_text(name, 'name')
+      call json%put_text(kind, 'kind')
       call json%close_object()
     end subroutine put_effect
   end subroutine put_effects
@@ -121,20 +121,20 @@ contains
     type(run_summary), intent(in) :: summary
     type(run_record), intent(in) :: record
     integer :: i
-    call json%open_array("ignored_input")
+    call json%open_array('ignored_input')
     do i = 1, summary%remarks%num_warnings
       associate (remark => summary%remarks%warnings(i))
         if (remark%severity /= severity_ignored) cycle
         call json%open_object()
-        call json%put_text(remark%spot%file, "file")
-        call json%put_integer(remark%spot%line, "line")
-        call json%put_text(remark%spot%keyword, "keyword")
-        call json%put_text(remark%problem, "why")
+        call json%put_text(remark%spot%file, 'file')
+        call json%put_integer(remark%spot%line, 'line')
+        call json%put_text(remark%spot%keyword, 'keyword')
+        call json%put_text(remark%problem, 'why')
         call json%close_object()
       end associate
     end do
     call json%close_array()
-    call json%open_array("warnings")
+    call json%open_array('warnings')
     do i = 1, summary%remarks%num_warnings
       if (summary%remarks%warnings(i)%severity == severity_ignored) cycle
       call json%put_text(headline(summary%remarks%warnings(i)))
@@ -151,16 +151,16 @@ contains
     type(problem), intent(in) :: scene
     type(run_summary), intent(in) :: summary
     integer :: i
-    call json%open_array("steps")
+    call json%open_array('steps')
     do i = 1, size(summary%steps)
       associate (part => summary%steps(i), plan => scene%steps(summary%steps(i)%step))
         call json%open_object()
-        call json%put_text(plan%name, "name")
-        call json%put_text(lower(plan%procedure), "procedure")
-        call json%put_real(part%time, "time")
-        call json%put_integer(part%increments, "increments")
-        call json%put_integer(part%iterations, "iterations")
-        call json%put_integer(part%cutbacks, "cutbacks")
+        call json%put_text(plan%name, 'name')
+        call json%put_text(lower(plan%procedure), 'procedure')
+        call json%put_real(part%time, 'time')
+        call json%put_integer(part%increments, 'increments')
+        call json%put_integer(part%iterations, 'iterations')
+        call json%put_integer(part%cutbacks, 'cutbacks')
         call put_modes(json, part)
         call put_energy(json, part)
         call json%close_object()
@@ -174,12 +174,12 @@ contains
     type(json_text), intent(inout) :: json
     type(step_summary), intent(in) :: part
     integer :: i
-    call json%open_array("frequencies")
+    call json%open_array('frequencies')
     do i = 1, size(part%modes)
       call json%open_object()
-      call json%put_integer(i, "mode")
-      call json%put_real(part%modes(i)%hz, "hz")
-      call json%put_reals(part%modes(i)%effective_mass, "effective_mass")
+      call json%put_integer(i, 'mode')
+      call json%put_real(part%modes(i)%hz, 'hz')
+      call json%put_reals(part%modes(i)%effective_mass, 'effective_mass')
       call json%close_object()
     end do
     call json%close_array()
@@ -189,15 +189,15 @@ contains
   subroutine put_energy(json, part)
     type(json_text), intent(inout) :: json
     type(step_summary), intent(in) :: part
-    call json%open_object("energy")
-    call json%put_real(part%energy%external, "external")
-    call json%put_real(part%energy%kinetic, "kinetic")
-    call json%put_real(part%energy%strain, "strain")
-    call json%put_real(part%energy%damping, "damping")
-    call json%put_real(part%energy%friction, "friction")
-    call json%put_real(part%energy%fracture, "fracture")
-    call json%put_real(part%energy%numerical, "numerical")
-    call json%put_real(part%largest_error, "error")
+    call json%open_object('energy')
+    call json%put_real(part%energy%external, 'external')
+    call json%put_real(part%energy%kinetic, 'kinetic')
+    call json%put_real(part%energy%strain, 'strain')
+    call json%put_real(part%energy%damping, 'damping')
+    call json%put_real(part%energy%friction, 'friction')
+    call json%put_real(part%energy%fracture, 'fracture')
+    call json%put_real(part%energy%numerical, 'numerical')
+    call json%put_real(part%largest_error, 'error')
     call json%close_object()
   end subroutine put_energy
 
@@ -206,7 +206,7 @@ contains
     type(json_text), intent(inout) :: json
     type(run_record), intent(in) :: record
     integer :: i
-    call json%open_object("envelopes")
+    call json%open_object('envelopes')
     do i = 1, size(record%envelopes)
       call put_extremes(json, trim(record%envelopes(i)%name), record%envelopes(i)%largest)
     end do
@@ -219,12 +219,12 @@ contains
     type(problem), intent(in) :: scene
     type(run_record), intent(in) :: record
     integer :: j
-    call json%open_object("joints")
+    call json%open_object('joints')
     do j = 1, size(scene%joints)
       call json%open_object(scene%joints(j)%name)
-      call put_extremes(json, "opening", record%joints(j)%opening)
-      call put_extremes(json, "slip", record%joints(j)%slip)
-      call put_extremes(json, "pressure", record%joints(j)%pressure)
+      call put_extremes(json, 'opening', record%joints(j)%opening)
+      call put_extremes(json, 'slip', record%joints(j)%slip)
+      call put_extremes(json, 'pressure', record%joints(j)%pressure)
       call json%close_object()
     end do
     call json%close_object()
@@ -240,9 +240,9 @@ contains
     do i = 1, size(found%at)
       if (.not. found%at(i)%is_found) cycle
       call json%open_object(trim(face_names(i)))
-      call json%put_real(found%at(i)%value, "value")
-      call json%put_real(found%at(i)%time, "time")
-      call json%put_reals(found%at(i)%x, "x")
+      call json%put_real(found%at(i)%value, 'value')
+      call json%put_real(found%at(i)%time, 'time')
+      call json%put_reals(found%at(i)%x, 'x')
       call json%close_object()
     end do
     call json%close_object()
@@ -252,10 +252,10 @@ contains
   subroutine put_accuracy(json, summary)
     type(json_text), intent(inout) :: json
     type(run_summary), intent(in) :: summary
-    call json%open_object("accuracy")
-    call json%put_real(maxval([0.0_rk, summary%steps%largest_residual]), "largest_residual")
-    call json%put_real(maxval([0.0_rk, summary%steps%largest_error]), "largest_energy_error")
-    call json%put_integer(maxval([0, summary%steps%most_iterations]), "most_iterations")
+    call json%open_object('accuracy')
+    call json%put_real(maxval([0.0_rk, summary%steps%largest_residual]), 'largest_residual')
+    call json%put_real(maxval([0.0_rk, summary%steps%largest_error]), 'largest_energy_error')
+    call json%put_integer(maxval([0, summary%steps%most_iterations]), 'most_iterations')
     call json%close_object()
   end subroutine put_accuracy
 
@@ -265,18 +265,18 @@ contains
     type(ledger), intent(in) :: costs
     real(rk), intent(in) :: seconds !< since the start of the run
     integer :: i
-    call json%open_object("ledger")
-    call json%put_real(seconds, "wall_s")
-    call json%put_real(peak_memory(), "peak_memory_mb")
-    call json%open_array("parts")
+    call json%open_object('ledger')
+    call json%put_real(seconds, 'wall_s')
+    call json%put_real(peak_memory(), 'peak_memory_mb')
+    call json%open_array('parts')
     if (allocated(costs%parts)) then
       do i = 1, size(costs%parts)
         call json%open_object()
-        call json%put_text(costs%parts(i)%name, "name")
-        call json%put_text(costs%parts(i)%kind, "kind")
-        call json%put_real(costs%parts(i)%wall_time, "wall_s")
-        call json%put_real(costs%parts(i)%memory, "memory_mb")
-        call json%put_integer(costs%parts(i)%num_calls, "calls")
+        call json%put_text(costs%parts(i)%name, 'name')
+        call json%put_text(costs%parts(i)%kind, 'kind')
+        call json%put_real(costs%parts(i)%wall_time, 'wall_s')
+        call json%put_real(costs%parts(i)%memory, 'memory_mb')
+        call json%put_integer(costs%parts(i)%num_calls, 'calls')
         call json%close_object()
       end do
     end if
@@ -289,7 +289,7 @@ contains
     type(json_text), intent(inout) :: json
     type(run_record), intent(in) :: record
     integer :: i
-    call json%open_array("files")
+    call json%open_array('files')
     do i = 1, size(record%files)
       call json%put_text(record%files(i)%text)
     end do
@@ -303,7 +303,7 @@ contains
     integer :: i
     small = text
     do i = 1, len(text)
-      if (text(i:i) >= "A" .and. text(i:i) <= "Z") small(i:i) = achar(iachar(text(i:i)) + 32)
+      if (text(i:i) >= 'A' .and. text(i:i) <= 'Z') small(i:i) = achar(iachar(text(i:i)) + 32)
     end do
   end function lower
 end module summary_json

@@ -28,7 +28,7 @@ contains
     character(*), intent(in) :: stem
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
-    call record%list_file(file_name(stem)//"_energy.csv")
+    call record%list_file(file_name(stem)//'_energy.csv')
     call self%file%open(stem//'_energy.csv', 'step,increment,time,external,kinetic,strain,'// &
                         'damping,friction,fracture,numerical,error', error)
   end subroutine open_energy

@@ -51,25 +51,25 @@ contains
     type(hdf5_results), intent(out) :: results
     type(error_type), allocatable, intent(out) :: error
     integer :: j
-    results%path = stem//".h5"
+    results%path = stem//'.h5'
     call record%list_file(file_name(results%path))
     associate (file => results%file)
       call file%create(results%path)
-      call file%set("/", "program", "Keyway "//program_version)
-      call file%set("/", "deck", scene%deck_file)
-      call file%set("/", "layout", layout_version)
+      call file%set('/', 'program', 'Keyway '//program_version)
+      call file%set('/', 'deck', scene%deck_file)
+      call file%set('/', 'layout', layout_version)
       call write_model(file, scene, record)
-      call file%make_group("/steps")
-      call file%make_group("/history")
-      call file%make_group("/history/joints")
-      call results%increments%start(file, "/history/increments", &
-                                    "step,increment,time,size,iterations,residual")
-      call results%energies%start(file, "/history/energy", "step,increment,time,external,"// &
-                                  "kinetic,strain,damping,friction,fracture,numerical,error")
+      call file%make_group('/steps')
+      call file%make_group('/history')
+      call file%make_group('/history/joints')
+      call results%increments%start(file, '/history/increments', &
+                                    'step,increment,time,size,iterations,residual')
+      call results%energies%start(file, '/history/energy', 'step,increment,time,external,'// &
+                                  'kinetic,strain,damping,friction,fracture,numerical,error')
       allocate (results%joints(size(scene%joints)))
       do j = 1, size(scene%joints)
-        call results%joints(j)%start(file, "/history/joints/"//safe_name(scene%joints(j)%name), &
-                                     "step,increment,time,opening,slip,pressure")
+        call results%joints(j)%start(file, '/history/joints/'//safe_name(scene%joints(j)%name), &
+                                     'step,increment,time,opening,slip,pressure')
       end do
     end associate
     call results%bring_out(error)
@@ -126,24 +126,24 @@ contains
     character(:), allocatable :: group
     real(rk), allocatable :: values(:, :)
     integer :: i
-    group = step_group(now%step)//"/increments/"//padded(now%increment, 6)
+    group = step_group(now%step)//'/increments/'//padded(now%increment, 6)
     call self%file%make_group(group)
-    call self%file%set(group, "step", now%step)
-    call self%file%set(group, "increment", now%increment)
-    call self%file%set(group, "time", now%total_time)
-    call self%file%set(group, "step_time", now%step_time)
+    call self%file%set(group, 'step', now%step)
+    call self%file%set(group, 'increment', now%increment)
+    call self%file%set(group, 'time', now%total_time)
+    call self%file%set(group, 'step_time', now%step_time)
     do i = 1, size(fields)
       call field_on_nodes(scene, now, record, fields(i), values)
-      associate (path => group//"/"//trim(fields(i)))
+      associate (path => group//'/'//trim(fields(i)))
         if (size(values, 1) == 1) then
           call self%file%put(path, values(1, :))
         else
           call self%file%put(path, values)
-          call self%file%set(path, "components", components_of(fields(i)))
+          call self%file%set(path, 'components', components_of(fields(i)))
         end if
       end associate
     end do
-    if (any(fields == "OPENING")) call add_joints(self%file, scene, now, group//"/joints")
+    if (any(fields == 'OPENING')) call add_joints(self%file, scene, now, group//'/joints')
   end subroutine add_fields
 
   !> All points of all joints.
@@ -156,12 +156,12 @@ contains
     integer :: j
     call file%make_group(group)
     do j = 1, size(scene%joints)
-      place = group//"/"//safe_name(scene%joints(j)%name)
+      place = group//'/'//safe_name(scene%joints(j)%name)
       call file%make_group(place)
-      call file%put(place//"/opening", opening_at_points(scene%joints(j), now%joints(j)))
-      call file%put(place//"/slip", now%joints(j)%slip)
-      call file%put(place//"/traction", now%joints(j)%traction)
-      call file%put(place//"/state", now%joints(j)%status)
+      call file%put(place//'/opening', opening_at_points(scene%joints(j), now%joints(j)))
+      call file%put(place//'/slip', now%joints(j)%slip)
+      call file%put(place//'/traction', now%joints(j)%traction)
+      call file%put(place//'/state', now%joints(j)%status)
     end do
   end subroutine add_joints
 
@@ -181,11 +181,11 @@ contains
       mass(:, i) = modes(i)%effective_mass
       shapes(:, :, i) = modes(i)%shape
     end do
-    associate (group => step_group(step)//"/modes")
+    associate (group => step_group(step)//'/modes')
       call self%file%make_group(group)
-      call self%file%put(group//"/hz", modes%hz)
-      call self%file%put(group//"/effective_mass", mass)
-      call self%file%put(group//"/shape", shapes)
+      call self%file%put(group//'/hz', modes%hz)
+      call self%file%put(group//'/effective_mass', mass)
+      call self%file%put(group//'/shape', shapes)
     end associate
     call self%bring_out(error)
     call record%list_file(file_name(self%path))
@@ -200,12 +200,12 @@ contains
     integer :: i
     if (size(record%active) == 0) return
     if (any(record%envelopes(record%active)%is_empty)) return
-    group = step_group(record%step)//"/envelopes"
+    group = step_group(record%step)//'/envelopes'
     call self%file%make_group(group)
     do i = 1, size(record%active)
       associate (item => record%envelopes(record%active(i)))
-        call self%file%put(group//"/"//name_of_field(item), item%value)
-        call self%file%put(group//"/"//name_of_field(item)//"_TIME", item%time)
+        call self%file%put(group//'/'//name_of_field(item), item%value)
+        call self%file%put(group//'/'//name_of_field(item)//'_TIME', item%time)
       end associate
     end do
     call self%bring_out(error)
@@ -229,9 +229,9 @@ contains
     if (self%step == step) return
     self%step = step
     call self%file%make_group(step_group(step))
-    call self%file%set(step_group(step), "name", scene%steps(step)%name)
-    call self%file%set(step_group(step), "procedure", scene%steps(step)%procedure)
-    call self%file%make_group(step_group(step)//"/increments")
+    call self%file%set(step_group(step), 'name', scene%steps(step)%name)
+    call self%file%set(step_group(step), 'procedure', scene%steps(step)%procedure)
+    call self%file%make_group(step_group(step)//'/increments')
   end subroutine enter_step
 
   !> Rows to the file, file to the disk.
@@ -254,7 +254,7 @@ contains
   pure function step_group(step) result(path)
     integer, intent(in) :: step
     character(:), allocatable :: path
-    path = "/steps/"//padded(step, 4)
+    path = '/steps/'//padded(step, 4)
   end function step_group
 
   !> A number with zeros in front.
@@ -262,7 +262,7 @@ contains
     integer, intent(in) :: number, width
     character(width) :: digits
     character(20) :: format
-    write (format, "(a,i0,a,i0,a)") "(i", width, ".", width, ")"
+    write (format, '(a,i0,a,i0,a)') '(i', width, '.', width, ')'
     write (digits, format) number
   end function padded
 end module write_hdf5

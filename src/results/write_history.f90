@@ -1,5 +1,6 @@
 !> *NODE PRINT, *EL PRINT, *JOINT PRINT: one CSV file for each set or joint, over all steps.
 module write_history
+  use kinds, only: rk
   use errors, only: error_type, raise
   use problem_definition, only: problem
   use analysis_state, only: state
@@ -7,7 +8,7 @@ module write_history
   use run_records, only: run_record
   use result_writer, only: writer, is_due
   use history_rows, only: name_part, header_of, columns_of, add_node_rows, add_element_rows, &
-    add_joint_rows
+                          add_joint_rows
   use csv_files, only: csv_file
   use file_system, only: safe_name, file_name
   implicit none
@@ -31,7 +32,7 @@ module write_history
 
 contains
 
-  !> Opens a file for each set and joint that a step prints. `stem` is the folder and the job's name.
+  !> Opens a file for each set and joint that a step prints. `stem`: folder and name of the job.
   subroutine open_histories(scene, stem, record, histories, error)
     type(problem), intent(in) :: scene
     character(*), intent(in) :: stem
@@ -154,14 +155,14 @@ contains
     integer, allocatable :: points(:)
     integer :: p, i
     logical :: is_near(scene%joints(joint)%num_points)
+    real(rk) :: here(3), apart(3, scene%joints(joint)%num_points)
     is_near = .true.
     if (allocated(request%near_nodes)) is_near = size(request%near_nodes) == 0
     if (.not. all(is_near)) then
       do i = 1, size(request%near_nodes)
-        associate (here => scene%mesh%x(:, request%near_nodes(i)), x => scene%joints(joint)%x)
-          p = minloc((x(1, :) - here(1))**2 + (x(2, :) - here(2))**2 + (x(3, :) - here(3))**2, dim=1)
-          is_near(p) = .true.
-        end associate
+        here = scene%mesh%x(:, request%near_nodes(i))
+        apart = scene%joints(joint)%x - spread(here, 2, size(is_near))
+        is_near(minloc(sum(apart**2, dim=1), dim=1)) = .true.
       end do
     end if
     points = pack([(p, p=1, size(is_near))], is_near)

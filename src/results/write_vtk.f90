@@ -71,7 +71,7 @@ contains
     call file%save(self%folder//frame_name(self%job, self%num_frames), error)
     if (allocated(error)) return
     call self%frames%add(now%total_time, frame_name(self%job, self%num_frames), error)
-    call record%list_file(self%job//".pvd")
+    call record%list_file(self%job//'.pvd')
     if (allocated(error) .or. .not. any(fields == 'OPENING')) return
     call self%write_joints(scene, now, record, error)
   end subroutine write_frame
@@ -119,7 +119,7 @@ contains
     name = frame_name(self%job//'_joints', self%num_frames)
     call file%save(self%folder//name, error)
     if (.not. allocated(error)) call self%joint_frames%add(now%total_time, name, error)
-    call record%list_file(self%job//"_joints.pvd")
+    call record%list_file(self%job//'_joints.pvd')
   end subroutine write_joints
 
   !> The envelopes of a step in one file; nothing where the step has none.
@@ -137,13 +137,19 @@ contains
     call self%start_grid(scene, file)
     do i = 1, size(record%active)
       associate (item => record%envelopes(record%active(i)))
-        call file%put_point_reals(name_of_field(item), reshape(item%value, [1, size(item%value)]), '')
-        call file%put_point_reals(name_of_field(item)//'_TIME', &
-                                  reshape(item%time, [1, size(item%time)]), '')
+        call file%put_point_reals(name_of_field(item), as_row(item%value), '')
+        call file%put_point_reals(name_of_field(item)//'_TIME', as_row(item%time), '')
       end associate
     end do
-    call save_listed(self, file, "_envelope_step"//text_of(record%step)//".vtu", record, error)
+    call save_listed(self, file, '_envelope_step'//text_of(record%step)//'.vtu', record, error)
   end subroutine write_envelopes
+
+  !> A list as a table of one row.
+  pure function as_row(list) result(row)
+    real(rk), intent(in) :: list(:)
+    real(rk) :: row(1, size(list))
+    row(1, :) = list
+  end function as_row
 
   !> Saves a file that stands for itself, and lists it among the results.
   subroutine save_listed(self, file, ending, record, error)
@@ -153,7 +159,7 @@ contains
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     call file%save(self%folder//self%job//ending, error)
-    call record%list_file(self%job//"_vtk/"//self%job//ending)
+    call record%list_file(self%job//'_vtk/'//self%job//ending)
   end subroutine save_listed
 
   !> All mode shapes of a *FREQUENCY step in one file.
@@ -174,7 +180,7 @@ contains
       write (number, '(i5.2)') i
       call file%put_point_reals('MODE_'//trim(adjustl(number)), modes(i)%shape, 'U1,U2,U3')
     end do
-    call save_listed(self, file, "_modes_step"//text_of(step)//".vtu", record, error)
+    call save_listed(self, file, '_modes_step'//text_of(step)//'.vtu', record, error)
   end subroutine write_mode_shapes
 
   !> Makes the folder and the cells, once.

@@ -1,0 +1,230 @@
+!> Drives the results layer by hand over a small dam with a joint: two blocks and a wedge of
+!> concrete on rock without mass, a uniform strain that grows with time. The files are read by
+!> tests/results/test_result_files.py; here only what Fortran can see is checked.
+program test_result_files
+  use kinds, only: rk
+  use errors, only: error_type
+  use diagnostics, only: diagnostic_list, place, severity_ignored, severity_warning
+  use timer, only: wall_clock
+  use mesh_sets, only: named_set, surface
+  use step_plan, only: step, print_request, field_request
+  use material_elastic, only: elastic_law
+  use joint_contraction, only: contraction_law
+  use joint_points, only: joint
+  use problem_definition, only: problem
+  use analysis_state, only: state, vibration_mode
+  use result_files, only: result_folder
+  use testing, only: test_log, check, check_close
+  implicit none
+
+  character(*), parameter :: deck = 'hand driven.inp'
+  type(test_log) :: log
+  type(problem) :: scene
+  type(result_folder) :: results
+  character(500) :: folder
+  log%suite = 'result_files'
+  folder = 'results of the unit test'
+  if (command_argument_count() > 0) call get_command_argument(1, folder)
+  call make_scene(scene)
+  call run(scene, results)
+  call check_maxima(results)
+  print '(i0,a,i0,a)', log%passed, ' passed, ', log%failed, ' failed'
+  if (log%failed > 0) error stop 1
+
+contains
+
+  !> Mesh, materials, joint, sets and steps.
+  subroutine make_scene(scene)
+    type(problem), intent(out) :: scene
+    scene%deck_file = deck
+    call make_mesh(scene)
+    call make_materials(scene)
+    call make_joint(scene)
+    allocate (scene%loads(0), scene%amplitudes(0), scene%initial_values(0))
+    scene%node_sets = [named_set('TOP', [13, 14, 19, 20])]
+    scene%element_sets = [named_set('TWO/BLOCKS', [1, 2])]
+    scene%surfaces = [surface('WATER', [1, 2], [6, 6])]
+    scene%upstream_surface = 1
+    call make_steps(scene)
+  end subroutine make_scene
+
+  !> Nodes at x = 0, 1 (fastest), y = 0, 2 | 2, 4, z = -1 (first block only), 0, 3; ridge at z = 5.
+  subroutine make_mesh(scene)
+    type(problem), intent(inout) :: scene
+    real(rk), parameter :: x(3, 22) = reshape(real([ &
+                                                   0, 0, -1, 1, 0, -1, 0, 2, -1, 1, 2, -1, &
+                                                   0, 0, 0, 1, 0, 0, 0, 2, 0, 1, 2, 0, &
+                                                   0, 2, 0, 1, 2, 0, 0, 4, 0, 1, 4, 0, &
+                                                   0, 0, 3, 1, 0, 3, 0, 2, 3, 1, 2, 3, &
+                                                   0, 2, 3, 1, 2, 3, 0, 4, 3, 1, 4, 3, &
+                                                   0, 0, 5, 0, 2, 5], rk), [3, 22])
+    integer :: n
+    associate (mesh => scene%mesh)
+      mesh%num_nodes = 22
+      mesh%num_elements = 5
+      mesh%node_id = [(10*n, n=1, 22)]
+      mesh%x = x
+      mesh%element_id = [10, 20, 30, 40, 50]
+      mesh%element_type = ['C3D8  ', 'C3D8R ', 'JOINT8', 'C3D8B ', 'C3D8  ']
+      mesh%nodes = reshape([5, 6, 8, 7, 13, 14, 16, 15, 9, 10, 12, 11, 17, 18, 20, 19, &
+                            7, 8, 16, 15, 9, 10, 18, 17, 13, 14, 16, 15, 21, 21, 22, 22, &
+                            1, 2, 4, 3, 5, 6, 8, 7], [8, 5])
+      mesh%material_of_element = [1, 1, 0, 1, 2]
+      mesh%section_of_element = [1, 1, 0, 1, 2]
+    end associate
+  end subroutine make_mesh
+
+  !> Concrete and massless rock of the same stiffness.
+  subroutine make_materials(scene)
+    type(problem), intent(inout) :: scene
+    integer :: m
+    allocate (scene%materials(2))
+    scene%materials(1)%name = 'CONCRETE'
+    scene%materials(1)%density = 2400.0_rk
+    scene%materials(1)%beta = 1.0e-3_rk
+    scene%materials(2)%name = 'ROCK'
+    do m = 1, 2
+      scene%materials(m)%law = elastic_law(young=20.0e9_rk, poisson=0.0_rk)
+    end do
+  end subroutine make_materials
+
+  !> Four points between the blocks.
+  subroutine make_joint(scene)
+    type(problem), intent(inout) :: scene
+    integer :: p
+    allocate (scene%joints(1))
+    associate (item => scene%joints(1))
+      item%name = 'MIDDLE'
+      allocate (item%law, source=contraction_law(name='LAW', gap=1.0e-4_rk))
+      item%num_points = 4
+      item%master = reshape([7, 8, 16, 15], [1, 4])
+      item%slave = reshape([9, 10, 18, 17], [1, 4])
+      item%x = scene%mesh%x(:, [7, 8, 16, 15])
+      allocate (item%shape(1, 4), source=1.0_rk)
+      allocate (item%area(4), source=0.75_rk)
+      allocate (item%rotation(3, 3, 4), source=0.0_rk)
+      do p = 1, 4
+        item%rotation(1, 2, p) = 1.0_rk
+        item%rotation(2, 1, p) = -1.0_rk
+        item%rotation(3, 3, p) = 1.0_rk
+      end do
+    end associate
+  end subroutine make_joint
+
+  !> A static step, a dynamic one that prints every second increment, and one for frequencies.
+  subroutine make_steps(scene)
+    type(problem), intent(inout) :: scene
+    type(step) :: plan
+    type(print_request) :: nodes, elements, points
+    nodes = print_request('NODE', 'TOP', [13, 14], [integer ::], ['U   ', 'RF  ', 'SDV '], 1)
+    elements = print_request('ELEMENT', 'TWO/BLOCKS', [1, 2], [integer ::], ['S ', 'SP'], 1)
+    points = print_request('JOINT', 'MIDDLE', [1], [15], ['OPENING'], 1)
+    plan%name = 'dead weight'
+    plan%procedure = 'STATIC'
+    allocate (plan%fixities(0), plan%loads(0))
+    plan%prints = [nodes, elements, points]
+    plan%outputs = [field_request(['U ', 'V ', 'S '], 1), field_request(['SP', 'PE'], 1)]
+    plan%envelope = ['S1      ', 'OPENING ', 'DAMAGET ']
+    allocate (scene%steps(3))
+    scene%steps(1) = plan
+    nodes = print_request('NODE', 'TOP', [14, 20], [integer ::], ['V'], 2)
+    points%near_nodes = [integer ::]
+    plan%name = 'earthquake'
+    plan%procedure = 'DYNAMIC'
+    plan%prints = [nodes, points]
+    plan%outputs = [field_request(['U      ', 'V      ', 'RF     ', 'E      ', 'OPENING'], 2)]
+    plan%envelope = ['S1      ', 'S3      ', 'U       ', 'OPENING ']
+    scene%steps(2) = plan
+    scene%steps(3)%name = 'shapes'
+    scene%steps(3)%procedure = 'FREQUENCY'
+    allocate (scene%steps(3)%fixities(0))
+  end subroutine make_steps
+
+  !> The calls a solver would make.
+  subroutine run(scene, results)
+    type(problem), intent(in) :: scene
+    type(result_folder), intent(inout) :: results
+    type(error_type), allocatable :: error
+    type(vibration_mode) :: modes(2)
+    type(diagnostic_list) :: remarks
+    integer :: i
+    call remarks%add(severity_ignored, place(deck, 7, 1, 9, 'PREPRINT', ''), 'no effect here')
+    call remarks%add(severity_warning, place(deck, 8, 1, 9, 'NODE', ''), 'odd "name"')
+    call results%log%open(.true., error)
+    call results%open(scene, trim(folder), remarks, wall_clock(), error)
+    call check_success(error, 'results open')
+    do i = 1, 2
+      call announce(results, scene, 1, i, 0.5_rk*i, i == 2)
+    end do
+    do i = 0, 3
+      call announce(results, scene, 2, i, 1.0_rk + 0.1_rk*i, i == 3)
+    end do
+    do i = 1, 2
+      modes(i)%hz = 2.5_rk*i
+      modes(i)%effective_mass = [1.0_rk, 2.0_rk, 3.0_rk]
+      modes(i)%shape = scene%mesh%x*i
+    end do
+    call results%modes_found(scene, 3, modes, error)
+    call check_success(error, 'modes are written')
+    call results%finish(scene, 'finished', '', error)
+    call check_success(error, 'results close')
+  end subroutine run
+
+  !> One increment: e11 = 1e-3 t, e33 = -2e-3 t, g12 = 1e-3 t; the joint opens with height.
+  subroutine announce(results, scene, number, increment, time, is_last)
+    type(result_folder), intent(inout) :: results
+    type(problem), intent(in) :: scene
+    integer, intent(in) :: number, increment
+    real(rk), intent(in) :: time
+    logical, intent(in) :: is_last
+    type(state) :: now
+    type(error_type), allocatable :: error
+    now%step = number
+    now%increment = increment
+    now%iterations = 2
+    now%is_last_of_step = is_last
+    now%total_time = time
+    now%step_time = time - (number - 1)
+    now%energy%error = 1.0e-4_rk*increment
+    allocate (now%u(3, 22), source=0.0_rk)
+    now%u(1, :) = 1.0e-3_rk*time*(scene%mesh%x(1, :) + scene%mesh%x(2, :))
+    now%u(3, :) = -2.0e-3_rk*time*scene%mesh%x(3, :)
+    now%reaction = now%u
+    if (number == 2) now%v = now%u/time
+    if (number == 2) now%a = 0.0_rk*now%u
+    allocate (now%joints(1))
+    call scene%joints(1)%law%start_state(4, now%joints(1))
+    now%joints(1)%jump(1, :) = 1.0e-3_rk*(time*scene%joints(1)%x(3, :) - 1.0_rk)
+    now%joints(1)%slip(2, :) = -1.0e-3_rk*time*scene%joints(1)%x(1, :)
+    now%joints(1)%traction(1, :) = -1.0e6_rk*scene%joints(1)%x(1, :)
+    call results%increment_done(scene, now, error)
+    call check_success(error, 'an increment is written')
+  end subroutine announce
+
+  !> No failure.
+  subroutine check_success(error, what)
+    type(error_type), allocatable, intent(in) :: error
+    character(*), intent(in) :: what
+    logical :: has_failed
+    has_failed = allocated(error)
+    if (has_failed) print '(a)', error%message
+    call check(log, has_failed .eqv. .false., what)
+  end subroutine check_success
+
+  !> Extremes with time and place.
+  subroutine check_maxima(results)
+    type(result_folder), intent(in) :: results
+    associate (found => results%record%joints(1))
+      call check_close(log, found%opening%at(1)%value, 3.0e-3_rk, 1.0e-15_rk, 'opening anywhere')
+      call check_close(log, found%slip%at(3)%value, 1.3e-3_rk, 1.0e-15_rk, 'slip downstream')
+      call check_close(log, found%slip%at(2)%value, 0.0_rk, 0.0_rk, 'slip upstream')
+      call check_close(log, found%pressure%at(1)%time, 0.5_rk, 0.0_rk, 'first time of pressure')
+    end associate
+    associate (skin => results%record%skin)
+      call check(log, all(skin%is_upstream([5, 7, 13, 15, 9, 11, 17, 19])), 'upstream nodes')
+      call check(log, count(skin%is_upstream) == 8, 'no other upstream node')
+      call check(log, all(skin%is_downstream([6, 8, 14, 16, 10, 12, 18, 20])), 'downstream nodes')
+      call check(log, count(skin%is_downstream(1:4)) == 0, 'rock is not downstream')
+    end associate
+  end subroutine check_maxima
+end program test_result_files
