@@ -2,8 +2,8 @@
 module element_hex8
   use kinds, only: rk
   use element_formulation, only: solid_element
-  use gauss_rules, only: hex_point
-  use shape_hex8, only: corner_fault, corner_of_point, derivative_at, gradient_at, strain_rows
+  use shape_hex8, only: corner_fault, corner_of_point, gradient_at, point_derivative, &
+                        strain_rows
   implicit none
   private
   public :: full_hexahedron, hex8_gradients
@@ -42,7 +42,7 @@ contains
     integer, intent(out) :: status !< 0, or the worst corner when a point's Jacobian is <= 0
     integer :: q
     do q = 1, 8
-      call gradient_at(x, derivative_at(hex_point(:, q)), gradient(:, :, q), weight(q))
+      call gradient_at(x, point_derivative(:, q, :), gradient(:, :, q), weight(q))
     end do
     status = 0
     if (minval(weight) > 0.0_rk) return

@@ -52,7 +52,7 @@ contains
     real(rk), intent(out) :: mode(6, 9, 8) !< [1/m]
     real(rk) :: inverse(3, 3), centre_determinant, gradient(3, 3)
     integer :: q, i
-    call invert3(matmul(derivative_at([0.0_rk, 0.0_rk, 0.0_rk]), transpose(x)), inverse, &
+    call invert3(transpose(matmul(x, derivative_at([0.0_rk, 0.0_rk, 0.0_rk]))), inverse, &
                  centre_determinant)
     do q = 1, 8
       do i = 1, 3

@@ -1,17 +1,18 @@
 !> Matrices and vectors of blocks of solid elements, the same for all formulations.
 !>
-!> Blocks of 32 to 64 elements keep the operators in the second-level cache; each block is one call
-!> of the formulation.
+!> A call takes a block of elements of one material, say 64.
 module element_matrices
   use kinds, only: rk
   use element_formulation, only: solid_element
-  use gauss_rules, only: hex_point
-  use shape_hex8, only: derivative_at, gradient_at, shape_at
+  use shape_hex8, only: gradient_at, point_derivative, point_shape
   implicit none
   private
   public :: stiffness_matrices, consistent_masses, nodal_volumes, strains_at_points, stress_forces
 
   integer, parameter :: num_dofs = 24
+
+  !> Elements whose operators are in the first-level cache at a time (tools/bench/bench_elements).
+  integer, parameter :: chunk = 4
 
 contains
 
@@ -23,18 +24,21 @@ contains
     real(rk), contiguous, intent(out) :: ke(:, :, :) !< (24, 24, elements), symmetric [N/m]
     integer, intent(out) :: status(:) !< (elements) 0, or the worst corner when a Jacobian is <= 0
     real(rk), allocatable :: b(:, :, :, :), weight(:, :)
-    integer :: e
-    allocate (b(6, num_dofs, element%num_points, size(x, 3)))
-    allocate (weight(element%num_points, size(x, 3)))
-    call element%strain_operator(x, d, b, weight, status)
-    do e = 1, size(x, 3)
-      if (status(e) /= 0) then
-        ke(:, :, e) = 0.0_rk
-      else
-        call integrate_stiffness(element%num_points, b(:, :, :, e), d, weight(:, e), ke(:, :, e))
-      end if
+    integer :: e, i, n
+    allocate (b(6, num_dofs, element%num_points, chunk), weight(element%num_points, chunk))
+    do e = 1, size(x, 3), chunk
+      n = min(chunk, size(x, 3) - e + 1)
+      call element%strain_operator(x(:, :, e:e + n - 1), d, b(:, :, :, :n), weight(:, :n), &
+                                   status(e:e + n - 1))
+      do i = 1, n
+        call integrate_stiffness(element%num_points, b(:, :, :, i), d, weight(:, i), &
+                                 ke(:, :, e + i - 1))
+      end do
     end do
     call element%add_stabilisation(x, d, ke)
+    do e = 1, size(x, 3)
+      if (status(e) /= 0) ke(:, :, e) = 0.0_rk
+    end do
   end subroutine stiffness_matrices
 
   !> K of one element as one product of 24 x 6p and 6p x 24, columns in groups of eight below the
@@ -94,7 +98,7 @@ contains
     mass = 0.0_rk
     do e = 1, size(x, 3)
       do q = 1, 8
-        n = shape_at(hex_point(:, q))
+        n = point_shape(:, q)
         weight = density*determinant_at(x(:, :, e), q)
         do a = 1, 8
           mass(:, a, e) = mass(:, a, e) + (weight*n(a))*n
@@ -112,7 +116,7 @@ contains
     volume = 0.0_rk
     do e = 1, size(x, 3)
       do q = 1, 8
-        volume(:, e) = volume(:, e) + determinant_at(x(:, :, e), q)*shape_at(hex_point(:, q))
+        volume(:, e) = volume(:, e) + determinant_at(x(:, :, e), q)*point_shape(:, q)
       end do
     end do
   end subroutine nodal_volumes
@@ -122,7 +126,7 @@ contains
     real(rk), intent(in) :: x(3, 8)
     integer, intent(in) :: q
     real(rk) :: gradient(3, 8)
-    call gradient_at(x, derivative_at(hex_point(:, q)), gradient, determinant)
+    call gradient_at(x, point_derivative(:, q, :), gradient, determinant)
   end function determinant_at
 
   !> eps = B u at the points of each element.

@@ -4,7 +4,8 @@ module shape_hex8
   use gauss_rules, only: hex_point
   implicit none
   private
-  public :: corner, shape_at, derivative_at, gradient_at, mean_gradient, strain_rows
+  public :: corner, point_shape, point_derivative
+  public :: shape_at, derivative_at, gradient_at, mean_gradient, strain_rows
   public :: corner_fault, corner_of_point, corners_from_points, invert3
 
   !> Natural coordinates of the corners.
@@ -14,6 +15,20 @@ module shape_hex8
 
   !> The corner next to each integration point.
   integer, parameter :: corner_of_point(8) = [1, 2, 4, 3, 5, 6, 8, 7]
+
+  !> 1 + (coordinate of the corner)*(coordinate of the point); (corner, point).
+ real(rk), parameter :: s1(8, 8) = 1.0_rk + spread(corner(1, :), 2, 8)*spread(hex_point(1, :), 1, 8)
+ real(rk), parameter :: s2(8, 8) = 1.0_rk + spread(corner(2, :), 2, 8)*spread(hex_point(2, :), 1, 8)
+ real(rk), parameter :: s3(8, 8) = 1.0_rk + spread(corner(3, :), 2, 8)*spread(hex_point(3, :), 1, 8)
+
+  !> Shape functions at the integration points; (corner, point).
+  real(rk), parameter :: point_shape(8, 8) = 0.125_rk*s1*s2*s3
+
+  !> Their derivatives in the natural coordinates; (corner, point, direction).
+  real(rk), parameter :: point_derivative(8, 8, 3) = &
+                         reshape([0.125_rk*spread(corner(1, :), 2, 8)*s2*s3, &
+                                  0.125_rk*spread(corner(2, :), 2, 8)*s1*s3, &
+                                  0.125_rk*spread(corner(3, :), 2, 8)*s1*s2], [8, 8, 3])
 
   !> The ends of the three edges of each corner, in right-handed order.
   integer, parameter :: edge_end(3, 8) = reshape([2, 4, 5, 3, 1, 6, 4, 2, 7, 1, 3, 8, &
@@ -35,32 +50,33 @@ contains
   !> Their derivatives in the natural coordinates.
   pure function derivative_at(xi) result(dn)
     real(rk), intent(in) :: xi(3) !< natural coordinates
-    real(rk) :: dn(3, 8)
-    real(rk) :: s(3, 8)
-    s(1, :) = 1.0_rk + corner(1, :)*xi(1)
-    s(2, :) = 1.0_rk + corner(2, :)*xi(2)
-    s(3, :) = 1.0_rk + corner(3, :)*xi(3)
-    dn(1, :) = 0.125_rk*corner(1, :)*s(2, :)*s(3, :)
-    dn(2, :) = 0.125_rk*corner(2, :)*s(1, :)*s(3, :)
-    dn(3, :) = 0.125_rk*corner(3, :)*s(1, :)*s(2, :)
+    real(rk) :: dn(8, 3)
+    real(rk) :: s(8, 3)
+    integer :: i
+    do i = 1, 3
+      s(:, i) = 1.0_rk + corner(i, :)*xi(i)
+    end do
+    dn(:, 1) = 0.125_rk*corner(1, :)*s(:, 2)*s(:, 3)
+    dn(:, 2) = 0.125_rk*corner(2, :)*s(:, 1)*s(:, 3)
+    dn(:, 3) = 0.125_rk*corner(3, :)*s(:, 1)*s(:, 2)
   end function derivative_at
 
   !> Gradients of the shape functions in space, and the determinant of the Jacobian.
   pure subroutine gradient_at(x, dn, gradient, determinant)
     real(rk), intent(in) :: x(3, 8) !< corners [m]
-    real(rk), intent(in) :: dn(3, 8) !< derivatives in the natural coordinates
+    real(rk), intent(in) :: dn(8, 3) !< derivatives in the natural coordinates
     real(rk), intent(out) :: gradient(3, 8) !< [1/m]
     real(rk), intent(out) :: determinant !< [m3]
     real(rk) :: jacobian(3, 3), inverse(3, 3)
     integer :: a, i, j
     do j = 1, 3
       do i = 1, 3
-        jacobian(i, j) = sum(dn(i, :)*x(j, :))
+        jacobian(i, j) = sum(dn(:, i)*x(j, :))
       end do
     end do
     call invert3(jacobian, inverse, determinant)
     do a = 1, 8
-      gradient(:, a) = inverse(:, 1)*dn(1, a) + inverse(:, 2)*dn(2, a) + inverse(:, 3)*dn(3, a)
+      gradient(:, a) = inverse(:, 1)*dn(a, 1) + inverse(:, 2)*dn(a, 2) + inverse(:, 3)*dn(a, 3)
     end do
   end subroutine gradient_at
 

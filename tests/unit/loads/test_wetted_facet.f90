@@ -102,7 +102,7 @@ contains
   subroutine diamond_on_its_corner(log)
     type(test_log), intent(inout) :: log
     real(rk), parameter :: x(3, 4) = reshape(real([0, 0, 0, 0, 1, 1, 0, 0, 2, 0, -1, 1], rk), &
-                                              [3, 4])
+                                             [3, 4])
     type(wet_facet) :: wet
     call wet_the_facet(x, water_body(level=1.0_rk), wet)
     call check_close(log, sum(wet%area(1, :)), 1.0_rk, 1.0e-14_rk, 'half of it')
