@@ -11,8 +11,10 @@ module parse_text
   integer, parameter :: largest_power = 22 !< 10**22 is the last exact power of ten
   integer, parameter :: largest_magnitude = 307 !< decades of a normal real, up and down
   integer, parameter :: longest_exponent = 100000 !< more is clipped: too large anyway
-  integer :: i !< counter of the next line only
-  real(rk), parameter :: power_of_ten(0:largest_power) = [(10.0_rk**i, i=0, largest_power)]
+  real(rk), parameter :: power_of_ten(0:largest_power) = [ &
+                         1e0_rk, 1e1_rk, 1e2_rk, 1e3_rk, 1e4_rk, 1e5_rk, 1e6_rk, 1e7_rk, &
+                         1e8_rk, 1e9_rk, 1e10_rk, 1e11_rk, 1e12_rk, 1e13_rk, 1e14_rk, 1e15_rk, &
+                         1e16_rk, 1e17_rk, 1e18_rk, 1e19_rk, 1e20_rk, 1e21_rk, 1e22_rk]
   character, parameter :: tab = achar(9)
 
   !> A number taken apart: digits*10**exponent.

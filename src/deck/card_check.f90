@@ -1,11 +1,19 @@
 !> Checks cards against the specifications of their keywords; every fault is told, none stops it.
 module card_check
   use deck_card, only: card
-  use diagnostics, only: diagnostic_list
-  use keyword_spec, only: find_spec, keyword
+  use diagnostics, only: diagnostic_list, place, severity_error
+  use field_text, only: expected_in, names_of_columns, text_or_nothing
+  use keyword_spec, only: field, find_spec, keyword, kind_choice, kind_flag, kind_integer, &
+                          kind_real, later, without_effect
+  use kinds, only: rk
+  use nearest_words, only: nearest_choice, nearest_word
+  use parse_text, only: parse_integer, parse_real, single_blanks, upper_case
+  use write_text, only: as_text
   implicit none
   private
   public :: check_card, match_card
+
+  integer, parameter :: longest_name = 80 !< letters of a name that are compared for 'did you mean'
 
 contains
 
@@ -17,8 +25,39 @@ contains
     integer, intent(out) :: found !< position in `specs`; 0: there is nothing to do for this card
     character(*), intent(in), optional :: where_it_stands !< see `find_spec`
     found = find_spec(specs, the_card%keyword, where_it_stands)
-    if (found == 0) call the_card%fault(faults, 'unknown keyword')
+    if (found == 0) then
+      call fault_unknown(the_card, specs, faults)
+    else if (specs(found)%status == later) then
+      call the_card%fault(faults, 'not available yet')
+      found = 0
+    else if (specs(found)%status == without_effect) then
+      call the_card%ignore(faults, 'has no effect here')
+      found = 0
+    end if
   end subroutine match_card
+
+  !> Tells that a keyword is unknown, and what it may have been meant to be.
+  subroutine fault_unknown(the_card, specs, faults)
+    type(card), intent(in) :: the_card
+    type(keyword), intent(in) :: specs(:)
+    type(diagnostic_list), intent(inout) :: faults
+    character(longest_name) :: names(size(specs))
+    character(:), allocatable :: nearest
+    integer :: i
+    if (len(the_card%keyword) == 0) then
+      call the_card%fault(faults, "no keyword behind the '*'", "a keyword, or '**' for a comment")
+    else if (index(the_card%keyword, '=') > 0) then
+      call the_card%fault(faults, 'unknown keyword with a "="', &
+                          'a comma between the keyword and its parameters')
+    else
+      do i = 1, size(specs)
+        names(i) = specs(i)%name
+      end do
+      nearest = nearest_word(the_card%keyword, names)
+      if (len(nearest) > 0) nearest = '*'//nearest
+      call the_card%fault(faults, 'unknown keyword', nearest=nearest)
+    end if
+  end subroutine fault_unknown
 
   !> Compares a card with its specification, keeps the specification in the card.
   subroutine check_card(the_card, spec, faults, is_right)
@@ -29,6 +68,220 @@ contains
     integer :: num_before
     num_before = faults%num_errors
     the_card%spec = spec
+    call check_given_parameters(the_card, faults)
+    call check_required_parameters(the_card, faults)
+    call check_line_count(the_card, faults)
+    if (.not. spec%checks_own_data) call check_lines(the_card, faults)
     is_right = faults%num_errors == num_before
   end subroutine check_card
+
+  !> Every parameter that is given must be known and hold what it should.
+  subroutine check_given_parameters(the_card, faults)
+    type(card), intent(in) :: the_card
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: problem, nearest
+    integer :: i, j
+    do i = 1, size(the_card%parameters)
+      associate (given => the_card%parameters(i))
+        j = position_of(the_card%spec, given%name)
+        if (j == 0) then
+          call fault_unknown_parameter(the_card, i, faults)
+          cycle
+        end if
+        associate (wanted => the_card%spec%parameters(j))
+          if (wanted%kind == kind_flag) then
+            if (given%has_value) call the_card%fault_parameter( &
+              faults, given%name, given%name//' takes no value', expected_in(wanted))
+          else if (given%value_first > given%value_last) then
+            call the_card%fault_parameter(faults, given%name, given%name//' has no value', &
+                                          expected_in(wanted))
+          else
+            call judge(the_card%text(given%name), wanted, problem, nearest)
+            if (len(problem) > 0) call the_card%fault_parameter( &
+              faults, given%name, given%name//': '//problem, expected_in(wanted), nearest)
+          end if
+        end associate
+      end associate
+    end do
+  end subroutine check_given_parameters
+
+  !> Tells that a parameter is unknown; points at its name.
+  subroutine fault_unknown_parameter(the_card, i, faults)
+    type(card), intent(in) :: the_card
+    integer, intent(in) :: i !< position of the parameter in the card
+    type(diagnostic_list), intent(inout) :: faults
+    character(longest_name), allocatable :: names(:)
+    character(:), allocatable :: list
+    type(place) :: spot
+    integer :: j
+    list = ''
+    allocate (names(num_parameters(the_card%spec)))
+    do j = 1, size(names)
+      names(j) = the_card%spec%parameters(j)%name
+      if (j > 1) list = list//', '
+      list = list//the_card%spec%parameters(j)%name
+    end do
+    if (size(names) == 0) list = 'no parameters'
+    if (size(names) > 1) list = 'one of '//list
+    associate (given => the_card%parameters(i))
+      spot = the_card%lines%spot(given%row, given%first, given%last, the_card%keyword)
+      call faults%add(severity_error, spot, "unknown parameter '"//given%name//"'", list, &
+                      nearest_word(given%name, names))
+    end associate
+  end subroutine fault_unknown_parameter
+
+  !> Every parameter that is required must be given.
+  subroutine check_required_parameters(the_card, faults)
+    type(card), intent(in) :: the_card
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i
+    do i = 1, num_parameters(the_card%spec)
+      associate (wanted => the_card%spec%parameters(i))
+        if (.not. wanted%is_required .or. the_card%has(wanted%name)) cycle
+        call the_card%fault(faults, 'parameter '//wanted%name//' is missing', &
+                            wanted%name//' = '//expected_in(wanted))
+      end associate
+    end do
+  end subroutine check_required_parameters
+
+  !> There must be as many data lines as the keyword takes.
+  subroutine check_line_count(the_card, faults)
+    type(card), intent(in) :: the_card
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: wanted
+    associate (spec => the_card%spec)
+      if (the_card%num_lines > spec%most_lines) then
+        wanted = 'no data lines'
+        if (spec%most_lines > 0) wanted = 'at most '//lines_in_words(spec%most_lines)
+        call the_card%fault_at(faults, spec%most_lines + 1, 0, &
+                               'found '//lines_in_words(the_card%num_lines), wanted)
+      else if (the_card%num_lines < spec%fewest_lines) then
+        wanted = lines_in_words(spec%fewest_lines)
+        if (spec%most_lines > spec%fewest_lines) wanted = 'at least '//wanted
+        if (len(names_of_columns(spec)) > 0) wanted = wanted//': '//names_of_columns(spec)
+        call the_card%fault(faults, 'found '//lines_in_words(the_card%num_lines), wanted)
+      end if
+    end associate
+  end subroutine check_line_count
+
+  !> 'no data line', '1 data line', '2 data lines'.
+  pure function lines_in_words(num_lines) result(text)
+    integer, intent(in) :: num_lines
+    character(:), allocatable :: text
+    text = as_text(num_lines)//' data lines'
+    if (num_lines == 1) text = '1 data line'
+    if (num_lines == 0) text = 'no data line'
+  end function lines_in_words
+
+  !> Every field of every data line must hold what its column says.
+  subroutine check_lines(the_card, faults)
+    type(card), intent(in) :: the_card
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: line, num_columns, num_fields
+    if (.not. allocated(the_card%spec%columns)) return
+    num_columns = size(the_card%spec%columns)
+    if (num_columns == 0) return
+    do line = 1, min(the_card%num_lines, the_card%spec%most_lines)
+      num_fields = the_card%num_fields(line)
+      if (num_fields > num_columns .and. .not. the_card%spec%repeats_columns) then
+        call the_card%fault_at(faults, line, num_columns + 1, &
+                               'found '//as_text(num_fields)//' fields', &
+                               'at most '//as_text(num_columns)//': '// &
+                               names_of_columns(the_card%spec))
+      end if
+      call check_columns(the_card, line, faults)
+    end do
+  end subroutine check_lines
+
+  !> Compares the fields of a line with the columns, group by group where the columns repeat.
+  subroutine check_columns(the_card, line, faults)
+    type(card), intent(in) :: the_card
+    integer, intent(in) :: line !< data line
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: problem, nearest
+    integer :: column, number, num_groups, first, last
+    associate (columns => the_card%spec%columns)
+      num_groups = 1
+      if (the_card%spec%repeats_columns) then
+        num_groups = max(1, (the_card%num_fields(line) + size(columns) - 1)/size(columns))
+      end if
+      do number = 1, num_groups*size(columns)
+        column = 1 + mod(number - 1, size(columns))
+        call the_card%lines%find_field(line, number, first, last)
+        if (first > last) then
+          if (columns(column)%is_required) then
+            call the_card%fault_at(faults, line, number, columns(column)%name//' is missing', &
+                                   expected_in(columns(column)))
+          end if
+          cycle
+        end if
+        call judge(the_card%lines%body(first:last), columns(column), problem, nearest)
+        if (len(problem) > 0) then
+          call the_card%fault_at(faults, line, number, problem, expected_in(columns(column)), &
+                                 nearest)
+        end if
+      end do
+    end associate
+  end subroutine check_columns
+
+  !> Compares a word with what it should be.
+  pure subroutine judge(word, wanted, problem, nearest)
+    character(*), intent(in) :: word !< not empty
+    type(field), intent(in) :: wanted
+    character(:), allocatable, intent(out) :: problem !< '' where it is right
+    character(:), allocatable, intent(out) :: nearest !< a choice that is near, or ''
+    real(rk) :: value
+    integer :: number
+    logical :: is_right
+    problem = ''
+    nearest = ''
+    select case (wanted%kind)
+    case (kind_real)
+      call parse_real(word, value, is_right)
+      is_right = is_right .and. is_in_range(value, wanted)
+    case (kind_integer)
+      call parse_integer(word, number, is_right)
+      is_right = is_right .and. is_in_range(real(number, rk), wanted)
+    case (kind_choice)
+      is_right = is_choice(word, text_or_nothing(wanted%choices))
+      if (.not. is_right) nearest = nearest_choice(word, text_or_nothing(wanted%choices))
+    case default
+      is_right = .true.
+    end select
+    if (.not. is_right) problem = "found '"//word//"'"
+  end subroutine judge
+
+  !> The value lies in the range of the field.
+  pure logical function is_in_range(value, wanted)
+    real(rk), intent(in) :: value
+    type(field), intent(in) :: wanted
+    is_in_range = value >= wanted%lowest .and. value <= wanted%highest
+    if (wanted%excludes_lowest) is_in_range = is_in_range .and. value > wanted%lowest
+    if (wanted%excludes_highest) is_in_range = is_in_range .and. value < wanted%highest
+  end function is_in_range
+
+  !> The word is one of the choices, regardless of case.
+  pure logical function is_choice(word, choices)
+    character(*), intent(in) :: word
+    character(*), intent(in) :: choices !< 'A | B'
+    is_choice = index('| '//choices//' |', '| '//single_blanks(upper_case(word))//' |') > 0
+  end function is_choice
+
+  !> Position of a parameter in the specification, 0 where it is not known.
+  pure integer function position_of(spec, name) result(found)
+    type(keyword), intent(in) :: spec
+    character(*), intent(in) :: name
+    integer :: i
+    found = 0
+    do i = 1, num_parameters(spec)
+      if (spec%parameters(i)%name == name) found = i
+    end do
+  end function position_of
+
+  !> Parameters a keyword takes.
+  pure integer function num_parameters(spec)
+    type(keyword), intent(in) :: spec
+    num_parameters = 0
+    if (allocated(spec%parameters)) num_parameters = size(spec%parameters)
+  end function num_parameters
 end module card_check

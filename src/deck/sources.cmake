@@ -1,5 +1,6 @@
 set(sources
   keyword_spec.f90
+  field_text.f90
   deck_file.f90
   deck_words.f90
   deck_source.f90
@@ -8,4 +9,5 @@ set(sources
   deck_lexer.f90
   card_check.f90
   card_reader.f90
+  keyword_help.f90
 )

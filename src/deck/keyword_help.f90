@@ -1,0 +1,218 @@
+!> The keyword reference, made from the specifications the reader checks decks with.
+module keyword_help
+  use field_text, only: kind_in_words, text_or_nothing
+  use keyword_spec, only: field, find_spec, keyword, kind_flag, later, without_effect
+  use nearest_words, only: nearest_word
+  use parse_text, only: single_blanks, upper_case, without_blanks
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: list_keywords, describe_keyword
+
+  integer, parameter :: name_width = 34 !< room for the name of a keyword in the list
+  integer, parameter :: field_width = 20 !< room for the name of a field
+  integer, parameter :: page_width = 96 !< letters of a line
+  character, parameter :: nl = new_line('a')
+
+contains
+
+  !> All keywords by family, one line each.
+  pure function list_keywords(specs) result(text)
+    type(keyword), intent(in) :: specs(:)
+    character(:), allocatable :: text !< lines with new_line between them
+    integer :: i, j
+    text = ''
+    do i = 1, size(specs)
+      if (any([(same_family(specs(j), specs(i)), j=1, i - 1)])) cycle
+      if (len(text) > 0) text = text//nl
+      text = text//upper_case(text_or_nothing(specs(i)%family))//nl
+      do j = i, size(specs)
+        if (.not. same_family(specs(j), specs(i))) cycle
+        text = text//padded('  *'//specs(j)%name, name_width)//' '// &
+               first_sentence(text_or_nothing(specs(j)%meaning))//remark(specs(j))//nl
+      end do
+    end do
+    text = text//nl//'keyway --keywords NAME tells what a keyword takes.'
+  end function list_keywords
+
+  !> What a keyword takes; several places of one name follow each other.
+  pure subroutine describe_keyword(specs, name, text, is_known)
+    type(keyword), intent(in) :: specs(:)
+    character(*), intent(in) :: name !< with or without its star, in any case
+    character(:), allocatable, intent(out) :: text !< lines with new_line between them
+    logical, intent(out) :: is_known !< else the text tells that it is not
+    character(80) :: names(size(specs))
+    character(:), allocatable :: wanted, nearest
+    integer :: i
+    wanted = single_blanks(upper_case(name))
+    if (index(wanted, '*') == 1) wanted = single_blanks(wanted(2:))
+    is_known = find_spec(specs, wanted) > 0
+    text = ''
+    do i = 1, size(specs)
+      names(i) = specs(i)%name
+      if (without_blanks(specs(i)%name) /= without_blanks(wanted)) cycle
+      if (len(text) > 0) text = text//nl//nl
+      text = text//page(specs(i))
+    end do
+    if (is_known) return
+    text = "unknown keyword '*"//wanted//"'"
+    nearest = nearest_word(wanted, names)
+    if (len(nearest) > 0) text = text//"; did you mean '*"//nearest//"'?"
+  end subroutine describe_keyword
+
+  !> The page of one keyword.
+  pure function page(spec) result(text)
+    type(keyword), intent(in) :: spec
+    character(:), allocatable :: text
+    text = '*'//spec%name//remark(spec)
+    if (len(text_or_nothing(spec%place)) > 0) text = text//'  ('//place_in_words(spec%place)//')'
+    if (allocated(spec%meaning)) text = text//nl//wrapped(spec%meaning, 2)
+    if (allocated(spec%parameters)) then
+      if (size(spec%parameters) > 0) text = text//nl//nl//'Parameters'//rows(spec%parameters)
+    end if
+    if (allocated(spec%columns)) then
+      if (size(spec%columns) > 0) text = text//nl//nl//data_title(spec)//rows(spec%columns)
+    end if
+    if (spec%most_lines == 0) text = text//nl//nl//'No data lines'
+    if (len(text_or_nothing(spec%example)) > 0) then
+      text = text//nl//nl//'Example'//nl//indented(spec%example)
+    end if
+  end function page
+
+  !> 'Data lines: at least 1'.
+  pure function data_title(spec) result(text)
+    type(keyword), intent(in) :: spec
+    character(:), allocatable :: text
+    text = 'Data lines'
+    if (spec%most_lines == spec%fewest_lines) then
+      text = text//': '//as_text(spec%fewest_lines)
+    else if (spec%most_lines < huge(1)) then
+      text = text//': '//as_text(spec%fewest_lines)//' to '//as_text(spec%most_lines)
+    else if (spec%fewest_lines > 0) then
+      text = text//': '//as_text(spec%fewest_lines)//' or more'
+    end if
+    if (spec%repeats_columns) text = text//'; the columns may repeat in a line'
+  end function data_title
+
+  !> A line or more for each field.
+  pure function rows(fields) result(text)
+    type(field), intent(in) :: fields(:)
+    character(:), allocatable :: text
+    integer :: i
+    text = ''
+    do i = 1, size(fields)
+      text = text//nl//padded('  '//fields(i)%name, field_width)//' '// &
+             hanging(sentence(fields(i)), field_width + 1)
+    end do
+  end function rows
+
+  !> Meaning, kind, range, unit and default of a field.
+  pure function sentence(described) result(text)
+    type(field), intent(in) :: described
+    character(:), allocatable :: text
+    text = text_or_nothing(described%meaning)
+    if (described%kind == kind_flag) then
+      text = text//' (flag)'
+    else
+      text = text//'; '//kind_in_words(described)
+    end if
+    if (len(text_or_nothing(described%unit)) > 0) text = text//' ['//described%unit//']'
+    if (described%is_required) text = text//'; required'
+    if (len(text_or_nothing(described%default)) > 0) then
+      text = text//'; default '//described%default
+    end if
+  end function sentence
+
+  !> Where a keyword may stand.
+  pure function place_in_words(where_it_stands) result(text)
+    character(*), intent(in) :: where_it_stands !< place of the specification
+    character(:), allocatable :: text
+    select case (where_it_stands)
+    case ('step')
+      text = 'in a step'
+    case ('model')
+      text = 'in the model'
+    case ('material')
+      text = 'in a material'
+    case default
+      text = where_it_stands
+    end select
+  end function place_in_words
+
+  !> What the program does with the keyword, where it is not simply available.
+  pure function remark(spec) result(text)
+    type(keyword), intent(in) :: spec
+    character(:), allocatable :: text
+    select case (spec%status)
+    case (later)
+      text = ' (not available yet)'
+    case (without_effect)
+      text = ' (no effect here)'
+    case default
+      text = ''
+    end select
+  end function remark
+
+  !> Both keywords belong to one family.
+  pure logical function same_family(a, b)
+    type(keyword), intent(in) :: a, b
+    same_family = text_or_nothing(a%family) == text_or_nothing(b%family)
+  end function same_family
+
+  !> The text up to its first full stop.
+  pure function first_sentence(text) result(sentence)
+    character(*), intent(in) :: text
+    character(:), allocatable :: sentence
+    integer :: full_stop
+    full_stop = index(text, '. ')
+    if (full_stop == 0) full_stop = len(text) + 1
+    sentence = text(:full_stop - 1)
+    if (len(sentence) == 0) return
+    if (sentence(len(sentence):) == '.') sentence = sentence(:len(sentence) - 1)
+  end function first_sentence
+
+  !> The text with blanks up to a width.
+  pure function padded(text, width) result(wide)
+    character(*), intent(in) :: text
+    integer, intent(in) :: width
+    character(:), allocatable :: wide
+    wide = text//repeat(' ', max(width - len(text), 0))
+  end function padded
+
+  !> A paragraph, every line indented.
+  pure function wrapped(text, indent) result(lines)
+    character(*), intent(in) :: text
+    integer, intent(in) :: indent
+    character(:), allocatable :: lines
+    lines = repeat(' ', indent)//hanging(text, indent)
+  end function wrapped
+
+  !> A paragraph whose later lines are indented.
+  pure function hanging(text, indent) result(lines)
+    character(*), intent(in) :: text
+    integer, intent(in) :: indent
+    character(:), allocatable :: lines
+    integer :: first, last
+    lines = ''
+    first = 1
+    do while (len(text) - first + 1 > page_width - indent)
+      last = index(text(first:first + page_width - indent), ' ', back=.true.)
+      if (last <= 1) exit
+      lines = lines//text(first:first + last - 2)//nl//repeat(' ', indent)
+      first = first + last
+    end do
+    lines = lines//text(first:)
+  end function hanging
+
+  !> Lines, each indented by two blanks.
+  pure function indented(text) result(lines)
+    character(*), intent(in) :: text
+    character(:), allocatable :: lines
+    integer :: i
+    lines = '  '
+    do i = 1, len(text)
+      lines = lines//text(i:i)
+      if (text(i:i) == nl) lines = lines//'  '
+    end do
+  end function indented
+end module keyword_help
