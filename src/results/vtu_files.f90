@@ -1,12 +1,13 @@
 !> One VTK unstructured grid file (.vtu), raw appended binary, little endian.
 !>
-!> Arrays gather in memory in the order in which they are put; `save` writes the header with their
-!> offsets and then their bytes, beside the final place and moved there.
+!> Arrays gather in memory; `save` writes the header with their offsets and then their bytes, beside
+!> the final place and moved there. The bytes stand in the reverse order of the header's list:
+!> meshio looks arrays up by offsets that it changes on the way, and takes the first in the list.
 module vtu_files
   use, intrinsic :: iso_fortran_env, only: int8, int32, int64
   use kinds, only: rk
   use errors, only: error_type, raise, system_failed
-  use text_buffers, only: text_buffer, text_of
+  use text_buffers, only: text_of
   use file_system, only: move_file
   implicit none
   private
@@ -14,20 +15,24 @@ module vtu_files
 
   character, parameter :: nl = new_line('a')
 
-  type :: byte_block
+  !> Sections of the header, in their order.
+  integer, parameter :: in_points = 1, in_cells = 2, on_points = 3, on_cells = 4
+  character(9), parameter :: section_names(4) = ['Points   ', 'Cells    ', 'PointData', 'CellData ']
+
+  type :: data_array
+    integer :: section = 0
+    character(:), allocatable :: attributes !< XML, without the offset
     integer(int8), allocatable :: bytes(:)
-  end type byte_block
+    integer(int64) :: offset = 0 !< where its count and bytes stand in the appended data
+  end type data_array
 
   type :: vtu_file
     private
-    type(text_buffer) :: grid, points, cells !< XML of the sections
-    type(byte_block), allocatable :: blocks(:)
-    integer(int64) :: offset = 0 !< bytes of data so far, with their counts
+    type(data_array), allocatable :: arrays(:) !< in the order of the header
     integer :: num_points = 0, num_cells = 0
   contains
     procedure :: start
     procedure :: put_point_reals
-    procedure :: put_cell_reals
     procedure :: put_point_integers
     procedure :: put_cell_integers
     procedure :: save
@@ -46,14 +51,11 @@ contains
     integer(int8) :: none(0)
     self%num_points = size(x, 2)
     self%num_cells = size(kinds)
-    allocate (self%blocks(0))
-    call self%grid%add('<Points>'//nl)
-    call self%append(self%grid, 'Points', 'Float64', 3, transfer(x, none), '')
-    call self%grid%add('</Points>'//nl//'<Cells>'//nl)
-    call self%append(self%grid, 'connectivity', 'Int32', 1, transfer(connectivity, none), '')
-    call self%append(self%grid, 'offsets', 'Int32', 1, transfer(ends, none), '')
-    call self%append(self%grid, 'types', 'UInt8', 1, int(kinds, int8), '')
-    call self%grid%add('</Cells>'//nl)
+    allocate (self%arrays(0))
+    call self%append(in_points, 'Points', 'Float64', 3, transfer(x, none), '')
+    call self%append(in_cells, 'connectivity', 'Int32', 1, transfer(connectivity, none), '')
+    call self%append(in_cells, 'offsets', 'Int32', 1, transfer(ends, none), '')
+    call self%append(in_cells, 'types', 'UInt8', 1, int(kinds, int8), '')
   end subroutine start
 
   !> A field on the points.
@@ -63,20 +65,9 @@ contains
     real(rk), intent(in) :: values(:, :) !< (components, points)
     character(*), intent(in) :: components !< their names with commas between, '' for none
     integer(int8) :: none(0)
-    call self%append(self%points, name, 'Float64', size(values, 1), transfer(values, none), &
+    call self%append(on_points, name, 'Float64', size(values, 1), transfer(values, none), &
                      components)
   end subroutine put_point_reals
-
-  !> A field on the cells.
-  subroutine put_cell_reals(self, name, values, components)
-    class(vtu_file), intent(inout) :: self
-    character(*), intent(in) :: name
-    real(rk), intent(in) :: values(:, :) !< (components, cells)
-    character(*), intent(in) :: components !< their names with commas between, '' for none
-    integer(int8) :: none(0)
-    call self%append(self%cells, name, 'Float64', size(values, 1), transfer(values, none), &
-                     components)
-  end subroutine put_cell_reals
 
   !> Whole numbers on the points.
   subroutine put_point_integers(self, name, values)
@@ -84,7 +75,7 @@ contains
     character(*), intent(in) :: name
     integer, intent(in) :: values(:)
     integer(int8) :: none(0)
-    call self%append(self%points, name, 'Int32', 1, transfer(int(values, int32), none), '')
+    call self%append(on_points, name, 'Int32', 1, transfer(int(values, int32), none), '')
   end subroutine put_point_integers
 
   !> Whole numbers on the cells.
@@ -93,32 +84,40 @@ contains
     character(*), intent(in) :: name
     integer, intent(in) :: values(:)
     integer(int8) :: none(0)
-    call self%append(self%cells, name, 'Int32', 1, transfer(int(values, int32), none), '')
+    call self%append(on_cells, name, 'Int32', 1, transfer(int(values, int32), none), '')
   end subroutine put_cell_integers
 
-  !> Describes an array and keeps its bytes.
+  !> Describes an array and keeps its bytes; the list stays in the order of the sections.
   subroutine append(self, section, name, kind, num_components, bytes, components)
     class(vtu_file), intent(inout) :: self
-    type(text_buffer), intent(inout) :: section
+    integer, intent(in) :: section
     character(*), intent(in) :: name, kind, components
     integer, intent(in) :: num_components
     integer(int8), intent(in) :: bytes(:)
-    character(24) :: place
-    type(byte_block), allocatable :: more(:)
-    integer :: i, n
-    write (place, '(i0)') self%offset
-    call section%add('<DataArray type="'//kind//'" Name="'//name//'" NumberOfComponents="'// &
-                     text_of(num_components)//'"'//component_names(components)// &
-                     ' format="appended" offset="'//trim(place)//'"/>'//nl)
-    n = size(self%blocks)
-    allocate (more(n + 1))
-    do i = 1, n
-      call move_alloc(self%blocks(i)%bytes, more(i)%bytes)
+    type(data_array), allocatable :: more(:)
+    integer :: i, place
+    place = 1 + count(self%arrays%section <= section)
+    allocate (more(size(self%arrays) + 1))
+    do i = 1, size(self%arrays)
+      call move_array(self%arrays(i), more(merge(i, i + 1, i < place)))
     end do
-    more(n + 1)%bytes = bytes
-    call move_alloc(more, self%blocks)
-    self%offset = self%offset + size(bytes, kind=int64) + storage_size(self%offset)/8
+    more(place)%section = section
+    more(place)%attributes = 'type="'//kind//'" Name="'//name//'"'
+    if (num_components > 1) then
+      more(place)%attributes = more(place)%attributes//' NumberOfComponents="'// &
+                               text_of(num_components)//'"'//component_names(components)
+    end if
+    more(place)%bytes = bytes
+    call move_alloc(more, self%arrays)
   end subroutine append
+
+  !> Hands an array over without a copy of its bytes.
+  subroutine move_array(from, to)
+    type(data_array), intent(inout) :: from, to
+    to%section = from%section
+    call move_alloc(from%attributes, to%attributes)
+    call move_alloc(from%bytes, to%bytes)
+  end subroutine move_array
 
   !> ComponentName0="xx" ComponentName1="yy" ...
   pure function component_names(list) result(text)
@@ -141,13 +140,19 @@ contains
     class(vtu_file), intent(inout) :: self
     character(*), intent(in) :: path
     type(error_type), allocatable, intent(out) :: error
+    integer(int64) :: offset
     integer :: unit, status, i
-    open (newunit=unit, file=path//'.part', access='stream', form='unformatted', status='replace', &
-          action='write', iostat=status)
+    offset = 0
+    do i = size(self%arrays), 1, -1
+      self%arrays(i)%offset = offset
+      offset = offset + storage_size(offset)/8 + size(self%arrays(i)%bytes, kind=int64)
+    end do
+    open (newunit=unit, file=path//'.part', access='stream', form='unformatted', &
+          status='replace', action='write', iostat=status)
     if (status == 0) write (unit, iostat=status) header_of(self)
-    do i = 1, size(self%blocks)
-      if (status == 0) write (unit, iostat=status) size(self%blocks(i)%bytes, kind=int64)
-      if (status == 0) write (unit, iostat=status) self%blocks(i)%bytes
+    do i = size(self%arrays), 1, -1
+      if (status == 0) write (unit, iostat=status) size(self%arrays(i)%bytes, kind=int64)
+      if (status == 0) write (unit, iostat=status) self%arrays(i)%bytes
     end do
     if (status == 0) write (unit, iostat=status) nl//'</AppendedData>'//nl//'</VTKFile>'//nl
     if (status == 0) close (unit, iostat=status)
@@ -162,12 +167,22 @@ contains
   function header_of(self) result(text)
     class(vtu_file), intent(in) :: self
     character(:), allocatable :: text
+    integer :: section, i
+    character(24) :: offset
     text = '<?xml version="1.0"?>'//nl//'<VTKFile type="UnstructuredGrid" version="1.0"'// &
            ' byte_order="LittleEndian" header_type="UInt64">'//nl//'<UnstructuredGrid>'//nl// &
            '<Piece NumberOfPoints="'//text_of(self%num_points)//'" NumberOfCells="'// &
-           text_of(self%num_cells)//'">'//nl//self%grid%contents()//'<PointData>'//nl// &
-           self%points%contents()//'</PointData>'//nl//'<CellData>'//nl// &
-           self%cells%contents()//'</CellData>'//nl//'</Piece>'//nl//'</UnstructuredGrid>'//nl// &
-           '<AppendedData encoding="raw">'//nl//'_'
+           text_of(self%num_cells)//'">'//nl
+    do section = 1, size(section_names)
+      text = text//'<'//trim(section_names(section))//'>'//nl
+      do i = 1, size(self%arrays)
+        if (self%arrays(i)%section /= section) cycle
+        write (offset, '(i0)') self%arrays(i)%offset
+        text = text//'<DataArray '//self%arrays(i)%attributes//' format="appended" offset="'// &
+               trim(offset)//'"/>'//nl
+      end do
+      text = text//'</'//trim(section_names(section))//'>'//nl
+    end do
+    text = text//'</Piece>'//nl//'</UnstructuredGrid>'//nl//'<AppendedData encoding="raw">'//nl//'_'
   end function header_of
 end module vtu_files
