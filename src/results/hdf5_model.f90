@@ -93,7 +93,8 @@ contains
     call file%set(group, 'gap', item%law%gap)
     call file%put(group//'/x', item%x)
     call file%put(group//'/area', item%area)
-    call file%put(group//'/rotation', item%rotation)
+    ! The axes are the rows for a reader whose last index runs fastest.
+    call file%put(group//'/rotation', reshape(item%rotation, shape(item%rotation), order=[2, 1, 3]))
     call file%put(group//'/shape', item%shape)
     call file%put(group//'/master', reshape(scene%mesh%node_id([item%master]), shape(item%master)))
     call file%put(group//'/slave', reshape(scene%mesh%node_id([item%slave]), shape(item%slave)))
