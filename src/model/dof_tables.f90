@@ -1,0 +1,106 @@
+!> Values given to degrees of freedom of nodes, carried from step to step: supports, point forces.
+!>
+!> A value stays until it is given anew (OP=MOD) or everything older is cleared (OP=NEW).
+module dof_tables
+  use kinds, only: rk
+  use amplitudes, only: amplitude, amplitude_at
+  implicit none
+  private
+  public :: dof_table
+
+  type :: dof_table
+    logical, allocatable :: is_set(:, :) !< (3, nodes)
+    logical, allocatable :: is_new(:, :) !< given in the step being read
+    real(rk), allocatable :: value(:, :) !< at the end of the step
+    real(rk), allocatable :: reached(:, :) !< at the end of the step before
+    integer, allocatable :: history(:, :) !< amplitude that scales the value, 0 for none
+  contains
+    procedure :: prepare
+    procedure :: put
+    procedure :: add
+    procedure :: clear_old
+    procedure :: end_step
+  end type dof_table
+
+contains
+
+  !> Makes room for a model; what is already there stays.
+  pure subroutine prepare(self, num_nodes)
+    class(dof_table), intent(inout) :: self
+    integer, intent(in) :: num_nodes
+    if (allocated(self%is_set)) return
+    allocate (self%is_set(3, num_nodes), self%is_new(3, num_nodes), source=.false.)
+    allocate (self%value(3, num_nodes), self%reached(3, num_nodes), source=0.0_rk)
+    allocate (self%history(3, num_nodes), source=0)
+  end subroutine prepare
+
+  !> Sets a value; it replaces every earlier one.
+  pure subroutine put(self, nodes, dof, value, history)
+    class(dof_table), intent(inout) :: self
+    integer, intent(in) :: nodes(:) !< positions
+    integer, intent(in) :: dof !< 1..3
+    real(rk), intent(in) :: value
+    integer, intent(in) :: history !< position of an amplitude, 0 for none
+    integer :: i
+    do i = 1, size(nodes)
+      self%is_set(dof, nodes(i)) = .true.
+      self%is_new(dof, nodes(i)) = .true.
+      self%value(dof, nodes(i)) = value
+      self%history(dof, nodes(i)) = history
+    end do
+  end subroutine put
+
+  !> Adds to a value of this step under the same amplitude, replaces one of an earlier step.
+  pure subroutine add(self, nodes, dof, value, history)
+    class(dof_table), intent(inout) :: self
+    integer, intent(in) :: nodes(:) !< positions
+    integer, intent(in) :: dof !< 1..3
+    real(rk), intent(in) :: value
+    integer, intent(in) :: history !< position of an amplitude, 0 for none
+    real(rk) :: sum
+    integer :: i
+    do i = 1, size(nodes)
+      sum = value
+      if (self%is_new(dof, nodes(i)) .and. self%history(dof, nodes(i)) == history) then
+        sum = sum + self%value(dof, nodes(i))
+      end if
+      call self%put(nodes(i:i), dof, sum, history)
+    end do
+  end subroutine add
+
+  !> OP=NEW: forgets what earlier steps have given.
+  pure subroutine clear_old(self)
+    class(dof_table), intent(inout) :: self
+    where (.not. self%is_new)
+      self%is_set = .false.
+      self%value = 0.0_rk
+      self%history = 0
+    end where
+  end subroutine clear_old
+
+  !> Closes a step: values that followed an amplitude over the step's time are held from now on.
+  pure subroutine end_step(self, histories, step_time, total_time, is_perturbation)
+    class(dof_table), intent(inout) :: self
+    type(amplitude), intent(in) :: histories(:)
+    real(rk), intent(in) :: step_time, total_time !< at the end of the step [s]
+    logical, intent(in) :: is_perturbation !< the step does not move the model
+    integer :: node, dof
+    self%is_new = .false.
+    if (is_perturbation) return
+    do node = 1, size(self%value, 2)
+      do dof = 1, 3
+        self%reached(dof, node) = self%value(dof, node)
+        if (self%history(dof, node) == 0) cycle
+        associate (history => histories(self%history(dof, node)))
+          if (history%uses_total_time) then
+            self%reached(dof, node) = self%value(dof, node)*amplitude_at(history, total_time)
+          else
+            self%reached(dof, node) = self%value(dof, node)*amplitude_at(history, step_time)
+            self%value(dof, node) = self%reached(dof, node)
+            self%history(dof, node) = 0
+          end if
+        end associate
+      end do
+    end do
+  end subroutine end_step
+end module dof_tables
