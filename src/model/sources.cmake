@@ -6,4 +6,9 @@ set(sources
   step_plan.f90
   dof_numbering.f90
   jump_links.f90
+  id_map.f90
+  sorted_lists.f90
+  set_lists.f90
+  dof_tables.f90
+  load_books.f90
 )

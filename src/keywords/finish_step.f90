@@ -1,0 +1,128 @@
+!> Opening and closing a step: what is carried over, and what a step at its end holds.
+module finish_step
+  use kinds, only: rk
+  use load_point_forces, only: make_point_forces
+  use model_draft, only: draft, add_load
+  use step_plan, only: field_request, print_request, step, step_fixity, step_load
+  use write_text, only: as_text
+  use applied_load, only: load
+  implicit none
+  private
+  public :: open_step, close_step
+
+contains
+
+  !> Begins a step with what stays from the one before: requests, controls, damping.
+  subroutine open_step(model)
+    type(draft), intent(inout) :: model
+    type(step) :: new
+    integer :: num
+    num = size(model%scene%steps)
+    new%name = 'STEP-'//as_text(num + 1)
+    new%procedure = ''
+    allocate (new%prints(0), new%outputs(0), new%envelope(0))
+    if (num > 0) then
+      associate (before => model%scene%steps(num))
+        new%prints = before%prints
+        new%outputs = before%outputs
+        new%controls = before%controls
+        new%damping_ratio = before%damping_ratio
+        new%damping_f1 = before%damping_f1
+        new%damping_f2 = before%damping_f2
+      end associate
+    end if
+    model%now = new
+    model%step_origin = model%here(0)
+    model%is_in_step = .true.
+    model%supports%is_new = .false.
+    model%has_new_output = .false.
+    model%output_frequency = 1
+    model%prints_given = .false.
+  end subroutine open_step
+
+  !> Writes down all loads and supports at work and advances the books.
+  subroutine close_step(model)
+    type(draft), intent(inout) :: model
+    type(step), allocatable :: longer(:)
+    logical :: is_perturbation
+    real(rk) :: end_time
+    integer :: num, i
+    call collect_point_forces(model)
+    call collect_fixities(model)
+    model%now%loads = [model%now%loads, model%loads_at_work%loads_of_step()]
+    is_perturbation = model%now%procedure == 'FREQUENCY'
+    end_time = model%total_time + model%now%duration
+    associate (histories => model%scene%amplitudes, duration => model%now%duration)
+      call model%loads_at_work%end_step(histories, duration, end_time, is_perturbation)
+      call model%supports%end_step(histories, duration, end_time, is_perturbation)
+      call model%point_forces%end_step(histories, duration, end_time, is_perturbation)
+    end associate
+    model%total_time = end_time
+    num = size(model%scene%steps)
+    allocate (longer(num + 1))
+    do i = 1, num
+      longer(i) = model%scene%steps(i)
+    end do
+    longer(num + 1) = model%now
+    call move_alloc(longer, model%scene%steps)
+    model%is_in_step = .false.
+  end subroutine close_step
+
+  subroutine collect_fixities(model)
+    type(draft), intent(inout) :: model
+    integer :: node, dof, used
+    allocate (model%now%fixities(count(model%supports%is_set)))
+    used = 0
+    do node = 1, size(model%supports%is_set, 2)
+      do dof = 1, 3
+        if (.not. model%supports%is_set(dof, node)) cycle
+        used = used + 1
+        model%now%fixities(used) = step_fixity(node, dof, model%supports%value(dof, node), &
+                                               model%supports%history(dof, node))
+      end do
+    end do
+  end subroutine collect_fixities
+
+  !> Point forces become at most two loads for a step without amplitude, the forces it starts with
+  !> (fading) and those it ends with (coming in), and one load for each amplitude.
+  subroutine collect_point_forces(model)
+    type(draft), intent(inout) :: model
+    real(rk), allocatable :: force(:, :)
+    integer :: history
+    allocate (model%now%loads(0))
+    associate (table => model%point_forces)
+      if (.not. any(table%is_set .or. abs(table%reached) > 0.0_rk)) return
+      force = merge(table%value, 0.0_rk, table%history == 0)
+      if (all(abs(force - table%reached) <= 0.0_rk)) then
+        call add_forces(model, force, 1.0_rk, 1.0_rk, 0)
+      else
+        call add_forces(model, table%reached, 1.0_rk, 0.0_rk, 0)
+        call add_forces(model, force, 0.0_rk, 1.0_rk, 0)
+      end if
+    end associate
+    do history = 1, size(model%scene%amplitudes)
+      if (.not. any(model%point_forces%history == history)) cycle
+      force = merge(model%point_forces%value, 0.0_rk, model%point_forces%history == history)
+      call add_forces(model, force, 0.0_rk, 1.0_rk, history)
+    end do
+  end subroutine collect_point_forces
+
+  !> Adds a load of point forces to the model and to the step.
+  subroutine add_forces(model, force, start_factor, end_factor, history)
+    type(draft), intent(inout) :: model
+    real(rk), intent(in) :: force(:, :) !< (3, nodes) [N]
+    real(rk), intent(in) :: start_factor, end_factor
+    integer, intent(in) :: history !< amplitude, 0 for none
+    class(load), allocatable :: item
+    logical, allocatable :: is_loaded(:)
+    integer, allocatable :: nodes(:)
+    integer :: i
+    is_loaded = any(abs(force) > 0.0_rk, dim=1)
+    if (.not. any(is_loaded)) return
+    nodes = pack([(i, i=1, size(force, 2))], is_loaded)
+    call make_point_forces(nodes, force(:, nodes), item)
+    call add_load(model, item, 'point forces', 'CLOAD', 'step '//as_text(size(model%scene%steps) + 1))
+    model%now%loads = [model%now%loads, &
+                       step_load(model%num_loads, start_factor, end_factor, history)]
+  end subroutine add_forces
+end module finish_step

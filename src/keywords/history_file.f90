@@ -1,0 +1,166 @@
+!> Files of numbers that *AMPLITUDE names: plain numbers, or the records of PEER (AT2).
+module history_file
+  use, intrinsic :: iso_fortran_env, only: iostat_end
+  use diagnostics, only: diagnostic_list, place, severity_error
+  use kinds, only: rk
+  use parse_text, only: parse_integer, parse_real, upper_case
+  implicit none
+  private
+  public :: number_file, read_numbers, read_at2_header, path_beside
+
+  character(*), parameter :: separators = ' ,;'//achar(9)//achar(13)
+  integer, parameter :: num_at2_headers = 4 !< lines above the values of a PEER file
+
+  !> The numbers of a file in the order they stand.
+  type :: number_file
+    character(:), allocatable :: path
+    real(rk), allocatable :: values(:)
+    integer, allocatable :: line(:) !< where each value stood
+  end type number_file
+
+contains
+
+  !> A file named in another: relative to the folder of that one.
+  pure function path_beside(name, neighbour) result(path)
+    character(*), intent(in) :: name !< as written
+    character(*), intent(in) :: neighbour !< the file that names it
+    character(:), allocatable :: path
+    path = name
+    if (name(1:1) /= '/') path = neighbour(:index(neighbour, '/', back=.true.))//name
+  end function path_beside
+
+  !> Reads all numbers below `num_headers` lines. Lines that begin with * or # are comments.
+  subroutine read_numbers(path, num_headers, spot, faults, numbers)
+    character(*), intent(in) :: path
+    integer, intent(in) :: num_headers
+    type(place), intent(in) :: spot !< who names the file
+    type(diagnostic_list), intent(inout) :: faults
+    type(number_file), intent(out) :: numbers
+    character(:), allocatable :: line
+    integer :: unit, status, number, used
+    numbers%path = path
+    allocate (numbers%values(1024), numbers%line(1024))
+    used = 0
+    open (newunit=unit, file=path, status='old', action='read', iostat=status)
+    if (status /= 0) then
+      call faults%add(severity_error, spot, "cannot open the file '"//path//"'", &
+                      'a file that exists, relative to the deck')
+    else
+      number = 0
+      do
+        call read_line(unit, line, status)
+        if (status /= 0 .and. len(line) == 0) exit
+        number = number + 1
+        if (number > num_headers) call add_line(line, number, spot, faults, numbers, used)
+        if (status /= 0) exit
+      end do
+      close (unit)
+    end if
+    numbers%values = numbers%values(:used)
+    numbers%line = numbers%line(:used)
+  end subroutine read_numbers
+
+  !> One line of any length.
+  subroutine read_line(unit, line, status)
+    integer, intent(in) :: unit
+    character(:), allocatable, intent(out) :: line
+    integer, intent(out) :: status !< not zero at the end of the file
+    character(256) :: piece
+    integer :: length
+    line = ''
+    do
+      read (unit, '(a)', advance='no', iostat=status, size=length) piece
+      line = line//piece(:length)
+      if (status /= 0) exit
+    end do
+    if (is_iostat_eor(status)) status = 0
+    if (status /= 0) status = iostat_end
+  end subroutine read_line
+
+  subroutine add_line(line, number, spot, faults, numbers, used)
+    character(*), intent(in) :: line
+    integer, intent(in) :: number !< of the line
+    type(place), intent(in) :: spot
+    type(diagnostic_list), intent(inout) :: faults
+    type(number_file), intent(inout) :: numbers
+    integer, intent(inout) :: used !< entries in use
+    integer :: first, last
+    logical :: is_number
+    if (index('*#', line(1:min(1, len(line)))) > 0 .and. len(line) > 0) return
+    last = 0
+    do
+      first = verify(line(last + 1:), separators) + last
+      if (first == last) return
+      last = scan(line(first:), separators) + first - 2
+      if (last < first) last = len(line)
+      if (used == size(numbers%values)) call make_room(numbers)
+      call parse_real(line(first:last), numbers%values(used + 1), is_number)
+      if (.not. is_number) then
+        call faults%add(severity_error, &
+                        place(numbers%path, number, first, last - first + 1, spot%keyword, line), &
+                        "found '"//line(first:last)//"'", 'a number')
+        return
+      end if
+      used = used + 1
+      numbers%line(used) = number
+    end do
+  end subroutine add_line
+
+  pure subroutine make_room(numbers)
+    type(number_file), intent(inout) :: numbers
+    real(rk) :: no_values(size(numbers%values))
+    no_values = 0.0_rk
+    numbers%values = [numbers%values, no_values]
+    numbers%line = [numbers%line, 0*numbers%line]
+  end subroutine make_room
+
+  !> Number of points and time step from the fourth line of a PEER file:
+  !> 'NPTS= 1559, DT= .02000 SEC' or the older '1559 .0200 NPTS, DT'.
+  subroutine read_at2_header(path, spot, faults, num_points, dt)
+    character(*), intent(in) :: path
+    type(place), intent(in) :: spot !< who names the file
+    type(diagnostic_list), intent(inout) :: faults
+    integer, intent(out) :: num_points
+    real(rk), intent(out) :: dt !< [s]
+    character(:), allocatable :: line
+    integer :: unit, status, i
+    num_points = 0
+    dt = 0.0_rk
+    open (newunit=unit, file=path, status='old', action='read', iostat=status)
+    if (status /= 0) return ! `read_numbers` tells it
+    do i = 1, num_at2_headers
+      call read_line(unit, line, status)
+    end do
+    close (unit)
+    call take_numbers(upper_case(line), num_points, dt)
+    if (num_points > 0 .and. dt > 0.0_rk) return
+    call faults%add(severity_error, &
+                    place(path, num_at2_headers, 0, 0, spot%keyword, line), &
+                    'no PEER record', "'NPTS= <points>, DT= <seconds>' in the fourth line")
+  end subroutine read_at2_header
+
+  !> The first integer and the number after it.
+  pure subroutine take_numbers(line, num_points, dt)
+    character(*), intent(in) :: line
+    integer, intent(inout) :: num_points
+    real(rk), intent(inout) :: dt
+    integer :: first, last, number
+    real(rk) :: value
+    logical :: is_number
+    last = 0
+    do
+      first = verify(line(last + 1:), separators//'=') + last
+      if (first == last) return
+      last = scan(line(first:), separators//'=') + first - 2
+      if (last < first) last = len(line)
+      if (num_points == 0) then
+        call parse_integer(line(first:last), number, is_number)
+        if (is_number) num_points = number
+      else
+        call parse_real(line(first:last), value, is_number)
+        if (is_number) dt = value
+        if (is_number) return
+      end if
+    end do
+  end subroutine take_numbers
+end module history_file

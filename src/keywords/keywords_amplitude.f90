@@ -1,0 +1,173 @@
+!> *AMPLITUDE.
+module keywords_amplitude
+  use amplitudes, only: amplitude
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list, place, severity_error
+  use history_file, only: number_file, path_beside, read_at2_header, read_numbers
+  use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_text, kind_word
+  use kinds, only: rk
+  use model_draft, only: draft
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: describe_amplitude, read_amplitude
+
+  character, parameter :: nl = new_line('a')
+  integer, parameter :: num_at2_headers = 4 !< lines above the values of a PEER file
+
+contains
+
+  subroutine describe_amplitude(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'AMPLITUDE'
+    spec%family = 'load'
+    spec%place = 'model'
+    spec%meaning = 'A history that scales loads, supports or the motion of the base. Straight '// &
+                   'between its points; outside them its end values hold. From data lines or '// &
+                   'from a file (INPUT, relative to the deck). VALUES and AT2 begin at time 0.'
+    spec%example = '*AMPLITUDE, NAME=RAMP'//nl//'0., 0., 1., 1.'//nl// &
+                   '*AMPLITUDE, NAME=QUAKE, INPUT=record.AT2, FORMAT=AT2, SCALE=9.81'
+    allocate (spec%parameters, source=[ &
+              field('NAME', kind_word, 'name of the history', is_required=.true.), &
+              field('TIME', kind_choice, 'what time counts', default='STEP TIME', &
+                    choices='STEP TIME | TOTAL TIME'), &
+              field('INPUT', kind_text, 'file with the numbers, in place of data lines'), &
+              field('FORMAT', kind_choice, 'time, value pairs; values DT apart; a PEER record', &
+                    default='PAIRS', choices='PAIRS | VALUES | AT2'), &
+              field('DT', kind_real, 'time between VALUES', 's', lowest=0.0_rk, &
+                    excludes_lowest=.true.), &
+              field('SCALE', kind_real, 'factor of all values', '', '1')])
+    allocate (spec%columns, source=[ &
+              field('time', kind_real, 'time (or, with VALUES, a value)', 's'), &
+              field('value', kind_real, 'value at that time; any number of pairs in a line')])
+    spec%repeats_columns = .true.
+  end subroutine describe_amplitude
+
+  subroutine read_amplitude(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(amplitude) :: new
+    type(number_file) :: numbers
+    integer :: i, num_before
+    num_before = faults%num_errors
+    new%name = this%word('NAME')
+    new%uses_total_time = this%word('TIME') == 'TOTAL TIME'
+    do i = 1, size(model%scene%amplitudes)
+      if (model%scene%amplitudes(i)%name /= new%name) cycle
+      call this%fault_parameter(faults, 'NAME', "amplitude '"//this%text('NAME')// &
+                                "' is defined twice", 'a name that is used once')
+    end do
+    call collect_numbers(this, faults, numbers)
+    if (faults%num_errors == num_before) call shape_history(this, numbers, faults, new)
+    if (.not. allocated(new%time)) new%time = [0.0_rk] ! the name exists, its faults are told
+    if (.not. allocated(new%value)) new%value = [0.0_rk]
+    model%scene%amplitudes = [model%scene%amplitudes, new]
+  end subroutine read_amplitude
+
+  !> The numbers as they stand, from the card or from its file.
+  subroutine collect_numbers(this, faults, numbers)
+    type(card), intent(in) :: this
+    type(diagnostic_list), intent(inout) :: faults
+    type(number_file), intent(out) :: numbers
+    type(place) :: spot
+    integer :: line, i, used, num_headers
+    if (this%has('INPUT')) then
+      spot = this%place_of('INPUT')
+      if (this%num_lines > 0) then
+        call this%fault_parameter(faults, 'INPUT', 'a file and data lines', 'one of them')
+        return
+      end if
+      num_headers = merge(num_at2_headers, 0, this%word('FORMAT') == 'AT2')
+      call read_numbers(path_beside(this%text('INPUT'), spot%file), num_headers, spot, faults, &
+                        numbers)
+      return
+    end if
+    allocate (numbers%values(sum([(this%num_fields(line), line=1, this%num_lines)])))
+    allocate (numbers%line(size(numbers%values)))
+    used = 0
+    do line = 1, this%num_lines
+      do i = 1, this%num_fields(line)
+        used = used + 1
+        numbers%values(used) = this%real_at(line, i)
+        numbers%line(used) = line
+      end do
+    end do
+  end subroutine collect_numbers
+
+  !> Turns the numbers into times and values by FORMAT.
+  subroutine shape_history(this, numbers, faults, new)
+    type(card), intent(in) :: this
+    type(number_file), intent(in) :: numbers
+    type(diagnostic_list), intent(inout) :: faults
+    type(amplitude), intent(inout) :: new
+    real(rk) :: dt
+    integer :: i, num_points
+    if (size(numbers%values) == 0) then
+      call this%fault(faults, 'the amplitude is empty', 'data lines or a file with numbers')
+      return
+    end if
+    select case (this%word('FORMAT'))
+    case ('PAIRS')
+      call shape_pairs(this, numbers, faults, new)
+      return
+    case ('VALUES')
+      dt = this%real('DT')
+      if (.not. this%has('DT')) then
+        call this%fault(faults, 'VALUES without DT', 'DT, the time between values [s]')
+      end if
+    case default
+      if (.not. this%has('INPUT')) then
+        call this%fault_parameter(faults, 'FORMAT', 'AT2 without a file', 'INPUT=<file>')
+        return
+      end if
+      call read_at2_header(numbers%path, this%place_of('INPUT'), faults, num_points, dt)
+      if (num_points > 0 .and. num_points /= size(numbers%values)) then
+        call this%fault_parameter(faults, 'INPUT', 'the file holds '// &
+                                  as_text(size(numbers%values))//' values', &
+                                  as_text(num_points)//' by its header (NPTS)')
+      end if
+    end select
+    new%value = numbers%values*this%real('SCALE')
+    new%time = [((i - 1)*dt, i=1, size(new%value))]
+  end subroutine shape_history
+
+  !> time, value, time, value, ...
+  subroutine shape_pairs(this, numbers, faults, new)
+    type(card), intent(in) :: this
+    type(number_file), intent(in) :: numbers
+    type(diagnostic_list), intent(inout) :: faults
+    type(amplitude), intent(inout) :: new
+    integer :: i
+    if (mod(size(numbers%values), 2) == 1) then
+      call this%fault(faults, 'an odd number of values', 'pairs of time and value')
+      return
+    end if
+    new%time = numbers%values(1::2)
+    new%value = numbers%values(2::2)*this%real('SCALE')
+    do i = 2, size(new%time)
+      if (new%time(i) > new%time(i - 1)) cycle
+      call fault_time(this, numbers, 2*i - 1, faults)
+      return
+    end do
+  end subroutine shape_pairs
+
+  !> A time that does not ascend; `number` is its place among the numbers.
+  subroutine fault_time(this, numbers, number, faults)
+    type(card), intent(in) :: this
+    type(number_file), intent(in) :: numbers
+    integer, intent(in) :: number
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: problem
+    integer :: line
+    problem = 'time '//as_text(numbers%values(number))//' after '//as_text(numbers%values(number - 2))
+    line = numbers%line(number)
+    if (this%has('INPUT')) then
+      call faults%add(severity_error, place(numbers%path, line, 0, 0, this%keyword, ''), problem, &
+                      'times that ascend')
+    else
+      call this%fault_at(faults, line, number - count(numbers%line < line), problem, &
+                         'times that ascend')
+    end if
+  end subroutine fault_time
+end module keywords_amplitude

@@ -1,0 +1,144 @@
+!> *BOUNDARY.
+module keywords_boundary
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real, kind_reference, &
+                          kind_word
+  use kinds, only: rk
+  use model_draft, only: draft
+  use named_things, only: find_amplitude, nodes_at
+  use nearest_words, only: nearest_choice
+  implicit none
+  private
+  public :: describe_boundary, read_boundary
+
+  character, parameter :: nl = new_line('a')
+  character(*), parameter :: support_names = 'ENCASTRE | PINNED | XSYMM | YSYMM | ZSYMM'
+
+contains
+
+  subroutine describe_boundary(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'BOUNDARY'
+    spec%family = 'step'
+    spec%place = 'anywhere'
+    spec%meaning = 'Supports: fixes degrees of freedom 1 to 3 or prescribes their displacement. '// &
+                   'One dof only: leave the last out. Or a name in place of the dofs: '// &
+                   'ENCASTRE, PINNED (1-3), XSYMM (1), YSYMM (2), ZSYMM (3). Before the first '// &
+                   'step the value is zero.'
+    spec%example = '*BOUNDARY'//nl//'BASE, 1, 3'//nl//'CREST, 2, 2, 0.01'//nl//'SIDE, YSYMM'
+    spec%fewest_lines = 1
+    spec%checks_own_data = .true.
+    allocate (spec%parameters, source=[ &
+              field('OP', kind_choice, 'keep what earlier steps have fixed, or clear it', &
+                    default='MOD', choices='MOD | NEW'), &
+              field('AMPLITUDE', kind_word, 'history of the values')])
+    allocate (spec%columns, source=[ &
+              field('node', kind_reference, 'id of a node or name of a node set', &
+                    is_required=.true.), &
+              field('first dof', kind_integer, '1 to 3, or a name', is_required=.true., &
+                    lowest=1.0_rk, highest=3.0_rk), &
+              field('last dof', kind_integer, '1 to 3', default='the first', lowest=1.0_rk, &
+                    highest=3.0_rk), &
+              field('value', kind_real, 'displacement', 'm', '0')])
+  end subroutine describe_boundary
+
+  subroutine read_boundary(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable :: nodes(:)
+    integer :: line, dof, first, last, history
+    real(rk) :: value
+    call find_amplitude(this, model, faults, history)
+    if (this%word('OP') == 'NEW') call model%supports%clear_old()
+    do line = 1, this%num_lines
+      call nodes_at(this, line, 1, model, faults, nodes)
+      call read_dofs(this, line, faults, first, last)
+      call read_value(this, line, model%is_in_step, faults, value)
+      do dof = first, last
+        call model%supports%put(nodes, dof, value, history)
+      end do
+    end do
+  end subroutine read_boundary
+
+  !> Range of degrees of freedom; empty after a fault.
+  subroutine read_dofs(this, line, faults, first, last)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line
+    type(diagnostic_list), intent(inout) :: faults
+    integer, intent(out) :: first, last
+    integer :: i
+    first = 1
+    last = 0
+    if (this%num_fields(line) > 4) then
+      call this%fault_at(faults, line, 5, 'too many fields', 'node, first dof, last dof, value')
+    end if
+    if (.not. this%is_integer_at(line, 2)) then
+      call read_support_name(this, line, faults, first, last)
+      return
+    end if
+    do i = 2, 3
+      if (i == 3 .and. this%is_empty_at(line, i)) cycle
+      if (this%integer_at(line, i) >= 1 .and. this%integer_at(line, i) <= 3) cycle
+      call this%fault_at(faults, line, i, "found '"//this%text_at(line, i)//"'", &
+                         'a degree of freedom, 1 to 3 (solids have no rotations)')
+      return
+    end do
+    first = this%integer_at(line, 2)
+    last = first
+    if (.not. this%is_empty_at(line, 3)) last = this%integer_at(line, 3)
+    if (last < first) then
+      call this%fault_at(faults, line, 3, 'the last dof comes before the first', &
+                         'first dof <= last dof')
+    end if
+  end subroutine read_dofs
+
+  subroutine read_support_name(this, line, faults, first, last)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line
+    type(diagnostic_list), intent(inout) :: faults
+    integer, intent(inout) :: first, last
+    select case (this%word_at(line, 2))
+    case ('ENCASTRE', 'PINNED')
+      first = 1
+      last = 3
+    case ('XSYMM')
+      last = 1
+    case ('YSYMM')
+      first = 2
+      last = 2
+    case ('ZSYMM')
+      first = 3
+      last = 3
+    case default
+      call this%fault_at(faults, line, 2, "found '"//this%text_at(line, 2)//"'", &
+                         'a degree of freedom, 1 to 3, or one of '//support_names, &
+                         nearest_choice(this%word_at(line, 2), support_names))
+      return
+    end select
+    if (this%num_fields(line) > 2) then
+      call this%fault_at(faults, line, 3, 'nothing follows the name of a support', &
+                         'node, '//this%word_at(line, 2))
+    end if
+  end subroutine read_support_name
+
+  !> The displacement; before the first step it is zero.
+  subroutine read_value(this, line, is_in_step, faults, value)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line
+    logical, intent(in) :: is_in_step
+    type(diagnostic_list), intent(inout) :: faults
+    real(rk), intent(out) :: value !< [m]
+    value = 0.0_rk
+    if (this%is_empty_at(line, 4)) return
+    if (.not. this%is_real_at(line, 4)) then
+      call this%fault_at(faults, line, 4, "found '"//this%text_at(line, 4)//"'", &
+                         'a displacement, a number [m]')
+    end if
+    value = this%real_at(line, 4)
+    if (is_in_step .or. abs(value) <= 0.0_rk) return
+    call this%fault_at(faults, line, 4, 'a displacement before the first step', &
+                       'zero; give it in a step')
+  end subroutine read_value
+end module keywords_boundary

@@ -1,0 +1,82 @@
+!> *CONTROLS and *DAMPING of a step.
+module keywords_controls
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real
+  use kinds, only: rk
+  use model_draft, only: draft
+  implicit none
+  private
+  public :: describe_controls, describe_step_damping, read_controls, read_step_damping
+
+contains
+
+  subroutine describe_controls(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'CONTROLS'
+    spec%family = 'step'
+    spec%place = 'step'
+    spec%meaning = 'Tolerances of the iteration, from this step on.'
+    spec%example = '*CONTROLS, RESIDUAL=1e-8, ITERATIONS=25'
+    spec%most_lines = 0
+    allocate (spec%parameters, source=[ &
+              field('RESIDUAL', kind_real, 'out-of-balance over the reference force', '', &
+                    '1e-6', lowest=0.0_rk, highest=1.0_rk, excludes_lowest=.true.), &
+              field('INCREMENT', kind_real, 'last correction over the increment', '', '1e-6', &
+                    lowest=0.0_rk, highest=1.0_rk, excludes_lowest=.true.), &
+              field('ITERATIONS', kind_integer, 'most iterations before the increment is cut', &
+                    default='15', lowest=1.0_rk), &
+              field('JOINT SOLVER', kind_choice, 'iterate on the joints alone (condensed) or '// &
+                    'on everything (full Newton)', default='AUTO', &
+                    choices='AUTO | CONDENSED | FULL'), &
+              field('JOINT FORCES', kind_choice, 'weight of joint forces in time: the impulse '// &
+                    'of the end of the step, as the bulk, or end of the step', &
+                    default='IMPLICIT', choices='IMPLICIT | HHT | END')])
+  end subroutine describe_controls
+
+  subroutine read_controls(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    if (size(this%parameters) == 0) then
+      call this%warn(faults, 'changes nothing', 'at least one parameter')
+    end if
+    associate (controls => model%now%controls)
+      if (this%has('RESIDUAL')) controls%residual_tolerance = this%real('RESIDUAL')
+      if (this%has('INCREMENT')) controls%increment_tolerance = this%real('INCREMENT')
+      if (this%has('ITERATIONS')) controls%max_iterations = this%integer('ITERATIONS')
+      if (this%has('JOINT SOLVER')) controls%joint_solver = this%word('JOINT SOLVER')
+      if (this%has('JOINT FORCES')) controls%joint_forces = this%word('JOINT FORCES')
+    end associate
+  end subroutine read_controls
+
+  subroutine describe_step_damping(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'DAMPING'
+    spec%family = 'step'
+    spec%place = 'step'
+    spec%meaning = 'Rayleigh damping of the whole model from one ratio at two frequencies, '// &
+                   'besides that of the materials, from this step on.'
+    spec%example = '*DAMPING, RATIO=0.05, F1=2., F2=10.'
+    spec%most_lines = 0
+    allocate (spec%parameters, source=[ &
+              field('RATIO', kind_real, 'part of critical damping', is_required=.true., &
+                    lowest=0.0_rk, highest=1.0_rk, excludes_highest=.true.), &
+              field('F1', kind_real, 'lower frequency', 'Hz', is_required=.true., &
+                    lowest=0.0_rk, excludes_lowest=.true.), &
+              field('F2', kind_real, 'upper frequency', 'Hz', is_required=.true., &
+                    lowest=0.0_rk, excludes_lowest=.true.)])
+  end subroutine describe_step_damping
+
+  subroutine read_step_damping(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    model%now%damping_ratio = this%real('RATIO')
+    model%now%damping_f1 = this%real('F1')
+    model%now%damping_f2 = this%real('F2')
+    if (model%now%damping_f2 > model%now%damping_f1) return
+    call this%fault_parameter(faults, 'F2', "found '"//this%text('F2')//"'", &
+                              'a frequency above F1 [Hz]')
+  end subroutine read_step_damping
+end module keywords_controls

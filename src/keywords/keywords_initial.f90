@@ -1,0 +1,55 @@
+!> *INITIAL CONDITIONS.
+module keywords_initial
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real, kind_reference
+  use model_draft, only: draft
+  use named_things, only: nodes_at
+  use step_plan, only: initial_value
+  implicit none
+  private
+  public :: describe_initial_conditions, read_initial_conditions
+
+  character, parameter :: nl = new_line('a')
+
+contains
+
+  subroutine describe_initial_conditions(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'INITIAL CONDITIONS'
+    spec%family = 'step'
+    spec%place = 'model'
+    spec%meaning = 'Displacements or velocities at the start of the analysis.'
+    spec%example = '*INITIAL CONDITIONS, TYPE=VELOCITY'//nl//'ALL, 1, -1.'
+    spec%fewest_lines = 1
+    allocate (spec%parameters, source=[ &
+              field('TYPE', kind_choice, 'what is given', is_required=.true., &
+                    choices='DISPLACEMENT | VELOCITY')])
+    allocate (spec%columns, source=[ &
+              field('node', kind_reference, 'id of a node or name of a node set', &
+                    is_required=.true.), &
+              field('dof', kind_integer, 'degree of freedom, 1 to 3', is_required=.true.), &
+              field('value', kind_real, 'displacement [m] or velocity [m/s]', default='0')])
+    spec%columns(2)%lowest = 1
+    spec%columns(2)%highest = 3
+  end subroutine describe_initial_conditions
+
+  subroutine read_initial_conditions(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(initial_value), allocatable :: new(:)
+    integer, allocatable :: nodes(:)
+    integer :: line
+    do line = 1, this%num_lines
+      call nodes_at(this, line, 1, model, faults, nodes)
+      allocate (new(size(nodes)))
+      new%is_velocity = this%word('TYPE') == 'VELOCITY'
+      new%node = nodes
+      new%dof = this%integer_at(line, 2)
+      new%value = this%real_at(line, 3)
+      model%scene%initial_values = [model%scene%initial_values, new]
+      deallocate (new)
+    end do
+  end subroutine read_initial_conditions
+end module keywords_initial

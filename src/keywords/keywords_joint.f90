@@ -1,0 +1,148 @@
+!> *JOINT LAW, *JOINT.
+module keywords_joint
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_reference, kind_word
+  use kinds, only: rk
+  use model_draft, only: draft, joint_request, law_request
+  use named_things, only: elements_of_set
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: describe_joint_law, describe_joint, read_joint_law, read_joint
+
+  character, parameter :: nl = new_line('a')
+
+contains
+
+  subroutine describe_joint_law(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'JOINT LAW'
+    spec%family = 'joint'
+    spec%place = 'model'
+    spec%meaning = 'The law of a contraction joint. Closed it is elastic (KN, KT) with Coulomb '// &
+                   'friction; bonded until the normal traction reaches the tensile strength, '// &
+                   'which is then lost for good; open it carries nothing. Opening and tension '// &
+                   'are positive.'
+    spec%example = '*JOINT LAW, NAME=CONTRACTION, FRICTION=0.6'
+    spec%most_lines = 0
+    allocate (spec%parameters, source=[ &
+              field('NAME', kind_word, 'name of the law', is_required=.true.), &
+              field('KN', kind_real, 'normal stiffness', 'Pa/m', 'E/THICKNESS of the slave side', &
+                    lowest=0.0_rk, excludes_lowest=.true.), &
+              field('KT', kind_real, 'tangential stiffness', 'Pa/m', 'KN/(2(1+nu))', &
+                    lowest=0.0_rk, excludes_lowest=.true.), &
+              field('TENSILE STRENGTH', kind_real, 'normal traction at first opening', 'Pa', &
+                    '0', lowest=0.0_rk), &
+              field('FRICTION', kind_real, 'Coulomb coefficient', '', '0', lowest=0.0_rk), &
+              field('COHESION', kind_real, 'shear strength without pressure', 'Pa', '0', &
+                    lowest=0.0_rk), &
+              field('THICKNESS', kind_real, 'makes KN from E when KN is not given', 'm', '0.02', &
+                    lowest=0.0_rk, excludes_lowest=.true.), &
+              field('GAP', kind_real, 'opening at the start', 'm', '0', lowest=0.0_rk)])
+  end subroutine describe_joint_law
+
+  subroutine read_joint_law(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(law_request) :: new
+    integer :: i
+    new%name = this%word('NAME')
+    do i = 1, size(model%laws)
+      if (model%laws(i)%name /= new%name) cycle
+      call this%fault_parameter(faults, 'NAME', "joint law '"//this%text('NAME')// &
+                                "' is defined twice", 'a name that is used once', &
+                                first=model%cards(model%laws(i)%spot%card)%place())
+    end do
+    if (this%has('KN')) new%kn = this%real('KN')
+    if (this%has('KT')) new%kt = this%real('KT')
+    new%strength = this%real('TENSILE STRENGTH')
+    new%friction = this%real('FRICTION')
+    new%cohesion = this%real('COHESION')
+    new%thickness = this%real('THICKNESS')
+    new%gap = this%real('GAP')
+    if (new%gap > 0.0_rk .and. new%strength > 0.0_rk) then
+      call this%fault_parameter(faults, 'TENSILE STRENGTH', 'a joint with a GAP has no strength', &
+                                'GAP or TENSILE STRENGTH, not both')
+    end if
+    if (this%has('KN') .and. this%has('THICKNESS')) then
+      call this%fault_parameter(faults, 'THICKNESS', 'KN is given', 'KN or THICKNESS, not both')
+    end if
+    new%spot = model%here(0)
+    model%laws = [model%laws, new]
+  end subroutine read_joint_law
+
+  subroutine describe_joint(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'JOINT'
+    spec%family = 'joint'
+    spec%place = 'model'
+    spec%meaning = 'A joint made of the JOINT8 elements of a set. Its points are the pairs of '// &
+                   'nodes; the normal points from the master to the slave. A joint between two '// &
+                   'surfaces (slave surface, master surface in a data line, without ELSET) is '// &
+                   'not available yet.'
+    spec%example = '*JOINT, NAME=J1, LAW=CONTRACTION, ELSET=JOINT1'
+    spec%most_lines = 1
+    allocate (spec%parameters, source=[ &
+              field('NAME', kind_word, 'name of the joint', is_required=.true.), &
+              field('LAW', kind_word, 'name of a *JOINT LAW', is_required=.true.), &
+              field('ELSET', kind_word, 'its JOINT8 elements')])
+    allocate (spec%columns, source=[ &
+              field('slave', kind_word, 'slave surface (not available yet)'), &
+              field('master', kind_word, 'master surface (not available yet)')])
+  end subroutine describe_joint
+
+  subroutine read_joint(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(joint_request) :: new
+    integer :: i
+    if (.not. this%has('ELSET') .or. this%num_lines > 0) then
+      call this%fault(faults, 'a joint between surfaces is not available yet', &
+                      'ELSET with JOINT8 elements and no data line')
+      return
+    end if
+    new%name = this%word('NAME')
+    new%law = this%word('LAW')
+    new%spot = model%here(0)
+    do i = 1, size(model%joints)
+      if (model%joints(i)%name /= new%name) cycle
+      call this%fault_parameter(faults, 'NAME', "joint '"//this%text('NAME')// &
+                                "' is defined twice", 'a name that is used once', &
+                                first=model%cards(model%joints(i)%spot%card)%place())
+    end do
+    call elements_of_set(this, 'ELSET', model, faults, new%elements)
+    call claim_elements(this, new%elements, model, faults)
+    model%joints = [model%joints, new]
+  end subroutine read_joint
+
+  !> Elements of a joint are JOINT8 and belong to no other joint.
+  subroutine claim_elements(this, elements, model, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: elements(:) !< positions
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i, e, earlier
+    do i = 1, size(elements)
+      e = elements(i)
+      if (model%scene%mesh%element_type(e) /= 'JOINT8') then
+        call this%fault_parameter(faults, 'ELSET', 'element '// &
+                                  as_text(model%scene%mesh%element_id(e))//' is a '// &
+                                  trim(model%scene%mesh%element_type(e)), &
+                                  'a set of JOINT8 elements')
+        return
+      end if
+      earlier = model%joint_of_element(e)
+      if (earlier > 0) then
+        call this%fault_parameter(faults, 'ELSET', 'element '// &
+                                  as_text(model%scene%mesh%element_id(e))// &
+                                  ' belongs to another joint', 'one joint for each element', &
+                                  first=model%cards(model%joints(earlier)%spot%card)%place())
+        return
+      end if
+      model%joint_of_element(e) = size(model%joints) + 1
+    end do
+  end subroutine claim_elements
+end module keywords_joint

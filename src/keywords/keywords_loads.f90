@@ -1,0 +1,233 @@
+!> *CLOAD, *DLOAD, *DSLOAD.
+module keywords_loads
+  use applied_load, only: load
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use enter_load, only: put_load
+  use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real, kind_reference, &
+                          kind_word
+  use kinds, only: rk
+  use load_gravity, only: make_gravity
+  use load_pressure, only: make_hydrostatic, make_pressure
+  use model_draft, only: draft
+  use named_things, only: elements_at, find_amplitude, find_surface_at, nodes_at
+  use nearest_words, only: nearest_choice
+  implicit none
+  private
+  public :: describe_cload, describe_dload, describe_dsload, read_cload, read_dload, read_dsload
+
+  character, parameter :: nl = new_line('a')
+  character(*), parameter :: labels = 'GRAV | P1 | P2 | P3 | P4 | P5 | P6 | HP1 | HP2 | HP3 | '// &
+                             'HP4 | HP5 | HP6'
+  integer, parameter :: up = 3 !< the axis that HP measures heights along
+
+contains
+
+  !> OP and AMPLITUDE, which all loads have.
+  subroutine add_load_parameters(spec)
+    type(keyword), intent(inout) :: spec
+    allocate (spec%parameters, source=[ &
+              field('OP', kind_choice, 'keep the loads of earlier steps, or clear them', &
+                    default='MOD', choices='MOD | NEW'), &
+              field('AMPLITUDE', kind_word, 'history that scales the loads')])
+    spec%family = 'load'
+    spec%place = 'step'
+    spec%fewest_lines = 1
+  end subroutine add_load_parameters
+
+  subroutine describe_cload(spec)
+    type(keyword), intent(out) :: spec
+    call add_load_parameters(spec)
+    spec%name = 'CLOAD'
+    spec%meaning = 'Forces at nodes. Given twice in one step they add up; given again in a later '// &
+                   'step the new one rules.'
+    spec%example = '*CLOAD'//nl//'TIP, 3, -1000.'
+    allocate (spec%columns, source=[ &
+              field('node', kind_reference, 'id of a node or name of a node set', &
+                    is_required=.true.), &
+              field('dof', kind_integer, 'direction, 1 to 3', is_required=.true., &
+                    lowest=1.0_rk, highest=3.0_rk), &
+              field('force', kind_real, 'force on each node', 'N', is_required=.true.)])
+  end subroutine describe_cload
+
+  subroutine read_cload(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable :: nodes(:)
+    integer :: line, history
+    call find_amplitude(this, model, faults, history)
+    if (this%word('OP') == 'NEW') call model%point_forces%clear_old()
+    do line = 1, this%num_lines
+      call nodes_at(this, line, 1, model, faults, nodes)
+      associate (table => model%point_forces, dof => this%integer_at(line, 2))
+        if (any(table%is_new(dof, nodes) .and. table%history(dof, nodes) /= history)) then
+          call this%fault_at(faults, line, 1, 'a force under another amplitude acts there', &
+                             'one amplitude for the forces of a degree of freedom in a step')
+        end if
+        call table%add(nodes, dof, this%real_at(line, 3), history)
+      end associate
+    end do
+  end subroutine read_cload
+
+  subroutine describe_dload(spec)
+    type(keyword), intent(out) :: spec
+    call add_load_parameters(spec)
+    spec%name = 'DLOAD'
+    spec%meaning = 'Weight and pressures on elements. GRAV, g, x, y, z: an acceleration along '// &
+                   '(x, y, z), which need not be of length one. P1..P6, p: pressure on a face, '// &
+                   'positive towards the element. HP1..HP6, p, z_top, z_ref: hydrostatic along '// &
+                   'axis 3, zero at z_top and above, p at z_ref.'
+    spec%example = '*DLOAD'//nl//'DAM, GRAV, 9.81, 0., 0., -1.'//nl//'UPSTREAM, P3, 1e5'//nl// &
+                   'UPSTREAM, HP3, 1.03e6, 105., 0.'
+    spec%checks_own_data = .true.
+    allocate (spec%columns, source=[ &
+              field('element', kind_reference, 'id of an element or name of an element set'), &
+              field('label', kind_choice, 'what acts', is_required=.true., choices=labels), &
+              field('magnitude', kind_real, 'acceleration [m/s2] or pressure [Pa]', &
+                    is_required=.true.), &
+              field('x or z_top', kind_real, 'direction, or height of pressure zero [m]'), &
+              field('y or z_ref', kind_real, 'direction, or height of pressure p [m]'), &
+              field('z', kind_real, 'direction')])
+  end subroutine describe_dload
+
+  subroutine read_dload(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable :: elements(:)
+    integer :: line, history, num_before
+    call find_amplitude(this, model, faults, history)
+    if (this%word('OP') == 'NEW') call model%loads_at_work%clear_old('DLOAD')
+    do line = 1, this%num_lines
+      num_before = faults%num_errors
+      call elements_at(this, line, 1, model, faults, elements)
+      call check_label(this, line, faults)
+      if (faults%num_errors > num_before) cycle
+      if (this%word_at(line, 2) == 'GRAV') then
+        call put_gravity(this, line, elements, history, model, faults)
+      else
+        call put_pressure(this, line, elements, history, model, faults)
+      end if
+    end do
+  end subroutine read_dload
+
+  !> The label and its numbers.
+  subroutine check_label(this, line, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: label, expected
+    integer :: num_numbers, i
+    label = this%word_at(line, 2)
+    if (index(' | '//labels//' | ', ' | '//label//' | ') == 0 .or. label == '') then
+      call this%fault_at(faults, line, 2, "found '"//this%text_at(line, 2)//"'", &
+                         'one of '//labels, nearest_choice(label, labels))
+      return
+    end if
+    num_numbers = 1
+    expected = 'a pressure [Pa]'
+    if (label(1:1) == 'H') num_numbers = 3
+    if (label(1:1) == 'H') expected = 'p [Pa], z_top, z_ref [m]'
+    if (label == 'GRAV') num_numbers = 4
+    if (label == 'GRAV') expected = 'g [m/s2] and the direction x, y, z'
+    if (this%num_fields(line) > num_numbers + 2) then
+      call this%fault_at(faults, line, num_numbers + 3, 'too many numbers', expected)
+    end if
+    do i = 3, num_numbers + 2
+      if (this%is_real_at(line, i)) cycle
+      if (label == 'GRAV' .and. this%is_empty_at(line, i) .and. i > 3) cycle
+      call this%fault_at(faults, line, i, "found '"//this%text_at(line, i)//"'", expected)
+    end do
+  end subroutine check_label
+
+  subroutine put_gravity(this, line, elements, history, model, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line, elements(:), history
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    class(load), allocatable :: item
+    real(rk) :: direction(3)
+    direction = [this%real_at(line, 4), this%real_at(line, 5), this%real_at(line, 6)]
+    if (norm2(direction) <= 0.0_rk) then
+      call this%fault_at(faults, line, 4, 'gravity without a direction', &
+                         'x, y, z of the direction')
+      return
+    end if
+    direction = direction/norm2(direction)
+    call make_gravity(elements, direction, item)
+    call put_load(model, item, 'gravity '//this%word_at(line, 1), 'DLOAD', &
+                  this%word_at(line, 1)//' GRAV', pattern_of(direction), &
+                  this%real_at(line, 3), history)
+  end subroutine put_gravity
+
+  subroutine put_pressure(this, line, elements, history, model, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line, elements(:), history
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    class(load), allocatable :: item
+    character(:), allocatable :: label
+    integer :: face(size(elements))
+    real(rk) :: heights(2)
+    label = this%word_at(line, 2)
+    face = index('123456', label(len(label):))
+    if (any(model%scene%mesh%element_type(elements) (1:4) /= 'C3D8')) then
+      call this%fault_at(faults, line, 1, 'pressure on an element that is no solid', &
+                         'solid elements')
+      return
+    end if
+    heights = 0.0_rk
+    if (label(1:1) == 'H') then
+      heights = [this%real_at(line, 4), this%real_at(line, 5)]
+      if (abs(heights(1) - heights(2)) <= 0.0_rk) then
+        call this%fault_at(faults, line, 5, 'z_ref is z_top', 'two heights that differ')
+        return
+      end if
+      call make_hydrostatic(elements, face, up, heights(1), heights(2), item)
+    else
+      call make_pressure(elements, face, item)
+    end if
+    call put_load(model, item, 'pressure '//this%word_at(line, 1)//' '//label, 'DLOAD', &
+                  this%word_at(line, 1)//' '//label, pattern_of(heights), &
+                  this%real_at(line, 3), history)
+  end subroutine put_pressure
+
+  !> Numbers as a text to compare: the same text, the same pattern.
+  pure function pattern_of(numbers) result(text)
+    real(rk), intent(in) :: numbers(:)
+    character(24*size(numbers)) :: text
+    write (text, '(*(es24.16e3))') numbers
+  end function pattern_of
+
+  subroutine describe_dsload(spec)
+    type(keyword), intent(out) :: spec
+    call add_load_parameters(spec)
+    spec%name = 'DSLOAD'
+    spec%meaning = 'Pressure on a surface, positive towards the body.'
+    spec%example = '*DSLOAD, AMPLITUDE=FILLING'//nl//'UPSTREAM, P, 1e5'
+    allocate (spec%columns, source=[ &
+              field('surface', kind_word, 'name of a surface', is_required=.true.), &
+              field('label', kind_choice, 'what acts', is_required=.true., choices='P'), &
+              field('magnitude', kind_real, 'pressure', 'Pa', is_required=.true.)])
+  end subroutine describe_dsload
+
+  subroutine read_dsload(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    class(load), allocatable :: item
+    integer :: line, history, found
+    call find_amplitude(this, model, faults, history)
+    if (this%word('OP') == 'NEW') call model%loads_at_work%clear_old('DSLOAD')
+    do line = 1, this%num_lines
+      call find_surface_at(this, line, model, faults, found)
+      if (found == 0) cycle
+      associate (where_it_acts => model%scene%surfaces(found))
+        call make_pressure(where_it_acts%element, where_it_acts%face, item)
+      end associate
+      call put_load(model, item, 'pressure '//this%word_at(line, 1), 'DSLOAD', &
+                    this%word_at(line, 1), '', this%real_at(line, 3), history)
+    end do
+  end subroutine read_dsload
+end module keywords_loads

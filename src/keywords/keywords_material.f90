@@ -1,0 +1,140 @@
+!> *MATERIAL, *DENSITY, *ELASTIC, *DAMPING of a material.
+module keywords_material
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_word
+  use kinds, only: rk
+  use material_catalogue, only: make_stress_law
+  use material_law, only: material
+  use model_draft, only: draft
+  implicit none
+  private
+  public :: describe_material, describe_density, describe_elastic, describe_material_damping
+  public :: read_material, read_density, read_elastic, read_material_damping
+
+  character, parameter :: nl = new_line('a')
+
+contains
+
+  subroutine describe_material(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'MATERIAL'
+    spec%family = 'material'
+    spec%place = 'model'
+    spec%meaning = 'Opens a material; the keywords of its properties follow.'
+    spec%example = '*MATERIAL, NAME=CONCRETE'//nl//'*DENSITY'//nl//'2400.'//nl//'*ELASTIC'//nl// &
+                   '22e9, 0.167'//nl//'*DAMPING, ALPHA=0.6, BETA=0.002'
+    spec%most_lines = 0
+    allocate (spec%parameters, source=[ &
+              field('NAME', kind_word, 'name of the material', is_required=.true.)])
+  end subroutine describe_material
+
+  subroutine read_material(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(material), allocatable :: longer(:)
+    integer :: i, num
+    num = size(model%scene%materials)
+    do i = 1, num
+      if (model%scene%materials(i)%name /= this%word('NAME')) cycle
+      call this%fault_parameter(faults, 'NAME', "material '"//this%text('NAME')// &
+                                "' is defined twice", 'a name that is used once', &
+                                first=model%cards(model%material_origin(i)%card)%place())
+    end do
+    allocate (longer(num + 1))
+    do i = 1, num
+      longer(i) = model%scene%materials(i)
+    end do
+    longer(num + 1)%name = this%word('NAME')
+    call move_alloc(longer, model%scene%materials)
+    model%material_origin = [model%material_origin, model%here(0)]
+  end subroutine read_material
+
+  subroutine describe_density(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'DENSITY'
+    spec%family = 'material'
+    spec%place = 'material'
+    spec%meaning = 'Mass per volume. A material without it is massless (a foundation).'
+    spec%example = '*DENSITY'//nl//'2400.'
+    spec%fewest_lines = 1
+    spec%most_lines = 1
+    allocate (spec%columns, source=[ &
+              field('density', kind_real, 'mass per volume', 'kg/m3', is_required=.true., &
+                    lowest=0.0_rk)])
+  end subroutine describe_density
+
+  subroutine read_density(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    associate (now => model%scene%materials(size(model%scene%materials)))
+      if (now%density > 0.0_rk) then
+        call this%fault(faults, "material '"//now%name//"' has a *DENSITY already", 'one only')
+      end if
+      now%density = this%real_at(1, 1)
+    end associate
+  end subroutine read_density
+
+  subroutine describe_elastic(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'ELASTIC'
+    spec%family = 'material'
+    spec%place = 'material'
+    spec%meaning = 'Linear elasticity, the same in all directions.'
+    spec%example = '*ELASTIC'//nl//'22e9, 0.167'
+    spec%fewest_lines = 1
+    spec%most_lines = 1
+    allocate (spec%parameters, source=[ &
+              field('TYPE', kind_choice, 'kind of elasticity', default='ISOTROPIC', &
+                    choices='ISOTROPIC | ISO')])
+    allocate (spec%columns, source=[ &
+              field('E', kind_real, 'Young''s modulus', 'Pa', is_required=.true., &
+                    lowest=0.0_rk, excludes_lowest=.true.), &
+              field('nu', kind_real, 'Poisson''s ratio', default='0', lowest=-1.0_rk, &
+                    highest=0.5_rk, excludes_lowest=.true., excludes_highest=.true.)])
+  end subroutine describe_elastic
+
+  subroutine read_elastic(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    associate (now => model%scene%materials(size(model%scene%materials)))
+      if (allocated(now%law)) then
+        call this%fault(faults, "material '"//now%name//"' has an *ELASTIC already", 'one only')
+        return
+      end if
+      now%young = this%real_at(1, 1)
+      now%poisson = this%real_at(1, 2)
+      call make_stress_law('ELASTIC', [now%young, now%poisson], now%law)
+    end associate
+  end subroutine read_elastic
+
+  subroutine describe_material_damping(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'DAMPING'
+    spec%family = 'material'
+    spec%place = 'material'
+    spec%meaning = 'Rayleigh damping of the material: ALPHA times its mass and BETA times its '// &
+                   'elastic stiffness. It never acts across a joint nor on the water.'
+    spec%example = '*DAMPING, ALPHA=0.6, BETA=0.002'
+    spec%most_lines = 0
+    allocate (spec%parameters, source=[ &
+              field('ALPHA', kind_real, 'factor of the mass', '1/s', '0', lowest=0.0_rk), &
+              field('BETA', kind_real, 'factor of the stiffness', 's', '0', lowest=0.0_rk)])
+  end subroutine describe_material_damping
+
+  subroutine read_material_damping(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    associate (now => model%scene%materials(size(model%scene%materials)))
+      if (now%alpha > 0.0_rk .or. now%beta > 0.0_rk) then
+        call this%fault(faults, "material '"//now%name//"' has a *DAMPING already", 'one only')
+      end if
+      now%alpha = this%real('ALPHA')
+      now%beta = this%real('BETA')
+    end associate
+  end subroutine read_material_damping
+end module keywords_material

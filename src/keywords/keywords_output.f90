@@ -1,0 +1,156 @@
+!> *NODE FILE, *EL FILE, *OUTPUT, *NODE OUTPUT, *ELEMENT OUTPUT, *ENVELOPE, *PREPRINT.
+module keywords_output
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, without_effect
+  use keywords_print, only: add_frequency, fields_of
+  use kinds, only: rk
+  use model_draft, only: draft
+  use step_plan, only: field_request
+  implicit none
+  private
+  public :: describe_node_file, describe_el_file, describe_output, describe_node_output
+  public :: describe_element_output, describe_envelope, describe_preprint
+  public :: read_fields, read_output, read_envelope
+
+  character, parameter :: nl = new_line('a')
+  character(*), parameter :: node_fields = 'U | V | A | RF | OPENING'
+  character(*), parameter :: element_fields = 'S | E | SP | OPENING | PE | DAMAGET | DAMAGEC | SDV'
+  character(*), parameter :: series = ' Fields for the VTK series (job.pvd) and job.h5. Stays '// &
+                             'for the next steps until one has its own.'
+  !> Fields of materials that are not available yet.
+  character(8), parameter :: later_fields(4) = ['PE      ', 'DAMAGET ', 'DAMAGEC ', 'SDV     ']
+
+contains
+
+  subroutine describe_node_file(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'NODE FILE'
+    spec%meaning = 'U displacement, V velocity, A acceleration, RF reaction, OPENING of joints.'// &
+                   series
+    spec%example = '*NODE FILE, FREQUENCY=10'//nl//'U, OPENING'
+    call add_frequency(spec, node_fields)
+    spec%fewest_lines = 1
+  end subroutine describe_node_file
+
+  subroutine describe_el_file(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'EL FILE'
+    spec%meaning = 'S stress, E strain, SP principal stresses, averaged at nodes within a '// &
+                   'section.'//series
+    spec%example = '*EL FILE, FREQUENCY=10'//nl//'S, SP'
+    call add_frequency(spec, element_fields)
+    spec%fewest_lines = 1
+  end subroutine describe_el_file
+
+  subroutine describe_output(spec)
+    type(keyword), intent(out) :: spec
+    type(field) :: flag
+    spec%name = 'OUTPUT'
+    spec%meaning = 'Opens requests of *NODE OUTPUT and *ELEMENT OUTPUT.'
+    spec%example = '*OUTPUT, FIELD, FREQUENCY=10'//nl//'*NODE OUTPUT'//nl//'U'
+    call add_frequency(spec, '')
+    deallocate (spec%columns)
+    allocate (spec%columns(0))
+    spec%most_lines = 0
+    flag = field('FIELD', kind_flag, 'fields of the whole model (histories: *NODE PRINT)')
+    spec%parameters = [spec%parameters, flag]
+  end subroutine describe_output
+
+  subroutine read_output(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    if (.not. model%is_in_step) call this%warn(faults, 'stands outside a step')
+    model%output_frequency = this%integer('FREQUENCY')
+  end subroutine read_output
+
+  subroutine describe_node_output(spec)
+    type(keyword), intent(out) :: spec
+    call describe_node_file(spec)
+    spec%name = 'NODE OUTPUT'
+    spec%example = '*OUTPUT, FIELD, FREQUENCY=10'//nl//'*NODE OUTPUT'//nl//'U, RF'
+    deallocate (spec%parameters)
+    allocate (spec%parameters(0))
+  end subroutine describe_node_output
+
+  subroutine describe_element_output(spec)
+    type(keyword), intent(out) :: spec
+    call describe_el_file(spec)
+    spec%name = 'ELEMENT OUTPUT'
+    spec%example = '*OUTPUT, FIELD, FREQUENCY=10'//nl//'*ELEMENT OUTPUT'//nl//'S'
+    deallocate (spec%parameters)
+    allocate (spec%parameters(0))
+  end subroutine describe_element_output
+
+  !> Handles all four: they differ in the fields they take and in where the frequency stands.
+  subroutine read_fields(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(field_request) :: new
+    integer :: i
+    new%fields = fields_of(this, 'U')
+    do i = 1, size(new%fields)
+      if (any(new%fields(i) == later_fields)) then
+        call this%fault(faults, trim(new%fields(i))//' is not available yet', &
+                        'U, V, A, RF, S, E, SP or OPENING')
+      end if
+    end do
+    new%frequency = model%output_frequency
+    if (index(this%keyword, 'FILE') > 0) new%frequency = this%integer('FREQUENCY')
+    if (.not. model%has_new_output) then
+      deallocate (model%now%outputs)
+      allocate (model%now%outputs(0))
+    end if
+    model%has_new_output = .true.
+    if (new%frequency > 0) model%now%outputs = [model%now%outputs, new]
+  end subroutine read_fields
+
+  subroutine describe_envelope(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'ENVELOPE'
+    spec%family = 'output'
+    spec%place = 'step'
+    spec%meaning = 'Keeps the extremes over the step: S1 largest tension, S3 largest '// &
+                   'compression, OPENING of joints, U displacement; with place and time in '// &
+                   'job.json, as fields at the end of the step. Without data: S1, S3, OPENING.'
+    spec%example = '*ENVELOPE'//nl//'S1, S3, OPENING'
+    allocate (spec%parameters(0))
+    allocate (spec%columns, source=[ &
+              field('field', kind_choice, 'fields, any number in a line', &
+                    choices='S1 | S3 | OPENING | U | DAMAGET')])
+    spec%repeats_columns = .true.
+  end subroutine describe_envelope
+
+  subroutine read_envelope(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    character(8), allocatable :: fields(:)
+    fields = fields_of(this, '')
+    if (fields(1) == '') fields = [character(8) :: 'S1', 'S3', 'OPENING']
+    if (any(fields == 'DAMAGET')) then
+      call this%fault(faults, 'DAMAGET is not available yet', 'S1, S3, OPENING or U')
+    end if
+    model%now%envelope = [model%now%envelope, fields]
+  end subroutine read_envelope
+
+  subroutine describe_preprint(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'PREPRINT'
+    spec%family = 'output'
+    spec%place = 'anywhere'
+    spec%meaning = 'Chooses what Abaqus prints; has no effect here.'
+    spec%example = '*PREPRINT, ECHO=NO'
+    spec%status = without_effect
+    allocate (spec%parameters, source=[ &
+              field('ECHO', kind_choice, 'has no effect', choices='YES | NO'), &
+              field('HISTORY', kind_choice, 'has no effect', choices='YES | NO'), &
+              field('MODEL', kind_choice, 'has no effect', choices='YES | NO'), &
+              field('CONTACT', kind_choice, 'has no effect', choices='YES | NO'), &
+              field('PARSUBSTITUTION', kind_choice, 'has no effect', choices='YES | NO'), &
+              field('PARVALUES', kind_choice, 'has no effect', choices='YES | NO'), &
+              field('MASSPROP', kind_choice, 'has no effect', choices='YES | NO')])
+  end subroutine describe_preprint
+end module keywords_output

@@ -1,0 +1,166 @@
+!> *NODE PRINT, *EL PRINT, *JOINT PRINT: histories in CSV files.
+module keywords_print
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_word
+  use kinds, only: rk
+  use model_draft, only: draft
+  use named_things, only: elements_of_set, longest_name, nodes_of_set
+  use nearest_words, only: nearest_word
+  use step_plan, only: print_request
+  implicit none
+  private
+  public :: describe_node_print, describe_el_print, describe_joint_print
+  public :: read_node_print, read_el_print, read_joint_print
+  public :: add_frequency, fields_of
+
+  character, parameter :: nl = new_line('a')
+  integer, parameter :: of_nodes = 1, of_elements = 2, of_joints = 3
+
+contains
+
+  !> What all requests say: how often, and which fields.
+  subroutine add_frequency(spec, choices)
+    type(keyword), intent(inout) :: spec
+    character(*), intent(in) :: choices !< fields, 'U | V'
+    type(field) :: how_often
+    how_often = field('FREQUENCY', kind_integer, 'every so many increments; 0 for never', &
+                      default='1', lowest=0.0_rk)
+    if (allocated(spec%parameters)) then
+      spec%parameters = [spec%parameters, how_often]
+    else
+      allocate (spec%parameters(1), source=how_often)
+    end if
+    allocate (spec%columns, source=[ &
+              field('field', kind_choice, 'fields, any number in a line', choices=choices)])
+    spec%repeats_columns = .true.
+    spec%family = 'output'
+    spec%place = 'step'
+  end subroutine add_frequency
+
+  !> The fields a card names, each once; `default` when it names none.
+  pure function fields_of(this, default) result(fields)
+    type(card), intent(in) :: this
+    character(*), intent(in) :: default
+    character(8), allocatable :: fields(:)
+    character(8) :: new
+    integer :: line, i
+    allocate (fields(0))
+    do line = 1, this%num_lines
+      do i = 1, this%num_fields(line)
+        if (this%is_empty_at(line, i)) cycle
+        new = this%word_at(line, i)
+        if (.not. any(fields == new)) fields = [fields, new]
+      end do
+    end do
+    if (size(fields) == 0) fields = [character(8) :: default]
+  end function fields_of
+
+  subroutine describe_node_print(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'NODE PRINT'
+    spec%meaning = 'History of nodes in job_node_NSET.csv: U displacement, V velocity, '// &
+                   'A acceleration (relative to the base), RF reaction. The last increment of '// &
+                   'a step is always written. Stays for the next steps until one has its own.'
+    spec%example = '*NODE PRINT, NSET=CREST, FREQUENCY=2'//nl//'U, A'
+    allocate (spec%parameters, source=[ &
+              field('NSET', kind_word, 'the nodes', is_required=.true.)])
+    call add_frequency(spec, 'U | V | A | RF')
+  end subroutine describe_node_print
+
+  subroutine read_node_print(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(print_request) :: new
+    new%kind = 'NODE'
+    new%name = this%word('NSET')
+    call nodes_of_set(this, 'NSET', model, faults, new%members)
+    new%fields = fields_of(this, 'U')
+    call add_request(this, of_nodes, new, model)
+  end subroutine read_node_print
+
+  subroutine describe_el_print(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'EL PRINT'
+    spec%meaning = 'History of elements at their integration points in job_el_ELSET.csv: '// &
+                   'S stress, E strain, SP principal stresses.'
+    spec%example = '*EL PRINT, ELSET=HEEL'//nl//'S'
+    allocate (spec%parameters, source=[ &
+              field('ELSET', kind_word, 'the elements', is_required=.true.)])
+    call add_frequency(spec, 'S | E | SP')
+  end subroutine describe_el_print
+
+  subroutine read_el_print(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(print_request) :: new
+    new%kind = 'ELEMENT'
+    new%name = this%word('ELSET')
+    call elements_of_set(this, 'ELSET', model, faults, new%members)
+    if (any(model%scene%mesh%element_type(new%members) (1:4) /= 'C3D8')) then
+      call this%fault_parameter(faults, 'ELSET', 'the set holds elements that are no solids', &
+                                'solid elements; for joints *JOINT PRINT')
+    end if
+    new%fields = fields_of(this, 'S')
+    call add_request(this, of_elements, new, model)
+  end subroutine read_el_print
+
+  subroutine describe_joint_print(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'JOINT PRINT'
+    spec%meaning = 'History of the points of a joint in job_joint_NAME.csv: opening, slip1, '// &
+                   'slip2 [m], tn, t1, t2 [Pa], state (0 open, 1 stick, 2 slip, 3 bonded). All '// &
+                   'columns are always written. slip1 is horizontal, slip2 up or down the joint.'
+    spec%example = '*JOINT PRINT, JOINT=J1, NSET=CREST'
+    spec%most_lines = 0
+    allocate (spec%parameters, source=[ &
+              field('JOINT', kind_word, 'name of the joint', is_required=.true.), &
+              field('NSET', kind_word, 'only the points nearest to these nodes')])
+    call add_frequency(spec, '')
+    deallocate (spec%columns)
+    allocate (spec%columns(0))
+  end subroutine describe_joint_print
+
+  subroutine read_joint_print(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(print_request) :: new
+    character(longest_name) :: known(size(model%joints))
+    integer :: i
+    new%kind = 'JOINT'
+    new%name = this%word('JOINT')
+    allocate (new%members(0), new%near_nodes(0), new%fields(0))
+    do i = 1, size(known)
+      known(i) = model%joints(i)%name
+      if (model%joints(i)%name == new%name) new%members = [i]
+    end do
+    if (size(new%members) == 0) then
+      call this%fault_parameter(faults, 'JOINT', "there is no joint '"//this%text('JOINT')// &
+                                "' so far", 'the name of a *JOINT', nearest_word(new%name, known))
+    end if
+    if (this%has('NSET')) call nodes_of_set(this, 'NSET', model, faults, new%near_nodes)
+    call add_request(this, of_joints, new, model)
+  end subroutine read_joint_print
+
+  !> The first request of a kind in a step takes the place of those kept from before.
+  subroutine add_request(this, kind, new, model)
+    type(card), intent(in) :: this
+    integer, intent(in) :: kind !< of_nodes, of_elements, of_joints
+    type(print_request), intent(inout) :: new
+    type(draft), intent(inout) :: model
+    type(print_request), allocatable :: kept(:)
+    integer :: i
+    new%frequency = this%integer('FREQUENCY')
+    allocate (kept(0))
+    do i = 1, size(model%now%prints)
+      if (model%now%prints(i)%kind == new%kind .and. .not. model%prints_given(kind)) cycle
+      kept = [kept, model%now%prints(i)]
+    end do
+    if (new%frequency > 0) kept = [kept, new]
+    call move_alloc(kept, model%now%prints)
+    model%prints_given(kind) = .true.
+  end subroutine add_request
+end module keywords_print

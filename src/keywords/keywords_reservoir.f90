@@ -1,0 +1,152 @@
+!> *RESERVOIR, *BASE MOTION.
+module keywords_reservoir
+  use applied_load, only: load
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use enter_load, only: put_load
+  use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real, kind_word
+  use kinds, only: rk
+  use load_base_motion, only: make_base_motion
+  use load_reservoir, only: make_reservoir, reservoir
+  use mesh_faces, only: face_nodes
+  use model_draft, only: draft
+  use named_things, only: find_amplitude, find_surface_name, surface_names
+  use nearest_words, only: nearest_word
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: describe_reservoir, describe_base_motion, read_reservoir, read_base_motion
+
+  character, parameter :: nl = new_line('a')
+
+contains
+
+  subroutine describe_reservoir(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'RESERVOIR'
+    spec%family = 'load'
+    spec%place = 'step'
+    spec%meaning = 'Water on the wetted part of a surface: hydrostatic pressure and Westergaard''s '// &
+                   'added mass, 7/8 rho sqrt(H h) per area along the normal, which takes part in '// &
+                   'the inertia force of the base motion and has no weight. NORMAL keeps the '// &
+                   'block m n n^T of each node, DIAGONAL its diagonal. The surface of the first '// &
+                   'reservoir tells upstream from downstream in the results.'
+    spec%example = '*RESERVOIR, NAME=LAKE, SURFACE=UPSTREAM, LEVEL=105., BED=0., '// &
+                   'ADDED MASS=WESTERGAARD'
+    spec%most_lines = 0
+    allocate (spec%parameters, source=[ &
+              field('NAME', kind_word, 'name of the reservoir', is_required=.true.), &
+              field('SURFACE', kind_word, 'the wetted face', is_required=.true.), &
+              field('LEVEL', kind_real, 'height of the water along UP', 'm', is_required=.true.), &
+              field('BED', kind_real, 'height of the bottom along UP', 'm', is_required=.true.), &
+              field('UP', kind_integer, 'axis that points up', default='3', lowest=1.0_rk, &
+                    highest=3.0_rk), &
+              field('DENSITY', kind_real, 'mass of the water', 'kg/m3', '1000', lowest=0.0_rk, &
+                    excludes_lowest=.true.), &
+              field('GRAVITY', kind_real, 'acceleration of gravity', 'm/s2', '9.81', &
+                    lowest=0.0_rk, excludes_lowest=.true.), &
+              field('HYDROSTATIC', kind_choice, 'pressure of the water', default='YES', &
+                    choices='YES | NO'), &
+              field('ADDED MASS', kind_choice, 'mass of the water', default='NONE', &
+                    choices='NONE | WESTERGAARD'), &
+              field('DIRECTION', kind_choice, 'how the added mass acts', default='DIAGONAL', &
+                    choices='DIAGONAL | NORMAL')])
+  end subroutine describe_reservoir
+
+  subroutine read_reservoir(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(reservoir) :: water
+    class(load), allocatable :: item
+    integer :: found
+    found = find_surface_name(model, this%word('SURFACE'))
+    if (found == 0) then
+      call this%fault_parameter(faults, 'SURFACE', "there is no surface '"// &
+                                this%text('SURFACE')//"' so far", 'a surface defined above', &
+                                nearest_word(this%word('SURFACE'), surface_names(model)))
+      return
+    end if
+    if (this%real('LEVEL') <= this%real('BED')) then
+      call this%fault_parameter(faults, 'LEVEL', "found '"//this%text('LEVEL')//"'", &
+                                'a level above BED, '//this%text('BED')//' m')
+      return
+    end if
+    water%level = this%real('LEVEL')
+    water%bed = this%real('BED')
+    water%up = this%integer('UP')
+    water%density = this%real('DENSITY')
+    water%gravity = this%real('GRAVITY')
+    water%has_pressure = this%word('HYDROSTATIC') == 'YES'
+    water%has_mass = this%word('ADDED MASS') == 'WESTERGAARD'
+    water%is_normal = this%word('DIRECTION') == 'NORMAL'
+    if (lowest_height(model, found, water%up) >= water%level) then
+      call this%fault_parameter(faults, 'SURFACE', 'no face of the surface is wetted', &
+                                'a surface that reaches below the level, '// &
+                                this%text('LEVEL')//' m')
+      return
+    end if
+    if (model%scene%upstream_surface == 0) model%scene%upstream_surface = found
+    call make_reservoir(water, model%scene%surfaces(found), item)
+    call put_load(model, item, 'reservoir '//this%word('NAME'), 'RESERVOIR', this%word('NAME'), &
+                  pattern_of_card(this), 1.0_rk, 0)
+  end subroutine read_reservoir
+
+  !> Lowest node of a surface [m].
+  pure real(rk) function lowest_height(model, found, up) result(lowest)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: found !< position of the surface
+    integer, intent(in) :: up !< axis
+    integer :: i, nodes(4)
+    lowest = huge(1.0_rk)
+    do i = 1, size(model%scene%surfaces(found)%element)
+      associate (faces => model%scene%surfaces(found), mesh => model%scene%mesh)
+        nodes = face_nodes(mesh, faces%element(i), faces%face(i))
+        lowest = min(lowest, minval(mesh%x(up, nodes)))
+      end associate
+    end do
+  end function lowest_height
+
+  !> All that is given, as a text to compare: the same text, the same reservoir.
+  pure function pattern_of_card(this) result(text)
+    type(card), intent(in) :: this
+    character(:), allocatable :: text
+    integer :: i
+    text = ''
+    do i = 1, size(this%spec%parameters)
+      text = text//this%word(this%spec%parameters(i)%name)//';'
+    end do
+  end function pattern_of_card
+
+  subroutine describe_base_motion(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'BASE MOTION'
+    spec%family = 'load'
+    spec%place = 'step'
+    spec%meaning = 'Acceleration of the base, the same everywhere. Results are relative to the '// &
+                   'base; the water''s added mass takes part. Like every load it stays: a '// &
+                   'history over the time of its step holds its last value afterwards.'
+    spec%example = '*BASE MOTION, DOF=1, AMPLITUDE=QUAKE, SCALE=9.81'
+    spec%most_lines = 0
+    allocate (spec%parameters, source=[ &
+              field('DOF', kind_integer, 'direction, 1 to 3', is_required=.true., &
+                    lowest=1.0_rk, highest=3.0_rk), &
+              field('AMPLITUDE', kind_word, 'history of the acceleration', is_required=.true.), &
+              field('SCALE', kind_real, 'factor that gives it in m/s2', '', '1'), &
+              field('TYPE', kind_choice, 'what the history is', default='ACCELERATION', &
+                    choices='ACCELERATION')])
+  end subroutine describe_base_motion
+
+  subroutine read_base_motion(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    class(load), allocatable :: item
+    integer :: history
+    call find_amplitude(this, model, faults, history)
+    if (history == 0) return
+    call make_base_motion(this%integer('DOF'), item)
+    call put_load(model, item, 'base motion '//as_text(this%integer('DOF')), 'BASE MOTION', &
+                  as_text(this%integer('DOF')), '', this%real('SCALE'), history)
+  end subroutine read_base_motion
+end module keywords_reservoir

@@ -1,0 +1,115 @@
+!> *SOLID SECTION.
+module keywords_section
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_word
+  use mesh_sets, only: named_set
+  use model_draft, only: draft, section_request
+  use named_things, only: elements_of_set, longest_name
+  use nearest_words, only: nearest_word
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: describe_solid_section, read_solid_section
+
+  character, parameter :: nl = new_line('a')
+
+contains
+
+  subroutine describe_solid_section(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'SOLID SECTION'
+    spec%family = 'material'
+    spec%place = 'model'
+    spec%meaning = 'Gives the solid elements of a set their material. Stresses are averaged at '// &
+                   'nodes within a section, never across; the section defined first rules where '// &
+                   'two meet. The mass is of one kind in the whole model.'
+    spec%example = '*SOLID SECTION, ELSET=DAM, MATERIAL=CONCRETE'
+    spec%most_lines = 1
+    allocate (spec%parameters, source=[ &
+              field('ELSET', kind_word, 'the elements', is_required=.true.), &
+              field('MATERIAL', kind_word, 'their material', is_required=.true.), &
+              field('MASS', kind_choice, 'mass matrix', default='CONSISTENT', &
+                    choices='CONSISTENT | LUMPED')])
+    allocate (spec%columns, source=[ &
+              field('thickness', kind_real, 'has no meaning for solids')])
+  end subroutine describe_solid_section
+
+  subroutine read_solid_section(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(section_request) :: new
+    integer :: num_material
+    call find_material(this, model, faults, num_material)
+    call elements_of_set(this, 'ELSET', model, faults, new%elements)
+    call choose_mass(this, model, faults)
+    new%material = this%word('MATERIAL')
+    new%spot = model%here(0)
+    model%sections = [model%sections, new]
+    call give_material(this, new%elements, num_material, model, faults)
+  end subroutine read_solid_section
+
+  !> Position of the material; a name that does not exist is a fault.
+  subroutine find_material(this, model, faults, found)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, intent(out) :: found
+    character(longest_name) :: known(size(model%scene%materials))
+    integer :: i
+    found = 0
+    do i = 1, size(known)
+      known(i) = model%scene%materials(i)%name
+      if (model%scene%materials(i)%name == this%word('MATERIAL')) found = i
+    end do
+    if (found > 0) return
+    call this%fault_parameter(faults, 'MATERIAL', "there is no material '"// &
+                              this%text('MATERIAL')//"'", 'the name of a *MATERIAL', &
+                              nearest_word(this%word('MATERIAL'), known))
+  end subroutine find_material
+
+  !> MASS may be given once or the same everywhere.
+  subroutine choose_mass(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    if (.not. this%has('MASS')) return
+    if (allocated(model%mass_kind)) then
+      if (model%mass_kind /= this%word('MASS')) then
+        call this%fault_parameter(faults, 'MASS', 'the mass of another section is '// &
+                                  model%mass_kind, 'one kind of mass in the whole model')
+      end if
+    end if
+    model%mass_kind = this%word('MASS')
+    model%scene%has_lumped_mass = model%mass_kind == 'LUMPED'
+  end subroutine choose_mass
+
+  subroutine give_material(this, elements, num_material, model, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: elements(:), num_material
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i, e, earlier
+    associate (mesh => model%scene%mesh)
+      do i = 1, size(elements)
+        e = elements(i)
+        if (mesh%element_type(e) (1:4) /= 'C3D8') then
+          call this%fault_parameter(faults, 'ELSET', 'element '//as_text(mesh%element_id(e))// &
+                                    ' is a '//trim(mesh%element_type(e)), &
+                                    'a set of solid elements')
+          return
+        end if
+        earlier = mesh%section_of_element(e)
+        if (earlier > 0) then
+          call this%fault_parameter(faults, 'ELSET', 'element '//as_text(mesh%element_id(e))// &
+                                    ' has a section already', 'one section for each element', &
+                                    first=model%cards(model%sections(earlier)%spot%card)%place())
+          return
+        end if
+        mesh%section_of_element(e) = size(model%sections)
+        mesh%material_of_element(e) = num_material
+      end do
+    end associate
+  end subroutine give_material
+end module keywords_section

@@ -1,0 +1,232 @@
+!> *NSET, *ELSET, *SURFACE.
+module keywords_sets
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use id_map, only: position_table
+  use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, kind_reference, &
+                          kind_word
+  use mesh_faces, only: count_corners, face_nodes
+  use mesh_sets, only: surface
+  use model_draft, only: draft, origin
+  use named_things, only: elements_at, find_surface_name, nodes_at
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: describe_nset, describe_elset, describe_surface
+  public :: read_nset, read_elset, read_surface
+
+  character, parameter :: nl = new_line('a')
+
+contains
+
+  subroutine describe_nset(spec)
+    type(keyword), intent(out) :: spec
+    call describe_set(spec, 'NSET', 'node')
+    spec%example = '*NSET, NSET=CREST'//nl//'12, 13, 27'//nl//'*NSET, NSET=BASE, GENERATE'//nl// &
+                   '1, 101, 10'
+  end subroutine describe_nset
+
+  subroutine describe_elset(spec)
+    type(keyword), intent(out) :: spec
+    call describe_set(spec, 'ELSET', 'element')
+    spec%example = '*ELSET, ELSET=DAM'//nl//'BLOCK1, BLOCK2, 405'
+  end subroutine describe_elset
+
+  subroutine describe_set(spec, name, kind)
+    type(keyword), intent(out) :: spec
+    character(*), intent(in) :: name !< 'NSET' or 'ELSET'
+    character(*), intent(in) :: kind !< 'node' or 'element'
+    spec%name = name
+    spec%family = 'mesh'
+    spec%place = 'model'
+    spec%meaning = 'A set of '//kind//'s, from ids and sets defined above. Given again under '// &
+                   'the same name it grows.'
+    spec%checks_own_data = .true.
+    spec%fewest_lines = 1
+    spec%repeats_columns = .true.
+    allocate (spec%parameters, source=[ &
+              field(name, kind_word, 'name of the set', is_required=.true.), &
+              field('GENERATE', kind_flag, 'a line is: first, last, step (1)')])
+    allocate (spec%columns, source=[ &
+              field('member', kind_reference, 'id of a '//kind//' or name of a set, any '// &
+                    'number in a line')])
+  end subroutine describe_set
+
+  subroutine read_nset(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable :: members(:)
+    call collect_members(this, 'node', model, faults, members)
+    call model%node_sets%add(this%word('NSET'), members)
+  end subroutine read_nset
+
+  subroutine read_elset(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable :: members(:)
+    call collect_members(this, 'element', model, faults, members)
+    call model%element_sets%add(this%word('ELSET'), members)
+  end subroutine read_elset
+
+  !> All members of the card; a card without any is a fault.
+  subroutine collect_members(this, kind, model, faults, members)
+    type(card), intent(in) :: this
+    character(*), intent(in) :: kind !< 'node' or 'element'
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable, intent(out) :: members(:)
+    integer, allocatable :: some(:)
+    integer :: line, i, used, num_before
+    num_before = faults%num_errors
+    allocate (members(64))
+    used = 0
+    do line = 1, this%num_lines
+      if (this%has('GENERATE')) then
+        if (kind == 'node') call generate(this, line, kind, model%node_position, faults, some)
+        if (kind == 'element') call generate(this, line, kind, model%element_position, faults, some)
+        call append(members, used, some)
+        cycle
+      end if
+      do i = 1, this%num_fields(line)
+        if (this%is_empty_at(line, i)) cycle
+        if (kind == 'node') call nodes_at(this, line, i, model, faults, some)
+        if (kind == 'element') call elements_at(this, line, i, model, faults, some)
+        call append(members, used, some)
+      end do
+    end do
+    members = members(:used)
+    if (used == 0 .and. faults%num_errors == num_before) then
+      call this%fault(faults, 'the set is empty', 'at least one '//kind)
+    end if
+  end subroutine collect_members
+
+  !> Adds to a list that grows by doubling.
+  pure subroutine append(list, used, more)
+    integer, allocatable, intent(inout) :: list(:)
+    integer, intent(inout) :: used !< entries in use
+    integer, intent(in) :: more(:)
+    integer, allocatable :: longer(:)
+    if (used + size(more) > size(list)) then
+      allocate (longer(2*(used + size(more))))
+      longer(:used) = list(:used)
+      call move_alloc(longer, list)
+    end if
+    list(used + 1:used + size(more)) = more
+    used = used + size(more)
+  end subroutine append
+
+  !> first, last, step of GENERATE.
+  subroutine generate(this, line, kind, table, faults, members)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line
+    character(*), intent(in) :: kind
+    type(position_table), intent(in) :: table
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable, intent(out) :: members(:)
+    integer :: range(3), id, i
+    allocate (members(0))
+    range = [0, 0, 1]
+    do i = 1, min(3, this%num_fields(line))
+      range(i) = this%integer_at(line, i)
+      if (this%is_integer_at(line, i) .and. range(i) > 0) cycle
+      call this%fault_at(faults, line, i, "found '"//this%text_at(line, i)//"'", &
+                         'first, last, step: integers > 0')
+      return
+    end do
+    if (this%num_fields(line) < 2 .or. this%num_fields(line) > 3 .or. range(2) < range(1)) then
+      call this%fault_at(faults, line, 0, 'no range of '//kind//'s', &
+                         'first, last, step: integers > 0 with first <= last')
+      return
+    end if
+    allocate (members(1 + (range(2) - range(1))/range(3)), source=0)
+    do i = 1, size(members)
+      id = range(1) + (i - 1)*range(3)
+      members(i) = table%find(id)
+      if (members(i) > 0) cycle
+      call this%fault_at(faults, line, 0, kind//' '//as_text(id)//' does not exist', &
+                         'a range in which every '//kind//' exists')
+      members = members(:i - 1)
+      return
+    end do
+  end subroutine generate
+
+  subroutine describe_surface(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'SURFACE'
+    spec%family = 'mesh'
+    spec%place = 'model'
+    spec%meaning = 'A surface made of faces of solid elements. S1 has the corners 1-2-3-4, S2 '// &
+                   '5-8-7-6, S3 1-5-6-2, S4 2-6-7-3, S5 3-7-8-4, S6 4-8-5-1.'
+    spec%example = '*SURFACE, NAME=UPSTREAM, TYPE=ELEMENT'//nl//'UPSTREAM_ELEMENTS, S3'
+    spec%fewest_lines = 1
+    allocate (spec%parameters, source=[ &
+              field('NAME', kind_word, 'name of the surface', is_required=.true.), &
+              field('TYPE', kind_choice, 'what it is made of', default='ELEMENT', &
+                    choices='ELEMENT')])
+    allocate (spec%columns, source=[ &
+              field('element', kind_reference, 'id of an element or name of an element set', &
+                    is_required=.true.), &
+              field('face', kind_choice, 'face of it', choices='S1 | S2 | S3 | S4 | S5 | S6', &
+                    is_required=.true.)])
+  end subroutine describe_surface
+
+  subroutine read_surface(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(surface) :: new
+    integer, allocatable :: members(:)
+    integer :: line, face, i, used, earlier
+    earlier = find_surface_name(model, this%word('NAME'))
+    if (earlier > 0) then
+      call this%fault_parameter(faults, 'NAME', "surface '"//this%text('NAME')// &
+                                "' is defined twice", 'a name that is used once', &
+                                first=model%cards(model%surface_origin(earlier)%card)%place())
+      return
+    end if
+    new%name = this%word('NAME')
+    allocate (new%element(64), new%face(64))
+    used = 0
+    do line = 1, this%num_lines
+      call elements_at(this, line, 1, model, faults, members)
+      face = index('S1S2S3S4S5S6', this%word_at(line, 2))/2 + 1
+      call check_faces(this, line, members, face, model, faults)
+      i = used
+      call append(new%element, used, members)
+      call append(new%face, i, spread(face, 1, size(members)))
+    end do
+    new%element = new%element(:used)
+    new%face = new%face(:used)
+    model%scene%surfaces = [model%scene%surfaces, new]
+    model%surface_origin = [model%surface_origin, model%here(0)]
+  end subroutine read_surface
+
+  !> A face must belong to a solid and must not have collapsed.
+  subroutine check_faces(this, line, members, face, model, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line
+    integer, intent(in) :: members(:) !< positions of elements
+    integer, intent(in) :: face !< 1..6
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i
+    associate (mesh => model%scene%mesh)
+      do i = 1, size(members)
+        if (mesh%element_type(members(i)) (1:4) /= 'C3D8') then
+          call this%fault_at(faults, line, 1, 'element '// &
+                             as_text(mesh%element_id(members(i)))//' is a '// &
+                             trim(mesh%element_type(members(i)))//', which has no faces', &
+                             'solid elements')
+          return
+        else if (count_corners(face_nodes(mesh, members(i), face)) < 3) then
+          call this%fault_at(faults, line, 2, 'face '//this%text_at(line, 2)//' of element '// &
+                             as_text(mesh%element_id(members(i)))//' has no area', &
+                             'a face that has not collapsed')
+          return
+        end if
+      end do
+    end associate
+  end subroutine check_faces
+end module keywords_sets

@@ -1,0 +1,214 @@
+!> *STEP, *END STEP and the procedures *STATIC, *DYNAMIC, *FREQUENCY.
+module keywords_step
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list, place
+  use finish_step, only: close_step, open_step
+  use keyword_spec, only: keyword, field, kind_flag, kind_integer, kind_real, kind_word
+  use kinds, only: rk
+  use model_draft, only: draft
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: describe_step, describe_end_step, describe_static, describe_dynamic, describe_frequency
+  public :: read_step, read_end_step, read_static, read_dynamic, read_frequency
+
+  character, parameter :: nl = new_line('a')
+  real(rk), parameter :: smallest_share = 1.0e-5_rk !< of the duration, as in Abaqus
+
+contains
+
+  subroutine describe_step(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'STEP'
+    spec%family = 'step'
+    spec%place = 'model'
+    spec%meaning = 'Opens a step. Loads, supports and requests for output stay from step to '// &
+                   'step until changed; envelopes are kept for the steps that ask for them. '// &
+                   'Lines of text may follow.'
+    spec%example = '*STEP, NAME=GRAVITY'//nl//'*STATIC'//nl//'..'//nl//'*END STEP'
+    spec%checks_own_data = .true.
+    allocate (spec%parameters, source=[ &
+              field('NAME', kind_word, 'name of the step', default='STEP-<number>'), &
+              field('INC', kind_integer, 'largest number of increments', default='100000')])
+    spec%parameters(2)%lowest = 1
+  end subroutine describe_step
+
+  subroutine read_step(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    if (model%is_in_step) then
+      call this%fault(faults, 'a step inside a step', '*END STEP before it', &
+                      first=model%cards(model%step_origin%card)%place())
+      return
+    end if
+    call open_step(model)
+    if (this%has('NAME')) model%now%name = this%word('NAME')
+    model%now%max_increments = this%integer('INC')
+  end subroutine read_step
+
+  subroutine describe_end_step(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'END STEP'
+    spec%family = 'step'
+    spec%place = 'step'
+    spec%meaning = 'Closes a step.'
+    spec%example = '*END STEP'
+    spec%most_lines = 0
+  end subroutine describe_end_step
+
+  subroutine read_end_step(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    if (len(model%now%procedure) == 0) then
+      call this%fault(faults, 'the step does nothing', '*STATIC, *DYNAMIC or *FREQUENCY in it')
+    end if
+    call close_step(model)
+  end subroutine read_end_step
+
+  subroutine describe_static(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'STATIC'
+    spec%family = 'step'
+    spec%place = 'step'
+    spec%meaning = 'Static analysis; loads ramp over the step. The increment grows and shrinks '// &
+                   'with the work of the iteration; a linear scene takes it as it is.'
+    spec%example = '*STATIC'//nl//'0.1, 1.'
+    spec%most_lines = 1
+    allocate (spec%parameters, source=[ &
+              field('DIRECT', kind_flag, 'increments of fixed size')])
+    allocate (spec%columns, source=[ &
+              field('first increment', kind_real, 'size of the first increment', 's', &
+                    'the duration'), &
+              field('duration', kind_real, 'time of the step', 's', '1'), &
+              field('smallest', kind_real, 'smallest increment', 's', '1e-5 of the duration'), &
+              field('largest', kind_real, 'largest increment', 's', 'the duration')])
+    call want_positive(spec)
+  end subroutine describe_static
+
+  subroutine want_positive(spec)
+    type(keyword), intent(inout) :: spec
+    spec%columns%lowest = 0.0_rk
+    spec%columns%excludes_lowest = .true.
+  end subroutine want_positive
+
+  subroutine read_static(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    call begin_procedure(this, 'STATIC', model, faults)
+    model%now%duration = 1.0_rk
+    if (is_given(this, 2)) model%now%duration = this%real_at(1, 2)
+    model%now%first_increment = model%now%duration
+    if (is_given(this, 1)) model%now%first_increment = this%real_at(1, 1)
+    model%now%largest_increment = model%now%duration
+    call read_limits(this, model, faults)
+  end subroutine read_static
+
+  subroutine describe_dynamic(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'DYNAMIC'
+    spec%family = 'step'
+    spec%place = 'step'
+    spec%meaning = 'Dynamic analysis by HHT; loads act at once. The first one starts from the '// &
+                   'last static state with the acceleration that balances it. ALPHA=0 is '// &
+                   'Newmark''s trapezoidal rule, which can feed energy into stiff joints.'
+    spec%example = '*DYNAMIC, ALPHA=-0.05'//nl//'0.01, 10.'
+    spec%fewest_lines = 1
+    spec%most_lines = 1
+    allocate (spec%parameters, source=[ &
+              field('DIRECT', kind_flag, 'increments of fixed size'), &
+              field('ALPHA', kind_real, 'numerical damping of HHT', default='-0.05', &
+                    lowest=-1.0_rk/3.0_rk, highest=0.0_rk)])
+    allocate (spec%columns, source=[ &
+              field('increment', kind_real, 'size of an increment', 's', is_required=.true.), &
+              field('duration', kind_real, 'time of the step', 's', is_required=.true.), &
+              field('smallest', kind_real, 'smallest increment after cuts', 's', &
+                    '1e-5 of the duration'), &
+              field('largest', kind_real, 'largest increment', 's', 'the increment')])
+    call want_positive(spec)
+  end subroutine describe_dynamic
+
+  subroutine read_dynamic(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    call begin_procedure(this, 'DYNAMIC', model, faults)
+    model%now%alpha = this%real('ALPHA')
+    model%now%first_increment = this%real_at(1, 1)
+    model%now%duration = this%real_at(1, 2)
+    model%now%largest_increment = model%now%first_increment
+    call read_limits(this, model, faults)
+  end subroutine read_dynamic
+
+  subroutine describe_frequency(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'FREQUENCY'
+    spec%family = 'step'
+    spec%place = 'step'
+    spec%meaning = 'Lowest frequencies and modes, with the mass of the water and closed joints.'
+    spec%example = '*FREQUENCY'//nl//'10'
+    spec%fewest_lines = 1
+    spec%most_lines = 1
+    allocate (spec%columns, source=[ &
+              field('modes', kind_integer, 'number of modes', is_required=.true., &
+                    lowest=1.0_rk)])
+  end subroutine describe_frequency
+
+  subroutine read_frequency(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    call begin_procedure(this, 'FREQUENCY', model, faults)
+    model%now%num_modes = this%integer_at(1, 1)
+    model%now%duration = 0.0_rk
+  end subroutine read_frequency
+
+  !> A step has one procedure.
+  subroutine begin_procedure(this, procedure, model, faults)
+    type(card), intent(in) :: this
+    character(*), intent(in) :: procedure
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(place) :: spot
+    if (len(model%now%procedure) > 0) then
+      call this%fault(faults, 'the step has a procedure already: *'//model%now%procedure, &
+                      'one procedure in a step')
+    end if
+    model%now%procedure = procedure
+    spot = this%place()
+    model%now%line = spot%line
+    model%now%is_direct = this%has('DIRECT')
+  end subroutine begin_procedure
+
+  !> The data line has something in that field.
+  pure logical function is_given(this, field)
+    type(card), intent(in) :: this
+    integer, intent(in) :: field
+    is_given = .false.
+    if (this%num_lines > 0) is_given = .not. this%is_empty_at(1, field)
+  end function is_given
+
+  !> Smallest and largest increment, and whether all sizes agree.
+  subroutine read_limits(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    associate (now => model%now)
+      now%smallest_increment = min(now%first_increment, smallest_share*now%duration)
+      if (is_given(this, 3)) now%smallest_increment = this%real_at(1, 3)
+      if (is_given(this, 4)) now%largest_increment = this%real_at(1, 4)
+      if (now%first_increment > now%duration) then
+        call this%fault_at(faults, 1, 1, 'the increment is longer than the step', &
+                           'at most the duration, '//as_text(now%duration)//' s')
+      else if (now%smallest_increment > now%first_increment) then
+        call this%fault_at(faults, 1, 3, 'the smallest increment is larger than the first', &
+                           'at most '//as_text(now%first_increment)//' s')
+      else if (now%largest_increment < now%first_increment) then
+        call this%fault_at(faults, 1, 4, 'the largest increment is smaller than the first', &
+                           'at least '//as_text(now%first_increment)//' s')
+      end if
+    end associate
+  end subroutine read_limits
+end module keywords_step

@@ -1,0 +1,107 @@
+!> The problem while the deck is read: what is known so far, and where it stood.
+!>
+!> Handlers of keywords fill it one card after the other; `finish_model` turns it into the problem.
+module model_draft
+  use applied_load, only: load, load_slot
+  use deck_card, only: card
+  use dof_tables, only: dof_table
+  use id_map, only: position_table
+  use kinds, only: rk
+  use load_books, only: load_book
+  use problem_definition, only: problem
+  use set_lists, only: set_list
+  use step_plan, only: step
+  implicit none
+  private
+  public :: draft, add_load, origin, section_request, law_request, joint_request
+
+  !> Where something stood: a card of the deck and one of its data lines (0: the keyword itself).
+  type :: origin
+    integer :: card = 0, line = 0
+  end type origin
+
+  !> *SOLID SECTION.
+  type :: section_request
+    character(:), allocatable :: material !< upper case
+    integer, allocatable :: elements(:) !< positions
+    type(origin) :: spot
+  end type section_request
+
+  !> *JOINT LAW; stiffnesses below zero are made from the thickness when the joint is built.
+  type :: law_request
+    character(:), allocatable :: name !< upper case
+    real(rk) :: kn = -1.0_rk, kt = -1.0_rk !< [Pa/m]
+    real(rk) :: strength = 0.0_rk, friction = 0.0_rk, cohesion = 0.0_rk !< [Pa], -, [Pa]
+    real(rk) :: thickness = 0.02_rk, gap = 0.0_rk !< [m]
+    type(origin) :: spot
+  end type law_request
+
+  !> *JOINT.
+  type :: joint_request
+    character(:), allocatable :: name, law !< upper case
+    integer, allocatable :: elements(:) !< positions of JOINT8 elements
+    type(origin) :: spot
+  end type joint_request
+
+  type :: draft
+    type(card), allocatable :: cards(:) !< the whole deck
+    type(problem) :: scene
+    type(position_table) :: node_position, element_position !< by the user's ids
+    type(origin), allocatable :: node_origin(:), element_origin(:)
+    type(set_list) :: node_sets, element_sets
+    type(origin), allocatable :: surface_origin(:), material_origin(:)
+    type(section_request), allocatable :: sections(:)
+    type(law_request), allocatable :: laws(:)
+    type(joint_request), allocatable :: joints(:)
+    integer, allocatable :: joint_of_element(:) !< position in `joints`, 0 for none
+    character(:), allocatable :: mass_kind !< MASS of *SOLID SECTION once it is given
+    integer :: num_loads = 0 !< in use of scene%loads, which grows by doubling
+    type(load_book) :: loads_at_work
+    type(dof_table) :: supports, point_forces
+    ! The card being read.
+    integer :: current = 0 !< its position in `cards`
+    logical :: is_in_step = .false.
+    ! The step being read.
+    type(step) :: now
+    type(origin) :: step_origin
+    real(rk) :: total_time = 0.0_rk !< at the start of the step [s]
+    logical :: has_new_output = .false. !< *NODE FILE and its like, given in this step
+    integer :: output_frequency = 1 !< of the last *OUTPUT
+    logical :: prints_given(3) = .false. !< *NODE, *EL, *JOINT PRINT stand in this step
+  contains
+    procedure :: here
+  end type draft
+
+contains
+
+  !> The place of a data line of the card being read.
+  pure type(origin) function here(self, line)
+    class(draft), intent(in) :: self
+    integer, intent(in) :: line !< 0: the keyword itself
+    here%card = self%current
+    here%line = line
+  end function here
+
+  !> Puts a load into the problem's list, which grows by doubling; its position is `num_loads`.
+  subroutine add_load(model, item, name, family, target)
+    type(draft), intent(inout) :: model
+    class(load), allocatable, intent(inout) :: item !< moved into the list
+    character(*), intent(in) :: name !< for the log and the list of effects
+    character(*), intent(in) :: family !< its keyword
+    character(*), intent(in) :: target !< what it acts on
+    type(load_slot), allocatable :: longer(:)
+    integer :: i
+    item%name = name
+    item%family = family
+    item%target = target
+    if (model%num_loads == size(model%scene%loads)) then
+      allocate (longer(max(8, 2*model%num_loads)))
+      do i = 1, model%num_loads
+        call move_alloc(model%scene%loads(i)%item, longer(i)%item)
+      end do
+      call move_alloc(longer, model%scene%loads)
+    end if
+    model%num_loads = model%num_loads + 1
+    call move_alloc(item, model%scene%loads(model%num_loads)%item)
+  end subroutine add_load
+end module model_draft

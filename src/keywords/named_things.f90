@@ -1,0 +1,185 @@
+!> What a card refers to by id or name: nodes, elements, surfaces, amplitudes. Each asks for it at
+!> one place of the card and tells the fault there.
+module named_things
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use model_draft, only: draft
+  use nearest_words, only: nearest_word
+  use set_lists, only: set_list
+  implicit none
+  private
+  public :: nodes_at, elements_at, elements_of_set, nodes_of_set
+  public :: find_surface_name, find_surface_at, find_amplitude
+  public :: set_names, surface_names, longest_name
+
+  integer, parameter :: longest_name = 80 !< letters of a name that are compared for 'did you mean'
+
+contains
+
+  !> Positions of the node or of the nodes of the set named in a field; empty after a fault.
+  subroutine nodes_at(this, line, field, model, faults, members)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line, field
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable, intent(out) :: members(:)
+    integer :: found
+    if (this%is_integer_at(line, field)) then
+      found = model%node_position%find(this%integer_at(line, field))
+      if (found == 0) then
+        call this%fault_at(faults, line, field, 'node '//this%text_at(line, field)// &
+                           ' does not exist', 'a node of the model')
+      end if
+    else
+      found = model%node_sets%find(this%word_at(line, field))
+      if (found > 0) then
+        members = model%node_sets%sets(found)%members
+        return
+      end if
+      call fault_unknown_set(this, line, field, 'node', model%node_sets, faults)
+    end if
+    members = pack([found], [found > 0])
+  end subroutine nodes_at
+
+  !> Positions of the element or of the elements of the set named in a field; empty after a fault.
+  subroutine elements_at(this, line, field, model, faults, members)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line, field
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable, intent(out) :: members(:)
+    integer :: found
+    if (this%is_integer_at(line, field)) then
+      found = model%element_position%find(this%integer_at(line, field))
+      if (found == 0) then
+        call this%fault_at(faults, line, field, 'element '//this%text_at(line, field)// &
+                           ' does not exist', 'an element of the model')
+      end if
+    else
+      found = model%element_sets%find(this%word_at(line, field))
+      if (found > 0) then
+        members = model%element_sets%sets(found)%members
+        return
+      end if
+      call fault_unknown_set(this, line, field, 'element', model%element_sets, faults)
+    end if
+    members = pack([found], [found > 0])
+  end subroutine elements_at
+
+  subroutine fault_unknown_set(this, line, field, kind, sets, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line, field
+    character(*), intent(in) :: kind !< 'node' or 'element'
+    type(set_list), intent(in) :: sets
+    type(diagnostic_list), intent(inout) :: faults
+    call this%fault_at(faults, line, field, &
+                       'there is no '//kind//" set '"//this%text_at(line, field)//"' so far", &
+                       'the id of a '//kind//' or a '//kind//' set defined above', &
+                       nearest_word(this%word_at(line, field), set_names(sets)))
+  end subroutine fault_unknown_set
+
+  !> Elements of the set that a parameter names; empty after a fault.
+  subroutine elements_of_set(this, parameter, model, faults, members)
+    type(card), intent(in) :: this
+    character(*), intent(in) :: parameter !< 'ELSET'
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable, intent(out) :: members(:)
+    call members_of_set(this, parameter, 'element', model%element_sets, faults, members)
+  end subroutine elements_of_set
+
+  !> Nodes of the set that a parameter names; empty after a fault.
+  subroutine nodes_of_set(this, parameter, model, faults, members)
+    type(card), intent(in) :: this
+    character(*), intent(in) :: parameter !< 'NSET'
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable, intent(out) :: members(:)
+    call members_of_set(this, parameter, 'node', model%node_sets, faults, members)
+  end subroutine nodes_of_set
+
+  subroutine members_of_set(this, parameter, kind, sets, faults, members)
+    type(card), intent(in) :: this
+    character(*), intent(in) :: parameter, kind
+    type(set_list), intent(in) :: sets
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable, intent(out) :: members(:)
+    integer :: found
+    allocate (members(0))
+    found = sets%find(this%word(parameter))
+    if (found > 0) then
+      members = sets%sets(found)%members
+    else
+      call this%fault_parameter(faults, parameter, 'there is no '//kind//" set '"// &
+                                this%text(parameter)//"' so far", &
+                                'a '//kind//' set defined above', &
+                                nearest_word(this%word(parameter), set_names(sets)))
+    end if
+  end subroutine members_of_set
+
+  !> Position of the surface of that name, 0 when there is none so far.
+  pure integer function find_surface_name(model, name) result(found)
+    type(draft), intent(in) :: model
+    character(*), intent(in) :: name !< upper case
+    integer :: i
+    found = 0
+    do i = 1, size(model%scene%surfaces)
+      if (model%scene%surfaces(i)%name == name) found = i
+    end do
+  end function find_surface_name
+
+  !> Position of the surface named in the first field; 0 after a fault.
+  subroutine find_surface_at(this, line, model, faults, found)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, intent(out) :: found
+    found = find_surface_name(model, this%word_at(line, 1))
+    if (found > 0) return
+    call this%fault_at(faults, line, 1, "there is no surface '"//this%text_at(line, 1)// &
+                       "' so far", 'a surface defined above', &
+                       nearest_word(this%word_at(line, 1), surface_names(model)))
+  end subroutine find_surface_at
+
+  !> Names of surfaces, to find the nearest among them.
+  pure function surface_names(model) result(names)
+    type(draft), intent(in) :: model
+    character(longest_name) :: names(size(model%scene%surfaces))
+    integer :: i
+    do i = 1, size(names)
+      names(i) = model%scene%surfaces(i)%name
+    end do
+  end function surface_names
+
+  !> Position of the amplitude that AMPLITUDE names; 0 without the parameter or after a fault.
+  subroutine find_amplitude(this, model, faults, found)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, intent(out) :: found
+    character(longest_name) :: known(size(model%scene%amplitudes))
+    integer :: i
+    found = 0
+    if (.not. this%has('AMPLITUDE')) return
+    do i = 1, size(model%scene%amplitudes)
+      if (model%scene%amplitudes(i)%name == this%word('AMPLITUDE')) found = i
+      known(i) = model%scene%amplitudes(i)%name
+    end do
+    if (found == 0) then
+      call this%fault_parameter(faults, 'AMPLITUDE', "there is no amplitude '"// &
+                                this%text('AMPLITUDE')//"'", 'the name of an *AMPLITUDE', &
+                                nearest_word(this%word('AMPLITUDE'), known))
+    end if
+  end subroutine find_amplitude
+
+  !> Names of sets, to find the nearest among them.
+  pure function set_names(sets) result(names)
+    type(set_list), intent(in) :: sets
+    character(longest_name) :: names(sets%num_sets)
+    integer :: i
+    do i = 1, sets%num_sets
+      names(i) = sets%sets(i)%name
+    end do
+  end function set_names
+end module named_things

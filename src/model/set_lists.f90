@@ -1,0 +1,72 @@
+!> A growing list of named sets; what is added to a name that exists joins its members.
+module set_lists
+  use mesh_sets, only: named_set
+  use sorted_lists, only: sorted_unique
+  implicit none
+  private
+  public :: set_list
+
+  type :: set_list
+    integer :: num_sets = 0
+    type(named_set), allocatable :: sets(:) !< the first `num_sets` are in use
+  contains
+    procedure :: find
+    procedure :: add
+    procedure :: trimmed
+  end type set_list
+
+contains
+
+  !> Position of a set, 0 when there is none of that name.
+  pure integer function find(self, name) result(found)
+    class(set_list), intent(in) :: self
+    character(*), intent(in) :: name !< upper case
+    integer :: i
+    found = 0
+    do i = 1, self%num_sets
+      if (self%sets(i)%name /= name) cycle
+      found = i
+      return
+    end do
+  end function find
+
+  !> Makes a set of some positions, or adds them to the set of that name.
+  pure subroutine add(self, name, members)
+    class(set_list), intent(inout) :: self
+    character(*), intent(in) :: name !< upper case
+    integer, intent(in) :: members(:) !< positions in any order
+    integer :: i
+    i = self%find(name)
+    if (i > 0) then
+      self%sets(i)%members = sorted_unique([self%sets(i)%members, members])
+      return
+    end if
+    call make_room(self)
+    self%num_sets = self%num_sets + 1
+    self%sets(self%num_sets)%name = name
+    self%sets(self%num_sets)%members = sorted_unique(members)
+  end subroutine add
+
+  !> The sets in use.
+  pure function trimmed(self) result(sets)
+    class(set_list), intent(in) :: self
+    type(named_set), allocatable :: sets(:)
+    allocate (sets(self%num_sets))
+    if (self%num_sets > 0) sets = self%sets(:self%num_sets)
+  end function trimmed
+
+  !> Doubles the list when it is full; members are moved, not copied.
+  pure subroutine make_room(self)
+    type(set_list), intent(inout) :: self
+    type(named_set), allocatable :: longer(:)
+    integer :: i
+    if (.not. allocated(self%sets)) allocate (self%sets(8))
+    if (self%num_sets < size(self%sets)) return
+    allocate (longer(2*self%num_sets))
+    do i = 1, self%num_sets
+      call move_alloc(self%sets(i)%name, longer(i)%name)
+      call move_alloc(self%sets(i)%members, longer(i)%members)
+    end do
+    call move_alloc(longer, self%sets)
+  end subroutine make_room
+end module set_lists
