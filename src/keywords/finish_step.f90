@@ -1,7 +1,7 @@
 !> Opening and closing a step: what is carried over, and what a step at its end holds.
 module finish_step
   use kinds, only: rk
-  use load_point_forces, only: make_point_forces
+  use load_point, only: point_load
   use model_draft, only: draft, add_load
   use step_plan, only: field_request, print_request, step, step_fixity, step_load
   use write_text, only: as_text
@@ -113,15 +113,18 @@ contains
     real(rk), intent(in) :: force(:, :) !< (3, nodes) [N]
     real(rk), intent(in) :: start_factor, end_factor
     integer, intent(in) :: history !< amplitude, 0 for none
+    type(point_load) :: forces
     class(load), allocatable :: item
     logical, allocatable :: is_loaded(:)
-    integer, allocatable :: nodes(:)
     integer :: i
     is_loaded = any(abs(force) > 0.0_rk, dim=1)
     if (.not. any(is_loaded)) return
-    nodes = pack([(i, i=1, size(force, 2))], is_loaded)
-    call make_point_forces(nodes, force(:, nodes), item)
-    call add_load(model, item, 'point forces', 'CLOAD', 'step '//as_text(size(model%scene%steps) + 1))
+    forces%kind = 'point load'
+    forces%nodes = pack([(i, i=1, size(force, 2))], is_loaded)
+    forces%force = force(:, forces%nodes)
+    allocate (item, source=forces)
+    call add_load(model, item, 'point forces', 'CLOAD', &
+                  'step '//as_text(size(model%scene%steps) + 1))
     model%now%loads = [model%now%loads, &
                        step_load(model%num_loads, start_factor, end_factor, history)]
   end subroutine add_forces

@@ -1,4 +1,4 @@
-!> What the catalogue holds of a keyword: its specification and the procedure that understands it.
+!> The procedure that understands a card, and the list of keywords it belongs to.
 module keyword_handler
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
@@ -6,26 +6,67 @@ module keyword_handler
   use model_draft, only: draft
   implicit none
   private
-  public :: entry_of_catalogue, card_handler
+  public :: keyword_list, keyword_entry, card_handler, spec_maker
   public :: pass_nodes, pass_elements, pass_definitions, pass_rest
 
   !> The deck is gone through in passes, so that nodes, elements and definitions (materials,
   !> amplitudes, joint laws) may stand anywhere. Sets must stand above their use.
   integer, parameter :: pass_nodes = 1, pass_elements = 2, pass_definitions = 3, pass_rest = 4
 
-  type :: entry_of_catalogue
-    type(keyword) :: spec
+  !> How a keyword is handled.
+  type :: keyword_entry
     integer :: pass = pass_rest
     procedure(card_handler), pointer, nopass :: handle => null() !< null: not available
-  end type entry_of_catalogue
+  end type keyword_entry
+
+  !> All keywords; `specs(i)` and `entries(i)` belong together.
+  type :: keyword_list
+    integer :: num_keywords = 0
+    type(keyword), allocatable :: specs(:)
+    type(keyword_entry), allocatable :: entries(:)
+  contains
+    procedure :: add
+    procedure :: trim => trim_list
+  end type keyword_list
 
   abstract interface
     !> Understands a card that agrees with its specification.
     subroutine card_handler(this, model, faults)
       import :: card, draft, diagnostic_list
+      implicit none
       type(card), intent(in) :: this
       type(draft), intent(inout) :: model
       type(diagnostic_list), intent(inout) :: faults
     end subroutine card_handler
+
+    !> Writes down what a keyword takes.
+    subroutine spec_maker(spec)
+      import :: keyword
+      implicit none
+      type(keyword), intent(out) :: spec
+    end subroutine spec_maker
   end interface
+
+contains
+
+  !> Adds a keyword to the list.
+  subroutine add(self, describe, handle, pass)
+    class(keyword_list), intent(inout) :: self
+    procedure(spec_maker) :: describe
+    procedure(card_handler) :: handle
+    integer, intent(in) :: pass
+    type(keyword) :: spec
+    call describe(spec)
+    self%num_keywords = self%num_keywords + 1
+    self%specs(self%num_keywords) = spec
+    self%entries(self%num_keywords)%pass = pass
+    self%entries(self%num_keywords)%handle => handle
+  end subroutine add
+
+  !> Gives back the unused end of the list.
+  subroutine trim_list(self)
+    class(keyword_list), intent(inout) :: self
+    self%specs = self%specs(:self%num_keywords)
+    self%entries = self%entries(:self%num_keywords)
+  end subroutine trim_list
 end module keyword_handler

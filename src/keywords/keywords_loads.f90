@@ -7,8 +7,9 @@ module keywords_loads
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real, kind_reference, &
                           kind_word
   use kinds, only: rk
-  use load_gravity, only: make_gravity
-  use load_pressure, only: make_hydrostatic, make_pressure
+  use load_catalogue, only: face_of_word, faces_of_elements
+  use load_gravity, only: gravity_load
+  use load_pressure, only: pressure_load
   use model_draft, only: draft
   use named_things, only: elements_at, find_amplitude, find_surface_at, nodes_at
   use nearest_words, only: nearest_choice
@@ -19,7 +20,6 @@ module keywords_loads
   character, parameter :: nl = new_line('a')
   character(*), parameter :: labels = 'GRAV | P1 | P2 | P3 | P4 | P5 | P6 | HP1 | HP2 | HP3 | '// &
                              'HP4 | HP5 | HP6'
-  integer, parameter :: up = 3 !< the axis that HP measures heights along
 
 contains
 
@@ -146,6 +146,7 @@ contains
     integer, intent(in) :: line, elements(:), history
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
+    type(gravity_load) :: weight
     class(load), allocatable :: item
     real(rk) :: direction(3)
     direction = [this%real_at(line, 4), this%real_at(line, 5), this%real_at(line, 6)]
@@ -155,7 +156,10 @@ contains
       return
     end if
     direction = direction/norm2(direction)
-    call make_gravity(elements, direction, item)
+    weight%kind = 'gravity'
+    weight%elements = elements
+    weight%acceleration = direction
+    allocate (item, source=weight)
     call put_load(model, item, 'gravity '//this%word_at(line, 1), 'DLOAD', &
                   this%word_at(line, 1)//' GRAV', pattern_of(direction), &
                   this%real_at(line, 3), history)
@@ -166,28 +170,31 @@ contains
     integer, intent(in) :: line, elements(:), history
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
+    type(pressure_load) :: push
     class(load), allocatable :: item
     character(:), allocatable :: label
-    integer :: face(size(elements))
     real(rk) :: heights(2)
     label = this%word_at(line, 2)
-    face = index('123456', label(len(label):))
     if (any(model%scene%mesh%element_type(elements) (1:4) /= 'C3D8')) then
       call this%fault_at(faults, line, 1, 'pressure on an element that is no solid', &
                          'solid elements')
       return
     end if
+    push%kind = 'pressure'
+    push%faces = faces_of_elements(elements, face_of_word(label))
+    push%pressure = 1.0_rk
+    push%is_hydrostatic = label(1:1) == 'H'
     heights = 0.0_rk
-    if (label(1:1) == 'H') then
+    if (push%is_hydrostatic) then
       heights = [this%real_at(line, 4), this%real_at(line, 5)]
       if (abs(heights(1) - heights(2)) <= 0.0_rk) then
         call this%fault_at(faults, line, 5, 'z_ref is z_top', 'two heights that differ')
         return
       end if
-      call make_hydrostatic(elements, face, up, heights(1), heights(2), item)
-    else
-      call make_pressure(elements, face, item)
+      push%top = heights(1)
+      push%reference = heights(2)
     end if
+    allocate (item, source=push)
     call put_load(model, item, 'pressure '//this%word_at(line, 1)//' '//label, 'DLOAD', &
                   this%word_at(line, 1)//' '//label, pattern_of(heights), &
                   this%real_at(line, 3), history)
@@ -216,16 +223,18 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
+    type(pressure_load) :: push
     class(load), allocatable :: item
     integer :: line, history, found
+    push%kind = 'pressure'
+    push%pressure = 1.0_rk
     call find_amplitude(this, model, faults, history)
     if (this%word('OP') == 'NEW') call model%loads_at_work%clear_old('DSLOAD')
     do line = 1, this%num_lines
       call find_surface_at(this, line, model, faults, found)
       if (found == 0) cycle
-      associate (where_it_acts => model%scene%surfaces(found))
-        call make_pressure(where_it_acts%element, where_it_acts%face, item)
-      end associate
+      push%faces = model%scene%surfaces(found)
+      allocate (item, source=push)
       call put_load(model, item, 'pressure '//this%word_at(line, 1), 'DSLOAD', &
                     this%word_at(line, 1), '', this%real_at(line, 3), history)
     end do

@@ -6,8 +6,8 @@ module keywords_reservoir
   use enter_load, only: put_load
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real, kind_word
   use kinds, only: rk
-  use load_base_motion, only: make_base_motion
-  use load_reservoir, only: make_reservoir, reservoir
+  use load_base_motion, only: base_motion
+  use load_reservoir, only: reservoir_load
   use mesh_faces, only: face_nodes
   use model_draft, only: draft
   use named_things, only: find_amplitude, find_surface_name, surface_names
@@ -57,7 +57,7 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    type(reservoir) :: water
+    type(reservoir_load) :: lake
     class(load), allocatable :: item
     integer :: found
     found = find_surface_name(model, this%word('SURFACE'))
@@ -72,22 +72,24 @@ contains
                                 'a level above BED, '//this%text('BED')//' m')
       return
     end if
-    water%level = this%real('LEVEL')
-    water%bed = this%real('BED')
-    water%up = this%integer('UP')
-    water%density = this%real('DENSITY')
-    water%gravity = this%real('GRAVITY')
-    water%has_pressure = this%word('HYDROSTATIC') == 'YES'
-    water%has_mass = this%word('ADDED MASS') == 'WESTERGAARD'
-    water%is_normal = this%word('DIRECTION') == 'NORMAL'
-    if (lowest_height(model, found, water%up) >= water%level) then
+    lake%kind = 'reservoir'
+    lake%faces = model%scene%surfaces(found)
+    lake%water%level = this%real('LEVEL')
+    lake%water%bed = this%real('BED')
+    lake%water%up = this%integer('UP')
+    lake%density = this%real('DENSITY')
+    lake%gravity = this%real('GRAVITY')
+    lake%is_hydrostatic = this%word('HYDROSTATIC') == 'YES'
+    lake%has_added_mass = this%word('ADDED MASS') == 'WESTERGAARD'
+    lake%is_diagonal = this%word('DIRECTION') == 'DIAGONAL'
+    if (lowest_height(model, found, lake%water%up) >= lake%water%level) then
       call this%fault_parameter(faults, 'SURFACE', 'no face of the surface is wetted', &
                                 'a surface that reaches below the level, '// &
                                 this%text('LEVEL')//' m')
       return
     end if
     if (model%scene%upstream_surface == 0) model%scene%upstream_surface = found
-    call make_reservoir(water, model%scene%surfaces(found), item)
+    allocate (item, source=lake)
     call put_load(model, item, 'reservoir '//this%word('NAME'), 'RESERVOIR', this%word('NAME'), &
                   pattern_of_card(this), 1.0_rk, 0)
   end subroutine read_reservoir
@@ -141,11 +143,14 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
+    type(base_motion) :: shaking
     class(load), allocatable :: item
     integer :: history
     call find_amplitude(this, model, faults, history)
     if (history == 0) return
-    call make_base_motion(this%integer('DOF'), item)
+    shaking%kind = 'base motion'
+    shaking%dof = this%integer('DOF')
+    allocate (item, source=shaking)
     call put_load(model, item, 'base motion '//as_text(this%integer('DOF')), 'BASE MOTION', &
                   as_text(this%integer('DOF')), '', this%real('SCALE'), history)
   end subroutine read_base_motion

@@ -1,0 +1,99 @@
+!> The single list of keywords: what each takes, and the procedure that understands it.
+module keyword_catalogue
+  use keyword_handler, only: keyword_list, pass_definitions, pass_elements, pass_nodes, pass_rest
+  use keywords_amplitude, only: describe_amplitude, read_amplitude
+  use keywords_boundary, only: describe_boundary, read_boundary
+  use keywords_controls, only: describe_controls, describe_step_damping, read_controls, &
+                               read_step_damping
+  use keywords_elements, only: describe_element, read_elements
+  use keywords_initial, only: describe_initial_conditions, read_initial_conditions
+  use keywords_joint, only: describe_joint, describe_joint_law, read_joint, read_joint_law
+  use keywords_later, only: add_later_keywords
+  use keywords_loads, only: describe_cload, describe_dload, describe_dsload, read_cload, &
+                            read_dload, read_dsload
+  use keywords_material, only: describe_density, describe_elastic, describe_material, &
+                               describe_material_damping, read_density, read_elastic, &
+                               read_material, read_material_damping
+  use keywords_nodes, only: describe_heading, describe_node, read_heading, read_nodes
+  use keywords_output, only: describe_el_file, describe_element_output, describe_envelope, &
+                             describe_node_file, describe_node_output, describe_output, &
+                             describe_preprint, read_envelope, read_fields, read_output
+  use keywords_print, only: describe_el_print, describe_joint_print, describe_node_print, &
+                            read_el_print, read_joint_print, read_node_print
+  use keywords_reservoir, only: describe_base_motion, describe_reservoir, read_base_motion, &
+                                read_reservoir
+  use keywords_section, only: describe_solid_section, read_solid_section
+  use keywords_sets, only: describe_elset, describe_nset, describe_surface, read_elset, &
+                           read_nset, read_surface
+  use keywords_step, only: describe_dynamic, describe_end_step, describe_frequency, &
+                           describe_static, describe_step, read_dynamic, read_end_step, &
+                           read_frequency, read_static, read_step
+  implicit none
+  private
+  public :: list_keywords
+
+  integer, parameter :: most_keywords = 100
+
+contains
+
+  !> Makes the list, in the order of the reference.
+  subroutine list_keywords(list)
+    type(keyword_list), intent(out) :: list
+    allocate (list%specs(most_keywords), list%entries(most_keywords))
+    call add_model_keywords(list)
+    call add_step_keywords(list)
+    call add_output_keywords(list)
+    call add_later_keywords(list)
+    call list%trim()
+  end subroutine list_keywords
+
+  subroutine add_model_keywords(list)
+    type(keyword_list), intent(inout) :: list
+    call list%add(describe_heading, read_heading, pass_rest)
+    call list%add(describe_node, read_nodes, pass_nodes)
+    call list%add(describe_element, read_elements, pass_elements)
+    call list%add(describe_nset, read_nset, pass_rest)
+    call list%add(describe_elset, read_elset, pass_rest)
+    call list%add(describe_surface, read_surface, pass_rest)
+    call list%add(describe_material, read_material, pass_definitions)
+    call list%add(describe_density, read_density, pass_definitions)
+    call list%add(describe_elastic, read_elastic, pass_definitions)
+    call list%add(describe_material_damping, read_material_damping, pass_definitions)
+    call list%add(describe_solid_section, read_solid_section, pass_rest)
+    call list%add(describe_joint_law, read_joint_law, pass_definitions)
+    call list%add(describe_joint, read_joint, pass_rest)
+    call list%add(describe_amplitude, read_amplitude, pass_definitions)
+    call list%add(describe_initial_conditions, read_initial_conditions, pass_rest)
+  end subroutine add_model_keywords
+
+  subroutine add_step_keywords(list)
+    type(keyword_list), intent(inout) :: list
+    call list%add(describe_step, read_step, pass_rest)
+    call list%add(describe_end_step, read_end_step, pass_rest)
+    call list%add(describe_static, read_static, pass_rest)
+    call list%add(describe_dynamic, read_dynamic, pass_rest)
+    call list%add(describe_frequency, read_frequency, pass_rest)
+    call list%add(describe_controls, read_controls, pass_rest)
+    call list%add(describe_step_damping, read_step_damping, pass_rest)
+    call list%add(describe_boundary, read_boundary, pass_rest)
+    call list%add(describe_cload, read_cload, pass_rest)
+    call list%add(describe_dload, read_dload, pass_rest)
+    call list%add(describe_dsload, read_dsload, pass_rest)
+    call list%add(describe_reservoir, read_reservoir, pass_rest)
+    call list%add(describe_base_motion, read_base_motion, pass_rest)
+  end subroutine add_step_keywords
+
+  subroutine add_output_keywords(list)
+    type(keyword_list), intent(inout) :: list
+    call list%add(describe_node_print, read_node_print, pass_rest)
+    call list%add(describe_el_print, read_el_print, pass_rest)
+    call list%add(describe_joint_print, read_joint_print, pass_rest)
+    call list%add(describe_node_file, read_fields, pass_rest)
+    call list%add(describe_el_file, read_fields, pass_rest)
+    call list%add(describe_output, read_output, pass_rest)
+    call list%add(describe_node_output, read_fields, pass_rest)
+    call list%add(describe_element_output, read_fields, pass_rest)
+    call list%add(describe_envelope, read_envelope, pass_rest)
+    call list%add(describe_preprint, read_output, pass_rest)
+  end subroutine add_output_keywords
+end module keyword_catalogue

@@ -1,0 +1,117 @@
+!> Keywords that are known and not available yet: each is an error at its place in the deck.
+module keywords_later
+  use keyword_handler, only: keyword_list
+  use keyword_spec, only: field, kind_choice, kind_flag, kind_integer, kind_real, kind_word, &
+                          later
+  implicit none
+  private
+  public :: add_later_keywords
+
+  character(*), parameter :: damage_place = 'material'
+
+contains
+
+  subroutine add_later_keywords(list)
+    type(keyword_list), intent(inout) :: list
+    call add_concrete(list)
+    call add_user_material(list)
+    call add_coupling(list)
+    call add_later(list, 'RESTART', 'output', 'anywhere', 'Writes a checkpoint every so many '// &
+                   'increments.')
+    call add_parameter(list, field('WRITE', kind_flag, 'writes checkpoints'))
+    call add_parameter(list, field('FREQUENCY', kind_integer, 'every so many increments', &
+                                   default='1'))
+    call add_foreign(list)
+  end subroutine add_later_keywords
+
+  subroutine add_concrete(list)
+    type(keyword_list), intent(inout) :: list
+    call add_later(list, 'CONCRETE DAMAGED PLASTICITY', 'material', damage_place, &
+                   'Plastic-damage concrete: dilation angle [deg], offset, f_b0/f_c0, K_c, '// &
+                   'viscosity.')
+    call add_parameter(list, field('RECOVERY', kind_choice, 'weight of tension', &
+                                   default='LEE-FENVES', choices='LEE-FENVES | SIGN'))
+    call add_later(list, 'CONCRETE COMPRESSION HARDENING', 'material', damage_place, &
+                   'Table of stress [Pa] and inelastic strain.')
+    call add_later(list, 'CONCRETE TENSION STIFFENING', 'material', damage_place, &
+                   'Table of stress [Pa] against cracking strain or opening [m], or f_t, G_f.')
+    call add_parameter(list, field('TYPE', kind_choice, 'what the table is against', &
+                                   default='STRAIN', choices='STRAIN | DISPLACEMENT | GFI'))
+    call add_later(list, 'CONCRETE COMPRESSION DAMAGE', 'material', damage_place, &
+                   'Table of damage and inelastic strain.')
+    call add_parameter(list, field('TENSION RECOVERY', kind_real, 'w_t', default='0'))
+    call add_later(list, 'CONCRETE TENSION DAMAGE', 'material', damage_place, &
+                   'Table of damage and cracking strain or opening [m].')
+    call add_parameter(list, field('TYPE', kind_choice, 'what the table is against', &
+                                   default='STRAIN', choices='STRAIN | DISPLACEMENT'))
+    call add_parameter(list, field('COMPRESSION RECOVERY', kind_real, 'w_c', default='1'))
+  end subroutine add_concrete
+
+  subroutine add_user_material(list)
+    type(keyword_list), intent(inout) :: list
+    call add_later(list, 'USER MATERIAL', 'material', damage_place, &
+                   'A material law of the user''s own (UMAT): its constants, 8 in a line.')
+    call add_parameter(list, field('CONSTANTS', kind_integer, 'number of constants'))
+    call add_parameter(list, field('UNSYMM', kind_flag, 'the tangent is unsymmetric'))
+    call add_later(list, 'DEPVAR', 'material', damage_place, &
+                   'Number of state variables of a user material.')
+  end subroutine add_user_material
+
+  subroutine add_coupling(list)
+    type(keyword_list), intent(inout) :: list
+    call add_later(list, 'INTERFACE', 'joint', 'model', 'Couples interface quadrilaterals '// &
+                   'to a surface of another mesh.')
+    call add_parameter(list, field('NAME', kind_word, 'name of the interface'))
+    call add_parameter(list, field('ELSET', kind_word, 'its IFACE4 elements'))
+    call add_parameter(list, field('SURFACE', kind_word, 'the surface'))
+    call add_parameter(list, field('STIFFNESS', kind_real, 'of the coupling', 'Pa/m'))
+    call add_later(list, 'TIE', 'joint', 'model', 'Ties two surfaces whose meshes may differ.')
+    call add_parameter(list, field('NAME', kind_word, 'name of the tie'))
+    call add_parameter(list, field('STIFFNESS', kind_real, 'of the coupling', 'Pa/m'))
+  end subroutine add_coupling
+
+  !> Keywords of Abaqus and CalculiX.
+  subroutine add_foreign(list)
+    type(keyword_list), intent(inout) :: list
+    character(*), parameter :: family = 'other programs'
+    call add_later(list, 'PART', family, 'model', 'Opens a part.')
+    call add_later(list, 'END PART', family, 'model', 'Closes a part.')
+    call add_later(list, 'ASSEMBLY', family, 'model', 'Opens the assembly of parts.')
+    call add_later(list, 'END ASSEMBLY', family, 'model', 'Closes the assembly of parts.')
+    call add_later(list, 'INSTANCE', family, 'model', 'Places a part in the assembly.')
+    call add_later(list, 'END INSTANCE', family, 'model', 'Closes an instance.')
+    call add_later(list, 'EQUATION', family, 'model', 'Linear equations between displacements.')
+    call add_later(list, 'CONTACT PAIR', family, 'model', 'Contact of two surfaces, as a joint.')
+    call add_later(list, 'SURFACE INTERACTION', family, 'model', 'Names a law of contact.')
+    call add_later(list, 'SURFACE BEHAVIOR', family, 'model', 'Normal law of contact.')
+    call add_later(list, 'FRICTION', family, 'model', 'Friction of contact.')
+    call add_later(list, 'PLASTIC', family, 'material', 'Metal plasticity.')
+    call add_later(list, 'EXPANSION', family, 'material', 'Thermal expansion.')
+    call add_later(list, 'TEMPERATURE', family, 'step', 'Temperatures of nodes [K].')
+  end subroutine add_foreign
+
+  !> Adds a keyword without a handler.
+  subroutine add_later(list, name, family, place, meaning)
+    type(keyword_list), intent(inout) :: list
+    character(*), intent(in) :: name, family, place, meaning
+    list%num_keywords = list%num_keywords + 1
+    associate (spec => list%specs(list%num_keywords))
+      spec%name = name
+      spec%family = family
+      spec%place = place
+      spec%meaning = meaning
+      spec%example = ''
+      spec%status = later
+      allocate (spec%parameters(0), spec%columns(0))
+    end associate
+  end subroutine add_later
+
+  !> Adds a parameter to the keyword added last.
+  subroutine add_parameter(list, new)
+    type(keyword_list), intent(inout) :: list
+    type(field), intent(in) :: new
+    associate (spec => list%specs(list%num_keywords))
+      spec%parameters = [spec%parameters, new]
+    end associate
+  end subroutine add_parameter
+end module keywords_later
