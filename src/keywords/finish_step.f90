@@ -20,6 +20,7 @@ contains
     num = size(model%scene%steps)
     new%name = 'STEP-'//as_text(num + 1)
     new%procedure = ''
+    model%current_procedure = model%current
     allocate (new%prints(0), new%outputs(0), new%envelope(0))
     if (num > 0) then
       associate (before => model%scene%steps(num))
@@ -65,6 +66,7 @@ contains
     end do
     longer(num + 1) = model%now
     call move_alloc(longer, model%scene%steps)
+    model%procedure_card = [model%procedure_card, model%current_procedure]
     model%is_in_step = .false.
   end subroutine close_step
 

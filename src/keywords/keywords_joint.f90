@@ -2,7 +2,7 @@
 module keywords_joint
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
-  use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_reference, kind_word
+  use keyword_spec, only: keyword, field, kind_real, kind_word
   use kinds, only: rk
   use model_draft, only: draft, joint_request, law_request
   use named_things, only: elements_of_set
@@ -48,21 +48,21 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(law_request) :: new
     integer :: i
-    new%name = this%word('NAME')
+    new%law%name = this%word('NAME')
     do i = 1, size(model%laws)
-      if (model%laws(i)%name /= new%name) cycle
+      if (model%laws(i)%law%name /= new%law%name) cycle
       call this%fault_parameter(faults, 'NAME', "joint law '"//this%text('NAME')// &
                                 "' is defined twice", 'a name that is used once', &
                                 first=model%cards(model%laws(i)%spot%card)%place())
     end do
-    if (this%has('KN')) new%kn = this%real('KN')
-    if (this%has('KT')) new%kt = this%real('KT')
-    new%strength = this%real('TENSILE STRENGTH')
-    new%friction = this%real('FRICTION')
-    new%cohesion = this%real('COHESION')
-    new%thickness = this%real('THICKNESS')
-    new%gap = this%real('GAP')
-    if (new%gap > 0.0_rk .and. new%strength > 0.0_rk) then
+    new%law%normal_stiffness = this%real('KN')
+    new%law%tangent_stiffness = this%real('KT')
+    new%law%strength = this%real('TENSILE STRENGTH')
+    new%law%friction = this%real('FRICTION')
+    new%law%cohesion = this%real('COHESION')
+    new%law%thickness = this%real('THICKNESS')
+    new%law%gap = this%real('GAP')
+    if (new%law%gap > 0.0_rk .and. new%law%strength > 0.0_rk) then
       call this%fault_parameter(faults, 'TENSILE STRENGTH', 'a joint with a GAP has no strength', &
                                 'GAP or TENSILE STRENGTH, not both')
     end if

@@ -179,6 +179,7 @@ contains
     model%now%procedure = procedure
     spot = this%place()
     model%now%line = spot%line
+    model%current_procedure = model%current
     model%now%is_direct = this%has('DIRECT')
   end subroutine begin_procedure
 

@@ -5,6 +5,7 @@ module model_draft
   use applied_load, only: load, load_slot
   use deck_card, only: card
   use dof_tables, only: dof_table
+  use joint_contraction, only: contraction_law
   use id_map, only: position_table
   use kinds, only: rk
   use load_books, only: load_book
@@ -27,12 +28,9 @@ module model_draft
     type(origin) :: spot
   end type section_request
 
-  !> *JOINT LAW; stiffnesses below zero are made from the thickness when the joint is built.
+  !> *JOINT LAW; stiffnesses that are zero are completed when the joint is built.
   type :: law_request
-    character(:), allocatable :: name !< upper case
-    real(rk) :: kn = -1.0_rk, kt = -1.0_rk !< [Pa/m]
-    real(rk) :: strength = 0.0_rk, friction = 0.0_rk, cohesion = 0.0_rk !< [Pa], -, [Pa]
-    real(rk) :: thickness = 0.02_rk, gap = 0.0_rk !< [m]
+    type(contraction_law) :: law
     type(origin) :: spot
   end type law_request
 
@@ -64,6 +62,8 @@ module model_draft
     ! The step being read.
     type(step) :: now
     type(origin) :: step_origin
+    integer, allocatable :: procedure_card(:) !< card of the procedure of each step
+    integer :: current_procedure = 0 !< card of the procedure of the step being read
     real(rk) :: total_time = 0.0_rk !< at the start of the step [s]
     logical :: has_new_output = .false. !< *NODE FILE and its like, given in this step
     integer :: output_frequency = 1 !< of the last *OUTPUT

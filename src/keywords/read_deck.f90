@@ -1,0 +1,156 @@
+!> From a deck to the problem, in passes over its cards; all faults are collected.
+module read_deck
+  use card_check, only: check_card, match_card
+  use deck_lexer, only: read_cards
+  use diagnostics, only: diagnostic_list
+  use finish_model, only: complete_model
+  use keyword_catalogue, only: list_keywords
+  use keyword_handler, only: keyword_list, pass_elements, pass_nodes, pass_rest
+  use keywords_elements, only: make_room_for_elements, trim_mesh
+  use keywords_nodes, only: make_room_for_nodes
+  use model_draft, only: draft
+  use problem_definition, only: problem
+  use verify_model, only: verify
+  implicit none
+  private
+  public :: read_problem
+
+contains
+
+  !> Reads and verifies a deck. The problem is fit to be solved when `faults` holds no error.
+  subroutine read_problem(path, scene, faults)
+    character(*), intent(in) :: path !< of the deck
+    type(problem), intent(out) :: scene
+    type(diagnostic_list), intent(inout) :: faults
+    type(keyword_list) :: list
+    type(draft) :: model
+    integer, allocatable :: keyword_of_card(:)
+    call list_keywords(list)
+    call read_cards(path, list%specs, model%cards, faults)
+    call open_draft(path, model)
+    call match_cards(list, model, keyword_of_card, faults)
+    call handle_cards(list, keyword_of_card, model, faults)
+    call complete_model(model, faults)
+    if (.not. faults%has_errors()) call verify(model, faults)
+    scene = model%scene
+  end subroutine read_problem
+
+  subroutine open_draft(path, model)
+    character(*), intent(in) :: path
+    type(draft), intent(inout) :: model
+    associate (scene => model%scene)
+      scene%deck_file = path
+      scene%heading = ''
+      allocate (scene%surfaces(0), scene%amplitudes(0), scene%materials(0), scene%joints(0))
+      allocate (scene%loads(0), scene%initial_values(0), scene%steps(0))
+    end associate
+    allocate (model%surface_origin(0), model%material_origin(0))
+    allocate (model%sections(0), model%laws(0), model%joints(0), model%procedure_card(0))
+  end subroutine open_draft
+
+  !> Finds the keyword of each card and checks that it stands where it may.
+  subroutine match_cards(list, model, keyword_of_card, faults)
+    type(keyword_list), intent(in) :: list
+    type(draft), intent(inout) :: model
+    integer, allocatable, intent(out) :: keyword_of_card(:) !< 0: nothing to do for it
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: where_it_stands
+    logical :: is_in_step, is_in_material
+    integer :: i, found
+    allocate (keyword_of_card(size(model%cards)), source=0)
+    is_in_step = .false.
+    is_in_material = .false.
+    do i = 1, size(model%cards)
+      where_it_stands = 'model'
+      if (is_in_step) where_it_stands = 'step'
+      if (is_in_material) where_it_stands = 'material'
+      call match_card(model%cards(i), list%specs, faults, found, where_it_stands)
+      if (found == 0) cycle
+      associate (spec => list%specs(found))
+        call check_place(model, i, spec%place, is_in_step, is_in_material, faults, found)
+        is_in_material = spec%name == 'MATERIAL' .or. is_in_material .and. spec%place == 'material'
+        if (spec%name == 'STEP') is_in_step = .true.
+        if (spec%name == 'END STEP') is_in_step = .false.
+      end associate
+      keyword_of_card(i) = found
+    end do
+  end subroutine match_cards
+
+  !> Step keywords stand in a step, properties in a material; `found` is set to 0 otherwise.
+  subroutine check_place(model, i, place, is_in_step, is_in_material, faults, found)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: i !< card
+    character(*), intent(in) :: place !< of its keyword
+    logical, intent(in) :: is_in_step, is_in_material
+    type(diagnostic_list), intent(inout) :: faults
+    integer, intent(inout) :: found
+    if (place == 'step' .and. .not. is_in_step) then
+      call model%cards(i)%fault(faults, 'stands outside a step', &
+                                'a place between *STEP and *END STEP')
+      found = 0
+    else if (place == 'material' .and. .not. is_in_material) then
+      call model%cards(i)%fault(faults, 'stands outside a material', &
+                                'a place below *MATERIAL and its properties')
+      found = 0
+    end if
+  end subroutine check_place
+
+  !> Checks and handles the cards pass by pass.
+  subroutine handle_cards(list, keyword_of_card, model, faults)
+    type(keyword_list), intent(in) :: list
+    integer, intent(in) :: keyword_of_card(:)
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: pass, i
+    do pass = pass_nodes, pass_rest
+      if (pass == pass_nodes) call make_room_for_nodes(model, count_lines(pass))
+      if (pass == pass_elements) call make_room_for_elements(model, count_lines(pass))
+      do i = 1, size(keyword_of_card)
+        if (keyword_of_card(i) == 0) cycle
+        if (list%entries(keyword_of_card(i))%pass /= pass) cycle
+        model%current = i
+        call handle_card(list, keyword_of_card(i), model, faults)
+      end do
+      if (pass == pass_elements) call open_tables(model)
+    end do
+
+  contains
+
+    !> Data lines of all cards of a pass.
+    pure integer function count_lines(wanted) result(num_lines)
+      integer, intent(in) :: wanted
+      integer :: j
+      num_lines = 0
+      do j = 1, size(keyword_of_card)
+        if (keyword_of_card(j) == 0) cycle
+        if (list%entries(keyword_of_card(j))%pass /= wanted) cycle
+        num_lines = num_lines + model%cards(j)%num_lines
+      end do
+    end function count_lines
+  end subroutine handle_cards
+
+  !> A faulty card is handled, too, so that what it defines exists; its further faults are dropped.
+  subroutine handle_card(list, number, model, faults)
+    type(keyword_list), intent(in) :: list
+    integer, intent(in) :: number !< of the keyword
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(diagnostic_list) :: dropped
+    logical :: is_right
+    call check_card(model%cards(model%current), list%specs(number), faults, is_right)
+    if (is_right) then
+      call list%entries(number)%handle(model%cards(model%current), model, faults)
+    else
+      call list%entries(number)%handle(model%cards(model%current), model, dropped)
+    end if
+  end subroutine handle_card
+
+  !> What needs the number of nodes and elements.
+  subroutine open_tables(model)
+    type(draft), intent(inout) :: model
+    call trim_mesh(model)
+    call model%supports%prepare(model%scene%mesh%num_nodes)
+    call model%point_forces%prepare(model%scene%mesh%num_nodes)
+    allocate (model%joint_of_element(model%scene%mesh%num_elements), source=0)
+  end subroutine open_tables
+end module read_deck
