@@ -1,12 +1,12 @@
 !> What can be said only when the whole deck is read: nothing is left open, joints are built.
 module finish_model
-  use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use element_joint8, only: build_joint_points, find_attached_solids
   use errors, only: error_type
   use joint_contraction, only: contraction_law
   use joint_points, only: joint
+  use kinds, only: rk
   use model_draft, only: draft
   use named_things, only: longest_name
   use nearest_words, only: nearest_word
@@ -80,7 +80,11 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     logical, allocatable :: is_bare(:)
+    integer :: i
     if (model%scene%mesh%num_elements == 0) return
+    do i = 1, size(model%sections)
+      if (size(model%sections(i)%elements) == 0) return ! its fault is told
+    end do
     associate (mesh => model%scene%mesh)
       is_bare = is_solid(mesh%element_type) .and. mesh%section_of_element == 0
     end associate
@@ -92,7 +96,11 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     logical, allocatable :: is_bare(:)
+    integer :: i
     if (model%scene%mesh%num_elements == 0) return
+    do i = 1, size(model%joints)
+      if (size(model%joints(i)%elements) == 0) return ! its fault is told
+    end do
     is_bare = model%scene%mesh%element_type == 'JOINT8' .and. model%joint_of_element == 0
     call tell_bare(is_bare, 'no joint', 'a *JOINT for each JOINT8 element', model, faults)
   end subroutine check_joint_elements

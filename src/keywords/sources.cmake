@@ -1,2 +1,28 @@
 set(sources
+  model_draft.f90
+  keyword_handler.f90
+  named_things.f90
+  enter_load.f90
+  history_file.f90
+  keywords_nodes.f90
+  keywords_elements.f90
+  keywords_sets.f90
+  keywords_material.f90
+  keywords_section.f90
+  keywords_joint.f90
+  keywords_amplitude.f90
+  keywords_initial.f90
+  finish_step.f90
+  keywords_step.f90
+  keywords_controls.f90
+  keywords_boundary.f90
+  keywords_loads.f90
+  keywords_reservoir.f90
+  keywords_print.f90
+  keywords_output.f90
+  keywords_later.f90
+  keyword_catalogue.f90
+  finish_model.f90
+  verify_model.f90
+  read_deck.f90
 )

@@ -9,24 +9,22 @@ module load_point
 
   type, extends(load) :: point_load
     integer, allocatable :: nodes(:) !< positions
-    integer :: dof = 0 !< 1..3
-    real(rk) :: value = 0.0_rk !< on each node [N]
+    real(rk), allocatable :: force(:, :) !< (3, nodes) on each [N]
   contains
     procedure :: add_force
   end type point_load
 
 contains
 
-  !> The value on each node; a node named twice is loaded twice.
+  !> The force on each node; a node named twice is loaded twice.
   subroutine add_force(self, model, density, force)
     class(point_load), intent(in) :: self
     type(mesh), intent(in) :: model
     real(rk), intent(in) :: density(:)
     real(rk), intent(inout) :: force(:, :)
-    integer :: i, node
+    integer :: i
     do i = 1, size(self%nodes)
-      node = self%nodes(i)
-      force(self%dof, node) = force(self%dof, node) + self%value
+      force(:, self%nodes(i)) = force(:, self%nodes(i)) + self%force(:, i)
     end do
     if (.false.) force(1, 1) = density(1)*model%num_nodes
   end subroutine add_force

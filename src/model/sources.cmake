@@ -11,4 +11,5 @@ set(sources
   set_lists.f90
   dof_tables.f90
   load_books.f90
+  body_parts.f90
 )

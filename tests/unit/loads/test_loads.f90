@@ -150,8 +150,7 @@ contains
     call motion%add_base_acceleration(acceleration)
     call check_close(log, acceleration(2), 10.81_rk, 1.0e-14_rk, 'base motion')
     point%nodes = [3, 4]
-    point%dof = 3
-    point%value = -5.0_rk
+    point%force = reshape([0.0_rk, 0.0_rk, -5.0_rk, 0.0_rk, 0.0_rk, -5.0_rk], [3, 2])
     force = 0.0_rk
     call point%add_force(model, [0.0_rk], force)
     call check_close(log, sum(force), -10.0_rk, 0.0_rk, 'point loads')

@@ -1,0 +1,140 @@
+!> What must hold before anything is solved: sound elements, mass where it is needed, supports.
+module verify_model
+  use body_parts, only: find_bodies, free_motion
+  use diagnostics, only: diagnostic_list
+  use element_catalogue, only: is_solid
+  use element_hex8, only: hex8_gradients
+  use kinds, only: rk
+  use model_draft, only: draft
+  use shape_hex8, only: corner_fault
+  use sorted_lists, only: contains_position
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: verify
+
+contains
+
+  !> Tells every fault of the finished model.
+  subroutine verify(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    call verify_elements(model, faults)
+    call verify_mass(model, faults)
+    if (.not. faults%has_errors()) call verify_supports(model, faults)
+  end subroutine verify
+
+  !> The Jacobian is positive at the integration points; a bad corner alone is a warning.
+  subroutine verify_elements(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    real(rk) :: x(3, 8), gradient(3, 8, 8), weight(8)
+    integer :: e, corner, num_odd, first_odd
+    num_odd = 0
+    first_odd = 0
+    associate (mesh => model%scene%mesh)
+      do e = 1, mesh%num_elements
+        if (.not. is_solid(mesh%element_type(e))) cycle
+        x = mesh%x(:, mesh%nodes(:, e))
+        call hex8_gradients(x, gradient, weight, corner)
+        if (corner > 0) then
+          call fault_jacobian(model, e, corner, faults)
+        else if (corner_fault(x) > 0) then
+          num_odd = num_odd + 1
+          if (first_odd == 0) first_odd = e
+        end if
+      end do
+      if (num_odd == 0) return
+      associate (spot => model%element_origin(first_odd))
+        call model%cards(spot%card)%warn(faults, as_text(num_odd)//' elements have a corner '// &
+                                         'where the Jacobian is zero or negative, the first '// &
+                                         'is element '//as_text(mesh%element_id(first_odd)))
+      end associate
+    end associate
+  end subroutine verify_elements
+
+  subroutine fault_jacobian(model, e, corner, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: e !< position of the element
+    integer, intent(in) :: corner !< 1..8
+    type(diagnostic_list), intent(inout) :: faults
+    associate (spot => model%element_origin(e), mesh => model%scene%mesh)
+      call model%cards(spot%card)%fault_at(faults, spot%line, 1, 'element '// &
+                                           as_text(mesh%element_id(e))// &
+                                           ' is inverted or flat at corner '//as_text(corner)// &
+                                           ' (node '// &
+                                           as_text(mesh%node_id(mesh%nodes(corner, e)))//')', &
+                                           'a positive Jacobian: nodes 1-4 of one face, '// &
+                                           '5-8 of the opposite one above them')
+    end associate
+  end subroutine fault_jacobian
+
+  !> Dynamics and frequencies need a mass somewhere.
+  subroutine verify_mass(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i
+    if (any(model%scene%materials%density > 0.0_rk)) return
+    do i = 1, size(model%scene%steps)
+      if (model%scene%steps(i)%procedure == 'STATIC') cycle
+      call model%cards(model%procedure_card(i))%fault( &
+        faults, 'no material has a mass', '*DENSITY in a *MATERIAL')
+      return
+    end do
+  end subroutine verify_mass
+
+  !> In a static or frequency step every body is held against rigid motion.
+  subroutine verify_supports(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable :: body(:), example(:)
+    integer :: i, b
+    integer :: num_before
+    call find_bodies(model%scene%mesh, body, example)
+    num_before = faults%num_errors
+    do i = 1, size(model%scene%steps)
+      associate (step => model%scene%steps(i), place => model%cards(model%procedure_card(i)))
+        if (step%procedure == 'DYNAMIC') cycle
+        if (size(step%fixities) == 0) then
+          call place%fault(faults, 'the model has no supports in this step', '*BOUNDARY')
+        else
+          do b = 1, size(example)
+            call verify_body(model, i, pack(step%fixities%node, body(step%fixities%node) == b), &
+                             pack(step%fixities%dof, body(step%fixities%node) == b), &
+                             example(b), faults)
+          end do
+        end if
+      end associate
+      if (faults%num_errors > num_before) return
+    end do
+  end subroutine verify_supports
+
+  subroutine verify_body(model, number, nodes, dofs, example, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: number !< of the step
+    integer, intent(in) :: nodes(:), dofs(:) !< supports of the body
+    integer, intent(in) :: example !< an element of it
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: motion
+    motion = free_motion(model%scene%mesh%x(:, nodes), dofs)
+    if (motion == '') return
+    call model%cards(model%procedure_card(number))%fault( &
+      faults, 'the body with element '//as_text(model%scene%mesh%element_id(example))// &
+      set_of_element(model, example)//' is not held: it can '//motion, &
+      'supports (*BOUNDARY) or a joint to a body that is held')
+  end subroutine verify_body
+
+  !> ' of set DAM', or '' when the element is in no set.
+  function set_of_element(model, element) result(text)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: element !< position
+    character(:), allocatable :: text
+    integer :: i
+    text = ''
+    do i = 1, size(model%scene%element_sets)
+      if (.not. contains_position(model%scene%element_sets(i)%members, element)) cycle
+      text = ' of set '//model%scene%element_sets(i)%name
+      return
+    end do
+  end function set_of_element
+end module verify_model
