@@ -1,12 +1,28 @@
 !> The program: command line, one analysis, exit code.
 program keyway
-  use check_deck, only: check_and_report
+  use, intrinsic :: iso_c_binding, only: c_int
+  use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+  use check_deck, only: load_deck, report_model
   use cli, only: command_line, parse_command_line, print_answer
-  use, intrinsic :: iso_fortran_env, only: error_unit
-  use errors, only: error_type
+  use diagnostics, only: diagnostic_list
+  use errors, only: error_type, raise
+  use problem_definition, only: problem
   implicit none
+
+  interface
+    !> C library: ends the program (`stop` would print its code).
+    subroutine exit_program(code) bind(C, name='exit')
+      import :: c_int
+      implicit none
+      integer(c_int), intent(in), value :: code
+    end subroutine exit_program
+  end interface
+
   type(command_line) :: options
   type(error_type), allocatable :: error
+  type(problem), allocatable :: scene
+  type(diagnostic_list) :: remarks
+  character(:), allocatable :: echo
   logical :: is_answered
 
   call parse_command_line(options, error)
@@ -14,7 +30,13 @@ program keyway
   call print_answer(options, is_answered, error)
   call end_on(error)
   if (is_answered) stop
-  call check_and_report(options, error)
+  call load_deck(options, scene, remarks, echo, error)
+  call end_on(error)
+  if (options%is_check) then
+    call report_model(scene, echo)
+  else
+    call raise(error, 'keyway: only --check is available yet')
+  end if
   call end_on(error)
 
 contains
@@ -24,13 +46,8 @@ contains
     type(error_type), allocatable, intent(in) :: error
     if (.not. allocated(error)) return
     if (len(error%message) > 0) write (error_unit, '(a)') error%message
-    select case (error%exit_code)
-    case (1)
-      stop 1, quiet=.true.
-    case (2)
-      stop 2, quiet=.true.
-    case default
-      stop 3, quiet=.true.
-    end select
+    flush (output_unit)
+    flush (error_unit)
+    call exit_program(int(error%exit_code, c_int))
   end subroutine end_on
 end program keyway

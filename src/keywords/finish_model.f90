@@ -1,5 +1,6 @@
 !> What can be said only when the whole deck is read: nothing is left open, joints are built.
 module finish_model
+  use applied_load, only: load_slot
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use element_joint8, only: build_joint_points, find_attached_solids
@@ -36,13 +37,16 @@ contains
     end do
   end subroutine complete_model
 
+  !> Gives back the unused end of the list; loads are moved, not copied.
   subroutine trim_loads(model)
     type(draft), intent(inout) :: model
+    type(load_slot), allocatable :: shorter(:)
     integer :: i
-    associate (loads => model%scene%loads)
-      if (size(loads) == model%num_loads) return
-      loads = loads([(i, i=1, model%num_loads)])
-    end associate
+    allocate (shorter(model%num_loads))
+    do i = 1, model%num_loads
+      call move_alloc(model%scene%loads(i)%item, shorter(i)%item)
+    end do
+    call move_alloc(shorter, model%scene%loads)
   end subroutine trim_loads
 
   !> A model has nodes, elements and a step.
@@ -135,7 +139,8 @@ contains
     character(longest_name) :: known(size(model%laws))
     integer :: i
     logical :: is_found
-    associate (request => model%joints(number), place => model%cards(model%joints(number)%spot%card))
+    associate (request => model%joints(number), &
+               place => model%cards(model%joints(number)%spot%card))
       is_found = .false.
       do i = 1, size(known)
         known(i) = model%laws(i)%law%name
@@ -184,7 +189,8 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable :: solid(:, :), side(:), materials(:)
     if (law%normal_stiffness > 0.0_rk .and. law%tangent_stiffness > 0.0_rk) return
-    associate (request => model%joints(number), place => model%cards(model%joints(number)%spot%card))
+    associate (request => model%joints(number), &
+               place => model%cards(model%joints(number)%spot%card))
       allocate (side(size(request%elements)))
       call find_attached_solids(model%scene%mesh, request%elements, solid, side)
       materials = pack(solid(2, :), solid(2, :) > 0)

@@ -160,7 +160,8 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable :: problem
     integer :: line
-    problem = 'time '//as_text(numbers%values(number))//' after '//as_text(numbers%values(number - 2))
+    problem = 'time '//as_text(numbers%values(number))//' after '// &
+              as_text(numbers%values(number - 2))
     line = numbers%line(number)
     if (this%has('INPUT')) then
       call faults%add(severity_error, place(numbers%path, line, 0, 0, this%keyword, ''), problem, &

@@ -22,7 +22,7 @@ contains
     spec%name = 'BOUNDARY'
     spec%family = 'step'
     spec%place = 'anywhere'
-    spec%meaning = 'Supports: fixes degrees of freedom 1 to 3 or prescribes their displacement. '// &
+    spec%meaning = 'Supports: fix degrees of freedom 1 to 3 or prescribe their displacement. '// &
                    'One dof only: leave the last out. Or a name in place of the dofs: '// &
                    'ENCASTRE, PINNED (1-3), XSYMM (1), YSYMM (2), ZSYMM (3). Before the first '// &
                    'step the value is zero.'

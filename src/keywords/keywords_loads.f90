@@ -39,8 +39,8 @@ contains
     type(keyword), intent(out) :: spec
     call add_load_parameters(spec)
     spec%name = 'CLOAD'
-    spec%meaning = 'Forces at nodes. Given twice in one step they add up; given again in a later '// &
-                   'step the new one rules.'
+    spec%meaning = 'Forces at nodes. Given twice in one step they add up; given again in a '// &
+                   'later step the new one rules.'
     spec%example = '*CLOAD'//nl//'TIP, 3, -1000.'
     allocate (spec%columns, source=[ &
               field('node', kind_reference, 'id of a node or name of a node set', &

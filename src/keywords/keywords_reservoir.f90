@@ -26,11 +26,12 @@ contains
     spec%name = 'RESERVOIR'
     spec%family = 'load'
     spec%place = 'step'
-    spec%meaning = 'Water on the wetted part of a surface: hydrostatic pressure and Westergaard''s '// &
-                   'added mass, 7/8 rho sqrt(H h) per area along the normal, which takes part in '// &
-                   'the inertia force of the base motion and has no weight. NORMAL keeps the '// &
-                   'block m n n^T of each node, DIAGONAL its diagonal. The surface of the first '// &
-                   'reservoir tells upstream from downstream in the results.'
+    spec%meaning = 'Water on the wetted part of a surface: hydrostatic pressure and '// &
+                   'Westergaard''s added mass. The mass, 7/8 rho sqrt(H h) per area along the '// &
+                   'normal (H the depth of the reservoir, h of the point), takes part in the '// &
+                   'inertia force of the base motion and has no weight. NORMAL keeps the '// &
+                   'block m n n^T of each node, DIAGONAL its diagonal. The surface of the '// &
+                   'first reservoir tells upstream from downstream in the results.'
     spec%example = '*RESERVOIR, NAME=LAKE, SURFACE=UPSTREAM, LEVEL=105., BED=0., '// &
                    'ADDED MASS=WESTERGAARD'
     spec%most_lines = 0

@@ -22,8 +22,8 @@ contains
     spec%family = 'material'
     spec%place = 'model'
     spec%meaning = 'Gives the solid elements of a set their material. Stresses are averaged at '// &
-                   'nodes within a section, never across; the section defined first rules where '// &
-                   'two meet. The mass is of one kind in the whole model.'
+                   'nodes within a section, never across; the section defined first rules '// &
+                   'where two meet. The mass is of one kind in the whole model.'
     spec%example = '*SOLID SECTION, ELSET=DAM, MATERIAL=CONCRETE'
     spec%most_lines = 1
     allocate (spec%parameters, source=[ &

@@ -140,7 +140,7 @@ contains
                          'first, last, step: integers > 0 with first <= last')
       return
     end if
-    allocate (members(1 + (range(2) - range(1))/range(3)), source=0)
+    members = spread(0, 1, 1 + (range(2) - range(1))/range(3))
     do i = 1, size(members)
       id = range(1) + (i - 1)*range(3)
       members(i) = table%find(id)

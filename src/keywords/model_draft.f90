@@ -43,7 +43,7 @@ module model_draft
 
   type :: draft
     type(card), allocatable :: cards(:) !< the whole deck
-    type(problem) :: scene
+    type(problem), allocatable :: scene
     type(position_table) :: node_position, element_position !< by the user's ids
     type(origin), allocatable :: node_origin(:), element_origin(:)
     type(set_list) :: node_sets, element_sets

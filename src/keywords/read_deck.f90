@@ -1,6 +1,7 @@
 !> From a deck to the problem, in passes over its cards; all faults are collected.
 module read_deck
   use card_check, only: check_card, match_card
+  use deck_echo, only: echo_of_cards
   use deck_lexer, only: read_cards
   use diagnostics, only: diagnostic_list
   use finish_model, only: complete_model
@@ -18,10 +19,11 @@ module read_deck
 contains
 
   !> Reads and verifies a deck. The problem is fit to be solved when `faults` holds no error.
-  subroutine read_problem(path, scene, faults)
+  subroutine read_problem(path, scene, faults, echo)
     character(*), intent(in) :: path !< of the deck
-    type(problem), intent(out) :: scene
+    type(problem), allocatable, intent(out) :: scene
     type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable, intent(out) :: echo !< the deck with every default made visible
     type(keyword_list) :: list
     type(draft) :: model
     integer, allocatable :: keyword_of_card(:)
@@ -32,12 +34,14 @@ contains
     call handle_cards(list, keyword_of_card, model, faults)
     call complete_model(model, faults)
     if (.not. faults%has_errors()) call verify(model, faults)
-    scene = model%scene
+    call move_alloc(model%scene, scene)
+    echo = echo_of_cards(model%cards)
   end subroutine read_problem
 
   subroutine open_draft(path, model)
     character(*), intent(in) :: path
     type(draft), intent(inout) :: model
+    allocate (model%scene)
     associate (scene => model%scene)
       scene%deck_file = path
       scene%heading = ''

@@ -24,5 +24,6 @@ set(sources
   keyword_catalogue.f90
   finish_model.f90
   verify_model.f90
+  deck_echo.f90
   read_deck.f90
 )

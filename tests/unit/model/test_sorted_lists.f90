@@ -11,8 +11,8 @@ program test_sorted_lists
   call check(log, all(sorted_unique([(mod(7919*i, 1001), i=1, 1001)]) == [(i, i=0, 1000)]), &
              'a permutation is put in order')
   call check(log, contains_position([2, 5, 9], 5), 'a member is found')
-  call check(log, .not. contains_position([2, 5, 9], 6), 'a stranger is not')
-  call check(log, .not. contains_position(empty, 6), 'nothing is in an empty list')
+  call check(log,.not. contains_position([2, 5, 9], 6), 'a stranger is not')
+  call check(log,.not. contains_position(empty, 6), 'nothing is in an empty list')
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
 end program test_sorted_lists

@@ -1,0 +1,38 @@
+!> Reads a deck, tells its faults, and prints what the model holds.
+module check_deck
+  use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+  use cli, only: command_line
+  use diagnostic_text, only: text_of_errors, text_of_warnings
+  use diagnostics, only: diagnostic_list
+  use errors, only: deck_is_wrong, error_type, raise
+  use model_summary, only: summary_of
+  use problem_definition, only: problem
+  use read_deck, only: read_problem
+  implicit none
+  private
+  public :: load_deck, report_model
+
+contains
+
+  !> Reads and verifies the deck; faults become an error, warnings go to stderr.
+  subroutine load_deck(given, scene, faults, echo, error)
+    type(command_line), intent(in) :: given
+    type(problem), allocatable, intent(out) :: scene
+    type(diagnostic_list), intent(out) :: faults !< warnings, for the summary of the run
+    character(:), allocatable, intent(out) :: echo !< the deck with every default made visible
+    type(error_type), allocatable, intent(out) :: error
+    call read_problem(given%deck, scene, faults, echo)
+    if (faults%num_warnings > 0 .and. .not. given%is_quiet) then
+      write (error_unit, '(a)') text_of_warnings(faults)
+    end if
+    if (faults%has_errors()) call raise(error, text_of_errors(faults), deck_is_wrong)
+  end subroutine load_deck
+
+  !> Prints the effective deck and what the model holds.
+  subroutine report_model(scene, echo)
+    type(problem), intent(in) :: scene
+    character(*), intent(in) :: echo
+    write (output_unit, '(a)') 'The deck with its defaults', echo, ''
+    write (output_unit, '(a)') summary_of(scene)
+  end subroutine report_model
+end module check_deck

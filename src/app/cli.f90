@@ -1,0 +1,191 @@
+!> The command line: options, and the answers that need no deck.
+module cli
+  use, intrinsic :: iso_fortran_env, only: output_unit
+  use build_info, only: compiler, compiler_flags, libraries, program_version
+  use errors, only: deck_is_wrong, error_type, raise
+  use keyword_catalogue, only: list_all => list_keywords
+  use keyword_handler, only: keyword_list
+  use keyword_help, only: describe_keyword, list_keywords
+  use nearest_words, only: nearest_word
+  use parse_text, only: parse_integer
+  implicit none
+  private
+  public :: command_line, parse_command_line, print_answer
+
+  character, parameter :: nl = new_line('a')
+
+  !> What the user asked for.
+  type :: command_line
+    character(:), allocatable :: deck !< path, '' for none
+    character(:), allocatable :: folder !< of the results
+    character(:), allocatable :: keyword !< of --keywords, '' for all
+    integer :: num_threads = 0 !< 0: as the system says
+    logical :: is_check = .false. !< read and verify only
+    logical :: is_quiet = .false.
+    logical :: wants_keywords = .false., wants_version = .false., wants_help = .false.
+    logical :: is_empty = .false. !< no argument at all
+  end type command_line
+
+  character(*), parameter :: usage = &
+                             'usage: keyway [options] job.inp'//nl// &
+                             '  -o DIR             folder of the results (default: .)'//nl// &
+                             '  -j N               threads'//nl// &
+                             '  --check            read and verify only, print what the '// &
+                             'model holds'//nl// &
+                             '  --keywords [NAME]  the reference of the deck, from the '// &
+                             'program itself'//nl// &
+                             '  -q                 say nothing but errors'//nl// &
+                             '  --version          compiler, flags, libraries'//nl// &
+                             '  --help             this page'//nl// &
+                             'exit code: 0 finished, 1 the analysis stopped, 2 bad deck or '// &
+                             'usage, 3 the system failed'
+
+  character(12), parameter :: options(14) = [character(12) :: '-o', '-j', '-q', '--check', &
+                                                        '--keywords', '--version', '--help', '-h', &
+                                                           '--continue', '--umat', '--umat-check', &
+                                                                '--material', '--quiet', '--output']
+
+contains
+
+  !> Reads the arguments of the program.
+  subroutine parse_command_line(given, error)
+    type(command_line), intent(out) :: given
+    type(error_type), allocatable, intent(out) :: error
+    integer :: i
+    given%deck = ''
+    given%folder = '.'
+    given%keyword = ''
+    given%is_empty = command_argument_count() == 0
+    i = 1
+    do while (i <= command_argument_count())
+      call read_argument(i, given, error)
+      if (allocated(error)) return
+    end do
+    if (given%is_empty .or. given%wants_help .or. given%wants_version) return
+    if (given%wants_keywords .or. len(given%deck) > 0) return
+    call raise(error, 'keyway: no deck is named'//nl//usage, deck_is_wrong)
+  end subroutine parse_command_line
+
+  !> Reads argument `i` with its value and steps over them.
+  subroutine read_argument(i, given, error)
+    integer, intent(inout) :: i
+    type(command_line), intent(inout) :: given
+    type(error_type), allocatable, intent(out) :: error
+    character(:), allocatable :: word
+    word = argument(i)
+    i = i + 1
+    select case (word)
+    case ('-o', '-j')
+      if (i > command_argument_count()) then
+        call raise(error, 'keyway: '//word//' needs a value'//nl//usage, deck_is_wrong)
+        return
+      end if
+      if (word == '-o') given%folder = argument(i)
+      if (word == '-j') call read_threads(argument(i), given, error)
+      i = i + 1
+    case ('--check')
+      given%is_check = .true.
+    case ('-q')
+      given%is_quiet = .true.
+    case ('--version')
+      given%wants_version = .true.
+    case ('--help', '-h')
+      given%wants_help = .true.
+    case ('--keywords')
+      given%wants_keywords = .true.
+      do while (i <= command_argument_count()) ! a name may be several words
+        if (index(argument(i), '-') == 1) exit
+        given%keyword = trim(given%keyword//' '//argument(i))
+        i = i + 1
+      end do
+    case ('--continue', '--umat', '--umat-check', '--material')
+      call raise(error, 'keyway: '//word//' is not available yet', deck_is_wrong)
+    case default
+      call read_deck_name(word, given, error)
+    end select
+  end subroutine read_argument
+
+  subroutine read_threads(word, given, error)
+    character(*), intent(in) :: word
+    type(command_line), intent(inout) :: given
+    type(error_type), allocatable, intent(out) :: error
+    logical :: is_integer
+    call parse_integer(word, given%num_threads, is_integer)
+    if (is_integer .and. given%num_threads > 0) return
+    call raise(error, "keyway: found '-j "//word//"'; expected a number of threads > 0", &
+               deck_is_wrong)
+  end subroutine read_threads
+
+  subroutine read_deck_name(word, given, error)
+    character(*), intent(in) :: word
+    type(command_line), intent(inout) :: given
+    type(error_type), allocatable, intent(out) :: error
+    character(:), allocatable :: nearest
+    if (index(word, '-') == 1) then
+      nearest = nearest_word(word, options)
+      if (len(nearest) > 0) nearest = "; did you mean '"//nearest//"'?"
+      call raise(error, "keyway: unknown option '"//word//"'"//nearest//nl//usage, deck_is_wrong)
+    else if (len(given%deck) > 0) then
+      call raise(error, "keyway: one deck at a time; found '"//given%deck//"' and '"//word//"'", &
+                 deck_is_wrong)
+    else
+      given%deck = word
+    end if
+  end subroutine read_deck_name
+
+  !> An argument of the program.
+  function argument(number) result(text)
+    integer, intent(in) :: number
+    character(:), allocatable :: text
+    integer :: length
+    call get_command_argument(number, length=length)
+    allocate (character(length) :: text)
+    call get_command_argument(number, text)
+  end function argument
+
+  !> Prints what needs no deck: greeting, help, version, keywords.
+  subroutine print_answer(given, is_answered, error)
+    type(command_line), intent(in) :: given
+    logical, intent(out) :: is_answered
+    type(error_type), allocatable, intent(out) :: error
+    is_answered = .true.
+    if (given%is_empty) then
+      call say('Keyway '//program_version//': finite-element analysis of concrete dams')
+      call say('Give it a deck, and it shakes your dam:')
+      call say('')
+      call say(usage)
+    else if (given%wants_help) then
+      call say(usage)
+    else if (given%wants_version) then
+      call say('keyway '//program_version)
+      call say('compiler:  '//compiler)
+      call say('flags:     '//compiler_flags)
+      call say('libraries: '//libraries)
+    else if (given%wants_keywords) then
+      call print_keywords(given%keyword, error)
+    else
+      is_answered = .false.
+    end if
+  end subroutine print_answer
+
+  subroutine print_keywords(name, error)
+    character(*), intent(in) :: name !< '' for all
+    type(error_type), allocatable, intent(out) :: error
+    type(keyword_list) :: list
+    character(:), allocatable :: text
+    logical :: is_known
+    call list_all(list)
+    if (name == '') then
+      call say(list_keywords(list%specs))
+      return
+    end if
+    call describe_keyword(list%specs, name, text, is_known)
+    if (is_known) call say(text)
+    if (.not. is_known) call raise(error, 'keyway: '//text, deck_is_wrong)
+  end subroutine print_keywords
+
+  subroutine say(text)
+    character(*), intent(in) :: text
+    write (output_unit, '(a)') text
+  end subroutine say
+end module cli

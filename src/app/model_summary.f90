@@ -1,0 +1,210 @@
+!> What a model holds, in lines for people.
+module model_summary
+  use kinds, only: rk
+  use mesh_sets, only: named_set
+  use problem_definition, only: problem
+  use step_plan, only: step
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: summary_of
+
+  character, parameter :: nl = new_line('a')
+  integer, parameter :: name_width = 24
+
+contains
+
+  !> Counts, sets, materials, joints, loads and steps.
+  function summary_of(scene) result(text)
+    type(problem), intent(in) :: scene
+    character(:), allocatable :: text !< lines with new_line between them
+    text = 'Model'//nl//row('nodes', as_text(scene%mesh%num_nodes))//nl// &
+           row('elements', as_text(scene%mesh%num_elements)//types_of(scene))//nl// &
+           row('mass', trim(merge('lumped    ', 'consistent', scene%has_lumped_mass)))
+    text = text//sets_of('Node sets', 'nodes', scene%node_sets)
+    text = text//sets_of('Element sets', 'elements', scene%element_sets)
+    text = text//surfaces_of(scene)//materials_of(scene)//joints_of(scene)//amplitudes_of(scene)
+    text = text//loads_of(scene)//steps_of(scene)
+  end function summary_of
+
+  !> '  name    value'.
+  pure function row(name, value) result(text)
+    character(*), intent(in) :: name, value
+    character(:), allocatable :: text
+    text = '  '//name//repeat(' ', max(1, name_width - len(name)))//value
+  end function row
+
+  !> Number of elements of each type.
+  pure function types_of(scene) result(text)
+    type(problem), intent(in) :: scene
+    character(:), allocatable :: text
+    character(8) :: kind
+    logical :: is_left(scene%mesh%num_elements)
+    is_left = .true.
+    text = ''
+    do while (any(is_left))
+      kind = scene%mesh%element_type(findloc(is_left, .true., dim=1))
+      text = text//', '//trim(kind)//' '//as_text(count(scene%mesh%element_type == kind))
+      is_left = is_left .and. scene%mesh%element_type /= kind
+    end do
+  end function types_of
+
+  pure function sets_of(title, things, sets) result(text)
+    character(*), intent(in) :: title, things
+    type(named_set), intent(in) :: sets(:)
+    character(:), allocatable :: text
+    integer :: i
+    text = ''
+    if (size(sets) > 0) text = nl//title
+    do i = 1, size(sets)
+      text = text//nl//row(sets(i)%name, as_text(size(sets(i)%members))//' '//things)
+    end do
+  end function sets_of
+
+  pure function surfaces_of(scene) result(text)
+    type(problem), intent(in) :: scene
+    character(:), allocatable :: text
+    integer :: i
+    text = ''
+    if (size(scene%surfaces) > 0) text = nl//'Surfaces'
+    do i = 1, size(scene%surfaces)
+      text = text//nl//row(scene%surfaces(i)%name, as_text(size(scene%surfaces(i)%face))//' faces')
+    end do
+  end function surfaces_of
+
+  pure function materials_of(scene) result(text)
+    type(problem), intent(in) :: scene
+    character(:), allocatable :: text
+    integer :: i
+    text = ''
+    if (size(scene%materials) > 0) text = nl//'Materials'
+    do i = 1, size(scene%materials)
+      associate (now => scene%materials(i))
+        text = text//nl//row(now%name, 'E '//as_text(now%young)//' Pa, nu '// &
+                             as_text(now%poisson)//', density '//as_text(now%density)// &
+                             ' kg/m3, damping ALPHA '//as_text(now%alpha)//' 1/s, BETA '// &
+                             as_text(now%beta)//' s; '// &
+                             as_text(count(scene%mesh%material_of_element == i))//' elements')
+      end associate
+    end do
+  end function materials_of
+
+  pure function joints_of(scene) result(text)
+    type(problem), intent(in) :: scene
+    character(:), allocatable :: text
+    real(rk) :: k(3)
+    integer :: i
+    text = ''
+    if (size(scene%joints) > 0) text = nl//'Joints'
+    do i = 1, size(scene%joints)
+      call scene%joints(i)%law%reference_stiffness(k)
+      text = text//nl//row(scene%joints(i)%name, as_text(scene%joints(i)%num_points)// &
+                           ' points, '//as_text(sum(scene%joints(i)%area))//' m2, KN '// &
+                           as_text(k(1))//' Pa/m, KT '//as_text(k(2))//' Pa/m, law '// &
+                           scene%joints(i)%law%name)
+    end do
+  end function joints_of
+
+  pure function amplitudes_of(scene) result(text)
+    type(problem), intent(in) :: scene
+    character(:), allocatable :: text
+    integer :: i
+    text = ''
+    if (size(scene%amplitudes) > 0) text = nl//'Amplitudes'
+    do i = 1, size(scene%amplitudes)
+      associate (now => scene%amplitudes(i))
+        text = text//nl//row(now%name, as_text(size(now%time))//' points, '// &
+                             as_text(now%time(1))//' to '//as_text(now%time(size(now%time)))// &
+                             ' s, values '//as_text(minval(now%value))//' to '// &
+                             as_text(maxval(now%value)))
+      end associate
+    end do
+  end function amplitudes_of
+
+  pure function loads_of(scene) result(text)
+    type(problem), intent(in) :: scene
+    character(:), allocatable :: text
+    integer :: i
+    text = ''
+    if (size(scene%loads) > 0) text = nl//'Loads'
+    do i = 1, size(scene%loads)
+      text = text//nl//row(as_text(i), scene%loads(i)%item%name)
+    end do
+  end function loads_of
+
+  function steps_of(scene) result(text)
+    type(problem), intent(in) :: scene
+    character(:), allocatable :: text
+    integer :: i, j
+    text = ''
+    do i = 1, size(scene%steps)
+      associate (now => scene%steps(i))
+        text = text//nl//'Step '//as_text(i)//' '//now%name//nl//procedure_of(now)//nl// &
+               row('supports', as_text(size(now%fixities))//' degrees of freedom')
+        do j = 1, size(now%loads)
+          associate (work => now%loads(j))
+            text = text//nl//row('load '//as_text(work%load), &
+                                 scene%loads(work%load)%item%name//': factor '// &
+                                 as_text(work%start_factor)//' to '//as_text(work%end_factor))
+            if (work%amplitude > 0) then
+              text = text//', amplitude '//scene%amplitudes(work%amplitude)%name
+            end if
+          end associate
+        end do
+        text = text//requests_of(now)
+      end associate
+    end do
+  end function steps_of
+
+  pure function procedure_of(now) result(text)
+    type(step), intent(in) :: now
+    character(:), allocatable :: text
+    text = now%procedure
+    if (now%procedure == 'FREQUENCY') then
+      text = row(text, as_text(now%num_modes)//' modes')
+      return
+    end if
+    text = row(text, 'duration '//as_text(now%duration)//' s, increment '// &
+               as_text(now%first_increment)//' s ('//as_text(now%smallest_increment)//' to '// &
+               as_text(now%largest_increment)//')')
+    if (now%is_direct) text = text//', fixed'
+    if (now%procedure == 'DYNAMIC') text = text//', ALPHA '//as_text(now%alpha)
+    text = text//nl//row('controls', 'RESIDUAL '//as_text(now%controls%residual_tolerance)// &
+                         ', INCREMENT '//as_text(now%controls%increment_tolerance)// &
+                         ', ITERATIONS '//as_text(now%controls%max_iterations)// &
+                         ', JOINT SOLVER '//trim(now%controls%joint_solver)// &
+                         ', JOINT FORCES '//trim(now%controls%joint_forces))
+    if (now%damping_ratio > 0.0_rk) then
+      text = text//nl//row('damping', 'RATIO '//as_text(now%damping_ratio)//' at '// &
+                           as_text(now%damping_f1)//' and '//as_text(now%damping_f2)//' Hz')
+    end if
+  end function procedure_of
+
+  pure function requests_of(now) result(text)
+    type(step), intent(in) :: now
+    character(:), allocatable :: text
+    integer :: i
+    text = ''
+    do i = 1, size(now%prints)
+      text = text//nl//row('print', now%prints(i)%kind//' '//now%prints(i)%name//':'// &
+                           words(now%prints(i)%fields)//' every '// &
+                           as_text(now%prints(i)%frequency))
+    end do
+    do i = 1, size(now%outputs)
+      text = text//nl//row('fields', trim(adjustl(words(now%outputs(i)%fields)))//' every '// &
+                           as_text(now%outputs(i)%frequency))
+    end do
+    if (size(now%envelope) > 0) text = text//nl//row('envelope', trim(adjustl(words(now%envelope))))
+  end function requests_of
+
+  !> Words with blanks between.
+  pure function words(list) result(text)
+    character(*), intent(in) :: list(:)
+    character(:), allocatable :: text
+    integer :: i
+    text = ''
+    do i = 1, size(list)
+      text = text//' '//trim(list(i))
+    end do
+  end function words
+end module model_summary
