@@ -12,6 +12,7 @@ module analysis_state
     real(rk) :: external = 0.0_rk, kinetic = 0.0_rk, strain = 0.0_rk, damping = 0.0_rk
     real(rk) :: friction = 0.0_rk, fracture = 0.0_rk
     real(rk) :: numerical = 0.0_rk !< taken by the time stepping, from its own formula
+    real(rk) :: initial = 0.0_rk !< kinetic and strain energy that the analysis began with
     real(rk) :: error = 0.0_rk
   end type energy_balance
 

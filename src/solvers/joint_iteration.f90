@@ -9,8 +9,8 @@ module joint_iteration
   use equilibrium, only: force_balance, balance_outcome
   implicit none
   private
-  public :: start_iteration, relief, measure_residual, measure_correction, closed_tangent
-  public :: stiffness_floor
+  public :: start_iteration, linearise, relief, closed_tangent
+  public :: measure_residual, measure_correction
 
   !> Stiffness left to open and sliding points in the iteration matrix, over the closed joint's: a
   !> block that touches nothing for an iterate moves far, but stays in reach. The balance itself is
@@ -45,12 +45,31 @@ contains
     field%start_force = norm2(spread(operator%area, 1, 3)*field%traction)
     field%multiplier = field%traction(2:3, :)
     if (.not. balance%starts_bonded) then
-      call evaluate_joints(joints, operator, old, field, new)
+      call linearise(joints, operator, old, reference, field, new)
       return
     end if
     field%tangent = closed_tangent(reference)
     field%iterate = reference*field%jump
   end subroutine start_iteration
+
+  !> Evaluates the laws and leaves a floor of stiffness where a joint is open or slides.
+  subroutine linearise(joints, operator, old, reference, field, new)
+    type(joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
+    type(joint_field), intent(inout) :: field
+    type(joint_state), intent(inout) :: new(:)
+    integer :: p, i
+    call evaluate_joints(joints, operator, old, field, new)
+    do p = 1, operator%num_points
+      do i = 1, 3
+        if (field%tangent(i, i, p) < reference(i, p)) then
+          field%tangent(i, i, p) = field%tangent(i, i, p) + stiffness_floor*reference(i, p)
+        end if
+      end do
+    end do
+  end subroutine linearise
 
   !> Tangents of closed, sticking joints.
   pure function closed_tangent(reference) result(tangent)

@@ -10,8 +10,8 @@ module newton_condensed
   use joint_law, only: joint_state
   use joint_points, only: joint
   use joint_operator, only: jump_operator
-  use joint_forces, only: joint_field, evaluate_joints, linear_tractions
-  use joint_iteration, only: measure_residual, measure_correction, stiffness_floor
+  use joint_forces, only: joint_field, linear_tractions
+  use joint_iteration, only: measure_residual, measure_correction, linearise
   use dense_factor, only: lu_factor, factorise_dense, solve_dense
   use equilibrium, only: force_balance, balance_outcome
   use step_plan, only: step_controls
@@ -57,7 +57,7 @@ contains
       field%response = field%jump + correction
       field%jump = field%response
       field%multiplier = linear(2:3, :)
-      call evaluate_joints(joints, operator, old, field, new)
+      call linearise(joints, operator, old, self%reference, field, new)
       call measure_residual(operator, field, linear, balance%reference, outcome)
       if (outcome%residual <= controls%residual_tolerance) then
         call correct(self, tangent, excess_jump(field%traction), correction)
@@ -93,7 +93,6 @@ contains
       do i = 1, 3
         changed%change(i, i, p) = changed%change(i, i, p) + self%reference(i, p)
         if (.not. any(abs(changed%change(i, :, p)) > 0.0_rk)) cycle
-        changed%change(i, i, p) = changed%change(i, i, p) - stiffness_floor*self%reference(i, p)
         num_rows = num_rows + 1
         changed%row(num_rows) = 3*(p - 1) + i
       end do

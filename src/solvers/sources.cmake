@@ -18,4 +18,5 @@ set(sources
   joint_compliance.f90
   newton_condensed.f90
   condensation.f90
+  newton_full.f90
 )

@@ -1,0 +1,154 @@
+!> The balance with joints by full Newton: the tangent of the joints is assembled and factored in
+!> each iteration, by CHOLMOD when it is symmetric and by UMFPACK when friction slides.
+module newton_full
+  use kinds, only: rk
+  use errors, only: error_type
+  use matrix_pattern, only: pattern, full_pattern, spread_values
+  use joint_law, only: joint_state
+  use joint_points, only: joint
+  use joint_operator, only: jump_operator
+  use joint_forces, only: joint_field, reference_stiffness, linear_tractions
+  use joint_iteration, only: start_iteration, linearise, closed_tangent, measure_residual, &
+    measure_correction
+  use joint_compliance, only: find_compliance, friction_scale
+  use linear_solver, only: equation_solver
+  use solver_catalogue, only: make_solver, unsymmetric_solver
+  use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
+  implicit none
+  private
+  public :: full_equilibrium
+
+  type, extends(equilibrium_solver) :: full_equilibrium
+    type(pattern) :: matrix !< lower triangle
+    type(pattern) :: full_matrix !< both triangles, once friction has slid
+    class(equation_solver), allocatable :: unsymmetric_factor
+    real(rk), allocatable :: values(:) !< K_eff
+    real(rk), allocatable :: reference(:, :) !< (3, points) k_ref [Pa/m]
+    real(rk), allocatable :: scale(:) !< (points) r of the augmented friction [Pa/m]
+    logical :: is_unsymmetric = .false. !< the last tangent was
+  contains
+    procedure :: prepare, solve
+    procedure, private :: factorise_tangent, back_substitute
+  end type full_equilibrium
+
+contains
+
+  !> Keeps K_eff and finds r, with one factorisation for the closed joints.
+  subroutine prepare(self, matrix, values, weight, joints, operator, error)
+    class(full_equilibrium), intent(inout) :: self
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: values(:) !< K_eff
+    real(rk), intent(in) :: weight
+    type(joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: compliance(:, :)
+    self%weight = weight
+    self%matrix = matrix
+    self%values = values
+    call reference_stiffness(joints, operator, self%reference)
+    call self%factorise_tangent(operator, closed_tangent(self%reference), error)
+    if (allocated(error)) return
+    call find_compliance(self%factor, operator, matrix%num_free, compliance, error)
+    if (allocated(error)) return
+    call friction_scale(compliance, operator, self%reference, weight, self%scale)
+  end subroutine prepare
+
+  !> Iterates on all unknowns.
+  subroutine solve(self, balance, joints, operator, old, new, x, outcome, error)
+    class(full_equilibrium), intent(inout) :: self
+    type(force_balance), intent(in) :: balance
+    type(joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    type(joint_state), intent(inout) :: new(:)
+    real(rk), intent(out) :: x(:)
+    type(balance_outcome), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: error
+    type(joint_field) :: field
+    real(rk), dimension(3, operator%num_points) :: correction, linear, answer
+    real(rk) :: unused(size(x))
+    call start_iteration(balance, joints, operator, self%reference, self%scale, old, field, new)
+    do while (outcome%iterations < self%controls%max_iterations)
+      outcome%iterations = outcome%iterations + 1
+      call self%factorise_tangent(operator, field%tangent, error)
+      if (allocated(error)) return
+      call linear_tractions(field, balance%offset - field%jump, linear)
+      call self%back_substitute(balance%rhs, -linear, operator, x, answer, error)
+      if (allocated(error)) return
+      correction = balance%offset + answer - field%jump
+      call linear_tractions(field, correction, linear)
+      field%jump = field%jump + correction
+      field%multiplier = linear(2:3, :)
+      call linearise(joints, operator, old, self%reference, field, new)
+      call measure_residual(operator, field, linear, balance%reference, outcome)
+      if (outcome%residual > self%controls%residual_tolerance) cycle
+      call self%back_substitute(0.0_rk*balance%rhs, linear - field%traction, operator, unused, &
+                                answer, error)
+      if (allocated(error)) return
+      call measure_correction(field, answer, self%controls%increment_tolerance, outcome)
+      if (outcome%has_converged) return
+    end do
+  end subroutine solve
+
+  !> Factors K_eff + weight*B^T area*tangent B.
+  subroutine factorise_tangent(self, operator, tangent, error)
+    class(full_equilibrium), intent(inout) :: self
+    type(jump_operator), intent(in) :: operator
+    real(rk), intent(in) :: tangent(:, :, :) !< (3, 3, points) [Pa/m]
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: values(:)
+    integer :: p
+    self%is_unsymmetric = .false.
+    do p = 1, operator%num_points
+      self%is_unsymmetric = self%is_unsymmetric .or. &
+                            any(abs(tangent(:, :, p) - transpose(tangent(:, :, p))) > 0.0_rk)
+    end do
+    self%num_factorisations = self%num_factorisations + 1
+    if (.not. self%is_unsymmetric) then
+      allocate (values, source=self%values)
+      call operator%add_stiffness(self%weight*tangent, self%matrix, values)
+      call self%factor%factorise(self%matrix, values, error)
+      return
+    end if
+    if (.not. allocated(self%unsymmetric_factor)) call start_unsymmetric(self, error)
+    if (allocated(error)) return
+    allocate (values(size(self%full_matrix%row)))
+    call spread_values(self%matrix, self%values, self%full_matrix, values)
+    call operator%add_stiffness(self%weight*tangent, self%full_matrix, values)
+    call self%unsymmetric_factor%factorise(self%full_matrix, values, error)
+  end subroutine factorise_tangent
+
+  !> Makes the pattern of both triangles and its solver.
+  subroutine start_unsymmetric(self, error)
+    class(full_equilibrium), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: error
+    call full_pattern(self%matrix, self%full_matrix)
+    call make_solver(unsymmetric_solver, self%unsymmetric_factor, error)
+    if (allocated(error)) return
+    call self%unsymmetric_factor%analyse(self%full_matrix, error)
+  end subroutine start_unsymmetric
+
+  !> x and B x for the right-hand side rhs + weight*B^T area*traction, by the last factor.
+  subroutine back_substitute(self, rhs, traction, operator, x, answer, error)
+    class(full_equilibrium), intent(inout) :: self
+    real(rk), intent(in) :: rhs(:) !< (free unknowns)
+    real(rk), intent(in) :: traction(:, :) !< (3, points) [Pa]
+    type(jump_operator), intent(in) :: operator
+    real(rk), intent(out) :: x(:) !< (all unknowns)
+    real(rk), intent(out) :: answer(:, :) !< (3, points) B x [m]
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: b(:, :)
+    x = 0.0_rk
+    call operator%add_forces(self%weight*traction, x)
+    b = reshape(rhs + x(:size(rhs)), [size(rhs), 1])
+    if (self%is_unsymmetric) then
+      call self%unsymmetric_factor%solve(b, error)
+    else
+      call self%factor%solve(b, error)
+    end if
+    x = 0.0_rk
+    x(:size(rhs)) = b(:, 1)
+    call operator%jumps(x, answer)
+  end subroutine back_substitute
+end module newton_full

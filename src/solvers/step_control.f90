@@ -1,0 +1,88 @@
+!> The size of increments: grown after easy ones, cut after those that did not converge.
+module step_control
+  use kinds, only: rk
+  use step_plan, only: step
+  implicit none
+  private
+  public :: increment_control, start_control
+
+  real(rk), parameter :: static_growth = 1.5_rk
+  real(rk), parameter :: dynamic_growth = 2.0_rk !< halving and doubling meet the same sizes again
+  real(rk), parameter :: cut_factor = 0.5_rk
+  integer, parameter :: easy_iterations = 5 !< at most, of an increment that may grow
+  integer, parameter :: easy_increments = 2 !< in a row, before a static step grows
+  integer, parameter :: easy_dynamic_increments = 10 !< in a row: a new size is a new factor
+  integer, parameter :: most_cuts_in_a_row = 10
+  real(rk), parameter :: roundoff = 1.0e-9_rk !< of times, over the increment
+
+  type :: increment_control
+    real(rk) :: size = 0.0_rk !< wanted next [s]
+    real(rk) :: smallest = 0.0_rk, largest = 0.0_rk !< [s]
+    real(rk) :: duration = 0.0_rk !< of the step [s]
+    real(rk) :: growth = static_growth
+    integer :: easy_needed = easy_increments
+    logical :: is_direct = .false.
+    integer :: easy_so_far = 0, cuts_in_a_row = 0, cutbacks = 0
+  contains
+    procedure :: next_size, accept, cut
+  end type increment_control
+
+contains
+
+  !> The rules of a step. A dynamic step grows beyond its first increment only when the deck names a
+  !> larger one: its size is a matter of accuracy, not of convergence.
+  pure subroutine start_control(plan, is_dynamic, control)
+    type(step), intent(in) :: plan
+    logical, intent(in) :: is_dynamic
+    type(increment_control), intent(out) :: control
+    control%size = min(plan%first_increment, plan%duration)
+    control%duration = plan%duration
+    control%is_direct = plan%is_direct
+    control%smallest = plan%smallest_increment
+    if (control%smallest <= 0.0_rk) control%smallest = 1.0e-5_rk*plan%duration
+    if (is_dynamic .and. plan%smallest_increment <= 0.0_rk) control%smallest = 1.0e-3_rk*control%size
+    control%smallest = min(control%smallest, control%size)
+    control%largest = min(plan%largest_increment, plan%duration)
+    if (.not. is_dynamic) return
+    control%growth = dynamic_growth
+    control%easy_needed = easy_dynamic_increments
+    if (plan%largest_increment >= huge(1.0_rk)) control%largest = control%size
+  end subroutine start_control
+
+  !> Size of the increment that starts at a time: the wanted one, but not past the end. A rest that
+  !> differs from it by roundoff only is the wanted one, so that no new factor is needed.
+  pure real(rk) function next_size(self, time) result(size)
+    class(increment_control), intent(in) :: self
+    real(rk), intent(in) :: time !< within the step [s]
+    size = self%size
+    if (self%duration - time < self%size*(1.0_rk - roundoff)) size = self%duration - time
+  end function next_size
+
+  !> An increment has converged.
+  pure subroutine accept(self, iterations)
+    class(increment_control), intent(inout) :: self
+    integer, intent(in) :: iterations
+    self%cuts_in_a_row = 0
+    self%easy_so_far = merge(self%easy_so_far + 1, 0, iterations <= easy_iterations)
+    if (self%is_direct .or. self%easy_so_far < self%easy_needed) return
+    if (self%size*self%growth <= self%largest*(1.0_rk + roundoff)) then
+      self%size = self%size*self%growth
+    else if (self%easy_needed == easy_increments) then
+      self%size = self%largest
+    end if
+    self%easy_so_far = 0
+  end subroutine accept
+
+  !> An increment has not converged: halves it, or gives up.
+  pure subroutine cut(self, size, gives_up)
+    class(increment_control), intent(inout) :: self
+    real(rk), intent(in) :: size !< of the increment that failed [s]
+    logical, intent(out) :: gives_up
+    self%cutbacks = self%cutbacks + 1
+    self%cuts_in_a_row = self%cuts_in_a_row + 1
+    self%easy_so_far = 0
+    self%size = cut_factor*size
+    gives_up = self%is_direct .or. self%cuts_in_a_row > most_cuts_in_a_row &
+               .or. self%size < self%smallest*(1.0_rk - roundoff)
+  end subroutine cut
+end module step_control

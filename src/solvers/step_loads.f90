@@ -1,0 +1,171 @@
+!> Loads and supports of a step in time: patterns over the unknowns and the factors that scale them.
+!>
+!> Loads that follow one rule of time are summed into one pattern, however many there are.
+module step_loads
+  use kinds, only: rk
+  use amplitudes, only: amplitude, amplitude_at
+  use step_plan, only: step, step_load, step_fixity
+  use problem_definition, only: problem
+  use dof_numbering, only: numbering
+  use matrix_pattern, only: pattern
+  use assemble_forces, only: assemble_force, sum_base_acceleration, inertia_force
+  implicit none
+  private
+  public :: load_group, support, step_time, gather_loads, gather_supports
+  public :: external_force, prescribed_values
+
+  !> Where in time a factor is wanted.
+  type :: step_time
+    logical :: is_dynamic = .false.
+    real(rk) :: now = 0.0_rk !< since the start of the step [s]
+    real(rk) :: start = 0.0_rk !< total time at the start of the step [s]
+    real(rk) :: duration = 1.0_rk !< of the step [s]
+  end type step_time
+
+  !> Loads with one rule of time.
+  type :: load_group
+    type(step_load) :: rule
+    real(rk), allocatable :: force(:) !< (num_total) at factor 1 [N]
+  end type load_group
+
+  !> A prescribed unknown.
+  type :: support
+    integer :: unknown = 0
+    real(rk) :: reached = 0.0_rk !< at the start of the step [m]
+    real(rk) :: value = 0.0_rk !< asked for, times the amplitude [m]
+    integer :: amplitude = 0 !< 0 for none
+  end type support
+
+contains
+
+  !> Sums the patterns of the loads of a step, base motion included, rule by rule.
+  subroutine gather_loads(scene, plan, numbers, matrix, mass, groups)
+    type(problem), intent(in) :: scene
+    type(step), intent(in) :: plan
+    type(numbering), intent(in) :: numbers
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:) !< values; size 0 where inertia plays no part
+    type(load_group), allocatable, intent(out) :: groups(:)
+    real(rk) :: force(numbers%num_total)
+    integer :: i, group
+    allocate (groups(0))
+    do i = 1, size(plan%loads)
+      call assemble_force(scene, plan%loads(i)%load, numbers, force)
+      if (size(mass) > 0) call add_base_motion(scene, plan%loads(i), numbers, matrix, mass, force)
+      call find_group(plan%loads(i), numbers%num_total, groups, group)
+      groups(group)%force = groups(group)%force + force
+    end do
+  end subroutine gather_loads
+
+  !> -M r of the acceleration that a load gives to the base.
+  subroutine add_base_motion(scene, rule, numbers, matrix, mass, force)
+    type(problem), intent(in) :: scene
+    type(step_load), intent(in) :: rule
+    type(numbering), intent(in) :: numbers
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:)
+    real(rk), intent(inout) :: force(:)
+    real(rk) :: acceleration(3), inertia(size(force))
+    integer :: direction
+    call sum_base_acceleration(scene, [rule], [1.0_rk], acceleration)
+    do direction = 1, 3
+      if (.not. abs(acceleration(direction)) > 0.0_rk) cycle
+      call inertia_force(numbers, matrix, mass, direction, inertia)
+      force = force + acceleration(direction)*inertia
+    end do
+  end subroutine add_base_motion
+
+  !> The group with the rule of a load; made where there is none.
+  subroutine find_group(rule, num_unknowns, groups, found)
+    type(step_load), intent(in) :: rule
+    integer, intent(in) :: num_unknowns
+    type(load_group), allocatable, intent(inout) :: groups(:)
+    integer, intent(out) :: found
+    type(load_group) :: fresh
+    do found = 1, size(groups)
+      if (follows(groups(found)%rule, rule)) return
+    end do
+    fresh%rule = rule
+    allocate (fresh%force(num_unknowns))
+    fresh%force = 0.0_rk
+    groups = [groups, fresh]
+    found = size(groups)
+  end subroutine find_group
+
+  !> Whether two loads always have the same factor.
+  pure logical function follows(a, b)
+    type(step_load), intent(in) :: a, b
+    follows = a%amplitude == b%amplitude .and. abs(a%start_factor - b%start_factor) <= 0.0_rk &
+              .and. abs(a%end_factor - b%end_factor) <= 0.0_rk
+  end function follows
+
+  !> The prescribed unknowns of a step and what they have reached.
+  subroutine gather_supports(plan, numbers, u, supports)
+    type(step), intent(in) :: plan
+    type(numbering), intent(in) :: numbers
+    real(rk), intent(in) :: u(:, :) !< (3, nodes) at the start of the step [m]
+    type(support), allocatable, intent(out) :: supports(:)
+    integer :: k, dof, num_found
+    allocate (supports(size(plan%fixities)))
+    num_found = 0
+    do k = 1, size(plan%fixities)
+      associate (fixity => plan%fixities(k))
+        dof = 3*(fixity%node - 1) + fixity%dof
+        if (numbers%row_start(dof + 1) == numbers%row_start(dof)) cycle ! a node without elements
+        num_found = num_found + 1
+        supports(num_found) = support(numbers%unknown(numbers%row_start(dof)), &
+                                      u(fixity%dof, fixity%node), fixity%value, fixity%amplitude)
+      end associate
+    end do
+    supports = supports(:num_found)
+  end subroutine gather_supports
+
+  !> Forces of all loads at one time.
+  subroutine external_force(groups, histories, when, force)
+    type(load_group), intent(in) :: groups(:)
+    type(amplitude), intent(in) :: histories(:)
+    type(step_time), intent(in) :: when
+    real(rk), intent(out) :: force(:) !< (num_total) [N]
+    real(rk) :: factor
+    integer :: i
+    force = 0.0_rk
+    do i = 1, size(groups)
+      associate (rule => groups(i)%rule)
+        factor = factor_at(rule%start_factor, rule%end_factor, rule%amplitude, histories, when)
+      end associate
+      if (abs(factor) > 0.0_rk) force = force + factor*groups(i)%force
+    end do
+  end subroutine external_force
+
+  !> Displacements of the prescribed unknowns at one time; the others stay.
+  subroutine prescribed_values(supports, histories, when, q)
+    type(support), intent(in) :: supports(:)
+    type(amplitude), intent(in) :: histories(:)
+    type(step_time), intent(in) :: when
+    real(rk), intent(inout) :: q(:) !< (num_total) [m]
+    integer :: i
+    do i = 1, size(supports)
+      associate (item => supports(i))
+        q(item%unknown) = factor_at(item%reached, item%value, item%amplitude, histories, when)
+      end associate
+    end do
+  end subroutine prescribed_values
+
+  !> The rule of time: an amplitude, a ramp over a static step, at once in a dynamic one.
+  pure real(rk) function factor_at(first, last, history, histories, when) result(factor)
+    real(rk), intent(in) :: first, last !< at the start and at the end of the step
+    integer, intent(in) :: history !< amplitude, 0 for none
+    type(amplitude), intent(in) :: histories(:)
+    type(step_time), intent(in) :: when
+    real(rk) :: clock
+    if (history > 0) then
+      clock = when%now
+      if (histories(history)%uses_total_time) clock = when%start + when%now
+      factor = last*amplitude_at(histories(history), clock)
+    else if (when%is_dynamic) then
+      factor = last
+    else
+      factor = first + (last - first)*when%now/when%duration
+    end if
+  end function factor_at
+end module step_loads
