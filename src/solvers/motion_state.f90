@@ -8,9 +8,11 @@ module motion_state
   use joint_points, only: joint
   use dof_numbering, only: numbering
   use analysis_state, only: state
+  use joint_operator, only: jump_operator
+  use joint_forces, only: gather_tractions
   implicit none
   private
-  public :: motion, start_motion, show_motion, compress
+  public :: motion, start_motion, show_motion, compress, sum_contact
 
   type :: motion
     real(rk), allocatable :: q(:), v(:), a(:) !< (num_total) [m], [m/s], [m/s2]
@@ -87,6 +89,16 @@ contains
       end do
     end do
   end subroutine set_exact_jumps
+
+  !> The forces of the joints by their laws, B^T (area t).
+  subroutine sum_contact(operator, moving)
+    type(jump_operator), intent(in) :: operator
+    type(motion), intent(inout) :: moving
+    real(rk) :: traction(3, operator%num_points)
+    call gather_tractions(operator, moving%joints, traction)
+    moving%contact = 0.0_rk
+    call operator%add_forces(traction, moving%contact)
+  end subroutine sum_contact
 
   !> Writes the motion back to the nodes; reactions are the out-of-balance of prescribed unknowns.
   subroutine show_motion(numbers, moving, now)

@@ -19,4 +19,16 @@ set(sources
   newton_condensed.f90
   condensation.f90
   newton_full.f90
+  step_loads.f90
+  step_system.f90
+  step_equilibrium.f90
+  step_control.f90
+  step_report.f90
+  motion_state.f90
+  hht_scheme.f90
+  energy_account.f90
+  initial_acceleration.f90
+  hht_increment.f90
+  time_static.f90
+  time_hht.f90
 )

@@ -1,0 +1,174 @@
+!> One increment of HHT in the unknown x = u1 - u^ (theory.md, 7.1-7.2):
+!>
+!>   K_eff x + w B^T (area t1) = (1 + alpha)(f1 - C v^ - K u^) - alpha (f0 - C v0 - K u0) - w0 J0
+!>   K_eff = M/(beta dt^2) + (1 + alpha) (gamma/(beta dt) C + K)
+!>
+!> Products per increment: K u^, and M x, C x, K x. The latter give all forces at the end and show
+!> the true balance; C v and M v follow from their rates.
+module hht_increment
+  use kinds, only: rk
+  use errors, only: error_type
+  use matrix_pattern, only: multiply
+  use problem_definition, only: problem
+  use joint_forces, only: gather_tractions
+  use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
+  use step_equilibrium, only: add_moving_supports, check_bulk
+  use step_system, only: dam_system
+  use step_loads, only: step_time, external_force, prescribed_values
+  use motion_state, only: motion, sum_contact
+  use hht_scheme, only: hht
+  implicit none
+  private
+  public :: effective_values, take_increment, carry_impulse
+
+contains
+
+  !> Values of K_eff, joints apart.
+  subroutine effective_values(system, scheme, values)
+    type(dam_system), intent(in) :: system
+    type(hht), intent(in) :: scheme
+    real(rk), allocatable, intent(out) :: values(:)
+    values = (1.0_rk + scheme%alpha)*system%stiffness + scheme%acceleration_of_x*system%mass
+    if (size(system%damping) > 0) then
+      values = values + (1.0_rk + scheme%alpha)*scheme%velocity_of_x*system%damping
+    end if
+  end subroutine effective_values
+
+  !> Goes from `before` to `after`. Without convergence `after` is of no use.
+  subroutine take_increment(scene, system, scheme, values, solver, when, before, after, outcome, &
+                            error)
+    type(problem), intent(in) :: scene
+    type(dam_system), intent(in) :: system
+    type(hht), intent(in) :: scheme
+    real(rk), intent(in) :: values(:) !< K_eff
+    class(equilibrium_solver), intent(inout) :: solver
+    type(step_time), intent(in) :: when !< the end of the increment
+    type(motion), intent(in) :: before
+    type(motion), intent(inout) :: after
+    type(balance_outcome), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: error
+    type(force_balance) :: balance
+    real(rk), dimension(size(before%q)) :: x, moved, rhs
+    call predict(system, scheme, before, after)
+    call external_force(system%groups, scene%amplitudes, when, after%external)
+    moved = after%q
+    call prescribed_values(system%supports, scene%amplitudes, when, moved)
+    moved = moved - after%q
+    call sum_known_forces(system, scheme, before, after, rhs)
+    balance%rhs = rhs(:system%matrix%num_free)
+    call add_moving_supports(system, values, moved, balance%rhs)
+    call set_jumps(system, scheme, before, after%q + moved, balance)
+    balance%reference = largest_force(before, system%matrix%num_free)
+    call solver%solve(balance, scene%joints, system%operator, before%joints, after%joints, x, &
+                      outcome, error)
+    if (allocated(error) .or. .not. outcome%has_converged) return
+    x = x + moved
+    call correct(system, scheme, x, before, after, rhs)
+    associate (n => system%matrix%num_free)
+      call check_bulk(rhs(:n), max(largest_force(before, n), largest_force(after, n)), &
+                      solver%controls%residual_tolerance, outcome)
+    end associate
+  end subroutine take_increment
+
+  !> u^, v^, a = 0 and the forces that go with them.
+  subroutine predict(system, scheme, before, after)
+    type(dam_system), intent(in) :: system
+    type(hht), intent(in) :: scheme
+    type(motion), intent(in) :: before
+    type(motion), intent(inout) :: after
+    associate (dt => scheme%dt, rest => (1.0_rk - scheme%gamma)*scheme%dt)
+      after%q = before%q + dt*before%v + dt**2*(0.5_rk - scheme%beta)*before%a
+      after%v = before%v + rest*before%a
+      after%momentum = before%momentum + rest*before%inertia
+      if (size(system%damping) > 0) after%viscous = before%viscous + rest*before%viscous_rate
+    end associate
+    call multiply(system%matrix, system%stiffness, after%q, after%elastic)
+  end subroutine predict
+
+  !> The right-hand side, all rows; prescribed ones are not used.
+  subroutine sum_known_forces(system, scheme, before, after, rhs)
+    type(dam_system), intent(in) :: system
+    type(hht), intent(in) :: scheme
+    type(motion), intent(in) :: before, after !< after: predicted
+    real(rk), intent(out) :: rhs(:)
+    rhs = (1.0_rk + scheme%alpha)*(after%external - after%viscous - after%elastic) &
+          - scheme%alpha*(before%external - before%viscous - before%elastic)
+    if (system%operator%num_points == 0) return
+    if (scheme%carries_impulse) then
+      call system%operator%add_forces(-scheme%old_joint_weight*before%carried, rhs)
+    else
+      rhs = rhs - scheme%old_joint_weight*before%contact
+    end if
+  end subroutine sum_known_forces
+
+  !> Jumps at x = 0 with the supports in place, and a guess: the acceleration goes on as it was.
+  subroutine set_jumps(system, scheme, before, q, balance)
+    type(dam_system), intent(in) :: system
+    type(hht), intent(in) :: scheme
+    type(motion), intent(in) :: before
+    real(rk), intent(in) :: q(:) !< predicted, supports in place
+    type(force_balance), intent(inout) :: balance
+    allocate (balance%offset(3, system%operator%num_points), &
+              balance%guess(3, system%operator%num_points))
+    if (system%operator%num_points == 0) return
+    call system%operator%jumps(q, balance%offset)
+    call system%operator%jumps(q + before%a/scheme%acceleration_of_x, balance%guess)
+  end subroutine set_jumps
+
+  !> Motion and forces at the end; `rhs` returns what is out of balance.
+  subroutine correct(system, scheme, x, before, after, rhs)
+    type(dam_system), intent(in) :: system
+    type(hht), intent(in) :: scheme
+    real(rk), intent(in) :: x(:)
+    type(motion), intent(in) :: before
+    type(motion), intent(inout) :: after
+    real(rk), intent(inout) :: rhs(:)
+    real(rk) :: product(size(x)), joint_force(size(x)), weight
+    after%a = scheme%acceleration_of_x*x
+    after%q = after%q + x
+    after%v = after%v + scheme%velocity_of_x*x
+    weight = scheme%gamma*scheme%dt
+    call multiply(system%matrix, system%mass, after%a, after%inertia)
+    after%momentum = after%momentum + weight*after%inertia
+    call multiply(system%matrix, system%stiffness, x, product)
+    after%elastic = after%elastic + product
+    rhs = rhs - after%inertia - (1.0_rk + scheme%alpha)*product
+    if (size(system%damping) > 0) then
+      call multiply(system%matrix, system%damping, after%a, after%viscous_rate)
+      after%viscous = after%viscous + weight*after%viscous_rate
+      rhs = rhs - (1.0_rk + scheme%alpha)*weight*after%viscous_rate
+    end if
+    call sum_contact(system%operator, after)
+    call carry_impulse(system, scheme, before, after)
+    rhs = rhs - scheme%joint_weight*after%contact
+    joint_force = scheme%joint_weight*after%contact
+    if (scheme%carries_impulse) then
+      call system%operator%add_forces(scheme%old_joint_weight*before%carried, joint_force)
+    else
+      joint_force = joint_force + scheme%old_joint_weight*before%contact
+    end if
+    after%balanced = (1.0_rk + scheme%alpha)*(after%external - after%viscous - after%elastic) &
+                     - scheme%alpha*(before%external - before%viscous - before%elastic) &
+                     - joint_force
+  end subroutine correct
+
+  !> t1* = (t1 - (1 - gamma) t0*)/gamma of the implicit impulse (7.3).
+  subroutine carry_impulse(system, scheme, before, after)
+    type(dam_system), intent(in) :: system
+    type(hht), intent(in) :: scheme
+    type(motion), intent(in) :: before
+    type(motion), intent(inout) :: after
+    real(rk) :: traction(3, system%operator%num_points)
+    if (.not. scheme%carries_impulse) return
+    call gather_tractions(system%operator, after%joints, traction)
+    after%carried = scheme%joint_weight*traction + scheme%old_joint_weight*before%carried
+  end subroutine carry_impulse
+
+  !> The largest of the forces in the balance.
+  pure real(rk) function largest_force(moving, num_free) result(force)
+    type(motion), intent(in) :: moving
+    integer, intent(in) :: num_free
+    force = max(norm2(moving%external(:num_free)), norm2(moving%elastic(:num_free)), &
+                norm2(moving%inertia(:num_free)), norm2(moving%viscous(:num_free)))
+  end function largest_force
+end module hht_increment

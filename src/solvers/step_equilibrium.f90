@@ -1,0 +1,98 @@
+!> Chooses how the balance of a step is solved, and says in the user's words what is not held.
+module step_equilibrium
+  use kinds, only: rk
+  use errors, only: error_type, raise
+  use dam_mesh, only: mesh
+  use problem_definition, only: problem
+  use step_plan, only: step
+  use matrix_pattern, only: multiply
+  use solver_catalogue, only: make_solver, symmetric_solver
+  use equilibrium, only: equilibrium_solver, balance_outcome
+  use equilibrium_linear, only: linear_equilibrium
+  use condensation, only: condensed_equilibrium
+  use newton_full, only: full_equilibrium
+  use step_system, only: dam_system
+  implicit none
+  private
+  public :: make_equilibrium, prepare_equilibrium, add_moving_supports, check_bulk
+
+  !> Above so many points of joints the dense compliance costs more than it saves.
+  integer, parameter :: most_condensed_points = 2000
+
+contains
+
+  !> Linear without joints, else as *CONTROLS, JOINT SOLVER says.
+  subroutine make_equilibrium(plan, system, balance, error)
+    type(step), intent(in) :: plan
+    type(dam_system), intent(in) :: system
+    class(equilibrium_solver), allocatable, intent(out) :: balance
+    type(error_type), allocatable, intent(out) :: error
+    logical :: is_full
+    select case (plan%controls%joint_solver)
+    case ('FULL')
+      is_full = .true.
+    case ('CONDENSED')
+      is_full = .false.
+    case default
+      is_full = system%operator%num_points > most_condensed_points
+    end select
+    if (system%operator%num_points == 0) then
+      allocate (linear_equilibrium :: balance)
+    else if (is_full) then
+      allocate (full_equilibrium :: balance)
+    else
+      allocate (condensed_equilibrium :: balance)
+    end if
+    balance%controls = plan%controls
+    call make_solver(symmetric_solver, balance%factor, error)
+    if (allocated(error)) return
+    call balance%factor%analyse(system%matrix, error)
+  end subroutine make_equilibrium
+
+  !> Factors K_eff; a singular matrix is told by node and direction.
+  subroutine prepare_equilibrium(scene, system, values, weight, balance, error)
+    type(problem), intent(in) :: scene
+    type(dam_system), intent(in) :: system
+    real(rk), intent(in) :: values(:) !< K_eff
+    real(rk), intent(in) :: weight !< of the joint forces
+    class(equilibrium_solver), intent(inout) :: balance
+    type(error_type), allocatable, intent(out) :: error
+    type(error_type), allocatable :: cause
+    call balance%prepare(system%matrix, values, weight, scene%joints, system%operator, cause)
+    if (.not. allocated(cause)) return
+    if (balance%factor%failed_unknown > 0) then
+      call raise(error, 'nothing holds the model at '// &
+                 system%numbers%describe(balance%factor%failed_unknown, scene%mesh%node_id)// &
+                 ': a part of it is free to move; look for missing supports, or for parts that '// &
+                 'share no nodes and no joint', cause%exit_code)
+    else
+      call move_alloc(cause, error)
+    end if
+  end subroutine prepare_equilibrium
+
+  !> Takes what moving supports ask of the free unknowns from the right-hand side.
+  subroutine add_moving_supports(system, values, x, rhs)
+    type(dam_system), intent(in) :: system
+    real(rk), intent(in) :: values(:) !< K_eff
+    real(rk), intent(in) :: x(:) !< (num_total) zero but for the supports
+    real(rk), intent(inout) :: rhs(:) !< (free unknowns)
+    real(rk), allocatable :: product(:)
+    if (.not. any(abs(x) > 0.0_rk)) return
+    allocate (product(size(x)))
+    call multiply(system%matrix, values, x, product)
+    rhs = rhs - product(:size(rhs))
+  end subroutine add_moving_supports
+
+  !> The balance of the free unknowns as it came out, joints by their laws: the last word on
+  !> convergence.
+  subroutine check_bulk(unbalance, reference, tolerance, outcome)
+    real(rk), intent(in) :: unbalance(:) !< (free unknowns) [N]
+    real(rk), intent(in) :: reference !< [N]
+    real(rk), intent(in) :: tolerance
+    type(balance_outcome), intent(inout) :: outcome
+    real(rk) :: residual
+    residual = norm2(unbalance)/max(reference, tiny(1.0_rk))
+    outcome%residual = max(outcome%residual, residual)
+    outcome%has_converged = residual <= tolerance
+  end subroutine check_bulk
+end module step_equilibrium

@@ -1,0 +1,99 @@
+!> What a step says at the end of an increment, and when it cannot go on.
+module step_report
+  use kinds, only: rk
+  use errors, only: error_type, raise
+  use problem_definition, only: problem
+  use step_plan, only: step
+  use analysis_state, only: state
+  use increment_listener, only: listener
+  use equilibrium, only: balance_outcome
+  use step_control, only: increment_control
+  use step_loads, only: step_time
+  use step_system, only: dam_system
+  implicit none
+  private
+  public :: close_increment, give_up
+
+contains
+
+  !> Counts an increment that has converged, and tells the listener of it.
+  subroutine close_increment(scene, plan, when, size, control, outcome, now, results, error)
+    type(problem), intent(in) :: scene
+    type(step), intent(in) :: plan
+    type(step_time), intent(in) :: when !< the end of the increment
+    real(rk), intent(in) :: size !< of the increment [s]
+    type(increment_control), intent(in) :: control
+    type(balance_outcome), intent(in) :: outcome
+    type(state), intent(inout) :: now
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    now%increment = now%increment + 1
+    now%iterations = outcome%iterations
+    now%cutbacks = control%cutbacks
+    now%residual = outcome%residual
+    now%increment_size = size
+    now%step_time = when%now
+    now%total_time = when%start + when%now
+    now%is_last_of_step = now%step_time >= plan%duration
+    call results%costs%start('results', 'output')
+    call results%increment_done(scene, now, error)
+    call results%costs%stop('results')
+    if (allocated(error) .or. now%is_last_of_step) return
+    if (now%increment >= plan%max_increments) then
+      call raise(error, "step '"//plan%name//"' has used its "//count_text(plan%max_increments)// &
+                 ' increments (*STEP, INC) before its end')
+    end if
+  end subroutine close_increment
+
+  !> An error that names what did not converge, and where.
+  subroutine give_up(scene, system, outcome, control, now, error)
+    type(problem), intent(in) :: scene
+    type(dam_system), intent(in) :: system
+    type(balance_outcome), intent(in) :: outcome
+    type(increment_control), intent(in) :: control
+    type(state), intent(in) :: now
+    type(error_type), allocatable, intent(out) :: error
+    character(200) :: text
+    integer :: p, j
+    write (text, '(a,es9.2,a,i0,a,es8.1,a,es12.5)') 'no equilibrium: out of balance by ', &
+      outcome%residual, ' after ', outcome%iterations, ' iterations with an increment of ', &
+      2.0_rk*control%size, ', last equilibrium at time ', now%total_time
+    p = outcome%worst_point
+    if (p == 0) then
+      call raise(error, trim(text))
+      return
+    end if
+    j = count(system%operator%first_point <= p)
+    p = p - system%operator%first_point(j) + 1
+    call raise(error, trim(text)//'; worst in joint '//scene%joints(j)%name//' at '// &
+               place_text(scene%joints(j)%x(:, p))//hint(system, outcome))
+  end subroutine give_up
+
+  !> What the user may look for.
+  function hint(system, outcome) result(text)
+    type(dam_system), intent(in) :: system
+    type(balance_outcome), intent(in) :: outcome
+    character(:), allocatable :: text
+    text = ''
+    if (system%operator%num_points == 0 .or. outcome%has_converged) return
+    text = ' (a block that its joints no longer hold has no static equilibrium)'
+  end function hint
+
+  !> A whole number as text.
+  pure function count_text(number) result(text)
+    integer, intent(in) :: number
+    character(:), allocatable :: text
+    character(12) :: digits
+    write (digits, '(i0)') number
+    text = trim(digits)
+  end function count_text
+
+  !> A place as text.
+  pure function place_text(x) result(text)
+    real(rk), intent(in) :: x(3) !< [m]
+    character(:), allocatable :: text
+    character(60) :: digits
+    write (digits, '(3(a,g0.6))') '(', x(1), ', ', x(2), ', ', x(3)
+    text = trim(digits)//')'
+  end function place_text
+end module step_report

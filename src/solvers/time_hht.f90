@@ -1,0 +1,196 @@
+!> A dynamic step by the method of Hilber, Hughes & Taylor. The effective matrix is factored once for
+!> an increment size; a scene without joints is never iterated.
+module time_hht
+  use kinds, only: rk
+  use errors, only: error_type
+  use matrix_pattern, only: multiply
+  use problem_definition, only: problem
+  use step_plan, only: step
+  use analysis_state, only: state
+  use increment_listener, only: listener
+  use joint_forces, only: gather_tractions
+  use equilibrium, only: equilibrium_solver, balance_outcome
+  use step_equilibrium, only: make_equilibrium, prepare_equilibrium
+  use step_system, only: dam_system, build_structure, build_inertia, build_damping, build_loads
+  use step_loads, only: step_time, external_force, prescribed_values
+  use step_control, only: increment_control, start_control
+  use step_report, only: close_increment, give_up
+  use motion_state, only: motion, start_motion, show_motion, sum_contact
+  use initial_acceleration, only: find_acceleration
+  use hht_scheme, only: hht, make_scheme
+  use hht_increment, only: effective_values, take_increment
+  use energy_account, only: open_account, add_dynamic_work
+  implicit none
+  private
+  public :: run_dynamic, start_dynamic, stepper, prepare_size
+
+  !> What serves an increment size.
+  type :: stepper
+    type(hht) :: scheme
+    real(rk), allocatable :: values(:) !< of K_eff
+    class(equilibrium_solver), allocatable :: solver
+  end type stepper
+
+contains
+
+  !> Runs one step from the state `now` to its end, or to the last increment that converged.
+  subroutine run_dynamic(scene, plan, now, results, error)
+    type(problem), intent(in) :: scene
+    type(step), intent(in) :: plan
+    type(state), intent(inout) :: now
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    type(dam_system) :: system
+    type(motion) :: moving
+    type(stepper) :: tool
+    call results%costs%start('assemble', 'solver')
+    call build_structure(scene, plan, system, error)
+    if (.not. allocated(error)) call build_inertia(scene, plan, system, error)
+    if (.not. allocated(error)) call build_damping(scene, plan, system, error)
+    if (allocated(error)) return
+    call build_loads(scene, plan, now%u, system)
+    call results%costs%stop('assemble')
+    now%num_unknowns = system%matrix%num_free
+    call start_motion(system%numbers, scene%joints, now, moving)
+    call results%costs%start('initial acceleration', 'solver')
+    call start_dynamic(scene, plan, system, now%total_time, moving, error)
+    call results%costs%stop('initial acceleration')
+    if (allocated(error)) return
+    call open_account(scene%joints, moving, now%total_time <= 0.0_rk, now%energy)
+    call show_motion(system%numbers, moving, now)
+    call results%increment_done(scene, now, error)
+    if (allocated(error)) return
+    call results%costs%start('analyse', 'solver')
+    call make_equilibrium(plan, system, tool%solver, error)
+    call results%costs%stop('analyse')
+    if (allocated(error)) return
+    call walk(scene, plan, system, tool, moving, now, results, error)
+  end subroutine run_dynamic
+
+  !> Forces at the start of the step and the acceleration that balances them. Supports that follow an
+  !> amplitude start with its velocity.
+  subroutine start_dynamic(scene, plan, system, start, moving, error)
+    type(problem), intent(in) :: scene
+    type(step), intent(in) :: plan
+    type(dam_system), intent(in) :: system
+    real(rk), intent(in) :: start !< total time [s]
+    type(motion), intent(inout) :: moving
+    type(error_type), allocatable, intent(out) :: error
+    type(step_time) :: when
+    when = step_time(.true., 0.0_rk, start, plan%duration)
+    call external_force(system%groups, scene%amplitudes, when, moving%external)
+    call start_supports(scene, system, when, 1.0e-3_rk*plan%first_increment, moving%v)
+    call multiply(system%matrix, system%stiffness, moving%q, moving%elastic)
+    call multiply(system%matrix, system%mass, moving%v, moving%momentum)
+    if (size(system%damping) > 0) then
+      call multiply(system%matrix, system%damping, moving%v, moving%viscous)
+    end if
+    call sum_contact(system%operator, moving)
+    call gather_tractions(system%operator, moving%joints, moving%carried)
+    call find_acceleration(system%matrix, system%mass, moving%external - moving%elastic &
+                           - moving%viscous - moving%contact, moving%a, error)
+    call multiply(system%matrix, system%mass, moving%a, moving%inertia)
+    moving%balanced = moving%inertia
+    if (size(system%damping) > 0) then
+      call multiply(system%matrix, system%damping, moving%a, moving%viscous_rate)
+    end if
+  end subroutine start_dynamic
+
+  !> Velocities of supports that follow an amplitude; the others stand still.
+  subroutine start_supports(scene, system, when, instant, v)
+    type(problem), intent(in) :: scene
+    type(dam_system), intent(in) :: system
+    type(step_time), intent(in) :: when
+    real(rk), intent(in) :: instant !< a small part of the increment [s]
+    real(rk), intent(inout) :: v(:)
+    real(rk) :: first(size(v)), last(size(v))
+    type(step_time) :: later
+    integer :: i
+    first = 0.0_rk
+    last = 0.0_rk
+    later = when
+    later%now = when%now + instant
+    call prescribed_values(system%supports, scene%amplitudes, when, first)
+    call prescribed_values(system%supports, scene%amplitudes, later, last)
+    do i = 1, size(system%supports)
+      associate (k => system%supports(i)%unknown)
+        v(k) = (last(k) - first(k))/instant
+      end associate
+    end do
+  end subroutine start_supports
+
+  !> Increments until the end of the step.
+  subroutine walk(scene, plan, system, tool, moving, now, results, error)
+    type(problem), intent(in) :: scene
+    type(step), intent(in) :: plan
+    type(dam_system), intent(in) :: system
+    type(stepper), intent(inout) :: tool
+    type(motion), intent(inout) :: moving
+    type(state), intent(inout) :: now
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    type(increment_control) :: control
+    type(balance_outcome) :: outcome
+    type(motion) :: trial
+    type(step_time) :: when
+    real(rk) :: dt
+    logical :: gives_up
+    when = step_time(.true., 0.0_rk, now%total_time, plan%duration)
+    trial = moving
+    call start_control(plan, .true., control)
+    do while (now%step_time < plan%duration)
+      dt = control%next_size(now%step_time)
+      when%now = now%step_time + dt
+      if (plan%duration - when%now < 1.0e-9_rk*dt) when%now = plan%duration
+      call prepare_size(scene, plan, system, dt, results, tool, error)
+      if (allocated(error)) return
+      call results%costs%start('solve', 'solver')
+      call take_increment(scene, system, tool%scheme, tool%values, tool%solver, when, moving, &
+                          trial, outcome, error)
+      call results%costs%stop('solve')
+      if (allocated(error)) return
+      if (.not. outcome%has_converged) then
+        call control%cut(dt, gives_up)
+        if (gives_up) call give_up(scene, system, outcome, control, now, error)
+        if (gives_up) return
+        cycle
+      end if
+      call results%costs%start('energy', 'solver')
+      call add_dynamic_work(tool%scheme, scene%joints, system%matrix%num_free, moving, trial, &
+                            now%energy)
+      call results%costs%stop('energy')
+      call swap(moving, trial)
+      call show_motion(system%numbers, moving, now)
+      call control%accept(outcome%iterations)
+      call close_increment(scene, plan, when, dt, control, outcome, now, results, error)
+      if (allocated(error)) return
+    end do
+  end subroutine walk
+
+  !> Factors the effective matrix when the size of the increment is a new one.
+  subroutine prepare_size(scene, plan, system, dt, results, tool, error)
+    type(problem), intent(in) :: scene
+    type(step), intent(in) :: plan
+    type(dam_system), intent(in) :: system
+    real(rk), intent(in) :: dt !< [s]
+    class(listener), intent(inout) :: results
+    type(stepper), intent(inout) :: tool
+    type(error_type), allocatable, intent(out) :: error
+    if (abs(dt - tool%scheme%dt) <= 1.0e-12_rk*dt) return
+    tool%scheme = make_scheme(plan%alpha, dt, plan%controls%joint_forces)
+    call effective_values(system, tool%scheme, tool%values)
+    call results%costs%start('factorise', 'solver')
+    call prepare_equilibrium(scene, system, tool%values, tool%scheme%joint_weight, tool%solver, &
+                             error)
+    call results%costs%stop('factorise')
+  end subroutine prepare_size
+
+  !> Accepts the trial.
+  subroutine swap(converged, trial)
+    type(motion), intent(inout) :: converged, trial
+    type(motion) :: other
+    other = converged
+    converged = trial
+    trial = other
+  end subroutine swap
+end module time_hht

@@ -1,0 +1,161 @@
+!> A static step: loads and supports follow their rule of time, increments are as large as the
+!> joints allow. A scene without joints is factored once and not iterated.
+module time_static
+  use kinds, only: rk
+  use errors, only: error_type
+  use matrix_pattern, only: multiply
+  use problem_definition, only: problem
+  use step_plan, only: step
+  use joint_forces, only: gather_jumps, gather_tractions
+  use analysis_state, only: state
+  use increment_listener, only: listener
+  use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
+  use step_equilibrium, only: make_equilibrium, prepare_equilibrium, add_moving_supports, check_bulk
+  use step_system, only: dam_system, build_structure, build_loads
+  use step_loads, only: step_time, external_force, prescribed_values
+  use step_control, only: increment_control, start_control
+  use step_report, only: close_increment, give_up
+  use motion_state, only: motion, start_motion, show_motion, sum_contact
+  use energy_account, only: open_account, add_static_work
+  implicit none
+  private
+  public :: run_static
+
+contains
+
+  !> Runs one step from the state `now` to its end, or to the last increment that converged.
+  subroutine run_static(scene, plan, now, results, error)
+    type(problem), intent(in) :: scene
+    type(step), intent(in) :: plan
+    type(state), intent(inout) :: now
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    type(dam_system) :: system
+    type(motion) :: moving
+    class(equilibrium_solver), allocatable :: solver
+    call results%costs%start('assemble', 'solver')
+    call build_structure(scene, plan, system, error)
+    if (allocated(error)) return
+    call build_loads(scene, plan, now%u, system)
+    call results%costs%stop('assemble')
+    call results%costs%start('factorise', 'solver')
+    call make_equilibrium(plan, system, solver, error)
+    if (allocated(error)) return
+    call prepare_equilibrium(scene, system, system%stiffness, 1.0_rk, solver, error)
+    if (allocated(error)) return
+    call results%costs%stop('factorise')
+    now%num_unknowns = system%matrix%num_free
+    now%v = 0.0_rk
+    now%a = 0.0_rk
+    call start_motion(system%numbers, scene%joints, now, moving)
+    call start_forces(scene, plan, system, now, moving)
+    call open_account(scene%joints, moving, now%total_time <= 0.0_rk, now%energy)
+    call walk(scene, plan, system, solver, moving, now, results, error)
+  end subroutine run_static
+
+  !> Forces at the start of the step.
+  subroutine start_forces(scene, plan, system, now, moving)
+    type(problem), intent(in) :: scene
+    type(step), intent(in) :: plan
+    type(dam_system), intent(in) :: system
+    type(state), intent(in) :: now
+    type(motion), intent(inout) :: moving
+    call external_force(system%groups, scene%amplitudes, &
+                        step_time(.false., 0.0_rk, now%total_time, plan%duration), moving%external)
+    call multiply(system%matrix, system%stiffness, moving%q, moving%elastic)
+    call sum_contact(system%operator, moving)
+  end subroutine start_forces
+
+  !> Increments until the end of the step.
+  subroutine walk(scene, plan, system, solver, moving, now, results, error)
+    type(problem), intent(in) :: scene
+    type(step), intent(in) :: plan
+    type(dam_system), intent(in) :: system
+    class(equilibrium_solver), intent(inout) :: solver
+    type(motion), intent(inout) :: moving
+    type(state), intent(inout) :: now
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    type(increment_control) :: control
+    type(balance_outcome) :: outcome
+    type(motion) :: trial
+    type(step_time) :: when
+    real(rk) :: size_of_increment
+    logical :: gives_up
+    when = step_time(.false., 0.0_rk, now%total_time, plan%duration)
+    call start_control(plan, .false., control)
+    do while (now%step_time < plan%duration)
+      size_of_increment = control%next_size(now%step_time)
+      when%now = now%step_time + size_of_increment
+      if (plan%duration - when%now < 1.0e-9_rk*size_of_increment) when%now = plan%duration
+      call results%costs%start('solve', 'solver')
+      call take_increment(scene, system, solver, when, moving, trial, outcome, error)
+      call results%costs%stop('solve')
+      if (allocated(error)) return
+      if (.not. outcome%has_converged) then
+        call control%cut(size_of_increment, gives_up)
+        if (gives_up) call give_up(scene, system, outcome, control, now, error)
+        if (gives_up) return
+        cycle
+      end if
+      call add_static_work(scene%joints, system%matrix%num_free, moving, trial, now%energy)
+      moving = trial
+      call show_motion(system%numbers, moving, now)
+      call control%accept(outcome%iterations)
+      call close_increment(scene, plan, when, size_of_increment, control, outcome, now, results, &
+                           error)
+      if (allocated(error)) return
+    end do
+  end subroutine walk
+
+  !> One increment: K x + B^T (area t) = f1 - K q0 for the increment x of the unknowns.
+  subroutine take_increment(scene, system, solver, when, before, after, outcome, error)
+    type(problem), intent(in) :: scene
+    type(dam_system), intent(in) :: system
+    class(equilibrium_solver), intent(inout) :: solver
+    type(step_time), intent(in) :: when
+    type(motion), intent(in) :: before
+    type(motion), intent(out) :: after
+    type(balance_outcome), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: error
+    type(force_balance) :: balance
+    real(rk), allocatable :: x(:), moved(:)
+    integer :: n
+    n = system%matrix%num_free
+    after = before
+    call external_force(system%groups, scene%amplitudes, when, after%external)
+    call prescribed_values(system%supports, scene%amplitudes, when, after%q)
+    moved = after%q - before%q
+    balance%rhs = after%external(:n) - before%elastic(:n)
+    call add_moving_supports(system, system%stiffness, moved, balance%rhs)
+    balance%reference = norm2(balance%rhs)
+    call set_jumps(system, before, after%q, balance)
+    allocate (x(size(moved)))
+    call solver%solve(balance, scene%joints, system%operator, before%joints, after%joints, x, &
+                      outcome, error)
+    if (allocated(error) .or. .not. outcome%has_converged) return
+    after%q = after%q + x
+    call multiply(system%matrix, system%stiffness, after%q, after%elastic)
+    call sum_contact(system%operator, after)
+    call check_bulk(after%external(:n) - after%elastic(:n) - after%contact(:n), &
+                    max(norm2(after%external(:n)), norm2(after%elastic(:n))), &
+                    solver%controls%residual_tolerance, outcome)
+  end subroutine take_increment
+
+  !> Jumps before the free unknowns move, and the first guess: the converged ones. A joint that has
+  !> carried nothing yet starts bonded.
+  subroutine set_jumps(system, before, q, balance)
+    type(dam_system), intent(in) :: system
+    type(motion), intent(in) :: before
+    real(rk), intent(in) :: q(:) !< supports at the end of the increment
+    type(force_balance), intent(inout) :: balance
+    real(rk), allocatable :: traction(:, :)
+    allocate (balance%offset(3, system%operator%num_points), &
+              balance%guess(3, system%operator%num_points), &
+              traction(3, system%operator%num_points))
+    call system%operator%jumps(q, balance%offset)
+    call gather_jumps(system%operator, before%joints, balance%guess)
+    call gather_tractions(system%operator, before%joints, traction)
+    balance%starts_bonded = .not. any(abs(traction) > 0.0_rk)
+  end subroutine set_jumps
+end module time_static
