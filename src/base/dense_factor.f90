@@ -54,6 +54,6 @@ contains
     integer :: n, info
     n = size(factor%values, 1)
     if (n == 0) return
-    call dgetrs("N", n, size(b, 2), factor%values, n, factor%pivot, b, n, info)
+    call dgetrs('N', n, size(b, 2), factor%values, n, factor%pivot, b, n, info)
   end subroutine solve_dense
 end module dense_factor

@@ -31,6 +31,7 @@ contains
     if (is_first) energy%initial = energy%kinetic + energy%strain
     ! Velocities that a step does not take over are taken by the stepping.
     if (.not. is_first) energy%numerical = energy%numerical + kinetic_before - energy%kinetic
+    call find_error(energy)
   end subroutine open_account
 
   !> Adds the work of a static increment.
@@ -124,22 +125,28 @@ contains
              + last%fracture - first%fracture
   end function joint_change
 
-  !> Energies of the state itself, and the imbalance.
+  !> Energies of the state itself.
   subroutine set_stored(joints, moving, energy)
     type(joint), intent(in) :: joints(:)
     type(motion), intent(in) :: moving
     type(energy_balance), intent(inout) :: energy
     type(joint_work) :: total
-    real(rk) :: imbalance, largest
     call sum_joint_work(joints, moving%joints, total)
     energy%kinetic = 0.5_rk*dot_product(moving%v, moving%momentum)
     energy%strain = 0.5_rk*dot_product(moving%q, moving%elastic) + total%stored
     energy%friction = total%friction
     energy%fracture = total%fracture
+    call find_error(energy)
+  end subroutine set_stored
+
+  !> The imbalance over the largest energy.
+  pure subroutine find_error(energy)
+    type(energy_balance), intent(inout) :: energy
+    real(rk) :: imbalance, largest
     imbalance = energy%external + energy%initial - energy%kinetic - energy%strain - energy%damping &
                 - energy%friction - energy%fracture - energy%numerical
     largest = max(abs(energy%external), energy%kinetic, energy%strain, abs(energy%damping), &
                   energy%friction, energy%fracture, energy%initial, tiny(1.0_rk))
     energy%error = abs(imbalance)/largest
-  end subroutine set_stored
+  end subroutine find_error
 end module energy_account

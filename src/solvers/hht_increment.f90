@@ -10,7 +10,7 @@ module hht_increment
   use errors, only: error_type
   use matrix_pattern, only: multiply
   use problem_definition, only: problem
-  use joint_forces, only: gather_tractions
+  use joint_forces, only: gather_tractions, gather_jumps
   use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
   use step_equilibrium, only: add_moving_supports, check_bulk
   use step_system, only: dam_system
@@ -19,7 +19,7 @@ module hht_increment
   use hht_scheme, only: hht
   implicit none
   private
-  public :: effective_values, take_increment, carry_impulse
+  public :: effective_values, take_increment
 
 contains
 
@@ -101,7 +101,7 @@ contains
     end if
   end subroutine sum_known_forces
 
-  !> Jumps at x = 0 with the supports in place, and a guess: the acceleration goes on as it was.
+  !> Jumps at x = 0 with the supports in place, and a guess: jumps go on as in the last increment.
   subroutine set_jumps(system, scheme, before, q, balance)
     type(dam_system), intent(in) :: system
     type(hht), intent(in) :: scheme
@@ -112,7 +112,8 @@ contains
               balance%guess(3, system%operator%num_points))
     if (system%operator%num_points == 0) return
     call system%operator%jumps(q, balance%offset)
-    call system%operator%jumps(q + before%a/scheme%acceleration_of_x, balance%guess)
+    call gather_jumps(system%operator, before%joints, balance%guess)
+    balance%guess = balance%guess + scheme%dt*before%jump_rate
   end subroutine set_jumps
 
   !> Motion and forces at the end; `rhs` returns what is out of balance.
@@ -139,7 +140,7 @@ contains
       rhs = rhs - (1.0_rk + scheme%alpha)*weight*after%viscous_rate
     end if
     call sum_contact(system%operator, after)
-    call carry_impulse(system, scheme, before, after)
+    call carry_joints(system, scheme, before, after)
     rhs = rhs - scheme%joint_weight*after%contact
     joint_force = scheme%joint_weight*after%contact
     if (scheme%carries_impulse) then
@@ -152,17 +153,22 @@ contains
                      - joint_force
   end subroutine correct
 
+  !> What the joints hand on to the next increment: the rate of their jumps, and the traction
   !> t1* = (t1 - (1 - gamma) t0*)/gamma of the implicit impulse (7.3).
-  subroutine carry_impulse(system, scheme, before, after)
+  subroutine carry_joints(system, scheme, before, after)
     type(dam_system), intent(in) :: system
     type(hht), intent(in) :: scheme
     type(motion), intent(in) :: before
     type(motion), intent(inout) :: after
     real(rk) :: traction(3, system%operator%num_points)
+    if (system%operator%num_points == 0) return
+    call gather_jumps(system%operator, before%joints, traction)
+    call gather_jumps(system%operator, after%joints, after%jump_rate)
+    after%jump_rate = (after%jump_rate - traction)/scheme%dt
     if (.not. scheme%carries_impulse) return
     call gather_tractions(system%operator, after%joints, traction)
     after%carried = scheme%joint_weight*traction + scheme%old_joint_weight*before%carried
-  end subroutine carry_impulse
+  end subroutine carry_joints
 
   !> The largest of the forces in the balance.
   pure real(rk) function largest_force(moving, num_free) result(force)

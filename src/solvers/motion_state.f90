@@ -1,7 +1,7 @@
 !> The motion in the unknowns of a step, with the forces that belong to it.
 !>
-!> Two of them exist, converged and trial: accepting an increment is one copy of the trial, cutting it
-!> back leaves the converged one as it is.
+!> Two of them exist, converged and trial: accepting an increment is one copy of the trial, cutting
+!> it back leaves the converged one as it is.
 module motion_state
   use kinds, only: rk
   use joint_law, only: joint_state
@@ -25,6 +25,7 @@ module motion_state
     real(rk), allocatable :: balanced(:) !< M a as the balance of forces gives it [N]
     real(rk), allocatable :: contact(:) !< B^T (area t) by the laws of the joints [N]
     real(rk), allocatable :: carried(:, :) !< (3, points) t* of the implicit impulse [Pa]
+    real(rk), allocatable :: jump_rate(:, :) !< (3, points) of the last increment [m/s]
     type(joint_state), allocatable :: joints(:)
   end type motion
 
@@ -47,7 +48,8 @@ contains
     allocate (moving%external(n), moving%elastic(n), moving%viscous(n), moving%viscous_rate(n), &
               moving%momentum(n), moving%inertia(n), moving%balanced(n), moving%contact(n), &
               source=0.0_rk)
-    allocate (moving%carried(3, sum(joints%num_points)), source=0.0_rk)
+    allocate (moving%carried(3, sum(joints%num_points)), &
+              moving%jump_rate(3, sum(joints%num_points)), source=0.0_rk)
   end subroutine start_motion
 
   !> The unknowns of a nodal field: q with T q = u.

@@ -9,7 +9,7 @@ module newton_full
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, reference_stiffness, linear_tractions
   use joint_iteration, only: start_iteration, linearise, closed_tangent, measure_residual, &
-    measure_correction
+                             measure_correction
   use joint_compliance, only: find_compliance, friction_scale
   use linear_solver, only: equation_solver
   use solver_catalogue, only: make_solver, unsymmetric_solver

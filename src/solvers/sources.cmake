@@ -31,4 +31,7 @@ set(sources
   hht_increment.f90
   time_static.f90
   time_hht.f90
+  time_frequency.f90
+  initial_state.f90
+  run_steps.f90
 )

@@ -1,5 +1,5 @@
-!> A dynamic step by the method of Hilber, Hughes & Taylor. The effective matrix is factored once for
-!> an increment size; a scene without joints is never iterated.
+!> A dynamic step by the method of Hilber, Hughes & Taylor. The effective matrix is factored once
+!> for an increment size; a scene without joints is never iterated.
 module time_hht
   use kinds, only: rk
   use errors, only: error_type
@@ -67,8 +67,8 @@ contains
     call walk(scene, plan, system, tool, moving, now, results, error)
   end subroutine run_dynamic
 
-  !> Forces at the start of the step and the acceleration that balances them. Supports that follow an
-  !> amplitude start with its velocity.
+  !> Forces at the start of the step and the acceleration that balances them. Supports that follow
+  !> an amplitude start with its velocity.
   subroutine start_dynamic(scene, plan, system, start, moving, error)
     type(problem), intent(in) :: scene
     type(step), intent(in) :: plan

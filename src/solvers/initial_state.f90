@@ -1,0 +1,60 @@
+!> The state that an analysis begins with.
+module initial_state
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use joint_points, only: joint
+  use joint_law, only: joint_state
+  use joint_forces, only: start_joints
+  use analysis_state, only: state
+  implicit none
+  private
+  public :: start_analysis
+
+contains
+
+  !> At rest, but for the initial conditions of the deck; joints follow the displacements given.
+  subroutine start_analysis(scene, now)
+    type(problem), intent(in) :: scene
+    type(state), intent(out) :: now
+    integer :: i, n
+    n = scene%mesh%num_nodes
+    allocate (now%u(3, n), now%v(3, n), now%a(3, n), now%reaction(3, n), source=0.0_rk)
+    call start_joints(scene%joints, now%joints)
+    if (.not. allocated(scene%initial_values)) return
+    do i = 1, size(scene%initial_values)
+      associate (given => scene%initial_values(i))
+        if (given%is_velocity) then
+          now%v(given%dof, given%node) = given%value
+        else
+          now%u(given%dof, given%node) = given%value
+        end if
+      end associate
+    end do
+    if (.not. any(abs(now%u) > 0.0_rk)) return
+    do i = 1, size(scene%joints)
+      call move_joint(scene%joints(i), now%u, now%joints(i))
+    end do
+  end subroutine start_analysis
+
+  !> The joint's answer to the displacements.
+  subroutine move_joint(seam, u, history)
+    type(joint), intent(in) :: seam
+    real(rk), intent(in) :: u(:, :) !< (3, nodes) [m]
+    type(joint_state), intent(inout) :: history
+    real(rk), dimension(3, seam%num_points) :: jump, iterate
+    real(rk) :: tangent(3, 3, seam%num_points), k(3), apart(3)
+    type(joint_state) :: old
+    integer :: p, a
+    do p = 1, seam%num_points
+      apart = 0.0_rk
+      do a = 1, size(seam%shape, 1)
+        apart = apart + seam%shape(a, p)*(u(:, seam%slave(a, p)) - u(:, seam%master(a, p)))
+      end do
+      jump(:, p) = matmul(seam%rotation(:, :, p), apart)
+    end do
+    old = history
+    call seam%law%reference_stiffness(k)
+    call seam%law%update(jump, old, old%traction(2:3, :), spread(k(2), 1, seam%num_points), &
+                         history, iterate, tangent)
+  end subroutine move_joint
+end module initial_state

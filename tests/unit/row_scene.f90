@@ -1,0 +1,240 @@
+!> A row of boxes along x that share their faces, on joints that rest on fixed ground; and a
+!> listener that remembers what a run did.
+module row_scene
+  use kinds, only: rk
+  use errors, only: error_type
+  use problem_definition, only: problem
+  use analysis_state, only: state, vibration_mode
+  use increment_listener, only: listener
+  use amplitudes, only: amplitude
+  use applied_load, only: load_slot
+  use material_elastic, only: elastic_law
+  use joint_contraction, only: contraction_law
+  use joint_points, only: joint
+  use load_gravity, only: gravity_load
+  use load_base_motion, only: base_motion
+  use step_plan, only: step, step_fixity, step_load, initial_value
+  implicit none
+  private
+  public :: make_row, put_on_ground, put_at_wall, add_gravity, shake_base, new_step, fix, kick
+  public :: recorder, calls_of
+
+  !> Remembers states.
+  type, extends(listener) :: recorder
+    integer :: num_increments = 0, most_iterations = 0, sum_iterations = 0
+    real(rk) :: worst_error = 0.0_rk
+    integer :: watched_node = 1, watched_dof = 1
+    real(rk), allocatable :: time(:), u(:), v(:), a(:), friction(:), pressure(:), total(:)
+    type(vibration_mode), allocatable :: modes(:)
+  contains
+    procedure :: increment_done, modes_found
+  end type recorder
+
+contains
+
+  !> Boxes between the planes x(i) and x(i + 1), y in 0..width, z in 0..height, Poisson's ratio 0.
+  !> Nodes 4*i - 3 .. 4*i lie in plane i: (0, 0), (width, 0), (width, height), (0, height).
+  subroutine make_row(x, width, height, young, density, scene)
+    real(rk), intent(in) :: x(:), width, height
+    real(rk), intent(in) :: young(:), density(:) !< (boxes)
+    type(problem), intent(out) :: scene
+    integer :: i, n
+    n = size(young)
+    scene%mesh%num_nodes = 4*(n + 1)
+    scene%mesh%num_elements = n
+    allocate (scene%mesh%x(3, 4*(n + 1)), scene%mesh%nodes(8, n), scene%mesh%element_type(n))
+    scene%mesh%element_type = 'C3D8'
+    do i = 1, n + 1
+      scene%mesh%x(:, 4*i - 3:4*i) = reshape([x(i), 0.0_rk, 0.0_rk, x(i), width, 0.0_rk, &
+                                              x(i), width, height, x(i), 0.0_rk, height], [3, 4])
+    end do
+    allocate (scene%materials(n), scene%joints(0), scene%loads(0), scene%amplitudes(0), &
+              scene%initial_values(0), scene%steps(0))
+    do i = 1, n
+      scene%mesh%nodes(:, i) = [4*i - 3, 4*i - 2, 4*i - 1, 4*i, 4*i + 1, 4*i + 2, 4*i + 3, 4*i + 4]
+      scene%materials(i)%density = density(i)
+      allocate (scene%materials(i)%law, source=elastic_law(young=young(i), poisson=0.0_rk))
+    end do
+    scene%mesh%material_of_element = [(i, i=1, n)]
+    scene%mesh%section_of_element = [(i, i=1, n)]
+    scene%mesh%element_id = [(i, i=1, n)]
+    scene%mesh%node_id = [(i, i=1, 4*(n + 1))]
+  end subroutine make_row
+
+  !> A joint below box `box`.
+  subroutine put_on_ground(box, law, scene)
+    integer, intent(in) :: box
+    type(contraction_law), intent(in) :: law
+    type(problem), intent(inout) :: scene
+    real(rk) :: area
+    integer :: slave(4)
+    slave = 4*box + [-3, -2, 1, 2]
+    area = (scene%mesh%x(1, slave(3)) - scene%mesh%x(1, slave(1))) &
+           *scene%mesh%x(2, slave(2))/4.0_rk
+    call add_joint(slave, area, reshape([0, 1, 0, 0, 0, 1, 1, 0, 0], [3, 3]), law, scene)
+  end subroutine put_on_ground
+
+  !> A joint in front of the first face.
+  subroutine put_at_wall(law, scene)
+    type(contraction_law), intent(in) :: law
+    type(problem), intent(inout) :: scene
+    real(rk) :: area
+    area = scene%mesh%x(2, 3)*scene%mesh%x(3, 3)/4.0_rk
+    call add_joint([1, 2, 3, 4], area, reshape([1, 0, 0, 0, 1, 0, 0, 0, 1], [3, 3]), law, scene)
+  end subroutine put_at_wall
+
+  !> Pairs of nodes of the row (slave) and nodes of the ground, which no element uses.
+  subroutine add_joint(slave, area, rotation, law, scene)
+    integer, intent(in) :: slave(:), rotation(3, 3)
+    real(rk), intent(in) :: area
+    type(contraction_law), intent(in) :: law
+    type(problem), intent(inout) :: scene
+    type(joint) :: seam
+    integer :: n, p
+    n = size(slave)
+    seam%name = 'GROUND'
+    allocate (seam%law, source=law)
+    seam%num_points = n
+    allocate (seam%master(1, n), seam%slave(1, n), seam%shape(1, n), seam%rotation(3, 3, n), &
+              seam%area(n))
+    seam%slave(1, :) = slave
+    seam%master(1, :) = [(scene%mesh%num_nodes + p, p=1, n)]
+    seam%shape = 1.0_rk
+    seam%x = scene%mesh%x(:, slave)
+    seam%rotation = spread(real(rotation, rk), 3, n)
+    seam%area = area
+    scene%mesh%x = reshape([scene%mesh%x, seam%x], [3, scene%mesh%num_nodes + n])
+    scene%mesh%num_nodes = scene%mesh%num_nodes + n
+    scene%mesh%node_id = [(p, p=1, scene%mesh%num_nodes)]
+    scene%joints = [scene%joints, seam]
+  end subroutine add_joint
+
+  !> Weight along -z.
+  subroutine add_gravity(g, scene)
+    real(rk), intent(in) :: g
+    type(problem), intent(inout) :: scene
+    type(load_slot) :: slot
+    type(gravity_load) :: weight
+    integer :: e
+    weight%name = 'GRAVITY'
+    weight%elements = [(e, e=1, scene%mesh%num_elements)]
+    weight%acceleration = [0.0_rk, 0.0_rk, -g]
+    allocate (slot%item, source=weight)
+    scene%loads = [scene%loads, slot]
+  end subroutine add_gravity
+
+  !> Base motion along x, a0 sin(2 pi t) or another history.
+  subroutine shake_base(history, scene)
+    type(amplitude), intent(in) :: history
+    type(problem), intent(inout) :: scene
+    type(load_slot) :: slot
+    type(base_motion) :: motion
+    motion%name = 'BASE'
+    motion%dof = 1
+    allocate (slot%item, source=motion)
+    scene%loads = [scene%loads, slot]
+    scene%amplitudes = [scene%amplitudes, history]
+  end subroutine shake_base
+
+  !> A step with all loads of the scene: the second one follows the first amplitude.
+  subroutine new_step(procedure_name, increment, duration, scene)
+    character(*), intent(in) :: procedure_name
+    real(rk), intent(in) :: increment, duration
+    type(problem), intent(inout) :: scene
+    type(step) :: plan
+    type(step_load) :: rule
+    integer :: i
+    plan%name = 'Step'
+    plan%procedure = procedure_name
+    plan%first_increment = increment
+    plan%duration = duration
+    allocate (plan%loads(0), plan%fixities(0))
+    if (size(scene%steps) > 0) plan%fixities = scene%steps(size(scene%steps))%fixities
+    do i = 1, size(scene%loads)
+      rule%load = i
+      rule%amplitude = 0
+      if (allocated(scene%loads(i)%item%name)) then
+        if (scene%loads(i)%item%name == 'BASE') rule%amplitude = 1
+      end if
+      plan%loads = [plan%loads, rule]
+    end do
+    scene%steps = [scene%steps, plan]
+  end subroutine new_step
+
+  !> Fixes a direction of nodes in all steps.
+  subroutine fix(nodes, dof, scene)
+    integer, intent(in) :: nodes(:), dof
+    type(problem), intent(inout) :: scene
+    type(step_fixity) :: fixity
+    integer :: s, i
+    do s = 1, size(scene%steps)
+      do i = 1, size(nodes)
+        fixity%node = nodes(i)
+        fixity%dof = dof
+        scene%steps(s)%fixities = [scene%steps(s)%fixities, fixity]
+      end do
+    end do
+  end subroutine fix
+
+  !> Initial velocity or displacement of nodes.
+  subroutine kick(nodes, dof, value, is_velocity, scene)
+    integer, intent(in) :: nodes(:), dof
+    real(rk), intent(in) :: value
+    logical, intent(in) :: is_velocity
+    type(problem), intent(inout) :: scene
+    integer :: i
+    do i = 1, size(nodes)
+      scene%initial_values = [scene%initial_values, &
+                              initial_value(is_velocity, nodes(i), dof, value)]
+    end do
+  end subroutine kick
+
+  !> Notes what the tests look at.
+  subroutine increment_done(self, scene, now, error)
+    class(recorder), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: pressure
+    if (.not. allocated(self%time)) then
+      allocate (self%time(0), self%u(0), self%v(0), self%a(0), self%friction(0), self%pressure(0), &
+                self%total(0))
+    end if
+    if (now%increment > 0) self%num_increments = self%num_increments + 1
+    self%most_iterations = max(self%most_iterations, now%iterations)
+    self%sum_iterations = self%sum_iterations + now%iterations
+    self%worst_error = max(self%worst_error, now%energy%error)
+    pressure = 0.0_rk
+    if (size(scene%joints) > 0) pressure = -now%joints(1)%traction(1, 1)
+    self%time = [self%time, now%total_time]
+    self%u = [self%u, now%u(self%watched_dof, self%watched_node)]
+    self%v = [self%v, now%v(self%watched_dof, self%watched_node)]
+    self%a = [self%a, now%a(self%watched_dof, self%watched_node)]
+    self%friction = [self%friction, now%energy%friction]
+    self%pressure = [self%pressure, pressure]
+    self%total = [self%total, now%energy%kinetic + now%energy%strain]
+    if (.false.) allocate (error)
+  end subroutine increment_done
+
+  !> Keeps the modes.
+  subroutine modes_found(self, scene, step, modes, error)
+    class(recorder), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    integer, intent(in) :: step
+    type(vibration_mode), intent(in) :: modes(:)
+    type(error_type), allocatable, intent(out) :: error
+    if (step > 0 .and. size(scene%steps) > 0) self%modes = modes
+    if (.false.) allocate (error)
+  end subroutine modes_found
+
+  !> Calls of a part of the ledger.
+  integer function calls_of(results, name)
+    type(recorder), intent(in) :: results
+    character(*), intent(in) :: name
+    integer :: i
+    calls_of = 0
+    do i = 1, size(results%costs%parts)
+      if (results%costs%parts(i)%name == name) calls_of = results%costs%parts(i)%num_calls
+    end do
+  end function calls_of
+end module row_scene
