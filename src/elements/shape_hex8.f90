@@ -17,9 +17,12 @@ module shape_hex8
   integer, parameter :: corner_of_point(8) = [1, 2, 4, 3, 5, 6, 8, 7]
 
   !> 1 + (coordinate of the corner)*(coordinate of the point); (corner, point).
- real(rk), parameter :: s1(8, 8) = 1.0_rk + spread(corner(1, :), 2, 8)*spread(hex_point(1, :), 1, 8)
- real(rk), parameter :: s2(8, 8) = 1.0_rk + spread(corner(2, :), 2, 8)*spread(hex_point(2, :), 1, 8)
- real(rk), parameter :: s3(8, 8) = 1.0_rk + spread(corner(3, :), 2, 8)*spread(hex_point(3, :), 1, 8)
+  real(rk), parameter :: s1(8, 8) = &
+                         1.0_rk + spread(corner(1, :), 2, 8)*spread(hex_point(1, :), 1, 8)
+  real(rk), parameter :: s2(8, 8) = &
+                         1.0_rk + spread(corner(2, :), 2, 8)*spread(hex_point(2, :), 1, 8)
+  real(rk), parameter :: s3(8, 8) = &
+                         1.0_rk + spread(corner(3, :), 2, 8)*spread(hex_point(3, :), 1, 8)
 
   !> Shape functions at the integration points; (corner, point).
   real(rk), parameter :: point_shape(8, 8) = 0.125_rk*s1*s2*s3
