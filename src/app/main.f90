@@ -5,8 +5,11 @@ program keyway
   use check_deck, only: load_deck, report_model
   use cli, only: command_line, parse_command_line, print_answer
   use diagnostics, only: diagnostic_list
-  use errors, only: error_type, raise
+  use errors, only: error_type
+  use kinds, only: rk
   use problem_definition, only: problem
+  use run_analysis, only: run_problem
+  use timer, only: wall_clock
   implicit none
 
   interface
@@ -24,7 +27,9 @@ program keyway
   type(diagnostic_list) :: remarks
   character(:), allocatable :: echo
   logical :: is_answered
+  real(rk) :: started_at
 
+  started_at = wall_clock()
   call parse_command_line(options, error)
   call end_on(error)
   call print_answer(options, is_answered, error)
@@ -35,7 +40,7 @@ program keyway
   if (options%is_check) then
     call report_model(scene, echo)
   else
-    call raise(error, 'keyway: only --check is available yet')
+    call run_problem(scene, options, remarks, echo, started_at, error)
   end if
   call end_on(error)
 

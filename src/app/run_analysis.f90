@@ -1,0 +1,56 @@
+!> One analysis: opens the results, runs the steps, closes the results, also after a failure.
+module run_analysis
+  use omp_lib, only: omp_set_num_threads
+  use kinds, only: rk
+  use errors, only: error_type
+  use diagnostics, only: diagnostic_list
+  use file_system, only: base_name, make_folder
+  use timer, only: peak_memory, wall_clock
+  use write_text, only: as_text
+  use problem_definition, only: problem
+  use analysis_state, only: state
+  use initial_state, only: start_analysis
+  use run_steps, only: run_all_steps
+  use result_files, only: result_folder
+  use cli, only: command_line
+  implicit none
+  private
+  public :: run_problem
+
+contains
+
+  !> Runs a problem as the command line says. An error leaves readable results behind.
+  subroutine run_problem(scene, given, remarks, echo, started_at, error)
+    type(problem), intent(in) :: scene
+    type(command_line), intent(in) :: given
+    type(diagnostic_list), intent(in) :: remarks !< warnings of the deck
+    character(*), intent(in) :: echo !< the deck with its defaults, for the log
+    real(rk), intent(in) :: started_at !< by the wall clock [s]
+    type(error_type), allocatable, intent(out) :: error
+    type(result_folder) :: results
+    type(state) :: now
+    type(error_type), allocatable :: failure
+    if (given%num_threads > 0) call omp_set_num_threads(given%num_threads)
+    call make_folder(given%folder, error)
+    if (allocated(error)) return
+    call results%log%open(given%is_quiet, error, &
+                          given%folder//'/'//base_name(scene%deck_file)//'.log')
+    if (allocated(error)) return
+    call results%log%note(echo)
+    call results%costs%add_time('read deck', 'deck', wall_clock() - started_at, 1)
+    call results%open(scene, given%folder, remarks, started_at, error)
+    if (allocated(error)) return
+    call start_analysis(scene, now)
+    call run_all_steps(scene, now, results, error)
+    if (allocated(error)) then
+      call results%log%note(error%message)
+      call results%finish(scene, 'stopped', error%message, failure)
+    else
+      call results%finish(scene, 'finished', '', failure)
+      call results%log%say('finished in '//as_text(wall_clock() - started_at)//' s, '// &
+                           as_text(peak_memory())//' MB')
+    end if
+    call results%log%close()
+    if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
+  end subroutine run_problem
+end module run_analysis
