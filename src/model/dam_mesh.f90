@@ -8,7 +8,6 @@ module dam_mesh
   private
   public :: mesh
 
-
   type :: mesh
     integer :: num_nodes = 0
     integer :: num_elements = 0
