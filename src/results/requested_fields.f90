@@ -76,10 +76,10 @@ contains
     case ('RF')
       values = now%reaction
     case ('S')
-      call record%stresses%need_nodes(scene, now)
+      call record%stresses%need_node_stress(scene, now)
       values = record%stresses%node_stress
     case ('E')
-      call record%stresses%need_nodes(scene, now)
+      call record%stresses%need_node_strain(scene, now)
       values = record%stresses%node_strain
     case ('SP')
       call record%stresses%need_principals(scene, now)

@@ -8,6 +8,7 @@ set(sources
   extremes.f90
   joint_readings.f90
   stress_recovery.f90
+  stress_operator.f90
   stress_fields.f90
   envelopes.f90
   run_records.f90

@@ -14,6 +14,7 @@ module stress_recovery
   implicit none
   private
   public :: recovery_plan, make_recovery_plan, recover_points, average_at_nodes, max_points
+  public :: operators_of_block
 
   integer, parameter :: max_points = 8 !< integration points an element may have
   integer, parameter :: block_size = 32 !< elements whose operators fit a core's cache together
@@ -161,21 +162,16 @@ contains
     type(element_block), intent(in) :: part
     real(rk), intent(in) :: u(:, :)
     real(rk), intent(inout) :: strain(:, :, :), stress(:, :, :)
-    real(rk), allocatable :: b(:, :, :, :), x(:, :, :), moved(:, :), weight(:, :), found(:, :, :)
-    integer, allocatable :: status(:)
+    real(rk), allocatable :: b(:, :, :, :), moved(:, :), found(:, :, :)
     real(rk) :: d(6, 6)
-    integer :: k, q, n, points, nodes(8)
+    integer :: k, q, n, points
     n = size(part%solids)
-    points = plan%formulations(part%formulation)%item%num_points
-    allocate (b(6, 24, points, n), weight(points, n), found(6, points, n))
-    allocate (x(3, 8, n), moved(24, n), status(n))
+    call operators_of_block(scene, plan, part, b, d)
+    points = size(b, 3)
+    allocate (found(6, points, n), moved(24, n))
     do k = 1, n
-      nodes = scene%mesh%nodes(:, plan%element_of_solid(part%solids(k)))
-      x(:, :, k) = scene%mesh%x(:, nodes)
-      moved(:, k) = reshape(u(:, nodes), [24])
+      moved(:, k) = reshape(u(:, scene%mesh%nodes(:, plan%element_of_solid(part%solids(k)))), [24])
     end do
-    call scene%materials(part%material)%law%elastic_stiffness(d)
-    call plan%formulations(part%formulation)%item%strain_operator(x, d, b, weight, status)
     call strains_at_points(b, moved, found)
     do k = 1, n
       strain(:, :points, part%solids(k)) = found(:, :, k)
@@ -184,6 +180,26 @@ contains
       end do
     end do
   end subroutine recover_block
+
+  !> Strain operators of a block's elements at their points, and the elastic stiffness.
+  subroutine operators_of_block(scene, plan, part, b, d)
+    type(problem), intent(in) :: scene
+    type(recovery_plan), intent(in) :: plan
+    type(element_block), intent(in) :: part
+    real(rk), allocatable, intent(out) :: b(:, :, :, :) !< (6, 24, points, elements) [1/m]
+    real(rk), intent(out) :: d(6, 6) !< [Pa]
+    real(rk), allocatable :: x(:, :, :), weight(:, :)
+    integer, allocatable :: status(:)
+    integer :: k, n, points
+    n = size(part%solids)
+    points = plan%formulations(part%formulation)%item%num_points
+    allocate (b(6, 24, points, n), weight(points, n), x(3, 8, n), status(n))
+    do k = 1, n
+      x(:, :, k) = scene%mesh%x(:, scene%mesh%nodes(:, plan%element_of_solid(part%solids(k))))
+    end do
+    call scene%materials(part%material)%law%elastic_stiffness(d)
+    call plan%formulations(part%formulation)%item%strain_operator(x, d, b, weight, status)
+  end subroutine operators_of_block
 
   !> Carries a tensor from the points to the nodes; nodes without a solid get zero.
   subroutine average_at_nodes(plan, at_points, at_nodes)
