@@ -120,6 +120,7 @@ def read_options(arguments: list[str] | None) -> argparse.Namespace:
     parser.add_argument(
         "-o", "--output", type=Path, default=Path("arch_dam.inp"), help="deck (arch_dam.inp)"
     )
+    parser.add_argument("--picture", action="store_true", help="draw the mesh to NAME_mesh.png")
     add_shape_options(parser)
     add_mesh_options(parser)
     add_deck_options(parser)
@@ -197,6 +198,10 @@ def main(arguments: list[str] | None = None) -> int:
     counts = f"{len(mesh.x)} nodes, {len(mesh.bricks)} bricks, {len(mesh.joints)} joint elements"
     print(f"{counts}, {free} unknowns")
     print(f"wrote {chosen.output} and {mesh_file}")
+    if chosen.picture:
+        from keyway_tools.picture_mesh import picture_mesh  # VTK takes its time to load
+
+        print("wrote", picture_mesh(mesh, mesh_file.with_suffix(".png")))
     return 0
 
 

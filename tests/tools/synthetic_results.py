@@ -1,0 +1,97 @@
+"""A folder of results as a run leaves it, made up from a mesh and smooth fields."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import h5py
+import numpy as np
+from keyway_tools.mesh_data import BrickMesh
+from keyway_tools.results_reader import ENVELOPE_NAMES
+
+ENERGIES = "step,increment,time,external,kinetic,strain,damping,friction,fracture,numerical,error"
+
+
+def write_results(folder: Path, mesh: BrickMesh, job: str = "job") -> None:
+    """job.json, job.h5 and CSV histories; fields grow with the height."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / f"{job}.json").write_text(json.dumps({"program": {"name": "keyway"}}))
+    with h5py.File(folder / f"{job}.h5", "w") as file:
+        _write_mesh(file, mesh)
+        _write_steps(file, mesh)
+        time = np.linspace(0.0, 1.0, 50)
+        table = np.zeros((50, 11))
+        table[:, 2] = time
+        table[:, 3:6] = 1.0e7 * time[:, None] * np.array([1.0, 0.3, 0.7])
+        energy = file.create_dataset("history/energy", data=table)
+        energy.attrs["columns"] = ENERGIES
+    _write_histories(folder, mesh, job)
+
+
+def _write_mesh(file: h5py.File, mesh: BrickMesh) -> None:
+    types = ["C3D8"] * len(mesh.bricks) + ["JOINT8"] * len(mesh.joints)
+    material = np.full(len(types), -1)
+    for number, members in enumerate(mesh.brick_sets.values()):
+        material[members] = number
+    file["mesh/x"] = mesh.x
+    file["mesh/node_id"] = np.arange(1, len(mesh.x) + 1)
+    file["mesh/element_type"] = np.array(types, dtype="S8")
+    file["mesh/connectivity"] = np.concatenate((mesh.bricks, mesh.joints))
+    file["mesh/material"] = material
+    for name in ("upstream", "downstream"):
+        flags = np.zeros(len(mesh.x), dtype=int)
+        if name.upper() in mesh.surfaces:
+            flags[mesh.surface_nodes(name.upper())] = 1
+        file[f"faces/{name}"] = flags
+    for name, members in mesh.joint_sets.items():
+        pairs = np.unique(
+            mesh.joints[members].reshape(-1, 2, 4).transpose(0, 2, 1).reshape(-1, 2), axis=0
+        )
+        pairs = pairs[pairs[:, 0] != pairs[:, 1]]
+        file[f"joints/{name}/master"] = pairs[:, :1] + 1
+        file[f"joints/{name}/x"] = mesh.x[pairs[:, 0]]
+
+
+def _write_steps(file: h5py.File, mesh: BrickMesh) -> None:
+    z = mesh.x[:, 2]
+    height = max(z.max(), 1e-9)
+    envelopes = {
+        "S1": 3.0e6 * z / height,
+        "S3": -6.0e6 * (1.0 - z / height),
+        "U": 0.05 * z / height,
+    }
+    if mesh.joint_sets:
+        opening = np.zeros(len(z))
+        opening[mesh.joints] = np.maximum(0.0, 0.01 * (z[mesh.joints] / height - 0.5))
+        envelopes["OPENING"] = opening
+    step = file.create_group("steps/0001")
+    step.attrs["name"], step.attrs["procedure"] = "EARTHQUAKE", "DYNAMIC"
+    for name, values in envelopes.items():
+        name = ENVELOPE_NAMES[name]
+        step[f"envelopes/{name}"] = values
+        step[f"envelopes/{name}_TIME"] = np.full(len(z), 4.2)
+    for number in (1, 2):
+        saved = step.create_group(f"increments/{number:06d}")
+        saved.attrs["time"] = 0.1 * number
+        shift = np.zeros_like(mesh.x)
+        shift[:, 1] = 0.02 * number * np.clip(z / height, 0.0, None) ** 2
+        saved["U"] = shift
+    modes = file.create_group("steps/0002")
+    modes.attrs["name"], modes.attrs["procedure"] = "MODES", "FREQUENCY"
+    modes["modes/hz"] = np.array([2.1, 3.4])
+    modes["modes/shape"] = np.stack([shift, shift * np.sign(mesh.x[:, :1])])
+
+
+def _write_histories(folder: Path, mesh: BrickMesh, job: str) -> None:
+    time = np.linspace(0.0, 1.0, 50)
+    for name in mesh.joint_sets:
+        rows = ["step,increment,time,point,x,y,z,opening,slip1,slip2,tn,t1,t2,state"]
+        for n, t in enumerate(time, start=1):
+            for point in (1, 2):
+                opening = 0.004 * point * np.sin(20.0 * t)
+                rows.append(f"1,{n},{t},{point},70.0,{8.0 * point},100.0,{opening},0,0,0,0,0,1")
+        (folder / f"{job}_joint_{name}.csv").write_text("\n".join(rows) + "\n")
+    rows = ["step,increment,time,node,U1,U2,U3"]
+    rows += [f"1,{n},{t},7,{0.01 * t},{0.02 * t},{-0.01 * t}" for n, t in enumerate(time, start=1)]
+    (folder / f"{job}_node_CROWN_CREST.csv").write_text("\n".join(rows) + "\n")

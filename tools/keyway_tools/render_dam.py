@@ -1,0 +1,152 @@
+"""Pictures of bodies without a display: VTK renders, the caller frames the image.
+
+VTK finds the way itself: a display when there is one, else EGL (packages libegl1 and
+libgl1-mesa-dri draw in software), else OSMesa.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pyvista as pv
+from vtkmodules.vtkCommonCore import vtkLogger
+
+vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)  # no word about a missing X server
+
+PIXELS = (1500, 1000)
+MARGIN = 1.06
+
+
+@dataclass(frozen=True)
+class View:
+    """A parallel projection: unit vectors to the right, up and towards the viewer."""
+
+    right: np.ndarray
+    up: np.ndarray
+    towards: np.ndarray
+
+    @staticmethod
+    def from_direction(towards: np.ndarray, elevation: float) -> View:
+        """Look at the body from the side of `towards` (made level), a little from above."""
+        level = np.array([towards[0], towards[1], 0.0])
+        level /= np.linalg.norm(level)
+        angle = np.radians(elevation)
+        out = np.cos(angle) * level + np.sin(angle) * np.array([0.0, 0.0, 1.0])
+        right = np.cross([0.0, 0.0, 1.0], level)
+        return View(right, np.cross(out, right), out)
+
+    def project(self, x: np.ndarray) -> np.ndarray:
+        """Coordinates to the right and up [m]."""
+        return np.stack([x @ self.right, x @ self.up], axis=-1)
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A rendered image and where it lies in the projection [m]: left, right, bottom, top."""
+
+    image: np.ndarray
+    extent: tuple[float, float, float, float]
+
+
+def solid_grid(x: np.ndarray, connectivity: np.ndarray) -> pv.UnstructuredGrid:
+    """Bricks and their wedges (corners 3 = 4 and 7 = 8) as a VTK grid."""
+    is_wedge = (connectivity[:, 2] == connectivity[:, 3]) & (
+        connectivity[:, 6] == connectivity[:, 7]
+    )
+    cells, kinds = [], []
+    for nodes, wedge in zip(connectivity.tolist(), is_wedge.tolist(), strict=True):
+        corners = [nodes[k] for k in (0, 1, 2, 4, 5, 6)] if wedge else nodes
+        cells += [len(corners), *corners]
+        kinds.append(pv.CellType.WEDGE if wedge else pv.CellType.HEXAHEDRON)
+    return pv.UnstructuredGrid(np.array(cells), np.array(kinds), np.array(x, dtype=float))
+
+
+def frame(x: np.ndarray, view: View) -> tuple[np.ndarray, float]:
+    """Centre (3) and half height [m] of a picture that holds all points."""
+    flat = view.project(x)
+    low, high = flat.min(axis=0), flat.max(axis=0)
+    half = 0.5 * (high - low) * MARGIN
+    middle = 0.5 * (low + high)
+    depth = 0.5 * np.ptp(x @ view.towards) + (x @ view.towards).min()
+    centre = middle[0] * view.right + middle[1] * view.up + depth * view.towards
+    return centre, max(half[1], half[0] * PIXELS[1] / PIXELS[0], 1e-9)
+
+
+def render(
+    grid: pv.UnstructuredGrid,
+    view: View,
+    values: np.ndarray | None,
+    limits: tuple[float, float],
+    colours: str,
+    outline: pv.PolyData | None = None,
+    wire: pv.PolyData | None = None,
+    bands: int = 64,
+) -> Picture:
+    """Image of a body coloured by values on its nodes, with lines of `outline` on top."""
+    surface = grid.extract_surface(algorithm="dataset_surface")
+    points = np.vstack([surface.points, wire.points]) if wire is not None else surface.points
+    centre, half_height = frame(np.asarray(points, dtype=float), view)
+    plotter = pv.Plotter(off_screen=True, window_size=PIXELS)
+    plotter.set_background("white")
+    look = {"ambient": 0.72, "diffuse": 0.36, "specular": 0.0, "show_edges": True}
+    look |= {"edge_color": "black", "edge_opacity": 0.16, "line_width": 1.0}
+    if values is None:
+        plotter.add_mesh(surface, color="#D9D4CC", **look)
+    else:
+        surface["value"] = values[surface["vtkOriginalPointIds"]]
+        plotter.add_mesh(
+            surface, scalars="value", cmap=colours, clim=limits, n_colors=bands,
+            show_scalar_bar=False, nan_color="#E6E6E6", **look,
+        )  # fmt: skip
+    if wire is not None:
+        edges = wire.extract_feature_edges(feature_angle=40.0)
+        plotter.add_mesh(edges, color="#777777", line_width=1.5)
+    if outline is not None:
+        _add_outline(plotter, outline, view, limits, colours, bands)
+    plotter.enable_parallel_projection()
+    plotter.enable_anti_aliasing("ssaa")
+    reach = 10.0 * float(np.ptp(points, axis=0).max())
+    plotter.camera_position = [centre + reach * view.towards, centre, view.up]
+    plotter.camera.parallel_scale = half_height
+    plotter.reset_camera_clipping_range()
+    image = plotter.screenshot(None, return_img=True)
+    plotter.close()
+    middle = view.project(centre)
+    half_width = half_height * PIXELS[0] / PIXELS[1]
+    extent = (
+        middle[0] - half_width,
+        middle[0] + half_width,
+        middle[1] - half_height,
+        middle[1] + half_height,
+    )
+    return _crop(Picture(image, extent))
+
+
+def _add_outline(
+    plotter, outline: pv.PolyData, view: View, limits, colours: str, bands: int
+) -> None:
+    """Lines a little in front of the body: black, or thick and coloured by their 'value'."""
+    body = float(np.ptp(outline.points, axis=0).max())
+    lines = outline.translate(0.004 * body * view.towards)
+    if "value" not in lines.point_data:
+        plotter.add_mesh(lines, color="black", line_width=3.0)
+        return
+    plotter.add_mesh(lines, color="black", line_width=20.0)
+    front = lines.translate(0.002 * body * view.towards)
+    plotter.add_mesh(
+        front, scalars="value", cmap=colours, clim=limits, n_colors=bands, line_width=16.0,
+        show_scalar_bar=False, lighting=False,
+    )  # fmt: skip
+
+
+def _crop(picture: Picture, border: int = 25) -> Picture:
+    """Cut the white margins above and below off."""
+    rows = np.flatnonzero((picture.image < 250).any(axis=(1, 2)))
+    if rows.size == 0:
+        return picture
+    first, last = max(0, rows[0] - border), min(len(picture.image), rows[-1] + border)
+    left, right, bottom, top = picture.extent
+    pixel = (top - bottom) / len(picture.image)
+    image = picture.image[first:last]
+    return Picture(image, (left, right, top - last * pixel, top - first * pixel))

@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+"""Draw the pictures of a run, without a display.
+
+    tools/plot.py RESULTS [-o FOLDER] [--job NAME]
+
+RESULTS is the folder that the run was given with -o. For each job in it: principal-stress and
+displacement envelopes on the dam's faces, openings over the joints and in time, the deformed
+shape, mode shapes, histories of nodes and energies; whatever the run kept. Units: SI in the
+deck, MPa and mm in the pictures. The names of the pictures are printed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from keyway_tools.pictures_curves import plot_energy, plot_joint_areas, plot_nodes, plot_openings
+from keyway_tools.results_reader import Results, find_jobs
+
+
+def draw_job(results: Results, folder: Path) -> Iterator[Path | None]:
+    """Make the pictures of one job, one by one; None where there is nothing to draw."""
+    # VTK takes a second to load: not for a wrong command line
+    from keyway_tools.pictures_faces import FIELDS, Faces, plot_envelope, plot_face_openings
+    from keyway_tools.pictures_shapes import plot_deformed, plot_modes
+
+    def path_of(name: str) -> Path:
+        return folder / f"{results.job}_{name}.png"
+
+    faces = Faces(results)
+    kept = [step for step in results.steps() if step.envelopes]
+    if kept:
+        for name in (name for name in FIELDS if name in kept[-1].envelopes and name != "OPENING"):
+            if np.isfinite(kept[-1].envelopes[name][faces.nodes]).any():
+                yield plot_envelope(faces, kept[-1], name, path_of(f"envelope_{name.lower()}"))
+        if "OPENING" in kept[-1].envelopes:
+            yield plot_face_openings(faces, kept[-1], path_of("envelope_opening"))
+            yield plot_joint_areas(results, kept[-1], path_of("envelope_opening_joints"))
+    yield plot_deformed(faces, path_of("deformed"))
+    yield plot_modes(faces, path_of("modes"))
+    yield plot_openings(results, path_of("openings"))
+    yield plot_nodes(results, path_of("displacements"))
+    yield plot_energy(results, path_of("energy"))
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Draw every job of a folder."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("results", type=Path, help="folder of a run's results")
+    parser.add_argument("-o", "--output", type=Path, help="folder of the pictures (RESULTS)")
+    parser.add_argument("--job", help="only this job")
+    chosen = parser.parse_args(arguments)
+    jobs = [chosen.job] if chosen.job else find_jobs(chosen.results)
+    missing = [job for job in jobs if not (chosen.results / f"{job}.h5").exists()]
+    if missing or not jobs:
+        what = f"{missing[0]}.h5" if missing else "job.h5"
+        print(f"plot: no {what} in {chosen.results}; give the folder of a run", file=sys.stderr)
+        return 2
+    folder = chosen.output or chosen.results
+    folder.mkdir(parents=True, exist_ok=True)
+    for job in jobs:
+        for picture in draw_job(Results(chosen.results, job), folder):
+            if picture is not None:
+                print(picture, flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
