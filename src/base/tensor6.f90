@@ -57,7 +57,7 @@ contains
     s = t - [mean, mean, mean, 0.0_rk, 0.0_rk, 0.0_rk]
     scale = maxval(abs(s))
     values = mean
-    if (scale <= tiny(1.0_rk)/epsilon(1.0_rk)) return
+    if (scale < tiny(1.0_rk)) return
     s = s/scale
     apart = most_distinct(s)
     matrix = as_matrix(s)

@@ -109,8 +109,8 @@ contains
     call check_text(log, cards(1)%word('TYPE'), 'ISOTROPIC', 'default of a parameter')
     call check_close(log, cards(1)%real_at(1, 2), 0.2_rk, 0.0_rk, 'default of a column')
     call check_close(log, cards(6)%real_at(1, 3), 0.0_rk, 0.0_rk, 'default of another')
-   call check_text(log, text_of_warnings(faults), at//'8: *PREPRINT: warning: has no effect here', &
-                    'a keyword without effect')
+    call check_text(log, text_of_warnings(faults), &
+                    at//'8: *PREPRINT: warning: has no effect here', 'a keyword without effect')
   end subroutine good_cards
 
   !> Words that are no numbers, and numbers out of range.
@@ -151,8 +151,8 @@ contains
                 'of elasticity, one of ISOTROPIC, ISO')
     call expect('*NSET'//lf//'1', at//'1: *NSET: parameter NSET is missing; expected NSET = '// &
                 'name of the set, a name')
-   call expect('*NSET, NSET=a, GENERATE=YES'//lf//'1', at//'1: *NSET: GENERATE takes no value; '// &
-                'expected ids from, to, step, a flag without value')
+    call expect('*NSET, NSET=a, GENERATE=YES'//lf//'1', at// &
+             '1: *NSET: GENERATE takes no value; expected ids from, to, step, a flag without value')
     call expect('*AMPLITUDE, NAME=a, DT=-1'//lf//'1,2', at// &
                 "1: *AMPLITUDE: DT: found '-1'; expected time step, a number >= 0 [s]")
     call expect('*END STEP, NOW', at// &

@@ -306,9 +306,11 @@ contains
   !> Random bytes and words of decks, thrown together: nothing may crash, every word has its place.
   subroutine broken_lines()
     integer, parameter :: num_decks = 300, num_pieces = 40
-    character(8), parameter :: pieces(16) = [character(8) :: '*', '**', ',', '=', "'", '"', &
-                                                   'NODE', 'NSET', '1.5e', '-', '*INCLUDE', '=,=', &
-                                                                              ' ', '\\', "''", '""']
+    character(8), parameter :: pieces(16) = [ &
+                               '*       ', '**      ', ',       ', '=       ', "'       ", &
+                               '"       ', 'NODE    ', 'NSET    ', '1.5e    ', '-       ', &
+                               '*INCLUDE', '=,=     ', '        ', '\       ', "''      ", &
+                               '""      ']
     character(:), allocatable :: text
     type(card), allocatable :: cards(:)
     type(diagnostic_list) :: faults

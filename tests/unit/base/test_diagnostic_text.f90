@@ -1,0 +1,126 @@
+!> What a person reads about a fault, letter by letter.
+program test_diagnostic_text
+  use diagnostic_text, only: text_of_errors, text_of_warnings
+  use diagnostics, only: diagnostic_list, place, severity_error, severity_ignored, &
+                         severity_warning
+  use kinds, only: rk
+  use testing, only: check, check_text, test_log
+  use write_text, only: as_text
+  implicit none
+  character, parameter :: lf = achar(10), tab = achar(9)
+  character(*), parameter :: umlaut = char(195)//char(188)
+  type(test_log) :: log
+  log%suite = 'diagnostic_text'
+  call plain_fault()
+  call two_places()
+  call odd_lines()
+  call long_line()
+  call many()
+  call numbers()
+  write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
+  if (log%failed > 0) error stop 1
+
+contains
+
+  !> A place in a file.
+  function spot_of(line, column, length, source) result(spot)
+    integer, intent(in) :: line, column, length
+    character(*), intent(in) :: source
+    type(place) :: spot
+    spot%file = 'dam.inp'
+    spot%line = line
+    spot%column = column
+    spot%length = length
+    spot%keyword = 'ELASTIC'
+    spot%source = source
+  end function spot_of
+
+  !> Line, carets, nearest word.
+  subroutine plain_fault()
+    type(diagnostic_list) :: list
+    call check(log,.not. list%has_errors() .and. text_of_errors(list) == '', 'no faults')
+    call list%add(severity_warning, spot_of(1, 1, 1, 'x'), 'odd')
+    call list%add(severity_ignored, spot_of(2, 1, 1, 'x'), 'has no effect here')
+    call check(log,.not. list%has_errors(), 'warnings are no errors')
+    call check_text(log, text_of_warnings(list), 'dam.inp:1: *ELASTIC: warning: odd'//lf// &
+                    'dam.inp:2: *ELASTIC: warning: has no effect here', 'warnings')
+    call list%add(severity_error, spot_of(12, 2, 4, ' TIPE = x'), "unknown parameter 'TIPE'", &
+                  'TYPE', 'TYPE')
+    call check_text(log, text_of_errors(list), 'dam.inp:12: *ELASTIC: unknown parameter '// &
+                    "'TIPE'; expected TYPE; did you mean 'TYPE'?"//lf// &
+                    '   12 |  TIPE = x'//lf//'      |  ^^^^', 'fault')
+  end subroutine plain_fault
+
+  !> Two places that clash are both shown.
+  subroutine two_places()
+    type(diagnostic_list) :: list
+    call list%add(severity_error, spot_of(100, 1, 1, '7, 1.'), 'node 7 is defined twice', &
+                  first=spot_of(9, 1, 1, '7, 2.'))
+    call check_text(log, text_of_errors(list), 'dam.inp:100: *ELASTIC: node 7 is defined twice'// &
+                    lf//'  100 | 7, 1.'//lf//'      | ^'//lf//'  first defined here: dam.inp:9'// &
+                    lf//'    9 | 7, 2.'//lf//'      | ^', 'both places')
+  end subroutine two_places
+
+  !> Tabs, letters of several bytes, control letters, the end of the line.
+  subroutine odd_lines()
+    type(diagnostic_list) :: list
+    type(place) :: spot
+    call list%add(severity_error, spot_of(1, 4, 1, tab//'a,b'), 'w')
+    call list%add(severity_error, spot_of(2, 4, 4, umlaut//','//umlaut//umlaut), 'w')
+    call list%add(severity_error, spot_of(3, 3, 1, '1,'), 'w')
+    call list%add(severity_error, spot_of(4, 1, 1, 'x'//achar(27)//'[2J'), 'w'//achar(7))
+    spot%file = 'no.inp'
+    call list%add(severity_error, spot, 'cannot read it')
+    call check_text(log, text_of_errors(list), &
+                    'dam.inp:1: *ELASTIC: w'//lf//'    1 | '//tab//'a,b'//lf//'      | '//tab// &
+                    '  ^'//lf// &
+                    'dam.inp:2: *ELASTIC: w'//lf//'    2 | '//umlaut//','//umlaut//umlaut//lf// &
+                    '      |   ^^'//lf// &
+                    'dam.inp:3: *ELASTIC: w'//lf//'    3 | 1,'//lf//'      |   ^'//lf// &
+                    'dam.inp:4: *ELASTIC: w?'//lf//'    4 | x?[2J'//lf//'      | ^'//lf// &
+                    'no.inp: cannot read it', 'odd lines')
+  end subroutine odd_lines
+
+  !> Of a long line the part around the word is shown.
+  subroutine long_line()
+    type(diagnostic_list) :: list
+    character(:), allocatable :: text
+    integer :: first
+    call list%add(severity_error, &
+                  spot_of(1, 501, 3, repeat('x', 500)//'bad'//repeat('y', 500)), 'w')
+    text = text_of_errors(list)
+    call check(log, len(text) < 300, 'not all of it')
+    first = index(text, 'bad')
+    call check(log, first > 0, 'the word is shown')
+    call check(log, index(text, '^^^') - index(text, lf, back=.true.) == &
+               first - index(text, lf), 'carets below it')
+  end subroutine long_line
+
+  !> Twenty in full, the rest as a number.
+  subroutine many()
+    type(diagnostic_list) :: list
+    character(:), allocatable :: text
+    integer :: i
+    do i = 1, 25
+      call list%add(severity_error, spot_of(i, 0, 0, 'x'), 'w')
+      call list%add(severity_warning, spot_of(i, 0, 0, 'x'), 'w')
+    end do
+    text = text_of_errors(list)
+    call check(log, index(text, 'dam.inp:20:') > 0 .and. index(text, 'dam.inp:21:') == 0, 'twenty')
+    call check_text(log, text(len(text) - 9:), 'and 5 more', 'the rest')
+    call check(log, list%num_warnings == 25, 'every warning is kept')
+  end subroutine many
+
+  !> Numbers in messages.
+  subroutine numbers()
+    call check_text(log, as_text(-12), '-12', 'integer')
+    call check_text(log, as_text(0.0_rk), '0', 'zero')
+    call check_text(log, as_text(0.5_rk), '0.5', 'half')
+    call check_text(log, as_text(-1.0_rk), '-1', 'minus one')
+    call check_text(log, as_text(100.0_rk), '100', 'hundred')
+    call check_text(log, as_text(2.2e10_rk), '2.2e10', 'large')
+    call check_text(log, as_text(1.0e-5_rk), '1e-5', 'small')
+    call check_text(log, as_text(1.0_rk/3.0_rk), '0.333333', 'a third')
+    call check_text(log, as_text(999999.4_rk), '999999', 'six digits')
+  end subroutine numbers
+end program test_diagnostic_text
