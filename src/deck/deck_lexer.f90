@@ -187,8 +187,8 @@ contains
     type(card), intent(inout) :: new
     type(card_parameter), intent(in) :: given
     type(diagnostic_list), intent(inout) :: faults
-    associate (quote => new%lines%body(given%value_first:given%value_first))
-      if (given%value_first <= given%value_last .and. (quote == "'" .or. quote == '"')) then
+    associate (value => new%lines%body(given%value_first:given%value_last))
+      if (index(value, "'") == 1 .or. index(value, '"') == 1) then
         call faults%add(severity_error, &
                         new%lines%spot(given%row, given%value_first, given%value_last, &
                                        new%keyword), 'a quote is not closed')

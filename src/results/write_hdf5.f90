@@ -83,13 +83,13 @@ contains
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     character(8), allocatable :: fields(:)
+    logical :: waits_long
     call self%enter_step(scene, now%step)
     if (is_due(now, 1)) call self%add_history(scene, now)
     call list_due_fields(scene, now, record, fields)
     if (size(fields) > 0) call self%add_fields(scene, now, record, fields)
-    if (size(fields) > 0 .or. wall_clock() - self%flushed_at > seconds_between_flushes) then
-      call self%bring_out(error)
-    end if
+    waits_long = wall_clock() - self%flushed_at > seconds_between_flushes
+    if (size(fields) > 0 .or. waits_long) call self%bring_out(error)
   end subroutine write_data
 
   !> Rows of the histories.

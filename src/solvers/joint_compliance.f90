@@ -81,7 +81,7 @@ contains
     real(rk), allocatable, intent(out) :: scale(:) !< (points) [Pa/m]
     type(lu_factor) :: factor
     real(rk), allocatable :: matrix(:, :), alone(:, :)
-    real(rk) :: joint_stiffness, own
+    real(rk) :: joint_stiffness, flexibility
     integer :: m, p, i, row
     m = size(compliance, 1)
     allocate (matrix(m, m), scale(operator%num_points))
@@ -99,8 +99,9 @@ contains
     call solve_dense(factor, alone)
     do p = 1, operator%num_points
       row = 3*(p - 1)
-      own = 2.0_rk/(weight*operator%area(p)*(alone(row + 2, row + 2) + alone(row + 3, row + 3)))
-      scale(p) = min(scale_factor*own, minval(reference(2:3, p)))
+      flexibility = weight*operator%area(p)*(alone(row + 2, row + 2) + alone(row + 3, row + 3))
+      scale(p) = minval(reference(2:3, p))
+      if (flexibility*scale(p) > 2.0_rk*scale_factor) scale(p) = 2.0_rk*scale_factor/flexibility
     end do
   end subroutine friction_scale
 end module joint_compliance

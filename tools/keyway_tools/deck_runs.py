@@ -181,6 +181,8 @@ def read_summary(deck: Path, record: Record) -> None:
         results = ResultsFolder(record.folder, deck.stem)
         summary: dict[str, Any] = results.summary
     except (OSError, ValueError):
+        if record.status == "finished":
+            record.status = "no results"
         last = (Path(record.folder) / "batch.out").read_text(errors="replace").strip().splitlines()
         record.message = last[0] if last else ""
         return
