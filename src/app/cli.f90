@@ -6,7 +6,7 @@ module cli
   use keyword_catalogue, only: list_all => list_keywords
   use keyword_handler, only: keyword_list
   use keyword_help, only: describe_keyword, list_keywords
-  use nearest_words, only: nearest_word
+  use nearest_words, only: nearest_choice
   use parse_text, only: parse_integer
   implicit none
   private
@@ -26,26 +26,25 @@ module cli
     logical :: is_empty = .false. !< no argument at all
   end type command_line
 
-  character(*), parameter :: usage = &
-                             'usage: keyway [options] job.inp'//nl// &
-                             '  -o DIR             folder of the results (default: .)'//nl// &
-                             '  -j N               threads'//nl// &
-                             '  --check            read and verify only, print what the '// &
-                             'model holds'//nl// &
-                             '  --keywords [NAME]  the reference of the deck, from the '// &
-                             'program itself'//nl// &
-                             '  -q                 say nothing but errors'//nl// &
-                             '  --version          compiler, flags, libraries'//nl// &
-                             '  --help             this page'//nl// &
-                             'exit code: 0 finished, 1 the analysis stopped, 2 bad deck or '// &
-                             'usage, 3 the system failed'
-
-  character(12), parameter :: options(14) = [character(12) :: '-o', '-j', '-q', '--check', &
-                                                        '--keywords', '--version', '--help', '-h', &
-                                                           '--continue', '--umat', '--umat-check', &
-                                                                '--material', '--quiet', '--output']
+  character(*), parameter :: options = '-o | -j | -q | --check | --keywords | --version | '// &
+                             '--help | -h | --continue | --umat | --umat-check | --material'
 
 contains
+
+  !> How the program is called.
+  pure function usage() result(text)
+    character(:), allocatable :: text !< lines with new_line between them
+    text = 'usage: keyway [options] job.inp'//nl// &
+           '  -o DIR             folder of the results (default: .)'//nl// &
+           '  -j N               threads'//nl// &
+           '  --check            read and verify only, print what the model holds'//nl// &
+           '  --keywords [NAME]  the reference of the deck, from the program itself'//nl// &
+           '  -q                 say nothing but errors'//nl// &
+           '  --version          compiler, flags, libraries'//nl// &
+           '  --help             this page'//nl// &
+           'exit code: 0 finished, 1 the analysis stopped, 2 bad deck or usage, '// &
+           '3 the system failed'
+  end function usage
 
   !> Reads the arguments of the program.
   subroutine parse_command_line(given, error)
@@ -63,7 +62,7 @@ contains
     end do
     if (given%is_empty .or. given%wants_help .or. given%wants_version) return
     if (given%wants_keywords .or. len(given%deck) > 0) return
-    call raise(error, 'keyway: no deck is named'//nl//usage, deck_is_wrong)
+    call raise(error, 'keyway: no deck is named'//nl//usage(), deck_is_wrong)
   end subroutine parse_command_line
 
   !> Reads argument `i` with its value and steps over them.
@@ -77,7 +76,7 @@ contains
     select case (word)
     case ('-o', '-j')
       if (i > command_argument_count()) then
-        call raise(error, 'keyway: '//word//' needs a value'//nl//usage, deck_is_wrong)
+        call raise(error, 'keyway: '//word//' needs a value'//nl//usage(), deck_is_wrong)
         return
       end if
       if (word == '-o') given%folder = argument(i)
@@ -122,9 +121,9 @@ contains
     type(error_type), allocatable, intent(out) :: error
     character(:), allocatable :: nearest
     if (index(word, '-') == 1) then
-      nearest = nearest_word(word, options)
+      nearest = nearest_choice(word, options)
       if (len(nearest) > 0) nearest = "; did you mean '"//nearest//"'?"
-      call raise(error, "keyway: unknown option '"//word//"'"//nearest//nl//usage, deck_is_wrong)
+      call raise(error, "keyway: unknown option '"//word//"'"//nearest//nl//usage(), deck_is_wrong)
     else if (len(given%deck) > 0) then
       call raise(error, "keyway: one deck at a time; found '"//given%deck//"' and '"//word//"'", &
                  deck_is_wrong)
@@ -153,9 +152,9 @@ contains
       call say('Keyway '//program_version//': finite-element analysis of concrete dams')
       call say('Give it a deck, and it shakes your dam:')
       call say('')
-      call say(usage)
+      call say(usage())
     else if (given%wants_help) then
-      call say(usage)
+      call say(usage())
     else if (given%wants_version) then
       call say('keyway '//program_version)
       call say('compiler:  '//compiler)

@@ -3,7 +3,7 @@ module model_summary
   use kinds, only: rk
   use mesh_sets, only: named_set
   use problem_definition, only: problem
-  use step_plan, only: step
+  use step_plan, only: step, step_load
   use write_text, only: as_text
   implicit none
   private
@@ -39,8 +39,8 @@ contains
     type(problem), intent(in) :: scene
     character(:), allocatable :: text
     character(8) :: kind
-    logical :: is_left(scene%mesh%num_elements)
-    is_left = .true.
+    logical, allocatable :: is_left(:)
+    allocate (is_left(scene%mesh%num_elements), source=.true.)
     text = ''
     do while (any(is_left))
       kind = scene%mesh%element_type(findloc(is_left, .true., dim=1))
@@ -132,7 +132,7 @@ contains
     end do
   end function loads_of
 
-  function steps_of(scene) result(text)
+  pure function steps_of(scene) result(text)
     type(problem), intent(in) :: scene
     character(:), allocatable :: text
     integer :: i, j
@@ -142,19 +142,24 @@ contains
         text = text//nl//'Step '//as_text(i)//' '//now%name//nl//procedure_of(now)//nl// &
                row('supports', as_text(size(now%fixities))//' degrees of freedom')
         do j = 1, size(now%loads)
-          associate (work => now%loads(j))
-            text = text//nl//row('load '//as_text(work%load), &
-                                 scene%loads(work%load)%item%name//': factor '// &
-                                 as_text(work%start_factor)//' to '//as_text(work%end_factor))
-            if (work%amplitude > 0) then
-              text = text//', amplitude '//scene%amplitudes(work%amplitude)%name
-            end if
-          end associate
+          text = text//nl//work_of(scene, now%loads(j))
         end do
         text = text//requests_of(now)
       end associate
     end do
   end function steps_of
+
+  !> A load at work in a step.
+  pure function work_of(scene, work) result(text)
+    type(problem), intent(in) :: scene
+    type(step_load), intent(in) :: work
+    character(:), allocatable :: text
+    text = row('load '//as_text(work%load), scene%loads(work%load)%item%name//': factor '// &
+               as_text(work%start_factor)//' to '//as_text(work%end_factor))
+    if (work%amplitude > 0) then
+      text = text//', amplitude '//scene%amplitudes(work%amplitude)%name
+    end if
+  end function work_of
 
   pure function procedure_of(now) result(text)
     type(step), intent(in) :: now

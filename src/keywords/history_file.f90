@@ -6,7 +6,7 @@ module history_file
   use parse_text, only: parse_integer, parse_real, upper_case
   implicit none
   private
-  public :: number_file, read_numbers, read_at2_header, path_beside
+  public :: number_file, read_numbers, read_at2_header
 
   character(*), parameter :: separators = ' ,;'//achar(9)//achar(13)
   integer, parameter :: num_at2_headers = 4 !< lines above the values of a PEER file
@@ -19,15 +19,6 @@ module history_file
   end type number_file
 
 contains
-
-  !> A file named in another: relative to the folder of that one.
-  pure function path_beside(name, neighbour) result(path)
-    character(*), intent(in) :: name !< as written
-    character(*), intent(in) :: neighbour !< the file that names it
-    character(:), allocatable :: path
-    path = name
-    if (name(1:1) /= '/') path = neighbour(:index(neighbour, '/', back=.true.))//name
-  end function path_beside
 
   !> Reads all numbers below `num_headers` lines. Lines that begin with * or # are comments.
   subroutine read_numbers(path, num_headers, spot, faults, numbers)
@@ -96,8 +87,8 @@ contains
       if (used == size(numbers%values)) call make_room(numbers)
       call parse_real(line(first:last), numbers%values(used + 1), is_number)
       if (.not. is_number) then
-        call faults%add(severity_error, &
-                        place(numbers%path, number, first, last - first + 1, spot%keyword, line), &
+        call faults%add(severity_error, spot_in_file(numbers%path, number, first, last, line, &
+                                                     spot), &
                         "found '"//line(first:last)//"'", 'a number')
         return
       end if
@@ -105,6 +96,22 @@ contains
       numbers%line(used) = number
     end do
   end subroutine add_line
+
+  !> A word of a line of the file.
+  pure function spot_in_file(path, number, first, last, line, named_at) result(spot)
+    character(*), intent(in) :: path
+    integer, intent(in) :: number !< of the line
+    integer, intent(in) :: first, last !< letters
+    character(*), intent(in) :: line
+    type(place), intent(in) :: named_at !< who names the file
+    type(place) :: spot
+    spot%file = path
+    spot%line = number
+    spot%column = first
+    spot%length = last - first + 1
+    spot%keyword = named_at%keyword
+    spot%source = line
+  end function spot_in_file
 
   pure subroutine make_room(numbers)
     type(number_file), intent(inout) :: numbers
@@ -135,7 +142,7 @@ contains
     call take_numbers(upper_case(line), num_points, dt)
     if (num_points > 0 .and. dt > 0.0_rk) return
     call faults%add(severity_error, &
-                    place(path, num_at2_headers, 0, 0, spot%keyword, line), &
+                    spot_in_file(path, num_at2_headers, 1, len(line), line, spot), &
                     'no PEER record', "'NPTS= <points>, DT= <seconds>' in the fourth line")
   end subroutine read_at2_header
 

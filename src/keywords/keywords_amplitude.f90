@@ -3,7 +3,8 @@ module keywords_amplitude
   use amplitudes, only: amplitude
   use deck_card, only: card
   use diagnostics, only: diagnostic_list, place, severity_error
-  use history_file, only: number_file, path_beside, read_at2_header, read_numbers
+  use deck_file, only: path_beside
+  use history_file, only: number_file, read_at2_header, read_numbers
   use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_text, kind_word
   use kinds, only: rk
   use model_draft, only: draft
@@ -39,7 +40,7 @@ contains
               field('SCALE', kind_real, 'factor of all values', '', '1')])
     allocate (spec%columns, source=[ &
               field('time', kind_real, 'time (or, with VALUES, a value)', 's'), &
-              field('value', kind_real, 'value at that time; any number of pairs in a line')])
+              field('value', kind_real, 'value at that time')])
     spec%repeats_columns = .true.
   end subroutine describe_amplitude
 
@@ -79,7 +80,7 @@ contains
         return
       end if
       num_headers = merge(num_at2_headers, 0, this%word('FORMAT') == 'AT2')
-      call read_numbers(path_beside(this%text('INPUT'), spot%file), num_headers, spot, faults, &
+      call read_numbers(path_beside(spot%file, this%text('INPUT')), num_headers, spot, faults, &
                         numbers)
       return
     end if
@@ -159,13 +160,16 @@ contains
     integer, intent(in) :: number
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable :: problem
+    type(place) :: spot
     integer :: line
     problem = 'time '//as_text(numbers%values(number))//' after '// &
               as_text(numbers%values(number - 2))
     line = numbers%line(number)
     if (this%has('INPUT')) then
-      call faults%add(severity_error, place(numbers%path, line, 0, 0, this%keyword, ''), problem, &
-                      'times that ascend')
+      spot%file = numbers%path
+      spot%line = line
+      spot%keyword = this%keyword
+      call faults%add(severity_error, spot, problem, 'times that ascend')
     else
       call this%fault_at(faults, line, number - count(numbers%line < line), problem, &
                          'times that ascend')

@@ -34,7 +34,7 @@ contains
                     default='MOD', choices='MOD | NEW'), &
               field('AMPLITUDE', kind_word, 'history of the values')])
     allocate (spec%columns, source=[ &
-              field('node', kind_reference, 'id of a node or name of a node set', &
+              field('node', kind_reference, 'the nodes', &
                     is_required=.true.), &
               field('first dof', kind_integer, '1 to 3, or a name', is_required=.true., &
                     lowest=1.0_rk, highest=3.0_rk), &
@@ -113,7 +113,8 @@ contains
       last = 3
     case default
       call this%fault_at(faults, line, 2, "found '"//this%text_at(line, 2)//"'", &
-                         'a degree of freedom, 1 to 3, or one of '//support_names, &
+                         'a degree of freedom, 1 to 3, or ENCASTRE, PINNED, XSYMM, '// &
+                         'YSYMM, ZSYMM', &
                          nearest_choice(this%word_at(line, 2), support_names))
       return
     end select

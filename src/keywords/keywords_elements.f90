@@ -2,6 +2,7 @@
 module keywords_elements
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
+  use element_catalogue, only: element_kinds, find_element_kind
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_word
   use keywords_nodes, only: fault_twice, positions
   use kinds, only: rk
@@ -19,6 +20,7 @@ contains
   subroutine describe_element(spec)
     type(keyword), intent(out) :: spec
     character(:), allocatable :: kinds
+    integer :: i
     spec%name = 'ELEMENT'
     spec%family = 'mesh'
     spec%place = 'model'
@@ -30,9 +32,12 @@ contains
     spec%example = '*ELEMENT, TYPE=C3D8I, ELSET=DAM'//nl//'1, 1, 2, 3, 4, 5, 6, 7, 8'
     spec%fewest_lines = 1
     spec%checks_own_data = .true.
-    kinds = 'C3D8 | C3D8B | C3D8I | C3D8R | JOINT8 | IFACE4'
+    kinds = trim(element_kinds(1)%name)
+    do i = 2, size(element_kinds)
+      kinds = kinds//' | '//trim(element_kinds(i)%name)
+    end do
     allocate (spec%parameters, source=[ &
-              field('TYPE', kind_choice, 'formulation', choices=kinds, is_required=.true.), &
+              field('TYPE', kind_choice, 'a formulation', choices=kinds, is_required=.true.), &
               field('ELSET', kind_word, 'an element set that gets these elements')])
     allocate (spec%columns, source=[ &
               field('id', kind_integer, 'number of the element', is_required=.true., &
@@ -179,6 +184,9 @@ contains
     model%scene%mesh%num_elements = element
     model%scene%mesh%element_id(element) = id
     model%scene%mesh%element_type(element) = this%word('TYPE')
+    if (find_element_kind(this%word('TYPE')) == 0) then ! told; any solid keeps others from failing
+      model%scene%mesh%element_type(element) = element_kinds(1)%name
+    end if
     model%scene%mesh%nodes(:, element) = nodes
     model%element_origin(element) = model%here(line)
   end subroutine add_element

@@ -26,9 +26,9 @@ contains
               field('TYPE', kind_choice, 'what is given', is_required=.true., &
                     choices='DISPLACEMENT | VELOCITY')])
     allocate (spec%columns, source=[ &
-              field('node', kind_reference, 'id of a node or name of a node set', &
+              field('node', kind_reference, 'the nodes', &
                     is_required=.true.), &
-              field('dof', kind_integer, 'degree of freedom, 1 to 3', is_required=.true.), &
+              field('dof', kind_integer, 'degree of freedom', is_required=.true.), &
               field('value', kind_real, 'displacement [m] or velocity [m/s]', default='0')])
     spec%columns(2)%lowest = 1
     spec%columns(2)%highest = 3

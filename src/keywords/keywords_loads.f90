@@ -3,6 +3,7 @@ module keywords_loads
   use applied_load, only: load
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
+  use element_catalogue, only: is_solid
   use enter_load, only: put_load
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real, kind_reference, &
                           kind_word
@@ -43,9 +44,9 @@ contains
                    'later step the new one rules.'
     spec%example = '*CLOAD'//nl//'TIP, 3, -1000.'
     allocate (spec%columns, source=[ &
-              field('node', kind_reference, 'id of a node or name of a node set', &
+              field('node', kind_reference, 'the nodes', &
                     is_required=.true.), &
-              field('dof', kind_integer, 'direction, 1 to 3', is_required=.true., &
+              field('dof', kind_integer, 'direction', is_required=.true., &
                     lowest=1.0_rk, highest=3.0_rk), &
               field('force', kind_real, 'force on each node', 'N', is_required=.true.)])
   end subroutine describe_cload
@@ -82,7 +83,7 @@ contains
                    'UPSTREAM, HP3, 1.03e6, 105., 0.'
     spec%checks_own_data = .true.
     allocate (spec%columns, source=[ &
-              field('element', kind_reference, 'id of an element or name of an element set'), &
+              field('element', kind_reference, 'the elements'), &
               field('label', kind_choice, 'what acts', is_required=.true., choices=labels), &
               field('magnitude', kind_real, 'acceleration [m/s2] or pressure [Pa]', &
                     is_required=.true.), &
@@ -122,7 +123,7 @@ contains
     label = this%word_at(line, 2)
     if (index(' | '//labels//' | ', ' | '//label//' | ') == 0 .or. label == '') then
       call this%fault_at(faults, line, 2, "found '"//this%text_at(line, 2)//"'", &
-                         'one of '//labels, nearest_choice(label, labels))
+                         'GRAV, P1..P6 or HP1..HP6', nearest_choice(label, labels))
       return
     end if
     num_numbers = 1
@@ -138,6 +139,7 @@ contains
       if (this%is_real_at(line, i)) cycle
       if (label == 'GRAV' .and. this%is_empty_at(line, i) .and. i > 3) cycle
       call this%fault_at(faults, line, i, "found '"//this%text_at(line, i)//"'", expected)
+      return
     end do
   end subroutine check_label
 
@@ -175,7 +177,7 @@ contains
     character(:), allocatable :: label
     real(rk) :: heights(2)
     label = this%word_at(line, 2)
-    if (any(model%scene%mesh%element_type(elements) (1:4) /= 'C3D8')) then
+    if (.not. all(is_solid(model%scene%mesh%element_type(elements)))) then
       call this%fault_at(faults, line, 1, 'pressure on an element that is no solid', &
                          'solid elements')
       return

@@ -118,7 +118,7 @@ contains
     spec%example = '*ENVELOPE'//nl//'S1, S3, OPENING'
     allocate (spec%parameters(0))
     allocate (spec%columns, source=[ &
-              field('field', kind_choice, 'fields, any number in a line', &
+              field('field', kind_choice, 'a field', &
                     choices='S1 | S3 | OPENING | U | DAMAGET')])
     spec%repeats_columns = .true.
   end subroutine describe_envelope

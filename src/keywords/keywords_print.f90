@@ -2,6 +2,7 @@
 module keywords_print
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
+  use element_catalogue, only: is_solid
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_word
   use kinds, only: rk
   use model_draft, only: draft
@@ -32,7 +33,7 @@ contains
       allocate (spec%parameters(1), source=how_often)
     end if
     allocate (spec%columns, source=[ &
-              field('field', kind_choice, 'fields, any number in a line', choices=choices)])
+              field('field', kind_choice, 'a field', choices=choices)])
     spec%repeats_columns = .true.
     spec%family = 'output'
     spec%place = 'step'
@@ -99,7 +100,7 @@ contains
     new%kind = 'ELEMENT'
     new%name = this%word('ELSET')
     call elements_of_set(this, 'ELSET', model, faults, new%members)
-    if (any(model%scene%mesh%element_type(new%members) (1:4) /= 'C3D8')) then
+    if (.not. all(is_solid(model%scene%mesh%element_type(new%members)))) then
       call this%fault_parameter(faults, 'ELSET', 'the set holds elements that are no solids', &
                                 'solid elements; for joints *JOINT PRINT')
     end if

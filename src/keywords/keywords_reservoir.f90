@@ -132,7 +132,7 @@ contains
     spec%example = '*BASE MOTION, DOF=1, AMPLITUDE=QUAKE, SCALE=9.81'
     spec%most_lines = 0
     allocate (spec%parameters, source=[ &
-              field('DOF', kind_integer, 'direction, 1 to 3', is_required=.true., &
+              field('DOF', kind_integer, 'direction', is_required=.true., &
                     lowest=1.0_rk, highest=3.0_rk), &
               field('AMPLITUDE', kind_word, 'history of the acceleration', is_required=.true.), &
               field('SCALE', kind_real, 'factor that gives it in m/s2', '', '1'), &

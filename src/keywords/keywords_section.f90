@@ -2,6 +2,7 @@
 module keywords_section
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
+  use element_catalogue, only: is_solid
   use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_word
   use mesh_sets, only: named_set
   use model_draft, only: draft, section_request
@@ -94,7 +95,7 @@ contains
     associate (mesh => model%scene%mesh)
       do i = 1, size(elements)
         e = elements(i)
-        if (mesh%element_type(e) (1:4) /= 'C3D8') then
+        if (.not. is_solid(mesh%element_type(e))) then
           call this%fault_parameter(faults, 'ELSET', 'element '//as_text(mesh%element_id(e))// &
                                     ' is a '//trim(mesh%element_type(e)), &
                                     'a set of solid elements')

@@ -2,6 +2,7 @@
 module keywords_sets
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
+  use element_catalogue, only: is_solid
   use id_map, only: position_table
   use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, kind_reference, &
                           kind_word
@@ -166,9 +167,9 @@ contains
               field('TYPE', kind_choice, 'what it is made of', default='ELEMENT', &
                     choices='ELEMENT')])
     allocate (spec%columns, source=[ &
-              field('element', kind_reference, 'id of an element or name of an element set', &
+              field('element', kind_reference, 'the elements', &
                     is_required=.true.), &
-              field('face', kind_choice, 'face of it', choices='S1 | S2 | S3 | S4 | S5 | S6', &
+              field('face', kind_choice, 'a face', choices='S1 | S2 | S3 | S4 | S5 | S6', &
                     is_required=.true.)])
   end subroutine describe_surface
 
@@ -214,7 +215,7 @@ contains
     integer :: i
     associate (mesh => model%scene%mesh)
       do i = 1, size(members)
-        if (mesh%element_type(members(i)) (1:4) /= 'C3D8') then
+        if (.not. is_solid(mesh%element_type(members(i)))) then
           call this%fault_at(faults, line, 1, 'element '// &
                              as_text(mesh%element_id(members(i)))//' is a '// &
                              trim(mesh%element_type(members(i)))//', which has no faces', &

@@ -74,7 +74,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     call this%fault_at(faults, line, field, &
                        'there is no '//kind//" set '"//this%text_at(line, field)//"' so far", &
-                       'the id of a '//kind//' or a '//kind//' set defined above', &
+                       'the id of one '//kind//' or the name of a set defined above', &
                        nearest_word(this%word_at(line, field), set_names(sets)))
   end subroutine fault_unknown_set
 
@@ -112,7 +112,7 @@ contains
     else
       call this%fault_parameter(faults, parameter, 'there is no '//kind//" set '"// &
                                 this%text(parameter)//"' so far", &
-                                'a '//kind//' set defined above', &
+                                'the name of a set defined above', &
                                 nearest_word(this%word(parameter), set_names(sets)))
     end if
   end subroutine members_of_set

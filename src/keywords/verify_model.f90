@@ -29,6 +29,7 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     real(rk) :: x(3, 8), gradient(3, 8, 8), weight(8)
+    character(:), allocatable :: others
     integer :: e, corner, num_odd, first_odd
     num_odd = 0
     first_odd = 0
@@ -45,10 +46,12 @@ contains
         end if
       end do
       if (num_odd == 0) return
+      others = ''
+      if (num_odd > 1) others = ', as '//as_text(num_odd - 1)//' more,'
       associate (spot => model%element_origin(first_odd))
-        call model%cards(spot%card)%warn(faults, as_text(num_odd)//' elements have a corner '// &
-                                         'where the Jacobian is zero or negative, the first '// &
-                                         'is element '//as_text(mesh%element_id(first_odd)))
+        call model%cards(spot%card)%warn(faults, 'element '// &
+                                         as_text(mesh%element_id(first_odd))//others// &
+                                         ' has a corner with a Jacobian that is zero or negative')
       end associate
     end associate
   end subroutine verify_elements

@@ -30,6 +30,7 @@ module load_books
     procedure :: take_over
     procedure :: enter
     procedure :: clear_old
+    procedure :: holds
     procedure :: loads_of_step
     procedure :: end_step
   end type load_book
@@ -101,6 +102,20 @@ contains
       end if
     end do
   end subroutine clear_old
+
+  !> A load of this family goes on at the last value of a history that has ended.
+  pure logical function holds(self, family)
+    class(load_book), intent(in) :: self
+    character(*), intent(in) :: family !< its keyword
+    integer :: i
+    holds = .false.
+    do i = 1, self%num_entries
+      associate (now => self%entries(i))
+        holds = holds .or. now%family == family .and. now%history == 0 .and. &
+                abs(now%reached) > 0.0_rk
+      end associate
+    end do
+  end function holds
 
   !> All loads at work in the step being read.
   pure function loads_of_step(self) result(loads)

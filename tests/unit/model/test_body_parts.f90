@@ -1,0 +1,43 @@
+!> Bodies and the rigid motions that supports leave.
+program test_body_parts
+  use body_parts, only: find_bodies, free_motion
+  use dam_mesh, only: mesh
+  use kinds, only: rk
+  use testing, only: check, check_text, test_log
+  implicit none
+  type(test_log) :: log
+  real(rk), parameter :: corner(3, 4) = reshape(real([0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0, 5], rk), &
+                                                [3, 4])
+  log%suite = 'body_parts'
+  call finds_bodies()
+  call check_text(log, free_motion(corner(:, [1, 1, 1, 2, 2, 3]), [1, 2, 3, 2, 3, 3]), '', &
+                  'six good supports hold a body')
+  call check_text(log, free_motion(corner(:, [1, 1, 1, 2, 2]), [1, 2, 3, 2, 3]), 'turn', &
+                  'five supports leave a rotation')
+  call check_text(log, free_motion(corner(:, [1, 1, 1, 2, 2, 2]), [1, 2, 3, 1, 2, 3]), 'turn', &
+                  'two hinges leave the rotation about their line')
+  call check_text(log, free_motion(corner, [3, 3, 3, 3]), 'move along x, y', &
+                  'rollers leave two translations')
+  call check_text(log, free_motion(corner(:, :0), [integer ::]), 'move along x, y, z', &
+                  'nothing holds a free body')
+  write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
+  if (log%failed > 0) error stop 1
+
+contains
+
+  !> Three elements, the first and the last of which share a node.
+  subroutine finds_bodies()
+    type(mesh) :: model
+    integer, allocatable :: body(:), example(:)
+    integer :: i
+    model%num_nodes = 24
+    model%num_elements = 3
+    model%nodes = reshape([(i, i=8, 1, -1), (i, i=9, 16), (i, i=16, 23)], [8, 3])
+    model%nodes(1, 3) = 3
+    call find_bodies(model, body, example)
+    call check(log, all(example == [1, 2]), 'two bodies')
+    call check(log, all(body(1:8) == 1) .and. all(body(17:23) == 1), 'one by a shared node')
+    call check(log, all(body(9:16) == 2), 'the other')
+    call check(log, body(24) == 0, 'a node without an element belongs to none')
+  end subroutine finds_bodies
+end program test_body_parts
