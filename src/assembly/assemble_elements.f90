@@ -1,7 +1,7 @@
 !> Sums the matrices of the solid elements: stiffness, mass and damping.
 !>
-!> Threads integrate blocks of elements; each block is added in its turn, so that the sums do not
-!> depend on the number of threads.
+!> Threads take blocks of elements of one colour at a time, so that sums do not depend on the
+!> number of threads.
 module assemble_elements
   use kinds, only: rk
   use errors, only: error_type, raise
@@ -81,37 +81,49 @@ contains
     real(rk), allocatable, intent(out) :: values(:)
     type(error_type), allocatable, intent(out) :: error
     type(block_list) :: blocks
-    real(rk), allocatable :: ke(:, :, :)
-    integer :: i, k, bad_element, bad_corner
+    integer :: colour, i, bad(2)
+    logical :: is_parallel
     allocate (values(size(matrix%row)))
     values = 0.0_rk
-    bad_element = 0
-    bad_corner = 0
-    call list_blocks(scene, blocks)
-    !$omp parallel do ordered schedule(static, 1) default(none) private(k, ke) &
-    !$omp shared(scene, numbers, stiffness, density, matrix, values, blocks) &
-    !$omp shared(bad_element, bad_corner)
-    do i = 1, blocks%num_blocks
-      call integrate_block(scene, blocks%element(blocks%first(i):blocks%first(i + 1) - 1), &
-                           stiffness, density, ke, bad_element, bad_corner)
-      !$omp ordered
-      do k = blocks%first(i), blocks%first(i + 1) - 1
-        call scatter_nodes(numbers, scene%mesh%nodes(:, blocks%element(k)), &
-                           ke(:, :, k - blocks%first(i) + 1), matrix, values)
+    bad = 0
+    call list_blocks(scene, numbers, blocks)
+    do colour = 1, blocks%num_colours
+      is_parallel = colour < blocks%num_colours .or. .not. blocks%last_is_serial
+      !$omp parallel do schedule(dynamic) default(none) if (is_parallel) &
+      !$omp shared(scene, numbers, stiffness, density, matrix, values, blocks, colour, bad)
+      do i = blocks%first_block(colour), blocks%first_block(colour + 1) - 1
+        call add_elements(scene, numbers, blocks%element(blocks%first(i):blocks%first(i + 1) - 1), &
+                          stiffness, density, matrix, values, bad)
       end do
-      !$omp end ordered
+      !$omp end parallel do
     end do
-    !$omp end parallel do
-    if (bad_element > 0) call report_jacobian(scene%mesh%element_id(bad_element), bad_corner, error)
+    if (bad(1) > 0) call report_jacobian(scene%mesh%element_id(bad(1)), bad(2), error)
   end subroutine sum_elements
 
+  !> Adds the matrices of one block.
+  subroutine add_elements(scene, numbers, elements, stiffness, density, matrix, values, bad)
+    type(problem), intent(in) :: scene
+    type(numbering), intent(in) :: numbers
+    integer, intent(in) :: elements(:)
+    real(rk), intent(in) :: stiffness(:), density(:) !< (materials)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(inout) :: values(:)
+    integer, intent(inout) :: bad(2) !< element and corner, shared by the threads
+    real(rk), allocatable :: ke(:, :, :)
+    integer :: e
+    call integrate_block(scene, elements, stiffness, density, ke, bad)
+    do e = 1, size(elements)
+      call scatter_nodes(numbers, scene%mesh%nodes(:, elements(e)), ke(:, :, e), matrix, values)
+    end do
+  end subroutine add_elements
+
   !> The matrices of a block; names an element whose Jacobian is not positive.
-  subroutine integrate_block(scene, elements, stiffness, density, ke, bad_element, bad_corner)
+  subroutine integrate_block(scene, elements, stiffness, density, ke, bad)
     type(problem), intent(in) :: scene
     integer, intent(in) :: elements(:) !< of one kind and one material
     real(rk), intent(in) :: stiffness(:), density(:) !< (materials)
     real(rk), allocatable, intent(out) :: ke(:, :, :) !< (24, 24, elements)
-    integer, intent(inout) :: bad_element, bad_corner !< shared by the threads
+    integer, intent(inout) :: bad(2) !< element and corner, shared by the threads
     class(solid_element), allocatable :: element
     real(rk), allocatable :: x(:, :, :)
     real(rk) :: d(6, 6)
@@ -128,10 +140,7 @@ contains
       if (any(status /= 0)) then
         e = findloc(status /= 0, .true., 1)
         !$omp critical
-        if (bad_element == 0 .or. elements(e) < bad_element) then
-          bad_element = elements(e)
-          bad_corner = status(e)
-        end if
+        if (bad(1) == 0 .or. elements(e) < bad(1)) bad = [elements(e), status(e)]
         !$omp end critical
       end if
     else

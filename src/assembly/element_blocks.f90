@@ -1,49 +1,145 @@
-!> The solid elements of a problem in blocks of one kind and one material.
+!> The solid elements of a problem in blocks of one kind, one material and one colour.
+!>
+!> Elements of one colour share no unknown, so that threads may add their matrices at the same time
+!> and every sum has one order, whatever the number of threads.
 module element_blocks
+  use kinds, only: long
   use problem_definition, only: problem
-  use element_catalogue, only: element_kinds
+  use element_catalogue, only: element_kinds, find_element_kind
+  use dof_numbering, only: numbering
   implicit none
   private
   public :: block_list, list_blocks
 
   integer, parameter :: largest_block = 48 !< elements; see element_matrices
+  integer, parameter :: most_colours = 62 !< bits of a word; who finds none goes into the last one
 
   type :: block_list
     integer :: num_blocks = 0
     integer, allocatable :: first(:) !< (blocks + 1) positions in `element`
     integer, allocatable :: element(:)
+    integer :: num_colours = 0
+    integer, allocatable :: first_block(:) !< (colours + 1) first block of each colour
+    logical :: last_is_serial = .false. !< elements of the last colour do share unknowns
   end type block_list
 
 contains
 
-  !> Groups the elements that have a material; in each group they keep the order of the deck.
-  subroutine list_blocks(scene, blocks)
+  !> Sorts the elements that have a material by colour, kind and material.
+  subroutine list_blocks(scene, numbers, blocks)
     type(problem), intent(in) :: scene
+    type(numbering), intent(in) :: numbers
     type(block_list), intent(out) :: blocks
-    integer :: kind, material, e, length, num_solids
-    num_solids = count(scene%mesh%material_of_element > 0)
-    allocate (blocks%element(num_solids), blocks%first(num_solids + 1))
-    blocks%first(1) = 1
-    length = 0
-    do kind = 1, size(element_kinds)
-      if (.not. element_kinds(kind)%is_solid) cycle
-      if (all(scene%mesh%element_type /= element_kinds(kind)%name)) cycle
-      do material = 1, size(scene%materials)
-        do e = 1, scene%mesh%num_elements
-          if (scene%mesh%material_of_element(e) /= material) cycle
-          if (scene%mesh%element_type(e) /= element_kinds(kind)%name) cycle
-          length = length + 1
-          blocks%element(length) = e
-          if (length + 1 - blocks%first(blocks%num_blocks + 1) == largest_block) call close_block()
-        end do
-        if (length + 1 > blocks%first(blocks%num_blocks + 1)) call close_block()
+    integer, allocatable :: colour(:), key(:)
+    integer :: e, num_keys
+    call colour_elements(scene, numbers, colour)
+    blocks%num_colours = maxval([0, colour])
+    blocks%last_is_serial = blocks%num_colours > most_colours
+    num_keys = size(element_kinds)*size(scene%materials)
+    allocate (key(scene%mesh%num_elements))
+    key = 0
+    do e = 1, scene%mesh%num_elements
+      if (colour(e) == 0) cycle
+      key(e) = (colour(e) - 1)*num_keys &
+               + (find_element_kind(scene%mesh%element_type(e)) - 1)*size(scene%materials) &
+               + scene%mesh%material_of_element(e)
+    end do
+    call sort_by_key(key, blocks%num_colours*num_keys, blocks%element)
+    call cut_blocks(colour, key, blocks)
+  end subroutine list_blocks
+
+  !> The lowest colour that no element before has given to a common unknown; 0 for no solid.
+  subroutine colour_elements(scene, numbers, colour)
+    type(problem), intent(in) :: scene
+    type(numbering), intent(in) :: numbers
+    integer, allocatable, intent(out) :: colour(:) !< (elements)
+    integer(long), allocatable :: used(:)
+    integer(long) :: taken
+    integer :: e
+    allocate (colour(scene%mesh%num_elements), used(numbers%num_total))
+    colour = 0
+    used = 0_long
+    do e = 1, scene%mesh%num_elements
+      if (scene%mesh%material_of_element(e) == 0) cycle
+      taken = colours_around(numbers, used, scene%mesh%nodes(:, e))
+      colour(e) = trailz(not(taken)) + 1
+      if (colour(e) > most_colours) then
+        colour(e) = most_colours + 1
+      else
+        call mark_around(numbers, scene%mesh%nodes(:, e), colour(e) - 1, used)
+      end if
+    end do
+  end subroutine colour_elements
+
+  !> The colours at the unknowns of some nodes, as bits.
+  pure integer(long) function colours_around(numbers, used, nodes) result(taken)
+    type(numbering), intent(in) :: numbers
+    integer(long), intent(in) :: used(:)
+    integer, intent(in) :: nodes(:)
+    integer :: a, k
+    taken = 0_long
+    do a = 1, size(nodes)
+      do k = numbers%row_start(3*nodes(a) - 2), numbers%row_start(3*nodes(a) + 1) - 1
+        taken = ior(taken, used(numbers%unknown(k)))
       end do
     end do
-    blocks%first = blocks%first(:blocks%num_blocks + 1)
-  contains
-    subroutine close_block()
+  end function colours_around
+
+  !> Gives a colour to the unknowns of some nodes.
+  pure subroutine mark_around(numbers, nodes, bit, used)
+    type(numbering), intent(in) :: numbers
+    integer, intent(in) :: nodes(:), bit
+    integer(long), intent(inout) :: used(:)
+    integer :: a, k
+    do a = 1, size(nodes)
+      do k = numbers%row_start(3*nodes(a) - 2), numbers%row_start(3*nodes(a) + 1) - 1
+        used(numbers%unknown(k)) = ibset(used(numbers%unknown(k)), bit)
+      end do
+    end do
+  end subroutine mark_around
+
+  !> The elements with a key, in ascending order of it; among equals the order of the deck.
+  pure subroutine sort_by_key(key, largest, element)
+    integer, intent(in) :: key(:) !< (elements) 0 to leave out
+    integer, intent(in) :: largest
+    integer, allocatable, intent(out) :: element(:)
+    integer, allocatable :: next(:)
+    integer :: e, k
+    allocate (next(0:largest + 1), element(count(key > 0)))
+    next = 0
+    do e = 1, size(key)
+      next(key(e) + 1) = next(key(e) + 1) + 1
+    end do
+    next(0:1) = 1
+    do k = 2, largest
+      next(k) = next(k - 1) + next(k)
+    end do
+    do e = 1, size(key)
+      if (key(e) == 0) cycle
+      element(next(key(e))) = e
+      next(key(e)) = next(key(e)) + 1
+    end do
+  end subroutine sort_by_key
+
+  !> Cuts the sorted elements where the key changes and where a block is full.
+  pure subroutine cut_blocks(colour, key, blocks)
+    integer, intent(in) :: colour(:), key(:)
+    type(block_list), intent(inout) :: blocks
+    integer :: k, length
+    allocate (blocks%first(size(blocks%element) + 1), blocks%first_block(blocks%num_colours + 1))
+    blocks%first_block = 1
+    length = 0
+    do k = 1, size(blocks%element)
+      length = length + 1
+      if (k > 1) then
+        if (key(blocks%element(k)) == key(blocks%element(k - 1)) &
+            .and. length <= largest_block) cycle
+      end if
+      length = 1
       blocks%num_blocks = blocks%num_blocks + 1
-      blocks%first(blocks%num_blocks + 1) = length + 1
-    end subroutine close_block
-  end subroutine list_blocks
+      blocks%first(blocks%num_blocks) = k
+      blocks%first_block(colour(blocks%element(k)) + 1) = blocks%num_blocks + 1
+    end do
+    blocks%first(blocks%num_blocks + 1) = size(blocks%element) + 1
+  end subroutine cut_blocks
 end module element_blocks

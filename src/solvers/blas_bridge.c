@@ -1,14 +1,82 @@
-/* Threads of the BLAS, where the library at run time lets them be set. */
+/* Threads and kernels of the BLAS, where the library at run time lets them be chosen: OpenBLAS.
+ * Other libraries are left alone. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-/* Sets the number of threads of OpenBLAS; other libraries are left alone. */
+/* A function of the BLAS by its name; ISO C knows no other way to turn a symbol into one. */
+static int find(const char *name, void *function)
+{
+  void *symbol = dlsym(RTLD_DEFAULT, name);
+  memcpy(function, &symbol, sizeof symbol);
+  return symbol != NULL;
+}
+
 void keyway_set_blas_threads(int threads)
 {
   void (*set)(int);
-  void *symbol = dlsym(RTLD_DEFAULT, "openblas_set_num_threads");
-  if (!symbol) return;
-  memcpy(&set, &symbol, sizeof set);
-  set(threads);
+  if (find("openblas_set_num_threads", &set)) set(threads);
+}
+
+/* 1 when the BLAS threads are OpenMP's. */
+int keyway_blas_uses_openmp(void)
+{
+  int (*get)(void);
+  return find("openblas_get_parallel", &get) && get() == 2;
+}
+
+/* The fastest kernels of OpenBLAS that this processor can run, NULL when there is no choice. */
+static const char *fitting_kernels(void)
+{
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
+      __builtin_cpu_supports("avx512cd"))
+    return "SkylakeX";
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return "Haswell";
+#endif
+  return NULL;
+}
+
+/* The words of the command line, ended by NULL; they stay allocated. */
+static char **command_line(void)
+{
+  static char text[65536];
+  char **words;
+  size_t length, count = 0;
+  FILE *file = fopen("/proc/self/cmdline", "r");
+  if (!file) return NULL;
+  length = fread(text, 1, sizeof text - 1, file);
+  fclose(file);
+  if (length == 0 || length == sizeof text - 1) return NULL;
+  for (size_t i = 0; i < length; i++) count += text[i] == '\0';
+  words = calloc(count + 1, sizeof *words);
+  if (!words) return NULL;
+  for (size_t i = 0, k = 0; k < count; i += strlen(text + i) + 1) words[k++] = text + i;
+  return words;
+}
+
+/* An OpenBLAS older than the processor falls back to kernels of 2004, five times slower. It chooses
+ * when it is loaded, so the program starts itself again with the choice made. */
+void keyway_restart_with_fast_kernels(void)
+{
+  char *(*get_name)(void);
+  char path[4096];
+  const char *kernels = fitting_kernels();
+  char **words;
+  ssize_t length;
+  if (!kernels || getenv("OPENBLAS_CORETYPE")) return;
+  if (!find("openblas_get_corename", &get_name) || strcmp(get_name(), "Prescott") != 0) return;
+  length = readlink("/proc/self/exe", path, sizeof path - 1);
+  words = command_line();
+  if (length <= 0 || !words) return;
+  path[length] = '\0';
+  setenv("OPENBLAS_CORETYPE", kernels, 1);
+  execv(path, words);
+  unsetenv("OPENBLAS_CORETYPE"); /* only reached when the start failed: go on slowly */
+  free(words);
 }

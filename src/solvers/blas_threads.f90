@@ -1,12 +1,12 @@
-!> Threads of the BLAS: many for factors, one elsewhere.
+!> Threads and kernels of the BLAS: many threads for factors, one elsewhere.
 !>
 !> OpenBLAS's workers spin between calls and starve OpenMP, so they are woken only where they pay.
 module blas_threads
   use, intrinsic :: iso_c_binding, only: c_int
-  use omp_lib, only: omp_get_max_threads
+  use omp_lib, only: omp_get_max_active_levels, omp_get_max_threads, omp_set_max_active_levels
   implicit none
   private
-  public :: use_many_threads, use_one_thread
+  public :: use_many_threads, use_one_thread, restart_with_fast_kernels
 
   interface
     subroutine keyway_set_blas_threads(threads) bind(c)
@@ -14,16 +14,34 @@ module blas_threads
       implicit none
       integer(c_int), value :: threads
     end subroutine keyway_set_blas_threads
+
+    function keyway_blas_uses_openmp() result(answer) bind(c)
+      import :: c_int
+      implicit none
+      integer(c_int) :: answer
+    end function keyway_blas_uses_openmp
+
+    !> Starts the program again when OpenBLAS does not know the processor; call it first of all.
+    subroutine restart_with_fast_kernels() bind(c, name='keyway_restart_with_fast_kernels')
+      implicit none
+    end subroutine restart_with_fast_kernels
   end interface
 
 contains
 
-  !> As many as OpenMP has been given.
-  subroutine use_many_threads()
+  !> As many as OpenMP has been given. Inside, CHOLMOD must not open teams of its own: they have
+  !> four threads whatever the user says, and doubled the processor time of a factor.
+  subroutine use_many_threads(levels)
+    integer, intent(out) :: levels !< of OpenMP, to be given back
+    levels = omp_get_max_active_levels()
     call keyway_set_blas_threads(int(omp_get_max_threads(), c_int))
+    if (keyway_blas_uses_openmp() == 0) call omp_set_max_active_levels(0)
   end subroutine use_many_threads
 
-  subroutine use_one_thread()
+  !> Back to one thread in the BLAS and to what OpenMP had before.
+  subroutine use_one_thread(levels)
+    integer, intent(in) :: levels !< from `use_many_threads`
     call keyway_set_blas_threads(1_c_int)
+    call omp_set_max_active_levels(levels)
   end subroutine use_one_thread
 end module blas_threads

@@ -137,13 +137,14 @@ contains
     real(rk), intent(in) :: values(:)
     type(error_type), allocatable, intent(out) :: error
     integer(c_int) :: status, column
+    integer :: levels
     real(rk) :: ratio
     self%failed_unknown = 0
     if (self%num_free == 0) return
-    call use_many_threads()
+    call use_many_threads(levels)
     status = keyway_cholmod_factorise(self%handle, self%num_free, self%start, matrix%free_entries, &
                                       self%row, values, column, ratio)
-    call use_one_thread()
+    call use_one_thread(levels)
     if (status == 1 .or. (status == 0 .and. .not. ratio > smallest_ratio)) then
       self%failed_unknown = column + 1
       call raise(error, 'the stiffness is singular or not positive definite')
@@ -159,18 +160,18 @@ contains
     class(cholmod_solver), intent(inout) :: self
     real(rk), intent(inout) :: b(:, :) !< (num_free, right-hand sides)
     type(error_type), allocatable, intent(out) :: error
-    integer :: first, last, num_columns
+    integer :: first, last, num_columns, levels
     integer(c_int) :: status
     if (self%num_free == 0) return
     num_columns = size(b, 2)
-    if (num_columns > 1) call use_many_threads()
+    if (num_columns > 1) call use_many_threads(levels)
     status = 0
     do first = 1, num_columns, most_columns
       last = min(first + most_columns - 1, num_columns)
       status = keyway_cholmod_solve(self%handle, self%num_free, last - first + 1, b(:, first:last))
       if (status /= 0) exit
     end do
-    if (num_columns > 1) call use_one_thread()
+    if (num_columns > 1) call use_one_thread(levels)
     if (status /= 0) call raise(error, 'no memory to solve the equations', system_failed)
   end subroutine solve
 

@@ -124,10 +124,11 @@ contains
     type(error_type), allocatable, intent(out) :: error
     real(rk) :: answers(num_answers)
     integer(c_int) :: status
+    integer :: levels
     self%failed_unknown = 0
     if (matrix%num_free == 0) return
     self%values(:) = values(self%entry)
-    call use_many_threads()
+    call use_many_threads(levels)
     status = 0
     if (.not. c_associated(self%plan)) then
       call umfpack_di_defaults(self%settings)
@@ -140,7 +141,7 @@ contains
     if (c_associated(self%factor)) call umfpack_di_free_numeric(self%factor)
     if (status == 0) status = umfpack_di_numeric(self%start, self%row, self%values, self%plan, &
                                                  self%factor, self%settings, answers)
-    call use_one_thread()
+    call use_one_thread(levels)
     if (status == is_singular) then
       call raise(error, 'the tangent is singular')
     else if (status == without_memory) then
