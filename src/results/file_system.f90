@@ -1,10 +1,10 @@
-!> Folders, and files that are never seen half written.
+!> Folders and names of files.
 module file_system
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
   use errors, only: error_type, raise, system_failed
   implicit none
   private
-  public :: make_folder, write_whole_file, move_file, safe_name, file_name, base_name
+  public :: make_folder, safe_name, file_name, base_name
 
   interface
     !> POSIX mkdir.
@@ -16,15 +16,6 @@ module file_system
       integer(c_int), value :: mode
       integer(c_int) :: status
     end function c_mkdir
-
-    !> C rename: replaces `to` in one move.
-    function c_rename(from, to) bind(c, name='rename') result(status)
-      import :: c_char, c_int
-      implicit none
-      ! allow(assumed-size)
-      character(kind=c_char), intent(in) :: from(*), to(*)
-      integer(c_int) :: status
-    end function c_rename
   end interface
 
   integer, parameter :: mode_of_folders = int(o'755')
@@ -44,40 +35,6 @@ contains
     if (status == 0) close (unit, status='delete')
     if (status /= 0) call raise(error, "cannot write in the folder '"//path//"'", system_failed)
   end subroutine make_folder
-
-  !> Writes a file beside its place and moves it there, so that a reader finds the old one or the
-  !> new one, both whole.
-  subroutine write_whole_file(path, text, error)
-    character(*), intent(in) :: path, text
-    type(error_type), allocatable, intent(out) :: error
-    character(:), allocatable :: beside
-    integer :: unit, status
-    beside = path//'.part'
-    open (newunit=unit, file=beside, access='stream', form='unformatted', status='replace', &
-          action='write', iostat=status)
-    if (status == 0) then
-      write (unit, iostat=status) text
-      if (status == 0) then
-        close (unit, iostat=status)
-      else
-        close (unit, status='delete')
-      end if
-    end if
-    if (status == 0) then
-      call move_file(beside, path, error)
-    else
-      call raise(error, "cannot write '"//path//"' (disk full?)", system_failed)
-    end if
-  end subroutine write_whole_file
-
-  !> Renames a file; an old one of the new name is replaced in the same move.
-  subroutine move_file(from, to, error)
-    character(*), intent(in) :: from, to
-    type(error_type), allocatable, intent(out) :: error
-    if (c_rename(from//c_null_char, to//c_null_char) /= 0) then
-      call raise(error, "cannot write '"//to//"'", system_failed)
-    end if
-  end subroutine move_file
 
   !> A name that is safe in a file's name: letters, digits, '_', '-' and '.'; others become '_'.
   pure function safe_name(name) result(safe)

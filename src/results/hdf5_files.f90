@@ -3,6 +3,7 @@
 !> Arrays keep Fortran's memory, so that h5py sees (3, nodes) as (nodes, 3). A failure is kept in
 !> `has_failed` and asked for once after a group of calls.
 module hdf5_files
+  use hdf5, only: h5dont_atexit_f
   use hdf5, only: hid_t, hsize_t, size_t, h5open_f, h5eset_auto_f, h5fcreate_f, h5fclose_f
   use hdf5, only: h5fflush_f, h5f_acc_trunc_f, h5f_scope_global_f, h5gcreate_f, h5gclose_f
   use hdf5, only: h5screate_simple_f, h5screate_f, h5sclose_f, h5s_scalar_f
@@ -50,6 +51,8 @@ contains
     class(hdf5_file), intent(inout) :: self
     character(*), intent(in) :: path
     integer :: status
+    ! After a failure the file stays as it was last flushed: the library must not touch it at exit.
+    call h5dont_atexit_f(status)
     call h5open_f(status)
     call self%note(status)
     call h5eset_auto_f(0, status)
@@ -266,11 +269,11 @@ contains
     call self%note(status)
   end subroutine flush_file
 
-  !> Closes the file.
+  !> Closes the file, unless something failed.
   subroutine close_file(self)
     class(hdf5_file), intent(inout) :: self
     integer :: status
-    if (self%id == 0) return
+    if (self%id == 0 .or. self%has_failed) return
     call h5fclose_f(self%id, status)
     call self%note(status)
     self%id = 0

@@ -3,7 +3,7 @@ module pvd_files
   use kinds, only: rk
   use errors, only: error_type
   use text_buffers, only: text_buffer, text_of
-  use file_system, only: write_whole_file
+  use whole_files, only: write_whole_file
   implicit none
   private
   public :: pvd_file

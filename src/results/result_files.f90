@@ -190,11 +190,11 @@ contains
     self%summary%status = status
     self%summary%message = message
     call self%write_envelopes(scene, error)
-    call self%histories%finish(scene, failure)
+    call self%histories%finish(failure)
     call keep_first(error, failure)
-    call self%energies%finish(scene, failure)
+    call self%energies%finish(failure)
     call keep_first(error, failure)
-    call self%data%finish(scene, failure)
+    call self%data%finish(failure)
     call keep_first(error, failure)
     call self%say_warnings()
     call self%summarise(scene, failure)

@@ -43,11 +43,10 @@ contains
   end subroutine write_modes
 
   !> The analysis has ended, well or not: everything must be on the disk.
-  subroutine finish(self, scene, error)
+  subroutine finish(self, error)
     class(writer), intent(inout) :: self
-    type(problem), intent(in) :: scene
     type(error_type), allocatable, intent(out) :: error
-    if (.false.) call self%finish(scene, error)
+    if (.false.) call self%finish(error)
   end subroutine finish
 
   !> Is this increment one of a request? Every `frequency`-th, and the last of a step. Increment 0

@@ -11,7 +11,7 @@ module summary_json
   use run_records, only: run_record
   use run_summaries, only: run_summary, step_summary
   use json_writer, only: json_text
-  use file_system, only: write_whole_file
+  use whole_files, only: write_whole_file
   implicit none
   private
   public :: write_summary

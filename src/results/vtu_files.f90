@@ -4,11 +4,11 @@
 !> the final place and moved there. The bytes stand in the reverse order of the header's list:
 !> meshio looks arrays up by offsets that it changes on the way, and takes the first in the list.
 module vtu_files
-  use, intrinsic :: iso_fortran_env, only: int8, int32, int64
+  use, intrinsic :: iso_fortran_env, only: int32, int64
   use kinds, only: rk
-  use errors, only: error_type, raise, system_failed
+  use errors, only: error_type
   use text_buffers, only: text_of
-  use file_system, only: move_file
+  use whole_files, only: whole_file
   implicit none
   private
   public :: vtu_file
@@ -22,7 +22,7 @@ module vtu_files
   type :: data_array
     integer :: section = 0
     character(:), allocatable :: attributes !< XML, without the offset
-    integer(int8), allocatable :: bytes(:)
+    character(:), allocatable :: bytes
     integer(int64) :: offset = 0 !< where its count and bytes stand in the appended data
   end type data_array
 
@@ -48,14 +48,13 @@ contains
     integer, intent(in) :: connectivity(:) !< points of the cells, from 0
     integer, intent(in) :: ends(:) !< (cells) where each cell's points end
     integer, intent(in) :: kinds(:) !< (cells) VTK's codes
-    integer(int8) :: none(0)
     self%num_points = size(x, 2)
     self%num_cells = size(kinds)
     allocate (self%arrays(0))
-    call self%append(in_points, 'Points', 'Float64', 3, transfer(x, none), '')
-    call self%append(in_cells, 'connectivity', 'Int32', 1, transfer(connectivity, none), '')
-    call self%append(in_cells, 'offsets', 'Int32', 1, transfer(ends, none), '')
-    call self%append(in_cells, 'types', 'UInt8', 1, int(kinds, int8), '')
+    call self%append(in_points, 'Points', 'Float64', 3, bytes_of_reals(x), '')
+    call self%append(in_cells, 'connectivity', 'Int32', 1, bytes_of_integers(connectivity), '')
+    call self%append(in_cells, 'offsets', 'Int32', 1, bytes_of_integers(ends), '')
+    call self%append(in_cells, 'types', 'UInt8', 1, low_bytes(kinds), '')
   end subroutine start
 
   !> A field on the points.
@@ -64,8 +63,7 @@ contains
     character(*), intent(in) :: name
     real(rk), intent(in) :: values(:, :) !< (components, points)
     character(*), intent(in) :: components !< their names with commas between, '' for none
-    integer(int8) :: none(0)
-    call self%append(on_points, name, 'Float64', size(values, 1), transfer(values, none), &
+    call self%append(on_points, name, 'Float64', size(values, 1), bytes_of_reals(values), &
                      components)
   end subroutine put_point_reals
 
@@ -74,8 +72,7 @@ contains
     class(vtu_file), intent(inout) :: self
     character(*), intent(in) :: name
     integer, intent(in) :: values(:)
-    integer(int8) :: none(0)
-    call self%append(on_points, name, 'Int32', 1, transfer(int(values, int32), none), '')
+    call self%append(on_points, name, 'Int32', 1, bytes_of_integers(values), '')
   end subroutine put_point_integers
 
   !> Whole numbers on the cells.
@@ -83,9 +80,34 @@ contains
     class(vtu_file), intent(inout) :: self
     character(*), intent(in) :: name
     integer, intent(in) :: values(:)
-    integer(int8) :: none(0)
-    call self%append(on_cells, name, 'Int32', 1, transfer(int(values, int32), none), '')
+    call self%append(on_cells, name, 'Int32', 1, bytes_of_integers(values), '')
   end subroutine put_cell_integers
+
+  !> The memory of reals.
+  pure function bytes_of_reals(values) result(bytes)
+    real(rk), intent(in) :: values(:, :)
+    character(:), allocatable :: bytes
+    allocate (character(storage_size(values)/8*size(values)) :: bytes)
+    bytes = transfer(values, bytes)
+  end function bytes_of_reals
+
+  !> The memory of integers.
+  pure function bytes_of_integers(values) result(bytes)
+    integer, intent(in) :: values(:)
+    character(:), allocatable :: bytes
+    allocate (character(storage_size(1_int32)/8*size(values)) :: bytes)
+    bytes = transfer(int(values, int32), bytes)
+  end function bytes_of_integers
+
+  !> Small integers, one byte each.
+  pure function low_bytes(values) result(bytes)
+    integer, intent(in) :: values(:)
+    character(size(values)) :: bytes
+    integer :: i
+    do i = 1, size(values)
+      bytes(i:i) = achar(values(i))
+    end do
+  end function low_bytes
 
   !> Describes an array and keeps its bytes; the list stays in the order of the sections.
   subroutine append(self, section, name, kind, num_components, bytes, components)
@@ -93,7 +115,7 @@ contains
     integer, intent(in) :: section
     character(*), intent(in) :: name, kind, components
     integer, intent(in) :: num_components
-    integer(int8), intent(in) :: bytes(:)
+    character(*), intent(in) :: bytes
     type(data_array), allocatable :: more(:)
     integer :: i, place
     place = 1 + count(self%arrays%section <= section)
@@ -140,27 +162,22 @@ contains
     class(vtu_file), intent(inout) :: self
     character(*), intent(in) :: path
     type(error_type), allocatable, intent(out) :: error
+    type(whole_file) :: file
     integer(int64) :: offset
-    integer :: unit, status, i
+    integer :: i
     offset = 0
     do i = size(self%arrays), 1, -1
       self%arrays(i)%offset = offset
-      offset = offset + storage_size(offset)/8 + size(self%arrays(i)%bytes, kind=int64)
+      offset = offset + storage_size(offset)/8 + len(self%arrays(i)%bytes, int64)
     end do
-    open (newunit=unit, file=path//'.part', access='stream', form='unformatted', &
-          status='replace', action='write', iostat=status)
-    if (status == 0) write (unit, iostat=status) header_of(self)
+    call file%open(path)
+    call file%put(header_of(self))
     do i = size(self%arrays), 1, -1
-      if (status == 0) write (unit, iostat=status) size(self%arrays(i)%bytes, kind=int64)
-      if (status == 0) write (unit, iostat=status) self%arrays(i)%bytes
+      call file%put(transfer(len(self%arrays(i)%bytes, int64), repeat(' ', 8)))
+      call file%put(self%arrays(i)%bytes)
     end do
-    if (status == 0) write (unit, iostat=status) nl//'</AppendedData>'//nl//'</VTKFile>'//nl
-    if (status == 0) close (unit, iostat=status)
-    if (status /= 0) then
-      call raise(error, "cannot write '"//path//"' (disk full?)", system_failed)
-    else
-      call move_file(path//'.part', path, error)
-    end if
+    call file%put(nl//'</AppendedData>'//nl//'</VTKFile>'//nl)
+    call file%complete(error)
   end subroutine save
 
   !> Everything before the bytes.

@@ -1,6 +1,6 @@
 !> job_energy.csv: the energy balance of every increment.
 module write_energy
-  use errors, only: error_type, raise
+  use errors, only: error_type
   use problem_definition, only: problem
   use analysis_state, only: state
   use run_records, only: run_record
@@ -60,11 +60,9 @@ contains
   end subroutine write_energies
 
   !> Closes the file.
-  subroutine close_energy(self, scene, error)
+  subroutine close_energy(self, error)
     class(energy_file), intent(inout) :: self
-    type(problem), intent(in) :: scene
     type(error_type), allocatable, intent(out) :: error
-    if (.false.) call raise(error, scene%deck_file)
-    call self%file%close()
+    call self%file%close(error)
   end subroutine close_energy
 end module write_energy

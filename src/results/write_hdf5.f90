@@ -212,11 +212,10 @@ contains
   end subroutine write_envelope_data
 
   !> Closes the file.
-  subroutine close_data(self, scene, error)
+  subroutine close_data(self, error)
     class(hdf5_results), intent(inout) :: self
-    type(problem), intent(in) :: scene
     type(error_type), allocatable, intent(out) :: error
-    if (self%file%id == 0 .or. size(scene%steps) < self%step) return
+    if (self%file%id == 0) return
     call self%bring_out(error)
     call self%file%close()
   end subroutine close_data

@@ -1,7 +1,7 @@
 !> *NODE PRINT, *EL PRINT, *JOINT PRINT: one CSV file for each set or joint, over all steps.
 module write_history
   use kinds, only: rk
-  use errors, only: error_type, raise
+  use errors, only: error_type
   use problem_definition, only: problem
   use analysis_state, only: state
   use step_plan, only: print_request
@@ -184,14 +184,14 @@ contains
   end function united
 
   !> Closes the files.
-  subroutine close_files(self, scene, error)
+  subroutine close_files(self, error)
     class(history_files), intent(inout) :: self
-    type(problem), intent(in) :: scene
     type(error_type), allocatable, intent(out) :: error
+    type(error_type), allocatable :: failure
     integer :: f
-    if (.false.) call raise(error, scene%deck_file)
     do f = 1, size(self%files)
-      call self%files(f)%close()
+      call self%files(f)%close(failure)
+      if (allocated(failure)) call move_alloc(failure, error)
     end do
   end subroutine close_files
 end module write_history

@@ -1,0 +1,101 @@
+!> Files written without buffers, so that a full disk is noticed at the very write: Fortran's own
+!> units tell neither when they are flushed nor when they are closed.
+module raw_files
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_null_char, c_size_t
+  use kinds, only: long
+  implicit none
+  private
+  public :: raw_file
+
+  type :: raw_file
+    integer(c_int) :: descriptor = -1 !< -1 while it is not open
+    integer(long) :: num_bytes = 0 !< of all good writes
+  contains
+    procedure :: create
+    procedure :: put
+    procedure :: close => close_file
+  end type raw_file
+
+  interface
+    !> POSIX creat: an empty file, also in place of an old one.
+    function c_creat(path, mode) result(descriptor) bind(c, name='creat')
+      import :: c_char, c_int
+      implicit none
+      ! allow(assumed-size)
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int), intent(in), value :: mode
+      integer(c_int) :: descriptor
+    end function c_creat
+
+    !> POSIX write: bytes that were taken, or -1.
+    function c_write(descriptor, bytes, num_bytes) result(num_taken) bind(c, name='write')
+      import :: c_char, c_int, c_size_t
+      implicit none
+      integer(c_int), intent(in), value :: descriptor
+      ! allow(assumed-size)
+      character(kind=c_char), intent(in) :: bytes(*)
+      integer(c_size_t), intent(in), value :: num_bytes
+      integer(c_size_t) :: num_taken
+    end function c_write
+
+    !> POSIX ftruncate.
+    function c_ftruncate(descriptor, num_bytes) result(status) bind(c, name='ftruncate')
+      import :: c_int, c_long
+      implicit none
+      integer(c_int), intent(in), value :: descriptor
+      integer(c_long), intent(in), value :: num_bytes
+      integer(c_int) :: status
+    end function c_ftruncate
+
+    !> POSIX close.
+    function c_close(descriptor) result(status) bind(c, name='close')
+      import :: c_int
+      implicit none
+      integer(c_int), intent(in), value :: descriptor
+      integer(c_int) :: status
+    end function c_close
+  end interface
+
+  integer(c_int), parameter :: mode_of_files = int(o'644', c_int)
+
+contains
+
+  !> Makes the file.
+  subroutine create(self, path, is_good)
+    class(raw_file), intent(inout) :: self
+    character(*), intent(in) :: path
+    logical, intent(out) :: is_good
+    self%descriptor = c_creat(path//c_null_char, mode_of_files)
+    self%num_bytes = 0
+    is_good = self%descriptor >= 0
+  end subroutine create
+
+  !> Writes all bytes, or none: when the disk is full the file is cut back to where it was.
+  subroutine put(self, bytes, is_good)
+    class(raw_file), intent(inout) :: self
+    character(*), intent(in) :: bytes
+    logical, intent(out) :: is_good
+    integer(c_size_t) :: num_done, num_taken
+    num_done = 0
+    do while (num_done < len(bytes, c_size_t))
+      num_taken = c_write(self%descriptor, bytes(num_done + 1:), len(bytes, c_size_t) - num_done)
+      if (num_taken <= 0) exit
+      num_done = num_done + num_taken
+    end do
+    is_good = num_done == len(bytes, c_size_t)
+    if (is_good) then
+      self%num_bytes = self%num_bytes + num_done
+    else if (c_ftruncate(self%descriptor, int(self%num_bytes, c_long)) /= 0) then
+      return ! nothing more can be done: the caller reports the failure
+    end if
+  end subroutine put
+
+  !> Closes the file.
+  subroutine close_file(self, is_good)
+    class(raw_file), intent(inout) :: self
+    logical, intent(out) :: is_good
+    is_good = .true.
+    if (self%descriptor >= 0) is_good = c_close(self%descriptor) == 0
+    self%descriptor = -1
+  end subroutine close_file
+end module raw_files
