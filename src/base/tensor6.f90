@@ -7,7 +7,8 @@ module tensor6
   private
   public :: trace, second_invariant, third_invariant, von_mises, principal_values, as_matrix
 
-  real(rk), parameter :: pi = acos(-1.0_rk)
+  real(rk), parameter :: third_of_turn = 2.0_rk*acos(-1.0_rk)/3.0_rk
+  real(rk), parameter :: safe_cosine = 0.9_rk !< below, the angle loses no digits (factor 2.3)
 
 contains
 
@@ -46,43 +47,49 @@ contains
 
   !> Principal values, the largest first; accurate to roundoff also where values coincide.
   !>
-  !> Scherzinger and Dohrmann, Comput. Methods Appl. Mech. Engrg. 197 (2008) 4007-4015: the value
-  !> that is farthest from the two others comes from the angle of Lode, the two others from the
-  !> 2 x 2 problem in the plane normal to its axis.
+  !> Values that are apart come from the angle of Lode alone. Else Scherzinger and Dohrmann, Comput.
+  !> Methods Appl. Mech. Engrg. 197 (2008) 4007-4015: the value that is farthest from the two
+  !> others comes from the angle, the two others from the 2 x 2 problem normal to its axis.
   pure function principal_values(t) result(values)
     real(rk), intent(in) :: t(6)
     real(rk) :: values(3)
-    real(rk) :: mean, scale, s(6), apart, first(3), second(3), matrix(3, 3), in_plane(2)
+    real(rk) :: mean, scale, s(6), j2, cosine, angle
     mean = trace(t)/3.0_rk
-    s = t - [mean, mean, mean, 0.0_rk, 0.0_rk, 0.0_rk]
-    scale = maxval(abs(s))
+    s(1:3) = t(1:3) - mean
+    s(4:6) = t(4:6)
+    scale = max(abs(s(1)), abs(s(2)), abs(s(3)), abs(s(4)), abs(s(5)), abs(s(6)))
     values = mean
     if (scale < tiny(1.0_rk)) return
     s = s/scale
-    apart = most_distinct(s)
+    j2 = second_invariant(s)/3.0_rk
+    cosine = 0.5_rk*third_invariant(s)/(j2*sqrt(j2))
+    angle = acos(max(-1.0_rk, min(1.0_rk, cosine)))/3.0_rk
+    if (abs(cosine) < safe_cosine) then
+      values = [cos(angle), cos(angle - third_of_turn), cos(angle + third_of_turn)]
+      values = mean + 2.0_rk*scale*sqrt(j2)*values
+    else
+      if (cosine < 0.0_rk) angle = angle + third_of_turn
+      values = mean + scale*values_around(s, 2.0_rk*sqrt(j2)*cos(angle))
+    end if
+  end function principal_values
+
+  !> All principal values of a deviator, from the one that is farthest from the two others.
+  pure function values_around(s, apart) result(values)
+    real(rk), intent(in) :: s(6) !< deviator
+    real(rk), intent(in) :: apart !< the known value
+    real(rk) :: values(3)
+    real(rk) :: first(3), second(3), matrix(3, 3), in_plane(2)
     matrix = as_matrix(s)
     call span_normal_plane(matrix, apart, first, second)
     in_plane = values_of_pair(dot_product(first, matmul(matrix, first)), &
                               dot_product(second, matmul(matrix, second)), &
                               dot_product(first, matmul(matrix, second)))
-    if (apart >= in_plane(1)) then
+    if (apart > 0.0_rk) then
       values = [apart, in_plane]
     else
       values = [in_plane, apart]
     end if
-    values = mean + scale*values
-  end function principal_values
-
-  !> Principal value of a deviator that is farthest from the two others.
-  pure real(rk) function most_distinct(s) result(value)
-    real(rk), intent(in) :: s(6) !< deviator, not zero
-    real(rk) :: j2, angle
-    j2 = second_invariant(s)
-    angle = 0.5_rk*third_invariant(s)*(3.0_rk/j2)**1.5_rk
-    angle = acos(max(-1.0_rk, min(1.0_rk, angle)))/3.0_rk
-    if (angle > pi/6.0_rk) angle = angle + 2.0_rk*pi/3.0_rk
-    value = 2.0_rk*sqrt(j2/3.0_rk)*cos(angle)
-  end function most_distinct
+  end function values_around
 
   !> Two unit vectors normal to each other and to the axis of a single principal value.
   pure subroutine span_normal_plane(matrix, value, first, second)

@@ -11,6 +11,8 @@ module deck_lexer
   private
   public :: read_cards
 
+  character(*), parameter :: quotes = "'"//'"'
+
 contains
 
   !> Reads a deck with all the files it includes and takes it apart into cards.
@@ -187,13 +189,13 @@ contains
     type(card), intent(inout) :: new
     type(card_parameter), intent(in) :: given
     type(diagnostic_list), intent(inout) :: faults
-    associate (value => new%lines%body(given%value_first:given%value_last))
-      if (index(value, "'") == 1 .or. index(value, '"') == 1) then
+    if (given%value_first <= given%value_last) then
+      if (scan(new%lines%body(given%value_first:given%value_first), quotes) == 1) then
         call faults%add(severity_error, &
-                        new%lines%spot(given%row, given%value_first, given%value_last, &
+                        new%lines%spot(given%value_row, given%value_first, given%value_last, &
                                        new%keyword), 'a quote is not closed')
       end if
-    end associate
+    end if
     if (new%has(given%name)) then
       call faults%add(severity_error, &
                       new%lines%spot(given%row, given%first, given%last, new%keyword), &
