@@ -113,15 +113,13 @@ contains
     spec%name = 'JOINT PRINT'
     spec%meaning = 'History of the points of a joint in job_joint_NAME.csv: opening, slip1, '// &
                    'slip2 [m], tn, t1, t2 [Pa], state (0 open, 1 stick, 2 slip, 3 bonded). All '// &
-                   'columns are always written. slip1 is horizontal, slip2 up or down the joint.'
+                   'columns are always written, whatever fields are named. slip1 is '// &
+                   'horizontal, slip2 up or down the joint.'
     spec%example = '*JOINT PRINT, JOINT=J1, NSET=CREST'
-    spec%most_lines = 0
     allocate (spec%parameters, source=[ &
               field('JOINT', kind_word, 'name of the joint', is_required=.true.), &
               field('NSET', kind_word, 'only the points nearest to these nodes')])
-    call add_frequency(spec, '')
-    deallocate (spec%columns)
-    allocate (spec%columns(0))
+    call add_frequency(spec, 'OPENING | SLIP | TRACTION | STATE | SLIP1 | SLIP2 | TN | T1 | T2')
   end subroutine describe_joint_print
 
   subroutine read_joint_print(this, model, faults)

@@ -231,9 +231,9 @@ contains
     type(state), intent(in) :: now
     character(:), allocatable :: line
     character(120) :: room
-    write (room, '(a,i0,a,i0,a,g0.6,a,i0,a,es8.1,a,f0.4,a)') 'step ', now%step, '  increment ', &
+    write (room, '(a,i0,a,i0,a,g0.6,a,i0,a,es8.1,a,es8.1)') 'step ', now%step, '  increment ', &
       now%increment, '  time ', now%total_time, '  iterations ', now%iterations, '  residual ', &
-      now%residual, '  energy error ', 100.0_rk*now%energy%error, ' %'
+      now%residual, '  energy error ', now%energy%error
     line = trim(room)
   end function line_of
 end module result_files

@@ -50,14 +50,16 @@ contains
   end subroutine finish
 
   !> Is this increment one of a request? Every `frequency`-th, and the last of a step. Increment 0
-  !> repeats the end of the step before; it counts only where there is none.
+  !> repeats the end of the step before; it counts only where there is none. Frequency 0 is never.
   pure logical function is_due(now, frequency)
     type(state), intent(in) :: now
     integer, intent(in) :: frequency
-    if (now%increment == 0) then
+    if (frequency <= 0) then
+      is_due = .false.
+    else if (now%increment == 0) then
       is_due = starts_analysis(now)
     else
-      is_due = now%is_last_of_step .or. mod(now%increment, max(1, frequency)) == 0
+      is_due = now%is_last_of_step .or. mod(now%increment, frequency) == 0
     end if
   end function is_due
 

@@ -5,7 +5,7 @@ module stress_fields
   use analysis_state, only: state
   use tensor6, only: principal_values
   use stress_recovery, only: recovery_plan, make_recovery_plan, recover_points, average_at_nodes, &
-                             max_points
+                             max_points, few_nodes
   use stress_operator, only: nodal_operator, make_nodal_operator, apply_operator
   implicit none
   private
@@ -130,7 +130,8 @@ contains
     real(rk), intent(in) :: tensor(:, :) !< (6, n)
     real(rk) :: values(3, size(tensor, 2))
     integer :: i
-    !$omp parallel do default(none) shared(tensor, values) schedule(static)
+    !$omp parallel do default(none) shared(tensor, values) schedule(static) &
+    !$omp if (size(tensor, 2) > few_nodes)
     do i = 1, size(tensor, 2)
       values(:, i) = principal_values(tensor(:, i))
     end do

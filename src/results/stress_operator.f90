@@ -4,7 +4,7 @@ module stress_operator
   use kinds, only: rk
   use shape_hex8, only: corners_from_points
   use problem_definition, only: problem
-  use stress_recovery, only: recovery_plan, operators_of_block, max_points
+  use stress_recovery, only: recovery_plan, operators_of_block, max_points, few_nodes
   implicit none
   private
   public :: nodal_operator, make_nodal_operator, apply_operator
@@ -106,7 +106,8 @@ contains
     real(rk), intent(out) :: stress(:, :) !< (6, nodes) [Pa]
     real(rk) :: sum(6)
     integer :: node, i
-    !$omp parallel do default(none) schedule(static) shared(operator, u, stress) private(i, sum)
+    !$omp parallel do default(none) schedule(static) shared(operator, u, stress) private(i, sum) &
+    !$omp if (size(stress, 2) > few_nodes)
     do node = 1, size(stress, 2)
       sum = 0.0_rk
       do i = operator%row_start(node), operator%row_start(node + 1) - 1

@@ -14,9 +14,10 @@ module stress_recovery
   implicit none
   private
   public :: recovery_plan, make_recovery_plan, recover_points, average_at_nodes, max_points
-  public :: operators_of_block
+  public :: operators_of_block, few_nodes
 
   integer, parameter :: max_points = 8 !< integration points an element may have
+  integer, parameter :: few_nodes = 2000 !< models for which waking threads costs more than it gains
   integer, parameter :: block_size = 32 !< elements whose operators fit a core's cache together
 
   type :: formulation_slot
@@ -148,7 +149,8 @@ contains
     real(rk), intent(out) :: strain(:, :, :) !< (6, max_points, solids)
     real(rk), intent(out) :: stress(:, :, :) !< (6, max_points, solids) [Pa]
     integer :: i
-    !$omp parallel do default(none) shared(scene, plan, u, strain, stress) schedule(dynamic, 4)
+    !$omp parallel do default(none) shared(scene, plan, u, strain, stress) schedule(dynamic, 4) &
+    !$omp if (size(u, 2) > few_nodes)
     do i = 1, size(plan%blocks)
       call recover_block(scene, plan, plan%blocks(i), u, strain, stress)
     end do
@@ -210,7 +212,7 @@ contains
     integer :: node, i, s, a, count
     to_corner = transpose(corners_from_points())
     !$omp parallel do default(none) schedule(static) shared(plan, at_points, at_nodes, to_corner) &
-    !$omp private(i, s, a, count, sum)
+    !$omp private(i, s, a, count, sum) if (size(at_nodes, 2) > few_nodes)
     do node = 1, size(at_nodes, 2)
       sum = 0.0_rk
       do i = plan%node_start(node), plan%node_start(node + 1) - 1

@@ -35,9 +35,7 @@ contains
     now%step_time = when%now
     now%total_time = when%start + when%now
     now%is_last_of_step = now%step_time >= plan%duration
-    call results%costs%start('results', 'output')
     call results%increment_done(scene, now, error)
-    call results%costs%stop('results')
     if (allocated(error) .or. now%is_last_of_step) return
     if (now%increment >= plan%max_increments) then
       call raise(error, "step '"//plan%name//"' has used its "//count_text(plan%max_increments)// &
