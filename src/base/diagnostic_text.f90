@@ -17,20 +17,40 @@ module diagnostic_text
 
 contains
 
-  !> Every error that was kept and how many more there are; '' without errors.
+  !> Every error that was kept, file by file in the order of lines, and how many more there are.
   pure function text_of_errors(list) result(text)
     type(diagnostic_list), intent(in) :: list
-    character(:), allocatable :: text !< lines with new_line between them, none at the end
-    integer :: i
+    character(:), allocatable :: text !< lines with new_line between them; '' without errors
+    integer :: order(list%num_kept), i
     text = ''
+    order = order_by_place(list)
     do i = 1, list%num_kept
       if (i > 1) text = text//new_line('a')
-      text = text//text_of_diagnostic(list%errors(i))
+      text = text//text_of_diagnostic(list%errors(order(i)))
     end do
     if (list%num_errors > list%num_kept) then
       text = text//new_line('a')//'and '//as_text(list%num_errors - list%num_kept)//' more'
     end if
   end function text_of_errors
+
+  !> Positions of the errors by file and line; errors of one line stay in the order found.
+  pure function order_by_place(list) result(order)
+    type(diagnostic_list), intent(in) :: list
+    integer :: order(list%num_kept)
+    integer :: file(list%num_kept), i, j
+    do i = 1, list%num_kept
+      do j = 1, i ! files count in the order in which they are first named
+        if (list%errors(j)%spot%file == list%errors(i)%spot%file) exit
+      end do
+      file(i) = j
+      do j = i - 1, 1, -1
+        if (file(order(j)) < file(i) .or. file(order(j)) == file(i) .and. &
+            list%errors(order(j))%spot%line <= list%errors(i)%spot%line) exit
+        order(j + 1) = order(j)
+      end do
+      order(j + 1) = i
+    end do
+  end function order_by_place
 
   !> Every warning and every note on ignored input, without the deck lines; '' without any.
   pure function text_of_warnings(list) result(text)

@@ -16,6 +16,7 @@ program test_diagnostic_text
   call odd_lines()
   call long_line()
   call many()
+  call order()
   call numbers()
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
@@ -110,6 +111,28 @@ contains
     call check_text(log, text(len(text) - 9:), 'and 5 more', 'the rest')
     call check(log, list%num_warnings == 25, 'every warning is kept')
   end subroutine many
+
+  !> File by file in the order of lines, whatever the order found.
+  subroutine order()
+    integer, parameter :: lines(6) = [5, 2, 5, 9, 1, 2] !< odd ones in mesh.inp, named first
+    integer, parameter :: sorted(6) = [5, 1, 3, 2, 6, 4]
+    type(diagnostic_list) :: list
+    type(place) :: spot
+    character(:), allocatable :: text
+    integer :: i, last, found
+    do i = 1, size(lines)
+      spot = spot_of(lines(i), 0, 0, 'x')
+      if (mod(i, 2) == 1) spot%file = 'mesh.inp'
+      call list%add(severity_error, spot, 'fault '//as_text(i)//'.')
+    end do
+    text = text_of_errors(list)
+    last = 0
+    do i = 1, size(sorted)
+      found = index(text, 'fault '//as_text(sorted(i))//'.')
+      call check(log, found > last, 'fault '//as_text(sorted(i))//' in its turn')
+      last = found
+    end do
+  end subroutine order
 
   !> Numbers in messages.
   subroutine numbers()
