@@ -61,6 +61,7 @@ contains
     if (this%word('OP') == 'NEW') call model%point_forces%clear_old()
     do line = 1, this%num_lines
       call nodes_at(this, line, 1, model, faults, nodes)
+      if (this%integer_at(line, 2) < 1 .or. this%integer_at(line, 2) > 3) cycle ! told
       associate (table => model%point_forces, dof => this%integer_at(line, 2))
         if (any(table%is_new(dof, nodes) .and. table%history(dof, nodes) /= history)) then
           call this%fault_at(faults, line, 1, 'a force under another amplitude acts there', &
