@@ -1,0 +1,181 @@
+"""The command line: options, exit codes, the reference of keywords, the check of a deck."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+BLOCK = """*ELEMENT, TYPE=C3D8, ELSET=BLOCK
+1, 1, 2, 3, 4, 5, 6, 7, 8
+*NODE, NSET=ALL
+1, 0, 0
+2, 1, 0
+3, 1, 1
+4, 0, 1
+5, 0, 0, 1
+6, 1, 0, 1
+7, 1, 1, 1
+8, 0, 1, 1
+*NSET, NSET="Base of it", GENERATE
+1, 4
+*SOLID SECTION, ELSET=Block, MATERIAL=ROCK
+*MATERIAL, NAME=ROCK
+*DENSITY
+2400.
+*ELASTIC,
+20.D9, .24
+*BOUNDARY
+BASE OF IT, PINNED
+5, 2
+*STEP
+*STATIC
+*DLOAD
+BLOCK, GRAV, 9.81, 0, 0, -1
+*CLOAD
+7, 1, 5.
+*END STEP
+*STEP, NAME=MORE
+*STATIC
+*DLOAD
+BLOCK, GRAV, 10., 0, 0, -2
+*END STEP
+*STEP, NAME=TURNED
+*STATIC
+*DLOAD
+BLOCK, GRAV, 1., 1, 0, 0
+*BOUNDARY, OP=NEW
+BASE OF IT, 1, 3
+*END STEP
+*STEP, NAME=CLEARED
+*STATIC
+*CLOAD, OP=NEW
+7, 2, 1.
+*DLOAD, OP=NEW
+1, P2, 1e5
+*END STEP
+"""
+
+
+def run(program: Path, folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [str(program.resolve()), *arguments], cwd=folder, capture_output=True, text=True
+    )
+
+
+def steps_of(text: str) -> dict[str, list[str]]:
+    """Lines of `--check` below each 'Step n NAME'."""
+    steps: dict[str, list[str]] = {}
+    name = ""
+    for line in text.splitlines():
+        if line.startswith("Step "):
+            name = line.split(maxsplit=2)[2]
+            steps[name] = []
+        elif name:
+            steps[name].append(" ".join(line.split()))
+    return steps
+
+
+def test_check_tells_what_stays_from_step_to_step(program_path: Path, tmp_path: Path) -> None:
+    (tmp_path / "block.inp").write_text(BLOCK)
+    done = run(program_path, tmp_path, "--check", "block.inp")
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    steps = steps_of(done.stdout)
+    assert list(steps) == ["STEP-1", "MORE", "TURNED", "CLEARED"]
+
+    def loads(name: str) -> list[str]:
+        return sorted(x.split(" ", 2)[2] for x in steps[name] if x.startswith("load "))
+
+    assert loads("STEP-1") == ["gravity BLOCK: factor 0 to 9.81", "point forces: factor 0 to 1"]
+    assert loads("MORE") == ["gravity BLOCK: factor 9.81 to 10", "point forces: factor 1 to 1"]
+    # Another direction: the old weight fades while the new one comes in.
+    assert loads("TURNED") == [
+        "gravity BLOCK: factor 0 to 1",
+        "gravity BLOCK: factor 10 to 0",
+        "point forces: factor 1 to 1",
+    ]
+    assert loads("CLEARED") == [
+        "gravity BLOCK: factor 1 to 0",
+        "point forces: factor 0 to 1",
+        "point forces: factor 1 to 0",
+        "pressure 1 P2: factor 0 to 100000",
+    ]
+    supports = [next(x for x in lines if x.startswith("supports")) for lines in steps.values()]
+    assert [int(x.split()[1]) for x in supports] == [13, 13, 12, 12]
+
+
+def test_echo_shows_defaults(program_path: Path, tmp_path: Path) -> None:
+    (tmp_path / "block.inp").write_text(BLOCK)
+    echo = run(program_path, tmp_path, "--check", "block.inp").stdout
+    assert "*ELASTIC, TYPE=ISOTROPIC" in echo
+    assert "*SOLID SECTION, ELSET=Block, MATERIAL=ROCK, MASS=CONSISTENT" in echo
+    assert not list(tmp_path.glob("block*.json")), "--check solves nothing"
+
+
+def test_joint_stiffness_from_the_slave_side(program_path: Path) -> None:
+    """NOTES 3: k_n = E / 0.02 m, k_t = k_n / (2 (1 + nu)); here E 22e9, nu 0.167."""
+    deck = Path(__file__).parent.parent / "input" / "xingbiling_matching"
+    done = run(program_path, deck, "--check", "xingbiling_matching.inp")
+    assert done.returncode == 0, done.stderr
+    assert "KN 1.1e12 Pa/m, KT 4.71294e11 Pa/m" in done.stdout
+
+
+def test_reads_150_000_nodes_in_two_seconds(program_path: Path, tmp_path: Path) -> None:
+    if "release" not in str(program_path):
+        pytest.skip("a matter of the release build")
+    n = 53
+    lines = ["*NODE, NSET=ALL"]
+    for k in range(n**3):
+        x, y, z = k % n, k // n % n, k // n**2
+        lines.append(f"{k + 1}, {x * 1.37:.6f}, {y * 2.113:.6f}, {z * 0.917:.6f}")
+    lines.append("*ELEMENT, TYPE=C3D8, ELSET=DAM")
+    corners = [0, 1, 1 + n, n, n * n, 1 + n * n, 1 + n + n * n, n + n * n]
+    starts = [
+        1 + x + n * y + n * n * z for z in range(n - 1) for y in range(n - 1) for x in range(n - 1)
+    ]
+    for e, a in enumerate(starts, 1):
+        lines.append(", ".join(str(i) for i in [e, *(a + c for c in corners)]))
+    lines.append(f"*NSET, NSET=BASE, GENERATE\n1, {n * n}\n*NSET, NSET=MANY")
+    lines += [", ".join(str(i) for i in range(k, k + 8)) for k in range(1, n**3 - 8, 8)]
+    lines.append(BLOCK[BLOCK.index("*MATERIAL") : BLOCK.index("*BOUNDARY")])
+    lines.append("*SOLID SECTION, ELSET=DAM, MATERIAL=ROCK\n*BOUNDARY\nBASE, 1, 3\n*STEP\n*STATIC")
+    lines.append("*DLOAD\nDAM, GRAV, 9.81, 0, 0, -1\n*END STEP")
+    (tmp_path / "big.inp").write_text("\n".join(lines))
+    done = run(program_path, tmp_path, "-q", "--check", "big.inp")
+    assert done.returncode == 0, done.stderr
+    timed = subprocess.run(
+        ["bash", "-c", f"time {program_path.resolve()} --check big.inp > /dev/null"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        env={"TIMEFORMAT": "%U %S"},
+    )
+    seconds = sum(float(x) for x in timed.stderr.split())
+    assert seconds < 2.0, "processor time to read and verify 148 877 nodes, 140 608 elements"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "stream", "text"),
+    [
+        ([], 0, "stdout", "usage: keyway [options] job.inp"),
+        (["--help"], 0, "stdout", "--check"),
+        (["--version"], 0, "stdout", "SuiteSparse"),
+        (["--keywords"], 0, "stdout", "*BASE MOTION"),
+        (["--keywords", "joint", "law"], 0, "stdout", "TENSILE STRENGTH"),
+        (["--keywords", "*elastic"], 0, "stdout", "Young's modulus; a number > 0 [Pa]; required"),
+        (["--keywords", "STATC"], 2, "stderr", "did you mean '*STATIC'?"),
+        (["--chekc", "a.inp"], 2, "stderr", "did you mean '--check'?"),
+        (["--umat", "lib.so", "a.inp"], 2, "stderr", "--umat is not available yet"),
+        (["--continue", "a.inp"], 2, "stderr", "--continue is not available yet"),
+        (["-q"], 2, "stderr", "no deck is named"),
+        (["-j", "many", "a.inp"], 2, "stderr", "expected a number of threads > 0"),
+        (["-o"], 2, "stderr", "-o needs a value"),
+        (["nowhere.inp"], 2, "stderr", "cannot read 'nowhere.inp'"),
+    ],
+)
+def test_options(arguments, code, stream, text, program_path: Path, tmp_path: Path) -> None:
+    done = run(program_path, tmp_path, *arguments)
+    assert done.returncode == code
+    assert text in getattr(done, stream)
