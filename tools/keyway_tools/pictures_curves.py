@@ -57,7 +57,7 @@ def plot_nodes(results: Results, path: Path) -> Path | None:
     curves = []
     for file in sorted(results.folder.glob(f"{stem}*.csv")):
         table = read_csv(file)
-        if "U1" not in table or len(table["time"]) < 3:
+        if "U1" not in table or len(np.unique(table["time"])) < 3:
             continue
         for node, rows in list(_curves_by(table, "node").items())[:MOST_CURVES]:
             curves.append((f"{file.stem.removeprefix(stem)}, node {node}", table, rows))
@@ -108,7 +108,7 @@ def plot_joint_areas(results: Results, step: Step, path: Path) -> Path | None:
     values = 1000.0 * step.envelopes["OPENING"]
     quads = {name: results.joint_quads(name) for name in results.joint_names()}
     quads = {name: faces for name, faces in quads.items() if len(faces)}
-    if not quads:
+    if not quads or np.nanmax(values) <= 0.0:
         return None
     columns = min(3, len(quads))
     rows = -(-len(quads) // columns)
@@ -120,12 +120,9 @@ def plot_joint_areas(results: Results, step: Step, path: Path) -> Path | None:
     for axis, (name, faces) in zip(axes.flat, quads.items(), strict=False):
         shade = _joint_panel(axis, results.x, faces, np.nan_to_num(values), top or 1.0)
         largest = np.nanmax(np.append(values[faces], 0.0))
-        axis.set_title(f"{name}: {largest:.2f} mm")
-        axis.set_xlabel("along the joint [m]")
+        axis.set_title(f"{name}: {largest:.3g} mm")
     for axis in axes.flat[len(quads) :]:
         axis.set_axis_off()
-    for axis in axes[:, 0]:
-        axis.set_ylabel("height z [m]")
     bar = figure.colorbar(shade, ax=axes.ravel().tolist(), shrink=0.8, aspect=30)
     bar.set_label("largest opening [mm]")
     bar.outline.set_visible(False)
@@ -135,22 +132,30 @@ def plot_joint_areas(results: Results, step: Step, path: Path) -> Path | None:
 
 
 def _joint_panel(axis, x: np.ndarray, faces: np.ndarray, values: np.ndarray, top: float):
-    """One joint in its own plane."""
+    """One joint in its own plane: along it and up, or in plan where it lies flat."""
     nodes = np.unique(faces)
-    plan = x[nodes, :2] - x[nodes, :2].mean(axis=0)
-    across = np.linalg.svd(plan, full_matrices=False)[2][0]
-    across = across if across[np.abs(across).argmax()] > 0.0 else -across
-    along = x[:, :2] @ across
-    along = along - along[nodes].min()
-    height = x[:, 2]
+    size = np.ptp(x[nodes], axis=0)
+    if size[2] > 0.05 * size.max():
+        plan = x[nodes, :2] - x[nodes, :2].mean(axis=0)
+        across = np.linalg.svd(plan, full_matrices=False)[2][0]
+        across = across if across[np.abs(across).argmax()] > 0.0 else -across
+        along, up = x[:, :2] @ across, x[:, 2]
+        along = along - along[nodes].min()
+        labels = ("along the joint [m]", "height z [m]")
+    else:
+        along, up, labels = x[:, 0], x[:, 1], ("x [m]", "y [m]")
     triangles = np.vstack([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
-    split = Triangulation(along, height, triangles)
     levels = MaxNLocator(nbins=10, steps=[1, 2, 2.5, 5, 10]).tick_values(0.0, top)
-    shade = axis.tricontourf(split, values, levels=levels, cmap="viridis_r")
-    ring = np.stack([along[faces], height[faces]], axis=-1)
+    shade = axis.tricontourf(
+        Triangulation(along, up, triangles), values, levels=levels, cmap="viridis_r"
+    )
+    ring = np.stack([along[faces], up[faces]], axis=-1)
     axis.add_collection(PolyCollection(ring, facecolors="none", edgecolors="#00000030", lw=0.6))
+    margin = 0.03 * size.max()
     axis.set_aspect("equal")
-    axis.set_xlim(along[nodes].min() - 2.0, along[nodes].max() + 2.0)
-    axis.set_ylim(height[nodes].min() - 2.0, height[nodes].max() + 2.0)
+    axis.set_xlim(along[nodes].min() - margin, along[nodes].max() + margin)
+    axis.set_ylim(up[nodes].min() - margin, up[nodes].max() + margin)
+    axis.set_xlabel(labels[0])
+    axis.set_ylabel(labels[1])
     axis.grid(False)
     return shade

@@ -74,21 +74,20 @@ class Faces:
 
 def _views(results: Results, nodes: np.ndarray) -> dict[str, View]:
     """From upstream and downstream where the reservoir tells them apart, else one view."""
+    x = results.x[nodes]
     upstream, downstream = results.face_flags("upstream"), results.face_flags("downstream")
     if not upstream.any():
-        flat = np.ptp(results.x[nodes], axis=0)
-        towards = (
-            np.array([0.55, -1.0, 0.0]) if flat[1] > 0.2 * flat[0] else np.array([0.12, -1.0, 0])
-        )
-        return {"": View.from_direction(towards, 18.0)}
-    if downstream.any():
-        towards = results.x[upstream].mean(axis=0) - results.x[downstream].mean(axis=0)
-    else:
-        towards = results.x[upstream].mean(axis=0) - results.x[nodes].mean(axis=0)
-    return {
-        "Upstream face": View.from_direction(towards, 12.0),
-        "Downstream face": View.from_direction(-towards, 12.0),
-    }
+        flat = np.ptp(x, axis=0)
+        sideways = 0.55 if flat[1] > 0.2 * flat[0] else 0.12
+        return {"": View.from_direction(np.array([sideways, -1.0, 0.0]), 18.0)}
+    other = results.x[downstream] if downstream.any() else x
+    towards = results.x[upstream].mean(axis=0) - other.mean(axis=0)
+    view = View.from_direction(towards, 12.0)
+    if np.ptp(x @ view.right) < 0.5 * np.ptp(x @ view.towards):  # a slice: its side says more
+        return {
+            "": View.from_direction(view.right + 0.12 * towards / np.linalg.norm(towards), 12.0)
+        }
+    return {"Upstream face": view, "Downstream face": View.from_direction(-towards, 12.0)}
 
 
 def nice_limits(values: np.ndarray, field: Field) -> np.ndarray:
@@ -177,7 +176,7 @@ def plot_face_openings(faces: Faces, step: Step, path: Path) -> Path | None:
     field = FIELDS["OPENING"]
     values = np.nan_to_num(field.scale * step.envelopes["OPENING"])
     lines = faces.joint_lines(values=values)
-    if lines is None:
+    if lines is None or values.max() <= 0.0:
         return None
     limits = nice_limits(values, field)
     pictures = {
@@ -191,7 +190,7 @@ def plot_face_openings(faces: Faces, step: Step, path: Path) -> Path | None:
     mark = {
         title: view.project(faces.results.x[place])
         for title, view in faces.views.items()
-        if title in _visible_on(faces, place)
+        if not title or title in _visible_on(faces, place)
     }
     when = faces.results.envelope_time(step, "OPENING")[place]
     heading = f"{field.label} over step {step.name.title()}: "
