@@ -58,14 +58,15 @@ contains
     balance%rhs = rhs(:system%matrix%num_free)
     call add_moving_supports(system, values, moved, balance%rhs)
     call set_jumps(system, scheme, before, after%q + moved, balance)
-    balance%reference = largest_force(before, system%matrix%num_free)
+    balance%reference = largest_force(scheme, before, system%matrix%num_free)
     call solver%solve(balance, scene%joints, system%operator, before%joints, after%joints, x, &
                       outcome, error)
     if (allocated(error) .or. .not. outcome%has_converged) return
     x = x + moved
     call correct(system, scheme, x, before, after, rhs)
     associate (n => system%matrix%num_free)
-      call check_bulk(rhs(:n), max(largest_force(before, n), largest_force(after, n)), &
+      call check_bulk(rhs(:n), &
+                      max(largest_force(scheme, before, n), largest_force(scheme, after, n)), &
                       solver%controls%residual_tolerance, outcome)
     end associate
   end subroutine take_increment
@@ -171,10 +172,12 @@ contains
   end subroutine carry_joints
 
   !> The largest of the forces in the balance.
-  pure real(rk) function largest_force(moving, num_free) result(force)
+  pure real(rk) function largest_force(scheme, moving, num_free) result(force)
+    type(hht), intent(in) :: scheme
     type(motion), intent(in) :: moving
     integer, intent(in) :: num_free
     force = max(norm2(moving%external(:num_free)), norm2(moving%elastic(:num_free)), &
-                norm2(moving%inertia(:num_free)), norm2(moving%viscous(:num_free)))
+                norm2(moving%inertia(:num_free)), norm2(moving%viscous(:num_free)), &
+                scheme%joint_weight*norm2(moving%contact(:num_free)))
   end function largest_force
 end module hht_increment

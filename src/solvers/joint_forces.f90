@@ -17,6 +17,7 @@ module joint_forces
     real(rk), allocatable :: traction(:, :) !< (3, points) the laws' own [Pa]
     real(rk), allocatable :: iterate(:, :) !< (3, points) of the augmented form [Pa]
     real(rk), allocatable :: tangent(:, :, :) !< (3, 3, points) [Pa/m]
+    logical, allocatable :: was_open(:) !< (points) at the linearisation before
     real(rk), allocatable :: response(:, :) !< (3, points) jumps by the balance as linearised [m]
     real(rk), allocatable :: start_jump(:, :) !< (3, points) of the converged state before [m]
     real(rk) :: start_force = 0.0_rk !< 2-norm of area*traction of the converged state [N]

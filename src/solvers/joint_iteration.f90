@@ -9,7 +9,7 @@ module joint_iteration
   use equilibrium, only: force_balance, balance_outcome
   implicit none
   private
-  public :: start_iteration, linearise, relief, closed_tangent
+  public :: start_iteration, linearise, approach_contact, relief, closed_tangent
   public :: measure_residual, measure_correction
 
   !> Stiffness left to open and sliding points in the iteration matrix, over the closed joint's: a
@@ -44,11 +44,13 @@ contains
     call gather_jumps(operator, old, field%start_jump)
     field%start_force = norm2(spread(operator%area, 1, 3)*field%traction)
     field%multiplier = field%traction(2:3, :)
+    field%tangent = closed_tangent(reference)
     if (.not. balance%starts_bonded) then
+      where (field%traction(1, :) >= 0.0_rk) field%tangent(1, 1, :) = 0.0_rk
       call linearise(joints, operator, old, reference, field, new)
+      call approach_contact(joints, operator, old, reference, field, new)
       return
     end if
-    field%tangent = closed_tangent(reference)
     field%iterate = reference*field%jump
   end subroutine start_iteration
 
@@ -61,6 +63,7 @@ contains
     type(joint_field), intent(inout) :: field
     type(joint_state), intent(inout) :: new(:)
     integer :: p, i
+    field%was_open = field%tangent(1, 1, :) < 0.5_rk*reference(1, :)
     call evaluate_joints(joints, operator, old, field, new)
     do p = 1, operator%num_points
       do i = 1, 3
@@ -70,6 +73,32 @@ contains
       end do
     end do
   end subroutine linearise
+
+  !> Linearises nearer to the contact where a point that was open has run through it. Without the
+  !> joint's resistance it went far too deep; friction would take that for pressure and stick. The
+  !> point is put where the joint carries what the structure's own stiffness would give, r times
+  !> the depth (the normal part of the augmented form).
+  subroutine approach_contact(joints, operator, old, reference, field, new)
+    type(joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
+    type(joint_field), intent(inout) :: field
+    type(joint_state), intent(inout) :: new(:)
+    real(rk) :: depth
+    logical :: is_nearer
+    integer :: j, p
+    is_nearer = .false.
+    do j = 1, size(joints)
+      do p = operator%first_point(j), operator%first_point(j + 1) - 1
+        depth = -(field%jump(1, p) + joints(j)%law%gap)
+        if (.not. field%was_open(p) .or. depth <= 0.0_rk) cycle
+        field%jump(1, p) = -joints(j)%law%gap - depth*min(1.0_rk, field%scale(p)/reference(1, p))
+        is_nearer = .true.
+      end do
+    end do
+    if (is_nearer) call linearise(joints, operator, old, reference, field, new)
+  end subroutine approach_contact
 
   !> Tangents of closed, sticking joints.
   pure function closed_tangent(reference) result(tangent)

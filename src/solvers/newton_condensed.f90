@@ -11,7 +11,8 @@ module newton_condensed
   use joint_points, only: joint
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, linear_tractions
-  use joint_iteration, only: measure_residual, measure_correction, linearise
+  use joint_iteration, only: measure_residual, measure_correction, linearise, &
+                             approach_contact
   use dense_factor, only: lu_factor, factorise_dense, solve_dense
   use equilibrium, only: force_balance, balance_outcome
   use step_plan, only: step_controls
@@ -64,7 +65,9 @@ contains
         call measure_correction(field, correction, controls%increment_tolerance, outcome)
       end if
       if (outcome%has_converged) exit
-      field%response = field%jump + excess_jump(field%iterate)
+      call approach_contact(joints, operator, old, self%reference, field, new)
+      field%response = field%response &
+                       + excess_jump(field%iterate - self%reference*(field%jump - field%response))
     end do
     field%iterate = linear
   contains

@@ -8,8 +8,8 @@ module newton_full
   use joint_points, only: joint
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, reference_stiffness, linear_tractions
-  use joint_iteration, only: start_iteration, linearise, closed_tangent, measure_residual, &
-                             measure_correction
+  use joint_iteration, only: start_iteration, linearise, approach_contact, closed_tangent, &
+                             measure_residual, measure_correction
   use joint_compliance, only: find_compliance, friction_scale
   use linear_solver, only: equation_solver
   use solver_catalogue, only: make_solver, unsymmetric_solver
@@ -82,12 +82,14 @@ contains
       field%multiplier = linear(2:3, :)
       call linearise(joints, operator, old, self%reference, field, new)
       call measure_residual(operator, field, linear, balance%reference, outcome)
-      if (outcome%residual > self%controls%residual_tolerance) cycle
-      call self%back_substitute(0.0_rk*balance%rhs, linear - field%traction, operator, unused, &
-                                answer, error)
-      if (allocated(error)) return
-      call measure_correction(field, answer, self%controls%increment_tolerance, outcome)
+      if (outcome%residual <= self%controls%residual_tolerance) then
+        call self%back_substitute(0.0_rk*balance%rhs, linear - field%traction, operator, &
+                                  unused, answer, error)
+        if (allocated(error)) return
+        call measure_correction(field, answer, self%controls%increment_tolerance, outcome)
+      end if
       if (outcome%has_converged) return
+      call approach_contact(joints, operator, old, self%reference, field, new)
     end do
   end subroutine solve
 

@@ -1,0 +1,73 @@
+!> The condensed balance against full Newton on a jointed arch: the same iterates.
+program test_condensation
+  use kinds, only: rk
+  use errors, only: error_type
+  use problem_definition, only: problem
+  use analysis_state, only: state
+  use amplitudes, only: amplitude
+  use initial_state, only: start_analysis
+  use run_steps, only: run_all_steps
+  use joint_contraction, only: contraction_law
+  use step_plan, only: step_fixity
+  use arch_scene, only: make_arch
+  use row_scene, only: add_gravity, shake_base, new_step, recorder
+  use testing, only: test_log, check, check_close
+  implicit none
+
+  type(test_log) :: log
+  type(recorder) :: condensed, full
+  type(state) :: state_condensed, state_full
+
+  log%suite = 'condensation'
+  call shake_arch('CONDENSED', condensed, state_condensed)
+  call shake_arch('FULL', full, state_full)
+  call check(log, condensed%sum_iterations == full%sum_iterations, 'as many iterations')
+  call check(log, condensed%most_iterations > 2, 'friction and contact iterate')
+  call check(log, condensed%most_iterations <= 10, 'at most ten iterations')
+  call check_close(log, maxval(abs(state_condensed%u - state_full%u))/maxval(abs(state_full%u)), &
+                   0.0_rk, 1.0e-9_rk, 'the same displacements')
+ call check(log, any(state_full%joints(1)%status == 0) .or. any(state_full%joints(1)%status == 2), &
+             'joints open or slide')
+  call check(log, condensed%worst_error < 1.0e-6_rk, 'energy closes')
+  write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
+  if (log%failed > 0) error stop 1
+
+contains
+
+  !> Weight, then a strong shake along the valley.
+  subroutine shake_arch(joint_solver, results, now)
+    character(*), intent(in) :: joint_solver
+    type(recorder), intent(inout) :: results
+    type(state), intent(out) :: now
+    type(problem) :: scene
+    type(step_fixity), allocatable :: fixities(:)
+    type(error_type), allocatable :: error
+    type(amplitude) :: pulse
+    integer :: i
+    call make_arch(1, 2, 3, 3, scene, fixities)
+    allocate (scene%amplitudes(0), scene%initial_values(0), scene%steps(0))
+    do i = 1, size(scene%joints)
+      scene%joints(i)%name = 'J'
+      scene%joints(i)%x = scene%mesh%x(:, scene%joints(i)%slave(1, :))
+      allocate (scene%joints(i)%law, source=contraction_law(normal_stiffness=1.0e11_rk, &
+                                                            tangent_stiffness=4.0e10_rk, &
+                                                            friction=0.6_rk))
+    end do
+    call add_gravity(9.81_rk, scene)
+    call new_step('STATIC', 1.0_rk, 1.0_rk, scene)
+    scene%steps(1)%fixities = fixities
+    pulse%name = 'PULSE'
+    pulse%time = [(0.01_rk*i, i=0, 60)]
+    pulse%value = 8.0_rk*sin(20.0_rk*pulse%time)
+    call shake_base(pulse, scene)
+    call new_step('DYNAMIC', 0.01_rk, 0.4_rk, scene)
+    do i = 1, 2
+      scene%steps(i)%controls%joint_solver = joint_solver
+      scene%steps(i)%controls%residual_tolerance = 1.0e-9_rk
+    end do
+    call start_analysis(scene, now)
+    call run_all_steps(scene, now, results, error)
+    if (allocated(error)) print '(a)', error%message
+    call check(log,.not. allocated(error), joint_solver//' runs to the end')
+  end subroutine shake_arch
+end program test_condensation
