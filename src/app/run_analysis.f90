@@ -44,9 +44,9 @@ contains
     call run_all_steps(scene, now, results, error)
     if (allocated(error)) then
       call results%log%note(error%message)
-      call results%finish(scene, 'stopped', error%message, failure)
+      call results%finish(scene, now, 'stopped', error%message, failure)
     else
-      call results%finish(scene, 'finished', '', failure)
+      call results%finish(scene, now, 'finished', '', failure)
       call results%log%say('finished in '//as_text(wall_clock() - started_at)//' s, '// &
                            as_text(peak_memory())//' MB')
     end if

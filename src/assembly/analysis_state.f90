@@ -21,6 +21,7 @@ module analysis_state
     integer :: cutbacks = 0 !< in this step so far
     integer :: num_unknowns = 0 !< free unknowns of the step's system
     logical :: is_last_of_step = .false.
+    logical :: is_stop = .false. !< told once more, because the run stops here before its end
     real(rk) :: step_time = 0.0_rk, total_time = 0.0_rk, increment_size = 0.0_rk !< [s]
     real(rk) :: residual = 0.0_rk !< out-of-balance over the reference force
     real(rk), allocatable :: u(:, :) !< displacement, relative to the base [m]; (3, nodes)

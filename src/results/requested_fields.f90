@@ -22,6 +22,8 @@ contains
     integer :: r, i
     allocate (fields(0))
     if (.not. allocated(scene%steps(now%step)%outputs)) return
+    if (now%is_stop .and. any(mod(now%increment, max(1, scene%steps(now%step)%outputs%frequency)) &
+                              == 0)) return
     do r = 1, size(scene%steps(now%step)%outputs)
       associate (request => scene%steps(now%step)%outputs(r))
         if (.not. is_due(now, request%frequency)) cycle

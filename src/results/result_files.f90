@@ -46,6 +46,7 @@ module result_files
     procedure, private :: open_writers
     procedure, private :: enter_step
     procedure, private :: write_increment
+    procedure, private :: write_last
     procedure, private :: write_envelopes
     procedure, private :: say_warnings
     procedure, private :: summarise
@@ -136,6 +137,19 @@ contains
     call self%costs%stop('write VTK')
   end subroutine write_increment
 
+  !> The run stops within a step: what was not due at its last increment is written now.
+  subroutine write_last(self, scene, now, error)
+    class(result_folder), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(error_type), allocatable, intent(out) :: error
+    type(state) :: last
+    if (now%step /= self%record%step .or. now%increment == 0 .or. now%is_last_of_step) return
+    last = now
+    last%is_stop = .true.
+    call self%write_increment(scene, last, error)
+  end subroutine write_last
+
   !> A *FREQUENCY step has found its modes.
   subroutine modes_found(self, scene, step, modes, error)
     class(result_folder), intent(inout) :: self
@@ -178,9 +192,10 @@ contains
   end subroutine write_envelopes
 
   !> The run has ended. Everything that can still be written is; the first failure is reported.
-  subroutine finish(self, scene, status, message, error)
+  subroutine finish(self, scene, now, status, message, error)
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: scene
+    type(state), intent(in) :: now !< the last state reached
     character(*), intent(in) :: status !< 'finished' or 'stopped'
     character(*), intent(in) :: message !< why it stopped; '' when it finished
     type(error_type), allocatable, intent(out) :: error
@@ -189,7 +204,9 @@ contains
     self%is_open = .false.
     self%summary%status = status
     self%summary%message = message
-    call self%write_envelopes(scene, error)
+    if (status == 'stopped') call self%write_last(scene, now, error)
+    call self%write_envelopes(scene, failure)
+    call keep_first(error, failure)
     call self%histories%finish(failure)
     call keep_first(error, failure)
     call self%energies%finish(failure)

@@ -146,6 +146,7 @@ contains
     type(result_folder), intent(inout) :: results
     type(error_type), allocatable :: error
     type(vibration_mode) :: modes(2)
+    type(state) :: now
     type(diagnostic_list) :: remarks
     integer :: i
     call remarks%add(severity_ignored, place(deck, 7, 1, 9, 'PREPRINT', ''), 'no effect here')
@@ -166,7 +167,7 @@ contains
     end do
     call results%modes_found(scene, 3, modes, error)
     call check_success(error, 'modes are written')
-    call results%finish(scene, 'finished', '', error)
+    call results%finish(scene, now, 'finished', '', error)
     call check_success(error, 'results close')
   end subroutine run
 
