@@ -50,8 +50,9 @@ contains
   end subroutine finish
 
   !> Is this increment one of a request? Every `frequency`-th, and the last of a step; where a run
-  !> stops early the last one reached is told once more and due for those that have not got it. Increment 0
-  !> repeats the end of the step before; it counts only where there is none. Frequency 0 is never.
+  !> stops early the last one reached is told once more and due for those that have not got it.
+  !> Increment 0 repeats the end of the step before; it counts only where there is none. Frequency 0
+  !> is never.
   pure logical function is_due(now, frequency)
     type(state), intent(in) :: now
     integer, intent(in) :: frequency
