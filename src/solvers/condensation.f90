@@ -34,6 +34,7 @@ contains
     type(jump_operator), intent(in) :: operator
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: closed(:)
+    self%operator = operator
     self%weight = weight
     self%condensed%weight = weight
     call reference_stiffness(joints, operator, self%condensed%reference)
@@ -49,20 +50,19 @@ contains
   end subroutine prepare
 
   !> One solve for the guess, Newton on the jumps, one solve for what has changed.
-  subroutine solve(self, balance, joints, operator, old, new, x, outcome, error)
+  subroutine solve(self, balance, joints, old, new, x, outcome, error)
     class(condensed_equilibrium), intent(inout) :: self
     type(force_balance), intent(in) :: balance
     type(joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: old(:)
     type(joint_state), intent(inout) :: new(:)
     real(rk), intent(out) :: x(:)
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
     type(joint_field) :: field
-    real(rk), dimension(3, operator%num_points) :: first_excess, excess
+    real(rk), dimension(3, self%operator%num_points) :: first_excess, excess
     real(rk), allocatable :: correction(:)
-    associate (reference => self%condensed%reference)
+    associate (reference => self%condensed%reference, operator => self%operator)
       call start_iteration(balance, joints, operator, reference, self%condensed%scale, old, &
                            field, new)
       first_excess = relief(reference, field%jump, balance%offset, field%iterate)
@@ -70,14 +70,13 @@ contains
       if (allocated(error)) return
       call operator%jumps(x, field%response)
       field%response = field%response + balance%offset
-      call iterate(self%condensed, self%controls, balance, joints, operator, old, field, new, &
-                   outcome)
+      call iterate(self%condensed, self%controls, joints, operator, old, field, new, outcome)
       if (.not. outcome%has_converged) return
       excess = relief(reference, field%jump, balance%offset, field%iterate)
     end associate
     if (.not. any(abs(excess - first_excess) > 0.0_rk)) return
     allocate (correction(size(x)))
-    call respond(self, 0.0_rk*balance%rhs, excess - first_excess, operator, correction, error)
+    call respond(self, 0.0_rk*balance%rhs, excess - first_excess, self%operator, correction, error)
     x = x + correction
   end subroutine solve
 

@@ -37,6 +37,7 @@ module equilibrium
   type, abstract :: equilibrium_solver
     class(equation_solver), allocatable :: factor !< of the symmetric, positive definite matrix
     type(step_controls) :: controls
+    type(jump_operator) :: operator !< of the joints
     real(rk) :: weight = 1.0_rk !< of the joint forces
     integer :: num_factorisations = 0
   contains
@@ -59,14 +60,13 @@ module equilibrium
     end subroutine prepare
 
     !> Solves the balance. An iteration that does not converge is no error.
-    subroutine solve(self, balance, joints, operator, old, new, x, outcome, error)
-      import :: equilibrium_solver, force_balance, balance_outcome, rk, joint, jump_operator, &
-        joint_state, error_type
+    subroutine solve(self, balance, joints, old, new, x, outcome, error)
+      import :: equilibrium_solver, force_balance, balance_outcome, rk, joint, joint_state, &
+        error_type
       implicit none
       class(equilibrium_solver), intent(inout) :: self
       type(force_balance), intent(in) :: balance
       type(joint), intent(in) :: joints(:)
-      type(jump_operator), intent(in) :: operator
       type(joint_state), intent(in) :: old(:) !< converged histories
       type(joint_state), intent(inout) :: new(:) !< histories at the solution
       real(rk), intent(out) :: x(:) !< (all unknowns) prescribed ones return as zero

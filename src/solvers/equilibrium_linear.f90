@@ -27,17 +27,17 @@ contains
     type(joint), intent(in) :: joints(:) !< none
     type(jump_operator), intent(in) :: operator
     type(error_type), allocatable, intent(out) :: error
-    self%weight = weight*min(size(joints), operator%num_points)
+    self%weight = weight
+    if (size(joints) == 0) self%operator = operator
     call self%factor%factorise(matrix, values, error)
     self%num_factorisations = self%num_factorisations + 1
   end subroutine prepare
 
   !> x = K_eff^-1 rhs.
-  subroutine solve(self, balance, joints, operator, old, new, x, outcome, error)
+  subroutine solve(self, balance, joints, old, new, x, outcome, error)
     class(linear_equilibrium), intent(inout) :: self
     type(force_balance), intent(in) :: balance
     type(joint), intent(in) :: joints(:) !< none
-    type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: old(:)
     type(joint_state), intent(inout) :: new(:)
     real(rk), intent(out) :: x(:)
@@ -48,7 +48,7 @@ contains
     call self%factor%solve(b, error)
     x = 0.0_rk
     x(:size(b, 1)) = b(:, 1)
-    if (size(joints) > 0 .and. operator%num_points > 0) new = old
+    if (size(joints) > 0) new = old
     outcome%has_converged = .true.
     outcome%iterations = 1
   end subroutine solve

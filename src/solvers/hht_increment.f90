@@ -19,7 +19,14 @@ module hht_increment
   use hht_scheme, only: hht
   implicit none
   private
-  public :: effective_values, take_increment
+  public :: stepper, effective_values, take_increment
+
+  !> What serves an increment size.
+  type :: stepper
+    type(hht) :: scheme
+    real(rk), allocatable :: values(:) !< of K_eff, joints apart
+    class(equilibrium_solver), allocatable :: solver
+  end type stepper
 
 contains
 
@@ -35,13 +42,10 @@ contains
   end subroutine effective_values
 
   !> Goes from `before` to `after`. Without convergence `after` is of no use.
-  subroutine take_increment(scene, system, scheme, values, solver, when, before, after, outcome, &
-                            error)
+  subroutine take_increment(scene, system, tool, when, before, after, outcome, error)
     type(problem), intent(in) :: scene
     type(dam_system), intent(in) :: system
-    type(hht), intent(in) :: scheme
-    real(rk), intent(in) :: values(:) !< K_eff
-    class(equilibrium_solver), intent(inout) :: solver
+    type(stepper), intent(inout) :: tool
     type(step_time), intent(in) :: when !< the end of the increment
     type(motion), intent(in) :: before
     type(motion), intent(inout) :: after
@@ -49,25 +53,24 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(force_balance) :: balance
     real(rk), dimension(size(before%q)) :: x, moved, rhs
-    call predict(system, scheme, before, after)
+    call predict(system, tool%scheme, before, after)
     call external_force(system%groups, scene%amplitudes, when, after%external)
     moved = after%q
     call prescribed_values(system%supports, scene%amplitudes, when, moved)
     moved = moved - after%q
-    call sum_known_forces(system, scheme, before, after, rhs)
+    call sum_known_forces(system, tool%scheme, before, after, rhs)
     balance%rhs = rhs(:system%matrix%num_free)
-    call add_moving_supports(system, values, moved, balance%rhs)
-    call set_jumps(system, scheme, before, after%q + moved, balance)
-    balance%reference = largest_force(scheme, before, system%matrix%num_free)
-    call solver%solve(balance, scene%joints, system%operator, before%joints, after%joints, x, &
-                      outcome, error)
+    call add_moving_supports(system, tool%values, moved, balance%rhs)
+    call set_jumps(system, tool%scheme, before, after%q + moved, balance)
+    balance%reference = largest_force(tool%scheme, before, system%matrix%num_free)
+    call tool%solver%solve(balance, scene%joints, before%joints, after%joints, x, outcome, error)
     if (allocated(error) .or. .not. outcome%has_converged) return
     x = x + moved
-    call correct(system, scheme, x, before, after, rhs)
+    call correct(system, tool%scheme, x, before, after, rhs)
     associate (n => system%matrix%num_free)
       call check_bulk(rhs(:n), &
-                      max(largest_force(scheme, before, n), largest_force(scheme, after, n)), &
-                      solver%controls%residual_tolerance, outcome)
+                      max(largest_force(tool%scheme, before, n), largest_force(tool%scheme, after, n)), &
+                      tool%solver%controls%residual_tolerance, outcome)
     end associate
   end subroutine take_increment
 

@@ -21,6 +21,7 @@ module joint_forces
     real(rk), allocatable :: response(:, :) !< (3, points) jumps by the balance as linearised [m]
     real(rk), allocatable :: start_jump(:, :) !< (3, points) of the converged state before [m]
     real(rk) :: start_force = 0.0_rk !< 2-norm of area*traction of the converged state [N]
+    real(rk) :: bulk_force = 0.0_rk !< reference force of the bulk [N]
   end type joint_field
 
   !> Energies of all joints [J].

@@ -38,6 +38,7 @@ contains
     allocate (field%traction(3, n), field%iterate(3, n), field%tangent(3, 3, n))
     allocate (field%start_jump(3, n))
     field%scale = scale
+    field%bulk_force = balance%reference
     field%jump = balance%guess
     field%response = balance%guess
     call gather_tractions(operator, old, field%traction)
@@ -124,11 +125,10 @@ contains
   end function relief
 
   !> Joint forces out of balance, laws against linearised, over the joint forces' own size.
-  subroutine measure_residual(operator, field, linear, bulk_force, outcome)
+  subroutine measure_residual(operator, field, linear, outcome)
     type(jump_operator), intent(in) :: operator
     type(joint_field), intent(in) :: field !< at the new jumps
     real(rk), intent(in) :: linear(:, :) !< (3, points) tractions of the linearised solution [Pa]
-    real(rk), intent(in) :: bulk_force !< reference force of the bulk [N]
     type(balance_outcome), intent(inout) :: outcome
     real(rk) :: unbalance(operator%num_points), force, own
     integer :: p
@@ -137,7 +137,7 @@ contains
       unbalance(p) = operator%area(p)*norm2(field%traction(:, p) - linear(:, p))
       own = own + sum((operator%area(p)*field%traction(:, p))**2)
     end do
-    force = max(sqrt(own), field%start_force, smallest_share*bulk_force, tiny(1.0_rk))
+    force = max(sqrt(own), field%start_force, smallest_share*field%bulk_force, tiny(1.0_rk))
     outcome%residual = norm2(unbalance)/force
     outcome%worst_point = maxloc(unbalance, 1)
   end subroutine measure_residual

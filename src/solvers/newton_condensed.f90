@@ -14,7 +14,7 @@ module newton_condensed
   use joint_iteration, only: measure_residual, measure_correction, linearise, &
                              approach_contact
   use dense_factor, only: lu_factor, factorise_dense, solve_dense
-  use equilibrium, only: force_balance, balance_outcome
+  use equilibrium, only: balance_outcome
   use step_plan, only: step_controls
   implicit none
   private
@@ -38,10 +38,9 @@ contains
 
   !> Iterates until the laws agree with the balance. On return `field%jump` and `field%iterate` hold
   !> the jumps and the tractions of the balance as solved, `new` the laws at these jumps.
-  subroutine iterate(self, controls, balance, joints, operator, old, field, new, outcome)
+  subroutine iterate(self, controls, joints, operator, old, field, new, outcome)
     type(condensed_joints), intent(in) :: self
     type(step_controls), intent(in) :: controls
-    type(force_balance), intent(in) :: balance
     type(joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: old(:)
@@ -59,7 +58,7 @@ contains
       field%jump = field%response
       field%multiplier = linear(2:3, :)
       call linearise(joints, operator, old, self%reference, field, new)
-      call measure_residual(operator, field, linear, balance%reference, outcome)
+      call measure_residual(operator, field, linear, outcome)
       if (outcome%residual <= controls%residual_tolerance) then
         call correct(self, tangent, excess_jump(field%traction), correction)
         call measure_correction(field, correction, controls%increment_tolerance, outcome)

@@ -43,6 +43,7 @@ contains
     type(jump_operator), intent(in) :: operator
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: compliance(:, :)
+    self%operator = operator
     self%weight = weight
     self%matrix = matrix
     self%values = values
@@ -55,41 +56,40 @@ contains
   end subroutine prepare
 
   !> Iterates on all unknowns.
-  subroutine solve(self, balance, joints, operator, old, new, x, outcome, error)
+  subroutine solve(self, balance, joints, old, new, x, outcome, error)
     class(full_equilibrium), intent(inout) :: self
     type(force_balance), intent(in) :: balance
     type(joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: old(:)
     type(joint_state), intent(inout) :: new(:)
     real(rk), intent(out) :: x(:)
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
     type(joint_field) :: field
-    real(rk), dimension(3, operator%num_points) :: correction, linear, answer
+    real(rk), dimension(3, self%operator%num_points) :: correction, linear, answer
     real(rk) :: unused(size(x))
-    call start_iteration(balance, joints, operator, self%reference, self%scale, old, field, new)
+    call start_iteration(balance, joints, self%operator, self%reference, self%scale, old, field, new)
     do while (outcome%iterations < self%controls%max_iterations)
       outcome%iterations = outcome%iterations + 1
-      call self%factorise_tangent(operator, field%tangent, error)
+      call self%factorise_tangent(self%operator, field%tangent, error)
       if (allocated(error)) return
       call linear_tractions(field, balance%offset - field%jump, linear)
-      call self%back_substitute(balance%rhs, -linear, operator, x, answer, error)
+      call self%back_substitute(balance%rhs, -linear, self%operator, x, answer, error)
       if (allocated(error)) return
       correction = balance%offset + answer - field%jump
       call linear_tractions(field, correction, linear)
       field%jump = field%jump + correction
       field%multiplier = linear(2:3, :)
-      call linearise(joints, operator, old, self%reference, field, new)
-      call measure_residual(operator, field, linear, balance%reference, outcome)
+      call linearise(joints, self%operator, old, self%reference, field, new)
+      call measure_residual(self%operator, field, linear, outcome)
       if (outcome%residual <= self%controls%residual_tolerance) then
-        call self%back_substitute(0.0_rk*balance%rhs, linear - field%traction, operator, &
+        call self%back_substitute(0.0_rk*balance%rhs, linear - field%traction, self%operator, &
                                   unused, answer, error)
         if (allocated(error)) return
         call measure_correction(field, answer, self%controls%increment_tolerance, outcome)
       end if
       if (outcome%has_converged) return
-      call approach_contact(joints, operator, old, self%reference, field, new)
+      call approach_contact(joints, self%operator, old, self%reference, field, new)
     end do
   end subroutine solve
 

@@ -20,6 +20,7 @@ module step_loads
     real(rk) :: now = 0.0_rk !< since the start of the step [s]
     real(rk) :: start = 0.0_rk !< total time at the start of the step [s]
     real(rk) :: duration = 1.0_rk !< of the step [s]
+    real(rk) :: increment = 0.0_rk !< that ends now [s]
   end type step_time
 
   !> Loads with one rule of time.

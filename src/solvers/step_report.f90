@@ -17,11 +17,10 @@ module step_report
 contains
 
   !> Counts an increment that has converged, and tells the listener of it.
-  subroutine close_increment(scene, plan, when, size, control, outcome, now, results, error)
+  subroutine close_increment(scene, plan, when, control, outcome, now, results, error)
     type(problem), intent(in) :: scene
     type(step), intent(in) :: plan
     type(step_time), intent(in) :: when !< the end of the increment
-    real(rk), intent(in) :: size !< of the increment [s]
     type(increment_control), intent(in) :: control
     type(balance_outcome), intent(in) :: outcome
     type(state), intent(inout) :: now
@@ -31,7 +30,7 @@ contains
     now%iterations = outcome%iterations
     now%cutbacks = control%cutbacks
     now%residual = outcome%residual
-    now%increment_size = size
+    now%increment_size = when%increment
     now%step_time = when%now
     now%total_time = when%start + when%now
     now%is_last_of_step = now%step_time >= plan%duration

@@ -9,7 +9,7 @@ module time_hht
   use analysis_state, only: state
   use increment_listener, only: listener
   use joint_forces, only: gather_tractions
-  use equilibrium, only: equilibrium_solver, balance_outcome
+  use equilibrium, only: balance_outcome
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium
   use step_system, only: dam_system, build_structure, build_inertia, build_damping, build_loads
   use step_loads, only: step_time, external_force, prescribed_values
@@ -17,19 +17,12 @@ module time_hht
   use step_report, only: close_increment, give_up
   use motion_state, only: motion, start_motion, show_motion, sum_contact
   use initial_acceleration, only: find_acceleration
-  use hht_scheme, only: hht, make_scheme
-  use hht_increment, only: effective_values, take_increment
+  use hht_scheme, only: make_scheme
+  use hht_increment, only: stepper, effective_values, take_increment
   use energy_account, only: open_account, add_dynamic_work
   implicit none
   private
-  public :: run_dynamic, start_dynamic, stepper, prepare_size
-
-  !> What serves an increment size.
-  type :: stepper
-    type(hht) :: scheme
-    real(rk), allocatable :: values(:) !< of K_eff
-    class(equilibrium_solver), allocatable :: solver
-  end type stepper
+  public :: run_dynamic
 
 contains
 
@@ -77,7 +70,7 @@ contains
     type(motion), intent(inout) :: moving
     type(error_type), allocatable, intent(out) :: error
     type(step_time) :: when
-    when = step_time(.true., 0.0_rk, start, plan%duration)
+    when = step_time(is_dynamic=.true., start=start, duration=plan%duration)
     call external_force(system%groups, scene%amplitudes, when, moving%external)
     call start_supports(scene, system, when, 1.0e-3_rk*plan%first_increment, moving%v)
     call multiply(system%matrix, system%stiffness, moving%q, moving%elastic)
@@ -135,18 +128,18 @@ contains
     type(step_time) :: when
     real(rk) :: dt
     logical :: gives_up
-    when = step_time(.true., 0.0_rk, now%total_time, plan%duration)
+    when = step_time(is_dynamic=.true., start=now%total_time, duration=plan%duration)
     trial = moving
     call start_control(plan, .true., control)
     do while (now%step_time < plan%duration)
       dt = control%next_size(now%step_time)
+      when%increment = dt
       when%now = now%step_time + dt
       if (plan%duration - when%now < 1.0e-9_rk*dt) when%now = plan%duration
       call prepare_size(scene, plan, system, dt, results, tool, error)
       if (allocated(error)) return
       call results%costs%start('solve', 'solver')
-      call take_increment(scene, system, tool%scheme, tool%values, tool%solver, when, moving, &
-                          trial, outcome, error)
+      call take_increment(scene, system, tool, when, moving, trial, outcome, error)
       call results%costs%stop('solve')
       if (allocated(error)) return
       if (.not. outcome%has_converged) then
@@ -162,7 +155,7 @@ contains
       call swap(moving, trial)
       call show_motion(system%numbers, moving, now)
       call control%accept(outcome%iterations)
-      call close_increment(scene, plan, when, dt, control, outcome, now, results, error)
+      call close_increment(scene, plan, when, control, outcome, now, results, error)
       if (allocated(error)) return
     end do
   end subroutine walk

@@ -61,7 +61,7 @@ contains
     type(state), intent(in) :: now
     type(motion), intent(inout) :: moving
     call external_force(system%groups, scene%amplitudes, &
-                        step_time(.false., 0.0_rk, now%total_time, plan%duration), moving%external)
+                        step_time(start=now%total_time, duration=plan%duration), moving%external)
     call multiply(system%matrix, system%stiffness, moving%q, moving%elastic)
     call sum_contact(system%operator, moving)
   end subroutine start_forces
@@ -82,10 +82,11 @@ contains
     type(step_time) :: when
     real(rk) :: size_of_increment
     logical :: gives_up
-    when = step_time(.false., 0.0_rk, now%total_time, plan%duration)
+    when = step_time(start=now%total_time, duration=plan%duration)
     call start_control(plan, .false., control)
     do while (now%step_time < plan%duration)
       size_of_increment = control%next_size(now%step_time)
+      when%increment = size_of_increment
       when%now = now%step_time + size_of_increment
       if (plan%duration - when%now < 1.0e-9_rk*size_of_increment) when%now = plan%duration
       call results%costs%start('solve', 'solver')
@@ -102,8 +103,7 @@ contains
       moving = trial
       call show_motion(system%numbers, moving, now)
       call control%accept(outcome%iterations)
-      call close_increment(scene, plan, when, size_of_increment, control, outcome, now, results, &
-                           error)
+      call close_increment(scene, plan, when, control, outcome, now, results, error)
       if (allocated(error)) return
     end do
   end subroutine walk
@@ -131,7 +131,7 @@ contains
     balance%reference = norm2(balance%rhs)
     call set_jumps(system, before, after%q, balance)
     allocate (x(size(moved)))
-    call solver%solve(balance, scene%joints, system%operator, before%joints, after%joints, x, &
+    call solver%solve(balance, scene%joints, before%joints, after%joints, x, &
                       outcome, error)
     if (allocated(error) .or. .not. outcome%has_converged) return
     after%q = after%q + x
