@@ -35,9 +35,12 @@ def test_a_second_batch_runs_nothing(first_runs, program_path, capsys):
 def test_a_run_on_two_threads_agrees(first_runs, program_path, tmp_path, name):
     assert run_batch([name], tmp_path, program_path, "--threads", "2") == 0
     same = [str(first_runs / name), str(tmp_path / name)]
-    # Sums over threads differ in the last digits; joints near a limit may carry that further.
-    tolerances = ["--by-column", "--rel", "1e-6", "--abs", "1e-9"]
-    assert compare.main([*same, *tolerances, "--ignore", "*iterations", "--ignore", "*.x.*"]) == 0
+    # Sums over threads differ in the last digits; a joint carries that as far as the convergence
+    # test lets it, 1e-6 of the forces: about 1 Pa of the tractions here.
+    tolerances = ["--by-column", "--rel", "1e-5", "--abs", "1e-9", "--tol", "joint_*:t?=1e-5,1"]
+    ignored = ["*iterations", "*.x.*", "*error"]
+    options = [*tolerances, *(f"--ignore={column}" for column in ignored)]
+    assert compare.main([*same, *options]) == 0
 
 
 @pytest.mark.full
