@@ -40,13 +40,18 @@ contains
     call reference_stiffness(joints, operator, self%condensed%reference)
     allocate (closed, source=values)
     call operator%add_stiffness(weight*closed_tangent(self%condensed%reference), matrix, closed)
+    call self%costs%start('factorise', 'solver')
     call self%factor%factorise(matrix, closed, error)
     self%num_factorisations = self%num_factorisations + 1
+    call self%costs%stop('factorise')
     if (allocated(error)) return
+    call self%costs%start('compliance', 'joint')
     call find_compliance(self%factor, operator, matrix%num_free, self%condensed%compliance, error)
     if (allocated(error)) return
     call friction_scale(self%condensed%compliance, operator, self%condensed%reference, weight, &
                         self%condensed%scale)
+    call self%costs%stop('compliance')
+    call self%costs%set_memory('compliance', 'joint', 8.0e-6_rk*size(self%condensed%compliance))
   end subroutine prepare
 
   !> One solve for the guess, Newton on the jumps, one solve for what has changed.
@@ -70,7 +75,9 @@ contains
       if (allocated(error)) return
       call operator%jumps(x, field%response)
       field%response = field%response + balance%offset
+      call self%costs%start('joints', 'joint')
       call iterate(self%condensed, self%controls, joints, operator, old, field, new, outcome)
+      call self%costs%stop('joints')
       if (.not. outcome%has_converged) return
       excess = relief(reference, field%jump, balance%offset, field%iterate)
     end associate
@@ -92,7 +99,9 @@ contains
     x = 0.0_rk
     call operator%add_forces(self%weight*excess, x)
     b = reshape(rhs + x(:size(rhs)), [size(rhs), 1])
+    call self%costs%start('solve', 'solver')
     call self%factor%solve(b, error)
+    call self%costs%stop('solve')
     x = 0.0_rk
     x(:size(rhs)) = b(:, 1)
   end subroutine respond

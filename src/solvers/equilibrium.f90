@@ -11,6 +11,7 @@ module equilibrium
   use joint_points, only: joint
   use joint_operator, only: jump_operator
   use linear_solver, only: equation_solver
+  use timer, only: ledger
   use step_plan, only: step_controls
   implicit none
   private
@@ -40,6 +41,7 @@ module equilibrium
     type(jump_operator) :: operator !< of the joints
     real(rk) :: weight = 1.0_rk !< of the joint forces
     integer :: num_factorisations = 0
+    type(ledger) :: costs !< handed over to that of the run by the step
   contains
     procedure(prepare), deferred :: prepare
     procedure(solve), deferred :: solve

@@ -29,7 +29,9 @@ contains
     type(error_type), allocatable, intent(out) :: error
     self%weight = weight
     if (size(joints) == 0) self%operator = operator
+    call self%costs%start('factorise', 'solver')
     call self%factor%factorise(matrix, values, error)
+    call self%costs%stop('factorise')
     self%num_factorisations = self%num_factorisations + 1
   end subroutine prepare
 
@@ -45,7 +47,9 @@ contains
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: b(:, :)
     b = reshape(balance%rhs, [size(balance%rhs), 1])
+    call self%costs%start('solve', 'solver')
     call self%factor%solve(b, error)
+    call self%costs%stop('solve')
     x = 0.0_rk
     x(:size(b, 1)) = b(:, 1)
     if (size(joints) > 0) new = old

@@ -68,7 +68,7 @@ contains
     type(joint_field) :: field
     real(rk), dimension(3, self%operator%num_points) :: correction, linear, answer
     real(rk) :: unused(size(x))
-    call start_iteration(balance, joints, self%operator, self%reference, self%scale, old, field, new)
+   call start_iteration(balance, joints, self%operator, self%reference, self%scale, old, field, new)
     do while (outcome%iterations < self%controls%max_iterations)
       outcome%iterations = outcome%iterations + 1
       call self%factorise_tangent(self%operator, field%tangent, error)
@@ -107,10 +107,12 @@ contains
                             any(abs(tangent(:, :, p) - transpose(tangent(:, :, p))) > 0.0_rk)
     end do
     self%num_factorisations = self%num_factorisations + 1
+    call self%costs%start('factorise', 'solver')
     if (.not. self%is_unsymmetric) then
       allocate (values, source=self%values)
       call operator%add_stiffness(self%weight*tangent, self%matrix, values)
       call self%factor%factorise(self%matrix, values, error)
+      call self%costs%stop('factorise')
       return
     end if
     if (.not. allocated(self%unsymmetric_factor)) call start_unsymmetric(self, error)
@@ -119,6 +121,7 @@ contains
     call spread_values(self%matrix, self%values, self%full_matrix, values)
     call operator%add_stiffness(self%weight*tangent, self%full_matrix, values)
     call self%unsymmetric_factor%factorise(self%full_matrix, values, error)
+    call self%costs%stop('factorise')
   end subroutine factorise_tangent
 
   !> Makes the pattern of both triangles and its solver.
@@ -144,11 +147,13 @@ contains
     x = 0.0_rk
     call operator%add_forces(self%weight*traction, x)
     b = reshape(rhs + x(:size(rhs)), [size(rhs), 1])
+    call self%costs%start('solve', 'solver')
     if (self%is_unsymmetric) then
       call self%unsymmetric_factor%solve(b, error)
     else
       call self%factor%solve(b, error)
     end if
+    call self%costs%stop('solve')
     x = 0.0_rk
     x(:size(rhs)) = b(:, 1)
     call operator%jumps(x, answer)

@@ -10,7 +10,7 @@ module time_hht
   use increment_listener, only: listener
   use joint_forces, only: gather_tractions
   use equilibrium, only: balance_outcome
-  use step_equilibrium, only: make_equilibrium, prepare_equilibrium
+  use step_equilibrium, only: make_equilibrium, prepare_equilibrium, hand_over_costs
   use step_system, only: dam_system, build_structure, build_inertia, build_damping, build_loads
   use step_loads, only: step_time, external_force, prescribed_values
   use step_control, only: increment_control, start_control
@@ -58,6 +58,7 @@ contains
     call results%costs%stop('analyse')
     if (allocated(error)) return
     call walk(scene, plan, system, tool, moving, now, results, error)
+    call hand_over_costs(tool%solver, 'forces', results%costs)
   end subroutine run_dynamic
 
   !> Forces at the start of the step and the acceleration that balances them. Supports that follow
@@ -138,9 +139,9 @@ contains
       if (plan%duration - when%now < 1.0e-9_rk*dt) when%now = plan%duration
       call prepare_size(scene, plan, system, dt, results, tool, error)
       if (allocated(error)) return
-      call results%costs%start('solve', 'solver')
+      call results%costs%start('forces', 'solver')
       call take_increment(scene, system, tool, when, moving, trial, outcome, error)
-      call results%costs%stop('solve')
+      call results%costs%stop('forces')
       if (allocated(error)) return
       if (.not. outcome%has_converged) then
         call control%cut(dt, gives_up)
@@ -172,10 +173,10 @@ contains
     if (abs(dt - tool%scheme%dt) <= 1.0e-12_rk*dt) return
     tool%scheme = make_scheme(plan%alpha, dt, plan%controls%joint_forces)
     call effective_values(system, tool%scheme, tool%values)
-    call results%costs%start('factorise', 'solver')
+    call results%costs%start('forces', 'solver')
     call prepare_equilibrium(scene, system, tool%values, tool%scheme%joint_weight, tool%solver, &
                              error)
-    call results%costs%stop('factorise')
+    call results%costs%stop('forces')
   end subroutine prepare_size
 
   !> Accepts the trial.

@@ -10,7 +10,8 @@ module time_static
   use analysis_state, only: state
   use increment_listener, only: listener
   use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
-  use step_equilibrium, only: make_equilibrium, prepare_equilibrium, add_moving_supports, check_bulk
+  use step_equilibrium, only: make_equilibrium, prepare_equilibrium, add_moving_supports, &
+                              check_bulk, hand_over_costs
   use step_system, only: dam_system, build_structure, build_loads
   use step_loads, only: step_time, external_force, prescribed_values
   use step_control, only: increment_control, start_control
@@ -38,12 +39,14 @@ contains
     if (allocated(error)) return
     call build_loads(scene, plan, now%u, system)
     call results%costs%stop('assemble')
-    call results%costs%start('factorise', 'solver')
+    call results%costs%start('analyse', 'solver')
     call make_equilibrium(plan, system, solver, error)
+    call results%costs%stop('analyse')
     if (allocated(error)) return
+    call results%costs%start('forces', 'solver')
     call prepare_equilibrium(scene, system, system%stiffness, 1.0_rk, solver, error)
+    call results%costs%stop('forces')
     if (allocated(error)) return
-    call results%costs%stop('factorise')
     now%num_unknowns = system%matrix%num_free
     now%v = 0.0_rk
     now%a = 0.0_rk
@@ -51,6 +54,7 @@ contains
     call start_forces(scene, plan, system, now, moving)
     call open_account(scene%joints, moving, now%total_time <= 0.0_rk, now%energy)
     call walk(scene, plan, system, solver, moving, now, results, error)
+    call hand_over_costs(solver, 'forces', results%costs)
   end subroutine run_static
 
   !> Forces at the start of the step.
@@ -89,9 +93,9 @@ contains
       when%increment = size_of_increment
       when%now = now%step_time + size_of_increment
       if (plan%duration - when%now < 1.0e-9_rk*size_of_increment) when%now = plan%duration
-      call results%costs%start('solve', 'solver')
+      call results%costs%start('forces', 'solver')
       call take_increment(scene, system, solver, when, moving, trial, outcome, error)
-      call results%costs%stop('solve')
+      call results%costs%stop('forces')
       if (allocated(error)) return
       if (.not. outcome%has_converged) then
         call control%cut(size_of_increment, gives_up)
