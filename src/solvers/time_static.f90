@@ -142,7 +142,7 @@ contains
     call multiply(system%matrix, system%stiffness, after%q, after%elastic)
     call sum_contact(system%operator, after)
     call check_bulk(after%external(:n) - after%elastic(:n) - after%contact(:n), &
-                    max(norm2(after%external(:n)), norm2(after%elastic(:n)), &
+                    max(norm2(after%external(:n)), norm2(after%elastic), & ! with the reactions
                         norm2(before%contact(:n)), norm2(after%contact(:n))), &
                     solver%controls%residual_tolerance, outcome)
   end subroutine take_increment
