@@ -17,3 +17,13 @@ def test_header_says_what_it_shows_assumes_and_expects(name):
         assert word in header
     assert any(word in header for word in ("Source:", "from the statics"))
     assert max(map(len, header.splitlines())) <= 110
+
+
+def test_committed_dam_is_what_the_tools_describe():
+    """Sizes in the deck's header and files on the disk; the record itself depends on the FFT."""
+    folder = make_input.INPUT / "xingbiling_matching"
+    deck = (folder / "xingbiling_matching.inp").read_text()
+    for words in ("height 135.5 m", "crest arc 444.86 m", "2 vertical planes", "LEVEL=105"):
+        assert words in deck
+    for name in ("README.md", "xingbiling_matching_mesh.inp", "motion_x.txt", "motion.json"):
+        assert (folder / name).exists()

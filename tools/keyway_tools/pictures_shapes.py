@@ -8,32 +8,49 @@ import numpy as np
 
 from .picture_style import new_figure, save_figure
 from .pictures_faces import FIELDS, Faces, compose, nice_limits
-from .render_dam import render
+from .render_dam import View, render
 
 
-def plot_deformed(faces: Faces, path: Path) -> Path | None:
-    """The saved state in which the dam is displaced most, drawn large, coloured by its size."""
+def _telling_state(faces: Faces) -> tuple[str, float] | None:
+    """The saved displacements at which joints open most, else those that are largest."""
     saved = faces.results.displacements()
     if not saved:
         return None
+    opening = np.zeros(len(saved))
+    times = np.array([time for _, time in saved])
+    for name in faces.results.joint_names():
+        table = faces.results.table(f"history/joints/{name}")
+        if len(table.get("time", ())):
+            opening = np.maximum(opening, np.interp(times, table["time"], table["opening"]))
+    if opening.max() > 0.0:
+        return saved[int(opening.argmax())]
     file = faces.results.file
     size = [np.linalg.norm(file[place][:][faces.nodes], axis=1).max() for place, _ in saved]
-    place, time = saved[int(np.argmax(size))]
-    u = file[place][:]
+    return saved[int(np.argmax(size))]
+
+
+def plot_deformed(faces: Faces, path: Path) -> Path | None:
+    """A telling state, displacements drawn large and coloured by their size, from above as well."""
+    state = _telling_state(faces)
+    if state is None:
+        return None
+    place, time = state
+    u = faces.results.file[place][:]
     length = 1000.0 * np.linalg.norm(u, axis=1)
     body = float(np.ptp(faces.results.x[faces.nodes], axis=0).max())
-    factor = 0.06 * body / max(max(size), 1e-300)
-    factor = float(f"{factor:.0e}")
+    factor = float(f"{60.0 * body / max(length[faces.nodes].max(), 1e-300):.0e}")
     field = FIELDS["U"]
     limits = nice_limits(length[faces.nodes], field)
-    wire = faces.surface()
-    lines = faces.joint_lines(factor * u)
+    wire, lines = faces.surface(), faces.joint_lines(factor * u)
+    views = dict(faces.views)
+    if len(views) > 1:
+        views["From above"] = View.from_direction(views["Downstream face"].towards, 89.9)
     pictures = {
         title: render(
             faces.grid(factor * u), view, length, (0.0, limits[-1]), field.colours, lines, wire,
             bands=len(limits) - 1,
         )
-        for title, view in faces.views.items()
+        for title, view in views.items()
     }  # fmt: skip
     heading = f"Deformed shape at t = {time:.2f} s, displacements drawn {factor:g} times"
     return compose(pictures, limits, field.colours, "displacement [mm]", heading, {}, path)

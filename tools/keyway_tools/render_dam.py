@@ -16,6 +16,7 @@ vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)  # no word about a missing
 
 PIXELS = (1500, 1000)
 MARGIN = 1.06
+WEDGE = (0, 2, 1, 4, 6, 5)  # corners of a brick with 3 = 4 and 7 = 8, so that VTK looks outward
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,7 @@ def solid_grid(x: np.ndarray, connectivity: np.ndarray) -> pv.UnstructuredGrid:
     )
     cells, kinds = [], []
     for nodes, wedge in zip(connectivity.tolist(), is_wedge.tolist(), strict=True):
-        corners = [nodes[k] for k in (0, 1, 2, 4, 5, 6)] if wedge else nodes
+        corners = [nodes[k] for k in WEDGE] if wedge else nodes
         cells += [len(corners), *corners]
         kinds.append(pv.CellType.WEDGE if wedge else pv.CellType.HEXAHEDRON)
     return pv.UnstructuredGrid(np.array(cells), np.array(kinds), np.array(x, dtype=float))
