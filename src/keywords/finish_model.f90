@@ -158,7 +158,7 @@ contains
       call complete_law(number, model, law, faults)
       new%name = request%name
       allocate (new%law, source=law)
-      call build_joint_points(model%scene%mesh, request%elements, .true., new, error)
+      call build_joint_points(model%scene%mesh, request%elements, request%is_nodal, new, error)
       if (allocated(error)) then
         call place%fault(faults, error%message)
       else if (new%num_points == 0) then

@@ -2,7 +2,7 @@
 module keywords_joint
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
-  use keyword_spec, only: keyword, field, kind_real, kind_word
+  use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_word
   use kinds, only: rk
   use model_draft, only: draft, joint_request, law_request
   use named_things, only: elements_of_set
@@ -79,15 +79,18 @@ contains
     spec%family = 'joint'
     spec%place = 'model'
     spec%meaning = 'A joint made of the JOINT8 elements of a set. Its points are the pairs of '// &
-                   'nodes; the normal points from the master to the slave. A joint between two '// &
-                   'surfaces (slave surface, master surface in a data line, without ELSET) is '// &
-                   'not available yet.'
+                   'nodes, or 2 x 2 Gauss points an element; at the nodes the traction of a '// &
+                   'stiff joint does not oscillate. The normal points from the master to the '// &
+                   'slave. A joint between two surfaces (slave surface, master surface in a '// &
+                   'data line, without ELSET) is not available yet.'
     spec%example = '*JOINT, NAME=J1, LAW=CONTRACTION, ELSET=JOINT1'
     spec%most_lines = 1
     allocate (spec%parameters, source=[ &
               field('NAME', kind_word, 'name of the joint', is_required=.true.), &
               field('LAW', kind_word, 'name of a *JOINT LAW', is_required=.true.), &
-              field('ELSET', kind_word, 'its JOINT8 elements')])
+              field('ELSET', kind_word, 'its JOINT8 elements'), &
+              field('INTEGRATION', kind_choice, 'where its points are', default='NODES', &
+                    choices='NODES | GAUSS')])
     allocate (spec%columns, source=[ &
               field('slave', kind_word, 'slave surface (not available yet)'), &
               field('master', kind_word, 'master surface (not available yet)')])
@@ -106,6 +109,7 @@ contains
     end if
     new%name = this%word('NAME')
     new%law = this%word('LAW')
+    new%is_nodal = this%word('INTEGRATION') == 'NODES'
     new%spot = model%here(0)
     do i = 1, size(model%joints)
       if (model%joints(i)%name /= new%name) cycle

@@ -38,6 +38,7 @@ module model_draft
   type :: joint_request
     character(:), allocatable :: name, law !< upper case
     integer, allocatable :: elements(:) !< positions of JOINT8 elements
+    logical :: is_nodal = .true. !< points are pairs of nodes, else Gauss points
     type(origin) :: spot
   end type joint_request
 
