@@ -28,6 +28,10 @@ module hht_increment
     class(equilibrium_solver), allocatable :: solver
   end type stepper
 
+  !> A body in free flight knows no force but round-off: out of balance is then measured against this
+  !> part of the force that would stop it within the increment.
+  real(rk), parameter :: stopping_share = 1.0e-3_rk
+
 contains
 
   !> Values of K_eff, joints apart.
@@ -182,6 +186,7 @@ contains
     integer, intent(in) :: num_free
     force = max(norm2(moving%external(:num_free)), norm2(moving%elastic(:num_free)), &
                 norm2(moving%inertia(:num_free)), norm2(moving%viscous(:num_free)), &
-                scheme%joint_weight*norm2(moving%contact(:num_free)))
+                scheme%joint_weight*norm2(moving%contact(:num_free)), &
+                stopping_share*norm2(moving%momentum(:num_free))/scheme%dt)
   end function largest_force
 end module hht_increment
