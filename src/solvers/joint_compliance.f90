@@ -11,7 +11,9 @@ module joint_compliance
   public :: find_compliance, friction_scale
 
   integer, parameter :: block_size = 48 !< right-hand sides solved at once
-  real(rk), parameter :: scale_factor = 0.4_rk !< r over the structure's own stiffness (section 2.3)
+  !> r over the structure's own stiffness, for sliding together (theory.md, 2.3): from 1 on, a block
+  !> that turns round is thrown from slip to slip.
+  real(rk), parameter :: scale_factor = 0.8_rk
   !> Part of the joint's stiffness that is kept when its own is taken out of G, so that a block held
   !> by nothing but its joints has a stiffness too.
   real(rk), parameter :: kept_stiffness = 1.0e-4_rk
@@ -71,7 +73,7 @@ contains
   end subroutine apply_rows
 
   !> r of the augmented friction per area: a part of the structure's own tangential stiffness at
-  !> each point, never more than the joint's. The structure alone, without joints, has the
+  !> each point when all points slide at once, never more than the joint's. The structure alone, without joints, has the
   !> compliance G (I - W k_ref G)^-1, W = weight*area.
   subroutine friction_scale(compliance, operator, reference, weight, scale)
     real(rk), intent(in) :: compliance(:, :) !< G with the closed joints [m/N]
@@ -82,7 +84,7 @@ contains
     type(lu_factor) :: factor
     real(rk), allocatable :: matrix(:, :), alone(:, :)
     real(rk) :: joint_stiffness, flexibility
-    integer :: m, p, i, row
+    integer :: m, p, i, j, row
     m = size(compliance, 1)
     allocate (matrix(m, m), scale(operator%num_points))
     do p = 1, operator%num_points
@@ -99,7 +101,11 @@ contains
     call solve_dense(factor, alone)
     do p = 1, operator%num_points
       row = 3*(p - 1)
-      flexibility = weight*operator%area(p)*(alone(row + 2, row + 2) + alone(row + 3, row + 3))
+      flexibility = 0.0_rk
+      do j = 1, operator%num_points
+        flexibility = flexibility + weight*operator%area(j)*(abs(alone(3*j - 1, row + 2)) &
+                                                             + abs(alone(3*j, row + 3)))
+      end do
       scale(p) = minval(reference(2:3, p))
       if (flexibility*scale(p) > 2.0_rk*scale_factor) scale(p) = 2.0_rk*scale_factor/flexibility
     end do
