@@ -91,6 +91,7 @@ contains
     else if (spec%fewest_lines > 0) then
       text = text//': '//as_text(spec%fewest_lines)//' or more'
     end if
+    if (spec%new_clears) text = text//'; none to clear with OP=NEW'
     if (spec%repeats_columns) text = text//'; the columns may repeat in a line'
   end function data_title
 

@@ -47,6 +47,7 @@ module keyword_spec
     logical :: repeats_columns = .false. !< a line may hold the columns several times
     logical :: checks_own_data = .false. !< the handler reads the data lines itself
     integer :: fewest_lines = 0, most_lines = huge(1) !< of data
+    logical :: new_clears = .false. !< OP=NEW without data clears what there was
   end type keyword
 contains
 

@@ -28,6 +28,7 @@ contains
                    'step the value is zero.'
     spec%example = '*BOUNDARY'//nl//'BASE, 1, 3'//nl//'CREST, 2, 2, 0.01'//nl//'SIDE, YSYMM'
     spec%fewest_lines = 1
+    spec%new_clears = .true.
     spec%checks_own_data = .true.
     allocate (spec%parameters, source=[ &
               field('OP', kind_choice, 'keep what earlier steps have fixed, or clear it', &

@@ -19,7 +19,8 @@ contains
     spec%name = 'INITIAL CONDITIONS'
     spec%family = 'step'
     spec%place = 'model'
-    spec%meaning = 'Displacements or velocities at the start of the analysis.'
+    spec%meaning = 'Displacements or velocities at the start of the analysis. A static '// &
+                   'step ends the velocities.'
     spec%example = '*INITIAL CONDITIONS, TYPE=VELOCITY'//nl//'ALL, 1, -1.'
     spec%fewest_lines = 1
     allocate (spec%parameters, source=[ &

@@ -34,6 +34,7 @@ contains
     spec%family = 'load'
     spec%place = 'step'
     spec%fewest_lines = 1
+    spec%new_clears = .true.
   end subroutine add_load_parameters
 
   subroutine describe_cload(spec)

@@ -75,8 +75,8 @@ contains
     spec%name = 'STATIC'
     spec%family = 'step'
     spec%place = 'step'
-    spec%meaning = 'Static analysis; loads ramp over the step. The increment grows and shrinks '// &
-                   'with the work of the iteration; a linear scene takes it as it is.'
+    spec%meaning = 'Static analysis; loads ramp over the step. The increment shrinks where the '// &
+                   'iteration does not converge and grows where that is easy.'
     spec%example = '*STATIC'//nl//'0.1, 1.'
     spec%most_lines = 1
     allocate (spec%parameters, source=[ &

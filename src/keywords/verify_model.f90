@@ -21,6 +21,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     call verify_elements(model, faults)
     call verify_mass(model, faults)
+    call verify_velocities(model, faults)
     if (.not. faults%has_errors()) call verify_supports(model, faults)
   end subroutine verify
 
@@ -85,6 +86,21 @@ contains
       return
     end do
   end subroutine verify_mass
+
+  !> Initial velocities serve a first step that is dynamic.
+  subroutine verify_velocities(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i
+    if (.not. any(model%scene%initial_values%is_velocity)) return
+    do i = 1, size(model%scene%steps)
+      if (model%scene%steps(i)%procedure == 'DYNAMIC') return
+      if (model%scene%steps(i)%procedure /= 'STATIC') cycle
+      call model%cards(model%procedure_card(i))%warn( &
+        faults, 'the initial velocities (*INITIAL CONDITIONS) end here: a static step is at rest')
+      return
+    end do
+  end subroutine verify_velocities
 
   !> In a static or frequency step every body is held against rigid motion.
   subroutine verify_supports(model, faults)

@@ -139,14 +139,14 @@ contains
     call find_error(energy)
   end subroutine set_stored
 
-  !> The imbalance over the largest energy.
+  !> The imbalance over the largest energy so far.
   pure subroutine find_error(energy)
     type(energy_balance), intent(inout) :: energy
-    real(rk) :: imbalance, largest
+    real(rk) :: imbalance
     imbalance = energy%external + energy%initial - energy%kinetic - energy%strain - energy%damping &
                 - energy%friction - energy%fracture - energy%numerical
-    largest = max(abs(energy%external), energy%kinetic, energy%strain, abs(energy%damping), &
-                  energy%friction, energy%fracture, energy%initial, tiny(1.0_rk))
-    energy%error = abs(imbalance)/largest
+    energy%largest = max(energy%largest, abs(energy%external), energy%kinetic, energy%strain, &
+                         abs(energy%damping), energy%friction, energy%fracture, energy%initial)
+    energy%error = abs(imbalance)/max(energy%largest, tiny(1.0_rk))
   end subroutine find_error
 end module energy_account
