@@ -34,7 +34,8 @@ contains
     call find_error(energy)
   end subroutine open_account
 
-  !> Adds the work of a static increment.
+  !> Adds the work of a static increment. Forces that had no balance at the start of the step did
+  !> work that nothing keeps.
   subroutine add_static_work(joints, num_free, before, after, energy)
     type(joint), intent(in) :: joints(:)
     integer, intent(in) :: num_free
@@ -44,6 +45,7 @@ contains
     du = after%q - before%q
     call add_external(du, num_free, before, after, energy)
     energy%numerical = energy%numerical + work(du, before%contact, after%contact) &
+                       + work(du(:num_free), before%balanced, after%balanced) &
                        - joint_change(joints, before, after)
     call set_stored(joints, after, energy)
   end subroutine add_static_work

@@ -60,7 +60,8 @@ contains
     call hand_over_costs(solver, 'forces', results%costs)
   end subroutine run_static
 
-  !> Forces at the start of the step.
+  !> Forces at the start of the step, and what they lack to a balance: initial conditions may leave
+  !> something, and so does the motion of a step before.
   subroutine start_forces(scene, plan, system, now, moving)
     type(problem), intent(in) :: scene
     type(step), intent(in) :: plan
@@ -71,6 +72,7 @@ contains
                         step_time(start=now%total_time, duration=plan%duration), moving%external)
     call multiply(system%matrix, system%stiffness, moving%q, moving%elastic)
     call sum_contact(system%operator, moving)
+    moving%balanced = moving%external - moving%elastic - moving%contact
   end subroutine start_forces
 
   !> Increments until the end of the step.
@@ -144,6 +146,7 @@ contains
     after%q = after%q + x
     call multiply(system%matrix, system%stiffness, after%q, after%elastic)
     call sum_contact(system%operator, after)
+    after%balanced = 0.0_rk
     call check_bulk(after%external(:n) - after%elastic(:n) - after%contact(:n), &
                     reference_force(system, before, after), solver%controls%residual_tolerance, &
                     outcome)

@@ -105,3 +105,36 @@ def initial(kind: str, values: list[tuple[int, int, float]]) -> str:
     """*INITIAL CONDITIONS for nodes (positions from 0)."""
     lines = "".join(f"{node + 1}, {dof}, {float(value)!r}\n" for node, dof, value in values)
     return f"*INITIAL CONDITIONS, TYPE={kind}\n{lines}"
+
+
+def spring_and_mass(elements: int, stretch: float, release: str) -> str:
+    """1 kg on a bed with friction 0.1, tied to a wall by a spring of 1e4 N/m: a massless brick.
+
+    Held at `stretch` [m] while its weight comes on; `release` is the step that follows. Sets FAR
+    (end of the spring), MOVING (the mass), BODY, BASE.
+    """
+    mesh, number = box_mesh((2 * elements, 1, 1), stretched((2.0, 1.0, 0.1)))
+    base = add_base_joint(mesh, number[elements:, :, 0])
+    mesh.brick_sets = {"SPRING": np.arange(elements), "BLOCK": np.arange(elements, 2 * elements)}
+    mesh.joint_sets = {"BED": np.arange(elements)}
+    mesh.node_sets = {
+        "BASE": base.ravel(),
+        "FAR": number[0].ravel(),
+        "MOVING": number[elements:].ravel(),
+        "BODY": number[elements:].ravel(),
+        "SOLID": number.ravel(),
+    }
+    held = f"*BOUNDARY\nMOVING, 1, 1, {stretch!r}\n"
+    return (
+        mesh_deck(mesh, {"SPRING": "C3D8", "BLOCK": "C3D8"}, "")
+        + material("SPRING", 1e5, 0.0, 0.0)
+        + material("STUFF", 1e9, 0.0, 10.0)
+        + "*SOLID SECTION, ELSET=SPRING, MATERIAL=SPRING\n"
+        + "*SOLID SECTION, ELSET=BLOCK, MATERIAL=STUFF\n"
+        + "*JOINT LAW, NAME=LAW, KN=1e9, KT=1e9, FRICTION=0.1\n"
+        + "*JOINT, NAME=BED, LAW=LAW, ELSET=BED\n"
+        + "*BOUNDARY\nBASE, 1, 3\nFAR, 1, 3\nSOLID, 2\n"
+        + f"*INITIAL CONDITIONS, TYPE=DISPLACEMENT\nMOVING, 1, {stretch!r}\n"
+        + static(held + weight(10.0))
+        + release
+    )

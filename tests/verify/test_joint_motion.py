@@ -1,0 +1,261 @@
+"""Joints in motion against closed forms: sliding, friction decay, a bar on a wall, rocking."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from harness import Run
+from joint_decks import (
+    GRAVITY,
+    Block,
+    amplitude,
+    dynamic,
+    initial,
+    spring_and_mass,
+    static,
+    weight,
+)
+from scipy.optimize import brentq
+
+PRINT = "*JOINT PRINT, JOINT=BED\n*NODE PRINT, NSET=BODY\nU, V\n"
+
+
+def energy(run: Run):
+    """Table of the energies, after a look at its soundness: closed, and never fed.
+
+    The balance is an identity but for the tolerance of the iteration (1e-6 of the forces); 0.1 % is
+    what the issue asks for. What the scheme takes may swing by what HHT itself gives back, 1e-3.
+    """
+    table = run.csv("energy")
+    largest = max(np.max(np.abs(table[name])) for name in ("kinetic", "strain", "external"))
+    assert table["error"].max() < 1e-3
+    taken = table["numerical"]
+    assert np.min(taken - np.maximum.accumulate(taken)) > -1e-3 * largest
+    assert taken.min() > -1e-4 * largest
+    return table
+
+
+def history(run: Run, x: float, name: str = "opening") -> tuple[np.ndarray, np.ndarray]:
+    """Time [s] and values of the joint's point at (x, 0, 0)."""
+    table = run.csv("joint_BED")
+    here = (np.abs(table["x"] - x) < 1e-9) & (np.abs(table["y"]) < 1e-9)
+    return table["time"][here], table[name][here]
+
+
+# --- a mass that slides on a moving base -------------------------------------------------------
+
+
+def slip_of_half_period(peak: float) -> float:
+    """Slip of a mass on a base that moves with peak * sin(2 pi t), friction 1 m/s2 [m]."""
+    w = 2.0 * np.pi
+    start = np.arcsin(1.0 / peak) / w
+
+    def speed(t):
+        return peak / w * (np.cos(w * start) - np.cos(w * t)) - (t - start)
+
+    end = brentq(speed, 0.4, 0.9)
+    turned = np.sin(w * end) - np.sin(w * start)
+    length = end - start
+    return peak / w * (np.cos(w * start) * length - turned / w) - 0.5 * length**2
+
+
+def sliding_mass(peak: float, dt: float, duration: float, base_is_slave: bool = False) -> str:
+    time = np.linspace(0.0, duration, round(1000 * duration) + 1)
+    block = Block(
+        (1.0, 1.0, 0.1),
+        density=10.0,
+        young=1e9,
+        law="KN=1e8, KT=1e8, FRICTION=0.1",
+        base_is_slave=base_is_slave,
+        cards=amplitude("SINE", time, peak * np.sin(2.0 * np.pi * time)),
+    )
+    motion = "*BASE MOTION, DOF=1, AMPLITUDE=SINE, TYPE=ACCELERATION\n"
+    return block.deck(static(weight(10.0)) + dynamic(motion + PRINT, dt, duration))
+
+
+@pytest.mark.parametrize(("dt", "allowed"), [(0.005, 3e-3), (0.0025, 1e-3)])
+def test_sliding_mass(keyway, dt, allowed):
+    """1 kg, g 10 m/s2, friction 0.1, base 1.5 sin(2 pi t) m/s2 (closed form; SDND104).
+
+    Tolerance: each end of a slip lies between two increments, that is 1.3 m/s2 dt^2 = 0.16 % of the
+    slip at dt 0.005 s, and the elastic slip follows within one more.
+    """
+    exact = slip_of_half_period(1.5)
+    assert exact == pytest.approx(0.0204531, rel=1e-5)
+    run = keyway(sliding_mass(1.5, dt, 4.0))
+    balance = energy(run)
+    table = run.csv("node_BODY")
+    moved = table["U1"][(table["node"] == 1) & (table["time"] > 2.0)]
+    assert np.ptp(moved) == pytest.approx(exact, rel=allowed)
+    friction = np.interp([2.0, 5.0], balance["time"], balance["friction"])
+    assert np.diff(friction)[0] / 3.0 == pytest.approx(2.0 * exact * 1.0, rel=allowed)
+
+
+def test_mass_below_the_limit_never_slides(keyway):
+    """0.95 m/s2 < mu g: it sticks; the motion is elastic, 0.95 N / 1e8 N/m (5 %: it swings)."""
+    run = keyway(sliding_mass(0.95, 0.005, 2.0))
+    energy(run)
+    table = run.csv("joint_BED")
+    assert set(table["state"]) == {1.0}
+    assert np.all(table["slip1"] == 0.0)
+    moved = run.csv("node_BODY")["U1"]
+    assert np.max(np.abs(moved)) == pytest.approx(0.95e-8, rel=0.05)
+
+
+def test_fixed_side_may_be_master_or_slave(keyway):
+    """The base as slave instead of master: the same motion to round-off."""
+    runs = [
+        keyway(sliding_mass(1.5, 0.01, 1.0, is_slave), name=f"slave_{is_slave}")
+        for is_slave in (False, True)
+    ]
+    first, second = (run.csv("node_BODY") for run in runs)
+    assert second["U1"] == pytest.approx(first["U1"], abs=1e-9 * np.max(np.abs(first["U1"])))
+
+
+# --- friction decay ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("elements", [1, 4])
+def test_friction_decay(keyway, elements):
+    """k 1e4 N/m, m 1 kg, g 10, mu 0.1, released at 0.85 mm (closed form; SDND100).
+
+    Tolerance 2e-6 m: one increment off an extreme misses w^2 u dt^2 / 2 = 1e-6 m;
+    the joint gives way by mu m g / (k_t A) = 1e-9 m.
+    """
+    dt = 5e-4
+    release = dynamic(
+        "*BOUNDARY, OP=NEW\nBASE, 1, 3\nFAR, 1, 3\nSOLID, 2\n" + PRINT, dt=dt, duration=0.2
+    )
+    run = keyway(spring_and_mass(elements, 0.85e-3, release))
+    balance = energy(run)
+    table = run.csv("node_BODY")
+    tip = table["node"] == table["node"].max()
+    time, u = table["time"][tip] - 1.0, table["U1"][tip]
+    half = np.pi / 100.0
+    for number, exact in enumerate((0.85e-3, -0.65e-3, 0.45e-3, -0.25e-3, 0.05e-3)):
+        near = np.abs(time - number * half) < 2.0 * dt
+        value = u[near][np.argmax(np.abs(u[near]))]
+        assert value == pytest.approx(exact, abs=2e-6)
+    rest = time > 4.5 * half
+    assert u[rest] == pytest.approx(0.05e-3, abs=2e-6)
+    travelled = (0.85 + 0.65 + 0.65 + 0.45 + 0.45 + 0.25 + 0.25 + 0.05) * 1e-3
+    assert balance["friction"][-1] == pytest.approx(travelled * 1.0, rel=1e-3)
+
+
+# --- a bar that hits a wall --------------------------------------------------------------------
+
+BAR = {"length": 10.0, "young": 25e9, "density": 2400.0, "speed": 1.0}
+WAVE = np.sqrt(BAR["young"] / BAR["density"])  # [m/s]
+CONTACT = 2.0 * BAR["length"] / WAVE  # 6.19677e-3 s
+PRESSURE = BAR["density"] * WAVE * BAR["speed"]  # 7.74597e6 Pa
+
+
+def bar_on_wall(keyway, elements: int, courant: float) -> dict[str, float]:
+    """Contact time, pressure and energy of a bar that flies against a wall at z = 0."""
+    dt = courant * BAR["length"] / elements / WAVE
+    bar = Block(
+        (1.0, 1.0, BAR["length"]),
+        (1, 1, elements),
+        young=BAR["young"],
+        density=BAR["density"],
+        law="KN=1e12, KT=1e10, GAP=1e-5",
+        cards="*BOUNDARY\nBODY, 1, 2\n*INITIAL CONDITIONS, TYPE=VELOCITY\nBODY, 3, -1.\n",
+    )
+    steps = round(1.6 * CONTACT / dt)
+    run = keyway(
+        bar.deck(dynamic("*JOINT PRINT, JOINT=BED\n", dt, steps * dt)), name=f"bar_{elements}"
+    )
+    balance = energy(run)
+    time, pressure = history(run, 0.0, "tn")
+    touching = np.nonzero(pressure < 0.0)[0]
+    middle = pressure[touching[len(touching) // 4] : touching[3 * len(touching) // 4]]
+    start = balance["kinetic"][0]
+    return {
+        "time": (time[touching[-1]] - time[touching[0]] + dt) / CONTACT,
+        "pressure": -middle.mean() / PRESSURE,
+        "ripple": middle.std() / PRESSURE,
+        "impulse": -pressure.sum() * dt / (2.0 * BAR["density"] * BAR["length"]),
+        "left": (balance["kinetic"][-1] + balance["strain"][-1]) / start,
+        "numerical": balance["numerical"][-1] / start,
+    }
+
+
+def test_bar_on_a_wall(keyway):
+    """Contact for 6.19677 ms at 7.74597 MPa, then all energy is the bar's again (closed form).
+
+    Tolerances. Time: the front that releases the bar is spread over some elements, three of which
+    take 1.5/n of the contact. Impulse: 2 m v less what turns into vibration. Pressure: 0.1 %, what
+    the ringing at the fronts leaves in its middle. Energy: HHT takes the waves that the mesh cannot
+    carry, a share that falls with the mesh (measured: 2.2, 1.3, 0.7 % at half a Courant number);
+    by the balance it is 'numerical', all of it.
+    """
+    assert pytest.approx(6.19677e-3, rel=1e-6) == CONTACT
+    assert pytest.approx(7.74597e6, rel=1e-6) == PRESSURE
+    found = {n: bar_on_wall(keyway, n, 0.5) for n in (25, 50, 100)}
+    for n, bar in found.items():
+        assert bar["time"] == pytest.approx(1.0, abs=1.5 / n)
+        assert bar["pressure"] == pytest.approx(1.0, abs=1e-3)
+        assert bar["impulse"] == pytest.approx(1.0, abs=0.5 / n)
+        assert bar["left"] + bar["numerical"] == pytest.approx(1.0, abs=1e-9)
+    assert found[100]["ripple"] < 1e-3
+    losses = [1.0 - bar["left"] for bar in found.values()]
+    assert losses[2] < 0.01
+    assert losses[0] / losses[1] > 1.6 and losses[1] / losses[2] > 1.6
+
+
+# --- a rocking block ---------------------------------------------------------------------------
+
+
+def tall_block(law: str, cards: str, base_is_slave: bool = False) -> Block:
+    """1 m wide, 4 m high, stiff; it moves in the plane x, z."""
+    return Block(
+        (1.0, 1.0, 4.0),
+        young=1e12,
+        law=law,
+        base_is_slave=base_is_slave,
+        cards="*BOUNDARY\nBODY, 2\n" + cards,
+    )
+
+
+def test_quarter_period_of_rocking(keyway):
+    """Released at a tilt of 0.01: quarter period sqrt(2 theta I / (W b)), I = 4/3 m (b^2 + h^2).
+
+    Tolerance 0.1 %: the edge gives way by W / (k_n A/2) = 2e-6 m, 2e-4 of the lift, and rings.
+    """
+    tilt = 0.01
+    block = tall_block("KN=1e11, KT=1e11, FRICTION=2.", "")
+    placed = [(i, 1, -tilt * x[2]) for i, x in enumerate(block.x) if x[2]]
+    placed += [(i, 3, tilt * x[0]) for i, x in enumerate(block.x) if x[0]]
+    block.cards += initial("DISPLACEMENT", placed)
+    hold = static(f"*BOUNDARY\nRIGHT_EDGE, 3, 3, {tilt}\n" + weight())
+    free = "*BOUNDARY, OP=NEW\nBASE, 1, 3\nBODY, 2\n*JOINT PRINT, JOINT=BED\n"
+    run = keyway(block.deck(hold + dynamic(free, 5e-4, 0.4)))
+    balance = energy(run)
+    time, opening = history(run, 1.0)
+    down = np.nonzero(opening <= 0.0)[0][0]
+    quarter = np.interp(0.0, opening[[down, down - 1]], time[[down, down - 1]]) - 1.0
+    exact = np.sqrt(2.0 * tilt * 4.0 / 3.0 * (0.5**2 + 2.0**2) / (GRAVITY * 0.5))
+    assert exact == pytest.approx(0.15201, rel=1e-4)
+    assert quarter == pytest.approx(exact, rel=1e-3)
+    largest = balance["kinetic"].max()
+    assert largest == pytest.approx(2400.0 * 4.0 * GRAVITY * tilt * 0.5, rel=0.02)
+    assert balance["friction"][-1] < 0.02 * largest
+    _, other = history(run, 0.0)
+    assert other.max() < tilt  # it rises on the other side, not as high
+
+
+@pytest.mark.parametrize("base_is_slave", [False, True])
+def test_rocking_starts_at_a_quarter_of_gravity(keyway, base_is_slave):
+    """Base acceleration that grows to 0.3 g in 10 s: the edge lifts at g b / h = 0.25 g.
+
+    Tolerance 0.1 % of g: one increment of 0.005 s is 1.5e-4 g, and the block follows within some.
+    """
+    ramp = amplitude("RAMP", np.array([0.0, 10.0]), np.array([0.0, 0.3 * GRAVITY]))
+    block = tall_block("KN=1e10, KT=1e10, FRICTION=2.", ramp, base_is_slave)
+    shake = "*BASE MOTION, DOF=1, AMPLITUDE=RAMP, TYPE=ACCELERATION\n*JOINT PRINT, JOINT=BED\n"
+    run = keyway(block.deck(static(weight()) + dynamic(shake, 0.005, 9.0)))
+    energy(run)
+    time, opening = history(run, 1.0)
+    lifted = time[np.nonzero(opening > 0.0)[0][0]] - 1.0
+    assert 0.3 * lifted / 10.0 == pytest.approx(0.25, abs=1e-3)
+    assert history(run, 0.0)[1].max() < 0.0
