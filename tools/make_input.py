@@ -29,6 +29,7 @@ def write_small_decks(folder: Path) -> None:
     """The decks of one file each, with what they read."""
     folder.mkdir(parents=True, exist_ok=True)
     for name, text_of in SMALL_DECKS.items():
+        (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_text(text_of())
         print(f"wrote {folder / name}")
 

@@ -10,9 +10,12 @@ def test_committed_deck_is_what_the_tool_writes(name):
     assert (make_input.INPUT / name).read_text() == SMALL_DECKS[name]()
 
 
-@pytest.mark.parametrize("name", [name for name in SMALL_DECKS if name.endswith(".inp")])
+DECKS = [name for name in SMALL_DECKS if name.endswith(".inp") and not name.startswith("meshes/")]
+
+
+@pytest.mark.parametrize("name", DECKS)
 def test_header_says_what_it_shows_assumes_and_expects(name):
-    header = SMALL_DECKS[name]().split("*NODE\n")[0]
+    header = "\n".join(line for line in SMALL_DECKS[name]().splitlines() if line.startswith("**"))
     for word in ("** Shows:", "** Assumes:", "** Expect"):
         assert word in header
     assert any(word in header for word in ("Source:", "from the statics"))

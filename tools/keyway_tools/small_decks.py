@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .deck_monolith import monolith_mesh, monolith_water
 from .decks_dynamic import monolith_frequencies, sliding_base, sliding_block
 from .decks_static import block_on_joint, cantilever, gravity_column
 
@@ -12,4 +13,6 @@ SMALL_DECKS = {
     "sliding_block.inp": sliding_block,
     "sliding_block_base.txt": sliding_base,
     "monolith_frequencies.inp": monolith_frequencies,
+    "monolith_water.inp": monolith_water,
+    "meshes/monolith_mesh.inp": monolith_mesh,
 }
