@@ -20,6 +20,9 @@ module joint_forces
     logical, allocatable :: was_open(:) !< (points) at the linearisation before
     real(rk), allocatable :: response(:, :) !< (3, points) jumps by the balance as linearised [m]
     real(rk), allocatable :: start_jump(:, :) !< (3, points) of the converged state before [m]
+    real(rk), allocatable :: step(:, :) !< (3, points) of the jumps in the last iteration [m]
+    real(rk), allocatable :: multiplier_step(:, :) !< (2, points) [Pa]
+    real(rk) :: last_residual = huge(1.0_rk)
     real(rk) :: start_force = 0.0_rk !< 2-norm of area*traction of the converged state [N]
     real(rk) :: bulk_force = 0.0_rk !< reference force of the bulk [N]
   end type joint_field

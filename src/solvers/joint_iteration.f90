@@ -9,13 +9,17 @@ module joint_iteration
   use equilibrium, only: force_balance, balance_outcome
   implicit none
   private
-  public :: start_iteration, linearise, approach_contact, relief, closed_tangent
+  public :: start_iteration, take_step, linearise_next, relief, closed_tangent
   public :: measure_residual, measure_correction
 
   !> Stiffness left to open and sliding points in the iteration matrix, over the closed joint's: a
   !> block that touches nothing for an iterate moves far, but stays in reach. The balance itself is
   !> judged without it.
   real(rk), parameter :: stiffness_floor = 1.0e-10_rk
+  !> From this iteration on, one that has not brought the residual down by `sufficient_decrease` is
+  !> linearised halfway: a cycle between two states of some points ends there.
+  integer, parameter :: patience = 6
+  real(rk), parameter :: sufficient_decrease = 0.5_rk
   !> Joint forces below this part of the bulk's largest force are measured against the latter.
   real(rk), parameter :: smallest_share = 1.0e-6_rk
   !> An increment of the jumps below this part of the jumps is measured against the latter.
@@ -74,6 +78,44 @@ contains
       end do
     end do
   end subroutine linearise
+
+  !> Goes to the solution of the linearised balance and evaluates the laws there.
+  subroutine take_step(joints, operator, old, reference, correction, linear, field, new)
+    type(joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
+    real(rk), intent(in) :: correction(:, :) !< (3, points) of the jumps [m]
+    real(rk), intent(in) :: linear(:, :) !< (3, points) tractions of the solution [Pa]
+    type(joint_field), intent(inout) :: field
+    type(joint_state), intent(inout) :: new(:)
+    field%step = correction
+    field%multiplier_step = linear(2:3, :) - field%multiplier
+    field%response = field%jump + correction
+    field%jump = field%response
+    field%multiplier = linear(2:3, :)
+    call linearise(joints, operator, old, reference, field, new)
+  end subroutine take_step
+
+  !> Where the next iteration linearises, which is not always where the last one has ended.
+  subroutine linearise_next(joints, operator, old, reference, outcome, field, new)
+    type(joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
+    type(balance_outcome), intent(in) :: outcome
+    type(joint_field), intent(inout) :: field
+    type(joint_state), intent(inout) :: new(:)
+    if (outcome%iterations >= patience .and. &
+        outcome%residual > sufficient_decrease*field%last_residual) then
+      field%jump = field%response - 0.5_rk*field%step
+      field%multiplier = field%multiplier - 0.5_rk*field%multiplier_step
+      call linearise(joints, operator, old, reference, field, new)
+    else
+      call approach_contact(joints, operator, old, reference, field, new)
+    end if
+    field%last_residual = outcome%residual
+  end subroutine linearise_next
 
   !> Linearises nearer to the contact where a point that was open has run through it. Without the
   !> joint's resistance it went far too deep; friction would take that for pressure and stick. The

@@ -11,8 +11,8 @@ module newton_condensed
   use joint_points, only: joint
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, linear_tractions
-  use joint_iteration, only: measure_residual, measure_correction, linearise, &
-                             approach_contact
+  use joint_iteration, only: measure_residual, measure_correction, take_step, &
+                             linearise_next
   use dense_factor, only: lu_factor, factorise_dense, solve_dense
   use equilibrium, only: balance_outcome
   use step_plan, only: step_controls
@@ -54,17 +54,14 @@ contains
       call change_tangent(self, operator%area, field%tangent, tangent)
       call correct(self, tangent, field%response - field%jump, correction)
       call linear_tractions(field, correction, linear)
-      field%response = field%jump + correction
-      field%jump = field%response
-      field%multiplier = linear(2:3, :)
-      call linearise(joints, operator, old, self%reference, field, new)
+      call take_step(joints, operator, old, self%reference, correction, linear, field, new)
       call measure_residual(operator, field, linear, outcome)
       if (outcome%residual <= controls%residual_tolerance) then
         call correct(self, tangent, excess_jump(field%traction), correction)
         call measure_correction(field, correction, controls%increment_tolerance, outcome)
       end if
       if (outcome%has_converged) exit
-      call approach_contact(joints, operator, old, self%reference, field, new)
+      call linearise_next(joints, operator, old, self%reference, outcome, field, new)
       field%response = field%response &
                        + excess_jump(field%iterate - self%reference*(field%jump - field%response))
     end do

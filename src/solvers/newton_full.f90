@@ -8,7 +8,7 @@ module newton_full
   use joint_points, only: joint
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, reference_stiffness, linear_tractions
-  use joint_iteration, only: start_iteration, linearise, approach_contact, closed_tangent, &
+  use joint_iteration, only: start_iteration, take_step, linearise_next, closed_tangent, &
                              measure_residual, measure_correction
   use joint_compliance, only: find_compliance, friction_scale
   use linear_solver, only: equation_solver
@@ -68,7 +68,8 @@ contains
     type(joint_field) :: field
     real(rk), dimension(3, self%operator%num_points) :: correction, linear, answer
     real(rk) :: unused(size(x))
-   call start_iteration(balance, joints, self%operator, self%reference, self%scale, old, field, new)
+    call start_iteration(balance, joints, self%operator, self%reference, self%scale, old, field, &
+                         new)
     do while (outcome%iterations < self%controls%max_iterations)
       outcome%iterations = outcome%iterations + 1
       call self%factorise_tangent(self%operator, field%tangent, error)
@@ -78,9 +79,7 @@ contains
       if (allocated(error)) return
       correction = balance%offset + answer - field%jump
       call linear_tractions(field, correction, linear)
-      field%jump = field%jump + correction
-      field%multiplier = linear(2:3, :)
-      call linearise(joints, self%operator, old, self%reference, field, new)
+      call take_step(joints, self%operator, old, self%reference, correction, linear, field, new)
       call measure_residual(self%operator, field, linear, outcome)
       if (outcome%residual <= self%controls%residual_tolerance) then
         call self%back_substitute(0.0_rk*balance%rhs, linear - field%traction, self%operator, &
@@ -89,7 +88,7 @@ contains
         call measure_correction(field, answer, self%controls%increment_tolerance, outcome)
       end if
       if (outcome%has_converged) return
-      call approach_contact(joints, self%operator, old, self%reference, field, new)
+      call linearise_next(joints, self%operator, old, self%reference, outcome, field, new)
     end do
   end subroutine solve
 
