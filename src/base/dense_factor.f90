@@ -3,7 +3,7 @@ module dense_factor
   use kinds, only: rk
   implicit none
   private
-  public :: lu_factor, factorise_dense, solve_dense
+  public :: lu_factor, factorise_dense, solve_dense, solve_lower, solve_lower_transposed
 
   !> P A = L U.
   type :: lu_factor
@@ -30,6 +30,15 @@ module dense_factor
       real(rk), intent(inout) :: b(ldb, nrhs)
       integer, intent(out) :: info
     end subroutine dgetrs
+
+    subroutine dtrsm(side, uplo, trans, diag, m, n, alpha, a, lda, b, ldb)
+      import :: rk
+      implicit none
+      character, intent(in) :: side, uplo, trans, diag
+      integer, intent(in) :: m, n, lda, ldb
+      real(rk), intent(in) :: alpha, a(lda, m)
+      real(rk), intent(inout) :: b(ldb, n)
+    end subroutine dtrsm
   end interface
 
 contains
@@ -56,4 +65,22 @@ contains
     if (n == 0) return
     call dgetrs('N', n, size(b, 2), factor%values, n, factor%pivot, b, n, info)
   end subroutine solve_dense
+
+  !> Replaces `b` by L^-1 b.
+  subroutine solve_lower(lower, b)
+    real(rk), intent(in), contiguous :: lower(:, :) !< only its lower triangle is read
+    real(rk), intent(inout), contiguous :: b(:, :) !< (rows, right-hand sides)
+    integer :: n
+    n = size(lower, 1)
+    if (n > 0) call dtrsm('L', 'L', 'N', 'N', n, size(b, 2), 1.0_rk, lower, n, b, n)
+  end subroutine solve_lower
+
+  !> Replaces `b` by L^-T b.
+  subroutine solve_lower_transposed(lower, b)
+    real(rk), intent(in), contiguous :: lower(:, :) !< only its lower triangle is read
+    real(rk), intent(inout), contiguous :: b(:, :) !< (rows, right-hand sides)
+    integer :: n
+    n = size(lower, 1)
+    if (n > 0) call dtrsm('L', 'L', 'T', 'N', n, size(b, 2), 1.0_rk, lower, n, b, n)
+  end subroutine solve_lower_transposed
 end module dense_factor

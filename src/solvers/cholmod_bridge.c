@@ -133,6 +133,69 @@ int keyway_cholmod_solve(void *handle, int n, int columns, double *b)
   return 0;
 }
 
+/* The end of the factor: the lower triangle, dense, of its last m columns, and the unknowns they
+ * belong to, 0-based. Returns 0 when these are the last m unknowns, in whatever order. */
+int keyway_cholmod_end(void *handle, int n, int m, double *block, int *unknown)
+{
+  const cholmod_factor *l = ((struct keyway_cholmod *)handle)->factor;
+  const int *super = l->super, *pi = l->pi, *px = l->px, *rows = l->s, *perm = l->Perm;
+  const double *x = l->x;
+  int first = n - m;
+  if (!l->is_super) return 1;
+  for (int k = first; k < n; k++) {
+    unknown[k - first] = perm[k];
+    if (perm[k] < first) return 1;
+  }
+  memset(block, 0, (size_t)m * (size_t)m * sizeof *block);
+  for (size_t s = 0; s < l->nsuper; s++) {
+    int count = pi[s + 1] - pi[s];
+    for (int k = super[s] > first ? super[s] : first; k < super[s + 1]; k++) {
+      const double *column = x + px[s] + (size_t)(k - super[s]) * (size_t)count;
+      for (int i = k - super[s]; i < count; i++)
+        block[(size_t)(k - first) * (size_t)m + (size_t)(rows[pi[s] + i] - first)] = column[i];
+    }
+  }
+  return 0;
+}
+
+/* One half of a solve, L or L^T, in the order of elimination; the answer is in c->x. */
+static int solve_half(struct keyway_cholmod *c, int system, int n, double *y)
+{
+  cholmod_dense rhs;
+  memset(&rhs, 0, sizeof rhs);
+  rhs.nrow = rhs.d = rhs.nzmax = (size_t)n;
+  rhs.ncol = 1;
+  rhs.x = y;
+  rhs.xtype = CHOLMOD_REAL;
+  rhs.dtype = CHOLMOD_DOUBLE;
+  if (!cholmod_solve2(system, c->factor, &rhs, NULL, &c->x, NULL, &c->y, &c->e, &c->common))
+    return c->common.status ? c->common.status : -1;
+  return 0;
+}
+
+/* y = L^-1 P b, in the order of elimination. Returns 0 for success. */
+int keyway_cholmod_eliminate(void *handle, int n, const double *b, double *y)
+{
+  struct keyway_cholmod *c = handle;
+  const int *perm = c->factor->Perm;
+  int status;
+  for (int i = 0; i < n; i++) y[i] = b[perm[i]];
+  status = solve_half(c, CHOLMOD_L, n, y);
+  if (status == 0) memcpy(y, c->x->x, (size_t)n * sizeof *y);
+  return status;
+}
+
+/* x = P^T L^-T y. Returns 0 for success. */
+int keyway_cholmod_substitute(void *handle, int n, double *y, double *x)
+{
+  struct keyway_cholmod *c = handle;
+  const int *perm = c->factor->Perm;
+  int status = solve_half(c, CHOLMOD_Lt, n, y);
+  if (status != 0) return status;
+  for (int i = 0; i < n; i++) x[perm[i]] = ((const double *)c->x->x)[i];
+  return 0;
+}
+
 /* Entries of the factor as planned, bytes held now and at the peak. */
 void keyway_cholmod_statistics(void *handle, double *entries, double *bytes, double *peak)
 {

@@ -10,6 +10,7 @@ module condensation
   use joint_forces, only: joint_field, reference_stiffness
   use joint_iteration, only: start_iteration, relief, closed_tangent
   use joint_compliance, only: find_compliance, friction_scale
+  use jump_block, only: jump_factor, take_jump_factor, compliance_of_jumps
   use newton_condensed, only: condensed_joints, iterate
   use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
   implicit none
@@ -18,8 +19,10 @@ module condensation
 
   type, extends(equilibrium_solver) :: condensed_equilibrium
     type(condensed_joints) :: condensed
+    type(jump_factor) :: jumps !< where there is one, an increment takes one solve in place of two
   contains
     procedure :: prepare, solve
+    procedure, private :: begin_solve, end_solve
   end type condensed_equilibrium
 
 contains
@@ -46,7 +49,12 @@ contains
     call self%costs%stop('factorise')
     if (allocated(error)) return
     call self%costs%start('compliance', 'joint')
-    call find_compliance(self%factor, operator, matrix%num_free, self%condensed%compliance, error)
+    call take_jump_factor(self%factor, operator, matrix%num_free, matrix%num_jumps, self%jumps)
+    if (self%jumps%is_there) then
+      call compliance_of_jumps(self%jumps, operator, self%condensed%compliance)
+    else
+      call find_compliance(self%factor, operator, matrix%num_free, self%condensed%compliance, error)
+    end if
     if (allocated(error)) return
     call friction_scale(self%condensed%compliance, operator, self%condensed%reference, weight, &
                         self%condensed%scale)
@@ -54,7 +62,8 @@ contains
     call self%costs%set_memory('compliance', 'joint', 8.0e-6_rk*size(self%condensed%compliance))
   end subroutine prepare
 
-  !> One solve for the guess, Newton on the jumps, one solve for what has changed.
+  !> Newton on the jumps between the two halves of one solve; where the jumps are not at the end of
+  !> the factor, between two solves: one for the guess, one for what has changed.
   subroutine solve(self, balance, joints, old, new, x, outcome, error)
     class(condensed_equilibrium), intent(inout) :: self
     type(force_balance), intent(in) :: balance
@@ -66,12 +75,12 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(joint_field) :: field
     real(rk), dimension(3, self%operator%num_points) :: first_excess, excess
-    real(rk), allocatable :: correction(:)
+    real(rk), allocatable :: half(:)
     associate (reference => self%condensed%reference, operator => self%operator)
       call start_iteration(balance, joints, operator, reference, self%condensed%scale, old, &
                            field, new)
       first_excess = relief(reference, field%jump, balance%offset, field%iterate)
-      call respond(self, balance%rhs, first_excess, operator, x, error)
+      call self%begin_solve(balance%rhs, first_excess, half, x, error)
       if (allocated(error)) return
       call operator%jumps(x, field%response)
       field%response = field%response + balance%offset
@@ -81,11 +90,54 @@ contains
       if (.not. outcome%has_converged) return
       excess = relief(reference, field%jump, balance%offset, field%iterate)
     end associate
-    if (.not. any(abs(excess - first_excess) > 0.0_rk)) return
-    allocate (correction(size(x)))
-    call respond(self, 0.0_rk*balance%rhs, excess - first_excess, self%operator, correction, error)
-    x = x + correction
+    call self%end_solve(excess - first_excess, half, x, error)
   end subroutine solve
+
+  !> The response to the guess: all unknowns, or the jumps alone and half a solve.
+  subroutine begin_solve(self, rhs, excess, half, x, error)
+    class(condensed_equilibrium), intent(inout) :: self
+    real(rk), intent(in) :: rhs(:) !< (free unknowns)
+    real(rk), intent(in) :: excess(:, :) !< (3, points) [Pa]
+    real(rk), allocatable, intent(out) :: half(:) !< (free unknowns) in the order of elimination
+    real(rk), intent(out) :: x(:) !< (all unknowns)
+    type(error_type), allocatable, intent(out) :: error
+    if (.not. self%jumps%is_there) then
+      call respond(self, rhs, excess, self%operator, x, error)
+      return
+    end if
+    x = 0.0_rk
+    call self%operator%add_forces(self%weight*excess, x)
+    half = rhs + x(:size(rhs))
+    call self%costs%start('eliminate', 'solver')
+    call self%factor%eliminate(half, error)
+    x = 0.0_rk
+    call self%jumps%show(half, x)
+    call self%costs%stop('eliminate')
+  end subroutine begin_solve
+
+  !> All unknowns, with what has changed since the guess.
+  subroutine end_solve(self, change, half, x, error)
+    class(condensed_equilibrium), intent(inout) :: self
+    real(rk), intent(in) :: change(:, :) !< of the excess (3, points) [Pa]
+    real(rk), allocatable, intent(inout) :: half(:)
+    real(rk), intent(inout) :: x(:) !< (all unknowns)
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: correction(size(x)), no_load(self%jumps%num_free)
+    if (self%jumps%is_there) then
+      correction = 0.0_rk
+      call self%operator%add_forces(self%weight*change, correction)
+      call self%costs%start('substitute', 'solver')
+      call self%jumps%add_forces(correction, half)
+      call self%factor%substitute(half, error)
+      x = 0.0_rk
+      x(:size(half)) = half
+      call self%costs%stop('substitute')
+    else if (any(abs(change) > 0.0_rk)) then
+      no_load = 0.0_rk
+      call respond(self, no_load, change, self%operator, correction, error)
+      x = x + correction
+    end if
+  end subroutine end_solve
 
   !> x = K_0^-1 (rhs + weight*B^T area*excess).
   subroutine respond(self, rhs, excess, operator, x, error)

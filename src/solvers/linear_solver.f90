@@ -1,7 +1,7 @@
 !> What every linear solver can do. A distributed back end would come in behind this type.
 module linear_solver
   use kinds, only: rk
-  use errors, only: error_type
+  use errors, only: error_type, raise
   use matrix_pattern, only: pattern
   implicit none
   private
@@ -13,6 +13,9 @@ module linear_solver
     procedure(analyse), deferred :: analyse
     procedure(factorise), deferred :: factorise
     procedure(solve), deferred :: solve
+    procedure :: take_end
+    procedure :: eliminate => solve_no_half
+    procedure :: substitute => solve_no_half
   end type equation_solver
 
   abstract interface
@@ -45,4 +48,27 @@ module linear_solver
       type(error_type), allocatable, intent(out) :: error
     end subroutine solve
   end interface
+
+contains
+
+  !> The dense end of a factor L L^T whose last columns are the last unknowns. A solve can halt
+  !> before it: `eliminate` gives y = L^-1 P b, `substitute` x = P^T L^-T y. Not every solver can.
+  subroutine take_end(self, num_last, block, unknown, is_there)
+    class(equation_solver), intent(in) :: self
+    integer, intent(in) :: num_last !< unknowns at the end
+    real(rk), allocatable, intent(out) :: block(:, :) !< (num_last, num_last) lower triangle
+    integer, allocatable, intent(out) :: unknown(:) !< of each column of the block
+    logical, intent(out) :: is_there
+    allocate (block(0, 0), unknown(0))
+    is_there = num_last < 0 .and. self%failed_unknown < 0
+  end subroutine take_end
+
+  !> One half of a solve, for solvers that have none.
+  subroutine solve_no_half(self, b, error)
+    class(equation_solver), intent(inout) :: self
+    real(rk), intent(inout) :: b(:) !< (free unknowns)
+    type(error_type), allocatable, intent(out) :: error
+    if (size(b) >= self%failed_unknown) error stop 'solve_no_half: this solver solves at once'
+    call raise(error, 'this solver solves at once')
+  end subroutine solve_no_half
 end module linear_solver

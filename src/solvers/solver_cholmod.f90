@@ -23,6 +23,7 @@ module solver_cholmod
     integer(c_int), allocatable, private :: start(:), row(:) !< pattern, 0-based
   contains
     procedure :: analyse, factorise, solve, statistics, elimination_order
+    procedure :: take_end, eliminate, substitute
     final :: release
   end type cholmod_solver
 
@@ -70,6 +71,36 @@ module solver_cholmod
       real(c_double), intent(inout) :: b(n, columns)
       integer(c_int) :: status
     end function keyway_cholmod_solve
+
+    function keyway_cholmod_end(handle, n, m, block, unknown) result(status) bind(c)
+      import :: c_ptr, c_int, c_double
+      implicit none
+      type(c_ptr), value :: handle
+      integer(c_int), value :: n, m
+      real(c_double), intent(out) :: block(m, m)
+      integer(c_int), intent(out) :: unknown(m)
+      integer(c_int) :: status
+    end function keyway_cholmod_end
+
+    function keyway_cholmod_eliminate(handle, n, b, y) result(status) bind(c)
+      import :: c_ptr, c_int, c_double
+      implicit none
+      type(c_ptr), value :: handle
+      integer(c_int), value :: n
+      real(c_double), intent(in) :: b(n)
+      real(c_double), intent(out) :: y(n)
+      integer(c_int) :: status
+    end function keyway_cholmod_eliminate
+
+    function keyway_cholmod_substitute(handle, n, y, x) result(status) bind(c)
+      import :: c_ptr, c_int, c_double
+      implicit none
+      type(c_ptr), value :: handle
+      integer(c_int), value :: n
+      real(c_double), intent(in) :: y(n)
+      real(c_double), intent(out) :: x(n)
+      integer(c_int) :: status
+    end function keyway_cholmod_substitute
 
     subroutine keyway_cholmod_statistics(handle, entries, bytes, peak) bind(c)
       import :: c_ptr, c_double
@@ -174,6 +205,44 @@ contains
     if (num_columns > 1) call use_one_thread(levels)
     if (status /= 0) call raise(error, 'no memory to solve the equations', system_failed)
   end subroutine solve
+
+  !> The dense end of the factor, when its last columns are the last unknowns.
+  subroutine take_end(self, num_last, block, unknown, is_there)
+    class(cholmod_solver), intent(in) :: self
+    integer, intent(in) :: num_last
+    real(rk), allocatable, intent(out) :: block(:, :)
+    integer, allocatable, intent(out) :: unknown(:)
+    logical, intent(out) :: is_there
+    allocate (block(num_last, num_last), unknown(num_last))
+    is_there = num_last > 0 .and. num_last <= self%num_free
+    if (is_there) is_there = keyway_cholmod_end(self%handle, self%num_free, num_last, block, &
+                                                unknown) == 0
+    unknown(:) = unknown + 1
+  end subroutine take_end
+
+  !> Replaces b by L^-1 P b, in the order of elimination.
+  subroutine eliminate(self, b, error)
+    class(cholmod_solver), intent(inout) :: self
+    real(rk), intent(inout) :: b(:)
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: y(size(b))
+    if (keyway_cholmod_eliminate(self%handle, self%num_free, b, y) /= 0) then
+      call raise(error, 'no memory to solve the equations', system_failed)
+    end if
+    b = y
+  end subroutine eliminate
+
+  !> Replaces y by P^T L^-T y, in the order of the unknowns.
+  subroutine substitute(self, b, error)
+    class(cholmod_solver), intent(inout) :: self
+    real(rk), intent(inout) :: b(:)
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: x(size(b))
+    if (keyway_cholmod_substitute(self%handle, self%num_free, b, x) /= 0) then
+      call raise(error, 'no memory to solve the equations', system_failed)
+    end if
+    b = x
+  end subroutine substitute
 
   !> What the factor costs.
   subroutine statistics(self, entries, bytes, peak_bytes)

@@ -16,6 +16,7 @@ set(sources
   equilibrium_linear.f90
   joint_iteration.f90
   joint_compliance.f90
+  jump_block.f90
   newton_condensed.f90
   condensation.f90
   newton_full.f90

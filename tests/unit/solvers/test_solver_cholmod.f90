@@ -5,11 +5,13 @@ program test_solver_cholmod
   use testing, only: test_log, check, check_close
   use matrix_pattern, only: pattern, multiply, position_of
   use solver_cholmod, only: cholmod_solver
+  use dense_factor, only: solve_lower, solve_lower_transposed
   use spring_box, only: make_box
   implicit none
   type(test_log) :: log
   log%suite = 'solver_cholmod'
   call solutions()
+  call halves()
   call failures()
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
@@ -42,6 +44,44 @@ contains
       deallocate (q, b)
     end do
   end subroutine solutions
+
+  !> A solve that halts before the jumps: they follow from the end of the factor alone, and forces
+  !> on them that come later are those of one solve with all forces.
+  subroutine halves()
+    integer, parameter :: num_jumps = 30
+    type(pattern) :: matrix
+    type(cholmod_solver) :: solver
+    type(error_type), allocatable :: error
+    real(rk), allocatable :: values(:), whole(:, :), half(:), lower(:, :), end_of_half(:, :)
+    real(rk) :: later(num_jumps, 1)
+    integer, allocatable :: unknown(:)
+    integer :: j
+    logical :: is_there
+    call make_box(matrix, values, num_jumps)
+    call solver%analyse(matrix, error)
+    call solver%factorise(matrix, values, error)
+    call solver%take_end(matrix%num_free - 1, lower, unknown, is_there)
+    call check(log, is_there .eqv. .false., 'other unknowns are not in their order')
+    call solver%take_end(num_jumps, lower, unknown, is_there)
+    call check(log, is_there .and. minval(unknown) == matrix%num_free - num_jumps + 1, 'the end')
+    half = [(cos(real(j, rk)), j=1, matrix%num_free)]
+    later(:, 1) = [(sin(2.0_rk*j), j=1, num_jumps)]
+    whole = reshape(half, [matrix%num_free, 1])
+    call solver%solve(whole, error)
+    call solver%eliminate(half, error)
+    end_of_half = reshape(half(matrix%num_free - num_jumps + 1:), [num_jumps, 1])
+    call solve_lower_transposed(lower, end_of_half)
+    call check_close(log, maxval(abs(end_of_half(:, 1) - whole(unknown, 1))), 0.0_rk, 1.0e-12_rk, &
+                     'jumps by half a solve')
+    whole = 0.0_rk
+    whole(:, 1) = [(cos(real(j, rk)), j=1, matrix%num_free)]
+    whole(unknown, 1) = whole(unknown, 1) + later(:, 1)
+    call solver%solve(whole, error)
+    call solve_lower(lower, later)
+    half(matrix%num_free - num_jumps + 1:) = half(matrix%num_free - num_jumps + 1:) + later(:, 1)
+    call solver%substitute(half, error)
+    call check_close(log, maxval(abs(half - whole(:, 1))), 0.0_rk, 1.0e-12_rk, 'two halves')
+  end subroutine halves
 
   !> The free part of K q.
   subroutine product_of_free(matrix, values, q, b)

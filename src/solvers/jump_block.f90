@@ -1,0 +1,78 @@
+!> The end of the factor of K_0 = L L^T: the jumps of the joints, which are eliminated last, see the
+!> rest of the structure through the Schur complement S = E E^T alone, E the end of L. So the
+!> compliance needs no solves, and Newton on the jumps fits between the two halves of one solve.
+module jump_block
+  use kinds, only: rk
+  use linear_solver, only: equation_solver
+  use joint_operator, only: jump_operator
+  use dense_factor, only: solve_lower, solve_lower_transposed
+  implicit none
+  private
+  public :: jump_factor, take_jump_factor, compliance_of_jumps
+
+  type :: jump_factor
+    logical :: is_there = .false.
+    integer :: num_free = 0
+    real(rk), allocatable :: lower(:, :) !< E (jumps, jumps)
+    integer, allocatable :: unknown(:) !< (jumps) of each row of E
+  contains
+    procedure :: show, add_forces
+  end type jump_factor
+
+contains
+
+  !> Takes E where the factor ends with the jumps and the joints work in nothing else.
+  subroutine take_jump_factor(factor, operator, num_free, num_jumps, jumps)
+    class(equation_solver), intent(in) :: factor !< of K_0
+    type(jump_operator), intent(in) :: operator
+    integer, intent(in) :: num_free, num_jumps
+    type(jump_factor), intent(out) :: jumps
+    jumps%num_free = num_free
+    if (any(operator%unknown <= num_free - num_jumps)) return
+    call factor%take_end(num_jumps, jumps%lower, jumps%unknown, jumps%is_there)
+  end subroutine take_jump_factor
+
+  !> G = B S^-1 B^T = Z^T Z with Z = E^-1 B^T.
+  subroutine compliance_of_jumps(jumps, operator, compliance)
+    type(jump_factor), intent(in) :: jumps
+    type(jump_operator), intent(in) :: operator
+    real(rk), allocatable, intent(out) :: compliance(:, :) !< (3*points, 3*points) [m/N]
+    real(rk), allocatable :: z(:, :)
+    integer :: place(jumps%num_free), i, k, row
+    place = 0
+    place(jumps%unknown) = [(i, i=1, size(jumps%unknown))]
+    allocate (z(size(jumps%unknown), 3*operator%num_points), source=0.0_rk)
+    do row = 1, size(z, 2)
+      do k = operator%row_start(row), operator%row_start(row + 1) - 1
+        if (operator%unknown(k) > jumps%num_free) cycle
+        z(place(operator%unknown(k)), row) = operator%coefficient(k)
+      end do
+    end do
+    call solve_lower(jumps%lower, z)
+    compliance = matmul(transpose(z), z)
+  end subroutine compliance_of_jumps
+
+  !> Writes the jumps that follow from half a solve among the unknowns.
+  subroutine show(self, half, x)
+    class(jump_factor), intent(in) :: self
+    real(rk), intent(in) :: half(:) !< (free unknowns) in the order of elimination
+    real(rk), intent(inout) :: x(:) !< (all unknowns)
+    real(rk) :: d(size(self%unknown), 1)
+    d(:, 1) = half(size(half) - size(d, 1) + 1:)
+    call solve_lower_transposed(self%lower, d)
+    x(self%unknown) = d(:, 1)
+  end subroutine show
+
+  !> Adds forces on the jumps to half a solve.
+  subroutine add_forces(self, force, half)
+    class(jump_factor), intent(in) :: self
+    real(rk), intent(in) :: force(:) !< (all unknowns) [N]
+    real(rk), intent(inout) :: half(:) !< (free unknowns) in the order of elimination
+    real(rk) :: f(size(self%unknown), 1)
+    f(:, 1) = force(self%unknown)
+    call solve_lower(self%lower, f)
+    associate (last => half(size(half) - size(f, 1) + 1:))
+      last = last + f(:, 1)
+    end associate
+  end subroutine add_forces
+end module jump_block
