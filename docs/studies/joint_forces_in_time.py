@@ -148,7 +148,7 @@ def march(column, scheme, dt, steps, u, v, load=None):
 
 
 def bar_on_wall(scheme, stiffness, cfl, elements=100):
-    """Rebound of the bar: contact time, force while closed and energy left, against closed forms."""
+    """Rebound of the bar: contact time, force while closed, energy left, against closed forms."""
     column = Column(elements, stiffness, gap=1e-5)
     speed = np.sqrt(YOUNG / DENSITY)
     dt = cfl * LENGTH / elements / speed

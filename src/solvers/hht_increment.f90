@@ -28,8 +28,8 @@ module hht_increment
     class(equilibrium_solver), allocatable :: solver
   end type stepper
 
-  !> A body in free flight knows no force but round-off: out of balance is then measured against this
-  !> part of the force that would stop it within the increment.
+  !> A body in free flight knows no force but round-off: out of balance is then measured against
+  !> this part of the force that would stop it within the increment.
   real(rk), parameter :: stopping_share = 1.0e-3_rk
 
 contains

@@ -73,8 +73,8 @@ contains
   end subroutine apply_rows
 
   !> r of the augmented friction per area: a part of the structure's own tangential stiffness at
-  !> each point when all points slide at once, never more than the joint's. The structure alone, without joints, has the
-  !> compliance G (I - W k_ref G)^-1, W = weight*area.
+  !> each point when all points slide at once, never more than the joint's. The structure alone,
+  !> without joints, has the compliance G (I - W k_ref G)^-1, W = weight*area.
   subroutine friction_scale(compliance, operator, reference, weight, scale)
     real(rk), intent(in) :: compliance(:, :) !< G with the closed joints [m/N]
     type(jump_operator), intent(in) :: operator
