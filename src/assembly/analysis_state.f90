@@ -7,8 +7,8 @@ module analysis_state
   private
   public :: state, energy_balance, vibration_mode
 
-  !> Energies since the start of the analysis [J]. `error` is the imbalance over `largest`, the largest
-  !> of them so far: a body that has come to rest holds nothing to compare with.
+  !> Energies since the start of the analysis [J]. `error` is the imbalance over `largest`, the
+  !> largest of them so far: a body that has come to rest holds nothing to compare with.
   type :: energy_balance
     real(rk) :: external = 0.0_rk, kinetic = 0.0_rk, strain = 0.0_rk, damping = 0.0_rk
     real(rk) :: friction = 0.0_rk, fracture = 0.0_rk

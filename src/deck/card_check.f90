@@ -155,7 +155,8 @@ contains
         if (spec%most_lines > 0) wanted = 'at most '//lines_in_words(spec%most_lines)
         call the_card%fault_at(faults, spec%most_lines + 1, 0, &
                                'found '//lines_in_words(the_card%num_lines), wanted)
-      else if (spec%new_clears .and. the_card%num_lines == 0 .and. the_card%word('OP') == 'NEW') then
+      else if (spec%new_clears .and. the_card%num_lines == 0 &
+               .and. the_card%word('OP') == 'NEW') then
         return
       else if (the_card%num_lines < spec%fewest_lines) then
         wanted = lines_in_words(spec%fewest_lines)
