@@ -1,0 +1,175 @@
+!> Static steps, increments, supports and modes of rows of boxes against closed forms.
+program test_time_static
+  use kinds, only: rk
+  use errors, only: error_type
+  use problem_definition, only: problem
+  use analysis_state, only: state
+  use step_plan, only: step
+  use initial_state, only: start_analysis
+  use run_steps, only: run_all_steps
+  use step_control, only: increment_control, start_control
+  use joint_contraction, only: contraction_law
+  use row_scene, only: make_row, put_on_ground, add_gravity, new_step, fix, recorder, calls_of
+  use testing, only: test_log, check, check_close
+  implicit none
+
+  type(test_log) :: log
+
+  log%suite = 'time_static'
+  call bar_is_pulled(log)
+  call block_rests_on_joint(log)
+  call floating_block_is_told(log)
+  call loose_model_is_told(log)
+  call increments_grow_and_shrink(log)
+  call bar_vibrates(log)
+  write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
+  if (log%failed > 0) error stop 1
+
+contains
+
+  !> A bar with one end moved by 1 mm in four increments: u and reaction are E A/L of it.
+  subroutine bar_is_pulled(log)
+    type(test_log), intent(inout) :: log
+    type(problem) :: scene
+    type(recorder) :: results
+    type(state) :: now
+    type(error_type), allocatable :: error
+    integer :: i
+    call make_row([0.0_rk, 1.0_rk, 3.0_rk], 1.0_rk, 2.0_rk, [3.0e9_rk, 3.0e9_rk], &
+                  [0.0_rk, 0.0_rk], scene)
+    call new_step('STATIC', 0.25_rk, 1.0_rk, scene)
+    scene%steps(1)%is_direct = .true.
+    do i = 1, 3
+      call fix([1, 2, 3, 4], i, scene)
+    end do
+    call fix([9, 10, 11, 12], 1, scene)
+    associate (last => size(scene%steps(1)%fixities))
+      scene%steps(1)%fixities(last - 3:)%value = 1.0e-3_rk
+    end associate
+    call start_analysis(scene, now)
+    call run_all_steps(scene, now, results, error)
+    call check(log,.not. allocated(error), 'runs')
+    call check_close(log, now%u(1, 5), 1.0e-3_rk/3.0_rk, 1.0e-15_rk, 'middle of the bar')
+    call check_close(log, sum(now%reaction(1, 9:12)), 2.0e6_rk, 1.0e-3_rk, 'reaction')
+    call check_close(log, now%energy%external, 1.0e3_rk, 1.0e-6_rk, 'work of the moving support')
+    call check_close(log, now%energy%strain, 1.0e3_rk, 1.0e-6_rk, 'strain energy')
+    call check(log, results%num_increments == 4, 'four increments')
+    call check(log, calls_of(results, 'factorise') == 1, 'factored once')
+  end subroutine bar_is_pulled
+
+  !> A block on a joint: the joint carries its weight.
+  subroutine block_rests_on_joint(log)
+    type(test_log), intent(inout) :: log
+    type(problem) :: scene
+    type(recorder) :: results
+    type(state) :: now
+    type(error_type), allocatable :: error
+    call make_block(10.0_rk, scene)
+    call start_analysis(scene, now)
+    call run_all_steps(scene, now, results, error)
+    call check(log,.not. allocated(error), 'runs')
+    call check_close(log, results%pressure(size(results%pressure)), 2.4e4_rk, 1.0e-3_rk, 'pressure')
+    call check_close(log, now%u(3, 1), -2.4e-5_rk, 1.0e-14_rk, 'closing')
+    call check(log, results%most_iterations <= 2, 'two iterations')
+  end subroutine block_rests_on_joint
+
+  !> The same block pulled upwards has no equilibrium, and the message says where.
+  subroutine floating_block_is_told(log)
+    type(test_log), intent(inout) :: log
+    type(problem) :: scene
+    type(recorder) :: results
+    type(state) :: now
+    type(error_type), allocatable :: error
+    call make_block(-10.0_rk, scene)
+    call start_analysis(scene, now)
+    call run_all_steps(scene, now, results, error)
+    call check(log, allocated(error), 'a block that flies off is an error')
+    if (.not. allocated(error)) return
+    call check(log, index(error%message, 'joint GROUND') > 0, 'the message names the joint')
+    call check(log, now%step_time <= 0.0_rk .and. now%increment == 0, 'the last state is kept')
+  end subroutine floating_block_is_told
+
+  subroutine make_block(g, scene)
+    real(rk), intent(in) :: g !< downwards [m/s2]
+    type(problem), intent(out) :: scene
+    call make_row([0.0_rk, 1.0_rk], 1.0_rk, 1.0_rk, [1.0e9_rk], [2400.0_rk], scene)
+    call put_on_ground(1, contraction_law(normal_stiffness=1.0e9_rk, tangent_stiffness=1.0e9_rk, &
+                                          friction=0.5_rk), scene)
+    call add_gravity(g, scene)
+    call new_step('STATIC', 1.0_rk, 1.0_rk, scene)
+  end subroutine make_block
+
+  !> A model without supports is named by node and direction.
+  subroutine loose_model_is_told(log)
+    type(test_log), intent(inout) :: log
+    type(problem) :: scene
+    type(recorder) :: results
+    type(state) :: now
+    type(error_type), allocatable :: error
+    call make_row([0.0_rk, 1.0_rk], 1.0_rk, 1.0_rk, [1.0e9_rk], [2400.0_rk], scene)
+    call add_gravity(10.0_rk, scene)
+    call new_step('STATIC', 1.0_rk, 1.0_rk, scene)
+    call fix([1, 2, 3, 4], 1, scene)
+    call start_analysis(scene, now)
+    call run_all_steps(scene, now, results, error)
+    call check(log, allocated(error), 'a loose model is an error')
+    if (.not. allocated(error)) return
+    call check(log, index(error%message, 'node ') > 0, 'the message names a node')
+  end subroutine loose_model_is_told
+
+  !> Halves after failure, gives up at the smallest size; the end is met without a sliver.
+  subroutine increments_grow_and_shrink(log)
+    type(test_log), intent(inout) :: log
+    type(step) :: plan
+    type(increment_control) :: control
+    logical :: gives_up
+    integer :: i
+    plan%first_increment = 0.1_rk
+    plan%duration = 1.0_rk
+    call start_control(plan, .false., control)
+    call control%accept(3)
+    call control%accept(3)
+    call check_close(log, control%size, 0.15_rk, 1.0e-15_rk, 'grown after two easy increments')
+    call control%cut(0.15_rk, gives_up)
+    call check_close(log, control%size, 0.075_rk, 1.0e-15_rk, 'halved')
+    call check(log,.not. gives_up, 'goes on')
+    plan%first_increment = 0.01_rk
+    call start_control(plan, .true., control)
+    do i = 1, 40
+      call control%accept(3)
+    end do
+    call check_close(log, control%size, 0.01_rk, 1.0e-15_rk, 'dynamic increments do not grow')
+    call check_close(log, control%next_size(0.99_rk + 1.0e-14_rk), 0.01_rk, 0.0_rk, 'no sliver')
+    call control%cut(0.01_rk, gives_up)
+    call check_close(log, control%size, 0.005_rk, 1.0e-15_rk, 'dynamic increments are halved')
+    do i = 1, 10
+      call control%accept(3)
+    end do
+    call check_close(log, control%size, 0.01_rk, 1.0e-15_rk, 'and doubled again')
+    plan%is_direct = .true.
+    call start_control(plan, .true., control)
+    call control%cut(0.01_rk, gives_up)
+    call check(log, gives_up, 'direct increments are not cut')
+  end subroutine increments_grow_and_shrink
+
+  !> Lowest frequency of one box with one free direction: w^2 = 3 E/(rho L^2).
+  subroutine bar_vibrates(log)
+    type(test_log), intent(inout) :: log
+    type(problem) :: scene
+    type(recorder) :: results
+    type(state) :: now
+    type(error_type), allocatable :: error
+    integer :: i
+    call make_row([0.0_rk, 1.0_rk], 1.0_rk, 1.0_rk, [3.0e9_rk], [2400.0_rk], scene)
+    call new_step('FREQUENCY', 1.0_rk, 1.0_rk, scene)
+    scene%steps(1)%num_modes = 1
+    call fix([1, 2, 3, 4], 1, scene)
+    call fix([(i, i=1, 8)], 2, scene)
+    call fix([(i, i=1, 8)], 3, scene)
+    call start_analysis(scene, now)
+    call run_all_steps(scene, now, results, error)
+    call check(log,.not. allocated(error), 'runs')
+    call check_close(log, results%modes(1)%hz, sqrt(9.0e9_rk/2400.0_rk)/(2.0_rk*acos(-1.0_rk)), &
+                     1.0e-6_rk, 'frequency')
+  end subroutine bar_vibrates
+end program test_time_static
