@@ -104,9 +104,16 @@ contains
     type(amplitude), intent(inout) :: new
     real(rk) :: dt
     integer :: i, num_points
-    if (size(numbers%values) == 0) then
+    if (size(numbers%values) == 0 .and. this%has('INPUT')) then
+      call this%fault_parameter(faults, 'INPUT', 'no numbers in the file', 'a file of numbers')
+      return
+    else if (size(numbers%values) == 0) then
       call this%fault(faults, 'the amplitude is empty', 'data lines or a file with numbers')
       return
+    end if
+    if (this%has('DT') .and. this%word('FORMAT') /= 'VALUES') then
+      call this%fault_parameter(faults, 'DT', 'DT has no use for '//this%word('FORMAT'), &
+                                'FORMAT=VALUES with it')
     end if
     select case (this%word('FORMAT'))
     case ('PAIRS')

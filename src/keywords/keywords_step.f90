@@ -67,8 +67,23 @@ contains
     if (len(model%now%procedure) == 0) then
       call this%fault(faults, 'the step does nothing', '*STATIC, *DYNAMIC or *FREQUENCY in it')
     end if
+    call check_base_motion(model, faults)
     call close_step(model)
   end subroutine read_end_step
+
+  !> Only a dynamic step has the inertia that the motion of the base acts on.
+  subroutine check_base_motion(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i
+    if (model%now%procedure == 'DYNAMIC' .or. model%now%procedure == '') return
+    do i = model%step_origin%card, model%current
+      if (.not. allocated(model%cards(i)%spec%name)) cycle
+      if (model%cards(i)%spec%name /= 'BASE MOTION') cycle
+      call model%cards(i)%fault(faults, 'has no effect in a step *'//model%now%procedure, &
+                                'a step *DYNAMIC')
+    end do
+  end subroutine check_base_motion
 
   subroutine describe_static(spec)
     type(keyword), intent(out) :: spec

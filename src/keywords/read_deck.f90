@@ -3,7 +3,7 @@ module read_deck
   use card_check, only: check_card, match_card
   use deck_echo, only: echo_of_cards
   use deck_lexer, only: read_cards
-  use diagnostics, only: diagnostic_list
+  use diagnostics, only: diagnostic_list, place, severity_error
   use finish_model, only: complete_model
   use keyword_catalogue, only: list_keywords
   use keyword_handler, only: keyword_list, pass_elements, pass_nodes, pass_rest
@@ -29,6 +29,10 @@ contains
     integer, allocatable :: keyword_of_card(:)
     call list_keywords(list)
     call read_cards(path, list%specs, model%cards, faults)
+    if (size(model%cards) == 0 .and. .not. faults%has_errors()) then
+      call faults%add(severity_error, place(file=path, keyword='', source=''), 'the deck is empty', &
+                      'keywords, lines that begin with *')
+    end if
     call open_draft(path, model)
     call match_cards(list, model, keyword_of_card, faults)
     call handle_cards(list, keyword_of_card, model, faults)

@@ -4,7 +4,7 @@ module file_system
   use errors, only: error_type, raise, system_failed
   implicit none
   private
-  public :: make_folder, safe_name, file_name, base_name
+  public :: make_folder, safe_name, link_name, file_name, base_name
 
   interface
     !> POSIX mkdir.
@@ -50,6 +50,17 @@ contains
       end select
     end do
   end function safe_name
+
+  !> A name that is safe in a path of an HDF5 file: any, but that '/' becomes '_'.
+  pure function link_name(name) result(safe)
+    character(*), intent(in) :: name
+    character(len(name)) :: safe
+    integer :: i
+    safe = name
+    do i = 1, len(name)
+      if (name(i:i) == '/') safe(i:i) = '_'
+    end do
+  end function link_name
 
   !> The name of a file without its folder.
   pure function file_name(path) result(name)

@@ -6,7 +6,7 @@ module hdf5_model
   use run_records, only: run_record
   use joint_readings, only: joint_record
   use hdf5_files, only: hdf5_file
-  use file_system, only: safe_name
+  use file_system, only: link_name
   implicit none
   private
   public :: write_model
@@ -62,7 +62,7 @@ contains
     integer :: i
     call file%make_group(group)
     do i = 1, size(sets)
-      call file%put(group//'/'//safe_name(sets(i)%name), id(sets(i)%members))
+      call file%put(group//'/'//link_name(sets(i)%name), id(sets(i)%members))
     end do
   end subroutine write_sets
 
@@ -74,7 +74,7 @@ contains
     call file%make_group('/sets/surfaces')
     do i = 1, size(scene%surfaces)
       associate (faces => scene%surfaces(i))
-        call file%put('/sets/surfaces/'//safe_name(faces%name), &
+        call file%put('/sets/surfaces/'//link_name(faces%name), &
                       transpose(reshape([scene%mesh%element_id(faces%element), faces%face], &
                                         [size(faces%face), 2])))
       end associate
@@ -88,7 +88,7 @@ contains
     type(joint), intent(in) :: item
     type(joint_record), intent(in) :: faces
     character(:), allocatable :: group
-    group = '/joints/'//safe_name(item%name)
+    group = '/joints/'//link_name(item%name)
     call file%make_group(group)
     call file%set(group, 'gap', item%law%gap)
     call file%put(group//'/x', item%x)

@@ -14,7 +14,7 @@ module write_hdf5
   use hdf5_files, only: hdf5_file
   use hdf5_tables, only: growing_table
   use hdf5_model, only: write_model
-  use file_system, only: safe_name, file_name
+  use file_system, only: link_name, file_name
   implicit none
   private
   public :: hdf5_results, open_hdf5
@@ -68,7 +68,7 @@ contains
                                   'kinetic,strain,damping,friction,fracture,numerical,error')
       allocate (results%joints(size(scene%joints)))
       do j = 1, size(scene%joints)
-        call results%joints(j)%start(file, '/history/joints/'//safe_name(scene%joints(j)%name), &
+        call results%joints(j)%start(file, '/history/joints/'//link_name(scene%joints(j)%name), &
                                      'step,increment,time,opening,slip,pressure')
       end do
     end associate
@@ -156,7 +156,7 @@ contains
     integer :: j
     call file%make_group(group)
     do j = 1, size(scene%joints)
-      place = group//'/'//safe_name(scene%joints(j)%name)
+      place = group//'/'//link_name(scene%joints(j)%name)
       call file%make_group(place)
       call file%put(place//'/opening', opening_at_points(scene%joints(j), now%joints(j)))
       call file%put(place//'/slip', now%joints(j)%slip)

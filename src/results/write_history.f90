@@ -11,6 +11,7 @@ module write_history
                           add_joint_rows
   use csv_files, only: csv_file
   use file_system, only: safe_name, file_name
+  use write_text, only: as_text
   implicit none
   private
   public :: history_files, open_histories
@@ -49,13 +50,27 @@ contains
     end do
     do f = 1, size(histories%files)
       associate (file => histories%files(f))
-        call file%open(stem//'_'//name_part(file%kind)//'_'//safe_name(file%name)//'.csv', &
+        call file%open(stem//'_'//name_part(file%kind)//'_'//own_name(histories%files, f)//'.csv', &
                        header_of(file%kind, file%fields), error)
         if (allocated(error)) return
         call record%list_file(file_name(file%path))
       end associate
     end do
   end subroutine open_histories
+
+  !> The name of a set or joint as its file has it; where it is taken already (sets 'A B' and 'A_B'),
+  !> the position of the file makes it another.
+  pure function own_name(files, f) result(name)
+    type(history_file), intent(in) :: files(:)
+    integer, intent(in) :: f !< position of the file
+    character(:), allocatable :: name
+    integer :: other
+    name = safe_name(files(f)%name)
+    do other = 1, f - 1
+      if (files(other)%kind /= files(f)%kind) cycle
+      if (safe_name(files(other)%name) == name) name = name//'_'//as_text(f)
+    end do
+  end function own_name
 
   !> Adds the request's fields to its file; makes the file when it is new.
   subroutine add_request(request, record, files)
