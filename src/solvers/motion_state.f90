@@ -16,6 +16,7 @@ module motion_state
 
   type :: motion
     real(rk), allocatable :: q(:), v(:), a(:) !< (num_total) [m], [m/s], [m/s2]
+    real(rk), allocatable :: stiffness(:) !< diagonal of K [N/m]
     real(rk), allocatable :: external(:) !< f [N]
     real(rk), allocatable :: elastic(:) !< K q [N]
     real(rk), allocatable :: viscous(:) !< C v [N]

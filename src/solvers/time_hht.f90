@@ -3,7 +3,7 @@
 module time_hht
   use kinds, only: rk
   use errors, only: error_type
-  use matrix_pattern, only: multiply
+  use matrix_pattern, only: multiply, diagonal
   use problem_definition, only: problem
   use step_plan, only: step
   use analysis_state, only: state
@@ -45,6 +45,8 @@ contains
     call results%costs%stop('assemble')
     now%num_unknowns = system%matrix%num_free
     call start_motion(system%numbers, scene%joints, now, moving)
+    allocate (moving%stiffness(system%matrix%num_total))
+    call diagonal(system%matrix, system%stiffness, moving%stiffness)
     call results%costs%start('initial acceleration', 'solver')
     call start_dynamic(scene, plan, system, now%total_time, moving, error)
     call results%costs%stop('initial acceleration')

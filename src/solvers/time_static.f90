@@ -54,6 +54,8 @@ contains
     now%v = 0.0_rk
     now%a = 0.0_rk
     call start_motion(system%numbers, scene%joints, now, moving)
+    allocate (moving%stiffness(system%matrix%num_total))
+    call diagonal(system%matrix, system%stiffness, moving%stiffness)
     call start_forces(scene, plan, system, now, moving)
     call open_account(scene%joints, moving, now%total_time <= 0.0_rk, now%energy)
     call walk(scene, plan, system, solver, moving, now, results, error)
@@ -148,21 +150,19 @@ contains
     call sum_contact(system%operator, after)
     after%balanced = 0.0_rk
     call check_bulk(after%external(:n) - after%elastic(:n) - after%contact(:n), &
-                    reference_force(system, before, after), solver%controls%residual_tolerance, &
+                    reference_force(before, after), solver%controls%residual_tolerance, &
                     outcome)
   end subroutine take_increment
 
   !> The largest of the forces before and after, reactions included. A body that carries nothing
   !> (its load went back to zero, or it moves with its supports) is measured by what its stiffness
   !> makes of the last digits of its motion.
-  pure real(rk) function reference_force(system, before, after) result(force)
-    type(dam_system), intent(in) :: system
+  pure real(rk) function reference_force(before, after) result(force)
     type(motion), intent(in) :: before, after
-    real(rk) :: stiffness(system%matrix%num_total)
-    call diagonal(system%matrix, system%stiffness, stiffness)
     force = max(norm2(before%external), norm2(after%external), norm2(before%elastic), &
                 norm2(after%elastic), norm2(before%contact), norm2(after%contact), &
-                idle_share*norm2(stiffness*before%q), idle_share*norm2(stiffness*after%q))
+                idle_share*norm2(before%stiffness*before%q), &
+                idle_share*norm2(after%stiffness*after%q))
   end function reference_force
 
   !> Jumps before the free unknowns move, and the first guess: the converged ones. A joint that has
