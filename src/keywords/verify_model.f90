@@ -30,7 +30,6 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     real(rk) :: x(3, 8), gradient(3, 8, 8), weight(8)
-    character(:), allocatable :: others
     integer :: e, corner, num_odd, first_odd
     num_odd = 0
     first_odd = 0
@@ -46,16 +45,28 @@ contains
           if (first_odd == 0) first_odd = e
         end if
       end do
-      if (num_odd == 0) return
-      others = ''
-      if (num_odd > 1) others = ', as '//as_text(num_odd - 1)//' more,'
-      associate (spot => model%element_origin(first_odd))
-        call model%cards(spot%card)%warn(faults, 'element '// &
-                                         as_text(mesh%element_id(first_odd))//others// &
-                                         ' has a corner with a Jacobian that is zero or negative')
-      end associate
     end associate
+    if (num_odd > 0) call warn_of_corners(model, first_odd, num_odd, faults)
   end subroutine verify_elements
+
+  !> One warning for all elements that are sound but for a corner.
+  subroutine warn_of_corners(model, e, num_odd, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: e !< position of the first of them
+    integer, intent(in) :: num_odd !< how many there are
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: others
+    integer :: corner
+    others = ''
+    if (num_odd > 1) others = '; so have '//as_text(num_odd - 1)//' more elements at theirs'
+    associate (spot => model%element_origin(e), mesh => model%scene%mesh)
+      corner = corner_fault(mesh%x(:, mesh%nodes(:, e)))
+      call model%cards(spot%card)%warn(faults, 'element '//as_text(mesh%element_id(e))// &
+                                       ' has a Jacobian that is zero or negative at corner '// &
+                                       as_text(corner)//' (node '// &
+                                       as_text(mesh%node_id(mesh%nodes(corner, e)))//')'//others)
+    end associate
+  end subroutine warn_of_corners
 
   subroutine fault_jacobian(model, e, corner, faults)
     type(draft), intent(in) :: model
