@@ -4,6 +4,7 @@ module dense_factor
   implicit none
   private
   public :: lu_factor, factorise_dense, solve_dense, solve_lower, solve_lower_transposed
+  public :: gram
 
   !> P A = L U.
   type :: lu_factor
@@ -39,9 +40,32 @@ module dense_factor
       real(rk), intent(in) :: alpha, a(lda, m)
       real(rk), intent(inout) :: b(ldb, n)
     end subroutine dtrsm
+
+    subroutine dsyrk(uplo, trans, n, k, alpha, a, lda, beta, c, ldc)
+      import :: rk
+      implicit none
+      character, intent(in) :: uplo, trans
+      integer, intent(in) :: n, k, lda, ldc
+      real(rk), intent(in) :: alpha, beta, a(lda, n)
+      real(rk), intent(inout) :: c(ldc, n)
+    end subroutine dsyrk
   end interface
 
 contains
+
+  !> Z^T Z, both triangles.
+  subroutine gram(z, product)
+    real(rk), intent(in), contiguous :: z(:, :)
+    real(rk), intent(out), contiguous :: product(:, :) !< (columns, columns)
+    integer :: n, j
+    n = size(z, 2)
+    if (n == 0) return
+    product = 0.0_rk
+    call dsyrk('L', 'T', n, size(z, 1), 1.0_rk, z, size(z, 1), 0.0_rk, product, n)
+    do j = 2, n
+      product(:j - 1, j) = product(j, :j - 1)
+    end do
+  end subroutine gram
 
   !> Factors a square matrix, which is moved into the factor.
   subroutine factorise_dense(matrix, factor)

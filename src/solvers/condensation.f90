@@ -10,6 +10,7 @@ module condensation
   use joint_forces, only: joint_field, reference_stiffness
   use joint_iteration, only: start_iteration, relief, closed_tangent
   use joint_compliance, only: find_compliance, friction_scale
+  use blas_threads, only: use_many_threads, use_one_thread
   use jump_block, only: jump_factor, take_jump_factor, compliance_of_jumps
   use newton_condensed, only: condensed_joints, iterate
   use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
@@ -37,6 +38,7 @@ contains
     type(jump_operator), intent(in) :: operator
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: closed(:)
+    integer :: levels
     self%operator = operator
     self%weight = weight
     self%condensed%weight = weight
@@ -51,13 +53,17 @@ contains
     call self%costs%start('compliance', 'joint')
     call take_jump_factor(self%factor, operator, matrix%num_free, matrix%num_jumps, self%jumps)
     if (self%jumps%is_there) then
+      call use_many_threads(levels)
       call compliance_of_jumps(self%jumps, operator, self%condensed%compliance)
+      call use_one_thread(levels)
     else
       call find_compliance(self%factor, operator, matrix%num_free, self%condensed%compliance, error)
     end if
     if (allocated(error)) return
+    call use_many_threads(levels)
     call friction_scale(self%condensed%compliance, operator, self%condensed%reference, weight, &
                         self%condensed%scale)
+    call use_one_thread(levels)
     call self%costs%stop('compliance')
     call self%costs%set_memory('compliance', 'joint', 8.0e-6_rk*size(self%condensed%compliance))
   end subroutine prepare

@@ -5,7 +5,7 @@ module jump_block
   use kinds, only: rk
   use linear_solver, only: equation_solver
   use joint_operator, only: jump_operator
-  use dense_factor, only: solve_lower, solve_lower_transposed
+  use dense_factor, only: gram, solve_lower, solve_lower_transposed
   implicit none
   private
   public :: jump_factor, take_jump_factor, compliance_of_jumps
@@ -49,7 +49,8 @@ contains
       end do
     end do
     call solve_lower(jumps%lower, z)
-    compliance = matmul(transpose(z), z)
+    allocate (compliance(size(z, 2), size(z, 2)))
+    call gram(z, compliance)
   end subroutine compliance_of_jumps
 
   !> Writes the jumps that follow from half a solve among the unknowns.
