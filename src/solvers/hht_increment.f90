@@ -3,8 +3,8 @@
 !>   K_eff x + w B^T (area t1) = (1 + alpha)(f1 - C v^ - K u^) - alpha (f0 - C v0 - K u0) - w0 J0
 !>   K_eff = M/(beta dt^2) + (1 + alpha) (gamma/(beta dt) C + K)
 !>
-!> Products per increment: K u^, and M x, C x, K x. The latter give all forces at the end and show
-!> the true balance; C v and M v follow from their rates.
+!> Products per increment: M a1, C a1 and K u1. They give all forces at the end and show the true
+!> balance; K u^, C v and M v follow from what is known of the increment before.
 module hht_increment
   use kinds, only: rk
   use errors, only: error_type
@@ -90,8 +90,10 @@ contains
       after%v = before%v + rest*before%a
       after%momentum = before%momentum + rest*before%inertia
       if (size(system%damping) > 0) after%viscous = before%viscous + rest*before%viscous_rate
+      after%elastic = before%elastic + dt*before%elastic_rate &
+                      + dt**2*(0.5_rk - scheme%beta)*before%elastic_jerk
+      after%elastic_rate = before%elastic_rate + rest*before%elastic_jerk
     end associate
-    call multiply(system%matrix, system%stiffness, after%q, after%elastic)
   end subroutine predict
 
   !> The right-hand side, all rows; prescribed ones are not used.
@@ -140,14 +142,19 @@ contains
     weight = scheme%gamma*scheme%dt
     call multiply(system%matrix, system%mass, after%a, after%inertia)
     after%momentum = after%momentum + weight*after%inertia
-    call multiply(system%matrix, system%stiffness, x, product)
-    after%elastic = after%elastic + product
-    rhs = rhs - after%inertia - (1.0_rk + scheme%alpha)*product
+    call multiply(system%matrix, system%stiffness, after%q, product)
+    after%elastic_jerk = scheme%acceleration_of_x*(product - after%elastic)
+    after%elastic_rate = after%elastic_rate + weight*after%elastic_jerk
+    rhs = rhs - after%inertia - (1.0_rk + scheme%alpha)*(product - after%elastic)
+    after%elastic = product
     if (size(system%damping) > 0) then
       call multiply(system%matrix, system%damping, after%a, after%viscous_rate)
       after%viscous = after%viscous + weight*after%viscous_rate
       rhs = rhs - (1.0_rk + scheme%alpha)*weight*after%viscous_rate
     end if
+    after%balanced = (1.0_rk + scheme%alpha)*(after%external - after%viscous - after%elastic) &
+                     - scheme%alpha*(before%external - before%viscous - before%elastic)
+    if (system%operator%num_points == 0) return
     call sum_contact(system%operator, after)
     call carry_joints(system, scheme, before, after)
     rhs = rhs - scheme%joint_weight*after%contact
@@ -157,9 +164,7 @@ contains
     else
       joint_force = joint_force + scheme%old_joint_weight*before%contact
     end if
-    after%balanced = (1.0_rk + scheme%alpha)*(after%external - after%viscous - after%elastic) &
-                     - scheme%alpha*(before%external - before%viscous - before%elastic) &
-                     - joint_force
+    after%balanced = after%balanced - joint_force
   end subroutine correct
 
   !> What the joints hand on to the next increment: the rate of their jumps, and the traction
@@ -170,7 +175,6 @@ contains
     type(motion), intent(in) :: before
     type(motion), intent(inout) :: after
     real(rk) :: traction(3, system%operator%num_points)
-    if (system%operator%num_points == 0) return
     call gather_jumps(system%operator, before%joints, traction)
     call gather_jumps(system%operator, after%joints, after%jump_rate)
     after%jump_rate = (after%jump_rate - traction)/scheme%dt
@@ -184,9 +188,15 @@ contains
     type(hht), intent(in) :: scheme
     type(motion), intent(in) :: moving
     integer, intent(in) :: num_free
-    force = max(norm2(moving%external(:num_free)), norm2(moving%elastic(:num_free)), &
-                norm2(moving%inertia(:num_free)), norm2(moving%viscous(:num_free)), &
-                scheme%joint_weight*norm2(moving%contact(:num_free)), &
-                stopping_share*norm2(moving%momentum(:num_free))/scheme%dt)
+    force = max(length(moving%external(:num_free)), length(moving%elastic(:num_free)), &
+                length(moving%inertia(:num_free)), length(moving%viscous(:num_free)), &
+                scheme%joint_weight*length(moving%contact(:num_free)), &
+                stopping_share*length(moving%momentum(:num_free))/scheme%dt)
   end function largest_force
+
+  !> The Euclidean norm, without the care for overflow that makes `norm2` slow.
+  pure real(rk) function length(force)
+    real(rk), intent(in), contiguous :: force(:)
+    length = sqrt(dot_product(force, force))
+  end function length
 end module hht_increment

@@ -19,6 +19,7 @@ module motion_state
     real(rk), allocatable :: stiffness(:) !< diagonal of K [N/m]
     real(rk), allocatable :: external(:) !< f [N]
     real(rk), allocatable :: elastic(:) !< K q [N]
+    real(rk), allocatable :: elastic_rate(:), elastic_jerk(:) !< K v [N/s], K a [N/s2]
     real(rk), allocatable :: viscous(:) !< C v [N]
     real(rk), allocatable :: viscous_rate(:) !< C a [N/s]
     real(rk), allocatable :: momentum(:) !< M v [N s]
@@ -46,7 +47,8 @@ contains
     call compress(numbers, joints, now%a, moving%a)
     moving%joints = now%joints
     call set_exact_jumps(numbers, joints, moving)
-    allocate (moving%external(n), moving%elastic(n), moving%viscous(n), moving%viscous_rate(n), &
+    allocate (moving%external(n), moving%elastic(n), moving%elastic_rate(n), &
+              moving%elastic_jerk(n), moving%viscous(n), moving%viscous_rate(n), &
               moving%momentum(n), moving%inertia(n), moving%balanced(n), moving%contact(n), &
               source=0.0_rk)
     allocate (moving%carried(3, sum(joints%num_points)), &

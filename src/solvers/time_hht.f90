@@ -87,6 +87,8 @@ contains
                            - moving%viscous - moving%contact, moving%a, error)
     call multiply(system%matrix, system%mass, moving%a, moving%inertia)
     moving%balanced = moving%inertia
+    call multiply(system%matrix, system%stiffness, moving%v, moving%elastic_rate)
+    call multiply(system%matrix, system%stiffness, moving%a, moving%elastic_jerk)
     if (size(system%damping) > 0) then
       call multiply(system%matrix, system%damping, moving%a, moving%viscous_rate)
     end if
@@ -116,23 +118,23 @@ contains
   end subroutine start_supports
 
   !> Increments until the end of the step.
-  subroutine walk(scene, plan, system, tool, moving, now, results, error)
+  subroutine walk(scene, plan, system, tool, start, now, results, error)
     type(problem), intent(in) :: scene
     type(step), intent(in) :: plan
     type(dam_system), intent(in) :: system
     type(stepper), intent(inout) :: tool
-    type(motion), intent(inout) :: moving
+    type(motion), intent(in) :: start
     type(state), intent(inout) :: now
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
     type(increment_control) :: control
     type(balance_outcome) :: outcome
-    type(motion) :: trial
+    type(motion), allocatable :: moving, trial
     type(step_time) :: when
     real(rk) :: dt
     logical :: gives_up
     when = step_time(is_dynamic=.true., start=now%total_time, duration=plan%duration)
-    trial = moving
+    allocate (moving, trial, source=start)
     call start_control(plan, .true., control)
     do while (now%step_time < plan%duration)
       dt = control%next_size(now%step_time)
@@ -181,12 +183,12 @@ contains
     call results%costs%stop('forces')
   end subroutine prepare_size
 
-  !> Accepts the trial.
+  !> Accepts the trial, without a copy.
   subroutine swap(converged, trial)
-    type(motion), intent(inout) :: converged, trial
-    type(motion) :: other
-    other = converged
-    converged = trial
-    trial = other
+    type(motion), allocatable, intent(inout) :: converged, trial
+    type(motion), allocatable :: other
+    call move_alloc(converged, other)
+    call move_alloc(trial, converged)
+    call move_alloc(other, trial)
   end subroutine swap
 end module time_hht
