@@ -2,7 +2,7 @@
 program keyway
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
-  use blas_threads, only: restart_with_fast_kernels
+  use blas_threads, only: restart_with_fast_libraries
   use check_deck, only: load_deck, report_model
   use cli, only: command_line, parse_command_line, print_answer
   use diagnostics, only: diagnostic_list
@@ -36,7 +36,7 @@ program keyway
   call print_answer(options, is_answered, error)
   call end_on(error)
   if (is_answered) stop
-  call restart_with_fast_kernels()
+  call restart_with_fast_libraries()
   call load_deck(options, scene, remarks, echo, error)
   call end_on(error)
   if (options%is_check) then

@@ -222,12 +222,14 @@ contains
     type(pattern), intent(inout) :: matrix
     integer :: g, j, k, i, pass, num_entries
     allocate (matrix%column_start(matrix%num_total + 1), matrix%free_entries(matrix%num_total))
+    allocate (matrix%alike(matrix%num_total))
     do pass = 1, 2
       num_entries = 0
       matrix%free_entries = 0
       do g = 1, size(first_unknown) - 1
         do j = first_unknown(g), first_unknown(g + 1) - 1
           matrix%column_start(j) = num_entries + 1
+          matrix%alike(j) = first_unknown(g + 1) - j
           call add_rows(j, first_unknown(g + 1) - 1)
           do k = neighbours%first(g), neighbours%first(g + 1) - 1
             i = neighbours%item(k)

@@ -60,23 +60,32 @@ static char **command_line(void)
   return words;
 }
 
-/* An OpenBLAS older than the processor falls back to kernels of 2004, five times slower. It chooses
- * when it is loaded, so the program starts itself again with the choice made. */
-void keyway_restart_with_fast_kernels(void)
+/* 1 when OpenBLAS does not know the processor and the user has not chosen. */
+static int has_old_kernels(void)
 {
   char *(*get_name)(void);
+  if (!fitting_kernels() || getenv("OPENBLAS_CORETYPE")) return 0;
+  return find("openblas_get_corename", &get_name) && strcmp(get_name(), "Prescott") == 0;
+}
+
+/* Two libraries make choices when they are loaded, so the program starts itself again with the
+ * choices made. An OpenBLAS older than the processor falls back to kernels of 2004, five times
+ * slower. Threads of OpenMP that wait for work keep their cores busy for milliseconds: the serial
+ * solves between short loops then find none free. */
+void keyway_restart_with_fast_libraries(void)
+{
   char path[4096];
-  const char *kernels = fitting_kernels();
+  int is_old = has_old_kernels();
+  int is_spinning = !getenv("OMP_WAIT_POLICY") && !getenv("GOMP_SPINCOUNT");
   char **words;
   ssize_t length;
-  if (!kernels || getenv("OPENBLAS_CORETYPE")) return;
-  if (!find("openblas_get_corename", &get_name) || strcmp(get_name(), "Prescott") != 0) return;
+  if (!is_old && !is_spinning) return;
   length = readlink("/proc/self/exe", path, sizeof path - 1);
   words = command_line();
   if (length <= 0 || !words) return;
   path[length] = '\0';
-  setenv("OPENBLAS_CORETYPE", kernels, 1);
+  if (is_old) setenv("OPENBLAS_CORETYPE", fitting_kernels(), 1);
+  if (is_spinning) setenv("OMP_WAIT_POLICY", "PASSIVE", 1);
   execv(path, words);
-  unsetenv("OPENBLAS_CORETYPE"); /* only reached when the start failed: go on slowly */
-  free(words);
+  free(words); /* only reached when the start failed: go on slowly */
 }

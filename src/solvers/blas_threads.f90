@@ -6,7 +6,7 @@ module blas_threads
   use omp_lib, only: omp_get_max_active_levels, omp_get_max_threads, omp_set_max_active_levels
   implicit none
   private
-  public :: use_many_threads, use_one_thread, restart_with_fast_kernels
+  public :: use_many_threads, use_one_thread, restart_with_fast_libraries
 
   interface
     subroutine keyway_set_blas_threads(threads) bind(c)
@@ -21,10 +21,11 @@ module blas_threads
       integer(c_int) :: answer
     end function keyway_blas_uses_openmp
 
-    !> Starts the program again when OpenBLAS does not know the processor; call it first of all.
-    subroutine restart_with_fast_kernels() bind(c, name='keyway_restart_with_fast_kernels')
+    !> Starts the program again when OpenBLAS does not know the processor or idle threads would keep
+    !> their cores busy; call it first of all.
+    subroutine restart_with_fast_libraries() bind(c, name='keyway_restart_with_fast_libraries')
       implicit none
-    end subroutine restart_with_fast_kernels
+    end subroutine restart_with_fast_libraries
   end interface
 
 contains

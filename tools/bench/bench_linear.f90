@@ -10,7 +10,7 @@ program bench_linear
   use matrix_pattern, only: pattern, multiply, position_of
   use pattern_builder, only: cell_list, list_cells, build_pattern
   use assemble_elements, only: assemble_stiffness, assemble_mass
-  use blas_threads, only: restart_with_fast_kernels
+  use blas_threads, only: restart_with_fast_libraries
   use nested_dissection, only: dissect
   use solver_cholmod, only: cholmod_solver
   use eigen_modes, only: find_modes
@@ -30,7 +30,7 @@ program bench_linear
   real(rk) :: cpu_start
   integer :: sizes(4), k, j
   character(20) :: word
-  call restart_with_fast_kernels()
+  call restart_with_fast_libraries()
   do k = 1, 4
     call get_command_argument(k, word)
     read (word, *) sizes(k)
