@@ -1,0 +1,99 @@
+"""What runs cost against the bare work of the equation solver: ratios within one process."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from measured_run import Program, Run
+from scenes import INCREMENT, dam_of_size, scaled_dam, write_deck
+
+STATIC_LIMIT = 1.6  # whole program over analyse + factor + solve
+STEP_LIMIT = 2.0  # linear increment over solve
+MEMORY_LIMIT_MB = {145_000: 1600.0}  # of a static run
+READING_LIMIT = 2.0  # [s] for 150 000 nodes and elements
+
+# Parts of the ledger that come once in a step, not in its increments.
+ONCE = (
+    "read deck|open results|assemble|analyse|factorise|compliance|initial acceleration|"
+    "close results"
+)
+
+
+@dataclass
+class Figure:
+    """One measured figure."""
+
+    scene: str
+    what: str
+    value: float
+    limit: float | None
+    detail: str
+
+    @property
+    def is_kept(self) -> bool:
+        return self.limit is None or self.value <= self.limit
+
+
+def measure_static(program: Program, folder: Path, size: int) -> list[Figure]:
+    run = program.run(write_deck(folder, f"static_{size}", dam_of_size(size)))
+    work, _ = run.cost("analyse|factorise|solve")
+    scene = f"arch dam, {run.unknowns} unknowns"
+    told = f"{run.wall:.2f} s over {work:.2f} s for analyse + factor + solve"
+    memory = run.results.find("ledger.peak_memory_mb")
+    return [
+        Figure(scene, "static run / bare solver", run.wall / work, STATIC_LIMIT, told),
+        Figure(scene, "memory of the static run [MB]", memory, MEMORY_LIMIT_MB.get(size), ""),
+    ]
+
+
+def measure_dynamic(program: Program, folder: Path, size: int, count: int) -> list[Figure]:
+    """Linear increments with next to no output, and with envelopes of the stresses."""
+    mesh = dam_of_size(size)
+    figures = []
+    for has_envelopes in (False, True):
+        name = f"dynamic_{size}_{has_envelopes:d}"
+        deck = write_deck(folder, name, mesh, count * INCREMENT, has_envelopes=has_envelopes)
+        run = program.run(deck)
+        what = "linear increment" + (" with envelopes" if has_envelopes else "") + " / solve"
+        limit = None if has_envelopes else STEP_LIMIT
+        figures.append(ratio_of_increment(run, "solve", what, limit))
+    return figures
+
+
+def measure_jointed(program: Program, folder: Path, size: int, count: int) -> Figure:
+    """Increments of a dam whose two joints open and slide."""
+    mesh = dam_of_size(size, num_joints=2)
+    deck = write_deck(folder, f"jointed_{size}", mesh, count * INCREMENT, has_envelopes=False)
+    run = program.run(deck)
+    what = "increment with two joints / solve"
+    return ratio_of_increment(run, "solve|eliminate|substitute", what, None)
+
+
+def ratio_of_increment(run: Run, solving: str, what: str, limit: float | None) -> Figure:
+    """Everything between the first increment and the end, over the solves; all in one process."""
+    time_of_solves, count = run.cost(solving)
+    once, _ = run.cost(ONCE)
+    step, solve = (run.results.find("ledger.wall_s") - once) / count, time_of_solves / count
+    told = f"{step * 1e3:.1f} ms over {solve * 1e3:.1f} ms"
+    return Figure(f"arch dam, {run.unknowns} unknowns", what, step / solve, limit, told)
+
+
+def measure_reading(program: Program, folder: Path) -> Figure:
+    """An arch dam of some 150 000 nodes and elements, read and verified (processor seconds)."""
+    mesh = scaled_dam(41, 0, 0)
+    deck = write_deck(folder, "reading", mesh)
+    seconds = program.check(deck)
+    size = (folder / "reading_mesh.inp").stat().st_size / 1.0e6
+    scene = f"arch dam, {len(mesh.x) + len(mesh.bricks)} nodes and elements"
+    told = f"{size:.1f} MB"
+    return Figure(scene, "deck read and verified [s]", seconds, READING_LIMIT, told)
+
+
+def measure_all(program: Program, folder: Path, sizes: list[int], count: int) -> list[Figure]:
+    figures = [measure_reading(program, folder)]
+    for size in sizes:
+        figures += measure_static(program, folder, size)
+        figures += measure_dynamic(program, folder, size, count)
+        figures.append(measure_jointed(program, folder, size, count))
+    return figures

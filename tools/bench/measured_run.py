@@ -1,0 +1,64 @@
+"""One measured run of the program."""
+
+from __future__ import annotations
+
+import re
+import resource
+import subprocess
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from keyway_tools.results_folder import ResultsFolder
+
+
+@dataclass(frozen=True)
+class Run:
+    """What a run took, and its results."""
+
+    wall: float  # [s]
+    processor: float  # of all threads, system included [s]
+    results: ResultsFolder
+
+    def cost(self, pattern: str) -> tuple[float, int]:
+        """Wall seconds and calls of the ledger's parts whose whole name fits."""
+        parts = [p for p in self.parts if re.fullmatch(pattern, p["name"])]
+        if not parts:
+            names = ", ".join(p["name"] for p in self.parts)
+            raise SystemExit(f"bench: the ledger has no part like '{pattern}', it has {names}")
+        return sum(p["wall_s"] for p in parts), max(p["calls"] for p in parts)
+
+    @property
+    def parts(self) -> list[dict]:
+        return self.results.find("ledger.parts")
+
+    @property
+    def unknowns(self) -> int:
+        return self.results.find("model.unknowns")
+
+
+@dataclass(frozen=True)
+class Program:
+    """The program under measurement."""
+
+    path: Path
+    threads: int = 2
+
+    def run(self, deck: Path) -> Run:
+        out = deck.parent / f"results_{deck.stem}"
+        wall, processor = self._time("-j", str(self.threads), "-q", "-o", str(out), str(deck))
+        return Run(wall, processor, ResultsFolder(out, deck.stem))
+
+    def check(self, deck: Path) -> float:
+        """Processor seconds of reading and verifying a deck."""
+        return self._time("--check", str(deck))[1]
+
+    def _time(self, *words: str) -> tuple[float, float]:
+        """Wall and processor seconds of a call."""
+        start, before = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
+        silent = subprocess.DEVNULL
+        done = subprocess.run([str(self.path), *words], stdin=silent, stdout=silent, stderr=silent)
+        wall, after = time.monotonic() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
+        if done.returncode:
+            raise SystemExit(f"bench: keyway {' '.join(words)} ended with {done.returncode}")
+        return wall, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
