@@ -36,6 +36,7 @@ module joint_contraction
   !> What the history holds of one point.
   type :: point_state
     real(rk) :: jump(3), traction(3), slip(2), friction_work, fracture_work
+    real(rk) :: cohesion !< c, or 0 when the point has parted within the increment [Pa]
     logical :: is_broken
     integer :: status
   end type point_state
@@ -97,9 +98,10 @@ contains
     integer :: p
     do p = 1, size(jump, 2)
       before = point_state(old%jump(:, p), old%traction(:, p), old%slip(:, p), &
-                           old%friction_work(p), old%fracture_work(p), old%is_broken(p), &
-                           old%status(p))
+                           old%friction_work(p), old%fracture_work(p), self%cohesion, &
+                           old%is_broken(p), old%status(p))
       after = before
+      if (new%has_parted(p)) after%cohesion = 0.0_rk
       after%jump = jump(:, p)
       if (.not. before%is_broken .and. jump(1, p)*self%normal_stiffness <= self%strength) then
         call stay_bonded(self, after, iterate(:, p), tangent(:, :, p))
@@ -144,7 +146,7 @@ contains
     type(point_state), intent(in) :: before
     type(point_state), intent(inout) :: point
     real(rk), intent(out) :: iterate(3), tangent(3, 3)
-    real(rk) :: k(3), share, step(3), opening
+    real(rk) :: k(3), share, step(3), opening, limit
     call law%reference_stiffness(k)
     step = point%jump - before%jump
     opening = before%jump(1) + law%gap
@@ -152,8 +154,9 @@ contains
       share = (law%strength/k(1) - before%jump(1))/step(1)
       point%fracture_work = before%fracture_work + 0.5_rk*sum(k*(before%jump + share*step)**2)
     else if (opening <= 0.0_rk) then
+      limit = slip_limit(law, opening, law%cohesion)
       point%friction_work = before%friction_work &
-                            + opening_work(before%traction(2:3), slip_limit(law, opening), &
+                            + opening_work(before%traction(2:3), limit, &
                                            -opening/step(1)*step(2:3), law%cohesion, k(2))
     end if
     point%traction = 0.0_rk
@@ -172,7 +175,7 @@ contains
     real(rk) :: opening, old_opening, limit, k, trial(2), size_of_trial
     opening = point%jump(1) + law%gap
     old_opening = before%jump(1) + law%gap
-    limit = slip_limit(law, opening)
+    limit = slip_limit(law, opening, point%cohesion)
     k = law%tangent_stiffness
     trial = k*(point%jump(2:3) - before%slip)
     size_of_trial = norm2(trial)
@@ -191,7 +194,8 @@ contains
                             + closing_work(trial, limit, old_opening/(old_opening - opening), k)
     else
       point%friction_work = before%friction_work &
-                            + sliding_work(before%traction(2:3), slip_limit(law, old_opening), &
+                            + sliding_work(before%traction(2:3), &
+                                           slip_limit(law, old_opening, law%cohesion), &
                                            trial, limit, k)
     end if
   end subroutine close_point
@@ -205,13 +209,13 @@ contains
     real(rk), intent(out) :: iterate(3), tangent(3, 3)
     real(rk) :: k, z(2), size_of_z, limit, e(2), rest(2), rho, softening
     k = law%tangent_stiffness
-    limit = slip_limit(law, point%jump(1) + law%gap)
+    limit = slip_limit(law, point%jump(1) + law%gap, point%cohesion)
     z = multiplier + scale*(point%jump(2:3) - slip - multiplier/k)
     size_of_z = norm2(z)
     iterate(1) = point%traction(1)
     tangent = 0.0_rk
     tangent(1, 1) = law%normal_stiffness
-    if (size_of_z <= limit .and. .not. is_frictionless(law)) then
+    if (size_of_z <= limit .and. (law%friction > 0.0_rk .or. point%cohesion > 0.0_rk)) then
       iterate(2:3) = k*(point%jump(2:3) - slip)
       tangent(2, 2) = k
       tangent(3, 3) = k
@@ -228,15 +232,10 @@ contains
   end subroutine augment
 
   !> Largest tangential traction of the closed joint: mu p + c [Pa].
-  pure real(rk) function slip_limit(law, opening)
+  pure real(rk) function slip_limit(law, opening, cohesion)
     type(contraction_law), intent(in) :: law
     real(rk), intent(in) :: opening !< <= 0 [m]
-    slip_limit = law%cohesion - law%friction*law%normal_stiffness*opening
+    real(rk), intent(in) :: cohesion !< c [Pa]
+    slip_limit = cohesion - law%friction*law%normal_stiffness*opening
   end function slip_limit
-
-  !> Whether the joint never carries shear once broken.
-  pure logical function is_frictionless(law)
-    type(contraction_law), intent(in) :: law
-    is_frictionless = law%friction <= 0.0_rk .and. law%cohesion <= 0.0_rk
-  end function is_frictionless
 end module joint_contraction

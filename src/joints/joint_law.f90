@@ -18,6 +18,8 @@ module joint_law
     real(rk), allocatable :: slip(:, :) !< (2, points) irrecoverable sliding [m]
     logical, allocatable :: is_broken(:) !< tensile strength lost
     integer, allocatable :: status(:) !< open, stick, slip or bonded
+    !> The iteration of the increment opened the point again and again: no cohesion when it closes.
+    logical, allocatable :: has_parted(:)
     real(rk), allocatable :: friction_work(:) !< dissipated so far [J/m2]
     real(rk), allocatable :: fracture_work(:) !< set free when the strength was lost [J/m2]
   end type joint_state
@@ -63,7 +65,8 @@ module joint_law
       type(joint_state), intent(in) :: old !< converged history
       real(rk), intent(in) :: multiplier(:, :) !< (2, points) [Pa]
       real(rk), intent(in) :: scale(:) !< (points) [Pa/m]
-      type(joint_state), intent(inout) :: new !< history at the trial jump, law's own traction
+      type(joint_state), intent(inout) :: new !< history at the trial jump, law's own traction;
+      !! has_parted is given
       real(rk), intent(out) :: iterate(:, :) !< (3, points) traction of the augmented form [Pa]
       real(rk), intent(out) :: tangent(:, :, :) !< (3, 3, points) [Pa/m], unsymmetric
     end subroutine update
@@ -87,7 +90,7 @@ contains
     allocate (state%jump(3, num_points), state%traction(3, num_points), source=0.0_rk)
     allocate (state%slip(2, num_points), source=0.0_rk)
     allocate (state%friction_work(num_points), state%fracture_work(num_points), source=0.0_rk)
-    allocate (state%is_broken(num_points), source=.false.)
+    allocate (state%is_broken(num_points), state%has_parted(num_points), source=.false.)
     allocate (state%status(num_points), source=state_open)
   end subroutine allocate_state
 end module joint_law

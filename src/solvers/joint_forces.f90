@@ -18,6 +18,7 @@ module joint_forces
     real(rk), allocatable :: iterate(:, :) !< (3, points) of the augmented form [Pa]
     real(rk), allocatable :: tangent(:, :, :) !< (3, 3, points) [Pa/m]
     logical, allocatable :: was_open(:) !< (points) at the linearisation before
+    integer, allocatable :: num_openings(:) !< (points) within the increment's iteration
     real(rk), allocatable :: response(:, :) !< (3, points) jumps by the balance as linearised [m]
     real(rk), allocatable :: start_jump(:, :) !< (3, points) of the converged state before [m]
     real(rk), allocatable :: step(:, :) !< (3, points) of the jumps in the last iteration [m]
@@ -26,6 +27,9 @@ module joint_forces
     real(rk) :: start_force = 0.0_rk !< 2-norm of area*traction of the converged state [N]
     real(rk) :: bulk_force = 0.0_rk !< reference force of the bulk [N]
   end type joint_field
+
+  !> A point opened so often within one increment has parted (theory.md, 2.3).
+  integer, parameter :: parting_openings = 2
 
   !> Energies of all joints [J].
   type :: joint_work
@@ -73,6 +77,7 @@ contains
       first = operator%first_point(j)
       last = operator%first_point(j + 1) - 1
       associate (jump => field%jump(:, first:last), multiplier => field%multiplier(:, first:last))
+        new(j)%has_parted = field%num_openings(first:last) >= parting_openings
         call joints(j)%law%update(jump, old(j), multiplier, field%scale(first:last), new(j), &
                                   field%iterate(:, first:last), field%tangent(:, :, first:last))
       end associate

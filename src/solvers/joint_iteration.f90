@@ -37,10 +37,12 @@ contains
     type(joint_state), intent(in) :: old(:)
     type(joint_field), intent(out) :: field
     type(joint_state), intent(inout) :: new(:)
+    logical :: is_moved
     integer :: n
     n = operator%num_points
     allocate (field%traction(3, n), field%iterate(3, n), field%tangent(3, 3, n))
     allocate (field%start_jump(3, n))
+    allocate (field%num_openings(n), source=0)
     field%scale = scale
     field%bulk_force = balance%reference
     field%jump = balance%guess
@@ -53,7 +55,8 @@ contains
     if (.not. balance%starts_bonded) then
       where (field%traction(1, :) >= 0.0_rk) field%tangent(1, 1, :) = 0.0_rk
       call linearise(joints, operator, old, reference, field, new)
-      call approach_contact(joints, operator, old, reference, field, new)
+      call approach_contact(joints, operator, reference, field, is_moved)
+      if (is_moved) call linearise(joints, operator, old, reference, field, new)
       return
     end if
     field%iterate = reference*field%jump
@@ -70,6 +73,8 @@ contains
     integer :: p, i
     field%was_open = field%tangent(1, 1, :) < 0.5_rk*reference(1, :)
     call evaluate_joints(joints, operator, old, field, new)
+    where (.not. field%was_open .and. field%tangent(1, 1, :) < 0.5_rk*reference(1, :)) &
+      field%num_openings = field%num_openings + 1
     do p = 1, operator%num_points
       do i = 1, 3
         if (field%tangent(i, i, p) < reference(i, p)) then
@@ -106,30 +111,29 @@ contains
     type(balance_outcome), intent(in) :: outcome
     type(joint_field), intent(inout) :: field
     type(joint_state), intent(inout) :: new(:)
-    if (outcome%iterations >= patience .and. &
-        outcome%residual > sufficient_decrease*field%last_residual) then
+    logical :: is_halfway, is_nearer
+    is_halfway = outcome%iterations >= patience .and. &
+                 outcome%residual > sufficient_decrease*field%last_residual
+    if (is_halfway) then
       field%jump = field%response - 0.5_rk*field%step
       field%multiplier = field%multiplier - 0.5_rk*field%multiplier_step
-      call linearise(joints, operator, old, reference, field, new)
-    else
-      call approach_contact(joints, operator, old, reference, field, new)
     end if
+    call approach_contact(joints, operator, reference, field, is_nearer)
+    if (is_halfway .or. is_nearer) call linearise(joints, operator, old, reference, field, new)
     field%last_residual = outcome%residual
   end subroutine linearise_next
 
-  !> Linearises nearer to the contact where a point that was open has run through it. Without the
-  !> joint's resistance it went far too deep; friction would take that for pressure and stick. The
-  !> point is put where the joint carries what the structure's own stiffness would give, r times
-  !> the depth (the normal part of the augmented form).
-  subroutine approach_contact(joints, operator, old, reference, field, new)
+  !> Goes nearer to the contact where a point that was open has run through it. Without the joint's
+  !> resistance it went far too deep; friction would take that for pressure and stick. The point is
+  !> put where the joint carries what the structure's own stiffness would give, r times the depth
+  !> (the normal part of the augmented form).
+  pure subroutine approach_contact(joints, operator, reference, field, is_nearer)
     type(joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: old(:)
     real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
     type(joint_field), intent(inout) :: field
-    type(joint_state), intent(inout) :: new(:)
+    logical, intent(out) :: is_nearer !< the laws have to be evaluated anew
     real(rk) :: depth
-    logical :: is_nearer
     integer :: j, p
     is_nearer = .false.
     do j = 1, size(joints)
@@ -140,7 +144,6 @@ contains
         is_nearer = .true.
       end do
     end do
-    if (is_nearer) call linearise(joints, operator, old, reference, field, new)
   end subroutine approach_contact
 
   !> Tangents of closed, sticking joints.

@@ -15,6 +15,7 @@ program test_joint_contraction
   call gap_closes_first(log)
   call friction_cycle(log)
   call slip_restarts_after_opening(log)
+  call parted_point_has_no_cohesion(log)
   call breaking_frees_energy(log)
   call friction_work_is_that_of_the_path(log)
   call iteration_ends_at_the_return_map(log)
@@ -130,6 +131,21 @@ contains
     call go(law, [-1.0e-6_rk, 8.0e-6_rk, -2.0e-6_rk], state)
     call check_close(log, norm2(state%traction(2:3, 1)), 0.0_rk, 1.0e-9_rk, 'closes without shear')
   end subroutine slip_restarts_after_opening
+
+  !> A point that has parted within the increment slides at mu p; in the next one it has c again.
+  subroutine parted_point_has_no_cohesion(log)
+    type(test_log), intent(inout) :: log
+    type(contraction_law) :: law
+    type(joint_state) :: state
+    law = joint_of(0.0_rk, 0.5_rk, 1.0e5_rk, 0.0_rk)
+    call law%start_state(1, state)
+    state%has_parted = .true.
+    call go(law, [-1.0e-6_rk, 8.0e-6_rk, 0.0_rk], state)
+    call check_close(log, state%traction(2, 1), 5.0e5_rk, 1.0e-6_rk, 'parted: mu p')
+    state%has_parted = .false.
+    call go(law, [-1.0e-6_rk, 16.0e-6_rk, 0.0_rk], state)
+    call check_close(log, state%traction(2, 1), 6.0e5_rk, 1.0e-6_rk, 'whole: mu p + c')
+  end subroutine parted_point_has_no_cohesion
 
   !> Breaking frees q_on**2/(2 k_n), in however large a step.
   subroutine breaking_frees_energy(log)
