@@ -128,8 +128,8 @@ contains
     spec%place = 'step'
     spec%meaning = 'Acceleration of the base, the same everywhere. Results are relative to the '// &
                    'base; the water''s added mass takes part. Like every load it stays: a '// &
-                   'history over the time of its step holds its last value afterwards; one in the '// &
-                   'same direction replaces it in a later step and adds to it in the same step.'
+                   'history over the time of its step holds its last value afterwards. One in '// &
+                   'the same direction replaces it in a later step, adds to it in its own.'
     spec%example = '*BASE MOTION, DOF=1, AMPLITUDE=QUAKE, SCALE=9.81'
     spec%most_lines = 0
     allocate (spec%parameters, source=[ &

@@ -30,8 +30,8 @@ contains
     call list_keywords(list)
     call read_cards(path, list%specs, model%cards, faults)
     if (size(model%cards) == 0 .and. .not. faults%has_errors()) then
-      call faults%add(severity_error, place(file=path, keyword='', source=''), 'the deck is empty', &
-                      'keywords, lines that begin with *')
+      call faults%add(severity_error, place(file=path, keyword='', source=''), &
+                      'the deck is empty', 'keywords, lines that begin with *')
     end if
     call open_draft(path, model)
     call match_cards(list, model, keyword_of_card, faults)

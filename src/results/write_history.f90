@@ -58,8 +58,8 @@ contains
     end do
   end subroutine open_histories
 
-  !> The name of a set or joint as its file has it; where it is taken already (sets 'A B' and 'A_B'),
-  !> the position of the file makes it another.
+  !> The name of a set or joint as its file has it; where it is taken already (sets 'A B' and
+  !> 'A_B'), the position of the file makes it another.
   pure function own_name(files, f) result(name)
     type(history_file), intent(in) :: files(:)
     integer, intent(in) :: f !< position of the file
