@@ -93,7 +93,7 @@ def add_deck_options(parser: argparse.ArgumentParser) -> None:
         "--bonded", action="store_true", help="joints that never open: the run without joints"
     )
     group.add_argument(
-        "--water", type=float, default=105.0, help="depth of the water [m]; 0: empty (105)"
+        "--water", type=float, help="depth of the water [m]; 0: empty (105/135.5 of the height)"
     )
     group.add_argument("--added-mass", choices=("DIAGONAL", "NORMAL"), default="DIAGONAL")
     group.add_argument(
@@ -148,6 +148,16 @@ def mesh_options_of(chosen: argparse.Namespace) -> DamOptions:
 def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
     """DeckOptions from the command line; motion files relative to the deck."""
     folder = chosen.output.parent
+    water = chosen.water
+    if water is None:
+        water = round(chosen.height * 105.0 / 135.5, 3)
+    if not 0.0 <= water <= chosen.height:
+        raise ValueError(f"water must lie in 0..{chosen.height:g} (the height), found {water:g}")
+    if len(chosen.motion) > 3:
+        raise ValueError(f"motion takes files along x, y, z; found {len(chosen.motion)}")
+    missing = [file for file in chosen.motion if not Path(file).is_file()]
+    if missing:
+        raise ValueError(f"there is no motion file '{missing[0]}'")
     return DeckOptions(
         title=chosen.title,
         element_type=chosen.element,
@@ -159,7 +169,7 @@ def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
         friction=chosen.friction,
         cohesion=chosen.cohesion,
         has_joint_law=not chosen.bonded,
-        water_depth=chosen.water if chosen.water > 0.0 else None,
+        water_depth=water if water > 0.0 else None,
         added_mass_direction=chosen.added_mass,
         motions=tuple(Path(os.path.relpath(file, folder)).as_posix() for file in chosen.motion),
         motion_dt=chosen.motion_dt,

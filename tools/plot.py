@@ -64,9 +64,14 @@ def main(arguments: list[str] | None = None) -> int:
     folder = chosen.output or chosen.results
     folder.mkdir(parents=True, exist_ok=True)
     for job in jobs:
+        num_pictures = 0
         for picture in draw_job(Results(chosen.results, job), folder):
             if picture is not None:
                 print(picture, flush=True)
+                num_pictures += 1
+        if num_pictures == 0:
+            wanted = "*ENVELOPE, *NODE FILE, *NODE PRINT or *JOINT PRINT in the deck"
+            print(f"plot: {job} kept nothing to draw; ask with {wanted}", file=sys.stderr)
     return 0
 
 

@@ -38,6 +38,7 @@ contains
     if (allocated(error)) return
     call results%log%note(echo)
     call results%costs%add_time('read deck', 'deck', wall_clock() - started_at, 1)
+    call results%costs%add_memory('read deck', 'deck', peak_memory()) ! with the program itself
     call results%open(scene, given%folder, remarks, started_at, error)
     if (allocated(error)) return
     call start_analysis(scene, now)

@@ -6,15 +6,18 @@ module timer
   public :: wall_clock, peak_memory, ledger, ledger_part
 
   real(rk), parameter :: kilobytes_per_megabyte = 1024.0_rk
+  !> Calls of a part whose memory is looked at: the first ones take it, and asking costs some 50 us.
+  integer, parameter :: num_weighed_calls = 4
 
   !> One line of the ledger.
   type :: ledger_part
     character(:), allocatable :: name !< 'factorise', 'joint dam', ..
     character(:), allocatable :: kind !< 'deck', 'solver', 'joint', 'load', 'output', ..
     real(rk) :: wall_time = 0.0_rk !< [s]
-    real(rk) :: memory = 0.0_rk !< [MB]
+    real(rk) :: memory = 0.0_rk !< what it added to the most that the process held [MB]
     integer :: num_calls = 0
     logical :: is_running = .false.
+    real(rk) :: peak_before = 0.0_rk !< of the process, when it was started [MB]
     real(rk) :: started = 0.0_rk !< by the wall clock [s]
   end type ledger_part
 
@@ -25,7 +28,7 @@ module timer
     procedure :: start
     procedure :: stop => stop_part
     procedure :: add_time
-    procedure :: set_memory
+    procedure :: add_memory
   end type ledger
 
 contains
@@ -63,8 +66,11 @@ contains
     character(*), intent(in) :: kind !< family it belongs to
     integer :: part
     call find_or_add(self, name, kind, part)
-    self%parts(part)%is_running = .true.
-    self%parts(part)%started = wall_clock()
+    associate (entry => self%parts(part))
+      entry%is_running = .true.
+      if (entry%num_calls < num_weighed_calls) entry%peak_before = peak_memory()
+      entry%started = wall_clock()
+    end associate
   end subroutine start
 
   !> Stops the clock of a part and counts one call; a part that does not run stays as it is.
@@ -77,6 +83,9 @@ contains
     associate (entry => self%parts(part))
       if (.not. entry%is_running) return
       entry%wall_time = entry%wall_time + wall_clock() - entry%started
+      if (entry%num_calls < num_weighed_calls) then
+        entry%memory = entry%memory + peak_memory() - entry%peak_before
+      end if
       entry%num_calls = entry%num_calls + 1
       entry%is_running = .false.
     end associate
@@ -95,16 +104,16 @@ contains
     self%parts(part)%num_calls = self%parts(part)%num_calls + num_calls
   end subroutine add_time
 
-  !> Notes the memory a part holds.
-  subroutine set_memory(self, name, kind, megabytes)
+  !> Adds memory that was measured elsewhere.
+  subroutine add_memory(self, name, kind, megabytes)
     class(ledger), intent(inout) :: self
     character(*), intent(in) :: name !< of the part
     character(*), intent(in) :: kind !< family it belongs to
     real(rk), intent(in) :: megabytes
     integer :: part
     call find_or_add(self, name, kind, part)
-    self%parts(part)%memory = megabytes
-  end subroutine set_memory
+    self%parts(part)%memory = self%parts(part)%memory + megabytes
+  end subroutine add_memory
 
   !> Position of a part, 0 where there is none.
   pure integer function find_part(self, name) result(found)

@@ -65,7 +65,6 @@ contains
                         self%condensed%scale)
     call use_one_thread(levels)
     call self%costs%stop('compliance')
-    call self%costs%set_memory('compliance', 'joint', 8.0e-6_rk*size(self%condensed%compliance))
   end subroutine prepare
 
   !> Newton on the jumps between the two halves of one solve; where the jumps are not at the end of

@@ -84,7 +84,9 @@ contains
       associate (part => balance%costs%parts(i))
         call costs%add_time(part%name, part%kind, part%wall_time, part%num_calls)
         call costs%add_time(within, 'solver', -part%wall_time, 0)
-        if (part%memory > 0.0_rk) call costs%set_memory(part%name, part%kind, part%memory)
+        call costs%add_memory(part%name, part%kind, part%memory)
+        call costs%add_memory(within, 'solver', -part%memory)
+        part%memory = 0.0_rk
         part%wall_time = 0.0_rk
         part%num_calls = 0
       end associate

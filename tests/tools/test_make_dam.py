@@ -1,6 +1,7 @@
 """The deck that make_dam writes."""
 
 import make_dam
+import pytest
 import numpy as np
 
 
@@ -56,3 +57,21 @@ def test_motion_makes_a_dynamic_step(tmp_path):
 def test_bad_shape_is_refused_with_a_message(tmp_path, capsys):
     assert make_dam.main(["-o", str(tmp_path / "x.inp"), "--levels", "40"]) == 2
     assert "elements along the arc" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--water", "200"], "water must lie in 0..135.5"),
+        (["--water", "-1"], "water must lie in"),
+        (["--motion", "nowhere.txt"], "there is no motion file 'nowhere.txt'"),
+    ],
+)
+def test_options_out_of_range_are_told(tmp_path, capsys, options, message):
+    assert make_dam.main(["-o", str(tmp_path / "x.inp"), *options]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_the_water_follows_the_height(tmp_path):
+    deck, _ = write_deck(tmp_path, "--height", "271", "--crest-arc", "889.72")
+    assert "LEVEL=210," in deck

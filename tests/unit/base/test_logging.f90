@@ -62,10 +62,10 @@ contains
     call book%stop('factorise')
     call book%stop('never started')
     call book%add_time('read', 'deck', 2.0_rk, 5)
-    call book%set_memory('factorise', 'solver', 44.0_rk)
+    call book%add_memory('factorise', 'solver', 44.0_rk)
     call check(log, size(book%parts) == 2, 'two parts')
     call check(log, book%parts(1)%num_calls == 3, 'calls')
-    call check_close(log, book%parts(1)%memory, 44.0_rk, 0.0_rk, 'memory')
+    call check(log, book%parts(1)%memory >= 44.0_rk, 'memory')
     call check(log, book%parts(1)%wall_time >= 0.0_rk .and. &
                book%parts(1)%wall_time <= wall_clock() - began, 'time')
     call check_close(log, book%parts(2)%wall_time, 2.0_rk, 0.0_rk, 'time measured elsewhere')
