@@ -133,7 +133,7 @@ contains
     if (any(fields == 'DAMAGET')) then
       call this%fault(faults, 'DAMAGET is not available yet', 'S1, S3, OPENING or U')
     end if
-    model%now%envelope = [model%now%envelope, fields]
+    model%now%envelope = [character(8) :: model%now%envelope, fields]
   end subroutine read_envelope
 
   subroutine describe_preprint(spec)

@@ -51,7 +51,7 @@ contains
       do i = 1, this%num_fields(line)
         if (this%is_empty_at(line, i)) cycle
         new = this%word_at(line, i)
-        if (.not. any(fields == new)) fields = [fields, new]
+        if (.not. any(fields == new)) fields = [character(8) :: fields, new]
       end do
     end do
     if (size(fields) == 0) fields = [character(8) :: default]

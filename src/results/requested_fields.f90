@@ -30,7 +30,7 @@ contains
         do i = 1, size(request%fields)
           if (any(fields == request%fields(i))) cycle
           if (is_available(scene, now, request%fields(i))) then
-            fields = [fields, request%fields(i)]
+            fields = [character(8) :: fields, request%fields(i)]
           else
             call record%warn_once('step '//scene%steps(now%step)%name//' has no field '// &
                                   trim(request%fields(i))//'; it is not written')

@@ -69,7 +69,7 @@ contains
     allocate (names(0), kind_of(plan%num_solids), plan%num_points(plan%num_solids))
     do s = 1, plan%num_solids
       associate (name => scene%mesh%element_type(plan%element_of_solid(s)))
-        if (.not. any(names == name)) names = [names, name]
+        if (.not. any(names == name)) names = [character(8) :: names, name]
         kind_of(s) = findloc(names, name, dim=1)
       end associate
     end do

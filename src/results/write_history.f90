@@ -93,7 +93,7 @@ contains
     do i = 1, size(request%fields)
       if (any(files(f)%fields == request%fields(i))) cycle
       if (columns_of(request%kind, request%fields(i)) /= '') then
-        files(f)%fields = [files(f)%fields, request%fields(i)]
+        files(f)%fields = [character(8) :: files(f)%fields, request%fields(i)]
       else if (request%kind /= 'JOINT') then
         call record%warn_once(trim(request%fields(i))//' of '//request%name// &
                               ' is not printed: this analysis does not have it')
