@@ -1,8 +1,8 @@
 """The deck that make_dam writes."""
 
 import make_dam
-import pytest
 import numpy as np
+import pytest
 
 
 def write_deck(folder, *options):
