@@ -1,7 +1,10 @@
 !> The acceleration that a dynamic step starts with: M a = r on the free unknowns.
 !>
 !> M is well conditioned once scaled by its diagonal, so conjugate gradients need some tens of
-!> products and no factor. Unknowns without mass (a massless foundation) get no acceleration.
+!> products and no factor. Unknowns without mass (a massless foundation) get no acceleration. Water
+!> that moves with a massless node along its normal only leaves directions without mass that are no
+!> unknowns. What pushes there has nothing to accelerate, and conjugate gradients would run away along
+!> it: the shortest least squares leave it out.
 module initial_acceleration
   use kinds, only: rk
   use errors, only: error_type, raise
@@ -16,31 +19,51 @@ module initial_acceleration
 
 contains
 
-  !> Solves M a = r by conjugate gradients scaled with the diagonal.
-  subroutine find_acceleration(matrix, mass, r, a, error)
+  !> Solves M a = r, in the directions that have a mass.
+  subroutine find_acceleration(matrix, mass, node, r, a, error)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: mass(:) !< values of M
+    integer, intent(in) :: node(:) !< (num_total) that each unknown belongs to
     real(rk), intent(in) :: r(:) !< (num_total) [N]
     real(rk), intent(out) :: a(:) !< (num_total) zero on prescribed and massless unknowns [m/s2]
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable, dimension(:) :: scale, rest, z, p, product
+    real(rk), allocatable :: scale(:)
+    logical :: is_solved, is_semidefinite
+    call invert_diagonal(matrix, mass, scale)
+    call solve_definite(matrix, mass, scale, r, a, is_solved, is_semidefinite)
+    if (is_semidefinite) then
+      call scale_nodes(matrix, mass, node, scale)
+      call solve_semidefinite(matrix, mass, scale, r, a, is_solved)
+    end if
+    if (is_solved) return
+    call raise(error, 'no acceleration to start with: the mass matrix is not positive definite')
+  end subroutine find_acceleration
+
+  !> Conjugate gradients scaled with the diagonal; stops where it meets a direction without mass.
+  subroutine solve_definite(matrix, mass, scale, r, a, is_solved, is_semidefinite)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:), scale(:), r(:)
+    real(rk), intent(out) :: a(:)
+    logical, intent(out) :: is_solved, is_semidefinite
+    real(rk), allocatable, dimension(:) :: rest, z, p, product
     real(rk) :: size_of_rest, first_size, last_size, curvature
     integer :: i
     a = 0.0_rk
-    call invert_diagonal(matrix, mass, scale)
     rest = merge(r, 0.0_rk, scale > 0.0_rk)
     z = scale*rest
     p = z
     allocate (product(size(r)))
     size_of_rest = dot_product(rest, z)
     first_size = size_of_rest
+    is_semidefinite = .false.
     do i = 1, most_products
-      if (size_of_rest <= tolerance**2*first_size) return
+      is_solved = size_of_rest <= tolerance**2*first_size
+      if (is_solved) return
       call multiply(matrix, mass, p, product)
       product = merge(product, 0.0_rk, scale > 0.0_rk)
       curvature = dot_product(p, product)
-      ! A direction without mass (added mass along one normal only) has no acceleration.
-      if (curvature <= massless*dot_product(p/max(scale, tiny(1.0_rk)), p)) return
+      is_semidefinite = curvature <= massless*dot_product(p/max(scale, tiny(1.0_rk)), p)
+      if (is_semidefinite) return
       a = a + size_of_rest/curvature*p
       rest = rest - size_of_rest/curvature*product
       z = scale*rest
@@ -48,8 +71,49 @@ contains
       size_of_rest = dot_product(rest, z)
       p = z + size_of_rest/last_size*p
     end do
-    call raise(error, 'no acceleration to start with: the mass matrix is not positive definite')
-  end subroutine find_acceleration
+  end subroutine solve_definite
+
+  !> Least squares |S (M a - r)| by conjugate gradients on the normal equations, with a = S y and
+  !> the shortest y.
+  subroutine solve_semidefinite(matrix, mass, s, r, a, is_solved)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:)
+    real(rk), intent(in) :: s(:) !< (num_total) diagonal of S
+    real(rk), intent(in) :: r(:)
+    real(rk), intent(out) :: a(:)
+    logical, intent(out) :: is_solved
+    real(rk), allocatable, dimension(:) :: y, rest, gradient, p, product
+    real(rk) :: slope, last_slope, step, smallest_slope
+    integer :: i
+    allocate (y(size(r)), gradient(size(r)), product(size(r)))
+    y = 0.0_rk
+    rest = s*r
+    smallest_slope = (tolerance*norm2(rest))**2
+    call multiply_scaled(rest, gradient)
+    p = gradient
+    slope = dot_product(gradient, gradient)
+    do i = 1, most_products
+      is_solved = slope <= smallest_slope
+      if (is_solved) exit
+      call multiply_scaled(p, product)
+      step = slope/dot_product(product, product)
+      y = y + step*p
+      rest = rest - step*product
+      call multiply_scaled(rest, gradient)
+      last_slope = slope
+      slope = dot_product(gradient, gradient)
+      p = gradient + slope/last_slope*p
+    end do
+    a = s*y
+  contains
+    !> S M S x.
+    subroutine multiply_scaled(x, answer)
+      real(rk), intent(in) :: x(:)
+      real(rk), intent(out) :: answer(:)
+      call multiply(matrix, mass, s*x, answer)
+      answer = s*answer
+    end subroutine multiply_scaled
+  end subroutine solve_semidefinite
 
   !> 1/diagonal; zero where there is no mass, and on prescribed unknowns.
   subroutine invert_diagonal(matrix, mass, scale)
@@ -70,4 +134,27 @@ contains
       end if
     end do
   end subroutine invert_diagonal
+
+  !> 1/sqrt of the mass of a node, the same in its directions, so that what stands across a normal
+  !> still does when scaled; zero on nodes without mass and on prescribed unknowns.
+  subroutine scale_nodes(matrix, mass, node, scale)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:)
+    integer, intent(in) :: node(:) !< (num_total)
+    real(rk), intent(out) :: scale(:) !< (num_total) [1/sqrt(kg)]
+    real(rk), allocatable :: own(:), total(:)
+    real(rk) :: smallest
+    integer :: k
+    allocate (own(matrix%num_total), total(maxval(node)))
+    call diagonal(matrix, mass, own)
+    total = 0.0_rk
+    do k = 1, matrix%num_free
+      total(node(k)) = total(node(k)) + own(k)
+    end do
+    smallest = massless*maxval(total)
+    scale = 0.0_rk
+    do k = 1, matrix%num_free
+      if (total(node(k)) > smallest) scale(k) = 1.0_rk/sqrt(total(node(k)))
+    end do
+  end subroutine scale_nodes
 end module initial_acceleration

@@ -83,8 +83,8 @@ contains
     end if
     call sum_contact(system%operator, moving)
     call gather_tractions(system%operator, moving%joints, moving%carried)
-    call find_acceleration(system%matrix, system%mass, moving%external - moving%elastic &
-                           - moving%viscous - moving%contact, moving%a, error)
+    call find_acceleration(system%matrix, system%mass, system%numbers%node, moving%external &
+                           - moving%elastic - moving%viscous - moving%contact, moving%a, error)
     call multiply(system%matrix, system%mass, moving%a, moving%inertia)
     moving%balanced = moving%inertia
     call multiply(system%matrix, system%stiffness, moving%v, moving%elastic_rate)
