@@ -191,8 +191,9 @@ contains
     heights = 0.0_rk
     if (push%is_hydrostatic) then
       heights = [this%real_at(line, 4), this%real_at(line, 5)]
-      if (abs(heights(1) - heights(2)) <= 0.0_rk) then
-        call this%fault_at(faults, line, 5, 'z_ref is z_top', 'two heights that differ')
+      if (heights(2) >= heights(1)) then
+        call this%fault_at(faults, line, 5, "found '"//this%text_at(line, 5)//"'", &
+                           'z_ref below z_top, '//this%text_at(line, 4)//' m')
         return
       end if
       push%top = heights(1)

@@ -54,6 +54,7 @@ contains
     do while (outcome%iterations < controls%max_iterations)
       outcome%iterations = outcome%iterations + 1
       call change_tangent(self, operator%area, field%tangent, tangent)
+      if (tangent%factor%is_singular) return ! a smaller increment may pass by such an iterate
       call correct(self, tangent, field%response - field%jump, correction)
       call linear_tractions(field, correction, linear)
       call take_step(joints, operator, old, self%reference, correction, linear, field, new)

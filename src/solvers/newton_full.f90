@@ -2,7 +2,7 @@
 !> each iteration, by CHOLMOD when it is symmetric and by UMFPACK when friction slides.
 module newton_full
   use kinds, only: rk
-  use errors, only: error_type
+  use errors, only: error_type, analysis_failed
   use matrix_pattern, only: pattern, full_pattern, spread_values
   use joint_law, only: joint_state
   use joint_points, only: joint
@@ -73,7 +73,11 @@ contains
     do while (outcome%iterations < self%controls%max_iterations)
       outcome%iterations = outcome%iterations + 1
       call self%factorise_tangent(self%operator, field%tangent, error)
-      if (allocated(error)) return
+      if (allocated(error)) then
+        ! A singular tangent belongs to this iterate: a smaller increment may pass by it.
+        if (error%exit_code == analysis_failed) deallocate (error)
+        return
+      end if
       call linear_tractions(field, balance%offset - field%jump, linear)
       call self%back_substitute(balance%rhs, -linear, self%operator, x, answer, error)
       if (allocated(error)) return

@@ -63,16 +63,16 @@ contains
     j = count(system%operator%first_point <= p)
     p = p - system%operator%first_point(j) + 1
     call raise(error, trim(text)//'; worst in joint '//scene%joints(j)%name//' at '// &
-               place_text(scene%joints(j)%x(:, p))//hint(system, outcome))
+               place_text(scene%joints(j)%x(:, p))//hint(scene%steps(now%step), outcome))
   end subroutine give_up
 
   !> What the user may look for.
-  function hint(system, outcome) result(text)
-    type(dam_system), intent(in) :: system
+  pure function hint(plan, outcome) result(text)
+    type(step), intent(in) :: plan
     type(balance_outcome), intent(in) :: outcome
     character(:), allocatable :: text
     text = ''
-    if (system%operator%num_points == 0 .or. outcome%has_converged) return
+    if (plan%procedure /= 'STATIC' .or. outcome%has_converged) return
     text = ' (a block that its joints no longer hold has no static equilibrium)'
   end function hint
 
