@@ -45,5 +45,6 @@ contains
     matrix%column_start = [1, 4, 6, 7, 10, 12, 13]
     matrix%row = [1, 2, 3, 2, 3, 3, 4, 5, 6, 5, 6, 6]
     matrix%free_entries = [3, 2, 1, 3, 2, 1]
+    matrix%alike = matrix%free_entries
   end subroutine fill_pattern
 end program test_initial_acceleration
