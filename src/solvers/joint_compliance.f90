@@ -16,7 +16,7 @@ module joint_compliance
   real(rk), parameter :: scale_factor = 0.8_rk
   !> Part of the joint's stiffness that is kept when its own is taken out of G, so that a block held
   !> by nothing but its joints has a stiffness too.
-  real(rk), parameter :: kept_stiffness = 1.0e-4_rk
+  real(rk), parameter :: kept_stiffness = 1.0e-6_rk
 
 contains
 
