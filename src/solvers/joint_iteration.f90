@@ -16,6 +16,12 @@ module joint_iteration
   !> block that touches nothing for an iterate moves far, but stays in reach. The balance itself is
   !> judged without it.
   real(rk), parameter :: stiffness_floor = 1.0e-10_rk
+  !> From this iteration on friction does not follow the pressure of the next iterate. Where a block
+  !> stands on an edge, sliding can press it on as fast as it is pushed up, and the iteration loses
+  !> its way; with the pressure of the last iterate each one is well posed. Near a solution, below
+  !> the residual `near_by`, it does again.
+  integer, parameter :: patience_with_friction = 8
+  real(rk), parameter :: near_by = 1.0e-2_rk
   !> From this iteration on, one that has not brought the residual down by `sufficient_decrease` is
   !> linearised halfway: a cycle between two states of some points ends there.
   integer, parameter :: patience = 6
@@ -120,6 +126,9 @@ contains
     end if
     call approach_contact(joints, operator, reference, field, is_nearer)
     if (is_halfway .or. is_nearer) call linearise(joints, operator, old, reference, field, new)
+    if (outcome%iterations >= patience_with_friction .and. outcome%residual > near_by) then
+      field%tangent(2:3, 1, :) = 0.0_rk
+    end if
     field%last_residual = outcome%residual
   end subroutine linearise_next
 
