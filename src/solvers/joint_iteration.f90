@@ -24,7 +24,7 @@ module joint_iteration
   real(rk), parameter :: near_by = 1.0e-2_rk
   !> From this iteration on, one that has not brought the residual down by `sufficient_decrease` is
   !> linearised halfway: a cycle between two states of some points ends there.
-  integer, parameter :: patience = 6
+  integer, parameter :: patience = 8
   real(rk), parameter :: sufficient_decrease = 0.5_rk
   !> Joint forces below this part of the bulk's largest force are measured against the latter.
   real(rk), parameter :: smallest_share = 1.0e-6_rk
