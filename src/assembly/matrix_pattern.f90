@@ -7,6 +7,7 @@ module matrix_pattern
   implicit none
   private
   public :: pattern, position_of, add_block, multiply, diagonal, full_pattern, spread_values
+  public :: drop_zeros
 
   type :: pattern
     integer :: num_free = 0 !< free unknowns come first
@@ -148,6 +149,34 @@ contains
       d(j) = values(position_of(matrix, j, j))
     end do
   end subroutine diagonal
+
+  !> A symmetric matrix without its zeros, for products.
+  pure subroutine drop_zeros(matrix, values, thin, thin_values)
+    type(pattern), intent(in) :: matrix !< symmetric
+    real(rk), intent(in) :: values(:)
+    type(pattern), intent(out) :: thin !< with the diagonal
+    real(rk), allocatable, intent(out) :: thin_values(:)
+    logical :: is_kept(size(values))
+    integer :: j
+    is_kept = abs(values) > 0.0_rk
+    is_kept(matrix%column_start(:matrix%num_total)) = .true.
+    thin%num_free = matrix%num_free
+    thin%num_total = matrix%num_total
+    thin%num_jumps = matrix%num_jumps
+    thin%row = pack(matrix%row, is_kept)
+    thin_values = pack(values, is_kept)
+    allocate (thin%column_start(matrix%num_total + 1), source=1)
+    allocate (thin%alike(matrix%num_total), source=1)
+    do j = 1, matrix%num_total
+      associate (column => is_kept(matrix%column_start(j):matrix%column_start(j + 1) - 1))
+        thin%column_start(j + 1) = thin%column_start(j) + count(column)
+      end associate
+    end do
+    allocate (thin%free_entries(matrix%num_total), source=0)
+    do j = 1, matrix%num_total
+      thin%free_entries(j) = count_free(thin, j)
+    end do
+  end subroutine drop_zeros
 
   !> The full pattern (both triangles) of a symmetric one.
   pure subroutine full_pattern(lower, full)

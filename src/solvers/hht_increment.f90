@@ -140,7 +140,7 @@ contains
     after%q = after%q + x
     after%v = after%v + scheme%velocity_of_x*x
     weight = scheme%gamma*scheme%dt
-    call multiply(system%matrix, system%mass, after%a, after%inertia)
+    call multiply(system%mass_pattern, system%mass_entries, after%a, after%inertia)
     after%momentum = after%momentum + weight*after%inertia
     call multiply(system%matrix, system%stiffness, after%q, product)
     after%elastic_jerk = scheme%acceleration_of_x*(product - after%elastic)

@@ -6,7 +6,7 @@ module step_system
   use step_plan, only: step
   use dof_numbering, only: numbering
   use constraint_elimination, only: number_step
-  use matrix_pattern, only: pattern
+  use matrix_pattern, only: pattern, drop_zeros
   use pattern_builder, only: cell_list, list_cells, build_pattern
   use assemble_elements, only: assemble_stiffness, assemble_mass, assemble_damping, add_nodal_mass
   use assemble_forces, only: sum_added_mass
@@ -22,6 +22,8 @@ module step_system
     type(pattern) :: matrix
     real(rk), allocatable :: stiffness(:) !< values of K, without joints [N/m]
     real(rk), allocatable :: mass(:) !< values of M, added mass included; size 0 in a static step
+    type(pattern) :: mass_pattern !< of the entries of M that are not zero, for products
+    real(rk), allocatable :: mass_entries(:) !< their values [kg]
     real(rk), allocatable :: damping(:) !< values of C; size 0 where nothing damps
     type(jump_operator) :: operator
     type(load_group), allocatable :: groups(:)
@@ -57,6 +59,7 @@ contains
     if (allocated(error)) return
     call sum_added_mass(scene, plan%loads, blocks)
     call add_nodal_mass(system%numbers, blocks, system%matrix, system%mass)
+    call drop_zeros(system%matrix, system%mass, system%mass_pattern, system%mass_entries)
   end subroutine build_inertia
 
   !> Rayleigh damping of materials and step, where there is any.

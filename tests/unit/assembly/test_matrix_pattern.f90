@@ -6,7 +6,7 @@ program test_matrix_pattern
   use dof_numbering, only: numbering, linear_links, number_unknowns
   use jump_links, only: link_pairs
   use matrix_pattern, only: pattern, position_of, multiply, diagonal, full_pattern, &
-                            spread_values
+                            spread_values, drop_zeros
   use pattern_builder, only: cell_list, build_pattern
   use joint_stiffness, only: add_joint_stiffness
   implicit none
@@ -62,8 +62,9 @@ contains
   end subroutine entries
 
   subroutine products()
-    real(rk), allocatable :: values(:), full_values(:)
+    real(rk), allocatable :: values(:), full_values(:), thin_values(:)
     real(rk) :: q(18), y(18), z(18), d(18), dense(18, 18)
+    type(pattern) :: thin
     integer :: j, k
     allocate (values, source=[(sin(real(k, rk)), k=1, size(lower%row))])
     allocate (full_values(size(full%row)))
@@ -82,6 +83,14 @@ contains
     call check_close(log, norm2(z - y), 0.0_rk, 1.0e-14_rk*norm2(dense), 'A q of the full pattern')
     call diagonal(full, full_values, d)
     call check(log, all(abs(d - [(dense(j, j), j=1, 18)]) <= 0.0_rk), 'diagonal')
+    values(1) = 0.0_rk
+    values(2::3) = 0.0_rk
+    call multiply(lower, values, q, y)
+    call drop_zeros(lower, values, thin, thin_values)
+    call multiply(thin, thin_values, q, z)
+    call check(log, all(abs(z - y) <= 1.0e-14_rk*norm2(dense)), 'A q without its zeros')
+    call check(log, size(thin_values) < size(values), 'zeros are dropped')
+    call check(log, all(thin%row(thin%column_start(:18)) == [(j, j=1, 18)]), 'not on the diagonal')
   end subroutine products
 
   subroutine joints()
