@@ -96,7 +96,7 @@ def test_condensed_and_full_newton_agree(keyway, layout):
     """Pressed and shaken so that joints open, hit and, in the T, slide: openings to 1e-8.
 
     Both iterate to 1e-10 here. A hit takes the difference of two runs times 3 to 30, as bouncing
-    bodies do; 0.25 s hold few enough (measured: 4e-13 of the largest opening in the loop).
+    bodies do; 0.25 s hold few enough (measured: 3e-12 of the largest opening in the loop).
     """
     time = np.linspace(0.0, 0.5, 501)
     shake = 30.0 * np.sin(2.0 * np.pi * 12.0 * time) * np.minimum(time / 0.1, 1.0)
