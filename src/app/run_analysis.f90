@@ -2,7 +2,7 @@
 module run_analysis
   use omp_lib, only: omp_set_num_threads
   use kinds, only: rk
-  use errors, only: error_type
+  use errors, only: error_type, raise, system_failed
   use diagnostics, only: diagnostic_list
   use file_system, only: base_name, make_folder
   use timer, only: peak_memory, wall_clock
@@ -53,5 +53,7 @@ contains
     end if
     call results%log%close()
     if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
+    if (allocated(error) .or. .not. results%log%has_failed) return
+    call raise(error, "cannot write the log in '"//given%folder//"' (disk full?)", system_failed)
   end subroutine run_problem
 end module run_analysis

@@ -6,6 +6,7 @@ module logging
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: error_unit
   use errors, only: error_type, raise, system_failed
+  use raw_files, only: raw_file
   implicit none
   private
   public :: run_log
@@ -15,7 +16,7 @@ module logging
 
   !> The log of a run.
   type :: run_log
-    integer :: unit = 0 !< of the file; 0: there is none
+    type(raw_file), private :: file !< not open: there is none
     logical :: is_quiet = .false. !< only errors go to stderr
     logical :: is_terminal = .false. !< stderr is a terminal
     logical :: has_failed = .false. !< a line could not be written to the file (disk full)
@@ -47,16 +48,13 @@ contains
     logical, intent(in) :: is_quiet !< say nothing on stderr
     type(error_type), allocatable, intent(out) :: error
     character(*), intent(in), optional :: path !< of the file, written over
-    character(200) :: reason
-    integer :: status
+    logical :: is_good
     self%is_quiet = is_quiet
     self%is_terminal = isatty(standard_error) == 1
     if (.not. present(path)) return
-    open (newunit=self%unit, file=path, status='replace', action='write', iostat=status, &
-          iomsg=reason)
-    if (status == 0) return
-    self%unit = 0
-    call raise(error, "cannot write the log '"//path//"': "//trim(reason), system_failed)
+    call self%file%create(path, is_good)
+    if (is_good) return
+    call raise(error, "cannot write the log '"//path//"'", system_failed)
   end subroutine open_log
 
   !> A line for the file and for people.
@@ -71,11 +69,10 @@ contains
   subroutine note(self, line)
     class(run_log), intent(inout) :: self
     character(*), intent(in) :: line !< may hold several lines
-    integer :: status
-    if (self%unit == 0) return
-    write (self%unit, '(a)', iostat=status) line
-    if (status == 0) flush (self%unit, iostat=status)
-    if (status /= 0) self%has_failed = .true.
+    logical :: is_good
+    if (.not. self%file%is_open()) return
+    call self%file%put(line//new_line('a'), is_good)
+    if (.not. is_good) self%has_failed = .true.
   end subroutine note
 
   !> A line about an increment: takes the place of the one before on a terminal.
@@ -106,9 +103,10 @@ contains
   !> Ends the progress line and closes the file.
   subroutine close_log(self)
     class(run_log), intent(inout) :: self
+    logical :: is_good
     call end_progress(self)
-    if (self%unit /= 0) close (self%unit)
-    self%unit = 0
+    call self%file%close(is_good)
+    if (.not. is_good) self%has_failed = .true.
   end subroutine close_log
 
   !> Writes to stderr, below the progress line.

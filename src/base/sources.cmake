@@ -7,6 +7,7 @@ set(sources
   diagnostics.f90
   diagnostic_text.f90
   timer.f90
+  raw_files.f90
   logging.f90
   small_matrix.f90
   dense_factor.f90

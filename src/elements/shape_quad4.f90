@@ -4,7 +4,7 @@ module shape_quad4
   use gauss_rules, only: quad_point
   implicit none
   private
-  public :: facet_shape, facet_derivative, facet_point, facet_area_vector, cross
+  public :: facet_shape, facet_derivative, facet_point, cross
 
   !> Natural coordinates of the corners.
   real(rk), parameter :: corner(2, 4) = reshape(real([-1, -1, 1, -1, 1, 1, -1, 1], rk), [2, 4])

@@ -3,7 +3,6 @@ set(sources
   json_writer.f90
   sha256.f90
   file_system.f90
-  raw_files.f90
   whole_files.f90
   vtk_order.f90
   dam_faces.f90

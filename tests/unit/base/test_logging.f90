@@ -10,6 +10,7 @@ program test_logging
   log%suite = 'logging'
   call log_file()
   call unwritable_log()
+  call full_disk()
   call parts_of_a_run()
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
@@ -48,6 +49,18 @@ contains
     call journal%say('nobody hears this')
     call journal%close()
   end subroutine unwritable_log
+
+  !> A line that the disk does not take is not lost in silence.
+  subroutine full_disk()
+    type(run_log) :: journal
+    type(error_type), allocatable :: error
+    call journal%open(.true., error, '/dev/full')
+    call check(log,.not. allocated(error), 'the device opens')
+    call check(log,.not. journal%has_failed, 'nothing is lost yet')
+    call journal%note('nobody reads this')
+    call check(log, journal%has_failed, 'a lost line is known')
+    call journal%close()
+  end subroutine full_disk
 
   !> Time, calls and memory by part.
   subroutine parts_of_a_run()

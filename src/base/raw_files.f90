@@ -12,6 +12,7 @@ module raw_files
     integer(long) :: num_bytes = 0 !< of all good writes
   contains
     procedure :: create
+    procedure :: is_open
     procedure :: put
     procedure :: close => close_file
   end type raw_file
@@ -69,6 +70,12 @@ contains
     self%num_bytes = 0
     is_good = self%descriptor >= 0
   end subroutine create
+
+  !> Whether bytes can be put into it.
+  pure logical function is_open(self)
+    class(raw_file), intent(in) :: self
+    is_open = self%descriptor >= 0
+  end function is_open
 
   !> Writes all bytes, or none: when the disk is full the file is cut back to where it was.
   subroutine put(self, bytes, is_good)
