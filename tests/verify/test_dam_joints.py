@@ -127,3 +127,31 @@ def test_static_state_is_that_of_an_arch_dam(runs, stress):
     # arches are pressed, all along the crest but for its ends
     middle = stress["jointed"].near(0.0, 100.0)
     assert stress["jointed"].static[middle].max() < 0.0
+
+
+def test_heel_is_in_tension_and_toe_in_compression(runs):
+    """At the crown under weight and water: 0.7 MPa at the heel, -4 MPa at the toe."""
+    with h5py.File(runs["jointed"].folder / "jointed.h5") as file:
+        x = file["mesh/x"][:]
+        foot = in_dam(file) & (np.abs(x[:, 0]) < 1e-6) & (np.abs(x[:, 2]) < 1e-6)
+        static = file["steps/0001/increments"]
+        principal = static[sorted(static)[-1]]["SP"][:][foot]
+    heel, toe = np.argmin(x[foot, 1]), np.argmax(x[foot, 1])
+    assert 0.0 < principal[heel, 0] < 5e6
+    assert -15e6 < principal[toe, 2] < -1e6
+
+
+def test_first_frequencies(keyway):
+    """Dams of this height with water to three quarters of it: 1.5 to 3 Hz.
+
+    The first mode is symmetric (no mass across the valley), the second antisymmetric.
+    """
+    options = dataclasses.replace(DeckOptions(), num_modes=2)
+    run = run_trial(keyway, Trial(is_coarse=True, options=options, duration=0.05))
+    first, second = run.json["steps"][1]["frequencies"]
+    # 2.0 and 2.5 Hz on the mesh of input/xingbiling_matching
+    assert 1.5 < first["hz"] < second["hz"] < 3.5
+    across, stream = first["effective_mass"][:2]
+    assert abs(across) < 1e-6 * stream
+    across, stream = second["effective_mass"][:2]
+    assert abs(stream) < 1e-6 * across
