@@ -7,8 +7,7 @@ module keywords_reservoir
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real, kind_word
   use kinds, only: rk
   use load_base_motion, only: base_motion
-  use load_reservoir, only: reservoir_load
-  use mesh_faces, only: face_nodes
+  use load_reservoir, only: reservoir_load, wetted_area
   use model_draft, only: draft
   use named_things, only: find_amplitude, find_surface_name, surface_names
   use nearest_words, only: nearest_word
@@ -83,10 +82,10 @@ contains
     lake%is_hydrostatic = this%word('HYDROSTATIC') == 'YES'
     lake%has_added_mass = this%word('ADDED MASS') == 'WESTERGAARD'
     lake%is_diagonal = this%word('DIRECTION') == 'DIAGONAL'
-    if (lowest_height(model, found, lake%water%up) >= lake%water%level) then
+    if (wetted_area(lake, model%scene%mesh) <= 0.0_rk) then
       call this%fault_parameter(faults, 'SURFACE', 'no face of the surface is wetted', &
-                                'a surface that reaches below the level, '// &
-                                this%text('LEVEL')//' m')
+                                'a surface that reaches between BED, '//this%text('BED')// &
+                                ' m, and LEVEL, '//this%text('LEVEL')//' m')
       return
     end if
     if (model%scene%upstream_surface == 0) model%scene%upstream_surface = found
@@ -94,21 +93,6 @@ contains
     call put_load(model, item, 'reservoir '//this%word('NAME'), 'RESERVOIR', this%word('NAME'), &
                   pattern_of_card(this), 1.0_rk, 0)
   end subroutine read_reservoir
-
-  !> Lowest node of a surface [m].
-  pure real(rk) function lowest_height(model, found, up) result(lowest)
-    type(draft), intent(in) :: model
-    integer, intent(in) :: found !< position of the surface
-    integer, intent(in) :: up !< axis
-    integer :: i, nodes(4)
-    lowest = huge(1.0_rk)
-    do i = 1, size(model%scene%surfaces(found)%element)
-      associate (faces => model%scene%surfaces(found), mesh => model%scene%mesh)
-        nodes = face_nodes(mesh, faces%element(i), faces%face(i))
-        lowest = min(lowest, minval(mesh%x(up, nodes)))
-      end associate
-    end do
-  end function lowest_height
 
   !> All that is given, as a text to compare: the same text, the same reservoir.
   pure function pattern_of_card(this) result(text)
