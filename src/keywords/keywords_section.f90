@@ -33,7 +33,7 @@ contains
               field('MASS', kind_choice, 'mass matrix', default='CONSISTENT', &
                     choices='CONSISTENT | LUMPED')])
     allocate (spec%columns, source=[ &
-              field('thickness', kind_real, 'has no meaning for solids')])
+              field('thickness', kind_real, 'a thickness, which solids do not need')])
   end subroutine describe_solid_section
 
   subroutine read_solid_section(this, model, faults)

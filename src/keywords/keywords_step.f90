@@ -227,7 +227,21 @@ contains
       else if (now%largest_increment < now%first_increment) then
         call this%fault_at(faults, 1, 4, 'the largest increment is smaller than the first', &
                            'at least '//as_text(now%first_increment)//' s')
+      else if (now%is_direct .or. now%largest_increment <= now%first_increment) then
+        call compare_with_inc(this, model, faults)
       end if
     end associate
   end subroutine read_limits
+
+  !> Increments that cannot grow have to fit into INC.
+  subroutine compare_with_inc(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    real(rk) :: num_needed
+    num_needed = model%now%duration/model%now%first_increment
+    if (num_needed <= (1.0_rk + 1.0e-9_rk)*model%now%max_increments) return
+    call this%warn(faults, 'the step needs '//as_text(num_needed)//' increments, *STEP, INC='// &
+                   as_text(model%now%max_increments)//' ends it before')
+  end subroutine compare_with_inc
 end module keywords_step
