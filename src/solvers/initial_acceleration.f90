@@ -3,8 +3,8 @@
 !> M is well conditioned once scaled by its diagonal, so conjugate gradients need some tens of
 !> products and no factor. Unknowns without mass (a massless foundation) get no acceleration. Water
 !> that moves with a massless node along its normal only leaves directions without mass that are no
-!> unknowns. What pushes there has nothing to accelerate, and conjugate gradients would run away along
-!> it: the shortest least squares leave it out.
+!> unknowns. What pushes there has nothing to accelerate, and conjugate gradients would run away
+!> along it: the shortest least squares leave it out.
 module initial_acceleration
   use kinds, only: rk
   use errors, only: error_type, raise

@@ -18,7 +18,8 @@ module step_equilibrium
   public :: hand_over_costs, make_equilibrium, prepare_equilibrium, add_moving_supports, check_bulk
 
   !> Above so many points of joints the dense compliance takes too much memory (some 2 GB, for a
-  !> moment three times 8*(3*points)^2 bytes); full Newton then factors in every iteration.
+  !> moment three times 8*(3*points)^2 bytes); full Newton then factors in every iteration. It
+  !> too takes the compliance, to find r, but does not keep it.
   integer, parameter :: most_condensed_points = 3000
 
 contains

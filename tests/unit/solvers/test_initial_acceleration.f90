@@ -1,5 +1,5 @@
-!> M a = r where M leaves directions without mass: a node of solids beside one that moves water along
-!> its normal only.
+!> M a = r where M leaves directions without mass: a node of solids beside one that moves water
+!> along its normal only.
 program test_initial_acceleration
   use kinds, only: rk
   use errors, only: error_type
