@@ -146,7 +146,7 @@ def test_reads_150_000_nodes_in_two_seconds(program_path: Path, tmp_path: Path) 
     done = run(program_path, tmp_path, "-q", "--check", "big.inp")
     assert done.returncode == 0, done.stderr
     timed = subprocess.run(
-        ["bash", "-c", f"time {program_path.resolve()} --check big.inp > /dev/null"],
+        ["bash", "-c", 'time "$0" --check big.inp > /dev/null', str(program_path.resolve())],
         cwd=tmp_path,
         capture_output=True,
         text=True,
