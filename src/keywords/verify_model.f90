@@ -5,6 +5,7 @@ module verify_model
   use element_catalogue, only: is_solid
   use element_hex8, only: hex8_gradients
   use kinds, only: rk
+  use load_gravity, only: gravity_load
   use model_draft, only: draft
   use shape_hex8, only: corner_fault
   use sorted_lists, only: contains_position
@@ -22,6 +23,7 @@ contains
     call verify_elements(model, faults)
     call verify_mass(model, faults)
     call verify_velocities(model, faults)
+    if (.not. faults%has_errors()) call verify_weight(model, faults)
     if (.not. faults%has_errors()) call verify_supports(model, faults)
   end subroutine verify
 
@@ -97,6 +99,42 @@ contains
       return
     end do
   end subroutine verify_mass
+
+  !> Gravity without any mass to act on is told where it first acts.
+  subroutine verify_weight(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    logical :: is_told(size(model%scene%loads))
+    integer :: s, i
+    is_told = .false.
+    do s = 1, size(model%scene%steps)
+      do i = 1, size(model%scene%steps(s)%loads)
+        associate (number => model%scene%steps(s)%loads(i)%load)
+          if (is_told(number)) cycle
+          is_told(number) = .true.
+          select type (weight => model%scene%loads(number)%item)
+          type is (gravity_load)
+            if (has_mass(model, weight%elements)) cycle
+            call model%cards(model%procedure_card(s))%warn( &
+              faults, weight%name//' has no effect: none of its elements has a *DENSITY')
+          end select
+        end associate
+      end do
+    end do
+  end subroutine verify_weight
+
+  pure logical function has_mass(model, elements)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: elements(:) !< positions
+    integer :: i, number
+    has_mass = .false.
+    do i = 1, size(elements)
+      number = model%scene%mesh%material_of_element(elements(i))
+      if (number == 0) cycle
+      has_mass = model%scene%materials(number)%density > 0.0_rk
+      if (has_mass) return
+    end do
+  end function has_mass
 
   !> Initial velocities serve a first step that is dynamic.
   subroutine verify_velocities(model, faults)
