@@ -67,7 +67,7 @@ contains
                                 'GAP or TENSILE STRENGTH, not both')
     end if
     if (this%has('KN') .and. this%has('THICKNESS')) then
-      call this%fault_parameter(faults, 'THICKNESS', 'KN is given', 'KN or THICKNESS, not both')
+      call this%warn(faults, 'THICKNESS has no effect: KN is given')
     end if
     new%spot = model%here(0)
     model%laws = [model%laws, new]
