@@ -103,7 +103,8 @@ contains
       after = before
       if (new%has_parted(p)) after%cohesion = 0.0_rk
       after%jump = jump(:, p)
-      if (.not. before%is_broken .and. jump(1, p)*self%normal_stiffness <= self%strength) then
+      if (.not. (before%is_broken .or. new%has_parted(p)) .and. &
+          jump(1, p)*self%normal_stiffness <= self%strength) then
         call stay_bonded(self, after, iterate(:, p), tangent(:, :, p))
       else if (jump(1, p) + self%gap > 0.0_rk) then
         call open_point(self, before, after, iterate(:, p), tangent(:, :, p))
@@ -151,7 +152,8 @@ contains
     step = point%jump - before%jump
     opening = before%jump(1) + law%gap
     if (.not. before%is_broken) then
-      share = (law%strength/k(1) - before%jump(1))/step(1)
+      share = 0.0_rk ! parted: what was stored before is set free
+      if (point%jump(1) > law%strength/k(1)) share = (law%strength/k(1) - before%jump(1))/step(1)
       point%fracture_work = before%fracture_work + 0.5_rk*sum(k*(before%jump + share*step)**2)
     else if (opening <= 0.0_rk) then
       limit = slip_limit(law, opening, law%cohesion)
@@ -180,6 +182,7 @@ contains
     trial = k*(point%jump(2:3) - before%slip)
     size_of_trial = norm2(trial)
     point%traction(1) = law%normal_stiffness*opening
+    point%is_broken = .true.
     if (size_of_trial <= limit .and. limit > 0.0_rk) then
       point%traction(2:3) = trial
       point%status = state_stick

@@ -18,7 +18,8 @@ module joint_law
     real(rk), allocatable :: slip(:, :) !< (2, points) irrecoverable sliding [m]
     logical, allocatable :: is_broken(:) !< tensile strength lost
     integer, allocatable :: status(:) !< open, stick, slip or bonded
-    !> The iteration of the increment opened the point again and again: no cohesion when it closes.
+    !> The iteration of the increment opened the point again and again: it has no strength any more,
+    !> and no cohesion when it closes within the increment.
     logical, allocatable :: has_parted(:)
     real(rk), allocatable :: friction_work(:) !< dissipated so far [J/m2]
     real(rk), allocatable :: fracture_work(:) !< set free when the strength was lost [J/m2]

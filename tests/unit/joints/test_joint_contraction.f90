@@ -145,6 +145,13 @@ contains
     state%has_parted = .false.
     call go(law, [-1.0e-6_rk, 16.0e-6_rk, 0.0_rk], state)
     call check_close(log, state%traction(2, 1), 6.0e5_rk, 1.0e-6_rk, 'whole: mu p + c')
+    law = joint_of(1.0e6_rk, 0.5_rk, 0.0_rk, 0.0_rk)
+    call law%start_state(1, state)
+    state%has_parted = .true.
+    call go(law, [0.5e-6_rk, 0.0_rk, 0.0_rk], state)
+    call check(log, state%status(1) == state_open .and. state%is_broken(1), 'parted: broken')
+    call check_close(log, state%traction(1, 1), 0.0_rk, 0.0_rk, 'parted: no tension')
+    call check_close(log, state%fracture_work(1), 0.0_rk, 0.0_rk, 'nothing was stored')
   end subroutine parted_point_has_no_cohesion
 
   !> Breaking frees q_on**2/(2 k_n), in however large a step.
