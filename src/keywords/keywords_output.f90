@@ -1,5 +1,6 @@
 !> *NODE FILE, *EL FILE, *OUTPUT, *NODE OUTPUT, *ELEMENT OUTPUT, *ENVELOPE, *PREPRINT.
 module keywords_output
+  use card_reader, only: field_reader
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, without_effect
@@ -89,14 +90,8 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(field_request) :: new
-    integer :: i
     new%fields = fields_of(this, 'U')
-    do i = 1, size(new%fields)
-      if (any(new%fields(i) == later_fields)) then
-        call this%fault(faults, trim(new%fields(i))//' is not available yet', &
-                        'U, V, A, RF, S, E, SP or OPENING')
-      end if
-    end do
+    call refuse_later_fields(this, 'S, E, SP or OPENING', faults)
     new%frequency = model%output_frequency
     if (index(this%keyword, 'FILE') > 0) new%frequency = this%integer('FREQUENCY')
     if (.not. model%has_new_output) then
@@ -123,6 +118,20 @@ contains
     spec%repeats_columns = .true.
   end subroutine describe_envelope
 
+  !> Fields that are known and not available yet.
+  subroutine refuse_later_fields(this, expected, faults)
+    type(card), intent(in) :: this
+    character(*), intent(in) :: expected
+    type(diagnostic_list), intent(inout) :: faults
+    type(field_reader) :: reader
+    character(:), allocatable :: word
+    do while (reader%advance(this))
+      word = this%word_at(reader%line, reader%field)
+      if (.not. any(word == later_fields)) cycle
+      call this%fault_at(faults, reader%line, reader%field, word//' is not available yet', expected)
+    end do
+  end subroutine refuse_later_fields
+
   subroutine read_envelope(this, model, faults)
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
@@ -130,9 +139,7 @@ contains
     character(8), allocatable :: fields(:)
     fields = fields_of(this, '')
     if (fields(1) == '') fields = [character(8) :: 'S1', 'S3', 'OPENING']
-    if (any(fields == 'DAMAGET')) then
-      call this%fault(faults, 'DAMAGET is not available yet', 'S1, S3, OPENING or U')
-    end if
+    call refuse_later_fields(this, 'S1, S3, OPENING or U', faults)
     model%now%envelope = [character(8) :: model%now%envelope, fields]
   end subroutine read_envelope
 
