@@ -179,3 +179,19 @@ def test_options(arguments, code, stream, text, program_path: Path, tmp_path: Pa
     done = run(program_path, tmp_path, *arguments)
     assert done.returncode == code
     assert text in getattr(done, stream)
+
+
+def test_a_run_leaves_nothing_of_an_earlier_one(program_path: Path, tmp_path: Path) -> None:
+    steps = "*STEP\n*STATIC, DIRECT\n{}, 1.\n*CLOAD\n7, 1, 5.\n{}*NODE FILE\nU\n*END STEP\n"
+    deck = tmp_path / "job.inp"
+    other = tmp_path / "job_node_OTHER.csv"
+    other.write_text("of somebody else\n")
+    for increment, request in ((0.25, "*NODE PRINT, NSET=ALL\nU\n*ENVELOPE\nU\n"), (0.5, "")):
+        deck.write_text(BLOCK + steps.format(increment, request))
+        subprocess.run([program_path, "-q", "-o", tmp_path, deck], check=True)
+        assert (tmp_path / "job_node_ALL.csv").exists() == bool(request)
+    assert sorted(p.name for p in (tmp_path / "job_vtk").iterdir()) == [
+        "job_0001.vtu",
+        "job_0002.vtu",
+    ]
+    assert other.exists()

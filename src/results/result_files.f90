@@ -19,6 +19,7 @@ module result_files
   use write_hdf5, only: hdf5_results, open_hdf5
   use summary_json, only: write_summary
   use sha256, only: digest_of_file
+  use earlier_files, only: remove_earlier_files
   use file_system, only: base_name, make_folder
   implicit none
   private
@@ -71,6 +72,7 @@ contains
     self%stem = folder//'/'//base_name(scene%deck_file)
     call self%record%open(scene)
     call make_folder(folder, error)
+    if (.not. allocated(error)) call remove_earlier_files(self%stem)
     if (.not. allocated(error)) call self%open_writers(scene, folder, error)
     self%is_open = .not. allocated(error)
     call self%costs%stop('open results')

@@ -3,6 +3,7 @@ set(sources
   json_writer.f90
   sha256.f90
   file_system.f90
+  earlier_files.f90
   whole_files.f90
   vtk_order.f90
   dam_faces.f90
