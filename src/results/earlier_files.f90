@@ -63,6 +63,6 @@ contains
     character(*), intent(in) :: path
     integer :: unit, status
     open (newunit=unit, file=path, status='old', iostat=status)
-    if (status == 0) close (unit, status='delete', iostat=status)
+    if (status == 0) close (unit, status='delete')
   end subroutine remove_file
 end module earlier_files
