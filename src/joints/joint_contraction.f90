@@ -19,18 +19,16 @@ module joint_contraction
   public :: contraction_law
 
   type, extends(traction_law) :: contraction_law
-    real(rk) :: normal_stiffness = 0.0_rk !< k_n [Pa/m]; 0: from the solid, see complete_stiffness
-    real(rk) :: tangent_stiffness = 0.0_rk !< k_t [Pa/m]; 0: from the solid
+    real(rk) :: normal_stiffness = 0.0_rk !< k_n [Pa/m]
+    real(rk) :: tangent_stiffness = 0.0_rk !< k_t [Pa/m]
     real(rk) :: strength = 0.0_rk !< q_on [Pa]
     real(rk) :: friction = 0.0_rk !< mu
     real(rk) :: cohesion = 0.0_rk !< c of the closed joint [Pa]
-    real(rk) :: thickness = 0.02_rk !< for the default of k_n [m]; NOTES 3
   contains
     procedure :: start_state
     procedure :: reference_stiffness
     procedure :: update
     procedure :: stored_energy
-    procedure :: complete_stiffness
   end type contraction_law
 
   !> What the history holds of one point.
@@ -42,17 +40,6 @@ module joint_contraction
   end type point_state
 
 contains
-
-  !> k_n = E/thickness and k_t = k_n/(2 (1 + nu)) where the deck gave none (NOTES 3).
-  pure subroutine complete_stiffness(self, young, poisson)
-    class(contraction_law), intent(inout) :: self
-    real(rk), intent(in) :: young !< of the solid on the slave side [Pa]
-    real(rk), intent(in) :: poisson
-    if (self%normal_stiffness <= 0.0_rk) self%normal_stiffness = young/self%thickness
-    if (self%tangent_stiffness <= 0.0_rk) then
-      self%tangent_stiffness = self%normal_stiffness/(2.0_rk*(1.0_rk + poisson))
-    end if
-  end subroutine complete_stiffness
 
   !> Bonded where there is strength, else closed without pressure, else open by the gap.
   pure subroutine start_state(self, num_points, state)

@@ -5,7 +5,8 @@ module finish_model
   use element_catalogue, only: is_solid
   use element_joint8, only: build_joint_points, find_attached_solids
   use errors, only: error_type
-  use joint_contraction, only: contraction_law
+  use joint_catalogue, only: make_joint_law
+  use joint_constants, only: law_constants
   use joint_points, only: joint
   use kinds, only: rk
   use model_draft, only: draft
@@ -134,7 +135,7 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(joint) :: new
-    type(contraction_law) :: law
+    type(law_constants) :: law
     type(error_type), allocatable :: error
     character(longest_name) :: known(size(model%laws))
     integer :: i
@@ -157,7 +158,8 @@ contains
       if (size(request%elements) == 0 .or. faults%has_errors()) return
       call complete_law(number, model, law, faults)
       new%name = request%name
-      allocate (new%law, source=law)
+      call make_joint_law(law, new%law)
+      if (.not. allocated(new%law)) return
       call build_joint_points(model%scene%mesh, request%elements, request%is_nodal, new, error)
       if (allocated(error)) then
         call place%fault(faults, error%message)
@@ -185,10 +187,10 @@ contains
   subroutine complete_law(number, model, law, faults)
     integer, intent(in) :: number !< of the joint
     type(draft), intent(in) :: model
-    type(contraction_law), intent(inout) :: law
+    type(law_constants), intent(inout) :: law
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable :: solid(:, :), side(:), materials(:)
-    if (law%normal_stiffness > 0.0_rk .and. law%tangent_stiffness > 0.0_rk) return
+    if (.not. law%needs_solid()) return
     associate (request => model%joints(number), &
                place => model%cards(model%joints(number)%spot%card))
       allocate (side(size(request%elements)))

@@ -2,6 +2,7 @@
 module keywords_joint
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
+  use joint_catalogue, only: joint_law_kinds
   use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_word
   use kinds, only: rk
   use model_draft, only: draft, joint_request, law_request
@@ -28,6 +29,8 @@ contains
     spec%most_lines = 0
     allocate (spec%parameters, source=[ &
               field('NAME', kind_word, 'name of the law', is_required=.true.), &
+              field('TYPE', kind_choice, 'which law', default='CONTRACTION', &
+                    choices=joint_law_kinds), &
               field('KN', kind_real, 'normal stiffness', 'Pa/m', 'E/THICKNESS of the slave side', &
                     lowest=0.0_rk, excludes_lowest=.true.), &
               field('KT', kind_real, 'tangential stiffness', 'Pa/m', 'KN/(2(1+nu))', &
@@ -55,6 +58,7 @@ contains
                                 "' is defined twice", 'a name that is used once', &
                                 first=model%cards(model%laws(i)%spot%card)%place())
     end do
+    new%law%kind = this%word('TYPE')
     new%law%normal_stiffness = this%real('KN')
     new%law%tangent_stiffness = this%real('KT')
     new%law%strength = this%real('TENSILE STRENGTH')

@@ -5,7 +5,7 @@ module model_draft
   use applied_load, only: load, load_slot
   use deck_card, only: card
   use dof_tables, only: dof_table
-  use joint_contraction, only: contraction_law
+  use joint_constants, only: law_constants
   use id_map, only: position_table
   use kinds, only: rk
   use load_books, only: load_book
@@ -30,7 +30,7 @@ module model_draft
 
   !> *JOINT LAW; stiffnesses that are zero are completed when the joint is built.
   type :: law_request
-    type(contraction_law) :: law
+    type(law_constants) :: law
     type(origin) :: spot
   end type law_request
 

@@ -1,9 +1,11 @@
 !> Paths of one joint point against closed forms; the augmented form against finite differences.
 program test_joint_contraction
+  use joint_catalogue, only: make_joint_law
+  use joint_constants, only: law_constants
   use joint_contraction, only: contraction_law
-  use joint_law, only: joint_state, state_bonded, state_open, state_slip, state_stick
+  use joint_law, only: joint_state, state_bonded, state_open, state_slip, state_stick, traction_law
   use kinds, only: rk
-  use testing, only: check, check_close, test_log
+  use testing, only: check, check_close, check_text, test_log
   implicit none
 
   real(rk), parameter :: kn = 1.0e12_rk, kt = 4.0e11_rk
@@ -278,9 +280,16 @@ contains
   !> NOTES 3: 22 GPa over 2 cm.
   subroutine defaults_follow_the_solid(log)
     type(test_log), intent(inout) :: log
-    type(contraction_law) :: law
+    type(law_constants) :: constants
+    class(traction_law), allocatable :: law
     real(rk) :: k(3)
-    call law%complete_stiffness(22.0e9_rk, 0.167_rk)
+    constants%name = 'LAW'
+    constants%kind = 'CONTRACTION'
+    call check(log, constants%needs_solid(), 'stiffnesses are to come')
+    call constants%complete_stiffness(22.0e9_rk, 0.167_rk)
+    call check(log,.not. constants%needs_solid(), 'stiffnesses are there')
+    call make_joint_law(constants, law)
+    call check_text(log, law%name, 'LAW', 'name')
     call law%reference_stiffness(k)
     call check_close(log, k(1), 1.1e12_rk, 1.0_rk, 'k_n')
     call check_close(log, k(2), 1.1e12_rk/2.334_rk, 1.0_rk, 'k_t')

@@ -1,0 +1,41 @@
+!> The constants of a joint law as the deck gives them, before any law is made of them.
+module joint_constants
+  use kinds, only: rk
+  implicit none
+  private
+  public :: law_constants
+
+  type :: law_constants
+    character(:), allocatable :: name !< upper case
+    character(:), allocatable :: kind !< one of the catalogue's, upper case
+    real(rk) :: normal_stiffness = 0.0_rk !< k_n [Pa/m]; 0: from the solid
+    real(rk) :: tangent_stiffness = 0.0_rk !< k_t [Pa/m]; 0: from the solid
+    real(rk) :: strength = 0.0_rk !< q_on [Pa]
+    real(rk) :: friction = 0.0_rk !< mu
+    real(rk) :: cohesion = 0.0_rk !< c of the closed joint [Pa]
+    real(rk) :: thickness = 0.02_rk !< for the default of k_n [m]; NOTES 3
+    real(rk) :: gap = 0.0_rk !< initial gap [m]
+  contains
+    procedure :: needs_solid
+    procedure :: complete_stiffness
+  end type law_constants
+
+contains
+
+  !> Whether a stiffness is still to come from the solid on the slave side.
+  pure logical function needs_solid(self)
+    class(law_constants), intent(in) :: self
+    needs_solid = min(self%normal_stiffness, self%tangent_stiffness) <= 0.0_rk
+  end function needs_solid
+
+  !> k_n = E/thickness and k_t = k_n/(2 (1 + nu)) where the deck gave none (NOTES 3).
+  pure subroutine complete_stiffness(self, young, poisson)
+    class(law_constants), intent(inout) :: self
+    real(rk), intent(in) :: young !< of the solid on the slave side [Pa]
+    real(rk), intent(in) :: poisson
+    if (self%normal_stiffness <= 0.0_rk) self%normal_stiffness = young/self%thickness
+    if (self%tangent_stiffness <= 0.0_rk) then
+      self%tangent_stiffness = self%normal_stiffness/(2.0_rk*(1.0_rk + poisson))
+    end if
+  end subroutine complete_stiffness
+end module joint_constants
