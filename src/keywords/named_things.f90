@@ -3,6 +3,7 @@
 module named_things
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
+  use id_map, only: position_table
   use model_draft, only: draft
   use nearest_words, only: nearest_word
   use set_lists, only: set_list
@@ -23,22 +24,8 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable, intent(out) :: members(:)
-    integer :: found
-    if (this%is_integer_at(line, field)) then
-      found = model%node_position%find(this%integer_at(line, field))
-      if (found == 0) then
-        call this%fault_at(faults, line, field, 'node '//this%text_at(line, field)// &
-                           ' does not exist', 'a node of the model')
-      end if
-    else
-      found = model%node_sets%find(this%word_at(line, field))
-      if (found > 0) then
-        members = model%node_sets%sets(found)%members
-        return
-      end if
-      call fault_unknown_set(this, line, field, 'node', model%node_sets, faults)
-    end if
-    members = pack([found], [found > 0])
+    call members_at(this, line, field, 'node', model%node_position, model%node_sets, faults, &
+                    members)
   end subroutine nodes_at
 
   !> Positions of the element or of the elements of the set named in a field; empty after a fault.
@@ -48,23 +35,37 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable, intent(out) :: members(:)
+    call members_at(this, line, field, 'element', model%element_position, model%element_sets, &
+                    faults, members)
+  end subroutine elements_at
+
+  subroutine members_at(this, line, field, kind, position, sets, faults, members)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line, field
+    character(*), intent(in) :: kind !< 'node' or 'element'
+    type(position_table), intent(in) :: position !< by the user's ids
+    type(set_list), intent(in) :: sets
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable, intent(out) :: members(:)
+    character(:), allocatable :: article
     integer :: found
+    article = trim(merge('an', 'a ', kind == 'element'))
     if (this%is_integer_at(line, field)) then
-      found = model%element_position%find(this%integer_at(line, field))
+      found = position%find(this%integer_at(line, field))
       if (found == 0) then
-        call this%fault_at(faults, line, field, 'element '//this%text_at(line, field)// &
-                           ' does not exist', 'an element of the model')
+        call this%fault_at(faults, line, field, kind//' '//this%text_at(line, field)// &
+                           ' does not exist', article//' '//kind//' of the model')
       end if
     else
-      found = model%element_sets%find(this%word_at(line, field))
+      found = sets%find(this%word_at(line, field))
       if (found > 0) then
-        members = model%element_sets%sets(found)%members
+        members = sets%sets(found)%members
         return
       end if
-      call fault_unknown_set(this, line, field, 'element', model%element_sets, faults)
+      call fault_unknown_set(this, line, field, kind, sets, faults)
     end if
     members = pack([found], [found > 0])
-  end subroutine elements_at
+  end subroutine members_at
 
   subroutine fault_unknown_set(this, line, field, kind, sets, faults)
     type(card), intent(in) :: this

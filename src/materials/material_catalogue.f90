@@ -5,10 +5,7 @@ module material_catalogue
   use material_law, only: stress_law
   implicit none
   private
-  public :: material_kinds, make_stress_law
-
-  !> Keywords below *MATERIAL that choose a law.
-  character(32), parameter :: material_kinds(1) = ['ELASTIC                         ']
+  public :: make_stress_law
 
 contains
 

@@ -21,6 +21,8 @@ module step_loads
     real(rk) :: start = 0.0_rk !< total time at the start of the step [s]
     real(rk) :: duration = 1.0_rk !< of the step [s]
     real(rk) :: increment = 0.0_rk !< that ends now [s]
+  contains
+    procedure :: advance
   end type step_time
 
   !> Loads with one rule of time.
@@ -38,6 +40,16 @@ module step_loads
   end type support
 
 contains
+
+  !> Goes to the end of an increment; what is left of the step by roundoff belongs to it.
+  pure subroutine advance(self, from, increment)
+    class(step_time), intent(inout) :: self
+    real(rk), intent(in) :: from !< since the start of the step [s]
+    real(rk), intent(in) :: increment !< [s]
+    self%increment = increment
+    self%now = from + increment
+    if (self%duration - self%now < 1.0e-9_rk*increment) self%now = self%duration
+  end subroutine advance
 
   !> Sums the patterns of the loads of a step, base motion included, rule by rule.
   subroutine gather_loads(scene, plan, numbers, matrix, mass, groups)

@@ -138,9 +138,7 @@ contains
     call start_control(plan, .true., control)
     do while (now%step_time < plan%duration)
       dt = control%next_size(now%step_time)
-      when%increment = dt
-      when%now = now%step_time + dt
-      if (plan%duration - when%now < 1.0e-9_rk*dt) when%now = plan%duration
+      call when%advance(now%step_time, dt)
       call prepare_size(scene, plan, system, dt, results, tool, error)
       if (allocated(error)) return
       call results%costs%start('forces', 'solver')

@@ -97,9 +97,7 @@ contains
     call start_control(plan, .false., control)
     do while (now%step_time < plan%duration)
       size_of_increment = control%next_size(now%step_time)
-      when%increment = size_of_increment
-      when%now = now%step_time + size_of_increment
-      if (plan%duration - when%now < 1.0e-9_rk*size_of_increment) when%now = plan%duration
+      call when%advance(now%step_time, size_of_increment)
       call results%costs%start('forces', 'solver')
       call take_increment(scene, system, solver, when, moving, trial, outcome, error)
       call results%costs%stop('forces')
