@@ -3,6 +3,7 @@
 module analysis_state
   use kinds, only: rk
   use joint_law, only: joint_state
+  use material_points, only: point_state
   implicit none
   private
   public :: state, energy_balance, vibration_mode
@@ -29,6 +30,7 @@ module analysis_state
     real(rk), allocatable :: v(:, :), a(:, :) !< (3, nodes) [m/s], [m/s2]
     real(rk), allocatable :: reaction(:, :) !< (3, nodes), zero where nothing is fixed [N]
     type(joint_state), allocatable :: joints(:) !< one for each joint of the problem
+    type(point_state), allocatable :: points(:) !< one for each inelastic block of the problem
     type(energy_balance) :: energy
   end type state
 

@@ -7,6 +7,7 @@ module problem_definition
   use material_law, only: material
   use joint_points, only: joint
   use applied_load, only: load_slot
+  use inelastic_blocks, only: inelastic_block
   implicit none
   private
   public :: problem
@@ -22,6 +23,7 @@ module problem_definition
     type(material), allocatable :: materials(:)
     logical :: has_lumped_mass = .false.
     type(joint), allocatable :: joints(:)
+    type(inelastic_block), allocatable :: inelastic(:) !< solids whose law is not linear
     type(load_slot), allocatable :: loads(:)
     type(initial_value), allocatable :: initial_values(:)
     type(step), allocatable :: steps(:)

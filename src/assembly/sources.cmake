@@ -1,4 +1,5 @@
 set(sources
+  inelastic_blocks.f90
   problem_definition.f90
   analysis_state.f90
   increment_listener.f90

@@ -5,6 +5,7 @@ module read_deck
   use deck_lexer, only: read_cards
   use diagnostics, only: diagnostic_list, place, severity_error
   use finish_model, only: complete_model
+  use inelastic_blocks, only: list_inelastic_blocks
   use keyword_catalogue, only: list_keywords
   use keyword_handler, only: keyword_list, pass_elements, pass_nodes, pass_rest
   use keywords_elements, only: make_room_for_elements, trim_mesh
@@ -38,6 +39,9 @@ contains
     call handle_cards(list, keyword_of_card, model, faults)
     call complete_model(model, faults)
     if (.not. faults%has_errors()) call verify(model, faults)
+    if (.not. faults%has_errors()) then
+      call list_inelastic_blocks(model%scene%mesh, model%scene%materials, model%scene%inelastic)
+    end if
     call move_alloc(model%scene, scene)
     echo = echo_of_cards(model%cards)
   end subroutine read_problem

@@ -2,6 +2,8 @@
 module material_elastic
   use kinds, only: rk
   use material_law, only: stress_law
+  use material_points, only: point_set, point_state, time_increment, update_report, no_tangent, &
+                             stored_energy
   implicit none
   private
   public :: elastic_law
@@ -33,20 +35,21 @@ contains
   end subroutine elastic_stiffness
 
   !> Stress = D strain at each point; there is no history.
-  subroutine update(self, strain, length, old_state, new_state, stress, tangent, status)
+  subroutine update(self, points, time, old, new, tangent, report)
     class(elastic_law), intent(in) :: self
-    real(rk), intent(in) :: strain(:, :)
-    real(rk), intent(in) :: length(:)
-    real(rk), intent(in) :: old_state(:, :)
-    real(rk), intent(out) :: new_state(:, :)
-    real(rk), intent(out) :: stress(:, :)
-    real(rk), intent(out) :: tangent(:, :, :)
-    integer, intent(out) :: status
+    type(point_set), intent(in) :: points
+    type(time_increment), intent(in) :: time
+    type(point_state), intent(in) :: old
+    type(point_state), intent(inout) :: new
+    real(rk), intent(inout) :: tangent(:, :, :)
+    type(update_report), intent(out) :: report
     real(rk) :: d(6, 6)
     call self%elastic_stiffness(d)
-    new_state = old_state
-    stress = matmul(d, strain)
-    tangent = spread(d, 3, size(length))
-    status = 0
+    new%internal = old%internal
+    new%is_elastic = .true.
+    new%stress = matmul(d, new%strain)
+    new%energy(stored_energy, :) = 0.5_rk*sum(new%stress*new%strain, 1)
+    if (time%tangent /= no_tangent) tangent = spread(d, 3, points%num_points)
+    report%failed_point = 0
   end subroutine update
 end module material_elastic

@@ -1,16 +1,22 @@
 !> What every material can do: stress from strain, for a block of points in one call.
 module material_law
   use kinds, only: rk
+  use material_points, only: point_set, point_state, time_increment, update_report, num_energies
   implicit none
   private
-  public :: stress_law, material
+  public :: stress_law, material, start_points
 
   !> Stress from strain. Voigt order 11 22 33 12 13 23, engineering shear, tension positive.
   type, abstract :: stress_law
-    integer :: num_state = 0 !< state variables per point
+    integer :: num_state = 0 !< internal variables per point
+    logical :: is_nonlinear = .false. !< else stress = D strain always and the points keep nothing
+    logical :: is_serial = .false. !< one call at a time (user subroutines with memory of their own)
+    logical :: wants_gradient = .false. !< of the displacement, besides the strain
   contains
     procedure(elastic_stiffness), deferred :: elastic_stiffness
     procedure(update), deferred :: update
+    procedure :: set_start => start_from_zero
+    procedure :: read_field => no_field
   end type stress_law
 
   abstract interface
@@ -22,18 +28,18 @@ module material_law
       real(rk), intent(out) :: d(6, 6) !< [Pa]
     end subroutine elastic_stiffness
 
-    !> Stress and state at the end of the increment, for a block of points.
-    subroutine update(self, strain, length, old_state, new_state, stress, tangent, status)
-      import :: stress_law, rk
+    !> Stress and history at the end of an increment, for a block of points. The history starts from
+    !> the converged one, whatever `new` held before.
+    subroutine update(self, points, time, old, new, tangent, report)
+      import :: stress_law, rk, point_set, point_state, time_increment, update_report
       implicit none
       class(stress_law), intent(in) :: self
-      real(rk), intent(in) :: strain(:, :) !< (6, points), end of the increment
-      real(rk), intent(in) :: length(:) !< characteristic length of each point [m]
-      real(rk), intent(in) :: old_state(:, :) !< (num_state, points), converged
-      real(rk), intent(out) :: new_state(:, :) !< (num_state, points)
-      real(rk), intent(out) :: stress(:, :) !< (6, points) [Pa]
-      real(rk), intent(out) :: tangent(:, :, :) !< (6, 6, points) [Pa]
-      integer, intent(out) :: status !< 0, or the first point that could not be integrated
+      type(point_set), intent(in) :: points
+      type(time_increment), intent(in) :: time
+      type(point_state), intent(in) :: old !< converged
+      type(point_state), intent(inout) :: new !< allocated; comes with strain (and gradient)
+      real(rk), intent(inout) :: tangent(:, :, :) !< (6, 6, points) [Pa], or (6, 6, 0)
+      type(update_report), intent(out) :: report
     end subroutine update
   end interface
 
@@ -46,4 +52,40 @@ module material_law
     real(rk) :: alpha = 0.0_rk, beta = 0.0_rk !< Rayleigh damping [1/s], [s]
     class(stress_law), allocatable :: law
   end type material
+
+contains
+
+  !> Allocates the state of a block at rest.
+  subroutine start_points(law, points, state)
+    class(stress_law), intent(in) :: law
+    type(point_set), intent(in) :: points
+    type(point_state), intent(out) :: state
+    integer :: n
+    n = points%num_points
+    allocate (state%strain(6, n), state%stress(6, n), state%internal(law%num_state, n), &
+              state%energy(num_energies, n), source=0.0_rk)
+    allocate (state%gradient(3, 3, merge(n, 0, law%wants_gradient)), source=0.0_rk)
+    allocate (state%is_elastic(n), source=.true.)
+    call law%set_start(points, state)
+  end subroutine start_points
+
+  !> A history that begins with zeros.
+  subroutine start_from_zero(self, points, state)
+    class(stress_law), intent(in) :: self
+    type(point_set), intent(in) :: points
+    type(point_state), intent(inout) :: state
+    if (self%num_state*points%num_points > 0) state%internal = 0.0_rk
+  end subroutine start_from_zero
+
+  !> A field of results at the points: 'PE' (plastic strain), 'DAMAGET', 'DAMAGEC', 'SDV' (all state
+  !> variables). A law that has none gives no values.
+  subroutine no_field(self, name, state, values)
+    class(stress_law), intent(in) :: self
+    character(*), intent(in) :: name
+    type(point_state), intent(in) :: state
+    real(rk), allocatable, intent(out) :: values(:, :) !< (components, points), unallocated: no such
+    if (.not. self%is_nonlinear .and. name == 'PE') then
+      allocate (values(6, size(state%strain, 2)), source=0.0_rk)
+    end if
+  end subroutine no_field
 end module material_law

@@ -1,4 +1,5 @@
 set(sources
+  material_points.f90
   material_law.f90
   material_elastic.f90
   material_catalogue.f90

@@ -5,6 +5,7 @@ module initial_state
   use joint_points, only: joint
   use joint_law, only: joint_state
   use joint_forces, only: start_joints
+  use material_law, only: start_points
   use analysis_state, only: state
   implicit none
   private
@@ -20,6 +21,7 @@ contains
     n = scene%mesh%num_nodes
     allocate (now%u(3, n), now%v(3, n), now%a(3, n), now%reaction(3, n), source=0.0_rk)
     call start_joints(scene%joints, now%joints)
+    call start_histories(scene, now)
     if (.not. allocated(scene%initial_values)) return
     do i = 1, size(scene%initial_values)
       associate (given => scene%initial_values(i))
@@ -35,6 +37,21 @@ contains
       call move_joint(scene%joints(i), now%u, now%joints(i))
     end do
   end subroutine start_analysis
+
+  !> Points of inelastic solids, at rest and untouched.
+  subroutine start_histories(scene, now)
+    type(problem), intent(in) :: scene
+    type(state), intent(inout) :: now
+    integer :: i, num_blocks
+    num_blocks = 0
+    if (allocated(scene%inelastic)) num_blocks = size(scene%inelastic)
+    allocate (now%points(num_blocks))
+    do i = 1, num_blocks
+      associate (part => scene%inelastic(i))
+        call start_points(scene%materials(part%material)%law, part%points, now%points(i))
+      end associate
+    end do
+  end subroutine start_histories
 
   !> The joint's answer to the displacements.
   subroutine move_joint(seam, u, history)

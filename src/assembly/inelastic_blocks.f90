@@ -1,0 +1,114 @@
+!> The solid elements whose stress is not a constant stiffness times strain, in blocks of one kind
+!> and one material: the unit in which laws are called and histories are kept. Guests of a problem:
+!> a scene of elastic solids has none.
+module inelastic_blocks
+  use kinds, only: rk
+  use dam_mesh, only: mesh
+  use element_catalogue, only: is_solid, make_solid
+  use element_formulation, only: solid_element
+  use gauss_rules, only: hex_point
+  use material_law, only: material
+  use material_points, only: point_set
+  use shape_hex8, only: derivative_at, shape_at
+  implicit none
+  private
+  public :: inelastic_block, list_inelastic_blocks
+
+  integer, parameter :: largest_block = 16 !< elements whose points and operators fit a core's cache
+
+  type :: inelastic_block
+    integer :: material = 0 !< position in the problem's list
+    character(8) :: kind = '' !< of the elements: 'C3D8', ...
+    integer, allocatable :: elements(:) !< positions in the mesh
+    integer :: points_of_element = 0
+    real(rk), allocatable :: b(:, :, :, :) !< (6, 24, points, elements) strain operators [1/m]
+    real(rk), allocatable :: weight(:, :) !< (points, elements) volumes of the points [m3]
+    type(point_set) :: points !< point q of element e is (e - 1)*points_of_element + q
+  end type inelastic_block
+
+contains
+
+  !> Sorts the elements with nonlinear laws into blocks; size 0 where there is none. Elements with
+  !> a Jacobian that is not positive must have been refused.
+  subroutine list_inelastic_blocks(body, materials, blocks)
+    type(mesh), intent(in) :: body
+    type(material), intent(in) :: materials(:)
+    type(inelastic_block), allocatable, intent(out) :: blocks(:)
+    integer, allocatable :: group(:)
+    logical, allocatable :: is_pending(:)
+    integer :: e, m, first, last, num_blocks
+    allocate (is_pending(body%num_elements), source=.false.)
+    do m = 1, size(materials)
+      if (.not. allocated(materials(m)%law)) cycle
+      if (.not. materials(m)%law%is_nonlinear) cycle
+      is_pending = is_pending .or. &
+                   (is_solid(body%element_type) .and. body%material_of_element == m)
+    end do
+    allocate (blocks(count(is_pending)))
+    num_blocks = 0
+    do while (any(is_pending))
+      first = findloc(is_pending, .true., 1)
+      group = pack([(e, e=1, body%num_elements)], is_pending .and. &
+                   body%material_of_element == body%material_of_element(first) .and. &
+                   body%element_type == body%element_type(first))
+      is_pending(group) = .false.
+      do first = 1, size(group), largest_block
+        last = min(size(group), first + largest_block - 1)
+        num_blocks = num_blocks + 1
+        call build_block(body, materials, group(first:last), blocks(num_blocks))
+      end do
+    end do
+    blocks = blocks(:num_blocks)
+  end subroutine list_inelastic_blocks
+
+  !> Operators and points of some elements of one kind and one material.
+  subroutine build_block(body, materials, elements, part)
+    type(mesh), intent(in) :: body
+    type(material), intent(in) :: materials(:)
+    integer, intent(in) :: elements(:)
+    type(inelastic_block), intent(out) :: part
+    class(solid_element), allocatable :: formulation
+    real(rk) :: x(3, 8, size(elements)), d(6, 6)
+    integer :: status(size(elements)), e
+    part%material = body%material_of_element(elements(1))
+    part%kind = body%element_type(elements(1))
+    part%elements = elements
+    call make_solid(part%kind, formulation)
+    part%points_of_element = formulation%num_points
+    do e = 1, size(elements)
+      x(:, :, e) = body%x(:, body%nodes(:, elements(e)))
+    end do
+    allocate (part%b(6, 24, part%points_of_element, size(elements)), &
+              part%weight(part%points_of_element, size(elements)))
+    call materials(part%material)%law%elastic_stiffness(d)
+    call formulation%strain_operator(x, d, part%b, part%weight, status)
+    call place_points(body%element_id(elements), x, part)
+  end subroutine build_block
+
+  !> Who and where the points are.
+  subroutine place_points(id, x, part)
+    integer, intent(in) :: id(:) !< user's numbers of the elements
+    real(rk), intent(in) :: x(:, :, :) !< (3, 8, elements) [m]
+    type(inelastic_block), intent(inout) :: part
+    real(rk) :: xi(3)
+    integer :: e, q, p, n
+    n = part%points_of_element*size(id)
+    associate (points => part%points)
+      points%num_points = n
+      allocate (points%element(n), points%number(n), points%x(3, n), points%edges(3, 3, n), &
+                points%length(n))
+      do e = 1, size(id)
+        do q = 1, part%points_of_element
+          p = (e - 1)*part%points_of_element + q
+          xi = 0.0_rk
+          if (part%points_of_element > 1) xi = hex_point(:, q)
+          points%element(p) = id(e)
+          points%number(p) = q
+          points%x(:, p) = matmul(x(:, :, e), shape_at(xi))
+          points%edges(:, :, p) = 2.0_rk*matmul(x(:, :, e), derivative_at(xi))
+          points%length(p) = sum(part%weight(:, e))**(1.0_rk/3.0_rk)
+        end do
+      end do
+    end associate
+  end subroutine place_points
+end module inelastic_blocks
