@@ -1,4 +1,5 @@
 set(sources
+  damage_constants.f90
   material_points.f90
   material_law.f90
   material_elastic.f90
