@@ -1,0 +1,28 @@
+!> The width of the band that a crack opens in, and how wide it may be (theory 11.5).
+module crack_band
+  use kinds, only: rk
+  use tensor6, only: principal_values
+  implicit none
+  private
+  public :: band_width, largest_width
+
+contains
+
+  !> Width of the band of a crack with the normal n: |J^T n|, theory (11.11). A cube gives its side
+  !> in every direction, a brick that is longer one way its length across the crack.
+  pure real(rk) function band_width(edges, normal)
+    real(rk), intent(in) :: edges(3, 3) !< columns: the edges of the element at the point [m]
+    real(rk), intent(in) :: normal(3) !< unit vector
+    band_width = norm2(matmul(normal, edges))
+  end function band_width
+
+  !> The width for the worst direction of the crack: the largest singular value of the edges.
+  pure real(rk) function largest_width(edges)
+    real(rk), intent(in) :: edges(3, 3) !< as in `band_width` [m]
+    real(rk) :: square(3, 3), values(3)
+    square = matmul(edges, transpose(edges))
+    values = principal_values([square(1, 1), square(2, 2), square(3, 3), &
+                               square(1, 2), square(1, 3), square(2, 3)])
+    largest_width = sqrt(max(0.0_rk, values(1)))
+  end function largest_width
+end module crack_band
