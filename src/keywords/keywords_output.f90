@@ -19,8 +19,6 @@ module keywords_output
   character(*), parameter :: element_fields = 'S | E | SP | OPENING | PE | DAMAGET | DAMAGEC | SDV'
   character(*), parameter :: series = ' Fields for the VTK series (job.pvd) and job.h5. Stays '// &
                              'for the next steps until one has its own.'
-  !> Fields of materials that are not available yet.
-  character(8), parameter :: later_fields(4) = ['PE      ', 'DAMAGET ', 'DAMAGEC ', 'SDV     ']
 
 contains
 
@@ -37,9 +35,10 @@ contains
   subroutine describe_el_file(spec)
     type(keyword), intent(out) :: spec
     spec%name = 'EL FILE'
-    spec%meaning = 'S stress, E strain, SP principal stresses, averaged at nodes within a '// &
-                   'section.'//series
-    spec%example = '*EL FILE, FREQUENCY=10'//nl//'S, SP'
+    spec%meaning = 'S stress, E strain, SP principal stresses, PE plastic strain, DAMAGET and '// &
+                   'DAMAGEC damage in tension and compression, SDV state variables of the '// &
+                   'material, averaged at nodes within a section.'//series
+    spec%example = '*EL FILE, FREQUENCY=10'//nl//'S, SP, DAMAGET'
     call add_frequency(spec, element_fields)
     spec%fewest_lines = 1
   end subroutine describe_el_file
@@ -91,7 +90,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(field_request) :: new
     new%fields = fields_of(this, 'U')
-    call refuse_later_fields(this, 'S, E, SP or OPENING', faults)
+    call warn_of_repeats(this, faults)
     new%frequency = model%output_frequency
     if (index(this%keyword, 'FILE') > 0) new%frequency = this%integer('FREQUENCY')
     if (.not. model%has_new_output) then
@@ -108,29 +107,35 @@ contains
     spec%family = 'output'
     spec%place = 'step'
     spec%meaning = 'Keeps the extremes over the step: S1 largest tension, S3 largest '// &
-                   'compression, OPENING of joints, U displacement; with place and time in '// &
-                   'job.json, as fields at the end of the step. Without data: S1, S3, OPENING.'
-    spec%example = '*ENVELOPE'//nl//'S1, S3, OPENING'
+                   'compression, OPENING of joints, U displacement, DAMAGET and DAMAGEC damage '// &
+                   'in tension and compression; with place and time in job.json, as fields at '// &
+                   'the end of the step. Without data: S1, S3, OPENING.'
+    spec%example = '*ENVELOPE'//nl//'S1, S3, OPENING, DAMAGET'
     allocate (spec%parameters(0))
     allocate (spec%columns, source=[ &
               field('field', kind_choice, 'a field', &
-                    choices='S1 | S3 | OPENING | U | DAMAGET')])
+                    choices='S1 | S3 | OPENING | U | DAMAGET | DAMAGEC')])
     spec%repeats_columns = .true.
   end subroutine describe_envelope
 
-  !> Fields that are known and not available yet.
-  subroutine refuse_later_fields(this, expected, faults)
+  !> A field that a card names again is written once.
+  subroutine warn_of_repeats(this, faults)
     type(card), intent(in) :: this
-    character(*), intent(in) :: expected
     type(diagnostic_list), intent(inout) :: faults
     type(field_reader) :: reader
-    character(:), allocatable :: word
+    character(8), allocatable :: seen(:)
+    character(8) :: word
+    allocate (seen(0))
     do while (reader%advance(this))
       word = this%word_at(reader%line, reader%field)
-      if (.not. any(word == later_fields)) cycle
-      call this%fault_at(faults, reader%line, reader%field, word//' is not available yet', expected)
+      if (word == '') cycle
+      if (any(seen == word)) then
+        call this%warn(faults, trim(word)//' is named more than once; it is written once')
+      else
+        seen = [character(8) :: seen, word]
+      end if
     end do
-  end subroutine refuse_later_fields
+  end subroutine warn_of_repeats
 
   subroutine read_envelope(this, model, faults)
     type(card), intent(in) :: this
@@ -138,8 +143,8 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     character(8), allocatable :: fields(:)
     fields = fields_of(this, '')
+    call warn_of_repeats(this, faults)
     if (fields(1) == '') fields = [character(8) :: 'S1', 'S3', 'OPENING']
-    call refuse_later_fields(this, 'S1, S3, OPENING or U', faults)
     model%now%envelope = [character(8) :: model%now%envelope, fields]
   end subroutine read_envelope
 

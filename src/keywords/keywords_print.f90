@@ -85,11 +85,13 @@ contains
     type(keyword), intent(out) :: spec
     spec%name = 'EL PRINT'
     spec%meaning = 'History of elements at their integration points in job_el_ELSET.csv: '// &
-                   'S stress, E strain, SP principal stresses.'
+                   'S stress, E strain, SP principal stresses, PE plastic strain, DAMAGET and '// &
+                   'DAMAGEC damage in tension and compression, SDV state variables of the '// &
+                   'material.'
     spec%example = '*EL PRINT, ELSET=HEEL'//nl//'S'
     allocate (spec%parameters, source=[ &
               field('ELSET', kind_word, 'the elements', is_required=.true.)])
-    call add_frequency(spec, 'S | E | SP')
+    call add_frequency(spec, 'S | E | SP | PE | DAMAGET | DAMAGEC | SDV')
   end subroutine describe_el_print
 
   subroutine read_el_print(this, model, faults)

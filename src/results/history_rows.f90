@@ -5,12 +5,20 @@ module history_rows
   use analysis_state, only: state
   use tensor6, only: principal_values
   use joint_readings, only: opening_at_points
+  use law_fields, only: width_of_field, field_at_points
+  use requested_fields, only: components_of
   use stress_fields, only: recovered_fields
   use text_buffers, only: text_buffer
+  use write_text, only: as_text
   implicit none
   private
   public :: name_part, header_of, columns_of
   public :: add_node_rows, add_element_rows, add_joint_rows
+
+  !> A field at the points of all solids.
+  type :: point_values
+    real(rk), allocatable :: at(:, :, :) !< (components, max_points, solids)
+  end type point_values
 
 contains
 
@@ -29,7 +37,8 @@ contains
   end function name_part
 
   !> The header line.
-  pure function header_of(kind, fields) result(header)
+  function header_of(scene, kind, fields) result(header)
+    type(problem), intent(in) :: scene
     character(*), intent(in) :: kind !< 'NODE', 'ELEMENT' or 'JOINT'
     character(*), intent(in) :: fields(:) !< in the order in which they were asked for
     character(:), allocatable :: header
@@ -44,27 +53,29 @@ contains
       return
     end select
     do i = 1, size(fields)
-      header = header//columns_of(kind, fields(i))
+      header = header//columns_of(scene, kind, fields(i))
     end do
   end function header_of
 
   !> The columns of a field, each with its comma in front; empty when there is no such field.
-  pure function columns_of(kind, name) result(columns)
+  function columns_of(scene, kind, name) result(columns)
+    type(problem), intent(in) :: scene
     character(*), intent(in) :: kind, name
     character(:), allocatable :: columns
-    character(2), parameter :: tensor(6) = ['11', '22', '33', '12', '13', '23']
-    integer :: i
+    integer :: width, i
+    columns = ''
     select case (kind//' '//name)
-    case ('NODE U', 'NODE V', 'NODE A')
-      columns = ','//trim(name)//'1,'//trim(name)//'2,'//trim(name)//'3'
-    case ('NODE RF')
-      columns = ',RF1,RF2,RF3'
-    case ('ELEMENT SP')
-      columns = ',SP1,SP2,SP3'
+    case ('NODE U', 'NODE V', 'NODE A', 'NODE RF', 'ELEMENT SP')
+      columns = ','//components_of(name, 3)
     case ('ELEMENT S', 'ELEMENT E')
-      columns = ''
-      do i = 1, 6
-        columns = columns//','//trim(name)//tensor(i)
+      columns = ','//components_of(name, 6)
+    case ('ELEMENT PE', 'ELEMENT DAMAGET', 'ELEMENT DAMAGEC')
+      width = width_of_field(scene, name)
+      if (width == 1) columns = ','//trim(name)
+      if (width > 1) columns = ','//components_of(name, width)
+    case ('ELEMENT SDV')
+      do i = 1, width_of_field(scene, name)
+        columns = columns//',SDV'//as_text(i)
       end do
     case default
       columns = ''
@@ -141,7 +152,12 @@ contains
     type(recovered_fields), intent(in) :: stresses !< with points
     character(*), intent(in) :: fields(:)
     integer, intent(in) :: elements(:) !< positions
+    type(point_values) :: of_laws(size(fields))
     integer :: k, s, q, i
+    do i = 1, size(fields)
+      if (any(fields(i) == ['S ', 'E ', 'SP'])) cycle
+      call field_at_points(scene, stresses%plan, now, fields(i), of_laws(i)%at)
+    end do
     do k = 1, size(elements)
       s = stresses%plan%solid_of_element(elements(k))
       if (s == 0) cycle
@@ -160,7 +176,7 @@ contains
           case ('SP')
             call add_reals(lines, principal_values(stresses%point_stress(:, q, s)))
           case default
-            cycle
+            call add_reals(lines, of_laws(i)%at(:, q, s))
           end select
         end do
         call lines%add(new_line('a'))

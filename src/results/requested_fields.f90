@@ -4,11 +4,13 @@ module requested_fields
   use problem_definition, only: problem
   use analysis_state, only: state
   use joint_readings, only: opening_at_nodes
+  use law_fields, only: width_of_field
   use run_records, only: run_record
   use result_writer, only: is_due
+  use write_text, only: as_text
   implicit none
   private
-  public :: list_due_fields, field_on_nodes, components_of
+  public :: list_due_fields, field_on_nodes, components_of, is_tensor
 
 contains
 
@@ -41,7 +43,7 @@ contains
   end subroutine list_due_fields
 
   !> Does this analysis have the field now?
-  pure logical function is_available(scene, now, name)
+  logical function is_available(scene, now, name)
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
     character(*), intent(in) :: name
@@ -56,6 +58,8 @@ contains
       is_available = allocated(now%a) .and. scene%steps(now%step)%procedure == 'DYNAMIC'
     case ('OPENING')
       is_available = size(scene%joints) > 0
+    case ('PE', 'DAMAGET', 'DAMAGEC', 'SDV')
+      is_available = width_of_field(scene, name) > 0
     case default
       is_available = .false.
     end select
@@ -88,28 +92,35 @@ contains
       values = record%stresses%node_principal
     case ('OPENING')
       values = reshape(opening_at_nodes(scene, now), [1, scene%mesh%num_nodes])
+    case ('PE', 'DAMAGET', 'DAMAGEC', 'SDV')
+      call record%stresses%field_on_nodes(scene, now, name, values)
     case default
       error stop 'field_on_nodes: a field that is not available'
     end select
   end subroutine field_on_nodes
 
-  !> Names of the components, with commas between, in the order of `field_on_nodes`.
-  pure function components_of(name) result(list)
+  !> Is the field a symmetric tensor?
+  pure elemental logical function is_tensor(name)
     character(*), intent(in) :: name
+    is_tensor = name == 'S' .or. name == 'E' .or. name == 'PE'
+  end function is_tensor
+
+  !> Names of the components, with commas between, as `field_on_nodes` orders them; '' for one.
+  pure function components_of(name, width) result(list)
+    character(*), intent(in) :: name
+    integer, intent(in) :: width !< how many
     character(:), allocatable :: list
     character(2), parameter :: suffix(6) = ['11', '22', '33', '12', '13', '23']
     integer :: i
-    select case (name)
-    case ('U', 'V', 'A', 'RF', 'SP')
-      list = trim(name)//'1,'//trim(name)//'2,'//trim(name)//'3'
-    case ('S', 'E')
-      list = ''
-      do i = 1, 6
+    list = ''
+    if (width == 1) return
+    do i = 1, width
+      if (is_tensor(name)) then
         list = list//','//trim(name)//suffix(i)
-      end do
-      list = list(2:)
-    case default
-      list = ''
-    end select
+      else
+        list = list//','//trim(name)//as_text(i)
+      end if
+    end do
+    list = list(2:)
   end function components_of
 end module requested_fields

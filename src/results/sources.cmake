@@ -10,6 +10,8 @@ set(sources
   extremes.f90
   joint_readings.f90
   stress_recovery.f90
+  node_means.f90
+  law_fields.f90
   stress_operator.f90
   stress_fields.f90
   envelopes.f90

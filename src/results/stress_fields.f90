@@ -4,8 +4,10 @@ module stress_fields
   use problem_definition, only: problem
   use analysis_state, only: state
   use tensor6, only: principal_values
-  use stress_recovery, only: recovery_plan, make_recovery_plan, recover_points, average_at_nodes, &
+  use stress_recovery, only: recovery_plan, make_recovery_plan, recover_points, copy_solid, &
                              max_points, few_nodes
+  use node_means, only: average_at_nodes, average_at
+  use law_fields, only: field_at_points, find_inelastic_solids, nodes_of_solids
   use stress_operator, only: nodal_operator, make_nodal_operator, apply_operator
   implicit none
   private
@@ -17,20 +19,26 @@ module stress_fields
   type :: recovered_fields
     type(recovery_plan) :: plan
     logical :: has_plan = .false., has_operator = .false. !< made once
+    logical :: has_inelastic = .false. !< of this increment, as the next
     logical :: has_points = .false., has_node_strain = .false. !< of this increment
     logical :: has_node_stress = .false., has_principals = .false.
     integer :: num_recoveries = 0 !< how often stresses on the nodes were asked for
     type(nodal_operator) :: operator
+    logical, allocatable :: is_inelastic(:) !< (solids) a point has left elasticity
+    integer, allocatable :: inelastic_nodes(:) !< those that such solids have a part in
     real(rk), allocatable :: point_strain(:, :, :), point_stress(:, :, :)
     real(rk), allocatable :: node_strain(:, :), node_stress(:, :)
     real(rk), allocatable :: node_principal(:, :) !< (3, nodes), the largest first [Pa]
   contains
     procedure :: forget
     procedure :: need_plan
+    procedure :: need_inelastic
     procedure :: need_points
     procedure :: need_node_strain
     procedure :: need_node_stress
     procedure :: need_principals
+    procedure :: field_on_nodes
+    procedure, private :: correct_inelastic
   end type recovered_fields
 
 contains
@@ -38,6 +46,7 @@ contains
   !> A new increment has come.
   subroutine forget(self)
     class(recovered_fields), intent(inout) :: self
+    self%has_inelastic = .false.
     self%has_points = .false.
     self%has_node_strain = .false.
     self%has_node_stress = .false.
@@ -53,20 +62,40 @@ contains
     self%has_plan = .true.
   end subroutine need_plan
 
+  !> Makes sure that it is known which solids and nodes have left elasticity.
+  subroutine need_inelastic(self, scene, now)
+    class(recovered_fields), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    if (self%has_inelastic) return
+    call self%need_plan(scene)
+    call find_inelastic_solids(scene, self%plan, now, self%is_inelastic)
+    self%inelastic_nodes = [integer ::]
+    if (any(self%is_inelastic)) then
+      self%inelastic_nodes = nodes_of_solids(self%plan, self%is_inelastic)
+    end if
+    self%has_inelastic = .true.
+  end subroutine need_inelastic
+
   !> Makes sure that strains and stresses at the points are there.
   subroutine need_points(self, scene, now)
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
     if (self%has_points) return
-    call self%need_plan(scene)
-    if (.not. allocated(self%point_strain)) then
-      allocate (self%point_strain(6, max_points, self%plan%num_solids), source=0.0_rk)
-      allocate (self%point_stress(6, max_points, self%plan%num_solids), source=0.0_rk)
-    end if
-    call recover_points(scene, self%plan, now%u, self%point_strain, self%point_stress)
+    call self%need_inelastic(scene, now)
+    call allocate_points(self)
+    call recover_points(scene, self%plan, now, self%point_strain, self%point_stress)
     self%has_points = .true.
   end subroutine need_points
+
+  !> Room for strains and stresses at the points.
+  subroutine allocate_points(self)
+    class(recovered_fields), intent(inout) :: self
+    if (allocated(self%point_strain)) return
+    allocate (self%point_strain(6, max_points, self%plan%num_solids), source=0.0_rk)
+    allocate (self%point_stress(6, max_points, self%plan%num_solids), source=0.0_rk)
+  end subroutine allocate_points
 
   !> Makes sure that strains on the nodes are there.
   subroutine need_node_strain(self, scene, now)
@@ -76,12 +105,13 @@ contains
     if (self%has_node_strain) return
     call self%need_points(scene, now)
     if (.not. allocated(self%node_strain)) allocate (self%node_strain(6, scene%mesh%num_nodes))
-    call average_at_nodes(self%plan, self%point_strain, self%node_strain)
+    call average_at_nodes(self%plan, self%point_strain, self%is_inelastic, self%node_strain)
     self%has_node_strain = .true.
   end subroutine need_node_strain
 
   !> Makes sure that stresses on the nodes are there. Whoever asks again and again is served by the
-  !> operator, which costs as much to make as a few recoveries through the points.
+  !> operator, which costs as much to make as a few recoveries through the points. It holds for all
+  !> nodes whose solids are still elastic; where most are not it is not worth its memory.
   subroutine need_node_stress(self, scene, now)
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: scene
@@ -90,29 +120,63 @@ contains
     self%has_node_stress = .true.
     self%num_recoveries = self%num_recoveries + 1
     if (.not. allocated(self%node_stress)) allocate (self%node_stress(6, scene%mesh%num_nodes))
+    call self%need_inelastic(scene, now)
     if (self%has_operator) then
       call apply_operator(self%operator, now%u, self%node_stress)
+      call self%correct_inelastic(now)
       return
     end if
     call self%need_points(scene, now)
-    call average_at_nodes(self%plan, self%point_stress, self%node_stress)
+    call average_at_nodes(self%plan, self%point_stress, self%is_inelastic, self%node_stress)
     if (self%num_recoveries < recoveries_before_operator) return
-    if (.not. is_elastic(scene)) return
+    if (2*size(self%inelastic_nodes) > scene%mesh%num_nodes) return
     call make_nodal_operator(scene, self%plan, self%operator)
     self%has_operator = .true.
   end subroutine need_node_stress
 
-  !> Is the stress a linear function of the displacements?
-  pure logical function is_elastic(scene)
-    type(problem), intent(in) :: scene
-    integer :: m
-    is_elastic = .true.
-    do m = 1, size(scene%materials)
-      if (allocated(scene%materials(m)%law)) then
-        is_elastic = is_elastic .and. scene%materials(m)%law%num_state == 0
-      end if
+  !> Replaces the stress on the nodes where a solid has left elasticity. All solids that count there
+  !> are of one section, so all have states.
+  subroutine correct_inelastic(self, now)
+    class(recovered_fields), intent(inout) :: self
+    type(state), intent(in) :: now
+    logical, allocatable :: is_copied(:)
+    integer :: k, i, s
+    if (size(self%inelastic_nodes) == 0) return
+    call allocate_points(self)
+    allocate (is_copied(self%plan%num_solids), source=.false.)
+    do k = 1, size(self%inelastic_nodes)
+      associate (start => self%plan%node_start, node => self%inelastic_nodes(k))
+        do i = start(node), start(node + 1) - 1
+          s = (self%plan%corner(i) - 1)/8 + 1
+          if (is_copied(s)) cycle
+          call copy_solid(self%plan, now, s, self%point_strain, self%point_stress)
+          is_copied(s) = .true.
+        end do
+      end associate
     end do
-  end function is_elastic
+    call average_at(self%plan, self%point_stress, self%is_inelastic, self%inelastic_nodes, &
+                    self%node_stress)
+  end subroutine correct_inelastic
+
+  !> A field that laws keep (PE, DAMAGET, ...) on the nodes, never beyond what the points hold.
+  subroutine field_on_nodes(self, scene, now, name, values)
+    class(recovered_fields), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    character(*), intent(in) :: name
+    real(rk), allocatable, intent(out) :: values(:, :) !< (components, nodes)
+    real(rk), allocatable :: at_points(:, :, :)
+    logical, allocatable :: is_bounded(:)
+    call self%need_inelastic(scene, now)
+    call field_at_points(scene, self%plan, now, name, at_points)
+    allocate (values(size(at_points, 1), scene%mesh%num_nodes), source=0.0_rk)
+    allocate (is_bounded(self%plan%num_solids), source=.true.)
+    if (name == 'SDV') then
+      call average_at_nodes(self%plan, at_points, is_bounded, values)
+    else
+      call average_at(self%plan, at_points, is_bounded, self%inelastic_nodes, values)
+    end if
+  end subroutine field_on_nodes
 
   !> Makes sure that the principal stresses on the nodes are there: of the averaged tensor.
   subroutine need_principals(self, scene, now)

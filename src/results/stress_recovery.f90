@@ -1,19 +1,17 @@
-!> Strains and stresses at the points of the solid elements, and on the nodes.
+!> Strains and stresses at the points of the solid elements, and which corners make a node's value.
 !>
-!> At the points: eps = B u with the element's own operator, sigma by the material's law. On the
-!> nodes: the trilinear field through the eight points, carried to the corners, averaged over the
-!> elements of one section; where sections meet the one defined first rules. A wedge is a hexahedron
-!> with repeated nodes; an element of one point is constant.
+!> Elastic solids: eps = B u with the element's own operator, sigma = D eps. Solids of inelastic
+!> blocks: strain and stress as their laws left them. A wedge is a hexahedron with repeated nodes.
 module stress_recovery
   use kinds, only: rk
   use element_formulation, only: solid_element
   use element_catalogue, only: is_solid, make_solid
   use element_matrices, only: strains_at_points
-  use shape_hex8, only: corners_from_points
   use problem_definition, only: problem
+  use analysis_state, only: state
   implicit none
   private
-  public :: recovery_plan, make_recovery_plan, recover_points, average_at_nodes, max_points
+  public :: recovery_plan, make_recovery_plan, recover_points, copy_solid, max_points
   public :: operators_of_block, few_nodes
 
   integer, parameter :: max_points = 8 !< integration points an element may have
@@ -28,6 +26,7 @@ module stress_recovery
   type :: element_block
     integer :: formulation = 0, material = 0
     integer, allocatable :: solids(:) !< positions in the list of solids
+    logical :: is_inelastic = .false. !< its points have states of their own
   end type element_block
 
   !> What depends on the mesh only; made when somebody first asks for stresses.
@@ -35,6 +34,8 @@ module stress_recovery
     integer :: num_solids = 0
     integer, allocatable :: element_of_solid(:), solid_of_element(:) !< 0: not a solid
     integer, allocatable :: num_points(:) !< (solids)
+    integer, allocatable :: inelastic_block(:) !< (solids) place in the problem's list; 0: elastic
+    integer, allocatable :: points_before(:) !< (solids) points of that block before its own
     type(formulation_slot), allocatable :: formulations(:)
     type(element_block), allocatable :: blocks(:)
     integer, allocatable :: node_start(:) !< (nodes + 1) where a node's corners start
@@ -55,9 +56,27 @@ contains
     do s = 1, plan%num_solids
       plan%solid_of_element(plan%element_of_solid(s)) = s
     end do
+    call find_states(scene, plan)
     call sort_into_blocks(scene, plan)
     call link_corners(scene, plan)
   end subroutine make_recovery_plan
+
+  !> Where the solids with a history keep it.
+  subroutine find_states(scene, plan)
+    type(problem), intent(in) :: scene
+    type(recovery_plan), intent(inout) :: plan
+    integer :: i, e, s
+    allocate (plan%inelastic_block(plan%num_solids), source=0)
+    allocate (plan%points_before(plan%num_solids), source=0)
+    if (.not. allocated(scene%inelastic)) return
+    do i = 1, size(scene%inelastic)
+      do e = 1, size(scene%inelastic(i)%elements)
+        s = plan%solid_of_element(scene%inelastic(i)%elements(e))
+        plan%inelastic_block(s) = i
+        plan%points_before(s) = (e - 1)*scene%inelastic(i)%points_of_element
+      end do
+    end do
+  end subroutine find_states
 
   !> Blocks of equal formulation and material.
   subroutine sort_into_blocks(scene, plan)
@@ -89,7 +108,8 @@ contains
         do first = 1, size(group), block_size
           last = min(size(group), first + block_size - 1)
           num_blocks = num_blocks + 1
-          plan%blocks(num_blocks) = element_block(kind, m, group(first:last))
+          plan%blocks(num_blocks) = element_block(kind, m, group(first:last), &
+                                                  plan%inelastic_block(group(first)) > 0)
         end do
       end do
     end do
@@ -142,22 +162,43 @@ contains
   end subroutine link_corners
 
   !> Strain and stress at the points of all solids; threads over blocks, each its own elements.
-  subroutine recover_points(scene, plan, u, strain, stress)
+  subroutine recover_points(scene, plan, now, strain, stress)
     type(problem), intent(in) :: scene
     type(recovery_plan), intent(in) :: plan
-    real(rk), intent(in) :: u(:, :) !< (3, nodes) [m]
+    type(state), intent(in) :: now
     real(rk), intent(out) :: strain(:, :, :) !< (6, max_points, solids)
     real(rk), intent(out) :: stress(:, :, :) !< (6, max_points, solids) [Pa]
-    integer :: i
-    !$omp parallel do default(none) shared(scene, plan, u, strain, stress) schedule(dynamic, 4) &
-    !$omp if (size(u, 2) > few_nodes)
+    integer :: i, k
+    !$omp parallel do default(none) shared(scene, plan, now, strain, stress) private(k) &
+    !$omp schedule(dynamic, 4) if (scene%mesh%num_nodes > few_nodes)
     do i = 1, size(plan%blocks)
-      call recover_block(scene, plan, plan%blocks(i), u, strain, stress)
+      if (plan%blocks(i)%is_inelastic) then
+        do k = 1, size(plan%blocks(i)%solids)
+          call copy_solid(plan, now, plan%blocks(i)%solids(k), strain, stress)
+        end do
+      else
+        call recover_block(scene, plan, plan%blocks(i), now%u, strain, stress)
+      end if
     end do
     !$omp end parallel do
   end subroutine recover_points
 
-  !> One block.
+  !> One solid whose points have states.
+  subroutine copy_solid(plan, now, solid, strain, stress)
+    type(recovery_plan), intent(in) :: plan
+    type(state), intent(in) :: now
+    integer, intent(in) :: solid !< of an inelastic block
+    real(rk), intent(inout) :: strain(:, :, :), stress(:, :, :)
+    integer :: n, before
+    n = plan%num_points(solid)
+    before = plan%points_before(solid)
+    associate (points => now%points(plan%inelastic_block(solid)))
+      strain(:, :n, solid) = points%strain(:, before + 1:before + n)
+      stress(:, :n, solid) = points%stress(:, before + 1:before + n)
+    end associate
+  end subroutine copy_solid
+
+  !> One elastic block.
   subroutine recover_block(scene, plan, part, u, strain, stress)
     type(problem), intent(in) :: scene
     type(recovery_plan), intent(in) :: plan
@@ -202,31 +243,4 @@ contains
     call scene%materials(part%material)%law%elastic_stiffness(d)
     call plan%formulations(part%formulation)%item%strain_operator(x, d, b, weight, status)
   end subroutine operators_of_block
-
-  !> Carries a tensor from the points to the nodes; nodes without a solid get zero.
-  subroutine average_at_nodes(plan, at_points, at_nodes)
-    type(recovery_plan), intent(in) :: plan
-    real(rk), intent(in) :: at_points(:, :, :) !< (6, max_points, solids)
-    real(rk), intent(out) :: at_nodes(:, :) !< (6, nodes)
-    real(rk) :: to_corner(max_points, 8), sum(6)
-    integer :: node, i, s, a, count
-    to_corner = transpose(corners_from_points())
-    !$omp parallel do default(none) schedule(static) shared(plan, at_points, at_nodes, to_corner) &
-    !$omp private(i, s, a, count, sum) if (size(at_nodes, 2) > few_nodes)
-    do node = 1, size(at_nodes, 2)
-      sum = 0.0_rk
-      do i = plan%node_start(node), plan%node_start(node + 1) - 1
-        s = (plan%corner(i) - 1)/8 + 1
-        a = plan%corner(i) - 8*(s - 1)
-        if (plan%num_points(s) == max_points) then
-          sum = sum + matmul(at_points(:, :, s), to_corner(:, a))
-        else
-          sum = sum + at_points(:, 1, s)
-        end if
-      end do
-      count = plan%node_start(node + 1) - plan%node_start(node)
-      at_nodes(:, node) = sum/max(1, count)
-    end do
-    !$omp end parallel do
-  end subroutine average_at_nodes
 end module stress_recovery

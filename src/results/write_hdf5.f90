@@ -139,7 +139,7 @@ contains
           call self%file%put(path, values(1, :))
         else
           call self%file%put(path, values)
-          call self%file%set(path, 'components', components_of(fields(i)))
+          call self%file%set(path, 'components', components_of(fields(i), size(values, 1)))
         end if
       end associate
     end do

@@ -45,13 +45,13 @@ contains
     do s = 1, size(scene%steps)
       if (.not. allocated(scene%steps(s)%prints)) cycle
       do r = 1, size(scene%steps(s)%prints)
-        call add_request(scene%steps(s)%prints(r), record, histories%files)
+        call add_request(scene, scene%steps(s)%prints(r), record, histories%files)
       end do
     end do
     do f = 1, size(histories%files)
       associate (file => histories%files(f))
         call file%open(stem//'_'//name_part(file%kind)//'_'//own_name(histories%files, f)//'.csv', &
-                       header_of(file%kind, file%fields), error)
+                       header_of(scene, file%kind, file%fields), error)
         if (allocated(error)) return
         call record%list_file(file_name(file%path))
       end associate
@@ -73,7 +73,8 @@ contains
   end function own_name
 
   !> Adds the request's fields to its file; makes the file when it is new.
-  subroutine add_request(request, record, files)
+  subroutine add_request(scene, request, record, files)
+    type(problem), intent(in) :: scene
     type(print_request), intent(in) :: request
     type(run_record), intent(inout) :: record
     type(history_file), allocatable, intent(inout) :: files(:)
@@ -92,7 +93,7 @@ contains
     end if
     do i = 1, size(request%fields)
       if (any(files(f)%fields == request%fields(i))) cycle
-      if (columns_of(request%kind, request%fields(i)) /= '') then
+      if (columns_of(scene, request%kind, request%fields(i)) /= '') then
         files(f)%fields = [character(8) :: files(f)%fields, request%fields(i)]
       else if (request%kind /= 'JOINT') then
         call record%warn_once(trim(request%fields(i))//' of '//request%name// &

@@ -7,7 +7,7 @@ module write_vtk
   use element_catalogue, only: is_solid
   use run_records, only: run_record
   use result_writer, only: writer
-  use requested_fields, only: list_due_fields, field_on_nodes, components_of
+  use requested_fields, only: list_due_fields, field_on_nodes, components_of, is_tensor
   use envelopes, only: name_of_field
   use joint_surface, only: drawn_joints, find_drawn_joints, values_on_corners, num_values
   use vtk_order, only: tensor_in_vtk_order, tensor_names_in_vtk_order, cell_of_solid, cell_quad
@@ -85,11 +85,11 @@ contains
     character(*), intent(in) :: name
     real(rk), allocatable :: values(:, :)
     call field_on_nodes(scene, now, record, name, values)
-    if (size(values, 1) == 6) then
+    if (is_tensor(name)) then
       call file%put_point_reals(trim(name), tensor_in_vtk_order(values), &
                                 tensor_names_in_vtk_order(trim(name)))
     else
-      call file%put_point_reals(trim(name), values, components_of(name))
+      call file%put_point_reals(trim(name), values, components_of(name, size(values, 1)))
     end if
   end subroutine put_field
 

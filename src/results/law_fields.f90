@@ -1,0 +1,111 @@
+!> Fields that the laws of inelastic solids keep: PE, DAMAGET, DAMAGEC, SDV. Where a law has none of
+!> a field, and in elastic solids, the field is zero.
+module law_fields
+  use kinds, only: rk
+  use material_points, only: point_state
+  use problem_definition, only: problem
+  use analysis_state, only: state
+  use stress_recovery, only: recovery_plan, max_points
+  implicit none
+  private
+  public :: width_of_field, field_of_block, field_at_points
+  public :: find_inelastic_solids, nodes_of_solids
+
+contains
+
+  !> Components of a field: those of the law with most; 0 where no law of the scene has it.
+  integer function width_of_field(scene, name) result(width)
+    type(problem), intent(in) :: scene
+    character(*), intent(in) :: name
+    type(point_state) :: nobody
+    real(rk), allocatable :: values(:, :)
+    integer :: i, last
+    width = 0
+    if (.not. allocated(scene%inelastic)) return
+    last = 0
+    allocate (nobody%strain(6, 0), nobody%stress(6, 0), nobody%energy(3, 0), nobody%is_elastic(0))
+    do i = 1, size(scene%inelastic)
+      if (scene%inelastic(i)%material == last) cycle
+      last = scene%inelastic(i)%material
+      associate (law => scene%materials(last)%law)
+        if (allocated(nobody%internal)) deallocate (nobody%internal)
+        allocate (nobody%internal(law%num_state, 0))
+        call law%read_field(name, nobody, values)
+      end associate
+      if (allocated(values)) width = max(width, size(values, 1))
+    end do
+  end function width_of_field
+
+  !> A field at the points of an inelastic block; unallocated where it is zero: the law does not
+  !> have it, or no point has left elasticity (state variables of a law are what it makes of them).
+  subroutine field_of_block(scene, now, block, name, values)
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    integer, intent(in) :: block !< position in the problem's list
+    character(*), intent(in) :: name
+    real(rk), allocatable, intent(out) :: values(:, :) !< (components, points)
+    if (name /= 'SDV' .and. all(now%points(block)%is_elastic)) return
+    associate (law => scene%materials(scene%inelastic(block)%material)%law)
+      call law%read_field(name, now%points(block), values)
+    end associate
+  end subroutine field_of_block
+
+  !> A field at the points of all solids.
+  subroutine field_at_points(scene, plan, now, name, values)
+    type(problem), intent(in) :: scene
+    type(recovery_plan), intent(in) :: plan
+    type(state), intent(in) :: now
+    character(*), intent(in) :: name
+    real(rk), allocatable, intent(out) :: values(:, :, :) !< (components, max_points, solids)
+    real(rk), allocatable :: of_block(:, :)
+    integer :: i, e, s, n
+    allocate (values(width_of_field(scene, name), max_points, plan%num_solids), source=0.0_rk)
+    do i = 1, size(scene%inelastic)
+      call field_of_block(scene, now, i, name, of_block)
+      if (.not. allocated(of_block)) cycle
+      n = scene%inelastic(i)%points_of_element
+      do e = 1, size(scene%inelastic(i)%elements)
+        s = plan%solid_of_element(scene%inelastic(i)%elements(e))
+        values(:size(of_block, 1), :n, s) = of_block(:, (e - 1)*n + 1:e*n)
+      end do
+    end do
+  end subroutine field_at_points
+
+  !> The solids with a point that has left elasticity.
+  subroutine find_inelastic_solids(scene, plan, now, is_inelastic)
+    type(problem), intent(in) :: scene
+    type(recovery_plan), intent(in) :: plan
+    type(state), intent(in) :: now
+    logical, allocatable, intent(out) :: is_inelastic(:) !< (solids)
+    integer :: i, e, n
+    allocate (is_inelastic(plan%num_solids), source=.false.)
+    if (.not. allocated(scene%inelastic)) return
+    do i = 1, size(scene%inelastic)
+      n = scene%inelastic(i)%points_of_element
+      do e = 1, size(scene%inelastic(i)%elements)
+        is_inelastic(plan%solid_of_element(scene%inelastic(i)%elements(e))) = &
+          .not. all(now%points(i)%is_elastic((e - 1)*n + 1:e*n))
+      end do
+    end do
+  end subroutine find_inelastic_solids
+
+  !> The nodes whose value such solids have a part in.
+  pure function nodes_of_solids(plan, is_chosen) result(nodes)
+    type(recovery_plan), intent(in) :: plan
+    logical, intent(in) :: is_chosen(:) !< (solids)
+    integer, allocatable :: nodes(:)
+    integer, allocatable :: found(:)
+    integer :: node, i, last
+    allocate (found(size(plan%node_start) - 1))
+    last = 0
+    do node = 1, size(found)
+      do i = plan%node_start(node), plan%node_start(node + 1) - 1
+        if (.not. is_chosen((plan%corner(i) - 1)/8 + 1)) cycle
+        last = last + 1
+        found(last) = node
+        exit
+      end do
+    end do
+    nodes = found(:last)
+  end function nodes_of_solids
+end module law_fields
