@@ -187,14 +187,26 @@ contains
     do line = 1, min(the_card%num_lines, the_card%spec%most_lines)
       num_fields = the_card%num_fields(line)
       if (num_fields > num_columns .and. .not. the_card%spec%repeats_columns) then
-        call the_card%fault_at(faults, line, num_columns + 1, &
-                               'found '//as_text(num_fields)//' fields', &
-                               'at most '//as_text(num_columns)//': '// &
-                               names_of_columns(the_card%spec))
+        call fault_further_columns(the_card, line, faults)
       end if
       call check_columns(the_card, line, faults)
     end do
   end subroutine check_lines
+
+  !> Tells that a line holds more fields than there are columns, and why if there is more to say.
+  subroutine fault_further_columns(the_card, line, faults)
+    type(card), intent(in) :: the_card
+    integer, intent(in) :: line !< data line
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: why
+    associate (spec => the_card%spec)
+      why = text_or_nothing(spec%no_further)
+      if (len(why) > 0) why = ': '//why
+      call the_card%fault_at(faults, line, size(spec%columns) + 1, &
+                             'found '//as_text(the_card%num_fields(line))//' fields'//why, &
+                             'at most '//as_text(size(spec%columns))//': '//names_of_columns(spec))
+    end associate
+  end subroutine fault_further_columns
 
   !> Compares the fields of a line with the columns, group by group where the columns repeat.
   subroutine check_columns(the_card, line, faults)

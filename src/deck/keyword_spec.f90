@@ -45,6 +45,7 @@ module keyword_spec
     type(field), allocatable :: parameters(:)
     type(field), allocatable :: columns(:) !< of one data line
     logical :: repeats_columns = .false. !< a line may hold the columns several times
+    character(:), allocatable :: no_further !< why further columns of other programs are refused
     logical :: checks_own_data = .false. !< the handler reads the data lines itself
     integer :: fewest_lines = 0, most_lines = huge(1) !< of data
     logical :: new_clears = .false. !< OP=NEW without data clears what there was

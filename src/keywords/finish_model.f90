@@ -5,6 +5,7 @@ module finish_model
   use element_catalogue, only: is_solid
   use element_joint8, only: build_joint_points, find_attached_solids
   use errors, only: error_type
+  use finish_concrete, only: complete_concretes
   use joint_catalogue, only: make_joint_law
   use joint_constants, only: law_constants
   use joint_points, only: joint
@@ -30,6 +31,7 @@ contains
     model%scene%element_sets = model%element_sets%trimmed()
     call trim_loads(model)
     call check_contents(model, faults)
+    call complete_concretes(model, faults)
     call check_materials(model, faults)
     call check_solids(model, faults)
     call check_joint_elements(model, faults)
@@ -74,6 +76,7 @@ contains
     integer :: i
     do i = 1, size(model%scene%materials)
       if (allocated(model%scene%materials(i)%law)) cycle
+      if (any(model%concretes%material == i)) cycle ! told there
       if (.not. any(model%scene%mesh%material_of_element == i)) cycle
       call model%cards(model%material_origin(i)%card)%fault( &
         faults, "material '"//model%scene%materials(i)%name//"' has no stiffness", '*ELASTIC')

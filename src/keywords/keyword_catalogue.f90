@@ -3,6 +3,10 @@ module keyword_catalogue
   use keyword_handler, only: keyword_list, pass_definitions, pass_elements, pass_nodes, pass_rest
   use keywords_amplitude, only: describe_amplitude, read_amplitude
   use keywords_boundary, only: describe_boundary, read_boundary
+  use keywords_concrete, only: describe_plasticity, read_plasticity
+  use keywords_concrete_tables, only: describe_cracking, describe_crushing, describe_hardening, &
+                                      describe_stiffening, read_cracking, read_crushing, &
+                                      read_hardening, read_stiffening
   use keywords_controls, only: describe_controls, describe_step_damping, read_controls, &
                                read_step_damping
   use keywords_elements, only: describe_element, read_elements
@@ -59,6 +63,11 @@ contains
     call list%add(describe_density, read_density, pass_definitions)
     call list%add(describe_elastic, read_elastic, pass_definitions)
     call list%add(describe_material_damping, read_material_damping, pass_definitions)
+    call list%add(describe_plasticity, read_plasticity, pass_definitions)
+    call list%add(describe_hardening, read_hardening, pass_definitions)
+    call list%add(describe_stiffening, read_stiffening, pass_definitions)
+    call list%add(describe_crushing, read_crushing, pass_definitions)
+    call list%add(describe_cracking, read_cracking, pass_definitions)
     call list%add(describe_solid_section, read_solid_section, pass_rest)
     call list%add(describe_joint_law, read_joint_law, pass_definitions)
     call list%add(describe_joint, read_joint, pass_rest)

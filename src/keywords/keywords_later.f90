@@ -1,7 +1,7 @@
 !> Keywords that are known and not available yet: each is an error at its place in the deck.
 module keywords_later
   use keyword_handler, only: keyword_list
-  use keyword_spec, only: field, kind_choice, kind_flag, kind_integer, kind_real, kind_word, &
+  use keyword_spec, only: field, kind_flag, kind_integer, kind_real, kind_word, &
                           later
   implicit none
   private
@@ -13,7 +13,6 @@ contains
 
   subroutine add_later_keywords(list)
     type(keyword_list), intent(inout) :: list
-    call add_concrete(list)
     call add_user_material(list)
     call add_coupling(list)
     call add_later(list, 'RESTART', 'output', 'anywhere', 'Writes a checkpoint every so many '// &
@@ -23,29 +22,6 @@ contains
                                    default='1'))
     call add_foreign(list)
   end subroutine add_later_keywords
-
-  subroutine add_concrete(list)
-    type(keyword_list), intent(inout) :: list
-    call add_later(list, 'CONCRETE DAMAGED PLASTICITY', 'material', damage_place, &
-                   'Plastic-damage concrete: dilation angle [deg], offset, f_b0/f_c0, K_c, '// &
-                   'viscosity.')
-    call add_parameter(list, field('RECOVERY', kind_choice, 'weight of tension', &
-                                   default='LEE-FENVES', choices='LEE-FENVES | SIGN'))
-    call add_later(list, 'CONCRETE COMPRESSION HARDENING', 'material', damage_place, &
-                   'Table of stress [Pa] and inelastic strain.')
-    call add_later(list, 'CONCRETE TENSION STIFFENING', 'material', damage_place, &
-                   'Table of stress [Pa] against cracking strain or opening [m], or f_t, G_f.')
-    call add_parameter(list, field('TYPE', kind_choice, 'what the table is against', &
-                                   default='STRAIN', choices='STRAIN | DISPLACEMENT | GFI'))
-    call add_later(list, 'CONCRETE COMPRESSION DAMAGE', 'material', damage_place, &
-                   'Table of damage and inelastic strain.')
-    call add_parameter(list, field('TENSION RECOVERY', kind_real, 'w_t', default='0'))
-    call add_later(list, 'CONCRETE TENSION DAMAGE', 'material', damage_place, &
-                   'Table of damage and cracking strain or opening [m].')
-    call add_parameter(list, field('TYPE', kind_choice, 'what the table is against', &
-                                   default='STRAIN', choices='STRAIN | DISPLACEMENT'))
-    call add_parameter(list, field('COMPRESSION RECOVERY', kind_real, 'w_c', default='1'))
-  end subroutine add_concrete
 
   subroutine add_user_material(list)
     type(keyword_list), intent(inout) :: list

@@ -3,6 +3,7 @@
 !> Handlers of keywords fill it one card after the other; `finish_model` turns it into the problem.
 module model_draft
   use applied_load, only: load, load_slot
+  use damage_constants, only: concrete_constants
   use deck_card, only: card
   use dof_tables, only: dof_table
   use joint_constants, only: law_constants
@@ -15,6 +16,7 @@ module model_draft
   implicit none
   private
   public :: draft, add_load, origin, section_request, law_request, joint_request
+  public :: concrete_request
 
   !> Where something stood: a card of the deck and one of its data lines (0: the keyword itself).
   type :: origin
@@ -42,6 +44,14 @@ module model_draft
     type(origin) :: spot
   end type joint_request
 
+  !> The *CONCRETE keywords of a material; a spot with card 0: not given.
+  type :: concrete_request
+    integer :: material = 0 !< position
+    type(concrete_constants) :: constants
+    type(origin) :: plasticity, hardening, stiffening, compression_damage, tension_damage
+    logical :: is_right = .true. !< its cards agree with their specifications
+  end type concrete_request
+
   type :: draft
     type(card), allocatable :: cards(:) !< the whole deck
     type(problem), allocatable :: scene
@@ -52,6 +62,7 @@ module model_draft
     type(section_request), allocatable :: sections(:)
     type(law_request), allocatable :: laws(:)
     type(joint_request), allocatable :: joints(:)
+    type(concrete_request), allocatable :: concretes(:)
     integer, allocatable :: joint_of_element(:) !< position in `joints`, 0 for none
     character(:), allocatable :: mass_kind !< MASS of *SOLID SECTION once it is given
     integer :: num_loads = 0 !< in use of scene%loads, which grows by doubling
@@ -59,6 +70,7 @@ module model_draft
     type(dof_table) :: supports, point_forces
     ! The card being read.
     integer :: current = 0 !< its position in `cards`
+    logical :: is_right = .true. !< it agrees with its specification
     logical :: is_in_step = .false.
     ! The step being read.
     type(step) :: now

@@ -57,7 +57,8 @@ contains
       allocate (scene%loads(0), scene%initial_values(0), scene%steps(0))
     end associate
     allocate (model%surface_origin(0), model%material_origin(0))
-    allocate (model%sections(0), model%laws(0), model%joints(0), model%procedure_card(0))
+    allocate (model%sections(0), model%laws(0), model%joints(0), model%concretes(0))
+    allocate (model%procedure_card(0))
   end subroutine open_draft
 
   !> Finds the keyword of each card and checks that it stands where it may.
@@ -148,9 +149,8 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(diagnostic_list) :: dropped
-    logical :: is_right
-    call check_card(model%cards(model%current), list%specs(number), faults, is_right)
-    if (is_right) then
+    call check_card(model%cards(model%current), list%specs(number), faults, model%is_right)
+    if (model%is_right) then
       call list%entries(number)%handle(model%cards(model%current), model, faults)
     else
       call list%entries(number)%handle(model%cards(model%current), model, dropped)

@@ -8,6 +8,8 @@ set(sources
   keywords_elements.f90
   keywords_sets.f90
   keywords_material.f90
+  keywords_concrete.f90
+  keywords_concrete_tables.f90
   keywords_section.f90
   keywords_joint.f90
   keywords_amplitude.f90
@@ -22,6 +24,7 @@ set(sources
   keywords_output.f90
   keywords_later.f90
   keyword_catalogue.f90
+  finish_concrete.f90
   finish_model.f90
   verify_model.f90
   deck_echo.f90

@@ -1,0 +1,108 @@
+!> *CONCRETE DAMAGED PLASTICITY, and what all *CONCRETE keywords share.
+module keywords_concrete
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use keyword_spec, only: keyword, field, kind_choice, kind_real
+  use kinds, only: rk
+  use model_draft, only: concrete_request, draft, origin
+  implicit none
+  private
+  public :: describe_plasticity, read_plasticity, find_concrete, claim_card, no_dependencies
+
+  character, parameter :: nl = new_line('a')
+
+  !> Abaqus lets its tables depend on more; why that is refused.
+  character(*), parameter :: no_dependencies = &
+                             'the law depends on no rate, temperature or field variable'
+
+  !> A bar in tension keeps its plastic strain across as long as tan psi < 3/2, from (11.7) with
+  !> a = 0: -1/2 + tan psi/3 < 0. Beyond, a crack would open sideways as well.
+  real(rk), parameter :: largest_dilation = 56.3_rk ! [deg], atan(3/2) = 56.31
+
+contains
+
+  subroutine describe_plasticity(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'CONCRETE DAMAGED PLASTICITY'
+    spec%family = 'material'
+    spec%place = 'material'
+    spec%meaning = 'Concrete that cracks and crushes: yield surface, flow and recovery of the '// &
+                   'plastic-damage law of Lubliner, Lee and Fenves (theory 11, paper Eqs '// &
+                   '14-25). Needs *ELASTIC, *CONCRETE COMPRESSION HARDENING and *CONCRETE '// &
+                   'TENSION STIFFENING in the same material; the two damage tables are '// &
+                   'optional. An empty field takes its default.'
+    spec%example = '*MATERIAL, NAME=CONCRETE'//nl//'*DENSITY'//nl//'2400.'//nl//'*ELASTIC'//nl// &
+                   '25e9, 0.167'//nl//'*CONCRETE DAMAGED PLASTICITY'//nl// &
+                   '32.5, 0.1, 1.16, 0.667'//nl//'*CONCRETE COMPRESSION HARDENING'//nl// &
+                   '30e6, 0.'//nl//'*CONCRETE TENSION STIFFENING, TYPE=GFI'//nl//'2.5e6, 200.'
+    spec%fewest_lines = 1
+    spec%most_lines = 1
+    spec%no_further = no_dependencies
+    allocate (spec%parameters, source=[ &
+              field('RECOVERY', kind_choice, 'how much of a state is tension (r of Eq 17): the '// &
+                    'weight of Lee and Fenves, or the switch of the paper, which jumps', &
+                    default='LEE-FENVES', choices='LEE-FENVES | SIGN')])
+    allocate (spec%columns, source=[ &
+              field('dilation', kind_real, 'angle of dilation psi (Eq 25); from atan 3/2 on a '// &
+                    'crack would open sideways as well', 'deg', is_required=.true., &
+                    lowest=0.0_rk, highest=largest_dilation, excludes_lowest=.true., &
+                    excludes_highest=.true.), &
+              field('offset', kind_real, 'of the flow potential (eccentricity, xi of Eq 25): '// &
+                    'rounds its apex', default='0.1', lowest=0.0_rk, excludes_lowest=.true.), &
+              field('fb0/fc0', kind_real, 'strength in equal biaxial over uniaxial compression '// &
+                    '(alpha of Eq 19)', default='1.16', lowest=1.0_rk), &
+              field('Kc', kind_real, 'tensile over compressive meridian (gamma of Eq 19)', &
+                    default='0.6666666666666667', lowest=0.5_rk, highest=1.0_rk, &
+                    excludes_lowest=.true.), &
+              field('viscosity', kind_real, 'relaxation time of Duvaut and Lions', 's', '0', &
+                    lowest=0.0_rk)])
+  end subroutine describe_plasticity
+
+  subroutine read_plasticity(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i
+    call find_concrete(model, i)
+    associate (now => model%concretes(i)%constants)
+      now%dilation = this%real_at(1, 1)
+      now%offset = this%real_at(1, 2)
+      now%biaxial_ratio = this%real_at(1, 3)
+      now%meridian_ratio = this%real_at(1, 4)
+      now%viscosity = this%real_at(1, 5)
+      now%recovers_by_sign = this%word('RECOVERY') == 'SIGN'
+    end associate
+    call claim_card(this, model, model%concretes(i)%plasticity, faults)
+  end subroutine read_plasticity
+
+  !> Position of the concrete of the material that is being read; a new one with its first keyword.
+  subroutine find_concrete(model, i)
+    type(draft), intent(inout) :: model
+    integer, intent(out) :: i
+    type(concrete_request) :: new
+    new%material = size(model%scene%materials)
+    i = 0
+    if (size(model%concretes) > 0) i = findloc(model%concretes%material, new%material, dim=1)
+    if (i == 0) then
+      model%concretes = [model%concretes, new]
+      i = size(model%concretes)
+    end if
+    model%concretes(i)%is_right = model%concretes(i)%is_right .and. model%is_right
+  end subroutine find_concrete
+
+  !> Notes where a keyword of the material stands; a second one is a fault.
+  subroutine claim_card(this, model, spot, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    type(origin), intent(inout) :: spot !< of the keyword in its concrete
+    type(diagnostic_list), intent(inout) :: faults
+    if (spot%card > 0) then
+      associate (now => model%scene%materials(size(model%scene%materials)))
+        call this%fault(faults, "material '"//now%name//"' has a *"//this%spec%name//' already', &
+                        'one only', first=model%cards(spot%card)%place())
+      end associate
+    else
+      spot = model%here(0)
+    end if
+  end subroutine claim_card
+end module keywords_concrete
