@@ -1,6 +1,8 @@
 set(sources
   damage_constants.f90
   crack_band.f90
+  damage_curves.f90
+  damage_checks.f90
   material_points.f90
   material_law.f90
   material_elastic.f90

@@ -1,0 +1,184 @@
+!> Strength and damage of concrete over plastic strain, in tension and in compression.
+!>
+!> The deck gives them over inelastic strain, or over the opening w of a crack. The knots are the
+!> rows of both tables together; knot i sits at the plastic strain (NOTES 11)
+!>     w_i/l - c_i,  c_i = d_i/(1 - d_i) sigma_i/E,
+!> l the width of the crack band, 1 for tables over strain. Between knots the nominal strength and
+!> the damage are linear in plastic strain, past the last both stay as they are. The effective
+!> strength is the quotient sigma/(1 - d) (NOTES 9).
+module damage_curves
+  use damage_constants, only: concrete_constants
+  use kinds, only: rk
+  implicit none
+  private
+  public :: strength_curve, curve_value, make_tension_curve, make_compression_curve
+  public :: place_knots, value_of_curve
+
+  !> Share of the first strength below which no curve falls: with a strength of zero beta of Eq 23
+  !> has no value and the yield surface no inside. A crack dissipates that much more energy, at most
+  !> a thousandth of f_t times its opening.
+  real(rk), parameter :: smallest_strength = 1.0e-3_rk
+  !> Share of an inelastic strain that is plastic at least. Tables of pure damage, all knots at
+  !> zero, stay curves that way; their rows are met to that share.
+  real(rk), parameter :: smallest_plastic_share = 1.0e-5_rk
+  real(rk), parameter :: same_row = 1.0e-9_rk !< abscissae that are nearer (relative) are one
+
+  !> Rows of the strength and the damage table together, over the deck's abscissa.
+  type :: strength_curve
+    real(rk), allocatable :: abscissa(:) !< inelastic strain, or opening [m]
+    real(rk), allocatable :: recoverable(:) !< c_i, what unloading gives back of it
+    real(rk), allocatable :: strength(:) !< nominal [Pa]
+    real(rk), allocatable :: damage(:)
+    real(rk) :: longest = huge(1.0_rk) !< widest band it fits [m]
+    integer :: steepest = 0 !< the row that limits it
+  end type strength_curve
+
+  !> The curve at one plastic strain, with derivatives by it.
+  type :: curve_value
+    real(rk) :: strength = 0.0_rk, strength_slope = 0.0_rk !< effective [Pa]
+    real(rk) :: damage = 0.0_rk, damage_slope = 0.0_rk
+  end type curve_value
+
+contains
+
+  !> Tension; the tables must be free of faults.
+  pure subroutine make_tension_curve(constants, curve)
+    type(concrete_constants), intent(in) :: constants
+    type(strength_curve), intent(out) :: curve
+    real(rk) :: linear(2, 2)
+    if (constants%stiffening == 'GFI') then
+      linear(:, 1) = [constants%tension(1, 1), 0.0_rk]
+      linear(:, 2) = [0.0_rk, 2.0_rk*constants%tension(2, 1)/constants%tension(1, 1)]
+      call unite_rows(linear, constants%tension_damage, constants%young, curve)
+    else
+      call unite_rows(constants%tension, constants%tension_damage, constants%young, curve)
+    end if
+    if (constants%stiffening /= 'STRAIN') call limit_band(curve, constants%young)
+  end subroutine make_tension_curve
+
+  !> Compression; the tables must be free of faults.
+  pure subroutine make_compression_curve(constants, curve)
+    type(concrete_constants), intent(in) :: constants
+    type(strength_curve), intent(out) :: curve
+    call unite_rows(constants%compression, constants%compression_damage, constants%young, curve)
+  end subroutine make_compression_curve
+
+  !> The rows of two tables as one; what a table does not have at a row is linear between its own.
+  pure subroutine unite_rows(strength, damage, young, curve)
+    real(rk), intent(in) :: strength(:, :) !< (2, rows) sigma [Pa], abscissa
+    real(rk), intent(in), allocatable :: damage(:, :) !< (2, rows) d, abscissa; none: d = 0
+    real(rk), intent(in) :: young !< E_0 [Pa]
+    type(strength_curve), intent(out) :: curve
+    integer :: i
+    curve%abscissa = strength(2, :)
+    if (allocated(damage)) call merge_abscissae(damage(2, :), curve%abscissa)
+    allocate (curve%damage(size(curve%abscissa)), source=0.0_rk)
+    curve%strength = [(value_of_table(strength, curve%abscissa(i)), i=1, size(curve%abscissa))]
+    curve%strength = max(curve%strength, smallest_strength*strength(1, 1))
+    if (allocated(damage)) then
+      curve%damage = [(value_of_table(damage, curve%abscissa(i)), i=1, size(curve%abscissa))]
+    end if
+    curve%recoverable = curve%damage/(1.0_rk - curve%damage)*curve%strength/young
+  end subroutine unite_rows
+
+  !> Adds what is new to a list that increases.
+  pure subroutine merge_abscissae(new, list)
+    real(rk), intent(in) :: new(:)
+    real(rk), allocatable, intent(inout) :: list(:)
+    integer :: i, before
+    do i = 1, size(new)
+      if (any(abs(list - new(i)) <= same_row*abs(new(i)))) cycle
+      before = count(list < new(i))
+      list = [list(:before), new(i), list(before + 1:)]
+    end do
+  end subroutine merge_abscissae
+
+  !> Linear between the rows, constant outside.
+  pure real(rk) function value_of_table(table, abscissa) result(value)
+    real(rk), intent(in) :: table(:, :) !< (2, rows) ordinate, abscissa
+    real(rk), intent(in) :: abscissa
+    integer :: i, n
+    n = size(table, 2)
+    i = count(table(2, :) <= abscissa)
+    if (i == 0) then
+      value = table(1, 1)
+    else if (i == n) then
+      value = table(1, n)
+    else
+      value = table(1, i) + (table(1, i + 1) - table(1, i)) &
+              *(abscissa - table(2, i))/(table(2, i + 1) - table(2, i))
+    end if
+  end function value_of_table
+
+  !> Widest crack band of a curve over openings [m]: in a wider one the strain w/l + sigma/E would
+  !> turn back from one row to the next (snap-back), or the plastic strain would decrease. Linear
+  !> softening without damage: 2 E G_f/f_t^2.
+  pure subroutine limit_band(curve, young)
+    type(strength_curve), intent(inout) :: curve
+    real(rk), intent(in) :: young !< E_0 [Pa]
+    real(rk) :: opening, returned
+    integer :: i
+    do i = 2, size(curve%abscissa)
+      opening = curve%abscissa(i) - curve%abscissa(i - 1)
+      returned = max((curve%strength(i - 1) - curve%strength(i))/young, &
+                     curve%recoverable(i) - curve%recoverable(i - 1))
+      if (returned <= 0.0_rk) cycle
+      if (opening/returned >= curve%longest) cycle
+      curve%longest = opening/returned
+      curve%steepest = i
+    end do
+  end subroutine limit_band
+
+  !> Plastic strain of the knots in a band of width l. In a band wider than the curve's longest all
+  !> strengths are lowered by one factor f and all openings widened by 1/f, which keeps the energy:
+  !> f = sqrt(longest/l).
+  pure subroutine place_knots(curve, length, knots, factor)
+    type(strength_curve), intent(in) :: curve
+    real(rk), intent(in) :: length !< l [m]; 1 for tables over strain
+    real(rk), intent(out) :: knots(:) !< (rows)
+    real(rk), intent(out) :: factor !< f, 1 unless the band is too wide
+    real(rk) :: width
+    integer :: i
+    factor = 1.0_rk
+    if (length > curve%longest) factor = sqrt(curve%longest/length)
+    width = min(length, curve%longest)
+    knots(1) = 0.0_rk
+    do i = 2, size(knots)
+      knots(i) = max(factor*(curve%abscissa(i)/width - curve%recoverable(i)), &
+                     knots(i - 1) + smallest_plastic_share*factor/width &
+                     *(curve%abscissa(i) - curve%abscissa(i - 1)))
+    end do
+  end subroutine place_knots
+
+  !> Effective strength and damage at a plastic strain.
+  pure subroutine value_of_curve(curve, knots, factor, plastic, row, value)
+    type(strength_curve), intent(in) :: curve
+    real(rk), intent(in) :: knots(:), factor !< as placed
+    real(rk), intent(in) :: plastic !< strain, not negative
+    integer, intent(inout) :: row !< of the knot below; comes with a guess, 1 when there is none
+    type(curve_value), intent(out) :: value
+    real(rk) :: strength, strength_slope, step, rest
+    do while (row > 1)
+      if (knots(row) <= plastic) exit
+      row = row - 1
+    end do
+    do while (row < size(knots))
+      if (knots(row + 1) > plastic) exit
+      row = row + 1
+    end do
+    strength = curve%strength(row)
+    value%damage = curve%damage(row)
+    strength_slope = 0.0_rk
+    if (row < size(knots)) then
+      step = 1.0_rk/(knots(row + 1) - knots(row))
+      strength_slope = (curve%strength(row + 1) - strength)*step
+      value%damage_slope = (curve%damage(row + 1) - value%damage)*step
+      strength = strength + strength_slope*(plastic - knots(row))
+      value%damage = value%damage + value%damage_slope*(plastic - knots(row))
+    end if
+    rest = factor/(1.0_rk - value%damage)
+    value%strength = strength*rest
+    value%strength_slope = (strength_slope + strength/(1.0_rk - value%damage)*value%damage_slope) &
+                           *rest
+  end subroutine value_of_curve
+end module damage_curves
