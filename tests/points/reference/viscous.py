@@ -1,0 +1,39 @@
+"""Duvaut and Lions' viscosity: the point lags behind what it would do without."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .concrete import Concrete
+from .path import History
+
+
+@dataclass(frozen=True)
+class Lagging:
+    """Lagging plastic strain and damage, and the stress they leave [Pa]."""
+
+    plastic: np.ndarray
+    damage: np.ndarray
+    stress: np.ndarray
+
+
+def lag(values: np.ndarray, times: np.ndarray, viscosity: float) -> np.ndarray:
+    """Solves viscosity * y' = values - y from rest, exactly for values linear between times."""
+    late = np.zeros_like(values)
+    for row in range(1, len(times)):
+        step = times[row] - times[row - 1]
+        slope = (values[row] - values[row - 1]) / step
+        fade = np.exp(-step / viscosity)
+        steady = values[row] - viscosity * slope
+        late[row] = steady + fade * (late[row - 1] - values[row - 1] + viscosity * slope)
+    return late
+
+
+def relax(law: Concrete, history: History, times: np.ndarray, viscosity: float) -> Lagging:
+    """A strain-driven history with viscosity [s]; its rows must be close together in time."""
+    plastic = lag(history.plastic, times, viscosity)
+    damage = lag(history.damage[:, 2:], times, viscosity)
+    stress = (1.0 - damage) * ((history.strain - plastic) @ law.stiffness)
+    return Lagging(plastic, damage[:, 0], stress)
