@@ -1,8 +1,9 @@
 """An independent reference of plastic-damage concrete (paper, Eqs 14-25; NOTES 7-13).
 
 It shares nothing with the program: no return map, but the rate equations themselves, integrated by
-an adaptive scheme of scipy with error control (LSODA); six stress components and numerical eigenvalues instead of
-principal axes; numerical gradients instead of derived ones. To be read in this order:
+an adaptive scheme of scipy with error control (LSODA); six stress components and numerical
+eigenvalues instead of principal axes; numerical gradients instead of derived ones. To be read in
+this order:
 
 - `curves`: strength and damage against plastic strain, from the tables of the deck;
 - `concrete`: the constants, the yield function, the flow and the damage;
