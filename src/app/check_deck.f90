@@ -21,7 +21,7 @@ contains
     type(diagnostic_list), intent(out) :: faults !< warnings, for the summary of the run
     character(:), allocatable, intent(out) :: echo !< the deck with every default made visible
     type(error_type), allocatable, intent(out) :: error
-    call read_problem(given%deck, scene, faults, echo)
+    call read_problem(given%deck, scene, faults, echo, given%is_material)
     if (faults%num_warnings > 0 .and. .not. given%is_quiet) then
       write (error_unit, '(a)') text_of_warnings(faults)
     end if

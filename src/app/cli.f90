@@ -21,6 +21,7 @@ module cli
     character(:), allocatable :: keyword !< of --keywords, '' for all
     integer :: num_threads = 0 !< 0: as the system says
     logical :: is_check = .false. !< read and verify only
+    logical :: is_material = .false. !< run the tests of materials, not the analysis
     logical :: is_quiet = .false.
     logical :: wants_keywords = .false., wants_version = .false., wants_help = .false.
     logical :: is_empty = .false. !< no argument at all
@@ -38,6 +39,7 @@ contains
            '  -o DIR             folder of the results (default: .)'//nl// &
            '  -j N               threads'//nl// &
            '  --check            read and verify only, print what the model holds'//nl// &
+           '  --material         run the tests of materials (*MATERIAL TEST), no analysis'//nl// &
            '  --keywords [NAME]  the reference of the deck, from the program itself'//nl// &
            '  -q                 say nothing but errors'//nl// &
            '  --version          compiler, flags, libraries'//nl// &
@@ -84,6 +86,8 @@ contains
       i = i + 1
     case ('--check')
       given%is_check = .true.
+    case ('--material')
+      given%is_material = .true.
     case ('-q')
       given%is_quiet = .true.
     case ('--version')
@@ -97,7 +101,7 @@ contains
         given%keyword = trim(given%keyword//' '//argument(i))
         i = i + 1
       end do
-    case ('--continue', '--umat', '--umat-check', '--material')
+    case ('--continue', '--umat', '--umat-check')
       call raise(error, 'keyway: '//word//' is not available yet', deck_is_wrong)
     case default
       call read_deck_name(word, given, error)

@@ -10,6 +10,7 @@ program keyway
   use kinds, only: rk
   use problem_definition, only: problem
   use run_analysis, only: run_problem
+  use run_material, only: run_tests
   use timer, only: wall_clock
   implicit none
 
@@ -41,6 +42,8 @@ program keyway
   call end_on(error)
   if (options%is_check) then
     call report_model(scene, echo)
+  else if (options%is_material) then
+    call run_tests(scene, options, echo, started_at, error)
   else
     call run_problem(scene, options, remarks, echo, started_at, error)
   end if

@@ -3,5 +3,6 @@ set(sources
   model_summary.f90
   check_deck.f90
   run_analysis.f90
+  run_material.f90
   main.f90
 )

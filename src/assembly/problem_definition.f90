@@ -5,6 +5,7 @@ module problem_definition
   use amplitudes, only: amplitude
   use step_plan, only: step, initial_value
   use material_law, only: material
+  use material_tests, only: material_test
   use joint_points, only: joint
   use applied_load, only: load_slot
   use inelastic_blocks, only: inelastic_block
@@ -21,6 +22,7 @@ module problem_definition
     type(surface), allocatable :: surfaces(:)
     type(amplitude), allocatable :: amplitudes(:)
     type(material), allocatable :: materials(:)
+    type(material_test), allocatable :: tests(:) !< of materials at one point
     logical :: has_lumped_mass = .false.
     type(joint), allocatable :: joints(:)
     type(inelastic_block), allocatable :: inelastic(:) !< solids whose law is not linear

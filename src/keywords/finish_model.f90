@@ -59,7 +59,10 @@ contains
     if (faults%has_errors()) return
     if (size(model%cards) == 0) return
     associate (last => model%cards(size(model%cards)))
-      if (model%scene%mesh%num_nodes == 0) then
+      if (model%scene%mesh%num_nodes == 0 .and. size(model%scene%tests) > 0) then
+        call last%fault(faults, 'the deck ends without nodes', &
+                        '*NODE; keyway --material runs the tests of materials')
+      else if (model%scene%mesh%num_nodes == 0) then
         call last%fault(faults, 'the deck ends without nodes', '*NODE')
       else if (model%scene%mesh%num_elements == 0) then
         call last%fault(faults, 'the deck ends without elements', '*ELEMENT')

@@ -18,6 +18,7 @@ module keyword_catalogue
   use keywords_material, only: describe_density, describe_elastic, describe_material, &
                                describe_material_damping, read_density, read_elastic, &
                                read_material, read_material_damping
+  use keywords_material_test, only: describe_material_test, read_material_test
   use keywords_nodes, only: describe_heading, describe_node, read_heading, read_nodes
   use keywords_output, only: describe_el_file, describe_element_output, describe_envelope, &
                              describe_node_file, describe_node_output, describe_output, &
@@ -68,6 +69,7 @@ contains
     call list%add(describe_stiffening, read_stiffening, pass_definitions)
     call list%add(describe_crushing, read_crushing, pass_definitions)
     call list%add(describe_cracking, read_cracking, pass_definitions)
+    call list%add(describe_material_test, read_material_test, pass_rest)
     call list%add(describe_solid_section, read_solid_section, pass_rest)
     call list%add(describe_joint_law, read_joint_law, pass_definitions)
     call list%add(describe_joint, read_joint, pass_rest)

@@ -58,7 +58,8 @@ module model_draft
     type(position_table) :: node_position, element_position !< by the user's ids
     type(origin), allocatable :: node_origin(:), element_origin(:)
     type(set_list) :: node_sets, element_sets
-    type(origin), allocatable :: surface_origin(:), material_origin(:)
+    type(origin), allocatable :: surface_origin(:), material_origin(:), test_origin(:)
+    logical :: runs_tests = .false. !< the deck is read for its *MATERIAL TESTs
     type(section_request), allocatable :: sections(:)
     type(law_request), allocatable :: laws(:)
     type(joint_request), allocatable :: joints(:)

@@ -5,6 +5,7 @@ module read_deck
   use deck_lexer, only: read_cards
   use diagnostics, only: diagnostic_list, place, severity_error
   use finish_model, only: complete_model
+  use finish_tests, only: complete_tests
   use inelastic_blocks, only: list_inelastic_blocks
   use keyword_catalogue, only: list_keywords
   use keyword_handler, only: keyword_list, pass_elements, pass_nodes, pass_rest
@@ -20,11 +21,12 @@ module read_deck
 contains
 
   !> Reads and verifies a deck. The problem is fit to be solved when `faults` holds no error.
-  subroutine read_problem(path, scene, faults, echo)
+  subroutine read_problem(path, scene, faults, echo, for_tests)
     character(*), intent(in) :: path !< of the deck
     type(problem), allocatable, intent(out) :: scene
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable, intent(out) :: echo !< the deck with every default made visible
+    logical, intent(in), optional :: for_tests !< of materials: the model need not be whole
     type(keyword_list) :: list
     type(draft) :: model
     integer, allocatable :: keyword_of_card(:)
@@ -35,16 +37,27 @@ contains
                       'the deck is empty', 'keywords, lines that begin with *')
     end if
     call open_draft(path, model)
+    if (present(for_tests)) model%runs_tests = for_tests
     call match_cards(list, model, keyword_of_card, faults)
     call handle_cards(list, keyword_of_card, model, faults)
-    call complete_model(model, faults)
-    if (.not. faults%has_errors()) call verify(model, faults)
-    if (.not. faults%has_errors()) then
-      call list_inelastic_blocks(model%scene%mesh, model%scene%materials, model%scene%inelastic)
+    if (model%runs_tests) then
+      call complete_tests(model, faults)
+    else
+      call complete_and_verify(model, faults)
     end if
     call move_alloc(model%scene, scene)
     echo = echo_of_cards(model%cards)
   end subroutine read_problem
+
+  !> Turns the draft into a problem that can be analysed.
+  subroutine complete_and_verify(model, faults)
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    call complete_model(model, faults)
+    if (.not. faults%has_errors()) call verify(model, faults)
+    if (faults%has_errors()) return
+    call list_inelastic_blocks(model%scene%mesh, model%scene%materials, model%scene%inelastic)
+  end subroutine complete_and_verify
 
   subroutine open_draft(path, model)
     character(*), intent(in) :: path
@@ -54,9 +67,9 @@ contains
       scene%deck_file = path
       scene%heading = ''
       allocate (scene%surfaces(0), scene%amplitudes(0), scene%materials(0), scene%joints(0))
-      allocate (scene%loads(0), scene%initial_values(0), scene%steps(0))
+      allocate (scene%loads(0), scene%initial_values(0), scene%steps(0), scene%tests(0))
     end associate
-    allocate (model%surface_origin(0), model%material_origin(0))
+    allocate (model%surface_origin(0), model%material_origin(0), model%test_origin(0))
     allocate (model%sections(0), model%laws(0), model%joints(0), model%concretes(0))
     allocate (model%procedure_card(0))
   end subroutine open_draft

@@ -10,6 +10,8 @@ set(sources
   keywords_material.f90
   keywords_concrete.f90
   keywords_concrete_tables.f90
+  keywords_material_test.f90
+  material_test_legs.f90
   keywords_section.f90
   keywords_joint.f90
   keywords_amplitude.f90
@@ -26,6 +28,7 @@ set(sources
   keyword_catalogue.f90
   finish_concrete.f90
   finish_model.f90
+  finish_tests.f90
   verify_model.f90
   deck_echo.f90
   read_deck.f90

@@ -4,6 +4,7 @@ set(sources
   mesh_faces.f90
   amplitudes.f90
   step_plan.f90
+  material_tests.f90
   dof_numbering.f90
   jump_links.f90
   id_map.f90

@@ -35,4 +35,6 @@ set(sources
   time_frequency.f90
   initial_state.f90
   run_steps.f90
+  point_increment.f90
+  material_path.f90
 )

@@ -1,0 +1,169 @@
+!> *MATERIAL TEST.
+module keywords_material_test
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use file_system, only: safe_name
+  use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real, kind_word
+  use kinds, only: rk
+  use material_test_legs, only: read_legs
+  use material_tests, only: material_test
+  use model_draft, only: draft
+  use named_things, only: longest_name
+  use nearest_words, only: nearest_word
+  implicit none
+  private
+  public :: describe_material_test, read_material_test
+
+  character, parameter :: nl = new_line('a')
+  character(*), parameter :: test_types = 'UNIAXIAL | BIAXIAL | TRIAXIAL | OEDOMETER | '// &
+                             'SHEAR | HYDROSTATIC | GENERAL'
+
+contains
+
+  subroutine describe_material_test(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'MATERIAL TEST'
+    spec%family = 'material'
+    spec%place = 'model'
+    spec%meaning = 'Leads a material at one point along a path of strains and '// &
+                   'stresses; keyway --material job.inp runs it and writes '// &
+                   'job_material_NAME.csv. No nodes, elements or steps are needed, and'// &
+                   ' an analysis passes over it. A data line is a leg: from where the '// &
+                   'material is, straight to the target; several lines make cycles. '// &
+                   'UNIAXIAL: E11, all other stresses zero. BIAXIAL: E11, S22 = RATIO '// &
+                   'times S11, other stresses zero. TRIAXIAL: first the pressure '// &
+                   'CONFINEMENT on all sides, then E11 while the sides keep it. '// &
+                   'OEDOMETER: E11, all other strains zero. SHEAR: gamma 12, all other'// &
+                   ' stresses zero. HYDROSTATIC: E11 = E22 = E33, no shear. '// &
+                   'CONTROL=STRESS makes the target of these S11 (S12). '
+    spec%meaning = spec%meaning// &
+                   'GENERAL: each component by itself, as the word control says: '// &
+                   'ESSSSS is strain 11 and stress 22 to 23; its data lines are '// &
+                   'control, 11, 22, 33, 12, 13, 23, increments, time. There an empty '// &
+                   'control is that of the line before, an empty component stays where'// &
+                   ' it is. A falling branch can be followed by a strain only.'
+    spec%example = '*MATERIAL TEST, NAME=PULL, TYPE=UNIAXIAL, LENGTH=0.5'//nl//'2e-3'//nl// &
+                   '*MATERIAL TEST, NAME=CYCLES, TYPE=UNIAXIAL, INCREMENTS=50'//nl// &
+                   '0.4e-3'//nl//'-2e-3, 200'//nl//'1e-3'//nl// &
+                   '*MATERIAL TEST, NAME=KUPFER, TYPE=BIAXIAL, RATIO=0.52'//nl//'-5e-3'//nl// &
+                   '*MATERIAL TEST, NAME=CORE, TYPE=GENERAL'//nl// &
+                   'SSSEEE, -1e6, -1e6, -1e6, 0., 0., 0., 10'//nl// &
+                   'ESSEEE, -0.01, , , , , , 200'
+    spec%fewest_lines = 1
+    spec%checks_own_data = .true.
+    allocate (spec%parameters, source=[ &
+              field('NAME', kind_word, 'name of the test and of its file', is_required=.true.), &
+              field('MATERIAL', kind_word, 'the material', default='the only one of the deck'), &
+              field('TYPE', kind_choice, 'kind of test', default='UNIAXIAL', &
+                    choices=test_types), &
+              field('CONTROL', kind_choice, 'what the target is; not with GENERAL', &
+                    default='STRAIN', choices='STRAIN | STRESS'), &
+              field('RATIO', kind_real, 'S22 over S11, with BIAXIAL', default='1'), &
+              field('CONFINEMENT', kind_real, 'pressure on the sides, with TRIAXIAL', 'Pa', &
+                    lowest=0.0_rk), &
+              field('LENGTH', kind_real, 'side of the cube the point stands for', 'm', '1', &
+                    lowest=0.0_rk, excludes_lowest=.true.), &
+              field('INCREMENTS', kind_integer, 'of a leg whose line does not tell', &
+                    default='100', lowest=1.0_rk), &
+              field('TIME', kind_real, 'of a leg whose line does not tell', 's', '1', &
+                    lowest=0.0_rk, excludes_lowest=.true.), &
+              field('CYCLES', kind_integer, 'times that the data lines are gone through', &
+                    default='1', lowest=1.0_rk), &
+              field('TOLERANCE', kind_real, 'of stresses, over the largest stress so far', &
+                    default='1e-9', lowest=0.0_rk, highest=0.01_rk, excludes_lowest=.true.)])
+    allocate (spec%columns, source=[ &
+              field('target', kind_real, 'strain, or stress [Pa], at the end of the leg', &
+                    is_required=.true.), &
+              field('increments', kind_integer, 'equal parts of the leg, one row each', &
+                    default='INCREMENTS', lowest=1.0_rk), &
+              field('time', kind_real, 'that the leg takes, for laws that feel it', 's', &
+                    default='TIME', lowest=0.0_rk, excludes_lowest=.true.)])
+  end subroutine describe_material_test
+
+  subroutine read_material_test(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(material_test), allocatable :: longer(:)
+    type(material_test) :: new
+    integer :: i, num
+    new%name = this%word('NAME')
+    new%kind = this%word('TYPE')
+    new%length = this%real('LENGTH')
+    new%tolerance = this%real('TOLERANCE')
+    new%driven = 1
+    if (new%kind == 'SHEAR') new%driven = 4
+    if (new%kind == 'GENERAL') new%driven = 0
+    num = size(model%scene%tests)
+    do i = 1, num
+      if (safe_name(model%scene%tests(i)%name) /= safe_name(new%name)) cycle ! one file each
+      call this%fault_parameter(faults, 'NAME', "test '"//this%text('NAME')// &
+                                "' is defined twice", 'a name that is used once', &
+                                first=model%cards(model%test_origin(i)%card)%place())
+    end do
+    call find_material(this, model, faults, new%material)
+    call check_parameters(this, faults)
+    call read_legs(this, faults, new%legs)
+    allocate (longer(num + 1))
+    longer(:num) = model%scene%tests
+    longer(num + 1) = new
+    call move_alloc(longer, model%scene%tests)
+    model%test_origin = [model%test_origin, model%here(0)]
+    if (model%runs_tests) return
+    call this%ignore(faults, 'has no effect in an analysis; keyway --material runs it')
+  end subroutine read_material_test
+
+  !> The material that is named, or the only one there is.
+  subroutine find_material(this, model, faults, found)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, intent(out) :: found !< 0 after a fault
+    character(longest_name) :: known(size(model%scene%materials))
+    integer :: i
+    found = 0
+    if (.not. this%has('MATERIAL')) then
+      if (size(known) == 1) then
+        found = 1
+      else if (size(known) == 0) then
+        call this%fault(faults, 'the deck has no material', '*MATERIAL and its properties')
+      else
+        call this%fault(faults, 'the deck has several materials', 'MATERIAL=<name of one>')
+      end if
+      return
+    end if
+    do i = 1, size(known)
+      known(i) = model%scene%materials(i)%name
+      if (model%scene%materials(i)%name == this%word('MATERIAL')) found = i
+    end do
+    if (found > 0) return
+    call this%fault_parameter(faults, 'MATERIAL', "there is no material '"// &
+                              this%text('MATERIAL')//"'", 'the name of a *MATERIAL', &
+                              nearest_word(this%word('MATERIAL'), known))
+  end subroutine find_material
+
+  !> Parameters that belong to one kind of test only.
+  subroutine check_parameters(this, faults)
+    type(card), intent(in) :: this
+    type(diagnostic_list), intent(inout) :: faults
+    call check_use('RATIO', 'BIAXIAL')
+    call check_use('CONFINEMENT', 'TRIAXIAL')
+    if (this%word('TYPE') == 'TRIAXIAL' .and. .not. this%has('CONFINEMENT')) then
+      call this%fault(faults, 'TRIAXIAL without a pressure', 'CONFINEMENT=<pressure> [Pa]')
+    end if
+    if (this%has('CONTROL') .and. this%word('TYPE') == 'GENERAL') then
+      call this%fault_parameter(faults, 'CONTROL', 'CONTROL has no use for GENERAL', &
+                                'the control of each component in the data lines')
+    end if
+
+  contains
+
+    !> Tells of a parameter that the test does not take.
+    subroutine check_use(name, kind)
+      character(*), intent(in) :: name, kind
+      if (.not. this%has(name) .or. this%word('TYPE') == kind) return
+      call this%fault_parameter(faults, name, name//' has no use for '//this%word('TYPE'), &
+                                'TYPE='//kind//' with it')
+    end subroutine check_use
+  end subroutine check_parameters
+end module keywords_material_test

@@ -1,0 +1,254 @@
+!> A material at one point, led through the path of a test; every increment leaves a row.
+module material_path
+  use errors, only: error_type, raise
+  use kinds, only: rk
+  use material_law, only: stress_law, start_points
+  use material_points, only: point_set, point_state, time_increment
+  use material_tests, only: material_test, test_leg
+  use point_increment, only: point_control, increment_outcome, solve_increment
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: path_record, follow_path
+
+  !> What happened, row by row. The state holds a row where that of a block holds a point.
+  type :: path_record
+    integer :: num_rows = 0 !< in use; the first is the start
+    integer, allocatable :: leg(:), increment(:), iterations(:)
+    real(rk), allocatable :: time(:) !< total [s]
+    real(rk), allocatable :: work(:) !< of the stresses so far [J/m3]
+    type(point_state) :: state
+  end type path_record
+
+  !> The point on its way.
+  type :: traveller
+    type(point_set) :: points
+    type(point_state) :: old !< converged
+    real(rk) :: tangent(6, 6, 1) = 0.0_rk !< at `old` [Pa]
+    real(rk) :: work = 0.0_rk !< [J/m3]
+    real(rk) :: largest = 0.0_rk !< stress so far [Pa]
+    type(time_increment) :: time
+    integer :: iterations = 0 !< calls of the law since the last row
+  end type traveller
+
+  real(rk), parameter :: smallest_part = 2.0_rk**(-14) !< of an increment, when it is cut
+
+contains
+
+  !> Leads the point through all legs. After an error the rows so far are kept.
+  subroutine follow_path(law, test, record, error)
+    class(stress_law), intent(in) :: law
+    type(material_test), intent(in) :: test
+    type(path_record), intent(out) :: record
+    type(error_type), allocatable, intent(out) :: error
+    type(traveller) :: now
+    integer :: i
+    call set_out(law, test, now)
+    call open_record(now, 1 + sum(test%legs%num_increments), record)
+    call add_row(now, 0, 0, record)
+    do i = 1, size(test%legs)
+      call follow_leg(law, test, i, now, record, error)
+      if (allocated(error)) exit
+    end do
+    call trim_record(record)
+  end subroutine follow_path
+
+  !> The point at rest: the middle of a cube.
+  subroutine set_out(law, test, now)
+    class(stress_law), intent(in) :: law
+    type(material_test), intent(in) :: test
+    type(traveller), intent(out) :: now
+    integer :: i
+    associate (points => now%points)
+      points%num_points = 1
+      points%element = [1]
+      points%number = [1]
+      points%length = [test%length]
+      allocate (points%x(3, 1), points%edges(3, 3, 1), source=0.0_rk)
+      do i = 1, 3
+        points%edges(i, i, 1) = test%length
+      end do
+    end associate
+    call start_points(law, now%points, now%old)
+    call law%elastic_stiffness(now%tangent(:, :, 1))
+  end subroutine set_out
+
+  !> One leg, increment by increment.
+  subroutine follow_leg(law, test, number, now, record, error)
+    class(stress_law), intent(in) :: law
+    type(material_test), intent(in) :: test
+    integer, intent(in) :: number !< of the leg
+    type(traveller), intent(inout) :: now
+    type(path_record), intent(inout) :: record
+    type(error_type), allocatable, intent(out) :: error
+    type(point_state) :: start
+    type(increment_outcome) :: outcome
+    real(rk) :: started_at
+    integer :: i
+    start = now%old
+    started_at = now%time%total_time
+    now%time%step = number
+    now%time%increment = 0
+    associate (leg => test%legs(number))
+      do i = 1, leg%num_increments
+        call advance(law, test, start, [i - 1, i], now, outcome)
+        if (.not. outcome%has_converged) then
+          call tell_failure(test, number, i, outcome, now, error)
+          return
+        end if
+        now%time%total_time = started_at + leg%duration*i/leg%num_increments
+        call add_row(now, number, i, record)
+      end do
+    end associate
+  end subroutine follow_leg
+
+  !> One increment of a leg, cut into smaller ones where it must be.
+  subroutine advance(law, test, start, bounds, now, outcome)
+    class(stress_law), intent(in) :: law
+    type(material_test), intent(in) :: test
+    type(point_state), intent(in) :: start !< of the leg
+    integer, intent(in) :: bounds(2) !< increments of the leg that are done before and after it
+    type(traveller), intent(inout) :: now
+    type(increment_outcome), intent(out) :: outcome
+    type(point_state) :: new
+    real(rk) :: tangent(6, 6, 1), at, part, leg_start
+    logical :: is_last
+    associate (leg => test%legs(now%time%step))
+      leg_start = now%time%total_time - leg%duration*bounds(1)/leg%num_increments
+      at = 0.0_rk
+      part = 1.0_rk
+      do
+        is_last = part >= 1.0_rk - at
+        if (is_last) part = 1.0_rk - at
+        now%time%step_time = leg%duration*(bounds(1) + at)/leg%num_increments
+        now%time%total_time = leg_start + now%time%step_time
+        now%time%size = leg%duration*part/leg%num_increments
+        now%time%increment = now%time%increment + 1
+        tangent = now%tangent
+        call solve_increment(law, now%points, now%time, &
+                             control_at(test, leg, start, (bounds(1) + at + part)/ &
+                                        leg%num_increments, now%largest), &
+                             now%old, new, tangent, outcome)
+        now%iterations = now%iterations + outcome%iterations
+        if (outcome%has_converged) then
+          call accept(new, tangent, now)
+          if (is_last) return
+          at = at + part
+          part = 2.0_rk*part
+        else
+          part = part*outcome%size_ratio
+          now%time%increment = now%time%increment - 1
+          if (part < smallest_part) return
+        end if
+      end do
+    end associate
+  end subroutine advance
+
+  !> What the components follow at a part of the leg.
+  pure function control_at(test, leg, start, part, largest) result(control)
+    type(material_test), intent(in) :: test
+    type(test_leg), intent(in) :: leg
+    type(point_state), intent(in) :: start !< of the leg
+    real(rk), intent(in) :: part !< 0 to 1
+    real(rk), intent(in) :: largest !< stress so far [Pa]
+    type(point_control) :: control
+    real(rk) :: first(6), last(6)
+    first = start%strain(:, 1)
+    where (leg%is_stress) first = start%stress(:, 1) - leg%share*start%stress(1, 1)
+    last = merge(first, leg%target, leg%is_held)
+    control%is_stress = leg%is_stress
+    control%share = leg%share
+    control%value = (1.0_rk - part)*first + part*last
+    control%tolerance = test%tolerance
+    control%largest = largest
+  end function control_at
+
+  !> The increment is done: the trial state becomes the converged one.
+  subroutine accept(new, tangent, now)
+    type(point_state), intent(in) :: new
+    real(rk), intent(in) :: tangent(6, 6, 1)
+    type(traveller), intent(inout) :: now
+    now%work = now%work + 0.5_rk*sum((now%old%stress + new%stress)*(new%strain - now%old%strain))
+    now%largest = max(now%largest, maxval(abs(new%stress)))
+    now%old = new
+    now%tangent = tangent
+  end subroutine accept
+
+  !> Says where the path ended and why.
+  subroutine tell_failure(test, number, increment, outcome, now, error)
+    type(material_test), intent(in) :: test
+    integer, intent(in) :: number, increment !< of the leg and in it
+    type(increment_outcome), intent(in) :: outcome
+    type(traveller), intent(in) :: now
+    type(error_type), allocatable, intent(out) :: error
+    character(:), allocatable :: text
+    text = 'test '//test%name//' stops in leg '//as_text(number)//', increment '// &
+           as_text(increment)//' of '//as_text(test%legs(number)%num_increments)// &
+           ' (E11 '//as_text(now%old%strain(1, 1))//', S11 '//as_text(now%old%stress(1, 1))// &
+           ' before it): '
+    if (len(outcome%message) > 0) then
+      text = text//outcome%message
+    else
+      text = text//'the law gives no strains for the stresses that are asked for'
+    end if
+    if (any(test%legs(number)%is_stress)) then
+      text = text//'; past a peak the test must follow a strain (CONTROL=STRAIN, or E in place '// &
+             'of S in the component that softens)'
+    end if
+    call raise(error, text)
+  end subroutine tell_failure
+
+  subroutine open_record(now, num_rows, record)
+    type(traveller), intent(in) :: now
+    integer, intent(in) :: num_rows
+    type(path_record), intent(out) :: record
+    allocate (record%leg(num_rows), record%increment(num_rows), record%iterations(num_rows))
+    allocate (record%time(num_rows), record%work(num_rows))
+    associate (state => record%state, one => now%old)
+      allocate (state%strain(6, num_rows), state%stress(6, num_rows))
+      allocate (state%internal(size(one%internal, 1), num_rows))
+      allocate (state%energy(size(one%energy, 1), num_rows), state%gradient(3, 3, 0))
+      allocate (state%is_elastic(num_rows))
+    end associate
+  end subroutine open_record
+
+  !> Writes down where the point is.
+  subroutine add_row(now, leg, increment, record)
+    type(traveller), intent(inout) :: now
+    integer, intent(in) :: leg, increment
+    type(path_record), intent(inout) :: record
+    record%num_rows = record%num_rows + 1
+    associate (row => record%num_rows, state => record%state)
+      record%leg(row) = leg
+      record%increment(row) = increment
+      record%iterations(row) = now%iterations
+      record%time(row) = now%time%total_time
+      record%work(row) = now%work
+      state%strain(:, row) = now%old%strain(:, 1)
+      state%stress(:, row) = now%old%stress(:, 1)
+      state%internal(:, row) = now%old%internal(:, 1)
+      state%energy(:, row) = now%old%energy(:, 1)
+      state%is_elastic(row) = now%old%is_elastic(1)
+    end associate
+    now%iterations = 0
+  end subroutine add_row
+
+  !> Gives back the unused rows.
+  subroutine trim_record(record)
+    type(path_record), intent(inout) :: record
+    integer :: n
+    n = record%num_rows
+    record%leg = record%leg(:n)
+    record%increment = record%increment(:n)
+    record%iterations = record%iterations(:n)
+    record%time = record%time(:n)
+    record%work = record%work(:n)
+    associate (state => record%state)
+      state%strain = state%strain(:, :n)
+      state%stress = state%stress(:, :n)
+      state%internal = state%internal(:, :n)
+      state%energy = state%energy(:, :n)
+      state%is_elastic = state%is_elastic(:n)
+    end associate
+  end subroutine trim_record
+end module material_path

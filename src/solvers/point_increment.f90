@@ -1,0 +1,182 @@
+!> One increment of a material at one point, of which some components follow strains and the others
+!> stresses: Newton's method on the strains that are free.
+module point_increment
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+  use kinds, only: rk
+  use material_law, only: stress_law
+  use material_points, only: point_set, point_state, time_increment, update_report, &
+                             consistent_tangent, secant_tangent
+  use small_matrix, only: solve_dense
+  implicit none
+  private
+  public :: point_control, increment_outcome, solve_increment
+
+  !> What the components follow at the end of the increment.
+  type :: point_control
+    logical :: is_stress(6) = .false. !< else a strain
+    real(rk) :: value(6) = 0.0_rk !< strain, or stress [Pa]
+    real(rk) :: share(6) = 0.0_rk !< a stress is its value and this share of S11
+    real(rk) :: tolerance = 1.0e-9_rk !< error of a stress over the largest stress
+    real(rk) :: largest = 0.0_rk !< stress so far [Pa]
+  end type point_control
+
+  type :: increment_outcome
+    logical :: has_converged = .false.
+    integer :: iterations = 0 !< calls of the law
+    real(rk) :: size_ratio = 0.5_rk !< of the increment to try next, over the present one
+    character(:), allocatable :: message !< of the law, '' where it had no trouble
+  end type increment_outcome
+
+  integer, parameter :: most_iterations = 25 !< of Newton's method with one kind of tangent
+  integer, parameter :: most_halvings = 6 !< of a correction that makes the error larger
+  real(rk), parameter :: least_gain = 1.0e-4_rk !< part of the error that a correction must take
+  real(rk), parameter :: least_ratio = 0.1_rk !< no law may ask for less in one go
+
+contains
+
+  !> Finds the strains at the end of the increment: with the consistent tangent, and where that does
+  !> not converge once more with the secant one.
+  subroutine solve_increment(law, points, time, control, old, new, tangent, outcome)
+    class(stress_law), intent(in) :: law
+    type(point_set), intent(in) :: points !< one point
+    type(time_increment), intent(in) :: time
+    type(point_control), intent(in) :: control
+    type(point_state), intent(in) :: old !< converged
+    type(point_state), intent(inout) :: new
+    real(rk), intent(inout) :: tangent(6, 6, 1) !< comes with that of `old`
+    type(increment_outcome), intent(out) :: outcome
+    integer, parameter :: kinds(2) = [consistent_tangent, secant_tangent]
+    type(time_increment) :: now
+    real(rk) :: first_tangent(6, 6, 1)
+    integer :: i, num_before
+    first_tangent = tangent
+    num_before = 0
+    do i = 1, size(kinds)
+      now = time
+      now%tangent = kinds(i)
+      if (i > 1) call law%elastic_stiffness(first_tangent(:, :, 1))
+      tangent = first_tangent
+      new = old
+      where (.not. control%is_stress) new%strain(:, 1) = control%value
+      call iterate(law, points, now, control, old, new, tangent, outcome)
+      outcome%iterations = outcome%iterations + num_before
+      num_before = outcome%iterations
+      if (outcome%has_converged .or. .not. any(control%is_stress)) exit
+      if (outcome%size_ratio < 0.5_rk) exit ! the law itself asks for less
+    end do
+  end subroutine solve_increment
+
+  !> Newton's method with a search along each correction.
+  subroutine iterate(law, points, time, control, old, new, tangent, outcome)
+    class(stress_law), intent(in) :: law
+    type(point_set), intent(in) :: points
+    type(time_increment), intent(in) :: time
+    type(point_control), intent(in) :: control
+    type(point_state), intent(in) :: old
+    type(point_state), intent(inout) :: new !< comes with the strains that are given
+    real(rk), intent(inout) :: tangent(6, 6, 1)
+    type(increment_outcome), intent(out) :: outcome
+    real(rk) :: correction(6), strain(6), error, allowed, largest
+    integer :: iteration, halving
+    logical :: is_good
+    outcome%message = ''
+    strain = new%strain(:, 1)
+    correction = first_correction(control, old, strain, tangent(:, :, 1))
+    largest = huge(1.0_rk)
+    do iteration = 1, most_iterations
+      do halving = 0, most_halvings
+        new%strain(:, 1) = strain + correction
+        call try_strain(law, points, time, old, new, tangent, outcome, is_good)
+        error = huge(1.0_rk)
+        if (is_good) error = maxval(abs(stress_error(control, new%stress(:, 1))))
+        allowed = control%tolerance*max(control%largest, maxval(abs(new%stress)))
+        outcome%has_converged = is_good .and. error <= allowed
+        if (outcome%has_converged) return
+        if (is_good .and. error <= (1.0_rk - least_gain)*largest) exit
+        if (.not. any(control%is_stress)) return
+        correction = 0.5_rk*correction
+      end do
+      if (.not. is_good) return
+      largest = error
+      strain = new%strain(:, 1)
+      correction = correction_of(control, stress_error(control, new%stress(:, 1)), &
+                                 tangent(:, :, 1))
+    end do
+  end subroutine iterate
+
+  !> Calls the law and judges what it gives.
+  subroutine try_strain(law, points, time, old, new, tangent, outcome, is_good)
+    class(stress_law), intent(in) :: law
+    type(point_set), intent(in) :: points
+    type(time_increment), intent(in) :: time
+    type(point_state), intent(in) :: old
+    type(point_state), intent(inout) :: new
+    real(rk), intent(inout) :: tangent(6, 6, 1)
+    type(increment_outcome), intent(inout) :: outcome
+    logical, intent(out) :: is_good !< stresses and tangent can be used
+    type(update_report) :: report
+    if (law%wants_gradient) new%gradient(:, :, 1) = gradient_of(new%strain(:, 1))
+    outcome%iterations = outcome%iterations + 1
+    call law%update(points, time, old, new, tangent, report)
+    is_good = report%failed_point == 0 .and. .not. report%size_ratio < 1.0_rk
+    if (.not. is_good .and. allocated(report%message)) outcome%message = report%message
+    if (report%size_ratio < 1.0_rk) then
+      outcome%size_ratio = max(least_ratio, min(outcome%size_ratio, report%size_ratio))
+    end if
+    if (.not. is_good) return
+    is_good = all(ieee_is_finite(new%stress)) .and. all(ieee_is_finite(tangent))
+    if (.not. is_good) outcome%message = 'the law returns NaN or infinity'
+  end subroutine try_strain
+
+  !> What the stresses that are given lack of their values, zero for the other components [Pa].
+  pure function stress_error(control, stress) result(error)
+    type(point_control), intent(in) :: control
+    real(rk), intent(in) :: stress(6)
+    real(rk) :: error(6)
+    error = 0.0_rk
+    where (control%is_stress) error = stress - control%share*stress(1) - control%value
+  end function stress_error
+
+  !> The free strains that the tangent at the start of the increment foretells.
+  pure function first_correction(control, old, strain, tangent) result(correction)
+    type(point_control), intent(in) :: control
+    type(point_state), intent(in) :: old
+    real(rk), intent(in) :: strain(6) !< with the given ones at the end of the increment
+    real(rk), intent(in) :: tangent(6, 6)
+    real(rk) :: correction(6), stress(6)
+    stress = old%stress(:, 1) + matmul(tangent, strain - old%strain(:, 1))
+    correction = correction_of(control, stress_error(control, stress), tangent)
+  end function first_correction
+
+  !> Change of the free strains that takes the error of the stresses away; zero where the tangent
+  !> is singular.
+  pure function correction_of(control, error, tangent) result(correction)
+    type(point_control), intent(in) :: control
+    real(rk), intent(in) :: error(6), tangent(6, 6)
+    real(rk) :: correction(6)
+    integer, allocatable :: free(:)
+    real(rk), allocatable :: matrix(:, :), change(:, :)
+    logical :: is_singular
+    integer :: i
+    correction = 0.0_rk
+    free = pack([(i, i=1, 6)], control%is_stress)
+    if (size(free) == 0) return
+    matrix = tangent(free, free)
+    do i = 1, size(free)
+      matrix(i, :) = matrix(i, :) - control%share(free(i))*tangent(1, free)
+    end do
+    allocate (change(size(free), 1))
+    call solve_dense(matrix, reshape(-error(free), [size(free), 1]), change, is_singular)
+    if (is_singular) return
+    if (all(ieee_is_finite(change))) correction(free) = change(:, 1)
+  end function correction_of
+
+  !> The displacement gradient of a strain without rotation.
+  pure function gradient_of(strain) result(gradient)
+    real(rk), intent(in) :: strain(6) !< shear as gamma
+    real(rk) :: gradient(3, 3), half(3)
+    half = 0.5_rk*strain(4:6)
+    gradient = reshape([strain(1), half(1), half(2), half(1), strain(2), half(3), half(2), &
+                        half(3), strain(3)], [3, 3])
+  end function gradient_of
+end module point_increment
