@@ -23,7 +23,8 @@ module damage_checks
     character(:), allocatable :: keyword !< of the table, upper case, without the star
     integer :: row = 0 !< line of its data, 0: the keyword line
     integer :: field = 0 !< of that line: 1 ordinate, 2 abscissa, 0 both
-    character(:), allocatable :: text !< what was expected and what was found
+    character(:), allocatable :: problem !< what is wrong
+    character(:), allocatable :: expected !< what was expected
   end type table_fault
 
 contains
@@ -54,26 +55,30 @@ contains
                               constants%tension_damage, faults)
   end subroutine find_table_faults
 
-  !> The widest crack band that tables over openings admit, and what limits it; for tables without
-  !> faults. Tables over strain have no limit.
+  !> The widest crack band that tables over openings admit, and the row that limits it; for tables
+  !> without faults. Tables over strain have no limit.
   subroutine find_longest_band(constants, longest, limit)
     type(concrete_constants), intent(in) :: constants
     real(rk), intent(out) :: longest !< [m]; huge: no limit
-    type(table_fault), intent(out) :: limit !< the row, and why in words
+    type(table_fault), intent(out) :: limit !< table and row, and in `expected` the rule in words
     type(strength_curve) :: curve
     call make_tension_curve(constants, curve)
     longest = curve%longest
     limit%keyword = stiffening_table
-    limit%text = 'no limit'
+    limit%problem = 'no limit'
+    limit%expected = ''
     if (curve%steepest == 0) return
-    if (constants%stiffening == 'GFI') then
+    limit%problem = 'no band wider than '//as_text(longest)//' m'
+    if (constants%stiffening == 'GFI' .and. curve%turns_back) then
       limit%row = 1
-      limit%text = '2 E G_f / f_t^2 = '//as_text(longest)//' m'
+      limit%expected = '2 E G_f/f_t^2'
+    else if (curve%turns_back) then
+      limit%row = row_of(constants%tension, curve%abscissa(curve%steepest))
+      limit%expected = 'E times the opening over the stress lost from the row before'
     else
-      call find_row(curve%abscissa(curve%steepest), stiffening_table, constants%tension, &
-                    tension_damage_table, constants%tension_damage, limit)
-      limit%text = 'the opening grows too little for the stress lost or the damage gained in '// &
-                   'bands wider than '//as_text(longest)//' m'
+      limit%keyword = tension_damage_table
+      limit%row = row_of(constants%tension_damage, curve%abscissa(curve%steepest))
+      limit%expected = 'E times the opening over what d/(1 - d) sigma gains from the row before'
     end if
   end subroutine find_longest_band
 
@@ -84,13 +89,11 @@ contains
     type(table_fault), allocatable, intent(inout) :: faults(:)
     integer :: i
     if (.not. table(1, 1) > 0.0_rk) then
-      call add_fault(keyword, 1, 1, 'expected a first strength > 0, found '// &
-                     as_text(table(1, 1)), faults)
+      call add_fault(keyword, 1, 1, 'found '//as_text(table(1, 1)), 'a first strength > 0', faults)
     end if
     do i = 2, size(table, 2)
       if (table(1, i) >= 0.0_rk) cycle
-      call add_fault(keyword, i, 1, 'expected a strength >= 0, found '//as_text(table(1, i)), &
-                     faults)
+      call add_fault(keyword, i, 1, 'found '//as_text(table(1, i)), 'a strength >= 0', faults)
     end do
     call check_abscissa(keyword, table(2, :), faults)
   end subroutine check_strength
@@ -100,15 +103,16 @@ contains
     real(rk), intent(in) :: table(:, :)
     type(table_fault), allocatable, intent(inout) :: faults(:)
     if (.not. table(1, 1) > 0.0_rk) then
-      call add_fault(stiffening_table, 1, 1, 'expected a strength f_t > 0, found '// &
-                     as_text(table(1, 1)), faults)
+      call add_fault(stiffening_table, 1, 1, 'found '//as_text(table(1, 1)), &
+                     'a strength f_t > 0', faults)
     end if
     if (.not. table(2, 1) > 0.0_rk) then
-      call add_fault(stiffening_table, 1, 2, 'expected a fracture energy G_f > 0, found '// &
-                     as_text(table(2, 1)), faults)
+      call add_fault(stiffening_table, 1, 2, 'found '//as_text(table(2, 1)), &
+                     'a fracture energy G_f > 0', faults)
     end if
     if (size(table, 2) > 1) then
-      call add_fault(stiffening_table, 2, 0, 'expected one line with TYPE=GFI: f_t, G_f', faults)
+      call add_fault(stiffening_table, 2, 0, 'a second row with TYPE=GFI', 'one row: f_t, G_f', &
+                     faults)
     end if
   end subroutine check_fracture_energy
 
@@ -120,16 +124,14 @@ contains
     integer :: i
     if (.not. allocated(table)) return
     if (abs(table(1, 1)) > 0.0_rk) then
-      call add_fault(keyword, 1, 1, 'expected a first damage of 0, found '// &
-                     as_text(table(1, 1)), faults)
+      call add_fault(keyword, 1, 1, 'found '//as_text(table(1, 1)), 'a first damage of 0', faults)
     end if
     do i = 2, size(table, 2)
       if (.not. table(1, i) < 1.0_rk) then
-        call add_fault(keyword, i, 1, 'expected a damage below 1, found '// &
-                       as_text(table(1, i)), faults)
+        call add_fault(keyword, i, 1, 'found '//as_text(table(1, i)), 'a damage below 1', faults)
       else if (table(1, i) < table(1, i - 1)) then
-        call add_fault(keyword, i, 1, 'expected a damage that does not decrease, found '// &
-                       as_text(table(1, i))//' after '//as_text(table(1, i - 1)), faults)
+        call add_fault(keyword, i, 1, 'found '//as_text(table(1, i))//' after '// &
+                       as_text(table(1, i - 1)), 'a damage that does not decrease', faults)
       end if
     end do
     call check_abscissa(keyword, table(2, :), faults)
@@ -142,14 +144,13 @@ contains
     type(table_fault), allocatable, intent(inout) :: faults(:)
     integer :: i
     if (abs(abscissa(1)) > 0.0_rk) then
-      call add_fault(keyword, 1, 2, 'expected 0 in the first line (strength and damage start '// &
-                     'where the inelastic strain or opening does), found '// &
-                     as_text(abscissa(1)), faults)
+      call add_fault(keyword, 1, 2, 'found '//as_text(abscissa(1)), '0 in the first row: the '// &
+                     'table starts where the inelastic strain or the opening does', faults)
     end if
     do i = 2, size(abscissa)
       if (abscissa(i) > abscissa(i - 1)) cycle
-      call add_fault(keyword, i, 2, 'expected a value above '//as_text(abscissa(i - 1))// &
-                     ' of the line before, found '//as_text(abscissa(i)), faults)
+      call add_fault(keyword, i, 2, 'found '//as_text(abscissa(i)), 'more than '// &
+                     as_text(abscissa(i - 1))//' of the row before', faults)
     end do
   end subroutine check_abscissa
 
@@ -162,9 +163,9 @@ contains
     wanted = 'DISPLACEMENT'
     if (constants%stiffening == 'STRAIN') wanted = 'STRAIN'
     if (constants%tension_damage_type == wanted) return
-    call add_fault(tension_damage_table, 0, 0, 'expected TYPE='//wanted//', as the table of '// &
-                   'TYPE='//trim(constants%stiffening)//' of *'//stiffening_table// &
-                   ' goes with, found TYPE='//trim(constants%tension_damage_type), faults)
+    call add_fault(tension_damage_table, 0, 0, 'TYPE='//trim(constants%tension_damage_type)// &
+                   ' does not go with TYPE='//trim(constants%stiffening)//' of *'// &
+                   stiffening_table, 'TYPE='//wanted, faults)
   end subroutine check_types
 
   !> beta of Eq 23 must not be negative when concrete first yields.
@@ -175,10 +176,9 @@ contains
     smallest = constants%tension(1, 1)*(3.0_rk*constants%biaxial_ratio - 2.0_rk) &
                /constants%biaxial_ratio
     if (constants%compression(1, 1) >= smallest*(1.0_rk - rounding)) return
-    call add_fault(hardening_table, 1, 1, 'expected a strength of at least '//as_text(smallest)// &
-                   ' (beta of Eq 23 >= 0 with the strength in tension '// &
-                   as_text(constants%tension(1, 1))//'), found '// &
-                   as_text(constants%compression(1, 1)), faults)
+    call add_fault(hardening_table, 1, 1, 'found '//as_text(constants%compression(1, 1))// &
+                   ' beside the strength in tension '//as_text(constants%tension(1, 1)), &
+                   'at least '//as_text(smallest)//', where beta of Eq 23 is 0', faults)
   end subroutine check_compression_strength
 
   !> The plastic strain must not decrease from knot to knot (NOTES 11); abscissae are strains.
@@ -196,10 +196,11 @@ contains
       plastic = curve%abscissa(i) - curve%recoverable(i)
       if (plastic < before - rounding*curve%abscissa(i)) then
         call find_row(curve%abscissa(i), strength_keyword, strength, damage_keyword, damage, place)
-        call add_fault(place%keyword, place%row, 0, 'expected a plastic strain (inelastic '// &
-                       'strain - d/(1 - d) sigma/E) that does not decrease, found '// &
-                       as_text(plastic)//' after '//as_text(before)//' at the inelastic strain '// &
-                       as_text(curve%abscissa(i))//'; a smaller damage mends it', faults)
+        call add_fault(place%keyword, place%row, 0, 'the plastic strain (inelastic strain - '// &
+                       'd/(1 - d) sigma/E) falls from '//as_text(before)//' to '// &
+                       as_text(plastic)//' at the inelastic strain '// &
+                       as_text(curve%abscissa(i)), 'one that does not decrease: a smaller '// &
+                       'damage or a larger inelastic strain', faults)
       end if
       before = plastic
     end do
@@ -213,18 +214,25 @@ contains
     real(rk), allocatable, intent(in) :: damage(:, :)
     type(table_fault), intent(inout) :: place !< keyword and row come out
     place%keyword = strength_keyword
-    place%row = minloc(abs(strength(2, :) - abscissa), 1)
+    place%row = row_of(strength, abscissa)
     if (.not. allocated(damage)) return
     if (minval(abs(damage(2, :) - abscissa)) > rounding*abscissa) return
     place%keyword = damage_keyword
-    place%row = minloc(abs(damage(2, :) - abscissa), 1)
+    place%row = row_of(damage, abscissa)
   end subroutine find_row
 
+  !> The row at an abscissa; the next one where the table has none there, the last past its end.
+  pure integer function row_of(table, abscissa)
+    real(rk), intent(in) :: table(:, :)
+    real(rk), intent(in) :: abscissa
+    row_of = min(count(table(2, :) < abscissa*(1.0_rk - rounding)) + 1, size(table, 2))
+  end function row_of
+
   !> Appends to the list.
-  subroutine add_fault(keyword, row, field, text, faults)
+  subroutine add_fault(keyword, row, field, problem, expected, faults)
     character(*), intent(in) :: keyword
     integer, intent(in) :: row, field
-    character(*), intent(in) :: text
+    character(*), intent(in) :: problem, expected
     type(table_fault), allocatable, intent(inout) :: faults(:)
     type(table_fault), allocatable :: longer(:)
     integer :: i
@@ -232,7 +240,7 @@ contains
     do i = 1, size(faults)
       longer(i) = faults(i)
     end do
-    longer(size(longer)) = table_fault(keyword, row, field, text)
+    longer(size(longer)) = table_fault(keyword, row, field, problem, expected)
     call move_alloc(longer, faults)
   end subroutine add_fault
 end module damage_checks

@@ -12,7 +12,7 @@ module damage_curves
   implicit none
   private
   public :: strength_curve, curve_value, make_tension_curve, make_compression_curve
-  public :: place_knots, value_of_curve
+  public :: place_knots, value_of_curve, smallest_strength
 
   !> Share of the first strength below which no curve falls: with a strength of zero beta of Eq 23
   !> has no value and the yield surface no inside. A crack dissipates that much more energy, at most
@@ -31,6 +31,7 @@ module damage_curves
     real(rk), allocatable :: damage(:)
     real(rk) :: longest = huge(1.0_rk) !< widest band it fits [m]
     integer :: steepest = 0 !< the row that limits it
+    logical :: turns_back = .false. !< in a wider one the strain itself would turn back
   end type strength_curve
 
   !> The curve at one plastic strain, with derivatives by it.
@@ -48,7 +49,8 @@ contains
     real(rk) :: linear(2, 2)
     if (constants%stiffening == 'GFI') then
       linear(:, 1) = [constants%tension(1, 1), 0.0_rk]
-      linear(:, 2) = [0.0_rk, 2.0_rk*constants%tension(2, 1)/constants%tension(1, 1)]
+      linear(:, 2) = [smallest_strength*constants%tension(1, 1), (1.0_rk - smallest_strength) &
+                      *2.0_rk*constants%tension(2, 1)/constants%tension(1, 1)]
       call unite_rows(linear, constants%tension_damage, constants%young, curve)
     else
       call unite_rows(constants%tension, constants%tension_damage, constants%young, curve)
@@ -116,16 +118,17 @@ contains
   pure subroutine limit_band(curve, young)
     type(strength_curve), intent(inout) :: curve
     real(rk), intent(in) :: young !< E_0 [Pa]
-    real(rk) :: opening, returned
+    real(rk) :: opening, lost, returned
     integer :: i
     do i = 2, size(curve%abscissa)
       opening = curve%abscissa(i) - curve%abscissa(i - 1)
-      returned = max((curve%strength(i - 1) - curve%strength(i))/young, &
-                     curve%recoverable(i) - curve%recoverable(i - 1))
+      lost = (curve%strength(i - 1) - curve%strength(i))/young
+      returned = max(lost, curve%recoverable(i) - curve%recoverable(i - 1))
       if (returned <= 0.0_rk) cycle
       if (opening/returned >= curve%longest) cycle
       curve%longest = opening/returned
       curve%steepest = i
+      curve%turns_back = lost >= returned
     end do
   end subroutine limit_band
 

@@ -31,7 +31,9 @@ contains
     call check(log, size(faults) == 1, what//': one fault')
     if (size(faults) /= 1) return
     call check(log, faults(1)%keyword == keyword .and. faults(1)%row == row, what//': its place')
-    call check(log, index(faults(1)%text, part) > 0, what//': '//faults(1)%text)
+    associate (said => faults(1)%problem//'; expected '//faults(1)%expected)
+      call check(log, index(said, part) > 0, what//': '//said)
+    end associate
   end subroutine expect
 
   !> Nothing to say.
@@ -48,16 +50,17 @@ contains
     type(concrete_constants) :: concrete
     concrete = table_one()
     concrete%tension(1, 1) = 0.0_rk
-    call expect(concrete, stiffening_table, 1, 'first strength > 0, found 0', 'no strength')
+    call expect(concrete, stiffening_table, 1, 'found 0; expected a first strength > 0', &
+                'no strength')
     concrete = table_one()
     concrete%tension(1, 4) = -1.0_rk
     call expect(concrete, stiffening_table, 4, 'found -1', 'negative strength')
     concrete = table_one()
     concrete%tension(2, 1) = 1.0e-5_rk
-    call expect(concrete, stiffening_table, 1, 'expected 0', 'starts late')
+    call expect(concrete, stiffening_table, 1, 'expected 0 in', 'starts late')
     concrete = table_one()
     concrete%tension(2, 3) = concrete%tension(2, 2)
-    call expect(concrete, stiffening_table, 3, 'above 1.75e-4', 'the same strain twice')
+    call expect(concrete, stiffening_table, 3, 'more than 1.75e-4', 'the same strain twice')
     concrete = table_one()
     concrete%stiffening = 'GFI'
     deallocate (concrete%tension_damage)
