@@ -7,7 +7,7 @@ module envelopes
   public :: envelope, open_envelope, note_envelope, name_of_field
 
   !> One quantity: 'S1' (largest principal tension), 'S3' (largest compression, the most negative),
-  !> 'OPENING' or 'U' (length of the displacement).
+  !> 'OPENING', 'U' (length of the displacement), 'DAMAGET' or 'DAMAGEC'.
   type :: envelope
     character(8) :: name = ''
     logical :: wants_smallest = .false.

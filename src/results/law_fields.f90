@@ -8,7 +8,7 @@ module law_fields
   use stress_recovery, only: recovery_plan, max_points
   implicit none
   private
-  public :: width_of_field, field_of_block, field_at_points
+  public :: width_of_field, field_of_block, field_at_points, mean_of_elements
   public :: find_inelastic_solids, nodes_of_solids
 
 contains
@@ -70,6 +70,28 @@ contains
       end do
     end do
   end subroutine field_at_points
+
+  !> The mean of a scalar field over the volume of each element; zero in elastic solids.
+  subroutine mean_of_elements(scene, now, name, mean)
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    character(*), intent(in) :: name
+    real(rk), allocatable, intent(out) :: mean(:) !< (elements of the mesh)
+    real(rk), allocatable :: values(:, :)
+    integer :: i, e, n
+    allocate (mean(scene%mesh%num_elements), source=0.0_rk)
+    do i = 1, size(scene%inelastic)
+      call field_of_block(scene, now, i, name, values)
+      if (.not. allocated(values)) cycle
+      n = scene%inelastic(i)%points_of_element
+      do e = 1, size(scene%inelastic(i)%elements)
+        associate (weight => scene%inelastic(i)%weight(:, e))
+          mean(scene%inelastic(i)%elements(e)) = &
+            sum(weight*values(1, (e - 1)*n + 1:e*n))/sum(weight)
+        end associate
+      end do
+    end do
+  end subroutine mean_of_elements
 
   !> The solids with a point that has left elasticity.
   subroutine find_inelastic_solids(scene, plan, now, is_inelastic)

@@ -9,6 +9,8 @@ module run_records
   use extremes, only: note_values
   use joint_readings, only: joint_record, open_joint_record, note_joint, opening_at_points, &
                             opening_at_nodes
+  use damage_readings, only: damage_record, open_damage_record, note_damage, note_damage_on_faces
+  use law_fields, only: width_of_field
   use stress_fields, only: recovered_fields
   implicit none
   private
@@ -26,6 +28,7 @@ module run_records
     type(recovered_fields) :: stresses
     type(dam_skin) :: skin
     type(joint_record), allocatable :: joints(:)
+    type(damage_record) :: damage
     type(envelope), allocatable :: envelopes(:) !< all ever asked for
     integer, allocatable :: active(:) !< those of the present step
     type(text_item), allocatable :: warnings(:)
@@ -55,6 +58,7 @@ contains
     do j = 1, size(scene%joints)
       call open_joint_record(scene%joints(j), self%skin, self%joints(j))
     end do
+    call open_damage_record(scene, self%skin, self%damage)
   end subroutine open_record
 
   !> Opens the envelopes of a step.
@@ -70,19 +74,28 @@ contains
     if (.not. allocated(scene%steps(step)%envelope)) return
     do i = 1, size(scene%steps(step)%envelope)
       associate (name => scene%steps(step)%envelope(i))
-        select case (name)
-        case ('S1', 'S3', 'OPENING', 'U')
+        if (has_envelope(scene, name)) then
           k = findloc(self%envelopes%name, name, dim=1)
           if (k == 0) self%envelopes = [self%envelopes, fresh]
           if (k == 0) k = size(self%envelopes)
           call open_envelope(self%envelopes(k), name, scene%mesh%num_nodes)
           self%active = [self%active, k]
-        case default
+        else
           call self%warn_once('*ENVELOPE: there is no '//trim(name)//' in this analysis')
-        end select
+        end if
       end associate
     end do
   end subroutine begin_step
+
+  !> Is there such a quantity in this analysis?
+  logical function has_envelope(scene, name)
+    type(problem), intent(in) :: scene
+    character(*), intent(in) :: name
+    has_envelope = .true.
+    if (any(name == ['S1     ', 'S3     ', 'OPENING', 'U      '])) return
+    has_envelope = .false.
+    if (name == 'DAMAGET' .or. name == 'DAMAGEC') has_envelope = width_of_field(scene, name) > 0
+  end function has_envelope
 
   !> Takes note of an increment: maxima of joints always, envelopes where the step asks.
   subroutine note(self, scene, now)
@@ -95,6 +108,7 @@ contains
     do j = 1, size(scene%joints)
       call note_joint(self%joints(j), scene%joints(j), now%joints(j), now%total_time)
     end do
+    if (self%damage%is_present) call note_damage(scene, now, self%damage)
     do i = 1, size(self%active)
       call self%note_one(scene, now, self%envelopes(self%active(i)))
     end do
@@ -117,6 +131,7 @@ contains
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
     type(envelope), intent(inout) :: item
+    real(rk), allocatable :: damage(:, :)
     integer :: j
     select case (item%name)
     case ('S1')
@@ -136,6 +151,10 @@ contains
                          scene%joints(j)%x, self%joints(j)%is_upstream, &
                          self%joints(j)%is_downstream, now%total_time, wants_smallest=.false.)
       end do
+    case ('DAMAGET', 'DAMAGEC')
+      call self%stresses%field_on_nodes(scene, now, item%name, damage)
+      call note_envelope(item, damage(1, :), now%total_time)
+      call note_damage_on_faces(scene, now, item%name, self%damage, item%largest)
     case default
       error stop 'note_one: an envelope without a rule'
     end select

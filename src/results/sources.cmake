@@ -15,6 +15,7 @@ set(sources
   stress_operator.f90
   stress_fields.f90
   envelopes.f90
+  damage_readings.f90
   run_records.f90
   result_writer.f90
   csv_files.f90
@@ -31,8 +32,10 @@ set(sources
   hdf5_files.f90
   hdf5_tables.f90
   hdf5_model.f90
+  hdf5_points.f90
   write_hdf5.f90
   run_summaries.f90
+  damage_json.f90
   summary_json.f90
   result_files.f90
 )

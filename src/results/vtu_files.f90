@@ -34,6 +34,7 @@ module vtu_files
     procedure :: start
     procedure :: put_point_reals
     procedure :: put_point_integers
+    procedure :: put_cell_reals
     procedure :: put_cell_integers
     procedure :: save
     procedure, private :: append
@@ -74,6 +75,15 @@ contains
     integer, intent(in) :: values(:)
     call self%append(on_points, name, 'Int32', 1, bytes_of_integers(values), '')
   end subroutine put_point_integers
+
+  !> A number on each cell.
+  subroutine put_cell_reals(self, name, values)
+    class(vtu_file), intent(inout) :: self
+    character(*), intent(in) :: name
+    real(rk), intent(in) :: values(:)
+    call self%append(on_cells, name, 'Float64', 1, &
+                     bytes_of_reals(reshape(values, [1, size(values)])), '')
+  end subroutine put_cell_reals
 
   !> Whole numbers on the cells.
   subroutine put_cell_integers(self, name, values)

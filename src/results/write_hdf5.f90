@@ -14,6 +14,7 @@ module write_hdf5
   use hdf5_files, only: hdf5_file
   use hdf5_tables, only: growing_table
   use hdf5_model, only: write_model
+  use hdf5_points, only: write_points, add_points
   use file_system, only: link_name, file_name
   implicit none
   private
@@ -59,6 +60,7 @@ contains
       call file%set('/', 'deck', scene%deck_file)
       call file%set('/', 'layout', layout_version)
       call write_model(file, scene, record)
+      call write_points(file, scene)
       call file%make_group('/steps')
       call file%make_group('/history')
       call file%make_group('/history/joints')
@@ -143,6 +145,7 @@ contains
         end if
       end associate
     end do
+    call add_points(self%file, scene, now, fields, group)
     if (any(fields == 'OPENING')) call add_joints(self%file, scene, now, group//'/joints')
   end subroutine add_fields
 

@@ -8,6 +8,7 @@ module write_vtk
   use run_records, only: run_record
   use result_writer, only: writer
   use requested_fields, only: list_due_fields, field_on_nodes, components_of, is_tensor
+  use law_fields, only: mean_of_elements
   use envelopes, only: name_of_field
   use joint_surface, only: drawn_joints, find_drawn_joints, values_on_corners, num_values
   use vtk_order, only: tensor_in_vtk_order, tensor_names_in_vtk_order, cell_of_solid, cell_quad
@@ -57,6 +58,7 @@ contains
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     character(8), allocatable :: fields(:)
+    real(rk), allocatable :: mean(:)
     type(vtu_file) :: file
     integer :: i
     call list_due_fields(scene, now, record, fields)
@@ -67,6 +69,10 @@ contains
     call self%start_grid(scene, file)
     do i = 1, size(fields)
       call put_field(file, scene, now, record, fields(i))
+      if (fields(i) == 'DAMAGET' .or. fields(i) == 'DAMAGEC') then
+        call mean_of_elements(scene, now, fields(i), mean)
+        call file%put_cell_reals(trim(fields(i))//'_MEAN', mean(self%elements))
+      end if
     end do
     call file%save(self%folder//frame_name(self%job, self%num_frames), error)
     if (allocated(error)) return

@@ -1,0 +1,169 @@
+!> What the results say of solids that take damage: the largest damage with time and place, how much
+!> of the body is damaged, and the energy that went into it.
+module damage_readings
+  use kinds, only: rk
+  use material_points, only: fracture_energy, crushing_energy
+  use shape_hex8, only: corner_of_point
+  use inelastic_blocks, only: inelastic_block
+  use problem_definition, only: problem
+  use analysis_state, only: state
+  use dam_faces, only: dam_skin
+  use extremes, only: extreme, extremes_by_face, note_values
+  use law_fields, only: width_of_field, field_of_block
+  implicit none
+  private
+  public :: damage_record, damage_extreme, open_damage_record, note_damage, note_damage_on_faces
+  public :: levels
+
+  !> Damage in tension above which volumes and elements are counted.
+  real(rk), parameter :: levels(3) = [0.1_rk, 0.5_rk, 0.9_rk]
+
+  !> The largest damage since the start, and the point that has it.
+  type :: damage_extreme
+    type(extreme) :: at
+    integer :: element = 0, point = 0 !< the user's number, and 1..8
+  end type damage_extreme
+
+  !> Which points of a block lie on which face.
+  type :: block_faces
+    logical, allocatable :: is_upstream(:), is_downstream(:) !< (points)
+  end type block_faces
+
+  type :: damage_record
+    logical :: is_present = .false. !< a law of the scene has damage
+    type(damage_extreme) :: tension, compression
+    type(block_faces), allocatable :: faces(:) !< (inelastic blocks)
+    ! Of the last increment:
+    real(rk) :: volume(size(levels)) = 0.0_rk !< with damage in tension above each level [m3]
+    integer :: elements(size(levels)) = 0 !< with a point above each level
+    real(rk) :: inelastic_volume = 0.0_rk !< that has left elasticity [m3]
+    integer :: inelastic_elements = 0 !< with a point that has
+    real(rk) :: fracture = 0.0_rk, crushing = 0.0_rk !< energy dissipated in solids so far [J]
+  end type damage_record
+
+contains
+
+  !> An empty record. A point lies on a face of the dam when the node next to it does; the point of
+  !> a one-point element, when any of its nodes does.
+  subroutine open_damage_record(scene, skin, record)
+    type(problem), intent(in) :: scene
+    type(dam_skin), intent(in) :: skin
+    type(damage_record), intent(out) :: record
+    integer :: i
+    record%is_present = max(width_of_field(scene, 'DAMAGET'), width_of_field(scene, 'DAMAGEC')) > 0
+    if (.not. record%is_present) return
+    allocate (record%faces(size(scene%inelastic)))
+    do i = 1, size(scene%inelastic)
+      associate (nodes => scene%mesh%nodes(:, scene%inelastic(i)%elements))
+        record%faces(i)%is_upstream = points_on(skin%is_upstream, nodes, scene%inelastic(i))
+        record%faces(i)%is_downstream = points_on(skin%is_downstream, nodes, scene%inelastic(i))
+      end associate
+    end do
+  end subroutine open_damage_record
+
+  !> Points of a block that lie where marked nodes do.
+  pure function points_on(is_marked, nodes, part) result(is_on)
+    logical, intent(in) :: is_marked(:) !< (nodes of the mesh)
+    integer, intent(in) :: nodes(:, :) !< (8, elements of the block)
+    type(inelastic_block), intent(in) :: part
+    logical :: is_on(part%points%num_points)
+    integer :: e, n
+    n = part%points_of_element
+    do e = 1, size(nodes, 2)
+      if (n == size(corner_of_point)) then
+        is_on((e - 1)*n + 1:e*n) = is_marked(nodes(corner_of_point, e))
+      else
+        is_on((e - 1)*n + 1:e*n) = any(is_marked(nodes(:, e)))
+      end if
+    end do
+  end function points_on
+
+  !> Takes note of one increment. Blocks that are still elastic cost the question.
+  subroutine note_damage(scene, now, record)
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(damage_record), intent(inout) :: record
+    real(rk), allocatable :: tension(:, :), compression(:, :)
+    integer :: i
+    record%volume = 0.0_rk
+    record%elements = 0
+    record%inelastic_volume = 0.0_rk
+    record%inelastic_elements = 0
+    record%fracture = 0.0_rk
+    record%crushing = 0.0_rk
+    do i = 1, size(scene%inelastic)
+      if (all(now%points(i)%is_elastic)) cycle
+      call field_of_block(scene, now, i, 'DAMAGET', tension)
+      call field_of_block(scene, now, i, 'DAMAGEC', compression)
+      call note_largest(record%tension, tension, scene%inelastic(i), now%total_time)
+      call note_largest(record%compression, compression, scene%inelastic(i), now%total_time)
+      call measure_block(scene%inelastic(i), now, i, tension, record)
+    end do
+  end subroutine note_damage
+
+  !> Keeps the largest value so far.
+  subroutine note_largest(largest, damage, part, time)
+    type(damage_extreme), intent(inout) :: largest
+    real(rk), allocatable, intent(in) :: damage(:, :) !< (1, points), or no such field
+    type(inelastic_block), intent(in) :: part
+    real(rk), intent(in) :: time !< [s]
+    integer :: p
+    if (.not. allocated(damage)) return
+    p = maxloc(damage(1, :), dim=1)
+    if (damage(1, p) <= largest%at%value) return
+    largest%at = extreme(.true., damage(1, p), time, part%points%x(:, p))
+    largest%element = part%points%element(p)
+    largest%point = part%points%number(p)
+  end subroutine note_largest
+
+  !> Adds volumes, counts and energies of a block.
+  subroutine measure_block(part, now, block, tension, record)
+    type(inelastic_block), intent(in) :: part
+    type(state), intent(in) :: now
+    integer, intent(in) :: block !< its position
+    real(rk), allocatable, intent(in) :: tension(:, :) !< (1, points), or no such field
+    type(damage_record), intent(inout) :: record
+    integer :: e, n, first, last, level
+    n = part%points_of_element
+    do e = 1, size(part%elements)
+      first = (e - 1)*n + 1
+      last = e*n
+      associate (points => now%points(block), weight => part%weight(:, e))
+        if (all(points%is_elastic(first:last))) cycle
+        record%inelastic_elements = record%inelastic_elements + 1
+        record%inelastic_volume = record%inelastic_volume + &
+                                  sum(weight, mask=.not. points%is_elastic(first:last))
+        record%fracture = record%fracture + sum(weight*points%energy(fracture_energy, first:last))
+        record%crushing = record%crushing + sum(weight*points%energy(crushing_energy, first:last))
+        if (.not. allocated(tension)) cycle
+        do level = 1, size(levels)
+          if (.not. any(tension(1, first:last) > levels(level))) exit
+          record%elements(level) = record%elements(level) + 1
+          record%volume(level) = record%volume(level) + &
+                                 sum(weight, mask=tension(1, first:last) > levels(level))
+        end do
+      end associate
+    end do
+  end subroutine measure_block
+
+  !> For *ENVELOPE: the largest damage anywhere and on each face, with the place of the point.
+  subroutine note_damage_on_faces(scene, now, name, record, largest)
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    character(*), intent(in) :: name !< 'DAMAGET' or 'DAMAGEC'
+    type(damage_record), intent(in) :: record
+    type(extremes_by_face), intent(inout) :: largest
+    real(rk), allocatable :: damage(:, :)
+    integer :: i
+    do i = 1, size(scene%inelastic)
+      associate (part => scene%inelastic(i), faces => record%faces(i))
+        call field_of_block(scene, now, i, name, damage)
+        if (.not. allocated(damage)) then
+          allocate (damage(1, part%points%num_points), source=0.0_rk)
+        end if
+        call note_values(largest, damage(1, :), part%points%x, faces%is_upstream, &
+                         faces%is_downstream, now%total_time, wants_smallest=.false.)
+      end associate
+    end do
+  end subroutine note_damage_on_faces
+end module damage_readings
