@@ -2,11 +2,15 @@
 """Draw the pictures of a run, without a display.
 
     tools/plot.py RESULTS [-o FOLDER] [--job NAME]
+    tools/plot.py material CURVE.csv ... [--experiment POINTS.csv] [-o PICTURE.png]
 
 RESULTS is the folder that the run was given with -o. For each job in it: principal-stress and
 displacement envelopes on the dam's faces, openings over the joints and in time, the deformed
 shape, mode shapes, histories of nodes and energies; whatever the run kept. Units: SI in the
 deck, MPa and mm in the pictures. The names of the pictures are printed.
+
+`material` draws the curves of `keyway --material` (job_material_NAME.csv), several in one picture:
+stress against strain, damage, energies, beside measured points (strain, stress a line) if given.
 """
 
 from __future__ import annotations
@@ -18,6 +22,7 @@ from pathlib import Path
 
 import numpy as np
 from keyway_tools.pictures_curves import plot_energy, plot_joint_areas, plot_nodes, plot_openings
+from keyway_tools.pictures_material import COMPONENTS, plot_material, read_curve
 from keyway_tools.results_reader import Results, find_jobs
 
 
@@ -46,8 +51,32 @@ def draw_job(results: Results, folder: Path) -> Iterator[Path | None]:
     yield plot_energy(results, path_of("energy"))
 
 
+def draw_material(arguments: list[str]) -> int:
+    """Draw curves of material tests in one picture."""
+    parser = argparse.ArgumentParser(prog="plot.py material")
+    parser.add_argument("curves", type=Path, nargs="+", help="job_material_NAME.csv")
+    points = "measured points, a strain and a stress a line; may be given again"
+    parser.add_argument("-e", "--experiment", type=Path, action="append", default=[], help=points)
+    component = "of strain and stress (the one whose stress changes most)"
+    parser.add_argument("-c", "--component", choices=COMPONENTS, help=component)
+    parser.add_argument("-o", "--output", type=Path, help="picture (beside the first curve)")
+    chosen = parser.parse_args(arguments)
+    path = chosen.output or chosen.curves[0].with_suffix(".png")
+    try:
+        curves = [read_curve(file, chosen.component) for file in chosen.curves]
+        path.parent.mkdir(parents=True, exist_ok=True)
+        print(plot_material(curves, chosen.experiment, path))
+    except (OSError, ValueError) as error:
+        print(f"plot: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Draw every job of a folder."""
+    arguments = sys.argv[1:] if arguments is None else arguments
+    if arguments[:1] == ["material"]:
+        return draw_material(arguments[1:])
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )

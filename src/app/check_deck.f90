@@ -5,7 +5,7 @@ module check_deck
   use diagnostic_text, only: text_of_errors, text_of_warnings
   use diagnostics, only: diagnostic_list
   use errors, only: deck_is_wrong, error_type, raise
-  use model_summary, only: summary_of
+  use model_summary, only: summary_of, summary_of_tests
   use problem_definition, only: problem
   use read_deck, only: read_problem
   implicit none
@@ -29,10 +29,15 @@ contains
   end subroutine load_deck
 
   !> Prints the effective deck and what the model holds.
-  subroutine report_model(scene, echo)
+  subroutine report_model(given, scene, echo)
+    type(command_line), intent(in) :: given
     type(problem), intent(in) :: scene
     character(*), intent(in) :: echo
     write (output_unit, '(a)') 'The deck with its defaults', echo, ''
-    write (output_unit, '(a)') summary_of(scene)
+    if (given%is_material) then
+      write (output_unit, '(a)') summary_of_tests(scene)
+    else
+      write (output_unit, '(a)') summary_of(scene)
+    end if
   end subroutine report_model
 end module check_deck

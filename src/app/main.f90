@@ -41,7 +41,7 @@ program keyway
   call load_deck(options, scene, remarks, echo, error)
   call end_on(error)
   if (options%is_check) then
-    call report_model(scene, echo)
+    call report_model(options, scene, echo)
   else if (options%is_material) then
     call run_tests(scene, options, echo, started_at, error)
   else

@@ -7,7 +7,7 @@ module model_summary
   use write_text, only: as_text
   implicit none
   private
-  public :: summary_of
+  public :: summary_of, summary_of_tests
 
   character, parameter :: nl = new_line('a')
   integer, parameter :: name_width = 24
@@ -24,8 +24,16 @@ contains
     text = text//sets_of('Node sets', 'nodes', scene%node_sets)
     text = text//sets_of('Element sets', 'elements', scene%element_sets)
     text = text//surfaces_of(scene)//materials_of(scene)//joints_of(scene)//amplitudes_of(scene)
-    text = text//loads_of(scene)//steps_of(scene)
+    text = text//loads_of(scene)//steps_of(scene)//tests_of(scene)
   end function summary_of
+
+  !> What `keyway --material` works on.
+  function summary_of_tests(scene) result(text)
+    type(problem), intent(in) :: scene
+    character(:), allocatable :: text !< lines with new_line between them
+    text = materials_of(scene)//tests_of(scene)
+    text = text(len(nl) + 1:)
+  end function summary_of_tests
 
   !> '  name    value'.
   pure function row(name, value) result(text)
@@ -83,11 +91,37 @@ contains
         text = text//nl//row(now%name, 'E '//as_text(now%young)//' Pa, nu '// &
                              as_text(now%poisson)//', density '//as_text(now%density)// &
                              ' kg/m3, damping ALPHA '//as_text(now%alpha)//' 1/s, BETA '// &
-                             as_text(now%beta)//' s; '// &
-                             as_text(count(scene%mesh%material_of_element == i))//' elements')
+                             as_text(now%beta)//' s'// &
+                             elements_of(scene, i))
       end associate
     end do
   end function materials_of
+
+  !> '; 12 elements', where there are any.
+  pure function elements_of(scene, material) result(text)
+    type(problem), intent(in) :: scene
+    integer, intent(in) :: material
+    character(:), allocatable :: text
+    text = ''
+    if (scene%mesh%num_elements == 0) return
+    text = '; '//as_text(count(scene%mesh%material_of_element == material))//' elements'
+  end function elements_of
+
+  pure function tests_of(scene) result(text)
+    type(problem), intent(in) :: scene
+    character(:), allocatable :: text
+    integer :: i
+    text = ''
+    if (size(scene%tests) > 0) text = nl//'Material tests'
+    do i = 1, size(scene%tests)
+      associate (now => scene%tests(i))
+        text = text//nl//row(now%name, now%kind//' of '//scene%materials(now%material)%name// &
+                             ', length '//as_text(now%length)//' m, '// &
+                             as_text(size(now%legs))//' legs, '// &
+                             as_text(sum(now%legs%num_increments))//' increments')
+      end associate
+    end do
+  end function tests_of
 
   pure function joints_of(scene) result(text)
     type(problem), intent(in) :: scene

@@ -180,12 +180,20 @@ contains
     wide = text//repeat(' ', max(width - len(text), 0))
   end function padded
 
-  !> A paragraph, every line indented.
+  !> Paragraphs, every line indented.
   pure function wrapped(text, indent) result(lines)
-    character(*), intent(in) :: text
+    character(*), intent(in) :: text !< new_line between paragraphs
     integer, intent(in) :: indent
     character(:), allocatable :: lines
-    lines = repeat(' ', indent)//hanging(text, indent)
+    integer :: first, last
+    lines = ''
+    first = 1
+    do while (first <= len(text))
+      last = index(text(first:)//nl, nl) + first - 2
+      if (first > 1) lines = lines//nl
+      lines = lines//repeat(' ', indent)//hanging(text(first:last), indent)
+      first = last + 2
+    end do
   end function wrapped
 
   !> A paragraph whose later lines are indented.

@@ -25,23 +25,12 @@ contains
     spec%name = 'MATERIAL TEST'
     spec%family = 'material'
     spec%place = 'model'
-    spec%meaning = 'Leads a material at one point along a path of strains and '// &
-                   'stresses; keyway --material job.inp runs it and writes '// &
-                   'job_material_NAME.csv. No nodes, elements or steps are needed, and'// &
-                   ' an analysis passes over it. A data line is a leg: from where the '// &
-                   'material is, straight to the target; several lines make cycles. '// &
-                   'UNIAXIAL: E11, all other stresses zero. BIAXIAL: E11, S22 = RATIO '// &
-                   'times S11, other stresses zero. TRIAXIAL: first the pressure '// &
-                   'CONFINEMENT on all sides, then E11 while the sides keep it. '// &
-                   'OEDOMETER: E11, all other strains zero. SHEAR: gamma 12, all other'// &
-                   ' stresses zero. HYDROSTATIC: E11 = E22 = E33, no shear. '// &
-                   'CONTROL=STRESS makes the target of these S11 (S12). '
-    spec%meaning = spec%meaning// &
-                   'GENERAL: each component by itself, as the word control says: '// &
-                   'ESSSSS is strain 11 and stress 22 to 23; its data lines are '// &
-                   'control, 11, 22, 33, 12, 13, 23, increments, time. There an empty '// &
-                   'control is that of the line before, an empty component stays where'// &
-                   ' it is. A falling branch can be followed by a strain only.'
+    spec%meaning = 'Leads a material at one point along a path of strains and stresses; '// &
+                   'keyway --material job.inp runs it and writes job_material_NAME.csv. No '// &
+                   'nodes, elements or steps are needed, and an analysis passes over it. A '// &
+                   'data line is a leg: from where the material is, straight to the target. '// &
+                   'Several lines make cycles. A falling branch follows a strain only.'// &
+                   kinds_in_words()
     spec%example = '*MATERIAL TEST, NAME=PULL, TYPE=UNIAXIAL, LENGTH=0.5'//nl//'2e-3'//nl// &
                    '*MATERIAL TEST, NAME=CYCLES, TYPE=UNIAXIAL, INCREMENTS=50'//nl// &
                    '0.4e-3'//nl//'-2e-3, 200'//nl//'1e-3'//nl// &
@@ -58,11 +47,11 @@ contains
                     choices=test_types), &
               field('CONTROL', kind_choice, 'what the target is; not with GENERAL', &
                     default='STRAIN', choices='STRAIN | STRESS'), &
-              field('RATIO', kind_real, 'S22 over S11, with BIAXIAL', default='1'), &
+              field('RATIO', kind_real, 'S22 over S11, with BIAXIAL'), &
               field('CONFINEMENT', kind_real, 'pressure on the sides, with TRIAXIAL', 'Pa', &
                     lowest=0.0_rk), &
-              field('LENGTH', kind_real, 'side of the cube the point stands for', 'm', '1', &
-                    lowest=0.0_rk, excludes_lowest=.true.), &
+              field('LENGTH', kind_real, 'of the cube it stands for: width of its crack band', &
+                    'm', '1', lowest=0.0_rk, excludes_lowest=.true.), &
               field('INCREMENTS', kind_integer, 'of a leg whose line does not tell', &
                     default='100', lowest=1.0_rk), &
               field('TIME', kind_real, 'of a leg whose line does not tell', 's', '1', &
@@ -74,11 +63,27 @@ contains
     allocate (spec%columns, source=[ &
               field('target', kind_real, 'strain, or stress [Pa], at the end of the leg', &
                     is_required=.true.), &
-              field('increments', kind_integer, 'equal parts of the leg, one row each', &
-                    default='INCREMENTS', lowest=1.0_rk), &
-              field('time', kind_real, 'that the leg takes, for laws that feel it', 's', &
-                    default='TIME', lowest=0.0_rk, excludes_lowest=.true.)])
+              field('increments', kind_integer, 'equal parts of the leg, one row each; else '// &
+                    'INCREMENTS', lowest=1.0_rk), &
+              field('time', kind_real, 'that the leg takes, for laws that feel it; else TIME', &
+                    's', lowest=0.0_rk, excludes_lowest=.true.)])
   end subroutine describe_material_test
+
+  !> What each kind of test does, a line each.
+  pure function kinds_in_words() result(text)
+    character(:), allocatable :: text
+    text = nl//'UNIAXIAL: E11; all other stresses zero.'//nl// &
+           'BIAXIAL: E11; S22 = RATIO times S11, all other stresses zero.'//nl// &
+           'TRIAXIAL: first the pressure CONFINEMENT all round, then E11; the sides keep it.'// &
+           nl//'OEDOMETER: E11; all other strains zero.'//nl// &
+           'SHEAR: gamma 12; all other stresses zero.'//nl// &
+           'HYDROSTATIC: E11 = E22 = E33; no shear.'//nl// &
+           'With CONTROL=STRESS the targets of all these are S11 (SHEAR: S12).'//nl// &
+           'GENERAL: each component by itself. Its data lines are control, 11, 22, 33, 12, '// &
+           '13, 23, increments, time; the control is six letters, E for a strain and S for a '// &
+           'stress: ESSSSS. An empty control is that of the line before, an empty component '// &
+           'stays where it is.'
+  end function kinds_in_words
 
   subroutine read_material_test(this, model, faults)
     type(card), intent(in) :: this
@@ -146,24 +151,25 @@ contains
   subroutine check_parameters(this, faults)
     type(card), intent(in) :: this
     type(diagnostic_list), intent(inout) :: faults
-    call check_use('RATIO', 'BIAXIAL')
-    call check_use('CONFINEMENT', 'TRIAXIAL')
-    if (this%word('TYPE') == 'TRIAXIAL' .and. .not. this%has('CONFINEMENT')) then
-      call this%fault(faults, 'TRIAXIAL without a pressure', 'CONFINEMENT=<pressure> [Pa]')
-    end if
-    if (this%has('CONTROL') .and. this%word('TYPE') == 'GENERAL') then
+    call check_use('RATIO', 'BIAXIAL', 'RATIO=<S22 over S11>')
+    call check_use('CONFINEMENT', 'TRIAXIAL', 'CONFINEMENT=<pressure on the sides> [Pa]')
+    if (this%word('CONTROL') == 'STRESS' .and. this%word('TYPE') == 'GENERAL') then
       call this%fault_parameter(faults, 'CONTROL', 'CONTROL has no use for GENERAL', &
                                 'the control of each component in the data lines')
     end if
 
   contains
 
-    !> Tells of a parameter that the test does not take.
-    subroutine check_use(name, kind)
-      character(*), intent(in) :: name, kind
-      if (.not. this%has(name) .or. this%word('TYPE') == kind) return
-      call this%fault_parameter(faults, name, name//' has no use for '//this%word('TYPE'), &
-                                'TYPE='//kind//' with it')
+    !> Tells of a parameter that the test does not take, or that it lacks.
+    subroutine check_use(name, kind, wanted)
+      character(*), intent(in) :: name, kind, wanted
+      if (this%has(name) .eqv. this%word('TYPE') == kind) return
+      if (this%has(name)) then
+        call this%fault_parameter(faults, name, name//' has no use for '//this%word('TYPE'), &
+                                  'TYPE='//kind//' with it')
+      else
+        call this%fault(faults, kind//' without '//name, wanted)
+      end if
     end subroutine check_use
   end subroutine check_parameters
 end module keywords_material_test

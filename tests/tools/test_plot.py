@@ -74,3 +74,37 @@ def test_folder_without_results_is_refused(tmp_path, capsys):
     assert plot.main([str(tmp_path)]) == 2
     assert "no job.h5" in capsys.readouterr().err
     assert find_jobs(tmp_path) == []
+
+
+CURVE = "leg,increment,time,E11,S11,E12,S12,DAMAGET,work,stored,fracture,crushing,iterations\n"
+
+
+def write_curve(path, peak):
+    rows = [(i, 1e-5 * i, peak * min(1.0, i / 5), 0.0, 0.0, 0.04 * i) for i in range(20)]
+    lines = [
+        f"1,{i},{i},{e},{s},{e12},{s12},{d},{e * s},{0.5 * e * s},{d},0,1\n"
+        for i, e, s, e12, s12, d in rows
+    ]
+    path.write_text(CURVE + "".join(lines))
+
+
+def test_material_curves_beside_measured_points(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("keyway_tools.pictures_material.COMPONENTS", ("11", "12"))
+    write_curve(tmp_path / "dam_material_A.csv", 2e6)
+    write_curve(tmp_path / "dam_material_B.csv", 3e6)
+    (tmp_path / "points.csv").write_text("# measured, 1985\nstrain,stress\n1e-4,2.5e6\n2e-4,1e6\n")
+    curves = [str(tmp_path / f"dam_material_{name}.csv") for name in "AB"]
+    picture = tmp_path / "pictures" / "both.png"
+    points = ["-e", str(tmp_path / "points.csv")]
+    assert plot.main(["material", *curves, *points, "-o", str(picture)]) == 0
+    assert capsys.readouterr().out.split() == [str(picture)]
+    image = matplotlib.image.imread(picture)[..., :3]
+    assert image.std() > 0.02
+    assert plot.main(["material", curves[0]]) == 0
+    assert (tmp_path / "dam_material_A.png").exists()
+
+
+def test_material_file_that_is_no_curve_is_refused(tmp_path, capsys):
+    (tmp_path / "job_node_TOP.csv").write_text("time,node,U1\n0,1,2\n1,1,2\n")
+    assert plot.main(["material", str(tmp_path / "job_node_TOP.csv")]) == 2
+    assert "no column work" in capsys.readouterr().err

@@ -63,12 +63,13 @@ class ResultsFolder:
 
 
 def is_summary(path: Path) -> bool:
-    """Whether a JSON file is the summary of a run."""
+    """Whether a JSON file is the summary of an analysis (one of material tests holds 'tests')."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return False
-    return isinstance(content, dict) and {"program", "status"} <= content.keys()
+    has_keys = isinstance(content, dict) and {"program", "status"} <= content.keys()
+    return has_keys and "tests" not in content
 
 
 def read_table(path: Path | str) -> Table:
