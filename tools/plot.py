@@ -4,10 +4,11 @@
     tools/plot.py RESULTS [-o FOLDER] [--job NAME]
     tools/plot.py material CURVE.csv ... [--experiment POINTS.csv] [-o PICTURE.png]
 
-RESULTS is the folder that the run was given with -o. For each job in it: principal-stress and
-displacement envelopes on the dam's faces, openings over the joints and in time, the deformed
-shape, mode shapes, histories of nodes and energies; whatever the run kept. Units: SI in the
-deck, MPa and mm in the pictures. The names of the pictures are printed.
+RESULTS is the folder that the run was given with -o. For each job in it: principal-stress,
+displacement and damage envelopes on the dam's faces, its damaged elements, openings over the
+joints and in time, the deformed shape, mode shapes, histories of nodes and energies; whatever
+the run kept. Units: SI in the deck, MPa and mm in the pictures. The names of the pictures are
+printed.
 
 `material` draws the curves of `keyway --material` (job_material_NAME.csv), several in one picture:
 stress against strain, damage, energies, beside measured points (strain, stress a line) if given.
@@ -29,6 +30,7 @@ from keyway_tools.results_reader import Results, find_jobs
 def draw_job(results: Results, folder: Path) -> Iterator[Path | None]:
     """Make the pictures of one job, one by one; None where there is nothing to draw."""
     # VTK takes a second to load: not for a wrong command line
+    from keyway_tools.pictures_damage import plot_damaged_elements
     from keyway_tools.pictures_faces import FIELDS, Faces, plot_envelope, plot_face_openings
     from keyway_tools.pictures_shapes import plot_deformed, plot_modes
 
@@ -44,6 +46,7 @@ def draw_job(results: Results, folder: Path) -> Iterator[Path | None]:
         if "OPENING" in kept[-1].envelopes:
             yield plot_face_openings(faces, kept[-1], path_of("envelope_opening"))
             yield plot_joint_areas(results, kept[-1], path_of("envelope_opening_joints"))
+    yield plot_damaged_elements(faces, path_of("damage"))
     yield plot_deformed(faces, path_of("deformed"))
     yield plot_modes(faces, path_of("modes"))
     yield plot_openings(results, path_of("openings"))

@@ -19,6 +19,7 @@ def write_results(folder: Path, mesh: BrickMesh, job: str = "job") -> None:
     (folder / f"{job}.json").write_text(json.dumps({"program": {"name": "keyway"}}))
     with h5py.File(folder / f"{job}.h5", "w") as file:
         _write_mesh(file, mesh)
+        _write_points(file, mesh)
         _write_steps(file, mesh)
         time = np.linspace(0.0, 1.0, 50)
         table = np.zeros((50, 11))
@@ -35,6 +36,7 @@ def _write_mesh(file: h5py.File, mesh: BrickMesh) -> None:
     for number, members in enumerate(mesh.brick_sets.values()):
         material[members] = number
     file["mesh/x"] = mesh.x
+    file["mesh/element_id"] = np.arange(1, len(types) + 1)
     file["mesh/node_id"] = np.arange(1, len(mesh.x) + 1)
     file["mesh/element_type"] = np.array(types, dtype="S8")
     file["mesh/connectivity"] = np.concatenate((mesh.bricks, mesh.joints))
@@ -53,6 +55,20 @@ def _write_mesh(file: h5py.File, mesh: BrickMesh) -> None:
         file[f"joints/{name}/x"] = mesh.x[pairs[:, 0]]
 
 
+def _write_points(file: h5py.File, mesh: BrickMesh) -> None:
+    """One point in each element."""
+    file["points/element"] = np.arange(1, len(mesh.bricks) + 1)
+    file["points/volume"] = np.ones(len(mesh.bricks))
+
+
+def _write_damage(saved: h5py.Group, mesh: BrickMesh) -> None:
+    """The elements near the top are cracked."""
+    z = mesh.x[mesh.bricks, 2].mean(axis=1)
+    cracked = np.flatnonzero(z > 0.7 * mesh.x[:, 2].max())
+    saved["points/row"] = cracked
+    saved["points/DAMAGET"] = np.clip(z[cracked] / mesh.x[:, 2].max(), 0.0, 1.0)
+
+
 def _write_steps(file: h5py.File, mesh: BrickMesh) -> None:
     z = mesh.x[:, 2]
     height = max(z.max(), 1e-9)
@@ -60,6 +76,8 @@ def _write_steps(file: h5py.File, mesh: BrickMesh) -> None:
         "S1": 3.0e6 * z / height,
         "S3": -6.0e6 * (1.0 - z / height),
         "U": 0.05 * z / height,
+        "DAMAGET": np.clip(z / height, 0.0, 1.0) ** 8,
+        "DAMAGEC": 0.3 * np.clip(1.0 - z / height, 0.0, 1.0) ** 8,
     }
     if mesh.joint_sets:
         opening = np.zeros(len(z))
@@ -77,6 +95,7 @@ def _write_steps(file: h5py.File, mesh: BrickMesh) -> None:
         shift = np.zeros_like(mesh.x)
         shift[:, 1] = 0.02 * number * np.clip(z / height, 0.0, None) ** 2
         saved["U"] = shift
+        _write_damage(saved, mesh)
     modes = file.create_group("steps/0002")
     modes.attrs["name"], modes.attrs["procedure"] = "MODES", "FREQUENCY"
     modes["modes/hz"] = np.array([2.1, 3.4])

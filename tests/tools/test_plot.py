@@ -14,8 +14,11 @@ KINDS = {
     "envelope_s1",
     "envelope_s3",
     "envelope_u",
+    "envelope_damaget",
+    "envelope_damagec",
     "envelope_opening",
     "envelope_opening_joints",
+    "damage",
     "deformed",
     "modes",
     "openings",
@@ -52,6 +55,15 @@ def test_faces_show_colours(dam_results):
     image = matplotlib.image.imread(dam_results / "job_envelope_s1.png")[..., :3]
     is_coloured = np.ptp(image, axis=2) > 0.2
     assert is_coloured.mean() > 0.02
+
+
+def test_damage_is_the_mean_of_an_elements_points(dam_results):
+    time, damage = Results(dam_results, "job").damage("DAMAGET")
+    assert time == 0.2
+    assert damage.max() <= 1.0
+    assert (damage > 0.7).any()
+    assert (damage == 0.0).any()
+    assert Results(dam_results, "job").damage("DAMAGEC") is None
 
 
 def test_dam_is_told_from_rock(dam_results):

@@ -25,6 +25,7 @@ class Field:
     scale: float  # from SI to the unit
     colours: str  # perceptually even, dark where it matters, safe for the colour-blind
     sign: float = 1.0  # -1: the extreme is the smallest value
+    top: float | None = None  # end of the scale, where it is not the extreme
 
 
 FIELDS = {
@@ -32,6 +33,8 @@ FIELDS = {
     "S3": Field("Largest principal compression", "MPa", 1.0e-6, "cividis", -1.0),
     "OPENING": Field("Largest joint opening", "mm", 1.0e3, "viridis_r"),
     "U": Field("Largest displacement", "mm", 1.0e3, "viridis_r"),
+    "DAMAGET": Field("Largest damage in tension", "", 1.0, "magma_r", top=1.0),
+    "DAMAGEC": Field("Largest damage in compression", "", 1.0, "cividis_r", top=1.0),
 }
 
 
@@ -92,7 +95,7 @@ def _views(results: Results, nodes: np.ndarray) -> dict[str, View]:
 
 def nice_limits(values: np.ndarray, field: Field) -> np.ndarray:
     """Round borders of the colour bands from zero to beyond the extreme."""
-    extreme = np.nanmax(field.sign * values)
+    extreme = field.top or np.nanmax(field.sign * values)
     extreme = extreme if extreme > 0.0 else 1.0
     ticks = MaxNLocator(nbins=12, steps=[1, 2, 2.5, 5, 10]).tick_values(0.0, extreme)
     step = ticks[1] - ticks[0]
@@ -108,7 +111,7 @@ def plot_envelope(faces: Faces, step: Step, name: str, path: Path) -> Path:
     place = faces.nodes[np.nanargmax(field.sign * values[faces.nodes])]
     when = faces.results.envelope_time(step, name)[place]
     heading = f"{field.label} over step {step.name.title()}"
-    extreme = f"extreme {values[place]:.3g} {field.unit} at t = {when:.2f} s"
+    extreme = f"extreme {values[place]:.3g} {field.unit}".rstrip() + f" at t = {when:.2f} s"
     lines = faces.joint_lines()
     pictures = {
         title: render(
@@ -120,7 +123,7 @@ def plot_envelope(faces: Faces, step: Step, name: str, path: Path) -> Path:
     mark = {title: view.project(faces.results.x[place]) for title, view in faces.views.items()}
     visible = _visible_on(faces, place)
     mark = {title: at for title, at in mark.items() if not title or title in visible}
-    label = f"{field.label.lower()} [{field.unit}]"
+    label = field.label.lower() + (f" [{field.unit}]" if field.unit else "")
     return compose(pictures, limits, field.colours, label, f"{heading}: {extreme}", mark, path)
 
 

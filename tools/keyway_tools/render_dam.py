@@ -84,7 +84,10 @@ def render(
     wire: pv.PolyData | None = None,
     bands: int = 64,
 ) -> Picture:
-    """Image of a body coloured by values on its nodes, with lines of `outline` on top."""
+    """Image of a body, lines of `outline` on top.
+
+    Coloured by values on its nodes, or by 'value' on its cells where the grid has that.
+    """
     surface = grid.extract_surface(algorithm="dataset_surface")
     points = np.vstack([surface.points, wire.points]) if wire is not None else surface.points
     centre, half_height = frame(np.asarray(points, dtype=float), view)
@@ -92,10 +95,11 @@ def render(
     plotter.set_background("white")
     look = {"ambient": 0.72, "diffuse": 0.36, "specular": 0.0, "show_edges": True}
     look |= {"edge_color": "black", "edge_opacity": 0.16, "line_width": 1.0}
-    if values is None:
+    if values is not None:
+        surface["value"] = values[surface["vtkOriginalPointIds"]]
+    if "value" not in surface.array_names:
         plotter.add_mesh(surface, color="#D9D4CC", **look)
     else:
-        surface["value"] = values[surface["vtkOriginalPointIds"]]
         plotter.add_mesh(
             surface, scalars="value", cmap=colours, clim=limits, n_colors=bands,
             show_scalar_bar=False, nan_color="#E6E6E6", **look,

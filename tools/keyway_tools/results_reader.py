@@ -12,7 +12,14 @@ import h5py
 import numpy as np
 
 # Fields of *ENVELOPE and the names of their extremes in job.h5.
-ENVELOPE_NAMES = {"S1": "S1_MAX", "S3": "S3_MIN", "U": "U_MAX", "OPENING": "OPENING_MAX"}
+ENVELOPE_NAMES = {
+    "S1": "S1_MAX",
+    "S3": "S3_MIN",
+    "U": "U_MAX",
+    "OPENING": "OPENING_MAX",
+    "DAMAGET": "DAMAGET_MAX",
+    "DAMAGEC": "DAMAGEC_MAX",
+}
 _SOLIDS = ("C3D8", "C3D8B", "C3D8I", "C3D8R")
 
 
@@ -124,6 +131,25 @@ class Results:
                 if "U" in group:
                     found.append((f"{group.name}/U", float(np.ravel(group.attrs["time"])[0])))
         return found
+
+    def damage(self, field: str) -> tuple[float, np.ndarray] | None:
+        """Time of the last saved DAMAGET or DAMAGEC, and its mean over each element."""
+        saved = [
+            group
+            for key in sorted(self.file["steps"])
+            for _, group in sorted(self.file["steps"][key].get("increments", {}).items())
+            if f"points/{field}" in group
+        ]
+        if not saved:
+            return None
+        points, now = self.file["points"], saved[-1]["points"]
+        place = {int(number): e for e, number in enumerate(self.file["mesh/element_id"][:])}
+        element = np.array([place[int(number)] for number in points["element"][:]])
+        volume, damage = points["volume"][:], np.zeros(len(element))
+        damage[now["row"][:]] = now[field][:]
+        total = np.bincount(element, volume, len(place))
+        mean = np.bincount(element, volume * damage, len(place)) / np.where(total > 0, total, 1.0)
+        return float(np.ravel(saved[-1].attrs["time"])[0]), mean
 
     def modes(self) -> tuple[np.ndarray, np.ndarray] | None:
         """Frequencies [Hz] and shapes (modes, nodes, 3) of the last *FREQUENCY step."""

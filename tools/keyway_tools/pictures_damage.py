@@ -1,0 +1,38 @@
+"""Where a body is cracked: its damaged elements, seen through the body."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from .pictures_faces import FIELDS, Faces, compose, nice_limits
+from .render_dam import render, solid_grid
+
+VISIBLE = 0.05  # elements of less mean damage are not drawn
+
+
+def plot_damaged_elements(faces: Faces, path: Path) -> Path | None:
+    """Mean damage in tension of the elements that have some, at the last time it was saved."""
+    results = faces.results
+    found = results.damage("DAMAGET")
+    if found is None:
+        return None
+    time, damage = found
+    shown = np.flatnonzero(damage >= VISIBLE)
+    shown = shown[np.isin(shown, results.solids)]
+    if shown.size == 0:
+        return None
+    limits = nice_limits(damage, FIELDS["DAMAGET"])
+    colours = FIELDS["DAMAGET"].colours
+    cells, wire = solid_grid(results.x, results.connectivity[shown]), faces.surface()
+    cells.cell_data["value"] = damage[shown]
+    pictures = {
+        title: render(
+            cells, view, None, (limits[0], limits[-1]), colours, faces.joint_lines(), wire,
+            bands=len(limits) - 1,
+        )
+        for title, view in faces.views.items()
+    }  # fmt: skip
+    heading = f"Damaged elements at t = {time:.2f} s: {shown.size} above {VISIBLE:g}"
+    return compose(pictures, limits, colours, "damage in tension, element mean", heading, {}, path)
