@@ -93,6 +93,7 @@ contains
                              ' kg/m3, damping ALPHA '//as_text(now%alpha)//' 1/s, BETA '// &
                              as_text(now%beta)//' s'// &
                              elements_of(scene, i))
+        if (allocated(now%remark)) text = text//nl//row('', now%remark)
       end associate
     end do
   end function materials_of

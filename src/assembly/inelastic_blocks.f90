@@ -9,7 +9,7 @@ module inelastic_blocks
   use gauss_rules, only: hex_point
   use material_law, only: material
   use material_points, only: point_set
-  use shape_hex8, only: derivative_at, shape_at
+  use shape_hex8, only: edges_at, shape_at
   implicit none
   private
   public :: inelastic_block, list_inelastic_blocks
@@ -105,7 +105,7 @@ contains
           points%element(p) = id(e)
           points%number(p) = q
           points%x(:, p) = matmul(x(:, :, e), shape_at(xi))
-          points%edges(:, :, p) = 2.0_rk*matmul(x(:, :, e), derivative_at(xi))
+          points%edges(:, :, p) = edges_at(x(:, :, e), xi)
           points%length(p) = sum(part%weight(:, e))**(1.0_rk/3.0_rk)
         end do
       end do

@@ -3,6 +3,7 @@ set(sources
   errors.f90
   parse_text.f90
   write_text.f90
+  number_ranges.f90
   nearest_words.f90
   diagnostics.f90
   diagnostic_text.f90

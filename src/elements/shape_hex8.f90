@@ -5,7 +5,7 @@ module shape_hex8
   implicit none
   private
   public :: corner, point_shape, point_derivative
-  public :: shape_at, derivative_at, gradient_at, mean_gradient, strain_rows
+  public :: shape_at, derivative_at, edges_at, gradient_at, mean_gradient, strain_rows
   public :: corner_fault, corner_of_point, corners_from_points, invert3
 
   !> Natural coordinates of the corners.
@@ -63,6 +63,15 @@ contains
     dn(:, 2) = 0.125_rk*corner(2, :)*s(:, 1)*s(:, 3)
     dn(:, 3) = 0.125_rk*corner(3, :)*s(:, 1)*s(:, 2)
   end function derivative_at
+
+  !> The edges of a brick as one of its points sees them: columns 2 dx/dxi_i. They are the edges
+  !> themselves where the brick is a parallelepiped.
+  pure function edges_at(x, xi) result(edges)
+    real(rk), intent(in) :: x(3, 8) !< corners [m]
+    real(rk), intent(in) :: xi(3) !< natural coordinates
+    real(rk) :: edges(3, 3)
+    edges = 2.0_rk*matmul(x, derivative_at(xi))
+  end function edges_at
 
   !> Gradients of the shape functions in space, and the determinant of the Jacobian.
   pure subroutine gradient_at(x, dn, gradient, determinant)

@@ -8,6 +8,7 @@ set(sources
   element_hex8_incompatible.f90
   element_hex8_reduced.f90
   element_catalogue.f90
+  element_widths.f90
   element_matrices.f90
   joint_points.f90
   element_joint8.f90

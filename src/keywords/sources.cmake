@@ -26,6 +26,8 @@ set(sources
   keywords_output.f90
   keywords_later.f90
   keyword_catalogue.f90
+  concrete_widths.f90
+  concrete_remarks.f90
   finish_concrete.f90
   finish_model.f90
   finish_tests.f90

@@ -4,7 +4,7 @@ module crack_band
   use tensor6, only: principal_values
   implicit none
   private
-  public :: band_width, largest_width
+  public :: band_width, extreme_widths
 
 contains
 
@@ -16,13 +16,16 @@ contains
     band_width = norm2(matmul(normal, edges))
   end function band_width
 
-  !> The width for the worst direction of the crack: the largest singular value of the edges.
-  pure real(rk) function largest_width(edges)
+  !> The widths for the worst and the best direction of the crack: the extreme singular values of
+  !> the edges.
+  pure subroutine extreme_widths(edges, smallest, largest)
     real(rk), intent(in) :: edges(3, 3) !< as in `band_width` [m]
+    real(rk), intent(out) :: smallest, largest !< [m]
     real(rk) :: square(3, 3), values(3)
     square = matmul(edges, transpose(edges))
     values = principal_values([square(1, 1), square(2, 2), square(3, 3), &
                                square(1, 2), square(1, 3), square(2, 3)])
-    largest_width = sqrt(max(0.0_rk, values(1)))
-  end function largest_width
+    smallest = sqrt(max(0.0_rk, values(3)))
+    largest = sqrt(max(0.0_rk, values(1)))
+  end subroutine extreme_widths
 end module crack_band

@@ -51,6 +51,7 @@ module material_law
     real(rk) :: poisson = 0.0_rk
     real(rk) :: alpha = 0.0_rk, beta = 0.0_rk !< Rayleigh damping [1/s], [s]
     class(stress_law), allocatable :: law
+    character(:), allocatable :: remark !< what else the summary of the model tells, or none
   end type material
 
 contains

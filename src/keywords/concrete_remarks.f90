@@ -1,0 +1,95 @@
+!> What is odd about the constants of a concrete, and what they are in a line for people.
+module concrete_remarks
+  use damage_checks, only: find_longest_band, table_fault
+  use damage_constants, only: concrete_constants
+  use diagnostics, only: diagnostic_list
+  use kinds, only: rk
+  use model_draft, only: concrete_request, draft
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: warn_of_constants, describe_concrete
+
+  real(rk), parameter :: degree = acos(-1.0_rk)/180.0_rk
+
+contains
+
+  !> Tells what is allowed and hardly meant.
+  subroutine warn_of_constants(given, model, faults)
+    type(concrete_request), intent(in) :: given !< whose tables are free of faults
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    call warn_of_dilation(given, model, faults)
+    call warn_of_steep_strain(given, model, faults)
+  end subroutine warn_of_constants
+
+  !> Far out in compression s : d eps_p has the sign of q - p tan psi, and on the tensile meridian
+  !> of Eq 19 (s_1 = 2/3 q - p) q (1 + 2/3 gamma) = (3 alpha + gamma) p + (1 - alpha) c.
+  subroutine warn_of_dilation(given, model, faults)
+    type(concrete_request), intent(in) :: given
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    real(rk) :: alpha, gamma, slope, tangent, pressure
+    associate (c => given%constants)
+      alpha = (c%biaxial_ratio - 1.0_rk)/(2.0_rk*c%biaxial_ratio - 1.0_rk)
+      gamma = 3.0_rk*(1.0_rk - c%meridian_ratio)/(2.0_rk*c%meridian_ratio - 1.0_rk)
+      slope = (3.0_rk*alpha + gamma)/(1.0_rk + 2.0_rk*gamma/3.0_rk)
+      tangent = tan(c%dilation*degree)
+      if (tangent <= slope) return
+      pressure = (1.0_rk - alpha)*maxval(c%compression(1, :))/(1.0_rk + 2.0_rk*gamma/3.0_rk) &
+                 /(tangent - slope)
+      call model%cards(given%plasticity%card)%warn( &
+        faults, 'plastic flow would create energy under a mean pressure above '// &
+        as_text(pressure)//' Pa', 'a dilation of at most '// &
+        as_text(atan(slope)/degree)//' deg with these fb0/fc0 and Kc')
+    end associate
+  end subroutine warn_of_dilation
+
+  !> A table over strain whose stress falls faster than the strain grows: a test would snap back.
+  subroutine warn_of_steep_strain(given, model, faults)
+    type(concrete_request), intent(in) :: given
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(concrete_constants) :: as_openings
+    type(table_fault) :: limit
+    real(rk) :: longest
+    if (given%constants%stiffening /= 'STRAIN') return
+    as_openings = given%constants
+    as_openings%stiffening = 'DISPLACEMENT' ! of a band 1 m wide
+    call find_longest_band(as_openings, longest, limit)
+    if (longest >= 1.0_rk) return
+    call model%cards(given%stiffening%card)%warn( &
+      faults, 'the stress falls by more than E times the inelastic strain that comes with it '// &
+      'in row '//as_text(limit%row)//': a test with growing strain passes over it')
+  end subroutine warn_of_steep_strain
+
+  !> Strengths, energy of a crack and widths of the bands.
+  function describe_concrete(constants, smallest, largest) result(text)
+    type(concrete_constants), intent(in) :: constants !< whose tables are free of faults
+    real(rk), intent(in) :: smallest, largest !< widths of crack bands in its elements [m]
+    character(:), allocatable :: text
+    type(table_fault) :: limit
+    real(rk) :: longest
+    text = 'cracks at '//as_text(constants%tension(1, 1))//' Pa, '
+    if (constants%stiffening == 'STRAIN') then
+      text = text//as_text(area_under(constants%tension))//' J/m3'
+    else if (constants%stiffening == 'GFI') then
+      text = text//as_text(constants%tension(2, 1))//' N/m'
+    else
+      text = text//as_text(area_under(constants%tension))//' N/m'
+    end if
+    call find_longest_band(constants, longest, limit)
+    if (limit%row > 0) text = text//', in elements up to '//as_text(longest)//' m'
+    text = text//'; crushes from '//as_text(constants%compression(1, 1))//' Pa'
+    if (smallest > largest) return
+    text = text//'; its elements are '//as_text(smallest)//' to '//as_text(largest)//' m long'
+  end function describe_concrete
+
+  !> Area under a table, to its last row.
+  pure real(rk) function area_under(table) result(area)
+    real(rk), intent(in) :: table(:, :) !< (2, rows) ordinate, abscissa
+    integer :: n
+    n = size(table, 2)
+    area = sum(0.5_rk*(table(1, 2:n) + table(1, :n - 1))*(table(2, 2:n) - table(2, :n - 1)))
+  end function area_under
+end module concrete_remarks

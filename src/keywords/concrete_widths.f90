@@ -1,0 +1,96 @@
+!> Elements of concrete that are longer than a crack band may be, theory (11.12).
+module concrete_widths
+  use damage_checks, only: find_longest_band, stiffening_table, table_fault
+  use diagnostics, only: diagnostic_list
+  use element_catalogue, only: is_solid
+  use element_widths, only: measure_widths
+  use kinds, only: rk
+  use model_draft, only: concrete_request, draft
+  use number_ranges, only: as_ranges
+  use sorted_lists, only: sorted_unique
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: check_widths
+
+  real(rk), parameter :: rounding = 1.0e-9_rk !< relative slack: an element may be just as long
+
+contains
+
+  !> Compares the elements of a material with the widest band that its tables admit, and gives the
+  !> range of their widths. Too long elements are one fault, or one warning if their strength is to
+  !> be lowered.
+  subroutine check_widths(given, model, faults, smallest, largest)
+    type(concrete_request), intent(in) :: given !< whose tables are free of faults
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    real(rk), intent(out) :: smallest, largest !< [m]; smallest > largest without elements
+    integer, allocatable :: elements(:)
+    real(rk), allocatable :: least(:), most(:)
+    type(table_fault) :: limit
+    real(rk) :: longest
+    integer :: i
+    associate (body => model%scene%mesh)
+      elements = pack([(i, i=1, body%num_elements)], is_solid(body%element_type) &
+                      .and. body%material_of_element == given%material)
+      allocate (least(size(elements)), most(size(elements)))
+      call measure_widths(body, elements, least, most)
+    end associate
+    smallest = minval(least)
+    largest = maxval(most)
+    call find_longest_band(given%constants, longest, limit)
+    if (.not. any(most > longest*(1.0_rk + rounding))) return
+    elements = model%scene%mesh%element_id(elements)
+    if (given%constants%lowers_strength) then
+      call warn_of_strength(given, model, elements, most, longest, faults)
+    else
+      call fault_length(given, model, elements, most, longest, faults)
+    end if
+  end subroutine check_widths
+
+  !> Names the longest element and the row of the table that does not admit it.
+  subroutine fault_length(given, model, elements, width, longest, faults)
+    type(concrete_request), intent(in) :: given
+    type(draft), intent(in) :: model
+    integer, intent(in) :: elements(:) !< user's numbers
+    real(rk), intent(in) :: width(:), longest !< [m]
+    type(diagnostic_list), intent(inout) :: faults
+    type(table_fault) :: limit
+    character(:), allocatable :: problem
+    real(rk) :: same
+    integer :: worst, num_others, card
+    call find_longest_band(given%constants, same, limit)
+    worst = maxloc(width, 1)
+    problem = 'element '//as_text(elements(worst))//' is '//as_text(width(worst))//' m long: '
+    card = given%stiffening%card
+    if (limit%keyword == stiffening_table) then
+      problem = problem//'it would give back more energy than a crack in it takes (snap-back)'
+    else
+      card = given%tension_damage%card
+      problem = problem//'the plastic strain opening/length - d/(1 - d) sigma/E decreases in it'
+    end if
+    num_others = count(width > longest*(1.0_rk + rounding)) - 1
+    if (num_others > 0) problem = problem//'; '//as_text(num_others)//' more are too long'
+    call model%cards(card)%fault_at(faults, limit%row, 0, problem, 'at most '//as_text(longest)// &
+                                    ' m, '//limit%expected//'; or LONG ELEMENTS=LOWER STRENGTH')
+  end subroutine fault_length
+
+  !> Lists the elements that crack below the strength of the table.
+  subroutine warn_of_strength(given, model, elements, width, longest, faults)
+    type(concrete_request), intent(in) :: given
+    type(draft), intent(in) :: model
+    integer, intent(in) :: elements(:) !< user's numbers
+    real(rk), intent(in) :: width(:), longest !< [m]
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable :: touched(:)
+    integer :: worst
+    touched = sorted_unique(pack(elements, width > longest*(1.0_rk + rounding)))
+    worst = maxloc(width, 1)
+    call model%cards(given%stiffening%card)%warn( &
+      faults, as_text(size(touched))//' of '//as_text(size(elements))//' elements are longer '// &
+      'than '//as_text(longest)//' m and crack at a lower strength with the same energy, '// &
+      'element '//as_text(elements(worst))//' of '//as_text(width(worst))//' m at '// &
+      as_text(given%constants%tension(1, 1)*sqrt(longest/width(worst)))//' Pa: elements '// &
+      as_ranges(touched))
+  end subroutine warn_of_strength
+end module concrete_widths
