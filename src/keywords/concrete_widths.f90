@@ -70,7 +70,8 @@ contains
       problem = problem//'the plastic strain opening/length - d/(1 - d) sigma/E decreases in it'
     end if
     num_others = count(width > longest*(1.0_rk + rounding)) - 1
-    if (num_others > 0) problem = problem//'; '//as_text(num_others)//' more are too long'
+    if (num_others == 1) problem = problem//'; 1 more is too long'
+    if (num_others > 1) problem = problem//'; '//as_text(num_others)//' more are too long'
     call model%cards(card)%fault_at(faults, limit%row, 0, problem, 'at most '//as_text(longest)// &
                                     ' m, '//limit%expected//'; or LONG ELEMENTS=LOWER STRENGTH')
   end subroutine fault_length
