@@ -39,6 +39,7 @@ function(add_build_info target template)
   endif()
   fortran_text(BUILD_INFO_VERSION "${PROJECT_VERSION}")
   fortran_text(BUILD_INFO_COMPILER "GNU Fortran ${CMAKE_Fortran_COMPILER_VERSION}")
+  fortran_text(BUILD_INFO_COMPILER_PATH "${CMAKE_Fortran_COMPILER}")
   fortran_text(BUILD_INFO_FLAGS "${flags}")
   fortran_text(BUILD_INFO_LIBRARIES "SuiteSparse ${SuiteSparse_VERSION}, METIS ${METIS_VERSION}, \
 ${blas}, ARPACK ${ARPACK_VERSION}, HDF5 ${HDF5_VERSION}")

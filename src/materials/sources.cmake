@@ -6,5 +6,16 @@ set(sources
   material_points.f90
   material_law.f90
   material_elastic.f90
+  umat_bridge.c
+  umat_interface.f90
+  umat_services.f90
+  umat_utilities.f90
+  umat_source_form.f90
+  umat_build.f90
+  umat_findings.f90
+  umat_loader.f90
+  umat_guards.f90
+  umat_tangent.f90
+  material_user.f90
   material_catalogue.f90
 )

@@ -1,0 +1,283 @@
+/* Others' UMATs: loading their library, calling it under guard, and what it may ask the process
+ * for. A UMAT that gives up (XIT, STDB_ABQERR with -3, STOP) jumps back to the call that guards it;
+ * the message waits there. Fortran knows the arguments as umat_interface's type. */
+#define _GNU_SOURCE
+#include <dirent.h>
+#include <dlfcn.h>
+#include <fenv.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+struct arguments {
+  double stress[6], ddsdde[36], sse, spd, scd, rpl, ddsddt[6], drplde[6], drpldt;
+  double stran[6], dstran[6], time[2], dtime, temp, dtemp, predef[1], dpred[1];
+  double coords[3], drot[9], pnewdt, celent, dfgrd0[9], dfgrd1[9];
+  double *statev, *props;
+  int ndi, nshr, ntens, nstatv, nprops, noel, npt, layer, kspt, kstep[4], kinc;
+  char cmname[80];
+};
+
+typedef void umat_routine(double *stress, double *statev, double *ddsdde, double *sse, double *spd,
+                          double *scd, double *rpl, double *ddsddt, double *drplde, double *drpldt,
+                          double *stran, double *dstran, double *time, double *dtime, double *temp,
+                          double *dtemp, double *predef, double *dpred, char *cmname, int *ndi,
+                          int *nshr, int *ntens, int *nstatv, double *props, int *nprops,
+                          double *coords, double *drot, double *pnewdt, double *celent,
+                          double *dfgrd0, double *dfgrd1, int *noel, int *npt, int *layer,
+                          int *kspt, int *kstep, int *kinc, size_t length_of_cmname);
+typedef void sdvini_routine(double *statev, double *coords, int *nstatv, int *ncrds, int *noel,
+                            int *npt, int *layer, int *kspt);
+typedef void uexternaldb_routine(int *lop, int *lrestart, double *time, double *dtime, int *kstep,
+                                 int *kinc);
+
+enum { last_mutex = 100 };
+static pthread_mutex_t mutexes[last_mutex + 1] = {
+  [0 ... last_mutex] = PTHREAD_MUTEX_INITIALIZER};
+
+/* Where a routine of the user comes back to when it gives up, one for each thread. */
+static _Thread_local struct {
+  jmp_buf place;
+  int is_set;
+  char message[512];
+  unsigned char holds[last_mutex + 1];
+} guard;
+
+static void let_go_of_mutexes(void)
+{
+  for (int i = 0; i <= last_mutex; i++) {
+    if (!guard.holds[i]) continue;
+    pthread_mutex_unlock(&mutexes[i]);
+    guard.holds[i] = 0;
+  }
+}
+
+/* Gives up the guarded call; without one (a thread that the UMAT made itself) the process. */
+static _Noreturn void give_up(void)
+{
+  if (guard.is_set) longjmp(guard.place, 1);
+  fprintf(stderr, "keyway: the UMAT gave up outside of its call: %s\n", guard.message);
+  exit(1);
+}
+
+_Noreturn void keyway_umat_give_up(const char *message, size_t length)
+{
+  snprintf(guard.message, sizeof guard.message, "%.*s", (int)length, message);
+  give_up();
+}
+
+static _Noreturn void give_up_saying(const char *format, ...)
+{
+  va_list rest;
+  va_start(rest, format);
+  vsnprintf(guard.message, sizeof guard.message, format, rest);
+  va_end(rest);
+  give_up();
+}
+
+/* Why the last guarded call of this thread came back early; at most `size` bytes with the null. */
+void keyway_umat_message(char *message, size_t size) { snprintf(message, size, "%s", guard.message); }
+
+/* Runs a call and yields 1 from the function when the routine gave up. */
+#define GUARDED(call)             \
+  do {                            \
+    if (setjmp(guard.place)) {    \
+      guard.is_set = 0;           \
+      let_go_of_mutexes();        \
+      return 1;                   \
+    }                             \
+    guard.is_set = 1;             \
+    call;                         \
+    guard.is_set = 0;             \
+  } while (0)
+
+int keyway_umat_call(umat_routine *umat, struct arguments *a)
+{
+  GUARDED(umat(a->stress, a->statev, a->ddsdde, &a->sse, &a->spd, &a->scd, &a->rpl, a->ddsddt,
+               a->drplde, &a->drpldt, a->stran, a->dstran, a->time, &a->dtime, &a->temp, &a->dtemp,
+               a->predef, a->dpred, a->cmname, &a->ndi, &a->nshr, &a->ntens, &a->nstatv, a->props,
+               &a->nprops, a->coords, a->drot, &a->pnewdt, &a->celent, a->dfgrd0, a->dfgrd1,
+               &a->noel, &a->npt, &a->layer, &a->kspt, a->kstep, &a->kinc, sizeof a->cmname));
+  return 0;
+}
+
+int keyway_umat_start(sdvini_routine *sdvini, struct arguments *a)
+{
+  int dimensions = 3;
+  GUARDED(sdvini(a->statev, a->coords, &a->nstatv, &dimensions, &a->noel, &a->npt, &a->layer,
+                 &a->kspt));
+  return 0;
+}
+
+int keyway_umat_external(uexternaldb_routine *uexternaldb, int lop, int restart, double *time,
+                         double dtime, int step, int increment)
+{
+  GUARDED(uexternaldb(&lop, &restart, time, &dtime, &step, &increment));
+  return 0;
+}
+
+/* A UMAT may divide by zero on its way; the program's own traps sleep meanwhile. */
+static _Thread_local fenv_t traps;
+void keyway_umat_hold_traps(void) { feholdexcept(&traps); }
+void keyway_umat_release_traps(void) { fesetenv(&traps); }
+
+/* Loads a library, its own symbols before those of the program. NULL with a message on failure. */
+void *keyway_umat_open(const char *path, char *message, size_t size)
+{
+  void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND);
+  snprintf(message, size, "%s", handle ? "" : dlerror());
+  return handle;
+}
+
+void *keyway_umat_find(void *handle, const char *name) { return dlsym(handle, name); }
+
+/* A new folder among the temporary ones; its path with a null, or an empty text. */
+void keyway_make_temporary(char *path, size_t size)
+{
+  const char *parent = getenv("TMPDIR");
+  if (!parent || !*parent) parent = P_tmpdir;
+  if ((size_t)snprintf(path, size, "%s/keyway_umat_XXXXXX", parent) >= size || !mkdtemp(path))
+    path[0] = '\0';
+}
+
+/* Removes a folder with the files in it. */
+void keyway_remove_temporary(const char *path)
+{
+  char file[4096];
+  struct dirent *entry;
+  DIR *folder = opendir(path);
+  if (!folder) return;
+  while ((entry = readdir(folder))) {
+    if ((size_t)snprintf(file, sizeof file, "%s/%s", path, entry->d_name) < sizeof file)
+      unlink(file); /* not '.' and '..': unlink leaves folders alone */
+  }
+  closedir(folder);
+  rmdir(path);
+}
+
+/* The job, for GETJOBNAME and GETOUTDIR; how often the UMAT wrote a warning or an error. */
+static char job_name[257], job_folder[4097];
+static int num_warnings, num_errors;
+
+void keyway_umat_set_job(const char *name, const char *folder)
+{
+  char *full = realpath(folder, NULL);
+  snprintf(job_name, sizeof job_name, "%s", name);
+  snprintf(job_folder, sizeof job_folder, "%s", full ? full : folder);
+  free(full);
+}
+
+/* A text of C into one of Fortran: blanks behind it. */
+static void fill(char *text, size_t size, const char *from, int *length)
+{
+  size_t used = strnlen(from, size);
+  memcpy(text, from, used);
+  memset(text + used, ' ', size - used);
+  *length = (int)used;
+}
+
+void getjobname_(char *name, int *length, size_t size) { fill(name, size, job_name, length); }
+void getoutdir_(char *folder, int *length, size_t size) { fill(folder, size, job_folder, length); }
+
+void keyway_umat_count(int is_error)
+{
+  __atomic_add_fetch(is_error ? &num_errors : &num_warnings, 1, __ATOMIC_RELAXED);
+}
+
+void keyway_umat_counts(int *warnings, int *errors)
+{
+  *warnings = num_warnings;
+  *errors = num_errors;
+}
+
+static pthread_mutex_t *mutex_of(int number, const char *routine)
+{
+  if (number < 1 || number > last_mutex)
+    give_up_saying("%s was called with %d; mutexes are numbered 1 to %d", routine, number,
+                   last_mutex);
+  return &mutexes[number];
+}
+
+/* The mutexes exist from the start; MUTEXINIT only checks the number. */
+void mutexinit_(const int *number) { mutex_of(*number, "MUTEXINIT"); }
+
+void mutexlock_(const int *number)
+{
+  pthread_mutex_lock(mutex_of(*number, "MUTEXLOCK"));
+  guard.holds[*number] = 1;
+}
+
+void mutexunlock_(const int *number)
+{
+  pthread_mutex_t *mutex = mutex_of(*number, "MUTEXUNLOCK");
+  if (!guard.holds[*number]) return;
+  guard.holds[*number] = 0;
+  pthread_mutex_unlock(mutex);
+}
+
+/* Nothing of the program calls these; a loaded library does, so the linker must keep them. */
+void rotsig_(void), sinv_(void), sprinc_(void), sprind_(void);
+void (*const keyway_umat_kept[])(void) = {rotsig_, sinv_, sprinc_, sprind_};
+
+void keyway_umat_warn(const char *text, size_t length);
+static void warn(const char *text) { keyway_umat_warn(text, strlen(text)); }
+
+/* Values of other points and names of parts: 1 says that there is no answer. */
+void getvrm_(const char *var, double *array, int *jarray, char *flgray, int *jrcd)
+{
+  (void)var, (void)array, (void)jarray, (void)flgray;
+  *jrcd = 1;
+  warn("GETVRM is not provided");
+}
+
+void getpartinfo_(const int *intnum, const int *jtyp, char *cpname, int *locnum, int *jrcd)
+{
+  (void)intnum, (void)jtyp, (void)cpname, (void)locnum;
+  *jrcd = 1;
+  warn("GETPARTINFO is not provided");
+}
+
+/* STOP, ERROR STOP, EXIT and failed run-time checks of a library that Keyway has linked: the linker
+ * turned their names into these. */
+_Noreturn void __wrap__gfortran_stop_string(const char *text, size_t length, _Bool quiet)
+{
+  (void)quiet;
+  give_up_saying("STOP %.*s", (int)length, text ? text : "");
+}
+
+_Noreturn void __wrap__gfortran_error_stop_string(const char *text, size_t length, _Bool quiet)
+{
+  (void)quiet;
+  give_up_saying("ERROR STOP %.*s", (int)length, text ? text : "");
+}
+
+_Noreturn void __wrap__gfortran_stop_numeric(int code, _Bool quiet)
+{
+  (void)quiet;
+  give_up_saying("STOP %d", code);
+}
+
+_Noreturn void __wrap__gfortran_error_stop_numeric(int code, _Bool quiet)
+{
+  (void)quiet;
+  give_up_saying("ERROR STOP %d", code);
+}
+
+_Noreturn void __wrap__gfortran_exit_i4(const int *code)
+{
+  give_up_saying("CALL EXIT(%d)", code ? *code : 0);
+}
+
+_Noreturn void __wrap__gfortran_runtime_error_at(const char *place, const char *format, ...)
+{
+  char text[400];
+  va_list rest;
+  va_start(rest, format);
+  vsnprintf(text, sizeof text, format, rest);
+  va_end(rest);
+  give_up_saying("%s: %s", place, text);
+}

@@ -1,0 +1,71 @@
+!> What is learnt about a UMAT while it runs: tangents that are not symmetric, and the worst entry of
+!> a check of its tangents.
+module umat_findings
+  use kinds, only: long, rk
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: findings, tangent_check, call_place, place_text
+
+  !> Where a UMAT is called.
+  type :: call_place
+    character(:), allocatable :: material
+    integer :: element = 0, point = 0, step = 0, increment = 0
+  end type call_place
+
+  !> DDSDDE against differences of STRESS: the entry that is farthest off.
+  type :: tangent_check
+    integer(long) :: num_tangents = 0 !< compared so far
+    real(rk) :: error = -1.0_rk !< |given - found| over the largest entry of DDSDDE
+    integer :: row = 0, column = 0
+    real(rk) :: given = 0.0_rk, found = 0.0_rk !< DDSDDE and the difference quotient [Pa]
+    type(call_place) :: place
+  end type tangent_check
+
+  type :: findings
+    type(tangent_check) :: check
+    character(:), allocatable :: asymmetry !< of the first DDSDDE that was symmetrised
+    logical :: is_asymmetry_told = .false.
+    character(:), allocatable :: bad_start !< why SDVINI failed
+  contains
+    procedure :: add_check
+    procedure :: add_asymmetry
+  end type findings
+
+contains
+
+  !> 'material X, element 12, point 3, step 1, increment 7'
+  pure function place_text(place) result(text)
+    type(call_place), intent(in) :: place
+    character(:), allocatable :: text
+    text = 'material '//place%material//', element '//as_text(place%element)//', point '// &
+           as_text(place%point)//', step '//as_text(place%step)//', increment '// &
+           as_text(place%increment)
+  end function place_text
+
+  !> Counts a comparison and keeps the worst; safe among threads.
+  subroutine add_check(self, new)
+    class(findings), intent(inout) :: self
+    type(tangent_check), intent(in) :: new
+    integer(long) :: num_tangents
+    !$omp critical (umat_findings)
+    num_tangents = self%check%num_tangents + 1
+    if (new%error > self%check%error) self%check = new
+    self%check%num_tangents = num_tangents
+    !$omp end critical (umat_findings)
+  end subroutine add_check
+
+  !> Keeps the first tangent that is not symmetric.
+  subroutine add_asymmetry(self, place, share)
+    class(findings), intent(inout) :: self
+    type(call_place), intent(in) :: place
+    real(rk), intent(in) :: share !< of the difference to the transpose in the largest entry
+    !$omp critical (umat_findings)
+    if (.not. allocated(self%asymmetry)) then
+      self%asymmetry = 'DDSDDE of the UMAT is not symmetric ('//place_text(place)//': by '// &
+                       as_text(share)//' of its largest entry); it is symmetrised unless '// &
+                       '*USER MATERIAL says UNSYMM'
+    end if
+    !$omp end critical (umat_findings)
+  end subroutine add_asymmetry
+end module umat_findings

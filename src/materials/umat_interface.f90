@@ -1,0 +1,175 @@
+!> The 37 arguments of a UMAT, and the C functions that load, guard and serve it.
+module umat_interface
+  use, intrinsic :: iso_c_binding, only: c_char, c_double, c_funptr, c_int, c_null_char, &
+                                         c_null_ptr, c_ptr, c_size_t
+  implicit none
+  private
+  public :: umat_arguments, keyway_umat_call, keyway_umat_start, keyway_umat_external
+  public :: keyway_umat_open, keyway_umat_find, keyway_umat_set_job, keyway_umat_counts
+  public :: keyway_umat_count, keyway_umat_give_up, keyway_umat_hold_traps
+  public :: keyway_umat_release_traps, keyway_make_temporary, keyway_remove_temporary
+  public :: reason_of_giving_up, text_from_c
+
+  integer, parameter :: longest_message = 512
+
+  !> What one call hands over, in the order of the bridge; names are those of the interface.
+  type, bind(c) :: umat_arguments
+    real(c_double) :: stress(6) = 0, ddsdde(6, 6) = 0, sse = 0, spd = 0, scd = 0
+    real(c_double) :: rpl = 0, ddsddt(6) = 0, drplde(6) = 0, drpldt = 0
+    real(c_double) :: stran(6) = 0, dstran(6) = 0, time(2) = 0, dtime = 0
+    real(c_double) :: temp = 0, dtemp = 0, predef(1) = 0, dpred(1) = 0
+    real(c_double) :: coords(3) = 0
+    real(c_double) :: drot(3, 3) = reshape(real([1, 0, 0, 0, 1, 0, 0, 0, 1], c_double), [3, 3])
+    real(c_double) :: pnewdt = 0, celent = 0, dfgrd0(3, 3) = 0, dfgrd1(3, 3) = 0
+    type(c_ptr) :: statev = c_null_ptr, props = c_null_ptr
+    integer(c_int) :: ndi = 3, nshr = 3, ntens = 6, nstatv = 0, nprops = 0
+    integer(c_int) :: noel = 0, npt = 0, layer = 1, kspt = 1
+    integer(c_int) :: kstep(4) = 0 !< the step; what else a routine may look for is not told
+    integer(c_int) :: kinc = 0
+    character(kind=c_char) :: cmname(80) = ' '
+  end type umat_arguments
+
+  interface
+    !> Calls UMAT; 0, or 1 when it gave up.
+    function keyway_umat_call(routine, arguments) result(status) bind(c)
+      import :: c_funptr, c_int, umat_arguments
+      implicit none
+      type(c_funptr), value :: routine
+      type(umat_arguments), intent(inout) :: arguments
+      integer(c_int) :: status
+    end function keyway_umat_call
+
+    !> Calls SDVINI with the state variables, place and numbers of the arguments.
+    function keyway_umat_start(routine, arguments) result(status) bind(c)
+      import :: c_funptr, c_int, umat_arguments
+      implicit none
+      type(c_funptr), value :: routine
+      type(umat_arguments), intent(inout) :: arguments
+      integer(c_int) :: status
+    end function keyway_umat_start
+
+    !> Calls UEXTERNALDB.
+    function keyway_umat_external(routine, lop, restart, time, dtime, step, increment) &
+      result(status) bind(c)
+      import :: c_double, c_funptr, c_int
+      implicit none
+      type(c_funptr), value :: routine
+      integer(c_int), value :: lop, restart
+      real(c_double), intent(in) :: time(2) !< of the step, of the analysis [s]
+      real(c_double), value :: dtime
+      integer(c_int), value :: step, increment
+      integer(c_int) :: status
+    end function keyway_umat_external
+
+    !> Why the last call of this thread gave up.
+    subroutine keyway_umat_message(message, size) bind(c)
+      import :: c_char, c_size_t
+      implicit none
+      ! allow(assumed-size)
+      character(kind=c_char), intent(out) :: message(*)
+      integer(c_size_t), value :: size
+    end subroutine keyway_umat_message
+
+    !> Loads a library; null with a message on failure.
+    function keyway_umat_open(path, message, size) result(handle) bind(c)
+      import :: c_char, c_ptr, c_size_t
+      implicit none
+      ! allow(assumed-size)
+      character(kind=c_char), intent(in) :: path(*)
+      ! allow(assumed-size)
+      character(kind=c_char), intent(out) :: message(*)
+      integer(c_size_t), value :: size
+      type(c_ptr) :: handle
+    end function keyway_umat_open
+
+    !> A routine of a library by its symbol; null where it has none.
+    function keyway_umat_find(handle, name) result(routine) bind(c)
+      import :: c_char, c_funptr, c_ptr
+      implicit none
+      type(c_ptr), value :: handle
+      ! allow(assumed-size)
+      character(kind=c_char), intent(in) :: name(*)
+      type(c_funptr) :: routine
+    end function keyway_umat_find
+
+    !> What GETJOBNAME and GETOUTDIR answer.
+    subroutine keyway_umat_set_job(name, folder) bind(c)
+      import :: c_char
+      implicit none
+      ! allow(assumed-size)
+      character(kind=c_char), intent(in) :: name(*), folder(*)
+    end subroutine keyway_umat_set_job
+
+    !> Counts a warning (0) or an error (1) that the UMAT wrote.
+    subroutine keyway_umat_count(is_error) bind(c)
+      import :: c_int
+      implicit none
+      integer(c_int), value :: is_error
+    end subroutine keyway_umat_count
+
+    !> How many there are.
+    subroutine keyway_umat_counts(warnings, errors) bind(c)
+      import :: c_int
+      implicit none
+      integer(c_int), intent(out) :: warnings, errors
+    end subroutine keyway_umat_counts
+
+    !> Goes back to the call that guards the UMAT; never returns.
+    subroutine keyway_umat_give_up(message, length) bind(c)
+      import :: c_char, c_size_t
+      implicit none
+      ! allow(assumed-size)
+      character(kind=c_char), intent(in) :: message(*)
+      integer(c_size_t), value :: length
+    end subroutine keyway_umat_give_up
+
+    !> Traps of floating-point exceptions sleep until they are released.
+    subroutine keyway_umat_hold_traps() bind(c)
+      implicit none
+    end subroutine keyway_umat_hold_traps
+
+    subroutine keyway_umat_release_traps() bind(c)
+      implicit none
+    end subroutine keyway_umat_release_traps
+
+    !> Makes a folder for files that nobody keeps; an empty path on failure.
+    subroutine keyway_make_temporary(path, size) bind(c)
+      import :: c_char, c_size_t
+      implicit none
+      ! allow(assumed-size)
+      character(kind=c_char), intent(out) :: path(*)
+      integer(c_size_t), value :: size
+    end subroutine keyway_make_temporary
+
+    !> Removes a folder and the files in it.
+    subroutine keyway_remove_temporary(path) bind(c)
+      import :: c_char
+      implicit none
+      ! allow(assumed-size)
+      character(kind=c_char), intent(in) :: path(*)
+    end subroutine keyway_remove_temporary
+  end interface
+
+contains
+
+  !> Why the last guarded call of this thread came back early: 'XIT was called'.
+  function reason_of_giving_up() result(text)
+    character(:), allocatable :: text
+    character(kind=c_char) :: message(longest_message)
+    call keyway_umat_message(message, int(longest_message, c_size_t))
+    text = text_from_c(message)
+  end function reason_of_giving_up
+
+  !> The letters before the null.
+  pure function text_from_c(letters) result(text)
+    character(kind=c_char), intent(in) :: letters(:)
+    character(:), allocatable :: text
+    integer :: i, length
+    length = findloc(letters, c_null_char, 1) - 1
+    if (length < 0) length = size(letters)
+    allocate (character(length) :: text)
+    do i = 1, length
+      text(i:i) = letters(i)
+    end do
+  end function text_from_c
+end module umat_interface

@@ -1,0 +1,182 @@
+!> The library of a user: opened once for a run, with the routines it holds and what is learnt of
+!> them.
+module umat_loader
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_funptr, c_int, &
+                                         c_null_char, c_null_funptr, c_null_ptr, c_ptr, c_size_t
+  use errors, only: analysis_failed, deck_is_wrong, error_type, raise, system_failed
+  use kinds, only: rk
+  use umat_build, only: build_library, is_library, umat_file
+  use umat_findings, only: findings
+  use umat_interface, only: keyway_make_temporary, keyway_remove_temporary, keyway_umat_counts, &
+                            keyway_umat_external, keyway_umat_find, keyway_umat_hold_traps, &
+                            keyway_umat_open, keyway_umat_release_traps, keyway_umat_set_job, &
+                            reason_of_giving_up, text_from_c
+  use umat_services, only: message_unit
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: user_library, umat_request, open_library
+  public :: at_start, at_increment_start, at_increment_end, at_end, at_restart
+
+  !> When UEXTERNALDB is called: its argument LOP.
+  integer, parameter :: at_start = 0, at_increment_start = 1, at_increment_end = 2, at_end = 3
+  integer, parameter :: at_restart = 4 !< in place of `at_start` where an analysis goes on
+
+  integer, parameter :: longest_message = 2000, longest_path = 4000
+
+  !> What the command line says of UMATs.
+  type :: umat_request
+    type(umat_file), allocatable :: files(:) !< sources, or one shared library; none: not given
+    character(:), allocatable :: flags !< of the compiler
+    logical :: is_threadsafe = .false. !< may be called by several threads at once
+    logical :: checks_tangent = .false. !< compare DDSDDE with differences of STRESS
+  end type umat_request
+
+  type :: user_library
+    type(c_ptr) :: handle = c_null_ptr
+    type(c_funptr) :: umat = c_null_funptr
+    type(c_funptr) :: sdvini = c_null_funptr, uexternaldb = c_null_funptr !< null: it has none
+    logical :: is_threadsafe = .false., checks_tangent = .false.
+    type(findings) :: found
+  contains
+    procedure :: call_external
+    procedure :: new_notes
+    procedure :: close => close_library
+  end type user_library
+
+contains
+
+  !> Builds and loads what the user brings, and opens unit 7. UEXTERNALDB hears of the start.
+  subroutine open_library(request, job, folder, library, error)
+    type(umat_request), intent(in) :: request
+    character(*), intent(in) :: job !< name of the job
+    character(*), intent(in) :: folder !< of the results, exists
+    type(user_library), intent(out) :: library
+    type(error_type), allocatable, intent(out) :: error
+    character(:), allocatable :: path, temporary
+    character(kind=c_char) :: room(longest_path)
+    library%is_threadsafe = request%is_threadsafe
+    library%checks_tangent = request%checks_tangent
+    call keyway_umat_set_job(job//c_null_char, folder//c_null_char)
+    if (size(request%files) == 1 .and. is_library(request%files(1)%path)) then
+      path = request%files(1)%path
+      if (index(path, '/') == 0) path = './'//path
+      call load(path, library, error)
+    else
+      call keyway_make_temporary(room, size(room, kind=c_size_t))
+      temporary = text_from_c(room)
+      if (temporary == '') then
+        call raise(error, 'keyway: there is no folder for temporary files (TMPDIR)', system_failed)
+        return
+      end if
+      call build_library(request%files, request%flags, temporary, path, error)
+      if (.not. allocated(error)) call load(path, library, error)
+      call keyway_remove_temporary(temporary//c_null_char)
+    end if
+    if (allocated(error)) return
+    call open_message_file(folder//'/'//job//'.msg', error)
+    if (.not. allocated(error)) then
+      call library%call_external(at_start, [0.0_rk, 0.0_rk], 0.0_rk, 0, 0, error)
+    end if
+  end subroutine open_library
+
+  !> Loads a library and finds its routines.
+  subroutine load(path, library, error)
+    character(*), intent(in) :: path
+    type(user_library), intent(inout) :: library
+    type(error_type), allocatable, intent(out) :: error
+    character(kind=c_char) :: room(longest_message)
+    character(:), allocatable :: hint
+    library%handle = keyway_umat_open(path//c_null_char, room, size(room, kind=c_size_t))
+    if (.not. c_associated(library%handle)) then
+      call raise(error, 'keyway: cannot load the UMAT: '//text_from_c(room), deck_is_wrong)
+      return
+    end if
+    library%umat = keyway_umat_find(library%handle, 'umat_'//c_null_char)
+    library%sdvini = keyway_umat_find(library%handle, 'sdvini_'//c_null_char)
+    library%uexternaldb = keyway_umat_find(library%handle, 'uexternaldb_'//c_null_char)
+    if (has_routine('umatht_') .or. has_routine('hetval_')) then
+      call raise(error, 'keyway: the UMAT comes with UMATHT or HETVAL: an analysis coupled '// &
+                 'with temperature is not done here', deck_is_wrong)
+    else if (.not. c_associated(library%umat)) then
+      hint = ''
+      if (has_routine('vumat_')) hint = ' (VUMAT is the interface of an explicit program)'
+      call raise(error, 'keyway: there is no SUBROUTINE UMAT in what --umat names'//hint, &
+                 deck_is_wrong)
+    end if
+
+  contains
+
+    logical function has_routine(name)
+      character(*), intent(in) :: name
+      type(c_funptr) :: routine
+      routine = keyway_umat_find(library%handle, name//c_null_char)
+      has_routine = c_associated(routine)
+    end function has_routine
+  end subroutine load
+
+  !> Unit 7, for what the UMAT writes and what its messages say. Unit 6 is the standard output.
+  subroutine open_message_file(path, error)
+    character(*), intent(in) :: path
+    type(error_type), allocatable, intent(out) :: error
+    integer :: status
+    open (unit=message_unit, file=path, status='replace', action='readwrite', iostat=status)
+    if (status /= 0) call raise(error, "keyway: cannot write '"//path//"'", system_failed)
+  end subroutine open_message_file
+
+  !> Tells UEXTERNALDB, where there is one, of a moment of the analysis.
+  subroutine call_external(self, moment, time, size, step, increment, error)
+    class(user_library), intent(in) :: self
+    integer, intent(in) :: moment !< one of those above
+    real(rk), intent(in) :: time(2) !< of the step, of the analysis [s]
+    real(rk), intent(in) :: size !< of the increment [s]
+    integer, intent(in) :: step, increment !< from 1; 0 before the first
+    type(error_type), allocatable, intent(out) :: error
+    integer(c_int) :: status
+    if (.not. c_associated(self%uexternaldb)) return
+    call keyway_umat_hold_traps()
+    status = keyway_umat_external(self%uexternaldb, int(moment, c_int), &
+                                  merge(1_c_int, 0_c_int, moment == at_restart), &
+                                  real(time, c_double), real(size, c_double), int(step, c_int), &
+                                  int(increment, c_int))
+    call keyway_umat_release_traps()
+    if (status == 0) return
+    call raise(error, 'UEXTERNALDB of the UMAT gave up (LOP '//as_text(moment)//', step '// &
+               as_text(step)//', increment '//as_text(increment)//'): '//reason_of_giving_up(), &
+               analysis_failed)
+  end subroutine call_external
+
+  !> What the user should know and has not been told; '' where there is nothing new.
+  function new_notes(self) result(text)
+    class(user_library), intent(inout) :: self
+    character(:), allocatable :: text
+    text = ''
+    if (.not. allocated(self%found%asymmetry) .or. self%found%is_asymmetry_told) return
+    text = self%found%asymmetry
+    self%found%is_asymmetry_told = .true.
+  end function new_notes
+
+  !> Closes unit 7, and takes the file away when nothing stands in it. The library stays loaded:
+  !> its units and threads may outlive it. Tells how many warnings and errors the UMAT wrote.
+  subroutine close_library(self, note)
+    class(user_library), intent(in) :: self
+    character(:), allocatable, intent(out) :: note !< '' where it wrote none
+    integer(c_int) :: num_warnings, num_errors
+    integer :: num_bytes
+    logical :: is_open
+    note = ''
+    inquire (unit=message_unit, opened=is_open, size=num_bytes)
+    if (.not. is_open .or. .not. c_associated(self%handle)) return
+    flush (message_unit)
+    inquire (unit=message_unit, size=num_bytes)
+    if (num_bytes > 0) then
+      close (message_unit)
+    else
+      close (message_unit, status='delete')
+    end if
+    call keyway_umat_counts(num_warnings, num_errors)
+    if (num_warnings + num_errors == 0) return
+    note = 'the UMAT wrote '//as_text(int(num_warnings))//' warnings and '// &
+           as_text(int(num_errors))//' errors to the .msg file'
+  end subroutine close_library
+end module umat_loader
