@@ -8,6 +8,8 @@ module check_deck
   use model_summary, only: summary_of, summary_of_tests
   use problem_definition, only: problem
   use read_deck, only: read_problem
+  use umat_loader, only: user_library
+  use user_routines, only: load_user_routines
   implicit none
   private
   public :: load_deck, report_model
@@ -21,7 +23,10 @@ contains
     type(diagnostic_list), intent(out) :: faults !< warnings, for the summary of the run
     character(:), allocatable, intent(out) :: echo !< the deck with every default made visible
     type(error_type), allocatable, intent(out) :: error
-    call read_problem(given%deck, scene, faults, echo, given%is_material)
+    type(user_library), pointer :: umat
+    call load_user_routines(given, umat, error)
+    if (allocated(error)) return
+    call read_problem(given%deck, scene, faults, echo, given%is_material, umat)
     if (faults%num_warnings > 0 .and. .not. given%is_quiet) then
       write (error_unit, '(a)') text_of_warnings(faults)
     end if

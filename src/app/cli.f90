@@ -7,7 +7,9 @@ module cli
   use keyword_handler, only: keyword_list
   use keyword_help, only: describe_keyword, list_keywords
   use nearest_words, only: nearest_choice
-  use parse_text, only: parse_integer
+  use parse_text, only: parse_integer, upper_case
+  use umat_build, only: umat_file
+  use umat_loader, only: umat_request
   implicit none
   private
   public :: command_line, parse_command_line, print_answer
@@ -19,6 +21,7 @@ module cli
     character(:), allocatable :: deck !< path, '' for none
     character(:), allocatable :: folder !< of the results
     character(:), allocatable :: keyword !< of --keywords, '' for all
+    type(umat_request) :: umat !< --umat and its like
     integer :: num_threads = 0 !< 0: as the system says
     logical :: is_check = .false. !< read and verify only
     logical :: is_material = .false. !< run the tests of materials, not the analysis
@@ -28,7 +31,8 @@ module cli
   end type command_line
 
   character(*), parameter :: options = '-o | -j | -q | --check | --keywords | --version | '// &
-                             '--help | -h | --continue | --umat | --umat-check | --material'
+                             '--help | -h | --continue | --umat | --umat-flags | '// &
+                             '--umat-threadsafe | --umat-check | --material'
 
 contains
 
@@ -40,6 +44,11 @@ contains
            '  -j N               threads'//nl// &
            '  --check            read and verify only, print what the model holds'//nl// &
            '  --material         run the tests of materials (*MATERIAL TEST), no analysis'//nl// &
+           '  --umat FILE ..     the user''s own materials: UMAT as Fortran source or '// &
+           'shared library'//nl// &
+           '  --umat-flags TEXT  of the compiler, for these sources'//nl// &
+           '  --umat-threadsafe  the UMAT may be called by several threads at once'//nl// &
+           '  --umat-check       compare its DDSDDE with differences of STRESS'//nl// &
            '  --keywords [NAME]  the reference of the deck, from the program itself'//nl// &
            '  -q                 say nothing but errors'//nl// &
            '  --version          compiler, flags, libraries'//nl// &
@@ -56,6 +65,8 @@ contains
     given%deck = ''
     given%folder = '.'
     given%keyword = ''
+    given%umat%flags = ''
+    allocate (given%umat%files(0))
     given%is_empty = command_argument_count() == 0
     i = 1
     do while (i <= command_argument_count())
@@ -76,13 +87,15 @@ contains
     word = argument(i)
     i = i + 1
     select case (word)
-    case ('-o', '-j')
+    case ('-o', '-j', '--umat', '--umat-flags')
       if (i > command_argument_count()) then
         call raise(error, 'keyway: '//word//' needs a value'//nl//usage(), deck_is_wrong)
         return
       end if
       if (word == '-o') given%folder = argument(i)
       if (word == '-j') call read_threads(argument(i), given, error)
+      if (word == '--umat-flags') given%umat%flags = given%umat%flags//' '//argument(i)
+      if (word == '--umat') call read_umat_files(i, given)
       i = i + 1
     case ('--check')
       given%is_check = .true.
@@ -101,12 +114,40 @@ contains
         given%keyword = trim(given%keyword//' '//argument(i))
         i = i + 1
       end do
-    case ('--continue', '--umat', '--umat-check')
+    case ('--umat-threadsafe')
+      given%umat%is_threadsafe = .true.
+    case ('--umat-check')
+      given%umat%checks_tangent = .true.
+    case ('--continue')
       call raise(error, 'keyway: '//word//' is not available yet', deck_is_wrong)
     case default
       call read_deck_name(word, given, error)
     end select
   end subroutine read_argument
+
+  !> The word behind --umat, and those behind it that end like sources or libraries; `i` is the last.
+  subroutine read_umat_files(i, given)
+    integer, intent(inout) :: i
+    type(command_line), intent(inout) :: given
+    type(umat_file) :: new
+    do
+      new%path = argument(i)
+      given%umat%files = [given%umat%files, new]
+      if (i == command_argument_count()) return
+      if (.not. is_code(argument(i + 1))) return
+      i = i + 1
+    end do
+  end subroutine read_umat_files
+
+  !> The name ends as Fortran sources, objects and libraries do.
+  pure logical function is_code(name)
+    character(*), intent(in) :: name
+    character(:), allocatable :: ending
+    ending = upper_case(name(index(name, '.', back=.true.) + 1:))
+    is_code = index(name, '.') > 0 .and. &
+              any(ending == [character(4) :: 'F', 'FOR', 'FTN', 'F77', 'F90', 'F95', 'F03', &
+                             'F08', 'FPP', 'O', 'A', 'SO'])
+  end function is_code
 
   subroutine read_threads(word, given, error)
     character(*), intent(in) :: word

@@ -13,6 +13,7 @@ module run_analysis
   use run_steps, only: run_all_steps
   use result_files, only: result_folder
   use cli, only: command_line
+  use user_routines, only: end_user_routines
   implicit none
   private
   public :: run_problem
@@ -43,6 +44,8 @@ contains
     if (allocated(error)) return
     call start_analysis(scene, now)
     call run_all_steps(scene, now, results, error)
+    call end_user_routines(scene, now%total_time, results%log, failure)
+    if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
     if (allocated(error)) then
       call results%log%note(error%message)
       call results%finish(scene, now, 'stopped', error%message, failure)

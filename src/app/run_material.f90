@@ -13,6 +13,7 @@ module run_material
   use timer, only: wall_clock
   use write_material, only: write_curve
   use write_text, only: as_text
+  use user_routines, only: end_user_routines
   implicit none
   private
   public :: run_tests
@@ -45,6 +46,8 @@ contains
       call move_alloc(failure, error)
       if (error%exit_code == system_failed) return
     end do
+    call end_user_routines(scene, 0.0_rk, log, failure)
+    if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
     call write_test_summary(stem//'.json', scene%deck_file, summaries, failure)
     call log%say(table_of_tests(summaries))
     if (.not. allocated(error)) then

@@ -1,6 +1,7 @@
 set(sources
   cli.f90
   model_summary.f90
+  user_routines.f90
   check_deck.f90
   run_analysis.f90
   run_material.f90

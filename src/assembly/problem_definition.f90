@@ -9,6 +9,7 @@ module problem_definition
   use joint_points, only: joint
   use applied_load, only: load_slot
   use inelastic_blocks, only: inelastic_block
+  use umat_loader, only: user_library
   implicit none
   private
   public :: problem
@@ -29,6 +30,7 @@ module problem_definition
     type(load_slot), allocatable :: loads(:)
     type(initial_value), allocatable :: initial_values(:)
     type(step), allocatable :: steps(:)
+    type(user_library), pointer :: umat => null() !< loaded code of the user, null for none
     integer :: upstream_surface = 0 !< surface of the first reservoir, 0 for none
   end type problem
 end module problem_definition

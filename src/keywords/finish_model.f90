@@ -6,6 +6,7 @@ module finish_model
   use element_joint8, only: build_joint_points, find_attached_solids
   use errors, only: error_type
   use finish_concrete, only: complete_concretes
+  use finish_user_materials, only: complete_user_materials
   use joint_catalogue, only: make_joint_law
   use joint_constants, only: law_constants
   use joint_points, only: joint
@@ -32,6 +33,7 @@ contains
     call trim_loads(model)
     call check_contents(model, faults)
     call complete_concretes(model, faults)
+    call complete_user_materials(model, faults)
     call check_materials(model, faults)
     call check_solids(model, faults)
     call check_joint_elements(model, faults)
@@ -80,6 +82,7 @@ contains
     do i = 1, size(model%scene%materials)
       if (allocated(model%scene%materials(i)%law)) cycle
       if (any(model%concretes%material == i)) cycle ! told there
+      if (any(model%user_materials%material == i)) cycle ! told there
       if (.not. any(model%scene%mesh%material_of_element == i)) cycle
       call model%cards(model%material_origin(i)%card)%fault( &
         faults, "material '"//model%scene%materials(i)%name//"' has no stiffness", '*ELASTIC')
@@ -210,6 +213,11 @@ contains
       else if (any(materials /= materials(1))) then
         call place%warn(faults, "the slave side has several materials; KN and KT are made of '"// &
                         model%scene%materials(materials(1))%name//"'")
+      else if (model%scene%materials(materials(1))%young <= 0.0_rk) then
+        call place%fault(faults, "the material of the slave side, '"// &
+                         model%scene%materials(materials(1))%name//"', has no E (a UMAT) to "// &
+                         'make KN and KT of', 'KN and KT in the *JOINT LAW')
+        return
       end if
       call law%complete_stiffness(model%scene%materials(materials(1))%young, &
                                   model%scene%materials(materials(1))%poisson)

@@ -2,6 +2,7 @@
 module finish_tests
   use diagnostics, only: diagnostic_list
   use finish_concrete, only: complete_concretes
+  use finish_user_materials, only: complete_user_materials
   use model_draft, only: draft
   implicit none
   private
@@ -16,6 +17,7 @@ contains
     integer :: i
     if (size(model%cards) == 0) return
     call complete_concretes(model, faults)
+    call complete_user_materials(model, faults)
     if (size(model%scene%tests) == 0 .and. .not. faults%has_errors()) then
       call model%cards(size(model%cards))%fault(faults, 'the deck ends without a test', &
                                                 '*MATERIAL TEST')
@@ -36,6 +38,7 @@ contains
     if (allocated(model%scene%materials(i)%law)) return
     if (any(model%scene%tests(:number - 1)%material == i)) return ! told
     if (any(model%concretes%material == i)) return ! told there
+    if (any(model%user_materials%material == i)) return ! told there
     call model%cards(model%material_origin(i)%card)%fault( &
       faults, "material '"//model%scene%materials(i)%name//"' has no stiffness", '*ELASTIC')
   end subroutine check_law

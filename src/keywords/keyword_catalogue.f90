@@ -33,6 +33,8 @@ module keyword_catalogue
   use keywords_step, only: describe_dynamic, describe_end_step, describe_frequency, &
                            describe_static, describe_step, read_dynamic, read_end_step, &
                            read_frequency, read_static, read_step
+  use keywords_user_material, only: describe_depvar, describe_user_material, read_depvar, &
+                                    read_user_material
   implicit none
   private
   public :: list_keywords
@@ -63,6 +65,8 @@ contains
     call list%add(describe_material, read_material, pass_definitions)
     call list%add(describe_density, read_density, pass_definitions)
     call list%add(describe_elastic, read_elastic, pass_definitions)
+    call list%add(describe_user_material, read_user_material, pass_definitions)
+    call list%add(describe_depvar, read_depvar, pass_definitions)
     call list%add(describe_material_damping, read_material_damping, pass_definitions)
     call list%add(describe_plasticity, read_plasticity, pass_definitions)
     call list%add(describe_hardening, read_hardening, pass_definitions)

@@ -1,19 +1,15 @@
 !> Keywords that are known and not available yet: each is an error at its place in the deck.
 module keywords_later
   use keyword_handler, only: keyword_list
-  use keyword_spec, only: field, kind_flag, kind_integer, kind_real, kind_word, &
-                          later
+  use keyword_spec, only: field, kind_flag, kind_integer, kind_real, kind_word, later
   implicit none
   private
   public :: add_later_keywords
-
-  character(*), parameter :: damage_place = 'material'
 
 contains
 
   subroutine add_later_keywords(list)
     type(keyword_list), intent(inout) :: list
-    call add_user_material(list)
     call add_coupling(list)
     call add_later(list, 'RESTART', 'output', 'anywhere', 'Writes a checkpoint every so many '// &
                    'increments.')
@@ -22,16 +18,6 @@ contains
                                    default='1'))
     call add_foreign(list)
   end subroutine add_later_keywords
-
-  subroutine add_user_material(list)
-    type(keyword_list), intent(inout) :: list
-    call add_later(list, 'USER MATERIAL', 'material', damage_place, &
-                   'A material law of the user''s own (UMAT): its constants, 8 in a line.')
-    call add_parameter(list, field('CONSTANTS', kind_integer, 'number of constants'))
-    call add_parameter(list, field('UNSYMM', kind_flag, 'the tangent is unsymmetric'))
-    call add_later(list, 'DEPVAR', 'material', damage_place, &
-                   'Number of state variables of a user material.')
-  end subroutine add_user_material
 
   subroutine add_coupling(list)
     type(keyword_list), intent(inout) :: list

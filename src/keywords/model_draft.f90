@@ -9,6 +9,7 @@ module model_draft
   use joint_constants, only: law_constants
   use id_map, only: position_table
   use kinds, only: rk
+  use material_user, only: user_constants
   use load_books, only: load_book
   use problem_definition, only: problem
   use set_lists, only: set_list
@@ -16,7 +17,7 @@ module model_draft
   implicit none
   private
   public :: draft, add_load, origin, section_request, law_request, joint_request
-  public :: concrete_request
+  public :: concrete_request, user_request
 
   !> Where something stood: a card of the deck and one of its data lines (0: the keyword itself).
   type :: origin
@@ -52,6 +53,13 @@ module model_draft
     logical :: is_right = .true. !< its cards agree with their specifications
   end type concrete_request
 
+  !> *USER MATERIAL and *DEPVAR of a material; a spot with card 0: not given.
+  type :: user_request
+    integer :: material = 0 !< position
+    type(user_constants) :: constants
+    type(origin) :: spot, depvar
+  end type user_request
+
   type :: draft
     type(card), allocatable :: cards(:) !< the whole deck
     type(problem), allocatable :: scene
@@ -64,6 +72,7 @@ module model_draft
     type(law_request), allocatable :: laws(:)
     type(joint_request), allocatable :: joints(:)
     type(concrete_request), allocatable :: concretes(:)
+    type(user_request), allocatable :: user_materials(:)
     integer, allocatable :: joint_of_element(:) !< position in `joints`, 0 for none
     character(:), allocatable :: mass_kind !< MASS of *SOLID SECTION once it is given
     integer :: num_loads = 0 !< in use of scene%loads, which grows by doubling

@@ -13,6 +13,7 @@ module read_deck
   use keywords_nodes, only: make_room_for_nodes
   use model_draft, only: draft
   use problem_definition, only: problem
+  use umat_loader, only: user_library
   use verify_model, only: verify
   implicit none
   private
@@ -21,12 +22,13 @@ module read_deck
 contains
 
   !> Reads and verifies a deck. The problem is fit to be solved when `faults` holds no error.
-  subroutine read_problem(path, scene, faults, echo, for_tests)
+  subroutine read_problem(path, scene, faults, echo, for_tests, umat)
     character(*), intent(in) :: path !< of the deck
     type(problem), allocatable, intent(out) :: scene
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable, intent(out) :: echo !< the deck with every default made visible
     logical, intent(in), optional :: for_tests !< of materials: the model need not be whole
+    type(user_library), pointer, intent(in), optional :: umat !< what --umat loaded
     type(keyword_list) :: list
     type(draft) :: model
     integer, allocatable :: keyword_of_card(:)
@@ -38,6 +40,7 @@ contains
     end if
     call open_draft(path, model)
     if (present(for_tests)) model%runs_tests = for_tests
+    if (present(umat)) model%scene%umat => umat
     call match_cards(list, model, keyword_of_card, faults)
     call handle_cards(list, keyword_of_card, model, faults)
     if (model%runs_tests) then
@@ -71,7 +74,7 @@ contains
     end associate
     allocate (model%surface_origin(0), model%material_origin(0), model%test_origin(0))
     allocate (model%sections(0), model%laws(0), model%joints(0), model%concretes(0))
-    allocate (model%procedure_card(0))
+    allocate (model%user_materials(0), model%procedure_card(0))
   end subroutine open_draft
 
   !> Finds the keyword of each card and checks that it stands where it may.

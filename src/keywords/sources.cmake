@@ -24,11 +24,13 @@ set(sources
   keywords_reservoir.f90
   keywords_print.f90
   keywords_output.f90
+  keywords_user_material.f90
   keywords_later.f90
   keyword_catalogue.f90
   concrete_widths.f90
   concrete_remarks.f90
   finish_concrete.f90
+  finish_user_materials.f90
   finish_model.f90
   finish_tests.f90
   verify_model.f90

@@ -8,14 +8,14 @@ module material_user
                              point_state, secant_tangent, stored_energy, time_increment, &
                              update_report
   use small_matrix, only: solve_dense
-  use umat_findings, only: call_place, place_text
+  use umat_findings, only: call_place, place_text, tangent_check
   use umat_guards, only: fault_of_call, guarded_state, has_cholesky_factor, largest_asymmetry, &
                          size_of_guard
   use umat_interface, only: keyway_umat_call, keyway_umat_hold_traps, &
                             keyway_umat_release_traps, keyway_umat_start, reason_of_giving_up, &
                             umat_arguments
   use umat_loader, only: user_library
-  use umat_tangent, only: compare_tangent
+  use umat_tangent, only: judge_tangent, num_probes, strain_probes
   use write_text, only: as_text
   implicit none
   private
@@ -145,7 +145,8 @@ contains
       end if
       call keep_answer(self, p, now, variables, old, new)
       if (self%library%checks_tangent) then
-        call check_tangent(self, place_of(self, points, p, time), old%internal(:, p), now)
+        call check_tangent(self, place_of(self, points, p, time), old%stress(:, p), &
+                           old%internal(:, p), now)
       end if
       if (time%tangent /= no_tangent) then
         call give_tangent(self, place_of(self, points, p, time), time%tangent, now%ddsdde, &
@@ -284,31 +285,31 @@ contains
   end subroutine give_tangent
 
   !> Compares DDSDDE with differences of STRESS around the strain of a call.
-  subroutine check_tangent(self, place, history, answer)
+  subroutine check_tangent(self, place, start, history, answer)
     class(user_law), intent(in) :: self
     type(call_place), intent(in) :: place
-    real(rk), intent(in) :: history(:)
+    real(rk), intent(in) :: start(6), history(:) !< stress and history before the increment
     type(umat_arguments), intent(in) :: answer
-    call compare_tangent(answer, place, stress_after, self%library%found)
-
-  contains
-
-    !> The stress after another strain increment from the same history.
-    subroutine stress_after(dstran, stress, is_sound)
-      real(rk), intent(in) :: dstran(6)
-      real(rk), intent(out) :: stress(6)
-      logical, intent(out) :: is_sound
-      type(umat_arguments) :: now
-      type(guarded_state) :: variables
-      character(:), allocatable :: fault
+    type(umat_arguments) :: now
+    type(guarded_state) :: variables
+    type(tangent_check) :: check
+    character(:), allocatable :: fault
+    real(rk) :: dstran(6, num_probes), stress(6, num_probes)
+    logical :: is_sound(num_probes)
+    integer :: i
+    dstran = strain_probes(answer)
+    do i = 1, num_probes
       now = answer
-      now%dstran = dstran
+      now%stress = start
+      now%dstran = dstran(:, i)
       now%ddsdde = 0.0_rk
       now%pnewdt = no_wish
       call call_point(self, history, now, variables, fault)
-      is_sound = len(fault) == 0
-      stress = now%stress
-    end subroutine stress_after
+      is_sound(i) = len(fault) == 0
+      stress(:, i) = now%stress
+    end do
+    call judge_tangent(answer, place, stress, is_sound, check)
+    call self%library%found%add_check(check)
   end subroutine check_tangent
 
   !> State variables start as zero, or as SDVINI leaves them.

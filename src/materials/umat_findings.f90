@@ -5,7 +5,7 @@ module umat_findings
   use write_text, only: as_text
   implicit none
   private
-  public :: findings, tangent_check, call_place, place_text
+  public :: findings, tangent_check, call_place, place_text, text_of_check
 
   !> Where a UMAT is called.
   type :: call_place
@@ -42,6 +42,19 @@ contains
            as_text(place%point)//', step '//as_text(place%step)//', increment '// &
            as_text(place%increment)
   end function place_text
+
+  !> A line for people.
+  pure function text_of_check(check) result(text)
+    type(tangent_check), intent(in) :: check
+    character(:), allocatable :: text
+    text = 'UMAT: DDSDDE compared with differences of STRESS in '//as_text(check%num_tangents)// &
+           ' calls'
+    if (check%error < 0.0_rk) return
+    text = text//'; farthest apart by '//as_text(check%error)//' of its largest entry, at '// &
+           place_text(check%place)//': DDSDDE('//as_text(check%row)//','// &
+           as_text(check%column)//') = '//as_text(check%given)//', difference quotient '// &
+           as_text(check%found)
+  end function text_of_check
 
   !> Counts a comparison and keeps the worst; safe among threads.
   subroutine add_check(self, new)

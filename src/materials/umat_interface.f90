@@ -1,7 +1,7 @@
 !> The 37 arguments of a UMAT, and the C functions that load, guard and serve it.
 module umat_interface
-  use, intrinsic :: iso_c_binding, only: c_char, c_double, c_funptr, c_int, c_null_char, &
-                                         c_null_ptr, c_ptr, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_char, c_double, c_funptr, c_int, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_null_char, c_null_ptr, c_ptr
   implicit none
   private
   public :: umat_arguments, keyway_umat_call, keyway_umat_start, keyway_umat_external

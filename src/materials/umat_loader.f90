@@ -1,12 +1,12 @@
 !> The library of a user: opened once for a run, with the routines it holds and what is learnt of
 !> them.
 module umat_loader
-  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_funptr, c_int, &
-                                         c_null_char, c_null_funptr, c_null_ptr, c_ptr, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_funptr, c_int
+  use, intrinsic :: iso_c_binding, only: c_null_char, c_null_funptr, c_null_ptr, c_ptr, c_size_t
   use errors, only: analysis_failed, deck_is_wrong, error_type, raise, system_failed
   use kinds, only: rk
   use umat_build, only: build_library, is_library, umat_file
-  use umat_findings, only: findings
+  use umat_findings, only: findings, text_of_check
   use umat_interface, only: keyway_make_temporary, keyway_remove_temporary, keyway_umat_counts, &
                             keyway_umat_external, keyway_umat_find, keyway_umat_hold_traps, &
                             keyway_umat_open, keyway_umat_release_traps, keyway_umat_set_job, &
@@ -41,6 +41,7 @@ module umat_loader
   contains
     procedure :: call_external
     procedure :: new_notes
+    procedure :: check_text
     procedure :: close => close_library
   end type user_library
 
@@ -155,6 +156,15 @@ contains
     text = self%found%asymmetry
     self%found%is_asymmetry_told = .true.
   end function new_notes
+
+  !> What the check of the tangents says; '' without one.
+  function check_text(self) result(text)
+    class(user_library), intent(in) :: self
+    character(:), allocatable :: text
+    text = ''
+    if (.not. self%checks_tangent) return
+    text = text_of_check(self%found%check)
+  end function check_text
 
   !> Closes unit 7, and takes the file away when nothing stands in it. The library stays loaded:
   !> its units and threads may outlive it. Tells how many warnings and errors the UMAT wrote.

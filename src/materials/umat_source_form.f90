@@ -22,6 +22,7 @@ contains
   pure function form_of_source(text) result(form)
     character(*), intent(in) :: text !< the whole file, lines ended by LF or CRLF
     type(source_form) :: form
+    character(:), allocatable :: line
     integer :: first, last
     logical :: is_told, goes_on, is_fixed, is_left
     is_told = .false.
@@ -31,19 +32,18 @@ contains
     first = 1
     do while (first <= len(text))
       last = first + index(text(first:)//new_line('a'), new_line('a')) - 2
-      associate (line => without_return(text(first:last)))
-        form%has_directives = form%has_directives .or. is_for_preprocessor(line)
-        if (names_form(line)) then
-          is_told = .true.
-          form%is_free = index(upper_case(line), 'NOFREEFORM') == 0 .and. &
-                         index(upper_case(line), 'FREEFORM') > 0
-        else if (.not. is_comment(line)) then
-          goes_on = goes_on .or. ends_in_ampersand(line)
-          is_left = is_left .or. starts_at_left(line)
-        end if
-        is_fixed = is_fixed .or. is_of_fixed_form(line)
-      end associate
+      line = without_return(text(first:last))
       first = last + 2
+      form%has_directives = form%has_directives .or. is_for_preprocessor(line)
+      is_fixed = is_fixed .or. is_of_fixed_form(line)
+      if (names_form(line)) then
+        is_told = .true.
+        form%is_free = index(upper_case(line), 'NOFREEFORM') == 0 .and. &
+                       index(upper_case(line), 'FREEFORM') > 0
+      else if (.not. is_comment(line)) then
+        goes_on = goes_on .or. ends_in_ampersand(line)
+        is_left = is_left .or. starts_at_left(line)
+      end if
     end do
     if (is_told) return
     form%is_free = goes_on .or. (is_left .and. .not. is_fixed)

@@ -1,0 +1,45 @@
+!> The UMAT of the command line: loaded before the deck is read, told of the end of the run.
+module user_routines
+  use cli, only: command_line
+  use errors, only: error_type
+  use file_system, only: base_name, make_folder
+  use kinds, only: rk
+  use logging, only: run_log
+  use problem_definition, only: problem
+  use umat_loader, only: at_end, open_library, user_library
+  implicit none
+  private
+  public :: load_user_routines, end_user_routines
+
+contains
+
+  !> Builds and loads what --umat names; null without it.
+  subroutine load_user_routines(given, umat, error)
+    type(command_line), intent(in) :: given
+    type(user_library), pointer, intent(out) :: umat !< lives as long as the program
+    type(error_type), allocatable, intent(out) :: error
+    nullify (umat)
+    if (size(given%umat%files) == 0) return
+    call make_folder(given%folder, error)
+    if (allocated(error)) return
+    allocate (umat)
+    call open_library(given%umat, base_name(given%deck), given%folder, umat, error)
+  end subroutine load_user_routines
+
+  !> Tells UEXTERNALDB of the end, and the log what was learnt of the UMAT.
+  subroutine end_user_routines(scene, time, log, error)
+    type(problem), intent(in) :: scene
+    real(rk), intent(in) :: time !< total [s]
+    type(run_log), intent(inout) :: log
+    type(error_type), allocatable, intent(out) :: error
+    character(:), allocatable :: note
+    if (.not. associated(scene%umat)) return
+    call scene%umat%call_external(at_end, [0.0_rk, time], 0.0_rk, size(scene%steps), 0, error)
+    note = scene%umat%new_notes()
+    if (len(note) > 0) call log%say(note)
+    note = scene%umat%check_text()
+    if (len(note) > 0) call log%say(note)
+    call scene%umat%close(note)
+    if (len(note) > 0) call log%say(note)
+  end subroutine end_user_routines
+end module user_routines

@@ -1,0 +1,101 @@
+!> Makes the laws of user materials when the whole deck is read: the UMAT is asked for the stiffness
+!> of each at the start.
+module finish_user_materials
+  use diagnostics, only: diagnostic_list
+  use element_hex8, only: hex8_gradients
+  use errors, only: error_type
+  use kinds, only: rk
+  use material_points, only: consistent_tangent, point_set, time_increment
+  use material_user, only: find_stiffness, make_user_law, user_law
+  use model_draft, only: draft
+  implicit none
+  private
+  public :: complete_user_materials
+
+contains
+
+  !> Gives every user material of the deck its law.
+  subroutine complete_user_materials(model, faults)
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i
+    do i = 1, size(model%user_materials)
+      call check_request(i, model, faults)
+      if (faults%has_errors()) cycle
+      call make_law(i, model, faults)
+    end do
+  end subroutine complete_user_materials
+
+  subroutine check_request(number, model, faults)
+    integer, intent(in) :: number
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    associate (given => model%user_materials(number))
+      if (given%spot%card == 0) then
+        call model%cards(given%depvar%card)%fault( &
+          faults, "material '"//given%constants%name//"' has no *USER MATERIAL", &
+          'it beside *DEPVAR')
+        return
+      end if
+      associate (place => model%cards(given%spot%card))
+        if (allocated(model%scene%materials(given%material)%law)) then
+          call place%fault(faults, "material '"//given%constants%name//"' has an *ELASTIC, too", &
+                           'one law: the UMAT gives the elastic stiffness')
+        else if (any(model%concretes%material == given%material)) then
+          call place%fault(faults, "material '"//given%constants%name//"' has the keywords of "// &
+                           'concrete, too', 'one law')
+        else if (.not. associated(model%scene%umat)) then
+          call place%fault(faults, 'no UMAT is given', &
+                           'the option --umat with its source or library: keyway --umat '// &
+                           'law.for job.inp')
+        end if
+      end associate
+    end associate
+  end subroutine check_request
+
+  subroutine make_law(number, model, faults)
+    integer, intent(in) :: number
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(user_law) :: law
+    type(point_set) :: points
+    type(time_increment) :: time
+    type(error_type), allocatable :: error
+    call make_user_law(model%scene%umat, model%user_materials(number)%constants, law)
+    call first_point(model, model%user_materials(number)%material, points)
+    time%tangent = consistent_tangent
+    if (size(model%scene%steps) > 0) then
+      if (model%scene%steps(1)%first_increment > 0.0_rk) then
+        time%size = model%scene%steps(1)%first_increment
+      end if
+    end if
+    call find_stiffness(law, points, time, error)
+    if (allocated(error)) then
+      call model%cards(model%user_materials(number)%spot%card)%fault(faults, error%message)
+      return
+    end if
+    allocate (model%scene%materials(model%user_materials(number)%material)%law, source=law)
+  end subroutine make_law
+
+  !> The middle of the first element of a material; of a unit cube where there is none.
+  subroutine first_point(model, material, points)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: material !< position
+    type(point_set), intent(out) :: points
+    real(rk) :: x(3, 8), gradient(3, 8, 8), weight(8)
+    integer :: e, corner
+    points%num_points = 1
+    points%element = [1]
+    points%number = [1]
+    points%length = [1.0_rk]
+    allocate (points%x(3, 1), points%edges(3, 3, 1), source=0.0_rk)
+    if (.not. allocated(model%scene%mesh%material_of_element)) return
+    e = findloc(model%scene%mesh%material_of_element, material, dim=1)
+    if (e == 0) return
+    x = model%scene%mesh%x(:, model%scene%mesh%nodes(:, e))
+    call hex8_gradients(x, gradient, weight, corner)
+    points%element = model%scene%mesh%element_id(e)
+    points%x(:, 1) = sum(x, 2)/8.0_rk
+    if (corner == 0) points%length = sum(weight)**(1.0_rk/3.0_rk)
+  end subroutine first_point
+end module finish_user_materials

@@ -1,0 +1,157 @@
+!> *USER MATERIAL and *DEPVAR: a material whose law is a UMAT of the user.
+module keywords_user_material
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, kind_real, &
+                          kind_text
+  use kinds, only: rk
+  use model_draft, only: draft, origin, user_request
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: describe_user_material, describe_depvar, read_user_material, read_depvar
+
+  character, parameter :: nl = new_line('a')
+  integer, parameter :: constants_of_line = 8
+
+contains
+
+  subroutine describe_user_material(spec)
+    type(keyword), intent(out) :: spec
+    type(field) :: constant
+    spec%name = 'USER MATERIAL'
+    spec%family = 'material'
+    spec%place = 'material'
+    spec%meaning = 'The law of the material is a UMAT of the user, which --umat names on the '// &
+                   'command line: keyway --umat law.for job.inp. The data are its constants '// &
+                   '(PROPS), 8 a line. The name of the material arrives as CMNAME. In place of '// &
+                   '*ELASTIC.'
+    spec%example = '*MATERIAL, NAME=STEEL'//nl//'*USER MATERIAL, CONSTANTS=3'//nl// &
+                   '210e9, 0.3, 355e6'//nl//'*DEPVAR'//nl//'7'
+    allocate (spec%parameters, source=[ &
+              field('CONSTANTS', kind_integer, 'number of constants', is_required=.true., &
+                    lowest=0.0_rk), &
+              field('UNSYMM', kind_flag, 'DDSDDE is used as it comes, else symmetrised'), &
+              field('TYPE', kind_choice, 'of the law: no coupling with temperature', &
+                    default='MECHANICAL', choices='MECHANICAL')])
+    constant = field('constant', kind_real, 'of the law (PROPS)', default='0')
+    allocate (spec%columns, source=spread(constant, 1, constants_of_line))
+  end subroutine describe_user_material
+
+  subroutine read_user_material(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i
+    call find_request(model, i)
+    associate (now => model%user_materials(i))
+      call claim(this, model, now%spot, faults)
+      now%constants%is_unsymmetric = this%has('UNSYMM')
+      call read_constants(this, now%constants%values, faults)
+    end associate
+  end subroutine read_user_material
+
+  !> All lines but the last are full, and there are as many constants as the keyword says.
+  subroutine read_constants(this, values, faults)
+    type(card), intent(in) :: this
+    real(rk), allocatable, intent(out) :: values(:)
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: line, i, num_given, num_wanted
+    num_wanted = this%integer('CONSTANTS')
+    allocate (values(max(num_wanted, 0)), source=0.0_rk)
+    num_given = 0
+    do line = 1, this%num_lines
+      if (line < this%num_lines .and. this%num_fields(line) < constants_of_line) then
+        call this%fault_at(faults, line, 0, 'found '//as_text(this%num_fields(line))// &
+                           ' constants', '8 in every line but the last')
+        return
+      end if
+      do i = 1, this%num_fields(line)
+        num_given = num_given + 1
+        if (num_given <= num_wanted) values(num_given) = this%real_at(line, i)
+      end do
+    end do
+    if (num_given == num_wanted) return
+    call this%fault_parameter(faults, 'CONSTANTS', 'CONSTANTS='//as_text(num_wanted)//', and '// &
+                              as_text(num_given)//' constants follow', 'the same number')
+  end subroutine read_constants
+
+  subroutine describe_depvar(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'DEPVAR'
+    spec%family = 'material'
+    spec%place = 'material'
+    spec%meaning = 'Number of state variables of a user material (NSTATV); results call them '// &
+                   'SDV1, SDV2, .. Lines that name them (number, name, text) may follow.'
+    spec%example = '*DEPVAR'//nl//'7'
+    spec%fewest_lines = 1
+    spec%checks_own_data = .true.
+    allocate (spec%columns, source=[ &
+              field('number', kind_integer, 'of state variables; in further lines that of the '// &
+                    'one that is named', is_required=.true.), &
+              field('name', kind_text, 'of a state variable'), &
+              field('text', kind_text, 'that tells of it')])
+  end subroutine describe_depvar
+
+  subroutine read_depvar(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i, line, number
+    call find_request(model, i)
+    associate (now => model%user_materials(i))
+      call claim(this, model, now%depvar, faults)
+      number = this%integer_at(1, 1)
+      if (this%num_fields(1) /= 1 .or. .not. this%is_integer_at(1, 1) .or. number < 0) then
+        call this%fault_at(faults, 1, 1, "found '"//this%text_at(1, 1)//"'", &
+                           'the number of state variables, alone in its line')
+        return
+      end if
+      now%constants%num_variables = number
+      do line = 2, this%num_lines
+        number = this%integer_at(line, 1)
+        if (number >= 1 .and. number <= now%constants%num_variables) cycle
+        call this%fault_at(faults, line, 1, "found '"//this%text_at(line, 1)//"'", &
+                           'the number of a state variable, 1 to '// &
+                           as_text(now%constants%num_variables)//', and its name')
+        return
+      end do
+    end associate
+    if (this%num_lines > 1) then
+      call this%ignore(faults, 'the names have no effect: results call the state variables '// &
+                       'SDV1, SDV2, ..')
+    end if
+  end subroutine read_depvar
+
+  !> The request of the material that is being read; a new one with its first keyword.
+  subroutine find_request(model, i)
+    type(draft), intent(inout) :: model
+    integer, intent(out) :: i
+    type(user_request) :: new
+    new%material = size(model%scene%materials)
+    i = 0
+    if (size(model%user_materials) > 0) then
+      i = findloc(model%user_materials%material, new%material, dim=1)
+    end if
+    if (i > 0) return
+    new%constants%name = model%scene%materials(new%material)%name
+    model%user_materials = [model%user_materials, new]
+    i = size(model%user_materials)
+  end subroutine find_request
+
+  !> Notes where a keyword of the material stands; a second one is a fault.
+  subroutine claim(this, model, spot, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    type(origin), intent(inout) :: spot
+    type(diagnostic_list), intent(inout) :: faults
+    if (spot%card > 0) then
+      associate (now => model%scene%materials(size(model%scene%materials)))
+        call this%fault(faults, "material '"//now%name//"' has a *"//this%spec%name//' already', &
+                        'one only', first=model%cards(spot%card)%place())
+      end associate
+    else
+      spot = model%here(0)
+    end if
+  end subroutine claim
+end module keywords_user_material
