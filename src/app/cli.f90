@@ -125,7 +125,7 @@ contains
     end select
   end subroutine read_argument
 
-  !> The word behind --umat, and those behind it that end like sources or libraries; `i` is the last.
+  !> The word behind --umat, and those behind it that end like code; `i` is the last of them.
   subroutine read_umat_files(i, given)
     integer, intent(inout) :: i
     type(command_line), intent(inout) :: given

@@ -1,5 +1,5 @@
-!> What is learnt about a UMAT while it runs: tangents that are not symmetric, and the worst entry of
-!> a check of its tangents.
+!> What is learnt about a UMAT while it runs: tangents that are not symmetric, and the worst entry
+!> of a check of its tangents.
 module umat_findings
   use kinds, only: long, rk
   use write_text, only: as_text

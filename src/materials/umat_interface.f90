@@ -65,9 +65,8 @@ module umat_interface
     subroutine keyway_umat_message(message, size) bind(c)
       import :: c_char, c_size_t
       implicit none
-      ! allow(assumed-size)
-      character(kind=c_char), intent(out) :: message(*)
-      integer(c_size_t), value :: size
+      integer(c_size_t), intent(in), value :: size
+      character(kind=c_char), intent(out) :: message(size)
     end subroutine keyway_umat_message
 
     !> Loads a library; null with a message on failure.
@@ -76,9 +75,8 @@ module umat_interface
       implicit none
       ! allow(assumed-size)
       character(kind=c_char), intent(in) :: path(*)
-      ! allow(assumed-size)
-      character(kind=c_char), intent(out) :: message(*)
-      integer(c_size_t), value :: size
+      integer(c_size_t), intent(in), value :: size
+      character(kind=c_char), intent(out) :: message(size)
       type(c_ptr) :: handle
     end function keyway_umat_open
 
@@ -136,9 +134,8 @@ module umat_interface
     subroutine keyway_make_temporary(path, size) bind(c)
       import :: c_char, c_size_t
       implicit none
-      ! allow(assumed-size)
-      character(kind=c_char), intent(out) :: path(*)
-      integer(c_size_t), value :: size
+      integer(c_size_t), intent(in), value :: size
+      character(kind=c_char), intent(out) :: path(size)
     end subroutine keyway_make_temporary
 
     !> Removes a folder and the files in it.

@@ -97,6 +97,8 @@ contains
       call keyway_umat_count(1_c_int)
       call write_message('fatal error: '//message)
       call give_up(message)
+    case default
+      call write_message(message)
     end select
   end subroutine pass_on
 
