@@ -167,7 +167,7 @@ def test_reads_150_000_nodes_in_two_seconds(program_path: Path, tmp_path: Path) 
         (["--keywords", "*elastic"], 0, "stdout", "Young's modulus; a number > 0 [Pa]; required"),
         (["--keywords", "STATC"], 2, "stderr", "did you mean '*STATIC'?"),
         (["--chekc", "a.inp"], 2, "stderr", "did you mean '--check'?"),
-        (["--umat", "lib.so", "a.inp"], 2, "stderr", "--umat is not available yet"),
+        (["--umat", "lib.so", "a.inp"], 2, "stderr", "cannot load the UMAT"),
         (["--continue", "a.inp"], 2, "stderr", "--continue is not available yet"),
         (["-q"], 2, "stderr", "no deck is named"),
         (["-j", "many", "a.inp"], 2, "stderr", "expected a number of threads > 0"),

@@ -235,8 +235,8 @@ contains
   end subroutine call_point
 
   !> Stress, history and energies of a sound answer. A UMAT that leaves SSE at zero keeps no
-  !> account: then what the undamaged stiffness would give back is stored, and the rest of the work is
-  !> dissipated.
+  !> account: then what the undamaged stiffness would give back is stored, and the rest of the work
+  !> is dissipated.
   pure subroutine keep_answer(self, p, now, variables, old, new)
     class(user_law), intent(in) :: self
     integer, intent(in) :: p
