@@ -22,7 +22,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from keyway_tools.pictures_curves import plot_energy, plot_joint_areas, plot_nodes, plot_openings
+from keyway_tools.pictures_curves import (
+    plot_damage_growth,
+    plot_energy,
+    plot_joint_areas,
+    plot_nodes,
+    plot_openings,
+)
 from keyway_tools.pictures_material import COMPONENTS, plot_material, read_curve
 from keyway_tools.results_reader import Results, find_jobs
 
@@ -52,6 +58,7 @@ def draw_job(results: Results, folder: Path) -> Iterator[Path | None]:
     yield plot_openings(results, path_of("openings"))
     yield plot_nodes(results, path_of("displacements"))
     yield plot_energy(results, path_of("energy"))
+    yield plot_damage_growth(results, path_of("damage_growth"))
 
 
 def draw_material(arguments: list[str]) -> int:

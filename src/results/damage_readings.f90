@@ -13,10 +13,15 @@ module damage_readings
   implicit none
   private
   public :: damage_record, damage_extreme, open_damage_record, note_damage, note_damage_on_faces
-  public :: levels
+  public :: levels, damage_columns, damage_row
 
   !> Damage in tension above which volumes and elements are counted.
   real(rk), parameter :: levels(3) = [0.1_rk, 0.5_rk, 0.9_rk]
+
+  !> Names of what `damage_row` gives.
+  character(*), parameter :: damage_columns = 'DAMAGET,DAMAGEC,volume_10,volume_50,volume_90,'// &
+                             'inelastic_volume,fracture,crushing'
+  integer, parameter :: num_columns = 8
 
   !> The largest damage since the start, and the point that has it.
   type :: damage_extreme
@@ -145,6 +150,14 @@ contains
       end associate
     end do
   end subroutine measure_block
+
+  !> The record in numbers: largest damage so far, volumes now [m3], energies so far [J].
+  pure function damage_row(record) result(row)
+    type(damage_record), intent(in) :: record
+    real(rk) :: row(num_columns)
+    row = [record%tension%at%value, record%compression%at%value, record%volume, &
+           record%inelastic_volume, record%fracture, record%crushing]
+  end function damage_row
 
   !> For *ENVELOPE: the largest damage anywhere and on each face, with the place of the point.
   subroutine note_damage_on_faces(scene, now, name, record, largest)

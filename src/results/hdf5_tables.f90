@@ -43,10 +43,11 @@ contains
     self%rows(:, self%num_kept) = row
   end subroutine add
 
-  !> Moves the rows from memory to the file.
+  !> Moves the rows from memory to the file; nothing for a table that was not started.
   subroutine bring_out(self, file)
     class(growing_table), intent(inout) :: self
     type(hdf5_file), intent(inout) :: file
+    if (.not. allocated(self%path)) return
     call file%extend_table(self%path, self%rows(:, :self%num_kept), self%num_written)
     self%num_written = self%num_written + self%num_kept
     self%num_kept = 0

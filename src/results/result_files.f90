@@ -15,6 +15,7 @@ module result_files
   use result_writer, only: starts_analysis
   use write_history, only: history_files, open_histories
   use write_energy, only: energy_file
+  use write_damage, only: damage_file
   use write_vtk, only: vtk_series, open_vtk
   use write_hdf5, only: hdf5_results, open_hdf5
   use summary_json, only: write_summary
@@ -37,6 +38,7 @@ module result_files
     integer, private :: num_warnings_said = 0
     type(history_files), private :: histories
     type(energy_file), private :: energies
+    type(damage_file), private :: damages
     type(vtk_series), private :: pictures
     type(hdf5_results), private :: data
   contains
@@ -89,6 +91,8 @@ contains
     if (allocated(error)) return
     call self%energies%open(self%stem, self%record, error)
     if (allocated(error)) return
+    call self%damages%open(self%stem, self%record, error)
+    if (allocated(error)) return
     call open_hdf5(scene, self%stem, self%record, self%data, error)
     if (allocated(error)) return
     call open_vtk(folder//'/', base_name(scene%deck_file), self%pictures)
@@ -125,6 +129,9 @@ contains
     type(error_type), allocatable, intent(out) :: error
     call self%costs%start('write CSV', 'output')
     call self%energies%write_increment(scene, now, self%record, error)
+    if (.not. allocated(error)) then
+      call self%damages%write_increment(scene, now, self%record, error)
+    end if
     if (.not. allocated(error)) then
       call self%histories%write_increment(scene, now, self%record, error)
     end if
@@ -212,6 +219,8 @@ contains
     call self%histories%finish(failure)
     call keep_first(error, failure)
     call self%energies%finish(failure)
+    call keep_first(error, failure)
+    call self%damages%finish(failure)
     call keep_first(error, failure)
     call self%data%finish(failure)
     call keep_first(error, failure)

@@ -22,6 +22,7 @@ set(sources
   history_rows.f90
   write_history.f90
   write_energy.f90
+  write_damage.f90
   write_material.f90
   material_summary.f90
   requested_fields.f90

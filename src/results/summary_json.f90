@@ -83,7 +83,7 @@ contains
     call json%close_object()
   end subroutine put_model
 
-  !> The guests of the model: loads, joints, damping.
+  !> The guests of the model: loads, joints, inelastic materials, damping.
   subroutine put_effects(json, scene)
     type(json_text), intent(inout) :: json
     type(problem), intent(in) :: scene
@@ -96,6 +96,7 @@ contains
       call put_effect(scene%joints(i)%name, 'joint')
     end do
     do i = 1, size(scene%materials)
+      if (is_inelastic(scene, i)) call put_effect(scene%materials(i)%name, 'inelastic')
       if (max(scene%materials(i)%alpha, scene%materials(i)%beta) > 0.0_rk) then
         call put_effect(scene%materials(i)%name, 'damping')
       end if
@@ -116,6 +117,14 @@ contains
       call json%close_object()
     end subroutine put_effect
   end subroutine put_effects
+
+  !> Has a material of the scene points with a history?
+  pure logical function is_inelastic(scene, m)
+    type(problem), intent(in) :: scene
+    integer, intent(in) :: m !< position of the material
+    is_inelastic = .false.
+    if (allocated(scene%inelastic)) is_inelastic = any(scene%inelastic%material == m)
+  end function is_inelastic
 
   !> Ignored input, and the warnings of the deck and of the run.
   subroutine put_remarks(json, summary, record)

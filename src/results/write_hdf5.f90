@@ -7,6 +7,7 @@ module write_hdf5
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
   use run_records, only: run_record
+  use damage_readings, only: damage_columns, damage_row
   use joint_readings, only: opening_at_points
   use result_writer, only: writer, is_due
   use requested_fields, only: list_due_fields, field_on_nodes, components_of
@@ -29,7 +30,7 @@ module write_hdf5
     character(:), allocatable :: path
     integer :: step = 0 !< whose group is there
     real(rk) :: flushed_at = 0.0_rk !< by the wall clock [s]
-    type(growing_table) :: increments, energies
+    type(growing_table) :: increments, energies, damages
     type(growing_table), allocatable :: joints(:)
   contains
     procedure :: write_increment => write_data
@@ -68,6 +69,9 @@ contains
                                     'step,increment,time,size,iterations,residual')
       call results%energies%start(file, '/history/energy', 'step,increment,time,external,'// &
                                   'kinetic,strain,damping,friction,fracture,numerical,error')
+      if (record%damage%is_present) then
+        call results%damages%start(file, '/history/damage', 'step,increment,time,'//damage_columns)
+      end if
       allocate (results%joints(size(scene%joints)))
       do j = 1, size(scene%joints)
         call results%joints(j)%start(file, '/history/joints/'//link_name(scene%joints(j)%name), &
@@ -87,7 +91,7 @@ contains
     character(8), allocatable :: fields(:)
     logical :: waits_long
     call self%enter_step(scene, now%step)
-    if (is_due(now, 1)) call self%add_history(scene, now)
+    if (is_due(now, 1)) call self%add_history(scene, now, record)
     call list_due_fields(scene, now, record, fields)
     if (size(fields) > 0) call self%add_fields(scene, now, record, fields)
     waits_long = wall_clock() - self%flushed_at > seconds_between_flushes
@@ -95,10 +99,11 @@ contains
   end subroutine write_data
 
   !> Rows of the histories.
-  subroutine add_history(self, scene, now)
+  subroutine add_history(self, scene, now, record)
     class(hdf5_results), intent(inout) :: self
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
+    type(run_record), intent(in) :: record
     real(rk) :: time(3), slip, opening, pressure
     integer :: j
     time = [real(now%step, rk), real(now%increment, rk), now%total_time]
@@ -108,6 +113,9 @@ contains
       call self%energies%add(self%file, [time, e%external, e%kinetic, e%strain, e%damping, &
                                          e%friction, e%fracture, e%numerical, e%error])
     end associate
+    if (record%damage%is_present) then
+      call self%damages%add(self%file, [time, damage_row(record%damage)])
+    end if
     do j = 1, size(scene%joints)
       associate (joint => now%joints(j))
         opening = max(0.0_rk, maxval(opening_at_points(scene%joints(j), joint)))
@@ -243,6 +251,7 @@ contains
     integer :: j
     call self%increments%bring_out(self%file)
     call self%energies%bring_out(self%file)
+    call self%damages%bring_out(self%file)
     do j = 1, size(self%joints)
       call self%joints(j)%bring_out(self%file)
     end do

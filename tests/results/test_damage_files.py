@@ -143,3 +143,20 @@ def test_damage_envelope_by_face(results: ResultsFolder):
     assert found["anywhere"] == {"value": 0.95, "time": 1.5, "x": CENTRE}
     assert found["downstream"]["value"] == 0.95
     assert results.find("envelopes.DAMAGEC")["anywhere"]["value"] == 0.25
+
+
+def test_growth_of_damage(folder: Path, results: ResultsFolder):
+    table = results.table("damage")
+    assert list(table["increment"]) == [1, 2, 3]
+    assert table["DAMAGET"] == pytest.approx([0, 0.8, 0.95], rel=PRINTED)
+    assert table["DAMAGEC"] == pytest.approx([0, 0, 0.25], rel=PRINTED)
+    assert table["volume_50"] == pytest.approx([0, 3 * 0.75, 3 * 0.75 + 6])
+    assert table["fracture"] == pytest.approx([0, 0, 600])
+    with h5py.File(folder / f"{JOB}.h5") as file:
+        names = file["history/damage"].attrs["columns"].decode().split(",")
+        for column, name in enumerate(names):
+            assert file["history/damage"][:, column] == pytest.approx(table[name], rel=PRINTED)
+
+
+def test_material_is_an_effect(results: ResultsFolder):
+    assert {"name": "CONCRETE", "kind": "inelastic"} in results.summary["effects"]

@@ -11,6 +11,10 @@ from keyway_tools.mesh_data import BrickMesh
 from keyway_tools.results_reader import ENVELOPE_NAMES
 
 ENERGIES = "step,increment,time,external,kinetic,strain,damping,friction,fracture,numerical,error"
+DAMAGES = (
+    "step,increment,time,DAMAGET,DAMAGEC,volume_10,volume_50,volume_90,inelastic_volume,"
+    "fracture,crushing"
+)
 
 
 def write_results(folder: Path, mesh: BrickMesh, job: str = "job") -> None:
@@ -27,6 +31,9 @@ def write_results(folder: Path, mesh: BrickMesh, job: str = "job") -> None:
         table[:, 3:6] = 1.0e7 * time[:, None] * np.array([1.0, 0.3, 0.7])
         energy = file.create_dataset("history/energy", data=table)
         energy.attrs["columns"] = ENERGIES
+        growth = np.outer(time, [0, 0, 1, 1, 0.2, 50, 30, 10, 90, 2000, 100])
+        damage = file.create_dataset("history/damage", data=growth)
+        damage.attrs["columns"] = DAMAGES
     _write_histories(folder, mesh, job)
 
 

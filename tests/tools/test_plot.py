@@ -19,6 +19,7 @@ KINDS = {
     "envelope_opening",
     "envelope_opening_joints",
     "damage",
+    "damage_growth",
     "deformed",
     "modes",
     "openings",

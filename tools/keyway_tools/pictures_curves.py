@@ -103,6 +103,30 @@ def plot_energy(results: Results, path: Path) -> Path | None:
     return save_figure(figure, path)
 
 
+def plot_damage_growth(results: Results, path: Path) -> Path | None:
+    """Damaged volumes, and the energy that cracks and crushing took, in time."""
+    table = results.table("history/damage")
+    if len(table.get("time", ())) < 3 or table["inelastic_volume"].max() <= 0.0:
+        return None
+    figure, axes = new_figure(2, width=10.0, row_height=2.6, sharex=True)
+    axes[0].plot(table["time"], table["inelastic_volume"], color=GREY, label="beyond elasticity")
+    for percent, colour in zip((10, 50, 90), COLOURS, strict=False):
+        axes[0].plot(
+            table["time"], table[f"volume_{percent}"], color=colour, label=f"damage > {percent} %"
+        )
+    axes[0].set_title("Growth of damage in tension")
+    axes[0].set_ylabel("volume [m³]")
+    for name, colour in zip(("fracture", "crushing"), COLOURS, strict=False):
+        axes[1].plot(table["time"], 1.0e-3 * table[name], color=colour, label=name)
+    axes[1].set_ylabel("dissipated [kJ]")
+    axes[1].set_xlabel("time [s]")
+    for axis in axes:
+        axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+        axis.margins(x=0.0)
+    figure.align_ylabels()
+    return save_figure(figure, path)
+
+
 def plot_joint_areas(results: Results, step: Step, path: Path) -> Path | None:
     """Largest opening over the area of every joint, seen square to it."""
     values = 1000.0 * step.envelopes["OPENING"]

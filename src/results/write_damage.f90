@@ -1,0 +1,70 @@
+!> job_damage.csv: how damage grows, a row an increment; only where a law has damage.
+module write_damage
+  use errors, only: error_type
+  use problem_definition, only: problem
+  use analysis_state, only: state
+  use damage_readings, only: damage_columns, damage_row
+  use run_records, only: run_record
+  use result_writer, only: writer, is_due
+  use csv_files, only: csv_file
+  use file_system, only: file_name
+  implicit none
+  private
+  public :: damage_file
+
+  type, extends(writer) :: damage_file
+    private
+    type(csv_file) :: file
+    logical :: is_open = .false.
+  contains
+    procedure :: open => open_damage
+    procedure :: write_increment => write_row
+    procedure :: finish => close_damage
+  end type damage_file
+
+contains
+
+  !> Starts the file. `stem` is the folder and the job's name.
+  subroutine open_damage(self, stem, record, error)
+    class(damage_file), intent(inout) :: self
+    character(*), intent(in) :: stem
+    type(run_record), intent(inout) :: record
+    type(error_type), allocatable, intent(out) :: error
+    if (.not. record%damage%is_present) return
+    call record%list_file(file_name(stem)//'_damage.csv')
+    call self%file%open(stem//'_damage.csv', 'step,increment,time,'//damage_columns, error)
+    self%is_open = .not. allocated(error)
+  end subroutine open_damage
+
+  !> One row.
+  subroutine write_row(self, scene, now, record, error)
+    class(damage_file), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(run_record), intent(inout) :: record
+    type(error_type), allocatable, intent(out) :: error
+    integer :: i
+    if (.false.) call record%begin_step(scene, now%step)
+    if (.not. (self%is_open .and. is_due(now, 1))) return
+    associate (lines => self%file%lines, row => damage_row(record%damage))
+      call lines%add_integer(now%step)
+      call lines%add(',')
+      call lines%add_integer(now%increment)
+      call lines%add(',')
+      call lines%add_real(now%total_time)
+      do i = 1, size(row)
+        call lines%add(',')
+        call lines%add_real(row(i))
+      end do
+      call lines%add(new_line('a'))
+    end associate
+    call self%file%save(error)
+  end subroutine write_row
+
+  !> Closes the file.
+  subroutine close_damage(self, error)
+    class(damage_file), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: error
+    if (self%is_open) call self%file%close(error)
+  end subroutine close_damage
+end module write_damage
