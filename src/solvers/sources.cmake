@@ -24,6 +24,7 @@ set(sources
   step_system.f90
   step_equilibrium.f90
   step_control.f90
+  user_increments.f90
   step_report.f90
   motion_state.f90
   hht_scheme.f90

@@ -10,6 +10,7 @@ module step_report
   use step_control, only: increment_control
   use step_loads, only: step_time
   use step_system, only: dam_system
+  use user_increments, only: end_user_increment
   implicit none
   private
   public :: close_increment, give_up
@@ -35,6 +36,8 @@ contains
     now%total_time = when%start + when%now
     now%is_last_of_step = now%step_time >= plan%duration
     call results%increment_done(scene, now, error)
+    if (allocated(error)) return
+    call end_user_increment(scene, now, results, error)
     if (allocated(error) .or. now%is_last_of_step) return
     if (now%increment >= plan%max_increments) then
       call raise(error, "step '"//plan%name//"' has used its "//count_text(plan%max_increments)// &

@@ -15,6 +15,7 @@ module time_hht
   use step_loads, only: step_time, external_force, prescribed_values
   use step_control, only: increment_control, start_control
   use step_report, only: close_increment, give_up
+  use user_increments, only: begin_user_increment
   use motion_state, only: motion, start_motion, show_motion, sum_contact
   use initial_acceleration, only: find_acceleration
   use hht_scheme, only: make_scheme
@@ -139,6 +140,8 @@ contains
     do while (now%step_time < plan%duration)
       dt = control%next_size(now%step_time)
       call when%advance(now%step_time, dt)
+      call begin_user_increment(scene, now, dt, error)
+      if (allocated(error)) return
       call prepare_size(scene, plan, system, dt, results, tool, error)
       if (allocated(error)) return
       call results%costs%start('forces', 'solver')

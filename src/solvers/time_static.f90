@@ -16,6 +16,7 @@ module time_static
   use step_loads, only: step_time, external_force, prescribed_values
   use step_control, only: increment_control, start_control
   use step_report, only: close_increment, give_up
+  use user_increments, only: begin_user_increment
   use motion_state, only: motion, start_motion, show_motion, sum_contact
   use energy_account, only: open_account, add_static_work
   implicit none
@@ -98,6 +99,8 @@ contains
     do while (now%step_time < plan%duration)
       size_of_increment = control%next_size(now%step_time)
       call when%advance(now%step_time, size_of_increment)
+      call begin_user_increment(scene, now, size_of_increment, error)
+      if (allocated(error)) return
       call results%costs%start('forces', 'solver')
       call take_increment(scene, system, solver, when, moving, trial, outcome, error)
       call results%costs%stop('forces')
