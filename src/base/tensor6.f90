@@ -5,7 +5,8 @@ module tensor6
   use small_matrix, only: cross_product
   implicit none
   private
-  public :: trace, second_invariant, third_invariant, von_mises, principal_values, as_matrix
+  public :: trace, second_invariant, third_invariant, von_mises, principal_values, principal_axes
+  public :: as_matrix
 
   real(rk), parameter :: third_of_turn = 2.0_rk*acos(-1.0_rk)/3.0_rk
   real(rk), parameter :: safe_cosine = 0.9_rk !< below, the angle loses no digits (factor 2.3)
@@ -72,6 +73,69 @@ contains
       values = mean + scale*values_around(s, 2.0_rk*sqrt(j2)*cos(angle))
     end if
   end function principal_values
+
+  !> Principal values, the largest first, and an orthonormal basis of principal directions; accurate
+  !> to roundoff also where values coincide, when the directions of these are one choice of many.
+  !>
+  !> The value that is farthest from the two others comes from the angle of Lode, the others and
+  !> their directions from the 2 x 2 problem normal to its axis (as in `principal_values`).
+  pure subroutine principal_axes(t, values, axes)
+    real(rk), intent(in) :: t(6)
+    real(rk), intent(out) :: values(3)
+    real(rk), intent(out) :: axes(3, 3) !< columns in the order of the values
+    real(rk) :: mean, scale, s(6), j2, cosine, angle, apart, pair(2), plane(3, 2), columns(3, 3)
+    mean = trace(t)/3.0_rk
+    s(1:3) = t(1:3) - mean
+    s(4:6) = t(4:6)
+    scale = max(abs(s(1)), abs(s(2)), abs(s(3)), abs(s(4)), abs(s(5)), abs(s(6)))
+    values = mean
+    axes = reshape([1.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 1.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 1.0_rk], [3, 3])
+    if (scale < tiny(1.0_rk)) return
+    s = s/scale
+    j2 = second_invariant(s)/3.0_rk
+    cosine = 0.5_rk*third_invariant(s)/(j2*sqrt(j2))
+    angle = acos(max(-1.0_rk, min(1.0_rk, cosine)))/3.0_rk
+    if (cosine < 0.0_rk) angle = angle + third_of_turn
+    apart = 2.0_rk*sqrt(j2)*cos(angle)
+    columns = as_matrix(s)
+    call span_normal_plane(columns, apart, plane(:, 1), plane(:, 2))
+    call turn_in_plane(columns, plane, pair)
+    if (apart > 0.0_rk) then
+      values = mean + scale*[apart, pair]
+      axes(:, 1) = cross_product(plane(:, 1), plane(:, 2))
+      axes(:, 2:3) = plane
+    else
+      values = mean + scale*[pair, apart]
+      axes(:, 1:2) = plane
+      axes(:, 3) = cross_product(plane(:, 1), plane(:, 2))
+    end if
+  end subroutine principal_axes
+
+  !> Turns two axes in their plane into principal directions of the part of a tensor in it.
+  pure subroutine turn_in_plane(matrix, plane, pair)
+    real(rk), intent(in) :: matrix(3, 3)
+    real(rk), intent(inout) :: plane(3, 2) !< unit vectors normal to each other
+    real(rk), intent(out) :: pair(2) !< values, the larger first
+    real(rk) :: image(3), a, b, c, half, radius, cosine, sine, first(3)
+    image = matmul(matrix, plane(:, 2))
+    a = dot_product(plane(:, 1), matmul(matrix, plane(:, 1)))
+    b = dot_product(plane(:, 2), image)
+    c = dot_product(plane(:, 1), image)
+    half = 0.5_rk*(a - b)
+    radius = hypot(half, c)
+    pair = 0.5_rk*(a + b) + [radius, -radius]
+    if (.not. radius > tiny(radius)) return
+    if (half >= 0.0_rk) then
+      cosine = sqrt(0.5_rk*(1.0_rk + half/radius))
+      sine = 0.5_rk*c/(radius*cosine)
+    else
+      sine = sign(sqrt(0.5_rk*(1.0_rk - half/radius)), c)
+      cosine = 0.5_rk*c/(radius*sine)
+    end if
+    first = plane(:, 1)
+    plane(:, 1) = cosine*first + sine*plane(:, 2)
+    plane(:, 2) = cosine*plane(:, 2) - sine*first
+  end subroutine turn_in_plane
 
   !> All principal values of a deviator, from the one that is farthest from the two others.
   pure function values_around(s, apart) result(values)

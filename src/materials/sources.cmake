@@ -3,6 +3,13 @@ set(sources
   crack_band.f90
   damage_curves.f90
   damage_checks.f90
+  damage_model.f90
+  damage_yield.f90
+  damage_return.f90
+  damage_increment.f90
+  damage_energy.f90
+  damage_point.f90
+  material_damage_plasticity.f90
   material_points.f90
   material_law.f90
   material_elastic.f90

@@ -1,0 +1,72 @@
+!> What a point of plastic-damage concrete dissipates in an increment (theory 11.19).
+module damage_energy
+  use damage_curves, only: curve_value, value_of_curve
+  use damage_increment, only: plastic_state
+  use damage_model, only: concrete_model, placed_curves
+  use damage_yield, only: yield_at, yield_value
+  use kinds, only: rk
+  use tensor6, only: principal_values, second_invariant, trace
+  implicit none
+  private
+  public :: end_of_increment, onset_of_flow, dissipated_work
+
+  !> What an increment led to.
+  type :: end_of_increment
+    real(rk) :: stress(6) = 0.0_rk !< effective [Pa]
+    real(rk) :: flow(6) = 0.0_rk !< increment of plastic strain, engineering shear
+    real(rk) :: damages(2) = 0.0_rk !< d before and after, both with the weight r of the end
+  end type end_of_increment
+
+contains
+
+  !> Effective stress where the straight path of an increment meets the yield surface: between its
+  !> start and its trial state, F taken as linear on the way.
+  pure function onset_of_flow(model, placed, start, old, trial, trial_excess) result(onset)
+    type(concrete_model), intent(in) :: model
+    type(placed_curves), intent(in) :: placed
+    real(rk), intent(in) :: start(6) !< effective stress [Pa]
+    type(plastic_state), intent(in) :: old
+    real(rk), intent(in) :: trial(6), trial_excess !< effective stress and its F [Pa]
+    real(rk) :: onset(6)
+    type(curve_value) :: tension, compression
+    type(yield_value) :: f
+    real(rk) :: principal(3)
+    integer :: rows(2)
+    rows = 1
+    call value_of_curve(model%tension, placed%tension, placed%factor, old%measures(1), rows(1), &
+                        tension)
+    call value_of_curve(model%compression, placed%compression, 1.0_rk, old%measures(2), rows(2), &
+                        compression)
+    principal = principal_values(start)
+    f = yield_at(model, sqrt(3.0_rk*second_invariant(start)), -trace(start)/3.0_rk, principal(1), &
+                 tension%strength, compression%strength)
+    onset = start
+    if (f%value < 0.0_rk) then
+      onset = start - f%value/(trial_excess - f%value)*(trial - start)
+    end if
+  end function onset_of_flow
+
+  !> Work of the plastic strain and energy set free by damage at constant weight of recovery. The
+  !> mean of onset and end stands for the stress on the way; where it would give energy back (a path
+  !> that turns within a large increment) the end does, whose work is not negative (see
+  !> largest_safe_dilation).
+  pure real(rk) function dissipated_work(model, onset, finish) result(work)
+    type(concrete_model), intent(in) :: model
+    real(rk), intent(in) :: onset(6) !< effective stress [Pa]
+    type(end_of_increment), intent(in) :: finish
+    real(rk) :: energy
+    associate (stress => finish%stress, flow => finish%flow, damages => finish%damages)
+      work = 0.5_rk*dot_product(onset + stress, flow)*(1.0_rk - 0.5_rk*(damages(1) + damages(2)))
+      if (work < 0.0_rk) work = (1.0_rk - damages(2))*dot_product(stress, flow)
+      energy = 0.5_rk*(undamaged_energy(model, onset) + undamaged_energy(model, stress))
+      work = work + energy*(damages(2) - damages(1))
+    end associate
+  end function dissipated_work
+
+  !> Elastic energy of an effective stress without damage [J/m3].
+  pure real(rk) function undamaged_energy(model, stress) result(energy)
+    type(concrete_model), intent(in) :: model
+    real(rk), intent(in) :: stress(6)
+    energy = second_invariant(stress)/(2.0_rk*model%shear) + trace(stress)**2/(18.0_rk*model%bulk)
+  end function undamaged_energy
+end module damage_energy

@@ -1,0 +1,126 @@
+!> One increment of strain of plastic-damage concrete without viscosity: plastic strain, both
+!> measures of it and the effective stress.
+module damage_increment
+  use crack_band, only: band_width
+  use damage_model, only: concrete_model, place_curves, placed_curves
+  use damage_return, only: find_flow, flow_by, flow_state, trial_state
+  use kinds, only: rk
+  use tensor6, only: principal_axes, principal_values, second_invariant, trace
+  implicit none
+  private
+  public :: plastic_state, increment_result, integrate_increment, elastic_stress, yield_tolerance
+
+  integer, parameter :: max_parts = 64
+  real(rk), parameter :: yield_tolerance = 1.0e-11_rk !< of F over the strength in compression
+
+  !> What concrete without viscosity remembers.
+  type :: plastic_state
+    real(rk) :: strain(6) = 0.0_rk !< plastic, engineering shear
+    real(rk) :: measures(2) = 0.0_rk !< kappa_t, kappa_c
+    real(rk) :: width = 0.0_rk !< of the crack band [m]; 0 before the first crack
+  end type plastic_state
+
+  !> The end of an increment, and for the tangent how it got there.
+  type :: increment_result
+    type(plastic_state) :: state
+    real(rk) :: stress(6) = 0.0_rk !< effective [Pa]
+    logical :: has_yielded = .false.
+    logical :: has_converged = .true.
+    integer :: num_parts = 1 !< the increment was cut into
+    real(rk) :: trial_excess = 0.0_rk !< F of the trial state [Pa]
+    real(rk) :: shape(6) = 0.0_rk !< S_tr/q_tr
+    real(rk) :: axes(3, 3) = 0.0_rk !< principal directions, if asked for
+    type(trial_state) :: trial
+    type(flow_state) :: flow
+  end type increment_result
+
+contains
+
+  !> D strain.
+  pure function elastic_stress(model, strain) result(stress)
+    type(concrete_model), intent(in) :: model
+    real(rk), intent(in) :: strain(6)
+    real(rk) :: stress(6)
+    stress(1:3) = 2.0_rk*model%shear*strain(1:3) &
+                  + (model%bulk - 2.0_rk/3.0_rk*model%shear)*(strain(1) + strain(2) + strain(3))
+    stress(4:6) = model%shear*strain(4:6)
+  end function elastic_stress
+
+  !> The increment in one piece; where its return map fails, in 2, 4, ... equal parts of the strain.
+  !> Uniform flow and curves need no parts (see damage_return): they are the way out for states that
+  !> roundoff spoils.
+  pure subroutine integrate_increment(model, before, strain, edges, old, placed, end_state)
+    type(concrete_model), intent(in) :: model
+    real(rk), intent(in) :: before(6), strain(6) !< at both ends of the increment
+    real(rk), intent(in) :: edges(3, 3) !< of the element, columns [m]
+    type(plastic_state), intent(in) :: old
+    type(placed_curves), intent(inout) :: placed
+    type(increment_result), intent(out) :: end_state
+    type(plastic_state) :: start
+    real(rk) :: target_strain(6)
+    integer :: num_parts, part
+    num_parts = 1
+    do while (num_parts <= max_parts)
+      start = old
+      do part = 1, num_parts
+        target_strain = before + (strain - before)*part/num_parts
+        call integrate_part(model, target_strain, edges, start, placed, end_state)
+        if (.not. end_state%has_converged) exit
+        start = end_state%state
+      end do
+      end_state%num_parts = num_parts
+      if (end_state%has_converged) return
+      num_parts = 2*num_parts
+    end do
+  end subroutine integrate_increment
+
+  !> A part of an increment.
+  pure subroutine integrate_part(model, strain, edges, old, placed, end_state)
+    type(concrete_model), intent(in) :: model
+    real(rk), intent(in) :: strain(6) !< at the end of the part
+    real(rk), intent(in) :: edges(3, 3)
+    type(plastic_state), intent(in) :: old
+    type(placed_curves), intent(inout) :: placed
+    type(increment_result), intent(out) :: end_state
+    real(rk) :: principal(3), width
+    associate (trial => end_state%trial, flow => end_state%flow)
+      end_state%state = old
+      end_state%stress = elastic_stress(model, strain - old%strain)
+      trial%p = -trace(end_state%stress)/3.0_rk
+      trial%q = sqrt(3.0_rk*second_invariant(end_state%stress))
+      trial%measures = old%measures
+      call principal_axes(end_state%stress, principal, end_state%axes)
+      if (trial%q > 0.0_rk) then
+        end_state%shape = end_state%stress/trial%q
+        end_state%shape(1:3) = (end_state%stress(1:3) + trial%p)/trial%q
+        trial%shape = (principal + trial%p)/trial%q
+      end if
+      width = old%width
+      if (width <= 0.0_rk) width = band_width(edges, end_state%axes(:, 1))
+      call place_curves(model, width, placed)
+      call flow_by(model, placed, trial, 0.0_rk, flow)
+      end_state%trial_excess = flow%f%value
+      end_state%has_yielded = flow%f%value > yield_tolerance*flow%compression%strength
+      if (.not. end_state%has_yielded) return
+      call find_flow(model, placed, trial, flow, end_state%has_converged)
+      call take_flow(model, width, end_state)
+    end associate
+  end subroutine integrate_part
+
+  !> Adds the flow to the plastic strain.
+  pure subroutine take_flow(model, width, end_state)
+    type(concrete_model), intent(in) :: model
+    real(rk), intent(in) :: width
+    type(increment_result), intent(inout) :: end_state
+    real(rk) :: direction(6)
+    associate (flow => end_state%flow, state => end_state%state)
+      direction(1:3) = 1.5_rk*flow%q/flow%radius*end_state%shape(1:3) + model%tan_dilation/3.0_rk
+      direction(4:6) = 3.0_rk*flow%q/flow%radius*end_state%shape(4:6)
+      state%strain = state%strain + flow%x*direction
+      state%measures = flow%measures
+      if (state%measures(1) > 0.0_rk) state%width = width
+      end_state%stress = flow%q*end_state%shape
+      end_state%stress(1:3) = end_state%stress(1:3) - flow%p
+    end associate
+  end subroutine take_flow
+end module damage_increment

@@ -1,0 +1,104 @@
+!> What the kernel of plastic-damage concrete works with, made of the deck's constants.
+module damage_model
+  use damage_constants, only: concrete_constants
+  use damage_curves, only: make_compression_curve, make_tension_curve, place_knots, strength_curve
+  use kinds, only: rk
+  implicit none
+  private
+  public :: concrete_model, placed_curves, make_concrete_model, place_curves, stiffness_of
+  public :: largest_safe_dilation
+
+  real(rk), parameter :: degree = acos(-1.0_rk)/180.0_rk
+
+  !> Constants of Eqs 14-25; theory 11.
+  type :: concrete_model
+    real(rk) :: young = 0.0_rk, poisson = 0.0_rk !< E_0 [Pa], nu
+    real(rk) :: shear = 0.0_rk, bulk = 0.0_rk !< mu, K [Pa]
+    real(rk) :: alpha = 0.0_rk, gamma = 0.0_rk !< of Eq 19
+    real(rk) :: tan_dilation = 0.0_rk !< tan psi of Eq 25
+    real(rk) :: rounding = 0.0_rk !< a = xi sigma_10 tan psi of Eq 25 [Pa]
+    real(rk) :: tension_recovery = 0.0_rk, compression_recovery = 1.0_rk !< w_t, w_c of Eq 16
+    logical :: recovers_by_sign = .false. !< r of Eq 17
+    real(rk) :: viscosity = 0.0_rk !< [s]
+    logical :: by_opening = .false. !< the curve in tension needs the width of the crack band
+    type(strength_curve) :: tension, compression
+  end type concrete_model
+
+  !> Plastic strains of the knots of both curves for one width of the crack band: room that a caller
+  !> keeps from point to point.
+  type :: placed_curves
+    real(rk) :: width = -1.0_rk !< of the band [m]; negative: not placed yet
+    real(rk) :: factor = 1.0_rk !< on the strength in tension, below 1 in a band that is too wide
+    real(rk), allocatable :: tension(:), compression(:)
+  end type placed_curves
+
+contains
+
+  !> The model of constants whose tables are free of faults.
+  pure subroutine make_concrete_model(constants, model)
+    type(concrete_constants), intent(in) :: constants
+    type(concrete_model), intent(out) :: model
+    real(rk) :: b, k
+    b = constants%biaxial_ratio
+    k = constants%meridian_ratio
+    model%young = constants%young
+    model%poisson = constants%poisson
+    model%shear = constants%young/(2.0_rk*(1.0_rk + constants%poisson))
+    model%bulk = constants%young/(3.0_rk*(1.0_rk - 2.0_rk*constants%poisson))
+    model%alpha = (b - 1.0_rk)/(2.0_rk*b - 1.0_rk)
+    model%gamma = 3.0_rk*(1.0_rk - k)/(2.0_rk*k - 1.0_rk)
+    model%tan_dilation = tan(constants%dilation*degree)
+    model%rounding = constants%offset*constants%tension(1, 1)*model%tan_dilation
+    model%tension_recovery = constants%tension_recovery
+    model%compression_recovery = constants%compression_recovery
+    model%recovers_by_sign = constants%recovers_by_sign
+    model%viscosity = constants%viscosity
+    model%by_opening = constants%stiffening /= 'STRAIN'
+    call make_tension_curve(constants, model%tension)
+    call make_compression_curve(constants, model%compression)
+  end subroutine make_concrete_model
+
+  !> Places the curves for a width of the crack band, unless they are there already.
+  pure subroutine place_curves(model, width, placed)
+    type(concrete_model), intent(in) :: model
+    real(rk), intent(in) :: width !< [m]; any positive number for tables over strain
+    type(placed_curves), intent(inout) :: placed
+    real(rk) :: used, whole
+    used = 1.0_rk
+    if (model%by_opening) used = width
+    if (abs(placed%width - used) <= 0.0_rk) return
+    if (.not. allocated(placed%tension)) then
+      allocate (placed%tension(size(model%tension%abscissa)))
+      allocate (placed%compression(size(model%compression%abscissa)))
+      call place_knots(model%compression, 1.0_rk, placed%compression, whole)
+    end if
+    call place_knots(model%tension, used, placed%tension, placed%factor)
+    placed%width = used
+  end subroutine place_curves
+
+  !> D, the undamaged stiffness.
+  pure subroutine stiffness_of(model, d)
+    type(concrete_model), intent(in) :: model
+    real(rk), intent(out) :: d(6, 6) !< [Pa]
+    integer :: i
+    d = 0.0_rk
+    d(1:3, 1:3) = model%bulk - 2.0_rk/3.0_rk*model%shear
+    do i = 1, 3
+      d(i, i) = d(i, i) + 2.0_rk*model%shear
+      d(i + 3, i + 3) = model%shear
+    end do
+  end subroutine stiffness_of
+
+  !> Largest tan psi for which flow never gives energy back: the slope q/p of the yield surface
+  !> under high pressure where it is flattest, on the tensile meridian (s_1 = -p + 2 q/3 in Eq 19),
+  !> and 3/2, the least q/p of states with a principal tension. The work of flow is
+  !> q^2/sqrt(a^2 + q^2) - p tan psi, hence not negative while q is large against a.
+  pure real(rk) function largest_safe_dilation(biaxial_ratio, meridian_ratio) result(tangent)
+    real(rk), intent(in) :: biaxial_ratio !< f_b0/f_c0
+    real(rk), intent(in) :: meridian_ratio !< K_c
+    real(rk) :: alpha, gamma
+    alpha = (biaxial_ratio - 1.0_rk)/(2.0_rk*biaxial_ratio - 1.0_rk)
+    gamma = 3.0_rk*(1.0_rk - meridian_ratio)/(2.0_rk*meridian_ratio - 1.0_rk)
+    tangent = min(1.5_rk, (3.0_rk*alpha + gamma)/(1.0_rk + 2.0_rk/3.0_rk*gamma))
+  end function largest_safe_dilation
+end module damage_model

@@ -1,0 +1,195 @@
+!> Return map of plastic-damage concrete: one scalar equation for the multiplier x of Eq 24.
+!>
+!> The flow of Eq 25 is coaxial and its deviator parallel to S, so with x given everything at the
+!> end of the increment follows from the trial state (theory 11.13): q from
+!>     q (1 + 3 mu x/sqrt(a^2 + q^2)) = q_tr,
+!> S = S_tr q/q_tr, p = p_tr + K tan(psi) x, the weight r, both measures of plastic strain, both
+!> strengths. F(x) = 0 is what is left. F(0) > 0, and F < 0 for large x whenever tan(psi) > 0 and
+!> a > 0: p grows without limit and q vanishes. So there is a root, apex and hydrostatic tension
+!> included. The smallest is wanted: the path from 0 to it does not leave the softening branch.
+module damage_return
+  use damage_curves, only: curve_value, value_of_curve
+  use damage_model, only: concrete_model, placed_curves
+  use damage_yield, only: tension_share, yield_at, yield_value
+  use kinds, only: rk
+  implicit none
+  private
+  public :: trial_state, flow_state, flow_by, find_flow
+
+  real(rk), parameter :: tolerance = 1.0e-12_rk !< |F| over the strength in compression
+  real(rk), parameter :: acceptable = 1.0e-9_rk !< the same, where roundoff forbids more
+  integer, parameter :: max_steps = 400 !< a table of 100 rows, and bisection to roundoff
+  integer, parameter :: max_inner = 60
+  real(rk), parameter :: overshoot = 1.0e-6_rk !< past a knot, to be on the next branch
+
+  !> The state that elasticity alone would lead to.
+  type :: trial_state
+    real(rk) :: q = 0.0_rk, p = 0.0_rk !< [Pa]
+    real(rk) :: shape(3) = 0.0_rk !< principal deviator over q, largest first; 0 where q is 0
+    real(rk) :: measures(2) = 0.0_rk !< kappa_t, kappa_c before the increment
+  end type trial_state
+
+  !> The state after flow by x, with derivatives by x (named `_rate`).
+  type :: flow_state
+    real(rk) :: x = 0.0_rk
+    real(rk) :: q = 0.0_rk, q_rate = 0.0_rk, p = 0.0_rk !< p_rate is K tan psi
+    real(rk) :: radius = 0.0_rk !< sqrt(a^2 + q^2)
+    real(rk) :: stiffening = 1.0_rk !< dq_tr/dq at constant x
+    real(rk) :: s(3) = 0.0_rk, s_rate(3) = 0.0_rk !< principal effective stresses
+    real(rk) :: share = 0.0_rk, share_by(3) = 0.0_rk !< r, dr/ds_i
+    real(rk) :: largest_flow = 0.0_rk, smallest_flow = 0.0_rk !< <n_1>, <-n_3>
+    real(rk) :: measures(2) = 0.0_rk, measure_rates(2) = 0.0_rk !< kappa_t, kappa_c
+    integer :: rows(2) = 1 !< of the curves
+    type(curve_value) :: tension, compression
+    type(yield_value) :: f
+    real(rk) :: f_rate = 0.0_rk
+  end type flow_state
+
+contains
+
+  !> The state after flow by x.
+  pure subroutine flow_by(model, placed, trial, x, flow)
+    type(concrete_model), intent(in) :: model
+    type(placed_curves), intent(in) :: placed
+    type(trial_state), intent(in) :: trial
+    real(rk), intent(in) :: x !< multiplier, >= 0
+    type(flow_state), intent(inout) :: flow !< comes with guesses of its rows
+    real(rk) :: slope, direction, direction_rate, share_rate, smallest, smallest_rate
+    flow%x = x
+    call reduce_deviator(model, trial%q, x, flow)
+    slope = 1.5_rk/flow%radius
+    flow%p = trial%p + model%bulk*model%tan_dilation*x
+    flow%s = flow%q*trial%shape - flow%p
+    flow%s_rate = flow%q_rate*trial%shape - model%bulk*model%tan_dilation
+    call tension_share(flow%s, flow%share, flow%share_by)
+    share_rate = dot_product(flow%share_by, flow%s_rate)
+    ! (q/sqrt(a^2 + q^2))' = a^2 q'/sqrt(a^2 + q^2)^3
+    direction = slope*flow%q
+    direction_rate = slope*flow%q_rate*(model%rounding/flow%radius)**2
+    flow%largest_flow = direction*trial%shape(1) + model%tan_dilation/3.0_rk
+    smallest = direction*trial%shape(3) + model%tan_dilation/3.0_rk
+    smallest_rate = merge(-direction_rate*trial%shape(3), 0.0_rk, smallest < 0.0_rk)
+    flow%smallest_flow = max(0.0_rk, -smallest)
+    flow%measures = trial%measures + x*[flow%share*flow%largest_flow, &
+                                        (1.0_rk - flow%share)*flow%smallest_flow]
+    flow%measure_rates = [flow%share*(flow%largest_flow + x*direction_rate*trial%shape(1)), &
+                          (1.0_rk - flow%share)*(flow%smallest_flow + x*smallest_rate)] &
+                         + x*share_rate*[flow%largest_flow, -flow%smallest_flow]
+    call judge(model, placed, flow)
+  end subroutine flow_by
+
+  !> q after flow by x, and its derivative. The left side of the equation for q is increasing and
+  !> concave, so Newton's iteration climbs to the root from any value below it.
+  pure subroutine reduce_deviator(model, q_trial, x, flow)
+    type(concrete_model), intent(in) :: model
+    real(rk), intent(in) :: q_trial, x
+    type(flow_state), intent(inout) :: flow !< q, q_rate, radius, stiffening come out
+    real(rk) :: reach, square, q, excess
+    integer :: i
+    reach = 3.0_rk*model%shear*x
+    square = model%rounding**2
+    q = max(q_trial - reach, q_trial*model%rounding/(model%rounding + reach))
+    do i = 1, max_inner
+      flow%radius = sqrt(square + q**2)
+      flow%stiffening = 1.0_rk + reach*square/flow%radius**3
+      excess = (q_trial - q*(1.0_rk + reach/flow%radius))/flow%stiffening
+      q = q + excess
+      if (abs(excess) <= 1.0e-15_rk*q) exit
+    end do
+    flow%q = q
+    flow%q_rate = -3.0_rk*model%shear*q/flow%radius/flow%stiffening
+  end subroutine reduce_deviator
+
+  !> F and its derivative by x.
+  pure subroutine judge(model, placed, flow)
+    type(concrete_model), intent(in) :: model
+    type(placed_curves), intent(in) :: placed
+    type(flow_state), intent(inout) :: flow
+    call value_of_curve(model%tension, placed%tension, placed%factor, flow%measures(1), &
+                        flow%rows(1), flow%tension)
+    call value_of_curve(model%compression, placed%compression, 1.0_rk, flow%measures(2), &
+                        flow%rows(2), flow%compression)
+    flow%f = yield_at(model, flow%q, flow%p, flow%s(1), flow%tension%strength, &
+                      flow%compression%strength)
+    flow%f_rate = flow%f%by_q*flow%q_rate + flow%f%by_p*model%bulk*model%tan_dilation &
+                  + flow%f%by_largest*flow%s_rate(1) &
+                  + flow%f%by_tension*flow%tension%strength_slope*flow%measure_rates(1) &
+                  + flow%f%by_compression*flow%compression%strength_slope*flow%measure_rates(2)
+  end subroutine judge
+
+  !> The flow that ends on the yield surface.
+  !>
+  !> From x = 0 upward by Newton's steps, never further than the next knot of a curve, until F turns
+  !> negative; from then on in the bracket, by Newton or, where that is slow, bisection.
+  pure subroutine find_flow(model, placed, trial, flow, has_converged)
+    type(concrete_model), intent(in) :: model
+    type(placed_curves), intent(in) :: placed
+    type(trial_state), intent(in) :: trial
+    type(flow_state), intent(inout) :: flow !< comes as flow_by(0)
+    logical, intent(out) :: has_converged
+    real(rk) :: low, high, x, f_before
+    integer :: i
+    low = 0.0_rk
+    high = -1.0_rk
+    f_before = huge(x)
+    do i = 1, max_steps
+      has_converged = abs(flow%f%value) <= residual_limit(trial, flow)
+      if (has_converged) return
+      if (flow%f%value > 0.0_rk) then
+        low = flow%x
+      else
+        high = flow%x
+      end if
+      if (high < 0.0_rk) then
+        x = next_step(model, placed, flow)
+      else
+        x = low
+        if (flow%f_rate < 0.0_rk .and. abs(flow%f%value) < 0.5_rk*f_before) then
+          x = flow%x - flow%f%value/flow%f_rate
+        end if
+        if (x <= low .or. x >= high) x = 0.5_rk*(low + high)
+        if (x <= low .or. x >= high) exit
+      end if
+      f_before = abs(flow%f%value)
+      call flow_by(model, placed, trial, x, flow)
+    end do
+    has_converged = abs(flow%f%value) <= acceptable*flow%compression%strength
+  end subroutine find_flow
+
+  !> What |F| may be: a share of the strength in compression, or what roundoff of the trial state
+  !> makes of it, but never more than what is acceptable.
+  pure real(rk) function residual_limit(trial, flow) result(limit)
+    type(trial_state), intent(in) :: trial
+    type(flow_state), intent(in) :: flow
+    limit = 4.0_rk*epsilon(limit)*(1.0_rk + flow%f%by_largest)*(trial%q + abs(trial%p))
+    limit = min(max(limit, tolerance*flow%compression%strength), &
+                acceptable*flow%compression%strength)
+  end function residual_limit
+
+  !> The next multiplier on the way to a first negative F.
+  pure real(rk) function next_step(model, placed, flow) result(x)
+    type(concrete_model), intent(in) :: model
+    type(placed_curves), intent(in) :: placed
+    type(flow_state), intent(in) :: flow !< with F > 0
+    real(rk) :: knot
+    x = huge(x)
+    if (flow%f_rate < 0.0_rk) x = flow%x - flow%f%value/flow%f_rate
+    knot = min(step_to_knot(placed%tension, flow, 1), step_to_knot(placed%compression, flow, 2))
+    x = min(x, flow%x + knot)
+    if (x < huge(x)) return
+    x = 2.0_rk*flow%x + flow%f%value/(3.0_rk*model%shear + model%bulk*model%tan_dilation)
+  end function next_step
+
+  !> How much further the multiplier takes a measure to its next knot; huge without one.
+  pure real(rk) function step_to_knot(knots, flow, measure) result(step)
+    real(rk), intent(in) :: knots(:)
+    type(flow_state), intent(in) :: flow
+    integer, intent(in) :: measure !< 1 tension, 2 compression
+    real(rk) :: gap
+    step = huge(step)
+    if (flow%rows(measure) == size(knots)) return
+    gap = knots(flow%rows(measure) + 1) - flow%measures(measure)
+    gap = gap + overshoot*(knots(flow%rows(measure) + 1) - knots(flow%rows(measure)))
+    if (flow%measure_rates(measure) > gap*tiny(gap)**0.25_rk) step = gap/flow%measure_rates(measure)
+  end function step_to_knot
+end module damage_return

@@ -1,0 +1,151 @@
+!> Plastic-damage concrete (paper, section 3; theory 11) as a material of the deck.
+!>
+!> Internal variables of a point:
+!>
+!> | number | is |
+!> |---|---|
+!> | 1-6 | plastic strain 11 22 33 12 13 23, engineering shear |
+!> | 7, 8 | kappa_t, kappa_c: measures of cracking and crushing |
+!> | 9, 10 | d_t, d_c |
+!> | 11 | width of the crack band [m], 0 before the first crack |
+!> | 12-17 | with viscosity only: plastic strain as it would be without |
+module material_damage_plasticity
+  use damage_checks, only: find_table_faults, table_fault
+  use damage_constants, only: concrete_constants
+  use damage_model, only: concrete_model, make_concrete_model, placed_curves, stiffness_of
+  use damage_point, only: point_answer, point_history, point_motion, update_point
+  use errors, only: deck_is_wrong, error_type, raise
+  use kinds, only: rk
+  use material_law, only: stress_law
+  use material_points, only: consistent_tangent, crushing_energy, fracture_energy, no_tangent, &
+                             point_set, point_state, secant_tangent, stored_energy, &
+                             time_increment, update_report
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: concrete_law, make_concrete_law, num_state_of
+
+  !> Where the internal variables stand.
+  integer, parameter :: last_strain = 6, last_measure = 8, last_damage = 10, width_row = 11
+  integer, parameter :: last_backbone = 17
+
+  type, extends(stress_law) :: concrete_law
+    type(concrete_model) :: model
+  contains
+    procedure :: elastic_stiffness
+    procedure :: update
+    procedure :: read_field
+  end type concrete_law
+
+contains
+
+  !> The law of constants; an error where their tables are at fault.
+  subroutine make_concrete_law(constants, law, error)
+    type(concrete_constants), intent(in) :: constants
+    type(concrete_law), intent(out) :: law
+    type(error_type), allocatable, intent(out) :: error
+    type(table_fault), allocatable :: faults(:)
+    call find_table_faults(constants, faults)
+    if (size(faults) > 0) then
+      call raise(error, '*'//faults(1)%keyword//', row '//as_text(faults(1)%row)//': '// &
+                 faults(1)%problem//'; expected '//faults(1)%expected, deck_is_wrong)
+      return
+    end if
+    call make_concrete_model(constants, law%model)
+    law%is_nonlinear = .true.
+    law%num_state = num_state_of(constants%viscosity)
+  end subroutine make_concrete_law
+
+  !> Internal variables of a point.
+  pure integer function num_state_of(viscosity)
+    real(rk), intent(in) :: viscosity !< [s]
+    num_state_of = merge(last_backbone, width_row, viscosity > 0.0_rk)
+  end function num_state_of
+
+  !> Undamaged.
+  pure subroutine elastic_stiffness(self, d)
+    class(concrete_law), intent(in) :: self
+    real(rk), intent(out) :: d(6, 6)
+    call stiffness_of(self%model, d)
+  end subroutine elastic_stiffness
+
+  !> The points of a block, one after the other.
+  subroutine update(self, points, time, old, new, tangent, report)
+    class(concrete_law), intent(in) :: self
+    type(point_set), intent(in) :: points
+    type(time_increment), intent(in) :: time
+    type(point_state), intent(in) :: old
+    type(point_state), intent(inout) :: new
+    real(rk), intent(inout) :: tangent(:, :, :)
+    type(update_report), intent(out) :: report
+    type(point_motion) :: motion
+    type(point_history) :: before, after
+    type(point_answer) :: answer
+    type(placed_curves) :: placed
+    integer :: i
+    motion%time = time%size
+    motion%wants_tangent = time%tangent /= no_tangent
+    motion%is_secant = time%tangent == secant_tangent
+    do i = 1, points%num_points
+      motion%before = old%strain(:, i)
+      motion%strain = new%strain(:, i)
+      motion%edges = points%edges(:, :, i)
+      call unpack_history(old%internal(:, i), before)
+      call update_point(self%model, motion, before, placed, after, answer)
+      call pack_history(after, new%internal(:, i))
+      new%stress(:, i) = answer%stress
+      new%is_elastic(i) = answer%is_elastic
+      new%energy(stored_energy, i) = answer%stored
+      new%energy(fracture_energy, i) = old%energy(fracture_energy, i) + answer%fracture
+      new%energy(crushing_energy, i) = old%energy(crushing_energy, i) + answer%crushing
+      if (motion%wants_tangent) tangent(:, :, i) = answer%tangent
+      if (.not. answer%has_converged .and. report%failed_point == 0) then
+        report%failed_point = i
+        report%message = 'the return map of concrete did not converge'
+      end if
+    end do
+  end subroutine update
+
+  !> The history of a point out of its internal variables.
+  pure subroutine unpack_history(internal, history)
+    real(rk), intent(in) :: internal(:)
+    type(point_history), intent(out) :: history
+    history%plastic_strain = internal(:last_strain)
+    history%backbone%measures = internal(last_strain + 1:last_measure)
+    history%damage = internal(last_measure + 1:last_damage)
+    history%backbone%width = internal(width_row)
+    history%backbone%strain = history%plastic_strain
+    if (size(internal) == last_backbone) history%backbone%strain = internal(width_row + 1:)
+  end subroutine unpack_history
+
+  !> And back.
+  pure subroutine pack_history(history, internal)
+    type(point_history), intent(in) :: history
+    real(rk), intent(inout) :: internal(:)
+    internal(:last_strain) = history%plastic_strain
+    internal(last_strain + 1:last_measure) = history%backbone%measures
+    internal(last_measure + 1:last_damage) = history%damage
+    internal(width_row) = history%backbone%width
+    if (size(internal) == last_backbone) internal(width_row + 1:) = history%backbone%strain
+  end subroutine pack_history
+
+  !> PE, DAMAGET, DAMAGEC, SDV.
+  subroutine read_field(self, name, state, values)
+    class(concrete_law), intent(in) :: self
+    character(*), intent(in) :: name
+    type(point_state), intent(in) :: state
+    real(rk), allocatable, intent(out) :: values(:, :)
+    select case (name)
+    case ('PE')
+      values = state%internal(:last_strain, :)
+    case ('DAMAGET')
+      values = state%internal(last_measure + 1:last_measure + 1, :)
+    case ('DAMAGEC')
+      values = state%internal(last_damage:last_damage, :)
+    case ('SDV')
+      values = state%internal(:self%num_state, :)
+    case default
+      return
+    end select
+  end subroutine read_field
+end module material_damage_plasticity
