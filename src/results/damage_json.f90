@@ -31,7 +31,7 @@ contains
     call json%put_integer(record%inelastic_elements, 'elements')
     call json%close_object()
     call json%open_object('dissipated')
-    call json%put_real(record%fracture, 'fracture')
+    call json%put_real(record%cracking, 'cracking')
     call json%put_real(record%crushing, 'crushing')
     call json%close_object()
     call json%close_object()

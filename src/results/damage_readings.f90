@@ -20,7 +20,7 @@ module damage_readings
 
   !> Names of what `damage_row` gives.
   character(*), parameter :: damage_columns = 'DAMAGET,DAMAGEC,volume_10,volume_50,volume_90,'// &
-                             'inelastic_volume,fracture,crushing'
+                             'inelastic_volume,cracking,crushing'
   integer, parameter :: num_columns = 8
 
   !> The largest damage since the start, and the point that has it.
@@ -43,7 +43,7 @@ module damage_readings
     integer :: elements(size(levels)) = 0 !< with a point above each level
     real(rk) :: inelastic_volume = 0.0_rk !< that has left elasticity [m3]
     integer :: inelastic_elements = 0 !< with a point that has
-    real(rk) :: fracture = 0.0_rk, crushing = 0.0_rk !< energy dissipated in solids so far [J]
+    real(rk) :: cracking = 0.0_rk, crushing = 0.0_rk !< energy dissipated in solids so far [J]
   end type damage_record
 
 contains
@@ -94,7 +94,7 @@ contains
     record%elements = 0
     record%inelastic_volume = 0.0_rk
     record%inelastic_elements = 0
-    record%fracture = 0.0_rk
+    record%cracking = 0.0_rk
     record%crushing = 0.0_rk
     do i = 1, size(scene%inelastic)
       if (all(now%points(i)%is_elastic)) cycle
@@ -138,7 +138,7 @@ contains
         record%inelastic_elements = record%inelastic_elements + 1
         record%inelastic_volume = record%inelastic_volume + &
                                   sum(weight, mask=.not. points%is_elastic(first:last))
-        record%fracture = record%fracture + sum(weight*points%energy(fracture_energy, first:last))
+        record%cracking = record%cracking + sum(weight*points%energy(fracture_energy, first:last))
         record%crushing = record%crushing + sum(weight*points%energy(crushing_energy, first:last))
         if (.not. allocated(tension)) cycle
         do level = 1, size(levels)
@@ -156,7 +156,7 @@ contains
     type(damage_record), intent(in) :: record
     real(rk) :: row(num_columns)
     row = [record%tension%at%value, record%compression%at%value, record%volume, &
-           record%inelastic_volume, record%fracture, record%crushing]
+           record%inelastic_volume, record%cracking, record%crushing]
   end function damage_row
 
   !> For *ENVELOPE: the largest damage anywhere and on each face, with the place of the point.

@@ -133,7 +133,7 @@ def test_damage_in_the_summary(results: ResultsFolder):
     ]
     assert damage["inelastic"] == {"volume": pytest.approx(12), "elements": 2}
     assert damage["dissipated"] == {
-        "fracture": pytest.approx(100 * 6), "crushing": pytest.approx(50 * 6),
+        "cracking": pytest.approx(100 * 6), "crushing": pytest.approx(50 * 6),
     }  # fmt: skip
 
 
@@ -151,7 +151,7 @@ def test_growth_of_damage(folder: Path, results: ResultsFolder):
     assert table["DAMAGET"] == pytest.approx([0, 0.8, 0.95], rel=PRINTED)
     assert table["DAMAGEC"] == pytest.approx([0, 0, 0.25], rel=PRINTED)
     assert table["volume_50"] == pytest.approx([0, 3 * 0.75, 3 * 0.75 + 6])
-    assert table["fracture"] == pytest.approx([0, 0, 600])
+    assert table["cracking"] == pytest.approx([0, 0, 600])
     with h5py.File(folder / f"{JOB}.h5") as file:
         names = file["history/damage"].attrs["columns"].decode().split(",")
         for column, name in enumerate(names):

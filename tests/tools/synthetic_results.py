@@ -13,7 +13,7 @@ from keyway_tools.results_reader import ENVELOPE_NAMES
 ENERGIES = "step,increment,time,external,kinetic,strain,damping,friction,fracture,numerical,error"
 DAMAGES = (
     "step,increment,time,DAMAGET,DAMAGEC,volume_10,volume_50,volume_90,inelastic_volume,"
-    "fracture,crushing"
+    "cracking,crushing"
 )
 
 

@@ -116,7 +116,7 @@ def plot_damage_growth(results: Results, path: Path) -> Path | None:
         )
     axes[0].set_title("Growth of damage in tension")
     axes[0].set_ylabel("volume [m³]")
-    for name, colour in zip(("fracture", "crushing"), COLOURS, strict=False):
+    for name, colour in zip(("cracking", "crushing"), COLOURS, strict=False):
         axes[1].plot(table["time"], 1.0e-3 * table[name], color=colour, label=name)
     axes[1].set_ylabel("dissipated [kJ]")
     axes[1].set_xlabel("time [s]")
