@@ -39,6 +39,7 @@ contains
     smallest = minval(least)
     largest = maxval(most)
     call find_longest_band(given%constants, longest, limit)
+    if (limit%row == 0) return
     if (.not. any(most > longest*(1.0_rk + rounding))) return
     elements = model%scene%mesh%element_id(elements)
     if (given%constants%lowers_strength) then

@@ -5,7 +5,9 @@ module finish_concrete
   use damage_checks, only: compression_damage_table, find_table_faults, hardening_table, &
                            stiffening_table, table_fault, tension_damage_table
   use diagnostics, only: diagnostic_list
+  use errors, only: error_type
   use kinds, only: rk
+  use material_damage_plasticity, only: concrete_law, make_concrete_law
   use model_draft, only: concrete_request, draft, origin
   implicit none
   private
@@ -28,6 +30,8 @@ contains
     integer, intent(in) :: i !< position in model%concretes
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
+    type(concrete_law) :: law
+    type(error_type), allocatable :: error
     real(rk) :: smallest, largest
     integer :: num_before
     associate (given => model%concretes(i), &
@@ -39,7 +43,10 @@ contains
       if (faults%num_errors > num_before .or. .not. given%is_right) return
       call check_tables(given, model, faults)
       if (faults%num_errors > num_before) return
-      call model%cards(given%plasticity%card)%fault(faults, 'not available yet')
+      call make_concrete_law(given%constants, law, error)
+      if (allocated(error)) call model%cards(given%plasticity%card)%fault(faults, error%message)
+      if (allocated(now%law)) deallocate (now%law)
+      allocate (now%law, source=law)
       call check_widths(given, model, faults, smallest, largest)
       call warn_of_constants(given, model, faults)
       now%remark = describe_concrete(given%constants, smallest, largest)
