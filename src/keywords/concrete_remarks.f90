@@ -2,6 +2,7 @@
 module concrete_remarks
   use damage_checks, only: find_longest_band, table_fault
   use damage_constants, only: concrete_constants
+  use damage_model, only: concrete_model, largest_safe_dilation, make_concrete_model
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
   use model_draft, only: concrete_request, draft
@@ -23,26 +24,24 @@ contains
     call warn_of_steep_strain(given, model, faults)
   end subroutine warn_of_constants
 
-  !> Far out in compression s : d eps_p has the sign of q - p tan psi, and on the tensile meridian
-  !> of Eq 19 (s_1 = 2/3 q - p) q (1 + 2/3 gamma) = (3 alpha + gamma) p + (1 - alpha) c.
+  !> On the tensile meridian of Eq 19 (s_1 = 2/3 q - p) q (1 + 2/3 gamma) = (3 alpha + gamma) p +
+  !> (1 - alpha) c: where its slope is less than tan psi, q - p tan psi and with it the work of flow
+  !> are negative from some pressure on.
   subroutine warn_of_dilation(given, model, faults)
     type(concrete_request), intent(in) :: given
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    real(rk) :: alpha, gamma, slope, tangent, pressure
-    associate (c => given%constants)
-      alpha = (c%biaxial_ratio - 1.0_rk)/(2.0_rk*c%biaxial_ratio - 1.0_rk)
-      gamma = 3.0_rk*(1.0_rk - c%meridian_ratio)/(2.0_rk*c%meridian_ratio - 1.0_rk)
-      slope = (3.0_rk*alpha + gamma)/(1.0_rk + 2.0_rk*gamma/3.0_rk)
-      tangent = tan(c%dilation*degree)
-      if (tangent <= slope) return
-      pressure = (1.0_rk - alpha)*maxval(c%compression(1, :))/(1.0_rk + 2.0_rk*gamma/3.0_rk) &
-                 /(tangent - slope)
-      call model%cards(given%plasticity%card)%warn( &
-        faults, 'plastic flow would create energy under a mean pressure above '// &
-        as_text(pressure)//' Pa', 'a dilation of at most '// &
-        as_text(atan(slope)/degree)//' deg with these fb0/fc0 and Kc')
-    end associate
+    type(concrete_model) :: kernel
+    real(rk) :: slope, pressure
+    call make_concrete_model(given%constants, kernel)
+    slope = largest_safe_dilation(given%constants%biaxial_ratio, given%constants%meridian_ratio)
+    if (kernel%tan_dilation <= slope) return
+    pressure = (1.0_rk - kernel%alpha)*maxval(given%constants%compression(1, :)) &
+               /(1.0_rk + 2.0_rk*kernel%gamma/3.0_rk)/(kernel%tan_dilation - slope)
+    call model%cards(given%plasticity%card)%warn( &
+      faults, 'plastic flow would create energy under a mean pressure above '// &
+      as_text(pressure)//' Pa', 'a dilation of at most '//as_text(atan(slope)/degree)// &
+      ' deg with these fb0/fc0 and Kc')
   end subroutine warn_of_dilation
 
   !> A table over strain whose stress falls faster than the strain grows: a test would snap back.
