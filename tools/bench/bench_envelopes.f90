@@ -1,0 +1,138 @@
+!> Time of the envelopes S1 and DAMAGET of an increment over one solve, for shares of cracked
+!> elements: bench_envelopes ACROSS ALONG OVER BLOCKS. The points carry what the bench sets.
+program bench_envelopes
+  use kinds, only: rk, long
+  use errors, only: error_type
+  use problem_definition, only: problem
+  use step_plan, only: step, step_fixity
+  use analysis_state, only: state
+  use material_law, only: start_points
+  use inelastic_blocks, only: list_inelastic_blocks
+  use dof_numbering, only: numbering
+  use constraint_elimination, only: number_step
+  use matrix_pattern, only: pattern
+  use pattern_builder, only: cell_list, list_cells, build_pattern
+  use assemble_elements, only: assemble_stiffness
+  use blas_threads, only: restart_with_fast_libraries
+  use solver_cholmod, only: cholmod_solver
+  use run_records, only: run_record
+  use arch_scene, only: make_arch
+  use hand_law, only: by_hand, set_elastic
+  implicit none
+  real(rk), parameter :: shares(5) = [0.0_rk, 0.01_rk, 0.05_rk, 0.3_rk, 1.0_rk]
+  integer, parameter :: repeats = 20, warm_up = 4 !< increments; the operator is made in the third
+  type(problem) :: scene
+  type(step_fixity), allocatable :: fixities(:)
+  type(state) :: now
+  real(rk) :: solve
+  integer :: sizes(4), k
+  character(20) :: word
+  call restart_with_fast_libraries()
+  do k = 1, 4
+    call get_command_argument(k, word)
+    read (word, *) sizes(k)
+  end do
+  call make_arch(sizes(1), sizes(2), sizes(3), sizes(4), scene, fixities)
+  solve = time_of_solve()
+  write (*, '(i0,a,f8.4,a)') scene%mesh%num_elements, ' elements, one solve ', solve, ' s'
+  call prepare()
+  do k = 1, size(shares)
+    call crack(shares(k))
+    call report(shares(k))
+  end do
+
+contains
+
+  !> Seconds of one solve with the stiffness of the whole.
+  real(rk) function time_of_solve() result(seconds)
+    type(numbering) :: numbers
+    type(cell_list) :: cells
+    type(pattern) :: matrix
+    type(cholmod_solver) :: solver
+    type(error_type), allocatable :: error
+    real(rk), allocatable :: stiffness(:), q(:, :)
+    real(rk) :: start
+    integer :: i
+    deallocate (scene%joints)
+    allocate (scene%joints(0))
+    call number_step(scene%mesh, scene%joints, fixities, numbers, error)
+    call list_cells(scene%mesh, scene%joints, cells)
+    call build_pattern(numbers, cells, matrix)
+    call assemble_stiffness(scene, numbers, matrix, stiffness, error)
+    call solver%analyse(matrix, error)
+    call solver%factorise(matrix, stiffness, error)
+    if (allocated(error)) error stop 'factor'
+    allocate (q(numbers%num_free, 1), source=1.0_rk)
+    call solver%solve(q, error)
+    start = wall()
+    do i = 1, repeats
+      call solver%solve(q, error)
+    end do
+    seconds = (wall() - start)/repeats
+  end function time_of_solve
+
+  !> Gives the whole a law with a history, and a step with both envelopes.
+  subroutine prepare()
+    type(by_hand) :: law
+    type(step) :: plan
+    integer :: i
+    law%num_state = 11
+    law%is_nonlinear = .true.
+    deallocate (scene%materials(1)%law)
+    allocate (scene%materials(1)%law, source=law)
+    scene%mesh%section_of_element = 1
+    allocate (scene%surfaces(0))
+    call list_inelastic_blocks(scene%mesh, scene%materials, scene%inelastic)
+    plan%name = 'bench'
+    plan%procedure = 'STATIC'
+    plan%envelope = ['S1      ', 'DAMAGET ']
+    allocate (scene%steps(1))
+    scene%steps(1) = plan
+    allocate (now%u(3, scene%mesh%num_nodes), now%points(size(scene%inelastic)))
+    allocate (now%joints(0))
+    call random_number(now%u)
+    now%step = 1
+    do i = 1, size(scene%inelastic)
+      call start_points(law, scene%inelastic(i)%points, now%points(i))
+    end do
+    call set_elastic(scene, now)
+  end subroutine prepare
+
+  !> Cracks whole blocks of 16 elements, as a crack takes neighbours.
+  subroutine crack(share)
+    real(rk), intent(in) :: share
+    integer :: i
+    do i = 1, size(now%points)
+      if (i > share*size(now%points)) exit
+      now%points(i)%is_elastic = .false.
+      now%points(i)%internal(1, :) = 0.9_rk
+    end do
+  end subroutine crack
+
+  !> Seconds of an increment's envelopes, and over one solve.
+  subroutine report(share)
+    real(rk), intent(in) :: share
+    type(run_record) :: record
+    real(rk) :: start, seconds
+    integer :: i
+    call record%open(scene)
+    call record%begin_step(scene, 1)
+    do i = 1, warm_up
+      call record%note(scene, now)
+    end do
+    start = wall()
+    do i = 1, repeats
+      call record%note(scene, now)
+    end do
+    seconds = (wall() - start)/repeats
+    write (*, '(a,f5.0,a,f8.4,a,f6.2,a)') 'cracked ', 100.0_rk*share, ' %: ', seconds, ' s, ', &
+      seconds/solve, ' solves'
+  end subroutine report
+
+  !> The clock [s].
+  real(rk) function wall() result(seconds)
+    integer(long) :: ticks, rate
+    call system_clock(ticks, rate)
+    seconds = real(ticks, rk)/real(rate, rk)
+  end function wall
+end program bench_envelopes
