@@ -8,14 +8,14 @@ module damage_energy
   use tensor6, only: principal_values, second_invariant, trace
   implicit none
   private
-  public :: end_of_increment, onset_of_flow, dissipated_work
+  public :: flow_path, onset_of_flow, dissipated_work
 
-  !> What an increment led to.
-  type :: end_of_increment
-    real(rk) :: stress(6) = 0.0_rk !< effective [Pa]
+  !> What flows in an increment.
+  type :: flow_path
+    real(rk) :: onset(6) = 0.0_rk, finish(6) = 0.0_rk !< effective stresses [Pa]
     real(rk) :: flow(6) = 0.0_rk !< increment of plastic strain, engineering shear
     real(rk) :: damages(2) = 0.0_rk !< d before and after, both with the weight r of the end
-  end type end_of_increment
+  end type flow_path
 
 contains
 
@@ -50,15 +50,15 @@ contains
   !> mean of onset and end stands for the stress on the way; where it would give energy back (a path
   !> that turns within a large increment) the end does, whose work is not negative (see
   !> largest_safe_dilation).
-  pure real(rk) function dissipated_work(model, onset, finish) result(work)
+  pure real(rk) function dissipated_work(model, path) result(work)
     type(concrete_model), intent(in) :: model
-    real(rk), intent(in) :: onset(6) !< effective stress [Pa]
-    type(end_of_increment), intent(in) :: finish
-    real(rk) :: energy
-    associate (stress => finish%stress, flow => finish%flow, damages => finish%damages)
-      work = 0.5_rk*dot_product(onset + stress, flow)*(1.0_rk - 0.5_rk*(damages(1) + damages(2)))
-      if (work < 0.0_rk) work = (1.0_rk - damages(2))*dot_product(stress, flow)
-      energy = 0.5_rk*(undamaged_energy(model, onset) + undamaged_energy(model, stress))
+    type(flow_path), intent(in) :: path
+    real(rk) :: intact, energy
+    associate (damages => path%damages)
+      intact = 1.0_rk - 0.5_rk*(damages(1) + damages(2))
+      work = intact*0.5_rk*dot_product(path%onset + path%finish, path%flow)
+      if (work < 0.0_rk) work = (1.0_rk - damages(2))*dot_product(path%finish, path%flow)
+      energy = 0.5_rk*(undamaged_energy(model, path%onset) + undamaged_energy(model, path%finish))
       work = work + energy*(damages(2) - damages(1))
     end associate
   end function dissipated_work

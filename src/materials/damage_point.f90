@@ -1,12 +1,13 @@
 !> A point of plastic-damage concrete: all that one increment does to it. The kernel of the material
 !> of the deck and of the user subroutine for other programs.
 module damage_point
-  use damage_energy, only: dissipated_work, end_of_increment, onset_of_flow
+  use damage_energy, only: dissipated_work, flow_path, onset_of_flow
   use damage_increment, only: elastic_stress, increment_result, integrate_increment, plastic_state
   use damage_model, only: concrete_model, placed_curves, stiffness_of
+  use damage_tangent, only: effective_tangent, has_regular_flow, share_row
   use damage_yield, only: damage_gradient, tension_share, total_damage
   use kinds, only: rk
-  use tensor6, only: principal_values, trace
+  use tensor6, only: principal_axes
   implicit none
   private
   public :: point_history, point_motion, point_answer, update_point
@@ -25,7 +26,9 @@ module damage_point
     !! l times the unit matrix
     real(rk) :: time = 0.0_rk !< the increment takes [s]; for viscosity
     logical :: wants_tangent = .true.
-    logical :: is_secant = .false. !< the symmetric (1 - d) D instead of the consistent tangent
+    !> The symmetric (1 - d) D instead of the consistent tangent. It also stands in where that does
+    !> not exist: see has_regular_flow.
+    logical :: is_secant = .false.
   end type point_motion
 
   !> What it answers.
@@ -38,11 +41,18 @@ module damage_point
     logical :: has_converged = .true.
   end type point_answer
 
+  !> The stress of the end of an increment and its damage.
+  type :: end_state
+    real(rk) :: stress(6) = 0.0_rk !< effective [Pa]
+    real(rk) :: principal(3) = 0.0_rk, axes(3, 3) = 0.0_rk !< of it
+    real(rk) :: lag = 0.0_rk !< share of the history before in what viscosity relaxes
+    real(rk) :: share = 0.0_rk, share_by(3) = 0.0_rk !< r of the stiffness, dr/ds_i
+    type(damage_gradient) :: d
+  end type end_state
+
 contains
 
   !> Stress, history, energies and tangent at the end of an increment.
-  !>
-  !> Where the increment had to be cut into parts the tangent is the secant one.
   pure subroutine update_point(model, motion, old, placed, new, answer)
     type(concrete_model), intent(in) :: model
     type(point_motion), intent(in) :: motion
@@ -51,68 +61,112 @@ contains
     type(point_history), intent(out) :: new
     type(point_answer), intent(out) :: answer
     type(increment_result) :: backbone
-    type(damage_gradient) :: d, d_before
-    type(end_of_increment) :: finish
-    real(rk) :: effective(6), share, lag, work
+    type(end_state) :: finish
     call integrate_increment(model, motion%before, motion%strain, motion%edges, old%backbone, &
                              placed, backbone)
     answer%has_converged = backbone%has_converged
+    answer%is_elastic = .not. backbone%has_yielded .and. all(old%backbone%measures <= 0.0_rk)
     new%backbone = backbone%state
     new%plastic_strain = backbone%state%strain
     new%damage = [backbone%flow%tension%damage, backbone%flow%compression%damage]
-    effective = backbone%stress
-    if (model%viscosity > 0.0_rk) then
-      lag = model%viscosity/(model%viscosity + motion%time)
-      new%plastic_strain = new%plastic_strain + lag*(old%plastic_strain - new%plastic_strain)
-      new%damage = new%damage + lag*(old%damage - new%damage)
-      effective = elastic_stress(model, motion%strain - new%plastic_strain)
-    end if
-    share = recovery_share(model, effective)
-    d = total_damage(model, new%damage(1), new%damage(2), share)
-    d_before = total_damage(model, old%damage(1), old%damage(2), share)
-    answer%stress = (1.0_rk - d%value)*effective
-    answer%is_elastic = .not. backbone%has_yielded .and. all(old%backbone%measures <= 0.0_rk)
+    finish%stress = backbone%stress
+    finish%axes = backbone%axes
+    finish%principal = backbone%flow%s
+    if (model%viscosity > 0.0_rk) call relax(model, motion, old, new, finish)
+    call recover(model, new%damage, finish)
+    answer%stress = (1.0_rk - finish%d%value)*finish%stress
     answer%stored = 0.5_rk*dot_product(answer%stress, motion%strain - new%plastic_strain)
     if (backbone%has_yielded .or. model%viscosity > 0.0_rk) then
-      finish%stress = effective
-      finish%flow = new%plastic_strain - old%plastic_strain
-      finish%damages = [d_before%value, d%value]
-      work = work_of(model, motion, old, placed, backbone, finish)
-      answer%fracture = backbone%flow%share*work
-      answer%crushing = (1.0_rk - backbone%flow%share)*work
+      call dissipate(model, motion, old, placed, backbone, finish, new, answer)
     end if
-    if (motion%wants_tangent) then
+    if (.not. motion%wants_tangent) return
+    if (motion%is_secant .or. .not. has_regular_flow(model, backbone)) then
       call stiffness_of(model, answer%tangent)
-      answer%tangent = (1.0_rk - d%value)*answer%tangent
+      answer%tangent = (1.0_rk - finish%d%value)*answer%tangent
+    else
+      call differentiate_stress(model, backbone, finish, answer%tangent)
     end if
   end subroutine update_point
 
-  !> What the increment dissipates.
-  pure real(rk) function work_of(model, motion, old, placed, backbone, finish) result(work)
+  !> Plastic strain and damage that lag behind (Duvaut and Lions; theory 11.17), by the implicit
+  !> rule. The weight of recovery does not lag: cracks close at once.
+  pure subroutine relax(model, motion, old, new, finish)
+    type(concrete_model), intent(in) :: model
+    type(point_motion), intent(in) :: motion
+    type(point_history), intent(in) :: old
+    type(point_history), intent(inout) :: new !< comes as without viscosity
+    type(end_state), intent(inout) :: finish
+    finish%lag = model%viscosity/(model%viscosity + motion%time)
+    new%plastic_strain = new%plastic_strain + finish%lag*(old%plastic_strain - new%plastic_strain)
+    new%damage = new%damage + finish%lag*(old%damage - new%damage)
+    finish%stress = elastic_stress(model, motion%strain - new%plastic_strain)
+    call principal_axes(finish%stress, finish%principal, finish%axes)
+  end subroutine relax
+
+  !> r of the stiffness, Eq 17 or NOTES 8, and d.
+  pure subroutine recover(model, damage, finish)
+    type(concrete_model), intent(in) :: model
+    real(rk), intent(in) :: damage(2) !< d_t, d_c
+    type(end_state), intent(inout) :: finish
+    if (model%recovers_by_sign) then
+      finish%share = merge(1.0_rk, 0.0_rk, sum(finish%principal) > 0.0_rk)
+      finish%share_by = 0.0_rk
+    else
+      call tension_share(finish%principal, finish%share, finish%share_by)
+    end if
+    finish%d = total_damage(model, damage(1), damage(2), finish%share)
+  end subroutine recover
+
+  !> d stress/d strain = (1 - d) ds/d strain - s (dd/d strain)^T, theory (11.16).
+  pure subroutine differentiate_stress(model, backbone, finish, tangent)
+    type(concrete_model), intent(in) :: model
+    type(increment_result), intent(in) :: backbone
+    type(end_state), intent(in) :: finish
+    real(rk), intent(out) :: tangent(6, 6)
+    real(rk) :: measures(6, 2), damage(6), elastic(6, 6), slopes(2)
+    integer :: i
+    call effective_tangent(model, backbone, tangent, measures)
+    if (model%viscosity > 0.0_rk) then
+      call stiffness_of(model, elastic)
+      tangent = tangent + finish%lag*(elastic - tangent)
+    end if
+    slopes = (1.0_rk - finish%lag)*[finish%d%by_tension*backbone%flow%tension%damage_slope, &
+                                    finish%d%by_compression*backbone%flow%compression%damage_slope]
+    damage = matmul(measures, slopes)
+    if (abs(finish%d%by_share) > 0.0_rk .and. any(abs(finish%share_by) > 0.0_rk)) then
+      damage = damage + finish%d%by_share*share_row(finish%share_by, finish%axes, tangent)
+    end if
+    do i = 1, 6
+      tangent(:, i) = (1.0_rk - finish%d%value)*tangent(:, i) - finish%stress*damage(i)
+    end do
+  end subroutine differentiate_stress
+
+  !> What the increment dissipates, shared between cracking and crushing by the weight of Lee and
+  !> Fenves at its end.
+  pure subroutine dissipate(model, motion, old, placed, backbone, finish, new, answer)
     type(concrete_model), intent(in) :: model
     type(point_motion), intent(in) :: motion
     type(point_history), intent(in) :: old
     type(placed_curves), intent(in) :: placed
     type(increment_result), intent(in) :: backbone
-    type(end_of_increment), intent(in) :: finish
-    real(rk) :: onset(6), trial(6)
-    onset = elastic_stress(model, motion%before - old%plastic_strain)
+    type(end_state), intent(in) :: finish
+    type(point_history), intent(in) :: new
+    type(point_answer), intent(inout) :: answer !< fracture and crushing come out
+    type(damage_gradient) :: before
+    type(flow_path) :: path
+    real(rk) :: trial(6), work
+    before = total_damage(model, old%damage(1), old%damage(2), finish%share)
+    path%onset = elastic_stress(model, motion%before - old%plastic_strain)
     if (model%viscosity <= 0.0_rk) then
       trial = elastic_stress(model, motion%strain - old%plastic_strain)
-      onset = onset_of_flow(model, placed, onset, old%backbone, trial, backbone%trial_excess)
+      path%onset = onset_of_flow(model, placed, path%onset, old%backbone, trial, &
+                                 backbone%trial_excess)
     end if
-    work = dissipated_work(model, onset, finish)
-  end function work_of
-
-  !> r of the stiffness, Eq 17 or NOTES 8.
-  pure real(rk) function recovery_share(model, stress) result(share)
-    type(concrete_model), intent(in) :: model
-    real(rk), intent(in) :: stress(6) !< effective [Pa]
-    real(rk) :: gradient(3)
-    if (model%recovers_by_sign) then
-      share = merge(1.0_rk, 0.0_rk, trace(stress) > 0.0_rk)
-    else
-      call tension_share(principal_values(stress), share, gradient)
-    end if
-  end function recovery_share
+    path%finish = finish%stress
+    path%flow = new%plastic_strain - old%plastic_strain
+    path%damages = [before%value, finish%d%value]
+    work = dissipated_work(model, path)
+    answer%fracture = backbone%flow%share*work
+    answer%crushing = work - answer%fracture
+  end subroutine dissipate
 end module damage_point

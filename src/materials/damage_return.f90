@@ -16,7 +16,7 @@ module damage_return
   private
   public :: trial_state, flow_state, flow_by, find_flow
 
-  real(rk), parameter :: tolerance = 1.0e-12_rk !< |F| over the strength in compression
+  real(rk), parameter :: tolerance = 1.0e-13_rk !< |F| over the strength in compression
   real(rk), parameter :: acceptable = 1.0e-9_rk !< the same, where roundoff forbids more
   integer, parameter :: max_steps = 400 !< a table of 100 rows, and bisection to roundoff
   integer, parameter :: max_inner = 60

@@ -8,6 +8,7 @@ set(sources
   damage_return.f90
   damage_increment.f90
   damage_energy.f90
+  damage_tangent.f90
   damage_point.f90
   material_damage_plasticity.f90
   material_points.f90
