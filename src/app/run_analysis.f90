@@ -42,8 +42,8 @@ contains
     call results%costs%add_memory('read deck', 'deck', peak_memory()) ! with the program itself
     call results%open(scene, given%folder, remarks, started_at, error)
     if (allocated(error)) return
-    call start_analysis(scene, now)
-    call run_all_steps(scene, now, results, error)
+    call start_analysis(scene, now, error)
+    if (.not. allocated(error)) call run_all_steps(scene, now, results, error)
     call end_user_routines(scene, now%total_time, results%log, failure)
     if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
     if (allocated(error)) then

@@ -12,7 +12,9 @@ module analysis_state
   !> largest of them so far: a body that has come to rest holds nothing to compare with.
   type :: energy_balance
     real(rk) :: external = 0.0_rk, kinetic = 0.0_rk, strain = 0.0_rk, damping = 0.0_rk
-    real(rk) :: friction = 0.0_rk, fracture = 0.0_rk
+    real(rk) :: friction = 0.0_rk
+    real(rk) :: fracture = 0.0_rk !< dissipated by cracking and crushing, in joints and solids
+    real(rk) :: crushing = 0.0_rk !< of it by crushing
     real(rk) :: numerical = 0.0_rk !< taken by the time stepping, from its own formula
     real(rk) :: initial = 0.0_rk !< kinetic and strain energy that the analysis began with
     real(rk) :: error = 0.0_rk, largest = 0.0_rk
@@ -26,6 +28,7 @@ module analysis_state
     logical :: is_stop = .false. !< told once more, because the run stops here before its end
     real(rk) :: step_time = 0.0_rk, total_time = 0.0_rk, increment_size = 0.0_rk !< [s]
     real(rk) :: residual = 0.0_rk !< out-of-balance over the reference force
+    real(rk) :: largest_force = 0.0_rk !< of the balance so far; kept where solids are inelastic [N]
     real(rk), allocatable :: u(:, :) !< displacement, relative to the base [m]; (3, nodes)
     real(rk), allocatable :: v(:, :), a(:, :) !< (3, nodes) [m/s], [m/s2]
     real(rk), allocatable :: reaction(:, :) !< (3, nodes), zero where nothing is fixed [N]

@@ -12,4 +12,7 @@ set(sources
   scatter_matrix.f90
   assemble_elements.f90
   assemble_forces.f90
+  inelastic_forces.f90
+  inelastic_stiffness.f90
+  inelastic_energy.f90
 )

@@ -31,7 +31,11 @@ contains
                     choices='AUTO | CONDENSED | FULL'), &
               field('JOINT FORCES', kind_choice, 'weight of joint forces in time: the impulse '// &
                     'of the end of the step, as the bulk, or end of the step', &
-                    default='IMPLICIT', choices='IMPLICIT | HHT | END')])
+                    default='IMPLICIT', choices='IMPLICIT | HHT | END'), &
+              field('TANGENT', kind_choice, 'of solids that crack or yield: consistent '// &
+                    '(unsymmetric), secant, or the elastic stiffness and many cheap '// &
+                    'iterations', default='AUTO', &
+                    choices='AUTO | CONSISTENT | SECANT | ELASTIC')])
   end subroutine describe_controls
 
   subroutine read_controls(this, model, faults)
@@ -47,6 +51,7 @@ contains
       if (this%has('ITERATIONS')) controls%max_iterations = this%integer('ITERATIONS')
       if (this%has('JOINT SOLVER')) controls%joint_solver = this%word('JOINT SOLVER')
       if (this%has('JOINT FORCES')) controls%joint_forces = this%word('JOINT FORCES')
+      if (this%has('TANGENT')) controls%tangent = this%word('TANGENT')
     end associate
   end subroutine read_controls
 

@@ -51,6 +51,8 @@ module step_plan
     !> Joint forces in time: 'IMPLICIT' (the impulse of a step is dt times the joint force at its
     !> end), 'HHT' (weighted like the bulk) or 'END'. Measured: docs/studies/joint_forces_in_time.
     character(16) :: joint_forces = 'IMPLICIT'
+    !> Of inelastic solids: 'CONSISTENT', 'SECANT', 'ELASTIC' or 'AUTO'.
+    character(16) :: tangent = 'AUTO'
   end type step_controls
 
   type :: initial_value

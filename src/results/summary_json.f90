@@ -207,6 +207,7 @@ contains
     call json%put_real(part%energy%damping, 'damping')
     call json%put_real(part%energy%friction, 'friction')
     call json%put_real(part%energy%fracture, 'fracture')
+    call json%put_real(part%energy%crushing, 'crushing')
     call json%put_real(part%energy%numerical, 'numerical')
     call json%put_real(part%largest_error, 'error')
     call json%close_object()

@@ -30,7 +30,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     call record%list_file(file_name(stem)//'_energy.csv')
     call self%file%open(stem//'_energy.csv', 'step,increment,time,external,kinetic,strain,'// &
-                        'damping,friction,fracture,numerical,error', error)
+                        'damping,friction,fracture,crushing,numerical,error', error)
   end subroutine open_energy
 
   !> One row.
@@ -48,7 +48,7 @@ contains
       call lines%add(',')
       call lines%add_integer(now%increment)
       associate (row => [now%total_time, e%external, e%kinetic, e%strain, e%damping, e%friction, &
-                         e%fracture, e%numerical, e%error])
+                         e%fracture, e%crushing, e%numerical, e%error])
         do i = 1, size(row)
           call lines%add(',')
           call lines%add_real(row(i))

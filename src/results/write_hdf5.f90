@@ -68,7 +68,8 @@ contains
       call results%increments%start(file, '/history/increments', &
                                     'step,increment,time,size,iterations,residual')
       call results%energies%start(file, '/history/energy', 'step,increment,time,external,'// &
-                                  'kinetic,strain,damping,friction,fracture,numerical,error')
+                                  'kinetic,strain,damping,friction,fracture,crushing,'// &
+                                  'numerical,error')
       if (record%damage%is_present) then
         call results%damages%start(file, '/history/damage', 'step,increment,time,'//damage_columns)
       end if
@@ -111,7 +112,8 @@ contains
                                          now%residual])
     associate (e => now%energy)
       call self%energies%add(self%file, [time, e%external, e%kinetic, e%strain, e%damping, &
-                                         e%friction, e%fracture, e%numerical, e%error])
+                                         e%friction, e%fracture, e%crushing, e%numerical, &
+                                         e%error])
     end associate
     if (record%damage%is_present) then
       call self%damages%add(self%file, [time, damage_row(record%damage)])

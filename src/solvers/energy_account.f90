@@ -2,12 +2,13 @@
 !>
 !> External work and damping are the work of the mean of their forces at the two ends of the
 !> increment; kinetic and stored energies are those of the end. `numerical` is what the formula of
-!> the stepping says that it takes: the damping of the time stepping, and the work of joint forces
-!> along the increment beyond what the joints store and dissipate. What then is missing, `error`,
-!> shows a solution that does not satisfy the equations.
+!> the stepping says that it takes: the damping of the time stepping, and the work of joints and
+!> inelastic solids along the increment beyond what they store and dissipate. What then is missing,
+!> `error`, shows a solution that does not satisfy the equations.
 module energy_account
   use kinds, only: rk
-  use joint_points, only: joint
+  use problem_definition, only: problem
+  use inelastic_energy, only: solid_work, sum_solid_work
   use joint_forces, only: joint_work, sum_joint_work
   use analysis_state, only: energy_balance
   use motion_state, only: motion
@@ -24,14 +25,14 @@ contains
 
   !> Kinetic and strain energy of the motion as it is; on the first call of an analysis they are
   !> the energy it begins with.
-  subroutine open_account(joints, moving, is_first, energy)
-    type(joint), intent(in) :: joints(:)
+  subroutine open_account(scene, moving, is_first, energy)
+    type(problem), intent(in) :: scene
     type(motion), intent(in) :: moving
     logical, intent(in) :: is_first
     type(energy_balance), intent(inout) :: energy
     real(rk) :: kinetic_before
     kinetic_before = energy%kinetic
-    call set_stored(joints, moving, energy)
+    call set_stored(scene, moving, energy)
     if (is_first) energy%initial = energy%kinetic + energy%strain
     ! Velocities that a step does not take over are taken by the stepping.
     if (.not. is_first) energy%numerical = energy%numerical + kinetic_before - energy%kinetic
@@ -40,8 +41,8 @@ contains
 
   !> Adds the work of a static increment. Forces that had no balance at the start of the step did
   !> work that nothing keeps.
-  subroutine add_static_work(joints, num_free, before, after, energy)
-    type(joint), intent(in) :: joints(:)
+  subroutine add_static_work(scene, num_free, before, after, energy)
+    type(problem), intent(in) :: scene
     integer, intent(in) :: num_free
     type(motion), intent(in) :: before, after
     type(energy_balance), intent(inout) :: energy
@@ -50,14 +51,18 @@ contains
     call add_external(du, num_free, before, after, energy)
     energy%numerical = energy%numerical + work(du, before%contact, after%contact) &
                        + work(du(:num_free), before%balanced, after%balanced) &
-                       - joint_change(joints, before, after)
-    call set_stored(joints, after, energy)
+                       - joint_change(scene, before, after)
+    if (size(after%released) > 0) then
+      energy%numerical = energy%numerical - work(du, before%released, after%released) &
+                         - solid_change(scene, before, after)
+    end if
+    call set_stored(scene, after, energy)
   end subroutine add_static_work
 
   !> Adds the work of a dynamic increment.
-  subroutine add_dynamic_work(scheme, joints, num_free, before, after, energy)
+  subroutine add_dynamic_work(scheme, scene, num_free, before, after, energy)
     type(hht), intent(in) :: scheme
-    type(joint), intent(in) :: joints(:)
+    type(problem), intent(in) :: scene
     integer, intent(in) :: num_free
     type(motion), intent(in) :: before, after
     type(energy_balance), intent(inout) :: energy
@@ -72,11 +77,15 @@ contains
               - work(free, before%elastic(:n), after%elastic(:n)) &
               - work(free, before%balanced(:n), after%balanced(:n)) &
               + work(held, before%contact(n + 1:), after%contact(n + 1:)) &
-              - joint_change(joints, before, after) &
+              - joint_change(scene, before, after) &
               - newmark_excess(scheme, du, before, after)
+      if (size(after%released) > 0) then
+        taken = taken - work(held, before%released(n + 1:), after%released(n + 1:)) &
+                - solid_change(scene, before, after)
+      end if
     end associate
     energy%numerical = energy%numerical + taken
-    call set_stored(joints, after, energy)
+    call set_stored(scene, after, energy)
   end subroutine add_dynamic_work
 
   !> Work of the loads, and of the supports that move.
@@ -92,6 +101,9 @@ contains
                         + work(du(n + 1:), before%elastic(n + 1:), after%elastic(n + 1:)) &
                         + work(du(n + 1:), before%contact(n + 1:), after%contact(n + 1:)) &
                         - work(du(n + 1:), before%external(n + 1:), after%external(n + 1:))
+      if (size(after%released) == 0) return
+      energy%external = energy%external &
+                        - work(du(n + 1:), before%released(n + 1:), after%released(n + 1:))
     end associate
   end subroutine add_external
 
@@ -121,27 +133,44 @@ contains
   end function work
 
   !> Change of what the joints store and dissipate.
-  real(rk) function joint_change(joints, before, after) result(change)
-    type(joint), intent(in) :: joints(:)
+  real(rk) function joint_change(scene, before, after) result(change)
+    type(problem), intent(in) :: scene
     type(motion), intent(in) :: before, after
     type(joint_work) :: first, last
-    call sum_joint_work(joints, before%joints, first)
-    call sum_joint_work(joints, after%joints, last)
+    call sum_joint_work(scene%joints, before%joints, first)
+    call sum_joint_work(scene%joints, after%joints, last)
     change = last%stored - first%stored + last%friction - first%friction &
              + last%fracture - first%fracture
   end function joint_change
 
+  !> Change of what inelastic solids store beyond 1/2 q K q, and of what they have dissipated.
+  real(rk) function solid_change(scene, before, after) result(change)
+    type(problem), intent(in) :: scene
+    type(motion), intent(in) :: before, after
+    type(solid_work) :: first, last
+    call sum_solid_work(scene, before%points, first)
+    call sum_solid_work(scene, after%points, last)
+    change = last%stored - first%stored + last%fracture - first%fracture
+  end function solid_change
+
   !> Energies of the state itself.
-  subroutine set_stored(joints, moving, energy)
-    type(joint), intent(in) :: joints(:)
+  subroutine set_stored(scene, moving, energy)
+    type(problem), intent(in) :: scene
     type(motion), intent(in) :: moving
     type(energy_balance), intent(inout) :: energy
     type(joint_work) :: total
-    call sum_joint_work(joints, moving%joints, total)
+    type(solid_work) :: own
+    call sum_joint_work(scene%joints, moving%joints, total)
     energy%kinetic = 0.5_rk*dot_product(moving%v, moving%momentum)
     energy%strain = 0.5_rk*dot_product(moving%q, moving%elastic) + total%stored
     energy%friction = total%friction
     energy%fracture = total%fracture
+    if (size(moving%points) > 0) then
+      call sum_solid_work(scene, moving%points, own)
+      energy%strain = energy%strain + own%stored
+      energy%fracture = energy%fracture + own%fracture
+      energy%crushing = own%crushing
+    end if
     energy%largest = max(energy%largest, idle_share*sum(moving%stiffness*moving%q**2))
     call find_error(energy)
   end subroutine set_stored

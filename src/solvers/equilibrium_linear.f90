@@ -1,4 +1,5 @@
-!> The balance without joints: one solve with the factor, no iteration.
+!> The balance without joints: one solve with the factor, no iteration. The matrix may be a tangent
+!> that is not symmetric.
 module equilibrium_linear
   use kinds, only: rk
   use errors, only: error_type
@@ -6,12 +7,16 @@ module equilibrium_linear
   use joint_law, only: joint_state
   use joint_points, only: joint
   use joint_operator, only: jump_operator
+  use linear_solver, only: equation_solver
+  use solver_catalogue, only: make_solver, unsymmetric_solver
   use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
   implicit none
   private
   public :: linear_equilibrium
 
   type, extends(equilibrium_solver) :: linear_equilibrium
+    class(equation_solver), allocatable :: unsymmetric_factor
+    logical :: is_unsymmetric = .false. !< the last matrix was
   contains
     procedure :: prepare, solve
   end type linear_equilibrium
@@ -29,8 +34,18 @@ contains
     type(error_type), allocatable, intent(out) :: error
     self%weight = weight
     if (size(joints) == 0) self%operator = operator
+    self%is_unsymmetric = .not. matrix%is_symmetric
     call self%costs%start('factorise', 'solver')
-    call self%factor%factorise(matrix, values, error)
+    if (.not. self%is_unsymmetric) then
+      call self%factor%factorise(matrix, values, error)
+    else
+      if (.not. allocated(self%unsymmetric_factor)) then
+        call make_solver(unsymmetric_solver, self%unsymmetric_factor, error)
+        if (.not. allocated(error)) call self%unsymmetric_factor%analyse(matrix, error)
+        if (allocated(error)) return
+      end if
+      call self%unsymmetric_factor%factorise(matrix, values, error)
+    end if
     call self%costs%stop('factorise')
     self%num_factorisations = self%num_factorisations + 1
   end subroutine prepare
@@ -48,7 +63,11 @@ contains
     real(rk), allocatable :: b(:, :)
     b = reshape(balance%rhs, [size(balance%rhs), 1])
     call self%costs%start('solve', 'solver')
-    call self%factor%solve(b, error)
+    if (self%is_unsymmetric) then
+      call self%unsymmetric_factor%solve(b, error)
+    else
+      call self%factor%solve(b, error)
+    end if
     call self%costs%stop('solve')
     x = 0.0_rk
     x(:size(b, 1)) = b(:, 1)

@@ -3,6 +3,8 @@
 !>   K_eff x + w B^T (area t1) = (1 + alpha)(f1 - C v^ - K u^) - alpha (f0 - C v0 - K u0) - w0 J0
 !>   K_eff = M/(beta dt^2) + (1 + alpha) (gamma/(beta dt) C + K)
 !>
+!> Inelastic solids add (1 + alpha) R1 - alpha R0 on the right, R their released forces (12.2).
+!>
 !> Products per increment: M a1, C a1 and K u1. They give all forces at the end and show the true
 !> balance; K u^, C v and M v follow from what is known of the increment before.
 module hht_increment
@@ -11,11 +13,12 @@ module hht_increment
   use matrix_pattern, only: multiply
   use problem_definition, only: problem
   use joint_forces, only: gather_tractions, gather_jumps
-  use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
+  use equilibrium, only: force_balance, balance_outcome
+  use solid_iteration, only: solid_solver, increment_task
   use step_equilibrium, only: add_moving_supports, check_bulk
   use step_system, only: dam_system
   use step_loads, only: step_time, external_force, prescribed_values
-  use motion_state, only: motion, sum_contact
+  use motion_state, only: motion, sum_contact, solid_force
   use hht_scheme, only: hht
   implicit none
   private
@@ -24,8 +27,7 @@ module hht_increment
   !> What serves an increment size.
   type :: stepper
     type(hht) :: scheme
-    real(rk), allocatable :: values(:) !< of K_eff, joints apart
-    class(equilibrium_solver), allocatable :: solver
+    type(solid_solver) :: solids !< with the values of K_eff
   end type stepper
 
   !> A body in free flight knows no force but round-off: out of balance is then measured against
@@ -55,7 +57,7 @@ contains
     type(motion), intent(inout) :: after
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
-    type(force_balance) :: balance
+    type(increment_task) :: task
     real(rk), dimension(size(before%q)) :: x, moved, rhs
     call predict(system, tool%scheme, before, after)
     call external_force(system%groups, scene%amplitudes, when, after%external)
@@ -63,19 +65,27 @@ contains
     call prescribed_values(system%supports, scene%amplitudes, when, moved)
     moved = moved - after%q
     call sum_known_forces(system, tool%scheme, before, after, rhs)
-    balance%rhs = rhs(:system%matrix%num_free)
-    call add_moving_supports(system, tool%values, moved, balance%rhs)
-    call set_jumps(system, tool%scheme, before, after%q + moved, balance)
-    balance%reference = largest_force(tool%scheme, before, system%matrix%num_free)
-    call tool%solver%solve(balance, scene%joints, before%joints, after%joints, x, outcome, error)
+    task%balance%rhs = rhs(:system%matrix%num_free)
+    call add_moving_supports(system, tool%solids%values, moved, task%balance%rhs)
+    task%start = after%q + moved
+    call set_jumps(system, tool%scheme, before, task%start, task%balance)
+    task%balance%reference = largest_force(tool%scheme, before, system%matrix%num_free)
+    allocate (task%x(size(x)))
+    if (size(before%points) > 0) then
+      task%reference = max(task%balance%reference, before%largest_force, &
+                           length(after%external(:system%matrix%num_free)))
+    end if
+    call tool%solids%solve(scene, system, task, before, after, outcome, error)
     if (allocated(error) .or. .not. outcome%has_converged) return
-    x = x + moved
+    x = task%x + moved
     call correct(system, tool%scheme, x, before, after, rhs)
     associate (n => system%matrix%num_free)
       ! The reactions count: displaced supports alone may be what strains the body.
-      call check_bulk(rhs(:n), max(largest_force(tool%scheme, before, n), norm2(after%elastic), &
-                                   largest_force(tool%scheme, after, n)), &
-                      tool%solver%controls%residual_tolerance, outcome)
+      after%largest_force = max(largest_force(tool%scheme, before, n), solid_force(after), &
+                                largest_force(tool%scheme, after, n))
+      if (size(after%points) > 0) after%largest_force = max(after%largest_force, task%reference)
+      call check_bulk(rhs(:n), after%largest_force, &
+                      tool%solids%solver%controls%residual_tolerance, outcome)
     end associate
   end subroutine take_increment
 
@@ -104,6 +114,7 @@ contains
     real(rk), intent(out) :: rhs(:)
     rhs = (1.0_rk + scheme%alpha)*(after%external - after%viscous - after%elastic) &
           - scheme%alpha*(before%external - before%viscous - before%elastic)
+    if (size(before%released) > 0) rhs = rhs - scheme%alpha*before%released
     if (system%operator%num_points == 0) return
     if (scheme%carries_impulse) then
       call system%operator%add_forces(-scheme%old_joint_weight*before%carried, rhs)
@@ -154,6 +165,11 @@ contains
     end if
     after%balanced = (1.0_rk + scheme%alpha)*(after%external - after%viscous - after%elastic) &
                      - scheme%alpha*(before%external - before%viscous - before%elastic)
+    if (size(after%released) > 0) then
+      rhs = rhs + (1.0_rk + scheme%alpha)*after%released
+      after%balanced = after%balanced + (1.0_rk + scheme%alpha)*after%released &
+                       - scheme%alpha*before%released
+    end if
     if (system%operator%num_points == 0) return
     call sum_contact(system%operator, after)
     call carry_joints(system, scheme, before, after)
@@ -188,7 +204,13 @@ contains
     type(hht), intent(in) :: scheme
     type(motion), intent(in) :: moving
     integer, intent(in) :: num_free
-    force = max(length(moving%external(:num_free)), length(moving%elastic(:num_free)), &
+    real(rk) :: solid
+    if (size(moving%released) > 0) then
+      solid = length(moving%elastic(:num_free) - moving%released(:num_free))
+    else
+      solid = length(moving%elastic(:num_free))
+    end if
+    force = max(length(moving%external(:num_free)), solid, &
                 length(moving%inertia(:num_free)), length(moving%viscous(:num_free)), &
                 scheme%joint_weight*length(moving%contact(:num_free)), &
                 stopping_share*length(moving%momentum(:num_free))/scheme%dt)

@@ -5,7 +5,10 @@ module initial_state
   use joint_points, only: joint
   use joint_law, only: joint_state
   use joint_forces, only: start_joints
+  use errors, only: error_type, raise
+  use inelastic_forces, only: block_answer, open_answers, update_points, find_failure
   use material_law, only: start_points
+  use material_points, only: time_increment, point_state, no_tangent
   use analysis_state, only: state
   implicit none
   private
@@ -13,10 +16,12 @@ module initial_state
 
 contains
 
-  !> At rest, but for the initial conditions of the deck; joints follow the displacements given.
-  subroutine start_analysis(scene, now)
+  !> At rest, but for the initial conditions of the deck; joints and inelastic solids follow the
+  !> displacements given.
+  subroutine start_analysis(scene, now, error)
     type(problem), intent(in) :: scene
     type(state), intent(out) :: now
+    type(error_type), allocatable, intent(out) :: error
     integer :: i, n
     n = scene%mesh%num_nodes
     allocate (now%u(3, n), now%v(3, n), now%a(3, n), now%reaction(3, n), source=0.0_rk)
@@ -36,6 +41,7 @@ contains
     do i = 1, size(scene%joints)
       call move_joint(scene%joints(i), now%u, now%joints(i))
     end do
+    call strain_points(scene, now, error)
   end subroutine start_analysis
 
   !> Points of inelastic solids, at rest and untouched.
@@ -52,6 +58,23 @@ contains
       end associate
     end do
   end subroutine start_histories
+
+  !> The answer of inelastic solids to the displacements.
+  subroutine strain_points(scene, now, error)
+    type(problem), intent(in) :: scene
+    type(state), intent(inout) :: now
+    type(error_type), allocatable, intent(out) :: error
+    type(block_answer), allocatable :: answers(:)
+    type(point_state), allocatable :: old(:)
+    character(:), allocatable :: why
+    real(rk) :: size_ratio
+    if (size(now%points) == 0) return
+    call open_answers(scene%inelastic, answers)
+    old = now%points
+    call update_points(scene, now%u, time_increment(tangent=no_tangent), old, now%points, answers)
+    call find_failure(scene, answers, size_ratio, why)
+    if (allocated(why)) call raise(error, 'initial displacements: '//why)
+  end subroutine strain_points
 
   !> The joint's answer to the displacements.
   subroutine move_joint(seam, u, history)

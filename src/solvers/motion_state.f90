@@ -8,11 +8,12 @@ module motion_state
   use joint_points, only: joint
   use dof_numbering, only: numbering
   use analysis_state, only: state
+  use material_points, only: point_state
   use joint_operator, only: jump_operator
   use joint_forces, only: gather_tractions
   implicit none
   private
-  public :: motion, start_motion, show_motion, compress, sum_contact
+  public :: motion, start_motion, show_motion, compress, sum_contact, solid_force
 
   type :: motion
     real(rk), allocatable :: q(:), v(:), a(:) !< (num_total) [m], [m/s], [m/s2]
@@ -29,6 +30,10 @@ module motion_state
     real(rk), allocatable :: carried(:, :) !< (3, points) t* of the implicit impulse [Pa]
     real(rk), allocatable :: jump_rate(:, :) !< (3, points) of the last increment [m/s]
     type(joint_state), allocatable :: joints(:)
+    type(point_state), allocatable :: points(:) !< (blocks) of inelastic solids
+    !> K q less the forces of the solids [N]; size 0 where all solids are elastic
+    real(rk), allocatable :: released(:)
+    real(rk) :: largest_force = 0.0_rk !< so far; kept where solids are inelastic [N]
   end type motion
 
 contains
@@ -46,6 +51,9 @@ contains
     call compress(numbers, joints, now%v, moving%v)
     call compress(numbers, joints, now%a, moving%a)
     moving%joints = now%joints
+    moving%points = now%points
+    moving%largest_force = now%largest_force
+    allocate (moving%released(merge(n, 0, size(now%points) > 0)), source=0.0_rk)
     call set_exact_jumps(numbers, joints, moving)
     allocate (moving%external(n), moving%elastic(n), moving%elastic_rate(n), &
               moving%elastic_jerk(n), moving%viscous(n), moving%viscous_rate(n), &
@@ -105,6 +113,16 @@ contains
     call operator%add_forces(traction, moving%contact)
   end subroutine sum_contact
 
+  !> The size of the forces of the solids, K q less what they have released [N].
+  pure real(rk) function solid_force(moving) result(force)
+    type(motion), intent(in) :: moving
+    if (size(moving%released) > 0) then
+      force = norm2(moving%elastic - moving%released)
+    else
+      force = norm2(moving%elastic)
+    end if
+  end function solid_force
+
   !> Writes the motion back to the nodes; reactions are the out-of-balance of prescribed unknowns.
   subroutine show_motion(numbers, moving, now)
     type(numbering), intent(in) :: numbers
@@ -121,5 +139,13 @@ contains
         - moving%external(k)
     end do
     now%joints = moving%joints
+    if (size(moving%points) == 0) return
+    do k = numbers%num_free + 1, numbers%num_total
+      associate (held => now%reaction(numbers%direction(k), numbers%node(k)))
+        held = held - moving%released(k)
+      end associate
+    end do
+    now%points = moving%points
+    now%largest_force = moving%largest_force
   end subroutine show_motion
 end module motion_state

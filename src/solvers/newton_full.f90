@@ -1,5 +1,6 @@
 !> The balance with joints by full Newton: the tangent of the joints is assembled and factored in
-!> each iteration, by CHOLMOD when it is symmetric and by UMFPACK when friction slides.
+!> each iteration, by CHOLMOD when it is symmetric and by UMFPACK when friction slides or the
+!> tangent of the solids is not symmetric.
 module newton_full
   use kinds, only: rk
   use errors, only: error_type, analysis_failed
@@ -19,8 +20,8 @@ module newton_full
   public :: full_equilibrium
 
   type, extends(equilibrium_solver) :: full_equilibrium
-    type(pattern) :: matrix !< lower triangle
-    type(pattern) :: full_matrix !< both triangles, once friction has slid
+    type(pattern) :: matrix !< of K_eff: lower triangle, or both
+    type(pattern) :: full_matrix !< both triangles, once they were needed
     class(equation_solver), allocatable :: unsymmetric_factor
     real(rk), allocatable :: values(:) !< K_eff
     real(rk), allocatable :: reference(:, :) !< (3, points) k_ref [Pa/m]
@@ -33,7 +34,8 @@ module newton_full
 
 contains
 
-  !> Keeps K_eff and finds r, with one factorisation for the closed joints.
+  !> Keeps K_eff and finds r, with one factorisation for the closed joints. A tangent that is not
+  !> symmetric comes later, and leaves r as it is.
   subroutine prepare(self, matrix, values, weight, joints, operator, error)
     class(full_equilibrium), intent(inout) :: self
     type(pattern), intent(in) :: matrix
@@ -47,6 +49,7 @@ contains
     self%weight = weight
     self%matrix = matrix
     self%values = values
+    if (.not. matrix%is_symmetric) return
     call reference_stiffness(joints, operator, self%reference)
     call self%factorise_tangent(operator, closed_tangent(self%reference), error)
     if (allocated(error)) return
@@ -104,7 +107,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: values(:)
     integer :: p
-    self%is_unsymmetric = .false.
+    self%is_unsymmetric = .not. self%matrix%is_symmetric
     do p = 1, operator%num_points
       self%is_unsymmetric = self%is_unsymmetric .or. &
                             any(abs(tangent(:, :, p) - transpose(tangent(:, :, p))) > 0.0_rk)
@@ -121,7 +124,11 @@ contains
     if (.not. allocated(self%unsymmetric_factor)) call start_unsymmetric(self, error)
     if (allocated(error)) return
     allocate (values(size(self%full_matrix%row)))
-    call spread_values(self%matrix, self%values, self%full_matrix, values)
+    if (self%matrix%is_symmetric) then
+      call spread_values(self%matrix, self%values, self%full_matrix, values)
+    else
+      values = self%values
+    end if
     call operator%add_stiffness(self%weight*tangent, self%full_matrix, values)
     call self%unsymmetric_factor%factorise(self%full_matrix, values, error)
     call self%costs%stop('factorise')
@@ -131,7 +138,11 @@ contains
   subroutine start_unsymmetric(self, error)
     class(full_equilibrium), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: error
-    call full_pattern(self%matrix, self%full_matrix)
+    if (self%matrix%is_symmetric) then
+      call full_pattern(self%matrix, self%full_matrix)
+    else
+      self%full_matrix = self%matrix
+    end if
     call make_solver(unsymmetric_solver, self%unsymmetric_factor, error)
     if (allocated(error)) return
     call self%unsymmetric_factor%analyse(self%full_matrix, error)

@@ -27,6 +27,9 @@ set(sources
   user_increments.f90
   step_report.f90
   motion_state.f90
+  anderson_mixing.f90
+  solid_tangent.f90
+  solid_iteration.f90
   hht_scheme.f90
   energy_account.f90
   initial_acceleration.f90

@@ -9,6 +9,7 @@ module step_control
   real(rk), parameter :: static_growth = 1.5_rk
   real(rk), parameter :: dynamic_growth = 2.0_rk !< halving and doubling meet the same sizes again
   real(rk), parameter :: cut_factor = 0.5_rk
+  real(rk), parameter :: smallest_ratio = 0.1_rk !< of an increment cut at once
   integer, parameter :: easy_iterations = 5 !< at most, of an increment that may grow
   integer, parameter :: easy_increments = 2 !< in a row, before a static step grows
   integer, parameter :: easy_dynamic_increments = 10 !< in a row: a new size is a new factor
@@ -19,6 +20,7 @@ module step_control
 
   type :: increment_control
     real(rk) :: size = 0.0_rk !< wanted next [s]
+    real(rk) :: last_size = 0.0_rk !< of the last increment that was cut [s]
     real(rk) :: smallest = 0.0_rk, largest = 0.0_rk !< [s]
     real(rk) :: duration = 0.0_rk !< of the step [s]
     real(rk) :: growth = static_growth
@@ -75,15 +77,17 @@ contains
     self%easy_so_far = 0
   end subroutine accept
 
-  !> An increment has not converged: halves it, or gives up.
-  pure subroutine cut(self, size, gives_up)
+  !> An increment has not converged: halves it, or more where a material asks for it; or gives up.
+  pure subroutine cut(self, size, ratio, gives_up)
     class(increment_control), intent(inout) :: self
     real(rk), intent(in) :: size !< of the increment that failed [s]
+    real(rk), intent(in) :: ratio !< wanted over present size; 1 where nothing is asked for
     logical, intent(out) :: gives_up
+    self%last_size = size
     self%cutbacks = self%cutbacks + 1
     self%cuts_in_a_row = self%cuts_in_a_row + 1
     self%easy_so_far = 0
-    self%size = cut_factor*size
+    self%size = min(cut_factor, max(ratio, smallest_ratio))*size
     gives_up = self%is_direct .or. self%cuts_in_a_row > most_cuts_in_a_row &
                .or. self%size < self%smallest*(1.0_rk - roundoff)
   end subroutine cut

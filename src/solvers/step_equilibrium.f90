@@ -24,10 +24,12 @@ module step_equilibrium
 
 contains
 
-  !> Linear without joints, else as *CONTROLS, JOINT SOLVER says.
-  subroutine make_equilibrium(plan, system, balance, error)
+  !> Linear without joints, else as *CONTROLS, JOINT SOLVER says. Only full Newton takes joints and
+  !> a tangent of the solids that is not symmetric together.
+  subroutine make_equilibrium(plan, system, is_symmetric, balance, error)
     type(step), intent(in) :: plan
     type(dam_system), intent(in) :: system
+    logical, intent(in) :: is_symmetric !< the tangent of the solids
     class(equilibrium_solver), allocatable, intent(out) :: balance
     type(error_type), allocatable, intent(out) :: error
     logical :: is_full
@@ -39,6 +41,7 @@ contains
     case default
       is_full = system%operator%num_points > most_condensed_points
     end select
+    is_full = is_full .or. .not. is_symmetric
     if (system%operator%num_points == 0) then
       allocate (linear_equilibrium :: balance)
     else if (is_full) then

@@ -55,9 +55,13 @@ contains
     type(error_type), allocatable, intent(out) :: error
     character(200) :: text
     integer :: p, j
+    if (allocated(outcome%failure)) then
+      call raise(error, failure_text(outcome, control, now))
+      return
+    end if
     write (text, '(a,es9.2,a,i0,a,es8.1,a,es12.5)') 'no equilibrium: out of balance by ', &
       outcome%residual, ' after ', outcome%iterations, ' iterations with an increment of ', &
-      2.0_rk*control%size, ', last equilibrium at time ', now%total_time
+      control%last_size, ', last equilibrium at time ', now%total_time
     p = outcome%worst_point
     if (p == 0) then
       call raise(error, trim(text))
@@ -68,6 +72,18 @@ contains
     call raise(error, trim(text)//'; worst in joint '//scene%joints(j)%name//' at '// &
                place_text(scene%joints(j)%x(:, p))//hint(scene%steps(now%step), outcome))
   end subroutine give_up
+
+  !> A material that no increment is small enough for.
+  pure function failure_text(outcome, control, now) result(text)
+    type(balance_outcome), intent(in) :: outcome
+    type(increment_control), intent(in) :: control
+    type(state), intent(in) :: now
+    character(:), allocatable :: text
+    character(120) :: place
+    write (place, '(a,i0,a,es8.1,a,es12.5)') ' (increment ', now%increment + 1, ' of ', &
+      control%last_size, ' s, last equilibrium at time ', now%total_time
+    text = outcome%failure//trim(place)//')'
+  end function failure_text
 
   !> What the user may look for.
   pure function hint(plan, outcome) result(text)

@@ -1,5 +1,5 @@
 !> A dynamic step by the method of Hilber, Hughes & Taylor. The effective matrix is factored once
-!> for an increment size; a scene without joints is never iterated.
+!> for an increment size; a scene of elastic solids without joints is never iterated.
 module time_hht
   use kinds, only: rk
   use errors, only: error_type
@@ -19,6 +19,7 @@ module time_hht
   use motion_state, only: motion, start_motion, show_motion, sum_contact
   use initial_acceleration, only: find_acceleration
   use hht_scheme, only: make_scheme
+  use solid_iteration, only: choose_tangent
   use hht_increment, only: stepper, effective_values, take_increment
   use energy_account, only: open_account, add_dynamic_work
   implicit none
@@ -48,20 +49,22 @@ contains
     call start_motion(system%numbers, scene%joints, now, moving)
     allocate (moving%stiffness(system%matrix%num_total))
     call diagonal(system%matrix, system%stiffness, moving%stiffness)
+    call tool%solids%open(scene, system, choose_tangent(scene, plan), moving)
     call results%costs%start('initial acceleration', 'solver')
     call start_dynamic(scene, plan, system, now%total_time, moving, error)
     call results%costs%stop('initial acceleration')
     if (allocated(error)) return
-    call open_account(scene%joints, moving, now%total_time <= 0.0_rk, now%energy)
+    call open_account(scene, moving, now%total_time <= 0.0_rk, now%energy)
     call show_motion(system%numbers, moving, now)
     call results%increment_done(scene, now, error)
     if (allocated(error)) return
     call results%costs%start('analyse', 'solver')
-    call make_equilibrium(plan, system, tool%solver, error)
+    call make_equilibrium(plan, system, tool%solids%tangent /= 'CONSISTENT', &
+                          tool%solids%solver, error)
     call results%costs%stop('analyse')
     if (allocated(error)) return
     call walk(scene, plan, system, tool, moving, now, results, error)
-    call hand_over_costs(tool%solver, 'forces', results%costs)
+    call hand_over_costs(tool%solids%solver, 'forces', results%costs)
   end subroutine run_dynamic
 
   !> Forces at the start of the step and the acceleration that balances them. Supports that follow
@@ -74,6 +77,7 @@ contains
     type(motion), intent(inout) :: moving
     type(error_type), allocatable, intent(out) :: error
     type(step_time) :: when
+    real(rk), allocatable :: acting(:)
     when = step_time(is_dynamic=.true., start=start, duration=plan%duration)
     call external_force(system%groups, scene%amplitudes, when, moving%external)
     call start_supports(scene, system, when, 1.0e-3_rk*plan%first_increment, moving%v)
@@ -84,8 +88,9 @@ contains
     end if
     call sum_contact(system%operator, moving)
     call gather_tractions(system%operator, moving%joints, moving%carried)
-    call find_acceleration(system%matrix, system%mass, system%numbers%node, moving%external &
-                           - moving%elastic - moving%viscous - moving%contact, moving%a, error)
+    acting = moving%external - moving%elastic - moving%viscous - moving%contact
+    if (size(moving%released) > 0) acting = acting + moving%released
+    call find_acceleration(system%matrix, system%mass, system%numbers%node, acting, moving%a, error)
     call multiply(system%matrix, system%mass, moving%a, moving%inertia)
     moving%balanced = moving%inertia
     call multiply(system%matrix, system%stiffness, moving%v, moving%elastic_rate)
@@ -144,18 +149,19 @@ contains
       if (allocated(error)) return
       call prepare_size(scene, plan, system, dt, results, tool, error)
       if (allocated(error)) return
+      call tool%solids%open_increment(now, dt)
       call results%costs%start('forces', 'solver')
       call take_increment(scene, system, tool, when, moving, trial, outcome, error)
       call results%costs%stop('forces')
       if (allocated(error)) return
       if (.not. outcome%has_converged) then
-        call control%cut(dt, gives_up)
+        call control%cut(dt, outcome%size_ratio, gives_up)
         if (gives_up) call give_up(scene, system, outcome, control, now, error)
         if (gives_up) return
         cycle
       end if
       call results%costs%start('energy', 'solver')
-      call add_dynamic_work(tool%scheme, scene%joints, system%matrix%num_free, moving, trial, &
+      call add_dynamic_work(tool%scheme, scene, system%matrix%num_free, moving, trial, &
                             now%energy)
       call results%costs%stop('energy')
       call swap(moving, trial)
@@ -177,10 +183,12 @@ contains
     type(error_type), allocatable, intent(out) :: error
     if (abs(dt - tool%scheme%dt) <= 1.0e-12_rk*dt) return
     tool%scheme = make_scheme(plan%alpha, dt, plan%controls%joint_forces)
-    call effective_values(system, tool%scheme, tool%values)
+    call effective_values(system, tool%scheme, tool%solids%values)
+    tool%solids%weight = 1.0_rk + plan%alpha
+    tool%solids%matrix%is_elastic = .true.
     call results%costs%start('forces', 'solver')
-    call prepare_equilibrium(scene, system, tool%values, tool%scheme%joint_weight, tool%solver, &
-                             error)
+    call prepare_equilibrium(scene, system, tool%solids%values, tool%scheme%joint_weight, &
+                             tool%solids%solver, error)
     call results%costs%stop('forces')
   end subroutine prepare_size
 

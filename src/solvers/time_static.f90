@@ -1,5 +1,6 @@
 !> A static step: loads and supports follow their rule of time, increments are as large as the
-!> joints allow. A scene without joints is factored once and not iterated.
+!> joints and the solids allow. A scene of elastic solids without joints is factored once and not
+!> iterated.
 module time_static
   use kinds, only: rk
   use errors, only: error_type
@@ -9,7 +10,7 @@ module time_static
   use joint_forces, only: gather_jumps, gather_tractions
   use analysis_state, only: state
   use increment_listener, only: listener
-  use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
+  use equilibrium, only: force_balance, balance_outcome
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium, add_moving_supports, &
                               check_bulk, hand_over_costs
   use step_system, only: dam_system, build_structure, build_loads
@@ -17,7 +18,8 @@ module time_static
   use step_control, only: increment_control, start_control
   use step_report, only: close_increment, give_up
   use user_increments, only: begin_user_increment
-  use motion_state, only: motion, start_motion, show_motion, sum_contact
+  use motion_state, only: motion, start_motion, show_motion, sum_contact, solid_force
+  use solid_iteration, only: solid_solver, increment_task, choose_tangent
   use energy_account, only: open_account, add_static_work
   implicit none
   private
@@ -37,18 +39,20 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(dam_system) :: system
     type(motion) :: moving
-    class(equilibrium_solver), allocatable :: solver
+    type(solid_solver) :: solids
+    character(16) :: tangent
     call results%costs%start('assemble', 'solver')
     call build_structure(scene, plan, system, error)
     if (allocated(error)) return
     call build_loads(scene, plan, now%u, system)
     call results%costs%stop('assemble')
     call results%costs%start('analyse', 'solver')
-    call make_equilibrium(plan, system, solver, error)
+    tangent = choose_tangent(scene, plan)
+    call make_equilibrium(plan, system, tangent /= 'CONSISTENT', solids%solver, error)
     call results%costs%stop('analyse')
     if (allocated(error)) return
     call results%costs%start('forces', 'solver')
-    call prepare_equilibrium(scene, system, system%stiffness, 1.0_rk, solver, error)
+    call prepare_equilibrium(scene, system, system%stiffness, 1.0_rk, solids%solver, error)
     call results%costs%stop('forces')
     if (allocated(error)) return
     now%num_unknowns = system%matrix%num_free
@@ -57,10 +61,12 @@ contains
     call start_motion(system%numbers, scene%joints, now, moving)
     allocate (moving%stiffness(system%matrix%num_total))
     call diagonal(system%matrix, system%stiffness, moving%stiffness)
+    call solids%open(scene, system, tangent, moving)
+    if (size(moving%points) > 0) solids%values = system%stiffness
     call start_forces(scene, plan, system, now, moving)
-    call open_account(scene%joints, moving, now%total_time <= 0.0_rk, now%energy)
-    call walk(scene, plan, system, solver, moving, now, results, error)
-    call hand_over_costs(solver, 'forces', results%costs)
+    call open_account(scene, moving, now%total_time <= 0.0_rk, now%energy)
+    call walk(scene, plan, system, solids, moving, now, results, error)
+    call hand_over_costs(solids%solver, 'forces', results%costs)
   end subroutine run_static
 
   !> Forces at the start of the step, and what they lack to a balance: initial conditions may leave
@@ -76,14 +82,15 @@ contains
     call multiply(system%matrix, system%stiffness, moving%q, moving%elastic)
     call sum_contact(system%operator, moving)
     moving%balanced = moving%external - moving%elastic - moving%contact
+    if (size(moving%released) > 0) moving%balanced = moving%balanced + moving%released
   end subroutine start_forces
 
   !> Increments until the end of the step.
-  subroutine walk(scene, plan, system, solver, moving, now, results, error)
+  subroutine walk(scene, plan, system, solids, moving, now, results, error)
     type(problem), intent(in) :: scene
     type(step), intent(in) :: plan
     type(dam_system), intent(in) :: system
-    class(equilibrium_solver), intent(inout) :: solver
+    type(solid_solver), intent(inout) :: solids
     type(motion), intent(inout) :: moving
     type(state), intent(inout) :: now
     class(listener), intent(inout) :: results
@@ -102,16 +109,17 @@ contains
       call begin_user_increment(scene, now, size_of_increment, error)
       if (allocated(error)) return
       call results%costs%start('forces', 'solver')
-      call take_increment(scene, system, solver, when, moving, trial, outcome, error)
+      call solids%open_increment(now, size_of_increment)
+      call take_increment(scene, system, solids, when, moving, trial, outcome, error)
       call results%costs%stop('forces')
       if (allocated(error)) return
       if (.not. outcome%has_converged) then
-        call control%cut(size_of_increment, gives_up)
+        call control%cut(size_of_increment, outcome%size_ratio, gives_up)
         if (gives_up) call give_up(scene, system, outcome, control, now, error)
         if (gives_up) return
         cycle
       end if
-      call add_static_work(scene%joints, system%matrix%num_free, moving, trial, now%energy)
+      call add_static_work(scene, system%matrix%num_free, moving, trial, now%energy)
       moving = trial
       call show_motion(system%numbers, moving, now)
       call control%accept(outcome%iterations)
@@ -120,51 +128,67 @@ contains
     end do
   end subroutine walk
 
-  !> One increment: K x + B^T (area t) = f1 - K q0 for the increment x of the unknowns.
-  subroutine take_increment(scene, system, solver, when, before, after, outcome, error)
+  !> One increment: K x + B^T (area t) = f1 - K q0 + released for the increment x of the unknowns.
+  subroutine take_increment(scene, system, solids, when, before, after, outcome, error)
     type(problem), intent(in) :: scene
     type(dam_system), intent(in) :: system
-    class(equilibrium_solver), intent(inout) :: solver
+    type(solid_solver), intent(inout) :: solids
     type(step_time), intent(in) :: when
     type(motion), intent(in) :: before
     type(motion), intent(out) :: after
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
-    type(force_balance) :: balance
-    real(rk), allocatable :: x(:), moved(:)
+    type(increment_task) :: task
+    real(rk), allocatable :: moved(:), unbalance(:)
     integer :: n
     n = system%matrix%num_free
     after = before
     call external_force(system%groups, scene%amplitudes, when, after%external)
     call prescribed_values(system%supports, scene%amplitudes, when, after%q)
     moved = after%q - before%q
-    balance%rhs = after%external(:n) - before%elastic(:n)
-    call add_moving_supports(system, system%stiffness, moved, balance%rhs)
-    balance%reference = norm2(balance%rhs)
-    call set_jumps(system, before, after%q, balance)
-    allocate (x(size(moved)))
-    call solver%solve(balance, scene%joints, before%joints, after%joints, x, &
-                      outcome, error)
+    task%balance%rhs = after%external(:n) - before%elastic(:n)
+    call add_moving_supports(system, system%stiffness, moved, task%balance%rhs)
+    task%balance%reference = norm2(task%balance%rhs)
+    call set_jumps(system, before, after%q, task%balance)
+    task%start = after%q
+    task%reference = known_force(before, after)
+    task%counts_reactions = .true.
+    allocate (task%x(size(moved)))
+    call solids%solve(scene, system, task, before, after, outcome, error)
     if (allocated(error) .or. .not. outcome%has_converged) return
-    after%q = after%q + x
+    after%q = after%q + task%x
     call multiply(system%matrix, system%stiffness, after%q, after%elastic)
     call sum_contact(system%operator, after)
     after%balanced = 0.0_rk
-    call check_bulk(after%external(:n) - after%elastic(:n) - after%contact(:n), &
-                    reference_force(before, after), solver%controls%residual_tolerance, &
+    unbalance = after%external(:n) - after%elastic(:n) - after%contact(:n)
+    if (size(after%released) > 0) unbalance = unbalance + after%released(:n)
+    after%largest_force = reference_force(before, after)
+    call check_bulk(unbalance, after%largest_force, solids%solver%controls%residual_tolerance, &
                     outcome)
   end subroutine take_increment
 
   !> The largest of the forces before and after, reactions included. A body that carries nothing
   !> (its load went back to zero, or it moves with its supports) is measured by what its stiffness
   !> makes of the last digits of its motion.
+  !> Solids that crack may carry nothing in the end: they are measured by what they have carried.
   pure real(rk) function reference_force(before, after) result(force)
     type(motion), intent(in) :: before, after
-    force = max(norm2(before%external), norm2(after%external), norm2(before%elastic), &
-                norm2(after%elastic), norm2(before%contact), norm2(after%contact), &
+    force = max(norm2(before%external), norm2(after%external), solid_force(before), &
+                solid_force(after), norm2(before%contact), norm2(after%contact), &
                 idle_share*norm2(before%stiffness*before%q), &
                 idle_share*norm2(after%stiffness*after%q))
+    if (size(after%released) > 0) force = max(force, before%largest_force)
   end function reference_force
+
+  !> What of it is known before the increment is solved.
+  pure real(rk) function known_force(before, after) result(force)
+    type(motion), intent(in) :: before, after
+    force = 0.0_rk
+    if (size(before%released) == 0) return
+    force = max(before%largest_force, norm2(after%external), norm2(before%external), &
+                solid_force(before), norm2(before%contact), &
+                idle_share*norm2(before%stiffness*before%q))
+  end function known_force
 
   !> Jumps before the free unknowns move, and the first guess: the converged ones. A joint that has
   !> carried nothing yet starts bonded.

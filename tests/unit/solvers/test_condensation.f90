@@ -67,7 +67,7 @@ contains
       scene%steps(i)%controls%joint_solver = joint_solver
       scene%steps(i)%controls%residual_tolerance = 1.0e-9_rk
     end do
-    call start_analysis(scene, now)
+    call start_analysis(scene, now, error)
     call run_all_steps(scene, now, results, error)
     if (allocated(error)) print '(a)', error%message
     call check(log,.not. allocated(error), joint_solver//' runs to the end')

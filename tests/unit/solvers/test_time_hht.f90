@@ -37,7 +37,7 @@ contains
     type(test_log), intent(inout) :: log
     type(state) :: now
     type(error_type), allocatable :: error
-    call start_analysis(scene, now)
+    call start_analysis(scene, now, error)
     call run_all_steps(scene, now, results, error)
     if (allocated(error)) print '(a)', error%message
     call check(log,.not. allocated(error), 'runs to the end')

@@ -46,7 +46,7 @@ contains
     associate (last => size(scene%steps(1)%fixities))
       scene%steps(1)%fixities(last - 3:)%value = 1.0e-3_rk
     end associate
-    call start_analysis(scene, now)
+    call start_analysis(scene, now, error)
     call run_all_steps(scene, now, results, error)
     call check(log,.not. allocated(error), 'runs')
     call check_close(log, now%u(1, 5), 1.0e-3_rk/3.0_rk, 1.0e-15_rk, 'middle of the bar')
@@ -65,7 +65,7 @@ contains
     type(state) :: now
     type(error_type), allocatable :: error
     call make_block(10.0_rk, scene)
-    call start_analysis(scene, now)
+    call start_analysis(scene, now, error)
     call run_all_steps(scene, now, results, error)
     call check(log,.not. allocated(error), 'runs')
     call check_close(log, results%pressure(size(results%pressure)), 2.4e4_rk, 1.0e-3_rk, 'pressure')
@@ -81,7 +81,7 @@ contains
     type(state) :: now
     type(error_type), allocatable :: error
     call make_block(-10.0_rk, scene)
-    call start_analysis(scene, now)
+    call start_analysis(scene, now, error)
     call run_all_steps(scene, now, results, error)
     call check(log, allocated(error), 'a block that flies off is an error')
     if (.not. allocated(error)) return
@@ -110,7 +110,7 @@ contains
     call add_gravity(10.0_rk, scene)
     call new_step('STATIC', 1.0_rk, 1.0_rk, scene)
     call fix([1, 2, 3, 4], 1, scene)
-    call start_analysis(scene, now)
+    call start_analysis(scene, now, error)
     call run_all_steps(scene, now, results, error)
     call check(log, allocated(error), 'a loose model is an error')
     if (.not. allocated(error)) return
@@ -130,7 +130,7 @@ contains
     call control%accept(3)
     call control%accept(3)
     call check_close(log, control%size, 0.15_rk, 1.0e-15_rk, 'grown after two easy increments')
-    call control%cut(0.15_rk, gives_up)
+    call control%cut(0.15_rk, 1.0_rk, gives_up)
     call check_close(log, control%size, 0.075_rk, 1.0e-15_rk, 'halved')
     call check(log,.not. gives_up, 'goes on')
     plan%first_increment = 0.01_rk
@@ -140,7 +140,7 @@ contains
     end do
     call check_close(log, control%size, 0.01_rk, 1.0e-15_rk, 'dynamic increments do not grow')
     call check_close(log, control%next_size(0.99_rk + 1.0e-14_rk), 0.01_rk, 0.0_rk, 'no sliver')
-    call control%cut(0.01_rk, gives_up)
+    call control%cut(0.01_rk, 1.0_rk, gives_up)
     call check_close(log, control%size, 0.005_rk, 1.0e-15_rk, 'dynamic increments are halved')
     do i = 1, 10
       call control%accept(3)
@@ -148,7 +148,7 @@ contains
     call check_close(log, control%size, 0.01_rk, 1.0e-15_rk, 'and doubled again')
     plan%is_direct = .true.
     call start_control(plan, .true., control)
-    call control%cut(0.01_rk, gives_up)
+    call control%cut(0.01_rk, 1.0_rk, gives_up)
     call check(log, gives_up, 'direct increments are not cut')
   end subroutine increments_grow_and_shrink
 
@@ -166,7 +166,7 @@ contains
     call fix([1, 2, 3, 4], 1, scene)
     call fix([(i, i=1, 8)], 2, scene)
     call fix([(i, i=1, 8)], 3, scene)
-    call start_analysis(scene, now)
+    call start_analysis(scene, now, error)
     call run_all_steps(scene, now, results, error)
     call check(log,.not. allocated(error), 'runs')
     call check_close(log, results%modes(1)%hz, sqrt(9.0e9_rk/2400.0_rk)/(2.0_rk*acos(-1.0_rk)), &

@@ -1,0 +1,214 @@
+!> The forces of solids whose stress is more than a constant stiffness times strain. Beside K u of
+!> the elastic solid they are what its points have released (theory.md, 12.1):
+!>
+!>   f = K u - released,   released = T^T sum w B^T (D eps - sigma)
+!>
+!> summed over the points that are not elastic. Threads take blocks of elements; the sums are made
+!> in the order of the blocks, so that they do not depend on the number of threads.
+module inelastic_forces
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use dof_numbering, only: numbering
+  use inelastic_blocks, only: inelastic_block
+  use element_matrices, only: strains_at_points
+  use gauss_rules, only: hex_point
+  use shape_hex8, only: derivative_at, gradient_at
+  use material_law, only: stress_law
+  use material_points, only: point_state, time_increment, update_report, no_tangent
+  implicit none
+  private
+  public :: block_answer, open_answers, update_points, recall_points, sum_released, find_failure
+
+  !> What the points of a block have answered.
+  type :: block_answer
+    real(rk), allocatable :: force(:, :) !< (24, elements) sum w B^T (D eps - sigma) [N]
+    real(rk), allocatable :: tangent(:, :, :) !< (6, 6, points) [Pa], or (6, 6, 0)
+    logical, allocatable :: has_released(:) !< (elements) with a point that is not elastic
+    type(update_report) :: report
+  end type block_answer
+
+contains
+
+  !> Makes room for the answers of all blocks.
+  subroutine open_answers(blocks, answers)
+    type(inelastic_block), intent(in) :: blocks(:)
+    type(block_answer), allocatable, intent(out) :: answers(:)
+    integer :: i
+    allocate (answers(size(blocks)))
+    do i = 1, size(blocks)
+      allocate (answers(i)%force(24, size(blocks(i)%elements)), &
+                answers(i)%has_released(size(blocks(i)%elements)), answers(i)%tangent(6, 6, 0))
+    end do
+  end subroutine open_answers
+
+  !> Strains from displacements, and the laws' answer to them, for all blocks.
+  subroutine update_points(scene, u, time, old, new, answers)
+    type(problem), intent(in) :: scene
+    real(rk), intent(in) :: u(:, :) !< (3, nodes) at the end of the increment [m]
+    type(time_increment), intent(in) :: time
+    type(point_state), intent(in) :: old(:) !< (blocks) converged
+    type(point_state), intent(inout) :: new(:) !< (blocks)
+    type(block_answer), intent(inout) :: answers(:) !< (blocks)
+    integer :: i
+    !$omp parallel do schedule(dynamic) default(none) shared(scene, u, time, old, new, answers)
+    do i = 1, size(answers)
+      if (scene%materials(scene%inelastic(i)%material)%law%is_serial) cycle
+      call update_block(scene, scene%inelastic(i), u, time, old(i), new(i), answers(i))
+    end do
+    !$omp end parallel do
+    do i = 1, size(answers)
+      if (.not. scene%materials(scene%inelastic(i)%material)%law%is_serial) cycle
+      call update_block(scene, scene%inelastic(i), u, time, old(i), new(i), answers(i))
+    end do
+  end subroutine update_points
+
+  !> The answers that belong to states reached before; no law is called, tangents are left out.
+  subroutine recall_points(scene, points, answers)
+    type(problem), intent(in) :: scene
+    type(point_state), intent(in) :: points(:) !< (blocks)
+    type(block_answer), intent(inout) :: answers(:) !< (blocks)
+    real(rk) :: d(6, 6)
+    integer :: i
+    do i = 1, size(answers)
+      associate (part => scene%inelastic(i))
+        call scene%materials(part%material)%law%elastic_stiffness(d)
+        call sum_block(part, d, points(i), answers(i))
+      end associate
+    end do
+  end subroutine recall_points
+
+  !> One block.
+  subroutine update_block(scene, part, u, time, old, new, answer)
+    type(problem), intent(in) :: scene
+    type(inelastic_block), intent(in) :: part
+    real(rk), intent(in) :: u(:, :) !< (3, nodes) [m]
+    type(time_increment), intent(in) :: time
+    type(point_state), intent(in) :: old
+    type(point_state), intent(inout) :: new
+    type(block_answer), intent(inout) :: answer
+    real(rk) :: moved(24, size(part%elements)), d(6, 6)
+    integer :: e, num_tangents
+    num_tangents = merge(0, part%points%num_points, time%tangent == no_tangent)
+    if (size(answer%tangent, 3) /= num_tangents) then
+      deallocate (answer%tangent)
+      allocate (answer%tangent(6, 6, num_tangents))
+    end if
+    do e = 1, size(part%elements)
+      moved(:, e) = reshape(u(:, scene%mesh%nodes(:, part%elements(e))), [24])
+    end do
+    associate (law => scene%materials(part%material)%law)
+      call find_strains(part, moved, new%strain)
+      if (law%wants_gradient) call find_gradients(scene%mesh%x, scene%mesh%nodes, part, moved, new)
+      call law%update(part%points, time, old, new, answer%tangent, answer%report)
+      call law%elastic_stiffness(d)
+    end associate
+    call sum_block(part, d, new, answer)
+  end subroutine update_block
+
+  !> eps = B u, the points of all elements in one row.
+  subroutine find_strains(part, moved, strain)
+    type(inelastic_block), intent(in) :: part
+    real(rk), intent(in) :: moved(:, :) !< (24, elements) [m]
+    real(rk), intent(out) :: strain(6, part%points_of_element, size(part%elements))
+    call strains_at_points(part%b, moved, strain)
+  end subroutine find_strains
+
+  !> du_i/dx_j: the rotation from the shape functions, the rest as the element's own strain has it.
+  subroutine find_gradients(x, nodes, part, moved, new)
+    real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
+    integer, intent(in) :: nodes(:, :) !< (8, elements of the mesh)
+    type(inelastic_block), intent(in) :: part
+    real(rk), intent(in) :: moved(:, :) !< (24, elements) [m]
+    type(point_state), intent(inout) :: new
+    real(rk) :: slope(3, 8), plain(3, 3), xi(3), determinant
+    integer :: e, q, p
+    do e = 1, size(part%elements)
+      do q = 1, part%points_of_element
+        p = (e - 1)*part%points_of_element + q
+        xi = 0.0_rk
+        if (part%points_of_element > 1) xi = hex_point(:, q)
+        call gradient_at(x(:, nodes(:, part%elements(e))), derivative_at(xi), slope, determinant)
+        plain = matmul(reshape(moved(:, e), [3, 8]), transpose(slope))
+        new%gradient(:, :, p) = 0.5_rk*(plain - transpose(plain)) + tensor_of(new%strain(:, p))
+      end do
+    end do
+  end subroutine find_gradients
+
+  !> The symmetric tensor of a strain in Voigt's order.
+  pure function tensor_of(strain) result(tensor)
+    real(rk), intent(in) :: strain(6)
+    real(rk) :: tensor(3, 3)
+    associate (s => strain, h => 0.5_rk*strain)
+      tensor = reshape([s(1), h(4), h(5), h(4), s(2), h(6), h(5), h(6), s(3)], [3, 3])
+    end associate
+  end function tensor_of
+
+  !> sum w B^T (D eps - sigma) of each element.
+  pure subroutine sum_block(part, d, new, answer)
+    type(inelastic_block), intent(in) :: part
+    real(rk), intent(in) :: d(6, 6) !< [Pa]
+    type(point_state), intent(in) :: new
+    type(block_answer), intent(inout) :: answer
+    real(rk) :: excess(6)
+    integer :: e, q, p, i
+    do e = 1, size(part%elements)
+      answer%has_released(e) = .false.
+      answer%force(:, e) = 0.0_rk
+      do q = 1, part%points_of_element
+        p = (e - 1)*part%points_of_element + q
+        if (new%is_elastic(p)) cycle
+        answer%has_released(e) = .true.
+        excess = part%weight(q, e)*(matmul(d, new%strain(:, p)) - new%stress(:, p))
+        do i = 1, 24
+          answer%force(i, e) = answer%force(i, e) + sum(part%b(:, i, q, e)*excess)
+        end do
+      end do
+    end do
+  end subroutine sum_block
+
+  !> The answers of all blocks in the unknowns of a step.
+  subroutine sum_released(scene, numbers, answers, released)
+    type(problem), intent(in) :: scene
+    type(numbering), intent(in) :: numbers
+    type(block_answer), intent(in) :: answers(:)
+    real(rk), intent(out) :: released(:) !< (num_total) [N]
+    real(rk) :: nodal(3, scene%mesh%num_nodes)
+    integer :: i, e, a, node
+    nodal = 0.0_rk
+    do i = 1, size(answers)
+      do e = 1, size(answers(i)%has_released)
+        if (.not. answers(i)%has_released(e)) cycle
+        do a = 1, 8
+          node = scene%mesh%nodes(a, scene%inelastic(i)%elements(e))
+          nodal(:, node) = nodal(:, node) + answers(i)%force(3*a - 2:3*a, e)
+        end do
+      end do
+    end do
+    call numbers%reduce(nodal, released)
+  end subroutine sum_released
+
+  !> Whether a law asks for a smaller increment: how much smaller, and why, with element and point.
+  subroutine find_failure(scene, answers, size_ratio, why)
+    type(problem), intent(in) :: scene
+    type(block_answer), intent(in) :: answers(:)
+    real(rk), intent(out) :: size_ratio !< wanted over present size; 1: nothing is asked for
+    character(:), allocatable, intent(out) :: why !< unallocated where no law asks
+    character(80) :: place
+    integer :: i
+    size_ratio = 1.0_rk
+    do i = 1, size(answers)
+      associate (report => answers(i)%report, part => scene%inelastic(i))
+        size_ratio = min(size_ratio, report%size_ratio)
+        if (allocated(why) .or. (report%failed_point == 0 .and. report%size_ratio >= 1.0_rk)) cycle
+        why = 'the law asks for a smaller increment'
+        if (allocated(report%message)) why = report%message
+        place = ''
+        if (report%failed_point > 0) then
+          write (place, '(a,i0,a,i0)') ', element ', part%points%element(report%failed_point), &
+            ', point ', part%points%number(report%failed_point)
+        end if
+        why = 'material '//scene%materials(part%material)%name//trim(place)//': '//why
+      end associate
+    end do
+  end subroutine find_failure
+end module inelastic_forces

@@ -1,0 +1,89 @@
+!> The stiffness that points of solids have lost, A = sum w B^T (D - C) B with the tangents C of
+!> their laws: the tangent of the solids is K - A (theory.md, 12).
+module inelastic_stiffness
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use dof_numbering, only: numbering
+  use matrix_pattern, only: pattern
+  use inelastic_blocks, only: inelastic_block
+  use inelastic_forces, only: block_answer
+  use scatter_matrix, only: scatter_nodes
+  implicit none
+  private
+  public :: lost_stiffness
+
+  integer, parameter :: batch = 64 !< blocks whose element matrices are held at a time
+
+contains
+
+  !> A of the last update, which must have given tangents. A symmetric pattern takes the lower
+  !> triangle, so that the tangents must be symmetric; a full one takes any.
+  subroutine lost_stiffness(scene, numbers, answers, matrix, values)
+    type(problem), intent(in) :: scene
+    type(numbering), intent(in) :: numbers
+    type(block_answer), intent(in) :: answers(:)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(out) :: values(:) !< of the pattern [N/m]
+    real(rk), allocatable :: ke(:, :, :, :)
+    integer :: first, last, i, e, largest
+    values = 0.0_rk
+    largest = 0
+    do i = 1, size(answers)
+      largest = max(largest, size(answers(i)%has_released))
+    end do
+    allocate (ke(24, 24, largest, batch))
+    do first = 1, size(answers), batch
+      last = min(first + batch - 1, size(answers))
+      !$omp parallel do schedule(dynamic) default(none) shared(scene, answers, ke, first, last)
+      do i = first, last
+        call integrate_block(scene, scene%inelastic(i), answers(i), ke(:, :, :, i - first + 1))
+      end do
+      !$omp end parallel do
+      do i = first, last
+        do e = 1, size(answers(i)%has_released)
+          if (.not. answers(i)%has_released(e)) cycle
+          call scatter_nodes(numbers, scene%mesh%nodes(:, scene%inelastic(i)%elements(e)), &
+                             ke(:, :, e, i - first + 1), matrix, values)
+        end do
+      end do
+    end do
+  end subroutine lost_stiffness
+
+  !> The matrices of the elements of a block that have released something.
+  subroutine integrate_block(scene, part, answer, ke)
+    type(problem), intent(in) :: scene
+    type(inelastic_block), intent(in) :: part
+    type(block_answer), intent(in) :: answer
+    real(rk), intent(inout) :: ke(:, :, :) !< (24, 24, elements)
+    real(rk) :: d(6, 6), lost(6, 6)
+    integer :: e, q
+    call scene%materials(part%material)%law%elastic_stiffness(d)
+    do e = 1, size(part%elements)
+      if (.not. answer%has_released(e)) cycle
+      ke(:, :, e) = 0.0_rk
+      do q = 1, part%points_of_element
+        lost = part%weight(q, e)*(d - answer%tangent(:, :, (e - 1)*part%points_of_element + q))
+        if (.not. any(abs(lost) > 0.0_rk)) cycle
+        call add_point(lost, part%b(:, :, q, e), ke(:, :, e))
+      end do
+    end do
+  end subroutine integrate_block
+
+  !> k = k + B^T C B.
+  pure subroutine add_point(c, b, k)
+    real(rk), intent(in) :: c(6, 6), b(6, 24)
+    real(rk), intent(inout) :: k(24, 24)
+    real(rk) :: bt(24, 6), cb(6)
+    integer :: i, j
+    bt = transpose(b)
+    do j = 1, 24
+      cb = c(:, 1)*b(1, j)
+      do i = 2, 6
+        cb = cb + c(:, i)*b(i, j)
+      end do
+      do i = 1, 6
+        k(:, j) = k(:, j) + bt(:, i)*cb(i)
+      end do
+    end do
+  end subroutine add_point
+end module inelastic_stiffness

@@ -1,0 +1,92 @@
+!> Anderson's acceleration of an iteration s <- g(s): the next s is the combination of the last ones
+!> whose change g(s) - s is smallest. With a linear g it is GMRES on s = g(s).
+module anderson_mixing
+  use kinds, only: rk
+  use small_matrix, only: solve_dense
+  implicit none
+  private
+  public :: mixer
+
+  integer, parameter :: most_pairs = 8 !< of differences that are kept
+  !> Differences of the changes that depend on each other to this part are left out.
+  real(rk), parameter :: least_angle = 1.0e-10_rk
+
+  type :: mixer
+    integer :: num_pairs = 0
+    !> (unknowns, pairs) differences of s and of g(s) - s
+    real(rk), allocatable :: ds(:, :), df(:, :)
+    real(rk), allocatable :: last_s(:), last_f(:)
+    integer, private :: next = 1 !< column that the next pair overwrites
+  contains
+    procedure :: forget, advance
+  end type mixer
+
+contains
+
+  !> Starts anew.
+  subroutine forget(self)
+    class(mixer), intent(inout) :: self
+    self%num_pairs = 0
+    self%next = 1
+    if (allocated(self%last_s)) deallocate (self%last_s, self%last_f)
+  end subroutine forget
+
+  !> Replaces s by the next iterate.
+  subroutine advance(self, f, s)
+    class(mixer), intent(inout) :: self
+    real(rk), intent(in) :: f(:) !< g(s) - s
+    real(rk), intent(inout) :: s(:)
+    real(rk) :: weight(most_pairs)
+    real(rk), allocatable :: here(:)
+    integer :: k
+    if (allocated(self%last_s)) call keep_pair(self, f, s)
+    here = s
+    call find_weights(self, f, weight)
+    s = s + f
+    do k = 1, self%num_pairs
+      s = s - weight(k)*(self%ds(:, k) + self%df(:, k))
+    end do
+    self%last_s = here
+    self%last_f = f
+  end subroutine advance
+
+  !> Keeps the difference to the last iterate in place of the oldest one.
+  subroutine keep_pair(self, f, s)
+    type(mixer), intent(inout) :: self
+    real(rk), intent(in) :: f(:), s(:)
+    if (.not. allocated(self%ds)) then
+      allocate (self%ds(size(s), most_pairs), self%df(size(s), most_pairs))
+    end if
+    self%ds(:, self%next) = s - self%last_s
+    self%df(:, self%next) = f - self%last_f
+    self%num_pairs = max(self%num_pairs, self%next)
+    self%next = 1 + mod(self%next, most_pairs)
+  end subroutine keep_pair
+
+  !> Weights of the differences that make |f - df*weight| smallest, by the normal equations.
+  subroutine find_weights(self, f, weight)
+    type(mixer), intent(in) :: self
+    real(rk), intent(in) :: f(:)
+    real(rk), intent(out) :: weight(:)
+    real(rk) :: gram(self%num_pairs, self%num_pairs), right(self%num_pairs, 1)
+    real(rk) :: x(self%num_pairs, 1), scale(self%num_pairs)
+    integer :: i, j
+    logical :: is_singular
+    weight = 0.0_rk
+    if (self%num_pairs == 0) return
+    do j = 1, self%num_pairs
+      do i = 1, j
+        gram(i, j) = dot_product(self%df(:, i), self%df(:, j))
+        gram(j, i) = gram(i, j)
+      end do
+      scale(j) = 1.0_rk/max(sqrt(gram(j, j)), tiny(1.0_rk))
+      right(j, 1) = scale(j)*dot_product(self%df(:, j), f)
+    end do
+    do j = 1, self%num_pairs
+      gram(:, j) = gram(:, j)*scale*scale(j)
+      gram(j, j) = gram(j, j) + least_angle
+    end do
+    call solve_dense(gram, right, x, is_singular)
+    if (.not. is_singular) weight(:self%num_pairs) = x(:, 1)*scale
+  end subroutine find_weights
+end module anderson_mixing

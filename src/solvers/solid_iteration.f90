@@ -1,0 +1,329 @@
+!> The balance of an increment with inelastic solids (theory.md, 12):
+!>
+!>   K_eff x + joints(x) = rhs + w released(start + x)
+!>
+!> for the free unknowns x. With a matrix A of what the points have lost, or none, each iteration
+!> solves (K_eff - w A) x + joints = rhs + w s exactly, joints included, and asks the laws for
+!> s' = released - A x. What is out of balance is w (s' - s). Newton's method takes A and s anew
+!> from each iterate; with a fixed A the iteration on s is accelerated. Without inelastic solids
+!> there is one solve and nothing else.
+module solid_iteration
+  use kinds, only: rk
+  use errors, only: error_type, analysis_failed
+  use problem_definition, only: problem
+  use step_plan, only: step
+  use analysis_state, only: state
+  use matrix_pattern, only: multiply
+  use material_points, only: time_increment, no_tangent, secant_tangent, consistent_tangent
+  use inelastic_forces, only: block_answer, open_answers, update_points, recall_points, &
+                              sum_released, find_failure
+  use joint_forces, only: gather_jumps
+  use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
+  use step_system, only: dam_system
+  use motion_state, only: motion
+  use anderson_mixing, only: mixer
+  use solid_tangent, only: tangent_matrix
+  implicit none
+  private
+  public :: increment_task, solid_solver, choose_tangent
+
+  !> What an increment asks for.
+  type :: increment_task
+    type(force_balance) :: balance !< without what the solids release at its end
+    real(rk), allocatable :: start(:) !< (num_total) u at x = 0, supports in place [m]
+    real(rk), allocatable :: x(:) !< (num_total) the answer; zero on prescribed unknowns [m]
+    real(rk) :: reference = 0.0_rk !< largest force known beforehand [N]
+    logical :: counts_reactions = .false. !< they too are what the balance is measured by
+  end type increment_task
+
+  !> Solves increments.
+  type :: solid_solver
+    class(equilibrium_solver), allocatable :: solver !< with a linear bulk
+    real(rk), allocatable :: values(:) !< of K_eff, joints apart
+    real(rk) :: weight = 1.0_rk !< of the forces of the solids
+    character(16) :: tangent = 'ELASTIC' !< 'CONSISTENT', 'SECANT' or 'ELASTIC'
+    type(time_increment) :: time
+    type(tangent_matrix) :: matrix
+    type(block_answer), allocatable :: answers(:) !< (blocks)
+    type(mixer) :: mixer
+  contains
+    procedure :: open => open_solids
+    procedure :: open_increment, solve
+    procedure, private :: iterate, start_iteration, try, measure, advance, linearise
+  end type solid_solver
+
+  !> Where the iteration is.
+  type :: iterate_state
+    type(increment_task) :: task !< with the forces that the solids release put in
+    real(rk), allocatable :: rhs(:) !< without them
+    real(rk), allocatable :: guess(:), answer(:) !< (free unknowns) s and s' [N]
+    real(rk), allocatable :: unbalance(:) !< s' - s of the last point of linearisation [N]
+    real(rk), allocatable :: base(:) !< s' there [N]
+    real(rk) :: share = 1.0_rk !< of that out-of-balance that is asked to go
+    real(rk) :: force = huge(1.0_rk), last_force = huge(1.0_rk) !< norms of w (s' - s) [N]
+    real(rk) :: base_force = huge(1.0_rk) !< the same at the last point of linearisation [N]
+    integer :: tries = 0 !< with the present matrix
+    real(rk) :: moved = 0.0_rk !< norm of the last change of the displacements [m]
+    logical :: is_lost = .false. !< the tangent is singular
+  end type iterate_state
+
+  !> With a matrix that is kept an iteration costs a solve and no factor: so many times more of them
+  !> are allowed.
+  integer, parameter :: cheap_iterations = 5
+  !> An increment of the displacements below this part of them is measured against them.
+  real(rk), parameter :: smallest_increment = 1.0e-3_rk
+  !> Out of balance by this part is round-off, whatever correction it asks for.
+  real(rk), parameter :: roundoff = 1.0e-12_rk
+  !> A secant matrix is taken anew when more than so many iterations with it have not brought the
+  !> out-of-balance down to this part.
+  integer, parameter :: patience = 3
+  real(rk), parameter :: sufficient_decrease = 0.1_rk
+  !> A step of Newton's that leaves the balance so much worse is halved.
+  real(rk), parameter :: largest_growth = 1.0_rk
+  real(rk), parameter :: smallest_share = 0.1_rk !< of a step
+
+contains
+
+  !> The tangent that a step takes.
+  pure function choose_tangent(scene, plan) result(tangent)
+    type(problem), intent(in) :: scene
+    type(step), intent(in) :: plan
+    character(16) :: tangent
+    tangent = 'ELASTIC'
+    if (.not. allocated(scene%inelastic)) return
+    if (size(scene%inelastic) == 0) return
+    tangent = plan%controls%tangent
+    if (tangent /= 'AUTO') return
+    tangent = 'ELASTIC'
+    if (plan%procedure == 'STATIC' .and. size(scene%joints) == 0) tangent = 'CONSISTENT'
+  end function choose_tangent
+
+  !> Makes ready for a step: what the solids have released so far, in its unknowns.
+  subroutine open_solids(self, scene, system, tangent, moving)
+    class(solid_solver), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(dam_system), intent(in) :: system
+    character(*), intent(in) :: tangent
+    type(motion), intent(inout) :: moving
+    self%tangent = tangent
+    if (size(moving%points) == 0) return
+    self%matrix%is_symmetric = tangent /= 'CONSISTENT'
+    call open_answers(scene%inelastic, self%answers)
+    call recall_points(scene, moving%points, self%answers)
+    call sum_released(scene, system%numbers, self%answers, moving%released)
+  end subroutine open_solids
+
+  !> Tells where in time the laws are.
+  subroutine open_increment(self, now, increment)
+    class(solid_solver), intent(inout) :: self
+    type(state), intent(in) :: now !< at the start of the increment
+    real(rk), intent(in) :: increment !< [s]
+    self%time%step = now%step
+    self%time%increment = now%increment + 1
+    self%time%step_time = now%step_time
+    self%time%total_time = now%total_time
+    self%time%size = increment
+    select case (self%tangent)
+    case ('CONSISTENT')
+      self%time%tangent = consistent_tangent
+    case ('SECANT')
+      self%time%tangent = secant_tangent
+    case default
+      self%time%tangent = no_tangent
+    end select
+  end subroutine open_increment
+
+  !> Solves the balance for `task%x`; joints and points come with it in `after`. No convergence is
+  !> no error.
+  subroutine solve(self, scene, system, task, before, after, outcome, error)
+    class(solid_solver), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(dam_system), intent(in) :: system
+    type(increment_task), intent(inout) :: task
+    type(motion), intent(in) :: before
+    type(motion), intent(inout) :: after
+    type(balance_outcome), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: error
+    if (size(before%points) == 0) then
+      call self%solver%solve(task%balance, scene%joints, before%joints, after%joints, task%x, &
+                             outcome, error)
+      return
+    end if
+    call self%iterate(scene, system, task, before, after, outcome, error)
+    if (allocated(error) .or. outcome%has_converged .or. self%matrix%is_elastic) return
+    call self%matrix%factorise_elastic(scene, system, self%values, self%solver, error)
+  end subroutine solve
+
+  !> Iterates until the laws agree with the balance.
+  subroutine iterate(self, scene, system, task, before, after, outcome, error)
+    class(solid_solver), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(dam_system), intent(in) :: system
+    type(increment_task), intent(inout) :: task
+    type(motion), intent(in) :: before
+    type(motion), intent(inout) :: after
+    type(balance_outcome), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: error
+    type(iterate_state) :: now
+    integer :: most_iterations
+    most_iterations = self%solver%controls%max_iterations
+    if (self%tangent /= 'CONSISTENT') most_iterations = cheap_iterations*most_iterations
+    now%task = task
+    allocate (outcome%history(0))
+    call self%start_iteration(system, before, now)
+    do while (outcome%iterations < most_iterations)
+      call self%try(scene, system, now, before, after, outcome, error)
+      if (allocated(error) .or. now%is_lost) return
+      call self%measure(system, before, after, now, outcome)
+      if (outcome%has_converged) exit
+      call self%advance(scene, system, after, now, error)
+      if (allocated(error) .or. now%is_lost) return
+    end do
+    task%x = now%task%x
+  end subroutine iterate
+
+  !> The first guess: the last matrix goes on to hold.
+  subroutine start_iteration(self, system, before, now)
+    class(solid_solver), intent(inout) :: self
+    type(dam_system), intent(in) :: system
+    type(motion), intent(in) :: before
+    type(iterate_state), intent(inout) :: now
+    real(rk) :: product(size(before%q))
+    integer :: n
+    n = system%matrix%num_free
+    call self%mixer%forget()
+    now%rhs = now%task%balance%rhs
+    now%task%x = 0.0_rk
+    call self%matrix%multiply_lost(system%matrix, now%task%start - before%q, product)
+    now%guess = before%released(:n) + product(:n)
+    now%force = norm2(now%rhs + self%weight*now%guess)
+    now%moved = norm2(now%task%start - before%q)
+  end subroutine start_iteration
+
+  !> Solves with the guess and asks the laws; `now%is_lost` where this iterate leads nowhere.
+  subroutine try(self, scene, system, now, before, after, outcome, error)
+    class(solid_solver), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(dam_system), intent(in) :: system
+    type(iterate_state), intent(inout) :: now
+    type(motion), intent(in) :: before
+    type(motion), intent(inout) :: after
+    type(balance_outcome), intent(inout) :: outcome
+    type(error_type), allocatable, intent(out) :: error
+    type(balance_outcome) :: inner
+    real(rk) :: u(3, scene%mesh%num_nodes), product(size(before%q)), last_x(size(before%q))
+    associate (task => now%task)
+      last_x = task%x
+      task%balance%rhs = now%rhs + self%weight*now%guess
+      if (outcome%iterations > 0 .and. system%operator%num_points > 0) then
+        task%balance%starts_bonded = .false.
+        call gather_jumps(system%operator, after%joints, task%balance%guess)
+      end if
+      call self%solver%solve(task%balance, scene%joints, before%joints, after%joints, task%x, &
+                             inner, error)
+      outcome%iterations = max(outcome%iterations + 1, inner%iterations)
+      outcome%worst_point = inner%worst_point
+      outcome%residual = inner%residual
+      now%is_lost = .not. inner%has_converged
+      if (allocated(error) .or. now%is_lost) return
+      call system%numbers%expand(task%start + task%x, u)
+      call self%solver%costs%start('laws', 'material')
+      call update_points(scene, u, self%time, before%points, after%points, self%answers)
+      call sum_released(scene, system%numbers, self%answers, after%released)
+      call self%solver%costs%stop('laws')
+      call find_failure(scene, self%answers, outcome%size_ratio, outcome%failure)
+      now%is_lost = allocated(outcome%failure)
+      call self%matrix%multiply_lost(system%matrix, task%x, product)
+      now%answer = after%released(:size(now%guess)) - product(:size(now%guess))
+      now%moved = norm2(task%x - last_x)
+    end associate
+  end subroutine try
+
+  !> What is out of balance, and the correction that it still asks for, as the last one did.
+  subroutine measure(self, system, before, after, now, outcome)
+    class(solid_solver), intent(in) :: self
+    type(dam_system), intent(in) :: system
+    type(motion), intent(in) :: before, after
+    type(iterate_state), intent(inout) :: now
+    type(balance_outcome), intent(inout) :: outcome
+    real(rk) :: reference, increment, q(size(before%q)), product(size(before%q))
+    now%last_force = now%force
+    now%force = self%weight*norm2(now%answer - now%guess)
+    q = now%task%start + now%task%x
+    reference = now%task%reference
+    if (now%task%counts_reactions) then
+      call multiply(system%matrix, system%stiffness, q, product)
+      reference = max(reference, norm2(product - after%released))
+    end if
+    outcome%residual = now%force/max(reference, tiny(1.0_rk))
+    outcome%history = [outcome%history, outcome%residual]
+    increment = max(norm2(q - before%q), smallest_increment*norm2(q), tiny(1.0_rk))
+    outcome%correction = now%moved/increment*min(1.0_rk, now%force/max(now%last_force, &
+                                                                       tiny(1.0_rk)))
+    associate (controls => self%solver%controls)
+      outcome%has_converged = outcome%residual <= roundoff .or. &
+                              (outcome%residual <= controls%residual_tolerance .and. &
+                               outcome%correction <= controls%increment_tolerance)
+    end associate
+  end subroutine measure
+
+  !> The next guess.
+  subroutine advance(self, scene, system, after, now, error)
+    class(solid_solver), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(dam_system), intent(in) :: system
+    type(motion), intent(in) :: after
+    type(iterate_state), intent(inout) :: now
+    type(error_type), allocatable, intent(out) :: error
+    now%tries = now%tries + 1
+    if (self%tangent == 'ELASTIC' .or. (self%tangent == 'SECANT' .and. .not. is_slow(now))) then
+      if (now%tries == 1) now%base_force = now%force
+      call self%mixer%advance(now%answer - now%guess, now%guess)
+    else if (self%tangent == 'CONSISTENT' .and. goes_astray(now)) then
+      now%share = 0.5_rk*now%share
+      now%guess = now%base - (1.0_rk - now%share)*now%unbalance
+    else
+      call self%linearise(scene, system, after, now, error)
+    end if
+  end subroutine advance
+
+  !> A matrix that does not bring the balance nearer is taken anew.
+  pure logical function is_slow(now)
+    type(iterate_state), intent(in) :: now
+    is_slow = now%tries > patience .and. now%force > sufficient_decrease*now%base_force
+  end function is_slow
+
+  !> A step of Newton's that has made the balance worse is taken back, a part at a time.
+  pure logical function goes_astray(now)
+    type(iterate_state), intent(in) :: now
+    goes_astray = now%force > largest_growth*now%base_force .and. now%share > smallest_share
+  end function goes_astray
+
+  !> Takes the tangent at the present iterate.
+  subroutine linearise(self, scene, system, after, now, error)
+    class(solid_solver), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(dam_system), intent(in) :: system
+    type(motion), intent(in) :: after
+    type(iterate_state), intent(inout) :: now
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: product(size(after%q))
+    integer :: n
+    n = size(now%guess)
+    now%unbalance = now%answer - now%guess
+    now%base_force = now%force
+    now%share = 1.0_rk
+    now%tries = 0
+    call self%mixer%forget()
+    call self%matrix%factorise(scene, system, self%answers, self%values, self%weight, self%solver, &
+                               error)
+    if (allocated(error)) then
+      now%is_lost = error%exit_code == analysis_failed
+      if (now%is_lost) deallocate (error)
+      return
+    end if
+    call self%matrix%multiply_lost(system%matrix, now%task%x, product)
+    now%base = after%released(:n) - product(:n)
+    now%guess = now%base
+  end subroutine linearise
+end module solid_iteration

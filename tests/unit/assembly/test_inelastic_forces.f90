@@ -1,0 +1,177 @@
+!> Released forces and lost stiffness of solids against finite differences, in one thread and two.
+program test_inelastic_forces
+  use kinds, only: rk
+  use omp_lib, only: omp_set_num_threads
+  use errors, only: error_type
+  use problem_definition, only: problem
+  use dof_numbering, only: numbering
+  use constraint_elimination, only: number_step
+  use matrix_pattern, only: pattern, full_pattern, multiply
+  use pattern_builder, only: cell_list, list_cells, build_pattern
+  use material_law, only: start_points
+  use material_elastic, only: elastic_law
+  use material_points, only: point_state, time_increment, secant_tangent, consistent_tangent
+  use inelastic_forces, only: block_answer, open_answers, update_points, recall_points, &
+                              sum_released, find_failure
+  use inelastic_stiffness, only: lost_stiffness
+  use inelastic_energy, only: solid_work, sum_solid_work
+  use step_plan, only: step_fixity
+  use row_scene, only: make_row
+  use softening_law, only: damage_law, put_law
+  use testing, only: test_log, check, check_close
+  implicit none
+
+  type(test_log) :: log
+  type(problem) :: scene
+  type(numbering) :: numbers
+  type(pattern) :: matrix, full
+  type(point_state), allocatable :: old(:), new(:)
+  type(block_answer), allocatable :: answers(:)
+  integer, parameter :: num_boxes = 40
+
+  log%suite = 'inelastic_forces'
+  call make_scene()
+  call elastic_points_release_nothing(log)
+  call tangent_follows_differences(log)
+  call secant_gives_released_force(log)
+  call threads_do_not_matter(log)
+  call states_are_recalled(log)
+  call failure_names_the_point(log)
+  write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
+  if (log%failed > 0) error stop 1
+
+contains
+
+  !> A crooked row of 40 boxes of one soft material, three blocks.
+  subroutine make_scene()
+    type(cell_list) :: cells
+    type(error_type), allocatable :: error
+    integer :: i
+    call make_row([(real(i, rk), i=0, num_boxes)], 1.0_rk, 1.0_rk, &
+                  spread(3.0e10_rk, 1, num_boxes), spread(0.0_rk, 1, num_boxes), scene)
+    scene%mesh%x = scene%mesh%x + 0.1_rk*sin(reshape([(37.0_rk*i, i=1, size(scene%mesh%x))], &
+                                                     shape(scene%mesh%x)))
+    scene%mesh%material_of_element = 1
+    call put_law(damage_law(elastic=elastic_law(young=3.0e10_rk, poisson=0.2_rk)), [1], scene)
+    call number_step(scene%mesh, scene%joints, [step_fixity(node=1, dof=1)], numbers, error)
+    call list_cells(scene%mesh, scene%joints, cells)
+    call build_pattern(numbers, cells, matrix)
+    call full_pattern(matrix, full)
+    allocate (old(size(scene%inelastic)))
+    do i = 1, size(old)
+      call start_points(scene%materials(1)%law, scene%inelastic(i)%points, old(i))
+    end do
+    new = old
+    call open_answers(scene%inelastic, answers)
+  end subroutine make_scene
+
+  !> Unknowns of a rough field whose strains are some times `size`.
+  function field(size_of_strain) result(q)
+    real(rk), intent(in) :: size_of_strain
+    real(rk) :: q(numbers%num_total)
+    integer :: i
+    q = size_of_strain*[(cos(11.0_rk*i), i=1, numbers%num_total)]
+  end function field
+
+  !> What the points release at q, from the state `old`.
+  subroutine release(q, tangent, released)
+    real(rk), intent(in) :: q(:)
+    integer, intent(in) :: tangent
+    real(rk), intent(out) :: released(:)
+    real(rk) :: u(3, scene%mesh%num_nodes)
+    call numbers%expand(q, u)
+    call update_points(scene, u, time_increment(tangent=tangent), old, new, answers)
+    call sum_released(scene, numbers, answers, released)
+  end subroutine release
+
+  subroutine elastic_points_release_nothing(log)
+    type(test_log), intent(inout) :: log
+    real(rk) :: released(numbers%num_total), values(size(matrix%row))
+    call release(field(1.0e-5_rk), consistent_tangent, released)
+    call lost_stiffness(scene, numbers, answers, matrix, values)
+    call check(log, size(scene%inelastic) == 3, 'three blocks')
+    call check(log, all(abs(released) <= 0.0_rk), 'no force')
+    call check(log, all(abs(values) <= 0.0_rk), 'no stiffness lost')
+  end subroutine elastic_points_release_nothing
+
+  !> A h = (R(q + h) - R(q - h))/2 but for h^2 and round-off.
+  subroutine tangent_follows_differences(log)
+    type(test_log), intent(inout) :: log
+    real(rk), dimension(numbers%num_total) :: q, h, released, above, below, product
+    real(rk) :: values(size(full%row))
+    integer :: i
+    q = field(3.0e-4_rk)
+    h = 1.0e-9_rk*[(sin(5.0_rk*i), i=1, size(h))]
+    call release(q + h, consistent_tangent, above)
+    call release(q - h, consistent_tangent, below)
+    call release(q, consistent_tangent, released)
+    call lost_stiffness(scene, numbers, answers, full, values)
+    call multiply(full, values, h, product)
+    call check(log, norm2(released) > 1.0e6_rk, 'there is something to test')
+    ! Round-off of a difference of forces of 1e7 N over 1e2 N: 1e-16*1e5; kinks none with this q.
+    call check_close(log, norm2(product - 0.5_rk*(above - below))/norm2(product), 0.0_rk, &
+                     1.0e-8_rk, 'consistent tangent')
+  end subroutine tangent_follows_differences
+
+  !> Without plastic strain the secant stiffness lost gives the force that is released.
+  subroutine secant_gives_released_force(log)
+    type(test_log), intent(inout) :: log
+    real(rk), dimension(numbers%num_total) :: q, released, product
+    real(rk) :: values(size(matrix%row))
+    q = field(3.0e-4_rk)
+    call release(q, secant_tangent, released)
+    call lost_stiffness(scene, numbers, answers, matrix, values)
+    call multiply(matrix, values, q, product)
+    call check_close(log, norm2(product - released)/norm2(released), 0.0_rk, 1.0e-12_rk, &
+                     'secant stiffness times displacement')
+  end subroutine secant_gives_released_force
+
+  !> The same digits with one thread and with two.
+  subroutine threads_do_not_matter(log)
+    type(test_log), intent(inout) :: log
+    real(rk) :: one(numbers%num_total), two(numbers%num_total)
+    real(rk) :: first(size(full%row)), second(size(full%row))
+    call omp_set_num_threads(1)
+    call release(field(3.0e-4_rk), consistent_tangent, one)
+    call lost_stiffness(scene, numbers, answers, full, first)
+    call omp_set_num_threads(2)
+    call release(field(3.0e-4_rk), consistent_tangent, two)
+    call lost_stiffness(scene, numbers, answers, full, second)
+    call check(log, all(abs(one - two) <= 0.0_rk), 'forces do not depend on the threads')
+    call check(log, all(abs(first - second) <= 0.0_rk), 'nor does the stiffness')
+  end subroutine threads_do_not_matter
+
+  !> Forces of a converged state, and its energies, without a law.
+  subroutine states_are_recalled(log)
+    type(test_log), intent(inout) :: log
+    type(block_answer), allocatable :: others(:)
+    type(solid_work) :: total
+    real(rk), dimension(numbers%num_total) :: released, recalled
+    call release(field(3.0e-4_rk), secant_tangent, released)
+    call open_answers(scene%inelastic, others)
+    call recall_points(scene, new, others)
+    call sum_released(scene, numbers, others, recalled)
+    call check(log, all(abs(released - recalled) <= 0.0_rk), 'released forces are recalled')
+    call sum_solid_work(scene, new, total)
+    ! Linear elastic-damage: stored - 1/2 eps D eps = -1/2 u . released.
+    call check_close(log, total%stored, -0.5_rk*dot_product(field(3.0e-4_rk), released), &
+                     1.0e-12_rk*abs(total%stored), 'stored energy')
+    call check(log, total%fracture > 0.0_rk .and. total%crushing <= 0.0_rk, 'dissipated')
+  end subroutine states_are_recalled
+
+  subroutine failure_names_the_point(log)
+    type(test_log), intent(inout) :: log
+    character(:), allocatable :: why
+    real(rk) :: size_ratio, released(numbers%num_total)
+    call find_failure(scene, answers, size_ratio, why)
+    call check(log,.not. allocated(why), 'no failure')
+    call put_law(damage_law(elastic=elastic_law(young=3.0e10_rk), largest_strain=2.0e-4_rk), [1], &
+                 scene)
+    call release(field(3.0e-4_rk), secant_tangent, released)
+    call find_failure(scene, answers, size_ratio, why)
+    call check(log, allocated(why), 'a failure')
+    if (.not. allocated(why)) return
+    call check(log, index(why, 'material SOFT, element 1, point ') == 1 .and. &
+               index(why, ': strained too far') > 0, 'names material, element, point: '//why)
+  end subroutine failure_names_the_point
+end program test_inelastic_forces

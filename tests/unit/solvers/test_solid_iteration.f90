@@ -1,0 +1,216 @@
+!> Solids that soften in steps: bars against closed forms, the order of Newton's method, energies,
+!> joints beside them, and a law that gives up.
+program test_solid_iteration
+  use kinds, only: rk
+  use errors, only: error_type
+  use amplitudes, only: amplitude
+  use problem_definition, only: problem
+  use analysis_state, only: state
+  use initial_state, only: start_analysis
+  use run_steps, only: run_all_steps
+  use joint_contraction, only: contraction_law
+  use material_elastic, only: elastic_law
+  use row_scene, only: make_row, put_at_wall, shake_base, new_step, fix, recorder, calls_of
+  use softening_law, only: damage_law, put_law
+  use testing, only: test_log, check, check_close
+  implicit none
+
+  type(test_log) :: log
+  real(rk), parameter :: young = 3.0e10_rk
+  character(10), parameter :: tangents(3) = [character(10) :: 'CONSISTENT', 'SECANT', 'ELASTIC']
+  integer :: i
+
+  log%suite = 'solid_iteration'
+  do i = 1, 3
+    call one_box_softens(tangents(i), log)
+    call weak_box_localises(tangents(i), log)
+    call bar_is_shaken(tangents(i), log)
+    call joint_is_beside(tangents(i), log)
+  end do
+  call elastic_bar_costs_nothing(log)
+  call law_gives_up(log)
+  write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
+  if (log%failed > 0) error stop 1
+
+contains
+
+  !> A row of boxes of 1 m x 0.5 m x 0.5 m, Poisson's ratio 0, held at the left end and led at the
+  !> right one.
+  subroutine make_bar(num_boxes, pull, increment, tangent, scene)
+    integer, intent(in) :: num_boxes
+    real(rk), intent(in) :: pull !< of the right end in one static step [m]
+    real(rk), intent(in) :: increment
+    character(*), intent(in) :: tangent
+    type(problem), intent(out) :: scene
+    integer :: k
+    call make_row([(real(k, rk), k=0, num_boxes)], 0.5_rk, 0.5_rk, spread(young, 1, num_boxes), &
+                  spread(2400.0_rk, 1, num_boxes), scene)
+    call new_step('STATIC', increment, 1.0_rk, scene)
+    scene%steps(1)%controls%tangent = tangent
+    scene%steps(1)%controls%residual_tolerance = 1.0e-10_rk
+    scene%steps(1)%is_direct = .true.
+    call fix([1, 2, 3, 4], 1, scene)
+    call fix([1, 2], 3, scene)
+    call fix([1, 4], 2, scene)
+    if (.not. abs(pull) > 0.0_rk) return
+    call fix([4*num_boxes + 1, 4*num_boxes + 2, 4*num_boxes + 3, 4*num_boxes + 4], 1, scene)
+    associate (last => size(scene%steps(1)%fixities))
+      scene%steps(1)%fixities(last - 3:)%value = pull
+    end associate
+  end subroutine make_bar
+
+  !> Runs it.
+  subroutine run(scene, results, now, log)
+    type(problem), intent(in) :: scene
+    type(recorder), intent(inout) :: results
+    type(state), intent(out) :: now
+    type(test_log), intent(inout) :: log
+    type(error_type), allocatable :: error
+    call start_analysis(scene, now, error)
+    call run_all_steps(scene, now, results, error)
+    if (allocated(error)) print '(a)', error%message
+    call check(log,.not. allocated(error), scene%steps(1)%controls%tangent//' runs to the end')
+    call check_close(log, results%worst_error, 0.0_rk, 1.0e-8_rk, &
+                     scene%steps(1)%controls%tangent//': error of the energy balance')
+  end subroutine run
+
+  !> sigma = E e0 exp(-(e - e0)/ef) in one box that is pulled: force, stored and fracture energy.
+  subroutine one_box_softens(tangent, log)
+    character(*), intent(in) :: tangent
+    type(test_log), intent(inout) :: log
+    type(problem) :: scene
+    type(recorder) :: results
+    type(state) :: now
+    real(rk) :: stress, strain, work
+    call make_bar(1, 1.0e-3_rk, 0.01_rk, tangent, scene)
+    call put_law(damage_law(elastic=elastic_law(young=young)), [1], scene)
+    call run(scene, results, now, log)
+    strain = 1.0e-3_rk
+    stress = young*1.0e-4_rk*exp(-0.9_rk)
+    call check_close(log, sum(now%reaction(1, 5:8)), 0.25_rk*stress, 1.0e-7_rk*stress, 'force')
+    call check_close(log, now%energy%strain, 0.125_rk*stress*strain, 1.0e-7_rk*stress*strain, &
+                     'stored energy')
+    ! Work under the curve, less what is stored; means of 100 increments: some (0.01)^2.
+    work = 0.25_rk*young*1.0e-4_rk*(0.5e-4_rk + 1.0e-3_rk*(1.0_rk - exp(-0.9_rk)))
+    call check_close(log, now%energy%fracture, work - 0.125_rk*stress*strain, 1.0e-3_rk*work, &
+                     'fracture energy')
+    call check(log, now%energy%crushing <= 0.0_rk, 'no crushing')
+  end subroutine one_box_softens
+
+  !> Five boxes, the middle one weak: it softens, the others unload. At the end its strain e follows
+  !> from the force they share, 4 sigma/E + e = 1e-3 with sigma = E e0 exp(-(e - e0)/ef).
+  subroutine weak_box_localises(tangent, log)
+    character(*), intent(in) :: tangent
+    type(test_log), intent(inout) :: log
+    type(problem) :: scene
+    type(recorder) :: results
+    type(state) :: now
+    real(rk) :: e
+    integer :: k
+    call make_bar(5, 1.0e-3_rk, 0.05_rk, tangent, scene)
+    call put_law(damage_law(elastic=elastic_law(young=young), threshold=1.5e-4_rk), [1, 2, 4, 5], &
+                 scene)
+    call put_law(damage_law(elastic=elastic_law(young=young), threshold=0.9e-4_rk), [3], scene)
+    call run(scene, results, now, log)
+    e = 1.0e-3_rk
+    do k = 1, 200
+      e = 1.0e-3_rk - 4.0_rk*0.9e-4_rk*exp(-(e - 0.9e-4_rk)/1.0e-3_rk)
+    end do
+    call check_close(log, now%u(1, 13) - now%u(1, 9), e, 1.0e-5_rk*e, 'strain of the weak box')
+    call check(log, results%most_iterations > 1, 'iterates')
+  end subroutine weak_box_localises
+
+  !> A bar cracks near its end when its base is shaken along it.
+  subroutine bar_is_shaken(tangent, log)
+    character(*), intent(in) :: tangent
+    type(test_log), intent(inout) :: log
+    type(problem) :: scene
+    type(recorder) :: results
+    type(state) :: now
+    real(rk), save :: reference = 0.0_rk
+    call make_bar(6, 0.0_rk, 1.0_rk, tangent, scene)
+    call shake(scene)
+    scene%steps(2)%controls = scene%steps(1)%controls
+    call put_law(damage_law(elastic=elastic_law(young=young), threshold=2.0e-5_rk, &
+                            slope=1.0e-3_rk), [1, 2, 3, 4, 5, 6], scene)
+    results%watched_node = 25
+    call run(scene, results, now, log)
+    call check(log, now%energy%fracture > 1.0e-3_rk*now%energy%largest, 'cracks')
+    call check(log, abs(now%energy%numerical) < 0.1_rk*now%energy%largest, 'stepping takes little')
+    if (tangent == tangents(1)) reference = now%u(1, 25)
+    call check_close(log, now%u(1, 25), reference, 1.0e-5_rk*maxval(abs(results%u)), &
+                     'the same motion with all tangents')
+  end subroutine bar_is_shaken
+
+  subroutine shake(scene)
+    type(problem), intent(inout) :: scene
+    type(amplitude) :: pulse
+    integer :: k
+    pulse%name = 'PULSE'
+    pulse%time = [(0.001_rk*k, k=0, 60)]
+    pulse%value = 60.0_rk*sin(300.0_rk*pulse%time)
+    call shake_base(pulse, scene)
+    call new_step('DYNAMIC', 5.0e-4_rk, 0.05_rk, scene)
+  end subroutine shake
+
+  !> A joint without strength at the wall opens and closes while the bar cracks.
+  subroutine joint_is_beside(tangent, log)
+    character(*), intent(in) :: tangent
+    type(test_log), intent(inout) :: log
+    type(problem) :: scene
+    type(recorder) :: results
+    type(state) :: now
+    real(rk), save :: reference = 0.0_rk
+    integer :: k
+    call make_row([(real(k, rk), k=0, 4)], 0.5_rk, 0.5_rk, spread(young, 1, 4), &
+                  spread(2400.0_rk, 1, 4), scene)
+    call put_at_wall(contraction_law(normal_stiffness=1.0e12_rk, tangent_stiffness=1.0e12_rk, &
+                                     friction=0.5_rk), scene)
+    call shake(scene)
+    scene%steps(1)%controls%tangent = tangent
+    scene%steps(1)%controls%residual_tolerance = 1.0e-10_rk
+    call put_law(damage_law(elastic=elastic_law(young=young, poisson=0.2_rk), threshold=3.0e-6_rk, &
+                            slope=1.0e-4_rk), [1, 2, 3, 4], scene)
+    results%watched_node = 17
+    call run(scene, results, now, log)
+    call check(log, now%energy%fracture > 1.0e-3_rk*now%energy%largest, 'cracks')
+    if (tangent == tangents(1)) reference = now%u(1, 17)
+    call check_close(log, now%u(1, 17), reference, 1.0e-5_rk*maxval(abs(results%u)), &
+                     'the same motion with all tangents')
+  end subroutine joint_is_beside
+
+  !> Below its strength a solid takes one solve an increment and one factor.
+  subroutine elastic_bar_costs_nothing(log)
+    type(test_log), intent(inout) :: log
+    type(problem) :: scene
+    type(recorder) :: results
+    type(state) :: now
+    call make_bar(5, 4.0e-4_rk, 0.1_rk, 'CONSISTENT', scene)
+    call put_law(damage_law(elastic=elastic_law(young=young)), [1, 2, 3, 4, 5], scene)
+    call run(scene, results, now, log)
+    call check(log, results%most_iterations == 1, 'one iteration')
+    call check(log, calls_of(results, 'factorise') == 1, 'one factor')
+    call check(log, calls_of(results, 'laws') == 10, 'laws are called once an increment')
+  end subroutine elastic_bar_costs_nothing
+
+  !> A law that cannot go on ends the run where it was, with its own words.
+  subroutine law_gives_up(log)
+    type(test_log), intent(inout) :: log
+    type(problem) :: scene
+    type(recorder) :: results
+    type(state) :: now
+    type(error_type), allocatable :: error
+    call make_bar(1, 1.0e-3_rk, 0.1_rk, 'CONSISTENT', scene)
+    scene%steps(1)%is_direct = .false.
+    call put_law(damage_law(elastic=elastic_law(young=young), largest_strain=5.0e-4_rk), [1], scene)
+    call start_analysis(scene, now, error)
+    call run_all_steps(scene, now, results, error)
+    call check(log, allocated(error), 'an error')
+    if (.not. allocated(error)) return
+    call check(log, index(error%message, 'material SOFT, element 1, point 1: strained too far ' &
+                          //'(increment ') == 1, 'names law, element, point, increment: ' &
+               //error%message)
+    call check(log, now%u(1, 5) > 4.9e-4_rk .and. now%u(1, 5) <= 5.0e-4_rk, &
+               'the last state is kept, cut down to the limit')
+  end subroutine law_gives_up
+end program test_solid_iteration
