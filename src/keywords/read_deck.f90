@@ -1,6 +1,7 @@
 !> From a deck to the problem, in passes over its cards; all faults are collected.
 module read_deck
   use card_check, only: check_card, match_card
+  use check_requests, only: warn_of_missing_fields
   use deck_echo, only: echo_of_cards
   use deck_lexer, only: read_cards
   use diagnostics, only: diagnostic_list, place, severity_error
@@ -60,6 +61,7 @@ contains
     if (.not. faults%has_errors()) call verify(model, faults)
     if (faults%has_errors()) return
     call list_inelastic_blocks(model%scene%mesh, model%scene%materials, model%scene%inelastic)
+    call warn_of_missing_fields(model, faults)
   end subroutine complete_and_verify
 
   subroutine open_draft(path, model)

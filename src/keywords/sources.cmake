@@ -34,6 +34,7 @@ set(sources
   finish_model.f90
   finish_tests.f90
   verify_model.f90
+  check_requests.f90
   deck_echo.f90
   read_deck.f90
 )

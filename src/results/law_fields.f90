@@ -8,10 +8,19 @@ module law_fields
   use stress_recovery, only: recovery_plan, max_points
   implicit none
   private
-  public :: width_of_field, field_of_block, field_at_points, mean_of_elements
+  public :: is_field_of_law, width_of_field, field_of_block, field_at_points, mean_of_elements
   public :: find_inelastic_solids, nodes_of_solids
 
+  !> Whether a scene has them is told when its deck is read.
+  character(8), parameter :: names(4) = ['PE      ', 'DAMAGET ', 'DAMAGEC ', 'SDV     ']
+
 contains
+
+  !> Is a field one that laws may keep?
+  pure elemental logical function is_field_of_law(name)
+    character(*), intent(in) :: name
+    is_field_of_law = any(names == name)
+  end function is_field_of_law
 
   !> Components of a field: those of the law with most; 0 where no law of the scene has it.
   integer function width_of_field(scene, name) result(width)

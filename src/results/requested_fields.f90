@@ -4,7 +4,7 @@ module requested_fields
   use problem_definition, only: problem
   use analysis_state, only: state
   use joint_readings, only: opening_at_nodes
-  use law_fields, only: width_of_field
+  use law_fields, only: is_field_of_law, width_of_field
   use run_records, only: run_record
   use result_writer, only: is_due
   use write_text, only: as_text
@@ -15,7 +15,7 @@ module requested_fields
 contains
 
   !> Fields of all requests that are due, each once; those that this procedure does not have are
-  !> left out with one warning.
+  !> left out with one warning (of fields of materials, when the deck was read).
   subroutine list_due_fields(scene, now, record, fields)
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
@@ -33,7 +33,7 @@ contains
           if (any(fields == request%fields(i))) cycle
           if (is_available(scene, now, request%fields(i))) then
             fields = [character(8) :: fields, request%fields(i)]
-          else
+          else if (.not. is_field_of_law(request%fields(i))) then
             call record%warn_once('step '//scene%steps(now%step)%name//' has no field '// &
                                   trim(request%fields(i))//'; it is not written')
           end if

@@ -61,7 +61,7 @@ contains
     call open_damage_record(scene, self%skin, self%damage)
   end subroutine open_record
 
-  !> Opens the envelopes of a step.
+  !> Opens the envelopes of a step, but those that the analysis does not have.
   subroutine begin_step(self, scene, step)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: scene
@@ -80,8 +80,6 @@ contains
           if (k == 0) k = size(self%envelopes)
           call open_envelope(self%envelopes(k), name, scene%mesh%num_nodes)
           self%active = [self%active, k]
-        else
-          call self%warn_once('*ENVELOPE: there is no '//trim(name)//' in this analysis')
         end if
       end associate
     end do

@@ -7,6 +7,7 @@ module write_history
   use step_plan, only: print_request
   use run_records, only: run_record
   use result_writer, only: writer, is_due
+  use law_fields, only: is_field_of_law
   use history_rows, only: name_part, header_of, columns_of, add_node_rows, add_element_rows, &
                           add_joint_rows
   use csv_files, only: csv_file
@@ -95,7 +96,7 @@ contains
       if (any(files(f)%fields == request%fields(i))) cycle
       if (columns_of(scene, request%kind, request%fields(i)) /= '') then
         files(f)%fields = [character(8) :: files(f)%fields, request%fields(i)]
-      else if (request%kind /= 'JOINT') then
+      else if (request%kind /= 'JOINT' .and. .not. is_field_of_law(request%fields(i))) then
         call record%warn_once(trim(request%fields(i))//' of '//request%name// &
                               ' is not printed: this analysis does not have it')
       end if
