@@ -1,0 +1,56 @@
+"""The UMATs of input/umat and their decks against closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from harness import ROOT
+
+FOLDER = ROOT / "input" / "umat"
+
+
+def test_elastic_is_elastic(keyway):
+    run = keyway(FOLDER / "elastic.inp", "--umat", str(FOLDER / "elastic.for"))
+    text = (FOLDER / "elastic.inp").read_text()
+    builtin = keyway(
+        text.replace("*USER MATERIAL, CONSTANTS=2", "*ELASTIC"), code=0, name="builtin"
+    )
+    for table in ("node_TIP", "el_BEAM"):
+        found, expected = run.csv(table), builtin.csv(table)
+        for name in expected:
+            # Round-off of stresses summed over increments, amplified by a beam's condition.
+            scale = np.abs(expected[name]).max()
+            assert np.allclose(found[name], expected[name], rtol=0, atol=1e-9 * scale), name
+    energy = run.json["steps"][0]["energy"]
+    assert energy["strain"] == pytest.approx(builtin.json["steps"][0]["energy"]["strain"], rel=1e-9)
+
+
+def test_j2_at_a_point_follows_the_table(keyway):
+    run = keyway(
+        FOLDER / "plastic_j2.inp", "--umat", str(FOLDER / "plastic_j2.f90"), "--material",
+        "--umat-check",
+    )  # fmt: skip
+    table = run.csv("material_PULL")
+    stress, p = np.abs(table["S11"]), table["SDV1"]
+    flows = np.diff(p, prepend=0.0) > 0.0
+    assert flows.sum() > 100
+    # On the table wherever it flows; the driver holds the side stresses to 1e-9 of the largest.
+    on_table = np.interp(p, [0.0, 0.01, 0.05], [200e6, 300e6, 320e6])
+    assert np.allclose(stress[flows], on_table[flows], rtol=1e-8)
+    assert np.all(stress <= on_table * (1 + 1e-8))
+    assert np.allclose(table["E11"], table["S11"] / 200e9 + table["SDV2"], atol=1e-12)
+    assert np.allclose(table["work"], table["stored"] + table["fracture"], rtol=1e-6, atol=1.0)
+    peak = table["leg"] == 1
+    assert table["S11"][peak][-1] == pytest.approx(2e9 / 7, rel=1e-8)  # 285.7143 MPa
+    assert float(run.stderr.split("farthest apart by ")[1].split()[0]) < 1e-6
+
+
+def test_j2_bar_in_the_structure(keyway):
+    run = keyway(FOLDER / "plastic_j2.inp", "--umat", str(FOLDER / "plastic_j2.f90"))
+    table = run.csv("el_BAR")
+    at = table["time"]
+    assert np.allclose(table["S11"][at == 1.0], 2e9 / 7, rtol=1e-6)
+    # Back to the first length, with the plastic strain 2 p1 - p after p1 = 0.06/7: on the second row
+    # of the table, s = 295 MPa + 0.5 GPa p, from -s/E + 2 p1 - p = 0.
+    p = (2 * 0.06 / 7 - 295e6 / 200e9) / (1 + 0.5e9 / 200e9)
+    assert np.allclose(table["S11"][at == 2.0], -(295e6 + 0.5e9 * p), rtol=1e-6)
