@@ -196,7 +196,7 @@ def test_the_check_finds_the_wrong_entry(keyway):
 
 def test_a_library_is_loaded_as_it_is(keyway, tmp_path):
     library = tmp_path / "law.so"
-    flags = ["-shared", "-fPIC", "-x", "f95", "-ffree-line-length-none"]
+    flags = ["-shared", "-fPIC", "-ffree-form", "-ffree-line-length-none"]
     subprocess.run(["gfortran", *flags, "-o", library, HERE / "told_form.for"], check=True)
     check_elastic(keyway(deck(), "--umat", str(library), "--material"))
 

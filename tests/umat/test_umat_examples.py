@@ -50,7 +50,7 @@ def test_j2_bar_in_the_structure(keyway):
     table = run.csv("el_BAR")
     at = table["time"]
     assert np.allclose(table["S11"][at == 1.0], 2e9 / 7, rtol=1e-6)
-    # Back to the first length, with the plastic strain 2 p1 - p after p1 = 0.06/7: on the second row
+    # Back to the first length; the plastic strain is 2 p1 - p after p1 = 0.06/7: on the second row
     # of the table, s = 295 MPa + 0.5 GPa p, from -s/E + 2 p1 - p = 0.
     p = (2 * 0.06 / 7 - 295e6 / 200e9) / (1 + 0.5e9 / 200e9)
     assert np.allclose(table["S11"][at == 2.0], -(295e6 + 0.5e9 * p), rtol=1e-6)
