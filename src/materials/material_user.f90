@@ -8,7 +8,7 @@ module material_user
                              point_state, secant_tangent, stored_energy, time_increment, &
                              update_report
   use small_matrix, only: solve_dense
-  use umat_findings, only: call_place, place_text, tangent_check
+  use umat_findings, only: call_place, tangent_check
   use umat_guards, only: fault_of_call, guarded_state, has_cholesky_factor, largest_asymmetry, &
                          size_of_guard
   use umat_interface, only: keyway_umat_call, keyway_umat_hold_traps, &
@@ -78,7 +78,8 @@ contains
     new = old
     call law%update(points, time, old, new, tangent, report)
     if (report%failed_point > 0) then
-      call raise(error, report%message, deck_is_wrong)
+      call raise(error, 'without strain, at element '//as_text(points%element(1))//': '// &
+                 report%message, deck_is_wrong)
       return
     end if
     law%stiffness = 0.5_rk*(tangent(:, :, 1) + transpose(tangent(:, :, 1)))
@@ -134,14 +135,13 @@ contains
       if (len(fault) > 0) then
         report%failed_point = p
         report%size_ratio = 1.0_rk
-        report%message = 'UMAT, '//place_text(place_of(self, points, p, time))//': '//fault
+        report%message = 'UMAT: '//fault
         exit
       end if
       if (now%pnewdt < report%size_ratio) then
         report%failed_point = p
         report%size_ratio = now%pnewdt
-        report%message = 'UMAT, '//place_text(place_of(self, points, p, time))// &
-                         ': it wants a smaller increment (PNEWDT = '//as_text(now%pnewdt)//')'
+        report%message = 'UMAT: it wants a smaller increment (PNEWDT = '//as_text(now%pnewdt)//')'
       end if
       call keep_answer(self, p, now, variables, old, new)
       if (self%library%checks_tangent) then

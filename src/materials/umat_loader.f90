@@ -36,6 +36,7 @@ module umat_loader
     type(c_ptr) :: handle = c_null_ptr
     type(c_funptr) :: umat = c_null_funptr
     type(c_funptr) :: sdvini = c_null_funptr, uexternaldb = c_null_funptr !< null: it has none
+    type(umat_file), allocatable :: files(:) !< what it was made of
     logical :: is_threadsafe = .false., checks_tangent = .false.
     type(findings) :: found
   contains
@@ -56,6 +57,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     character(:), allocatable :: path, temporary
     character(kind=c_char) :: room(longest_path)
+    library%files = request%files
     library%is_threadsafe = request%is_threadsafe
     library%checks_tangent = request%checks_tangent
     call keyway_umat_set_job(job//c_null_char, folder//c_null_char)

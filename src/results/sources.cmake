@@ -37,6 +37,7 @@ set(sources
   write_hdf5.f90
   run_summaries.f90
   damage_json.f90
+  umat_json.f90
   summary_json.f90
   result_files.f90
 )

@@ -12,6 +12,7 @@ module summary_json
   use run_summaries, only: run_summary, step_summary
   use json_writer, only: json_text
   use damage_json, only: put_damage
+  use umat_json, only: put_umat
   use whole_files, only: write_whole_file
   implicit none
   private
@@ -43,6 +44,7 @@ contains
     call put_envelopes(json, record)
     call put_joints(json, scene, record)
     call put_damage(json, record%damage)
+    call put_umat(json, scene%umat)
     call put_accuracy(json, summary)
     call put_costs(json, costs, wall_clock() - summary%started_at)
     call put_files(json, record)

@@ -74,7 +74,7 @@ def test_the_name_of_the_material_tells_laws_apart(keyway):
 def test_a_write_past_the_state_variables_is_told(keyway, depvar):
     run = pull(keyway, "writes_past.for", deck(depvar=depvar), code=1)
     assert f"it writes outside of its {depvar} state variables" in run.stderr
-    assert "UMAT, material PLAIN, element 1, point 1, step 1, increment 6" in run.stderr
+    assert "increment 6 of 10" in run.stderr
     assert np.isfinite(np.array(list(run.csv("material_PULL").values()), dtype=float)).all()
 
 
@@ -90,8 +90,7 @@ def test_a_write_past_the_state_variables_is_told(keyway, depvar):
 )
 def test_what_is_no_number_stops_the_path_and_reaches_no_file(keyway, where, word):
     run = pull(keyway, "gives_nan.for", deck(3, 2, third=where), code=1)
-    assert word in run.stderr
-    assert "element 1, point 1" in run.stderr
+    assert f"UMAT: {word}" in run.stderr
     table = run.csv("material_PULL")
     assert table["E11"][-1] == pytest.approx(0.5e-3, rel=1e-9)
     assert np.isfinite(np.array(list(table.values()), dtype=float)).all()
@@ -111,7 +110,7 @@ def test_what_is_no_number_stops_the_path_and_reaches_no_file(keyway, where, wor
 def test_a_umat_that_gives_up_comes_back(keyway, way, word):
     run = pull(keyway, "gives_up.for", deck(3, third=way), code=1)
     assert word in run.stderr
-    assert "UMAT, material PLAIN, element 1, point 1, step 1" in run.stderr
+    assert "increment 6 of 10" in run.stderr
     if way == 2:
         assert re.search(r"strain 0\.[56]\d+E-0?3 is too large at element 1", run.stderr)
         assert "fatal error: strain" in (run.folder / "job.msg").read_text()
