@@ -36,7 +36,7 @@ from keyway_tools.results_reader import Results, find_jobs
 def draw_job(results: Results, folder: Path) -> Iterator[Path | None]:
     """Make the pictures of one job, one by one; None where there is nothing to draw."""
     # VTK takes a second to load: not for a wrong command line
-    from keyway_tools.pictures_damage import plot_damaged_elements
+    from keyway_tools.pictures_damage import plot_damaged_elements, plot_mean_envelope
     from keyway_tools.pictures_faces import FIELDS, Faces, plot_envelope, plot_face_openings
     from keyway_tools.pictures_shapes import plot_deformed, plot_modes
 
@@ -46,7 +46,10 @@ def draw_job(results: Results, folder: Path) -> Iterator[Path | None]:
     faces = Faces(results)
     kept = [step for step in results.steps() if step.envelopes]
     if kept:
-        for name in (name for name in FIELDS if name in kept[-1].envelopes and name != "OPENING"):
+        for name in kept[-1].means:
+            yield plot_mean_envelope(faces, kept[-1], name, path_of(f"envelope_{name.lower()}"))
+        drawn = {"OPENING", *kept[-1].means}
+        for name in (name for name in FIELDS if name in set(kept[-1].envelopes) - drawn):
             if np.isfinite(kept[-1].envelopes[name][faces.nodes]).any():
                 yield plot_envelope(faces, kept[-1], name, path_of(f"envelope_{name.lower()}"))
         if "OPENING" in kept[-1].envelopes:

@@ -4,7 +4,7 @@ module envelopes
   use extremes, only: extremes_by_face
   implicit none
   private
-  public :: envelope, open_envelope, note_envelope, name_of_field
+  public :: envelope, open_envelope, note_envelope, note_means, name_of_field
 
   !> One quantity: 'S1' (largest principal tension), 'S3' (largest compression, the most negative),
   !> 'OPENING', 'U' (length of the displacement), 'DAMAGET' or 'DAMAGEC'.
@@ -13,6 +13,7 @@ module envelopes
     logical :: wants_smallest = .false.
     logical :: is_empty = .true. !< nothing noted in this step
     real(rk), allocatable :: value(:), time(:) !< (nodes), of this step
+    real(rk), allocatable :: mean(:) !< (elements) largest mean over each, of damage alone
     type(extremes_by_face) :: largest !< of all steps that asked for it
   end type envelope
 
@@ -29,6 +30,7 @@ contains
     if (.not. allocated(item%value)) allocate (item%value(num_nodes), item%time(num_nodes))
     item%value = 0.0_rk
     item%time = 0.0_rk
+    if (allocated(item%mean)) item%mean = 0.0_rk
   end subroutine open_envelope
 
   !> Takes note of the values on the nodes at one time.
@@ -48,6 +50,14 @@ contains
     end if
     item%is_empty = .false.
   end subroutine note_envelope
+
+  !> Takes note of the means over the elements of a quantity that is never negative.
+  subroutine note_means(item, values)
+    type(envelope), intent(inout) :: item
+    real(rk), intent(in) :: values(:) !< (elements)
+    if (.not. allocated(item%mean)) allocate (item%mean(size(values)), source=0.0_rk)
+    item%mean = max(values, item%mean)
+  end subroutine note_means
 
   !> The name of the field in files: 'S1_MAX', 'S3_MIN', ...
   pure function name_of_field(item) result(name)

@@ -5,12 +5,12 @@ module run_records
   use problem_definition, only: problem
   use analysis_state, only: state
   use dam_faces, only: dam_skin, find_dam_faces
-  use envelopes, only: envelope, open_envelope, note_envelope
+  use envelopes, only: envelope, open_envelope, note_envelope, note_means
   use extremes, only: note_values
   use joint_readings, only: joint_record, open_joint_record, note_joint, opening_at_points, &
                             opening_at_nodes
   use damage_readings, only: damage_record, open_damage_record, note_damage, note_damage_on_faces
-  use law_fields, only: width_of_field
+  use law_fields, only: width_of_field, mean_of_elements
   use stress_fields, only: recovered_fields
   implicit none
   private
@@ -129,7 +129,7 @@ contains
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
     type(envelope), intent(inout) :: item
-    real(rk), allocatable :: damage(:, :)
+    real(rk), allocatable :: damage(:, :), mean(:)
     integer :: j
     select case (item%name)
     case ('S1')
@@ -152,6 +152,8 @@ contains
     case ('DAMAGET', 'DAMAGEC')
       call self%stresses%field_on_nodes(scene, now, item%name, damage)
       call note_envelope(item, damage(1, :), now%total_time)
+      call mean_of_elements(scene, now, item%name, mean)
+      call note_means(item, mean)
       call note_damage_on_faces(scene, now, item%name, self%damage, item%largest)
     case default
       error stop 'note_one: an envelope without a rule'

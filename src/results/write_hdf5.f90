@@ -219,6 +219,9 @@ contains
       associate (item => record%envelopes(record%active(i)))
         call self%file%put(group//'/'//name_of_field(item), item%value)
         call self%file%put(group//'/'//name_of_field(item)//'_TIME', item%time)
+        if (allocated(item%mean)) then
+          call self%file%put(group//'/'//trim(item%name)//'_MEAN_MAX', item%mean)
+        end if
       end associate
     end do
     call self%bring_out(error)

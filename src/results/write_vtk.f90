@@ -145,6 +145,9 @@ contains
       associate (item => record%envelopes(record%active(i)))
         call file%put_point_reals(name_of_field(item), as_row(item%value), '')
         call file%put_point_reals(name_of_field(item)//'_TIME', as_row(item%time), '')
+        if (allocated(item%mean)) then
+          call file%put_cell_reals(trim(item%name)//'_MEAN_MAX', item%mean(self%elements))
+        end if
       end associate
     end do
     call save_listed(self, file, '_envelope_step'//text_of(record%step)//'.vtu', record, error)

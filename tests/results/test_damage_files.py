@@ -97,6 +97,10 @@ def test_envelope_keeps_damage_and_time(folder: Path):
     grid = read_grid(folder, "envelope_step1")
     last = read_grid(folder, "0003")
     assert grid["DAMAGET_MAX"] == pytest.approx(last.point_data["DAMAGET"])
+    assert grid.cell_data["DAMAGET_MEAN_MAX"] == pytest.approx([0.45, 0.95, 0, 0])
+    with h5py.File(folder / f"{JOB}.h5") as file:
+        kept = file["steps/0001/envelopes"]
+        assert kept["DAMAGET_MEAN_MAX"][:] == pytest.approx([0.45, 0.95, 0, 0])
     assert list(grid["DAMAGET_MAX_TIME"][[6, 8, 0]]) == [1.0, 1.5, 0.5]
 
 

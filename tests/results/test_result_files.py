@@ -59,7 +59,7 @@ def test_headers_are_those_of_the_contract(folder: Path):
         f"{JOB}_joint_MIDDLE.csv": "step,increment,time,point,x,y,z,"
         "opening,slip1,slip2,tn,t1,t2,state",
         f"{JOB}_energy.csv": "step,increment,time,external,kinetic,strain,damping,friction,"
-        "fracture,numerical,error",
+        "fracture,crushing,numerical,error",
     }
 
 

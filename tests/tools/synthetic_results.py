@@ -10,7 +10,9 @@ import numpy as np
 from keyway_tools.mesh_data import BrickMesh
 from keyway_tools.results_reader import ENVELOPE_NAMES
 
-ENERGIES = "step,increment,time,external,kinetic,strain,damping,friction,fracture,numerical,error"
+ENERGIES = (
+    "step,increment,time,external,kinetic,strain,damping,friction,fracture,crushing,numerical,error"
+)
 DAMAGES = (
     "step,increment,time,DAMAGET,DAMAGEC,volume_10,volume_50,volume_90,inelastic_volume,"
     "cracking,crushing"
@@ -26,7 +28,7 @@ def write_results(folder: Path, mesh: BrickMesh, job: str = "job") -> None:
         _write_points(file, mesh)
         _write_steps(file, mesh)
         time = np.linspace(0.0, 1.0, 50)
-        table = np.zeros((50, 11))
+        table = np.zeros((50, 12))
         table[:, 2] = time
         table[:, 3:6] = 1.0e7 * time[:, None] * np.array([1.0, 0.3, 0.7])
         energy = file.create_dataset("history/energy", data=table)
@@ -96,6 +98,10 @@ def _write_steps(file: h5py.File, mesh: BrickMesh) -> None:
         name = ENVELOPE_NAMES[name]
         step[f"envelopes/{name}"] = values
         step[f"envelopes/{name}_TIME"] = np.full(len(z), 4.2)
+    for name in ("DAMAGET", "DAMAGEC"):
+        means = np.zeros(len(mesh.bricks) + len(mesh.joints))
+        means[: len(mesh.bricks)] = envelopes[name][mesh.bricks].mean(axis=1)
+        step[f"envelopes/{name}_MEAN_MAX"] = means
     for number in (1, 2):
         saved = step.create_group(f"increments/{number:06d}")
         saved.attrs["time"] = 0.1 * number

@@ -1,4 +1,7 @@
-"""Where a body is cracked: its damaged elements, seen through the body."""
+"""Where a body is cracked: on its faces, and its damaged elements seen through the body.
+
+Means over the elements: on nodes a crack one element wide would fade to a half.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +11,28 @@ import numpy as np
 
 from .pictures_faces import FIELDS, Faces, compose, nice_limits
 from .render_dam import render, solid_grid
+from .results_reader import Step
 
 VISIBLE = 0.05  # elements of less mean damage are not drawn
+
+
+def plot_mean_envelope(faces: Faces, step: Step, name: str, path: Path) -> Path:
+    """The largest mean damage of the elements over a step, on every view."""
+    field, results = FIELDS[name], faces.results
+    damage = step.means[name]
+    limits = nice_limits(damage, field)
+    body = faces.grid()
+    body.cell_data["value"] = damage[results.dam]
+    pictures = {
+        title: render(
+            body, view, None, (limits[0], limits[-1]), field.colours, faces.joint_lines(),
+            bands=len(limits) - 1,
+        )
+        for title, view in faces.views.items()
+    }  # fmt: skip
+    heading = f"{field.label} over step {step.name.title()}: {damage[results.dam].max():.3g}"
+    label = f"{field.label.lower()}, element mean"
+    return compose(pictures, limits, field.colours, label, heading, {}, path)
 
 
 def plot_damaged_elements(faces: Faces, path: Path) -> Path | None:

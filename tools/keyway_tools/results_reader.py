@@ -45,12 +45,13 @@ def _as_numbers(words: tuple[str, ...]) -> np.ndarray:
 
 @dataclass
 class Step:
-    """What a step left on the nodes."""
+    """What a step left on the nodes and elements."""
 
     number: int
     name: str
     procedure: str
     envelopes: dict[str, np.ndarray]  # by field, NaN where there is none
+    means: dict[str, np.ndarray]  # of damage: the largest mean over each element
 
 
 class Results:
@@ -114,8 +115,13 @@ class Results:
             envelopes = {
                 field: kept[name][:] for field, name in ENVELOPE_NAMES.items() if name in kept
             }
+            means = {
+                field: kept[f"{field}_MEAN_MAX"][:]
+                for field in ENVELOPE_NAMES
+                if f"{field}_MEAN_MAX" in kept
+            }
             name, procedure = _text(group.attrs["name"]), _text(group.attrs["procedure"])
-            found.append(Step(int(key), name, procedure, envelopes))
+            found.append(Step(int(key), name, procedure, envelopes, means))
         return found
 
     def envelope_time(self, step: Step, field: str) -> np.ndarray:
