@@ -11,6 +11,7 @@ module run_material
   use material_tests, only: material_test
   use problem_definition, only: problem
   use timer, only: wall_clock
+  use user_routines, only: end_user_routines
   use write_material, only: write_curve
   use write_text, only: as_text
   use user_routines, only: end_user_routines
@@ -48,6 +49,8 @@ contains
     end do
     call end_user_routines(scene, 0.0_rk, log, failure)
     if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
+    call end_user_routines(scene, maxval(summaries%time), log, failure)
+    if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
     call write_test_summary(stem//'.json', scene%deck_file, summaries, failure)
     call log%say(table_of_tests(summaries))
     if (.not. allocated(error)) then
@@ -70,7 +73,7 @@ contains
     type(path_record) :: record
     type(error_type), allocatable :: failure
     associate (material => scene%materials(test%material))
-      call follow_path(material%law, test, record, error)
+      call follow_path(material%law, test, record, error, scene%umat)
       call summarise_test(test, material%name, record, summary)
       summary%has_finished = .not. allocated(error)
       if (allocated(error)) summary%message = error%message

@@ -26,6 +26,7 @@ module material_summary
     character(:), allocatable :: name, kind, material, message, file
     logical :: has_finished = .false.
     real(rk) :: length = 0.0_rk !< [m]
+    real(rk) :: time = 0.0_rk !< that the test took [s]
     integer :: rows = 0, iterations = 0
     integer :: component = 1 !< the peaks are of this one
     type(peak) :: largest, smallest
@@ -62,6 +63,7 @@ contains
         summary%largest_principal = max(summary%largest_principal, principal(1))
         summary%smallest_principal = min(summary%smallest_principal, principal(3))
       end do
+      summary%time = record%time(last)
       summary%work = record%work(last)
       summary%stored = state%energy(stored_energy, last)
       summary%fracture = state%energy(fracture_energy, last)
@@ -135,6 +137,7 @@ contains
     call json%put_text(test%material, 'material')
     call json%put_text(test%file, 'file')
     call json%put_real(test%length, 'length')
+    call json%put_real(test%time, 'time')
     call json%put_integer(test%rows, 'rows')
     call json%put_integer(test%iterations, 'iterations')
     call json%put_text(stress_names(test%component), 'component')

@@ -5,6 +5,7 @@ module material_path
   use material_law, only: stress_law, start_points
   use material_points, only: point_set, point_state, time_increment
   use material_tests, only: material_test, test_leg
+  use umat_loader, only: user_library, at_increment_end, at_increment_start
   use point_increment, only: point_control, increment_outcome, solve_increment
   use write_text, only: as_text
   implicit none
@@ -29,6 +30,7 @@ module material_path
     real(rk) :: largest = 0.0_rk !< stress so far [Pa]
     type(time_increment) :: time
     integer :: iterations = 0 !< calls of the law since the last row
+    type(user_library), pointer :: umat => null() !< whose UEXTERNALDB hears of the increments
   end type traveller
 
   real(rk), parameter :: smallest_part = 2.0_rk**(-14) !< of an increment, when it is cut
@@ -36,14 +38,16 @@ module material_path
 contains
 
   !> Leads the point through all legs. After an error the rows so far are kept.
-  subroutine follow_path(law, test, record, error)
+  subroutine follow_path(law, test, record, error, umat)
     class(stress_law), intent(in) :: law
     type(material_test), intent(in) :: test
     type(path_record), intent(out) :: record
     type(error_type), allocatable, intent(out) :: error
+    type(user_library), pointer, intent(in), optional :: umat !< null where there is none
     type(traveller) :: now
     integer :: i
     call set_out(law, test, now)
+    if (present(umat)) now%umat => umat
     call open_record(now, 1 + sum(test%legs%num_increments), record)
     call add_row(now, 0, 0, record)
     do i = 1, size(test%legs)
@@ -91,7 +95,8 @@ contains
     now%time%increment = 0
     associate (leg => test%legs(number))
       do i = 1, leg%num_increments
-        call advance(law, test, start, [i - 1, i], now, outcome)
+        call advance(law, test, start, [i - 1, i], now, outcome, error)
+        if (allocated(error)) return
         if (.not. outcome%has_converged) then
           call tell_failure(test, number, i, outcome, now, error)
           return
@@ -103,13 +108,14 @@ contains
   end subroutine follow_leg
 
   !> One increment of a leg, cut into smaller ones where it must be.
-  subroutine advance(law, test, start, bounds, now, outcome)
+  subroutine advance(law, test, start, bounds, now, outcome, error)
     class(stress_law), intent(in) :: law
     type(material_test), intent(in) :: test
     type(point_state), intent(in) :: start !< of the leg
     integer, intent(in) :: bounds(2) !< increments of the leg that are done before and after it
     type(traveller), intent(inout) :: now
     type(increment_outcome), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: error !< of a UMAT that gives up
     type(point_state) :: new
     real(rk) :: tangent(6, 6, 1), at, part, leg_start
     logical :: is_last
@@ -124,6 +130,8 @@ contains
         now%time%total_time = leg_start + now%time%step_time
         now%time%size = leg%duration*part/leg%num_increments
         now%time%increment = now%time%increment + 1
+        call tell_user(at_increment_start, now, error)
+        if (allocated(error)) return
         tangent = now%tangent
         call solve_increment(law, now%points, now%time, &
                              control_at(test, leg, start, (bounds(1) + at + part)/ &
@@ -132,7 +140,8 @@ contains
         now%iterations = now%iterations + outcome%iterations
         if (outcome%has_converged) then
           call accept(new, tangent, now)
-          if (is_last) return
+          call tell_user(at_increment_end, now, error)
+          if (is_last .or. allocated(error)) return
           at = at + part
           part = 2.0_rk*part
         else
@@ -143,6 +152,18 @@ contains
       end do
     end associate
   end subroutine advance
+
+  !> Tells a UMAT of a moment.
+  subroutine tell_user(moment, now, error)
+    integer, intent(in) :: moment
+    type(traveller), intent(in) :: now
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: passed
+    if (.not. associated(now%umat)) return
+    passed = merge(now%time%size, 0.0_rk, moment == at_increment_end)
+    call now%umat%call_external(moment, [now%time%step_time, now%time%total_time] + passed, &
+                                now%time%size, now%time%step, now%time%increment, error)
+  end subroutine tell_user
 
   !> What the components follow at a part of the leg.
   pure function control_at(test, leg, start, part, largest) result(control)
