@@ -25,7 +25,7 @@ module material_path
   type :: traveller
     type(point_set) :: points
     type(point_state) :: old !< converged
-    real(rk) :: tangent(6, 6, 1) = 0.0_rk !< at `old` [Pa]
+    real(rk) :: tangent(6, 6, 1) = 0.0_rk !< at `old`; elastic at the start of a leg [Pa]
     real(rk) :: work = 0.0_rk !< [J/m3]
     real(rk) :: largest = 0.0_rk !< stress so far [Pa]
     type(time_increment) :: time
@@ -34,6 +34,7 @@ module material_path
   end type traveller
 
   real(rk), parameter :: smallest_part = 2.0_rk**(-14) !< of an increment, when it is cut
+  integer, parameter :: most_calls = 20000 !< of the law in an increment with all its parts
 
 contains
 
@@ -74,7 +75,6 @@ contains
       end do
     end associate
     call start_points(law, now%points, now%old)
-    call law%elastic_stiffness(now%tangent(:, :, 1))
   end subroutine set_out
 
   !> One leg, increment by increment.
@@ -89,6 +89,8 @@ contains
     type(increment_outcome) :: outcome
     real(rk) :: started_at
     integer :: i
+    ! A leg may turn back: the tangent of a falling branch would lead a stress on down that branch.
+    call law%elastic_stiffness(now%tangent(:, :, 1))
     start = now%old
     started_at = now%time%total_time
     now%time%step = number
@@ -147,7 +149,7 @@ contains
         else
           part = part*outcome%size_ratio
           now%time%increment = now%time%increment - 1
-          if (part < smallest_part) return
+          if (part < smallest_part .or. now%iterations > most_calls) return
         end if
       end do
     end associate

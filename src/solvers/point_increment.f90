@@ -6,7 +6,7 @@ module point_increment
   use material_law, only: stress_law
   use material_points, only: point_set, point_state, time_increment, update_report, &
                              consistent_tangent, secant_tangent
-  use small_matrix, only: solve_dense
+  use small_matrix, only: outer_product, solve_dense
   implicit none
   private
   public :: point_control, increment_outcome, solve_increment
@@ -27,7 +27,7 @@ module point_increment
     character(:), allocatable :: message !< of the law, '' where it had no trouble
   end type increment_outcome
 
-  integer, parameter :: most_iterations = 25 !< of Newton's method with one kind of tangent
+  integer, parameter :: most_iterations = 40 !< with one kind of tangent
   integer, parameter :: most_halvings = 6 !< of a correction that makes the error larger
   real(rk), parameter :: least_gain = 1.0e-4_rk !< part of the error that a correction must take
   real(rk), parameter :: least_ratio = 0.1_rk !< no law may ask for less in one go
@@ -35,7 +35,7 @@ module point_increment
 contains
 
   !> Finds the strains at the end of the increment: with the consistent tangent, and where that does
-  !> not converge once more with the secant one.
+  !> not converge once more with Broyden's updates of the secant one, which trust the stresses alone.
   subroutine solve_increment(law, points, time, control, old, new, tangent, outcome)
     class(stress_law), intent(in) :: law
     type(point_set), intent(in) :: points !< one point
@@ -59,6 +59,7 @@ contains
       new = old
       where (.not. control%is_stress) new%strain(:, 1) = control%value
       call iterate(law, points, now, control, old, new, tangent, outcome)
+      if (i > 1) tangent = first_tangent
       outcome%iterations = outcome%iterations + num_before
       num_before = outcome%iterations
       if (outcome%has_converged .or. .not. any(control%is_stress)) exit
@@ -76,12 +77,15 @@ contains
     type(point_state), intent(inout) :: new !< comes with the strains that are given
     real(rk), intent(inout) :: tangent(6, 6, 1)
     type(increment_outcome), intent(out) :: outcome
-    real(rk) :: correction(6), strain(6), error, allowed, largest
+    real(rk) :: correction(6), strain(6), lack(6), matrix(6, 6), error, allowed, largest
     integer :: iteration, halving
     logical :: is_good
     outcome%message = ''
     strain = new%strain(:, 1)
-    correction = first_correction(control, old, strain, tangent(:, :, 1))
+    matrix = matrix_of(control, tangent(:, :, 1))
+    lack = stress_error(control, old%stress(:, 1) + &
+                        matmul(tangent(:, :, 1), strain - old%strain(:, 1)))
+    correction = correction_of(control, lack, matrix)
     largest = huge(1.0_rk)
     do iteration = 1, most_iterations
       do halving = 0, most_halvings
@@ -97,10 +101,15 @@ contains
         correction = 0.5_rk*correction
       end do
       if (.not. is_good) return
+      if (time%tangent == consistent_tangent) then
+        matrix = matrix_of(control, tangent(:, :, 1))
+      else if (iteration > 1) then
+        call update_matrix(correction, stress_error(control, new%stress(:, 1)) - lack, matrix)
+      end if
       largest = error
       strain = new%strain(:, 1)
-      correction = correction_of(control, stress_error(control, new%stress(:, 1)), &
-                                 tangent(:, :, 1))
+      lack = stress_error(control, new%stress(:, 1))
+      correction = correction_of(control, lack, matrix)
     end do
   end subroutine iterate
 
@@ -137,38 +146,44 @@ contains
     where (control%is_stress) error = stress - control%share*stress(1) - control%value
   end function stress_error
 
-  !> The free strains that the tangent at the start of the increment foretells.
-  pure function first_correction(control, old, strain, tangent) result(correction)
+  !> Derivative of the errors of the given stresses by the free strains, in the rows and columns of
+  !> those components; the unit matrix for the others.
+  pure function matrix_of(control, tangent) result(matrix)
     type(point_control), intent(in) :: control
-    type(point_state), intent(in) :: old
-    real(rk), intent(in) :: strain(6) !< with the given ones at the end of the increment
-    real(rk), intent(in) :: tangent(6, 6)
-    real(rk) :: correction(6), stress(6)
-    stress = old%stress(:, 1) + matmul(tangent, strain - old%strain(:, 1))
-    correction = correction_of(control, stress_error(control, stress), tangent)
-  end function first_correction
-
-  !> Change of the free strains that takes the error of the stresses away; zero where the tangent
-  !> is singular.
-  pure function correction_of(control, error, tangent) result(correction)
-    type(point_control), intent(in) :: control
-    real(rk), intent(in) :: error(6), tangent(6, 6)
-    real(rk) :: correction(6)
-    integer, allocatable :: free(:)
-    real(rk), allocatable :: matrix(:, :), change(:, :)
-    logical :: is_singular
+    real(rk), intent(in) :: tangent(6, 6) !< [Pa]
+    real(rk) :: matrix(6, 6)
     integer :: i
-    correction = 0.0_rk
-    free = pack([(i, i=1, 6)], control%is_stress)
-    if (size(free) == 0) return
-    matrix = tangent(free, free)
-    do i = 1, size(free)
-      matrix(i, :) = matrix(i, :) - control%share(free(i))*tangent(1, free)
+    do i = 1, 6
+      matrix(i, :) = merge(tangent(i, :) - control%share(i)*tangent(1, :), 0.0_rk, &
+                           control%is_stress .and. control%is_stress(i))
+      if (.not. control%is_stress(i)) matrix(i, i) = 1.0_rk
     end do
-    allocate (change(size(free), 1))
-    call solve_dense(matrix, reshape(-error(free), [size(free), 1]), change, is_singular)
+  end function matrix_of
+
+  !> Broyden's update: the least change of the matrix that explains what the last step did.
+  pure subroutine update_matrix(change, gain, matrix)
+    real(rk), intent(in) :: change(6) !< of the free strains, zero for the others
+    real(rk), intent(in) :: gain(6) !< of the errors that came with it [Pa]
+    real(rk), intent(inout) :: matrix(6, 6)
+    real(rk) :: size_squared
+    size_squared = sum(change**2)
+    if (.not. size_squared > 0.0_rk) return
+    matrix = matrix + outer_product((gain - matmul(matrix, change))/size_squared, change)
+  end subroutine update_matrix
+
+  !> Change of the free strains that takes the error of the stresses away; zero where the matrix is
+  !> singular.
+  pure function correction_of(control, error, matrix) result(correction)
+    type(point_control), intent(in) :: control
+    real(rk), intent(in) :: error(6), matrix(6, 6)
+    real(rk) :: correction(6)
+    real(rk) :: change(6, 1)
+    logical :: is_singular
+    correction = 0.0_rk
+    if (.not. any(control%is_stress)) return
+    call solve_dense(matrix, reshape(-error, [6, 1]), change, is_singular)
     if (is_singular) return
-    if (all(ieee_is_finite(change))) correction(free) = change(:, 1)
+    if (all(ieee_is_finite(change))) correction = merge(change(:, 1), 0.0_rk, control%is_stress)
   end function correction_of
 
   !> The displacement gradient of a strain without rotation.

@@ -144,7 +144,7 @@ def test_strength_under_confinement(curves):
         assert tables[name]["S22"][-1] == pytest.approx(-pressure, rel=1e-8, abs=1.0)
 
 
-@pytest.mark.parametrize("length", [0.05, 0.5, 1.5])
+@pytest.mark.parametrize("length", [0.05, 0.5, 0.95])
 def test_length_times_energy_is_fracture_energy(keyway, length):
     """Pulled until the crack is open: what is dissipated per volume, times the length, is G_f. The
     strength never falls to zero (a floor of the curves), hence 1 %."""
