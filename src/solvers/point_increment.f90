@@ -35,7 +35,7 @@ module point_increment
 contains
 
   !> Finds the strains at the end of the increment: with the consistent tangent, and where that does
-  !> not converge once more with Broyden's updates of the secant one, which trust the stresses alone.
+  !> not converge once more with Broyden's updates of the secant one, which trust stresses alone.
   subroutine solve_increment(law, points, time, control, old, new, tangent, outcome)
     class(stress_law), intent(in) :: law
     type(point_set), intent(in) :: points !< one point
