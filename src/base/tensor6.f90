@@ -63,6 +63,7 @@ contains
     if (scale < tiny(1.0_rk)) return
     s = s/scale
     j2 = second_invariant(s)/3.0_rk
+    if (j2 < epsilon(j2)**2) return ! what the mean lost in rounding
     cosine = 0.5_rk*third_invariant(s)/(j2*sqrt(j2))
     angle = acos(max(-1.0_rk, min(1.0_rk, cosine)))/3.0_rk
     if (abs(cosine) < safe_cosine) then
@@ -93,6 +94,7 @@ contains
     if (scale < tiny(1.0_rk)) return
     s = s/scale
     j2 = second_invariant(s)/3.0_rk
+    if (j2 < epsilon(j2)**2) return ! what the mean lost in rounding
     cosine = 0.5_rk*third_invariant(s)/(j2*sqrt(j2))
     angle = acos(max(-1.0_rk, min(1.0_rk, cosine)))/3.0_rk
     if (cosine < 0.0_rk) angle = angle + third_of_turn

@@ -82,18 +82,18 @@ contains
     type(plastic_state), intent(in) :: old
     type(placed_curves), intent(inout) :: placed
     type(increment_result), intent(out) :: end_state
-    real(rk) :: principal(3), width
+    real(rk) :: principal(3), deviator(6), width
     associate (trial => end_state%trial, flow => end_state%flow)
       end_state%state = old
       end_state%stress = elastic_stress(model, strain - old%strain)
       trial%p = -trace(end_state%stress)/3.0_rk
-      trial%q = sqrt(3.0_rk*second_invariant(end_state%stress))
       trial%measures = old%measures
-      call principal_axes(end_state%stress, principal, end_state%axes)
+      deviator = deviator_of(end_state%stress)
+      trial%q = sqrt(3.0_rk*second_invariant(deviator))
+      call principal_axes(deviator, principal, end_state%axes)
       if (trial%q > 0.0_rk) then
-        end_state%shape = end_state%stress/trial%q
-        end_state%shape(1:3) = (end_state%stress(1:3) + trial%p)/trial%q
-        trial%shape = (principal + trial%p)/trial%q
+        end_state%shape = deviator/trial%q
+        trial%shape = principal/trial%q
       end if
       width = old%width
       if (width <= 0.0_rk) width = band_width(edges, end_state%axes(:, 1))
@@ -106,6 +106,16 @@ contains
       call take_flow(model, width, end_state)
     end associate
   end subroutine integrate_part
+
+  !> The deviator, with a trace that is zero to roundoff of itself: in nearly hydrostatic states
+  !> what is left of the pressure would show in the volume of the flow.
+  pure function deviator_of(stress) result(deviator)
+    real(rk), intent(in) :: stress(6)
+    real(rk) :: deviator(6)
+    deviator = stress
+    deviator(1:3) = deviator(1:3) - trace(stress)/3.0_rk
+    deviator(1:3) = deviator(1:3) - trace(deviator)/3.0_rk
+  end function deviator_of
 
   !> Adds the flow to the plastic strain.
   pure subroutine take_flow(model, width, end_state)

@@ -16,7 +16,7 @@ module damage_model
     real(rk) :: shear = 0.0_rk, bulk = 0.0_rk !< mu, K [Pa]
     real(rk) :: alpha = 0.0_rk, gamma = 0.0_rk !< of Eq 19
     real(rk) :: tan_dilation = 0.0_rk !< tan psi of Eq 25
-    real(rk) :: rounding = 0.0_rk !< a = xi sigma_10 tan psi of Eq 25 [Pa]
+    real(rk) :: rounding = 0.0_rk !< a of Eq 25 [Pa]; see rounding_of
     real(rk) :: tension_recovery = 0.0_rk, compression_recovery = 1.0_rk !< w_t, w_c of Eq 16
     logical :: recovers_by_sign = .false. !< r of Eq 17
     real(rk) :: viscosity = 0.0_rk !< [s]
@@ -29,6 +29,7 @@ module damage_model
   type :: placed_curves
     real(rk) :: width = -1.0_rk !< of the band [m]; negative: not placed yet
     real(rk) :: factor = 1.0_rk !< on the strength in tension, below 1 in a band that is too wide
+    real(rk) :: rounding = 0.0_rk !< a of Eq 25 with that strength [Pa]
     real(rk), allocatable :: tension(:), compression(:)
   end type placed_curves
 
@@ -48,7 +49,6 @@ contains
     model%alpha = (b - 1.0_rk)/(2.0_rk*b - 1.0_rk)
     model%gamma = 3.0_rk*(1.0_rk - k)/(2.0_rk*k - 1.0_rk)
     model%tan_dilation = tan(constants%dilation*degree)
-    model%rounding = constants%offset*constants%tension(1, 1)*model%tan_dilation
     model%tension_recovery = constants%tension_recovery
     model%compression_recovery = constants%compression_recovery
     model%recovers_by_sign = constants%recovers_by_sign
@@ -56,6 +56,7 @@ contains
     model%by_opening = constants%stiffening /= 'STRAIN'
     call make_tension_curve(constants, model%tension)
     call make_compression_curve(constants, model%compression)
+    model%rounding = rounding_of(model, constants%offset)
   end subroutine make_concrete_model
 
   !> Places the curves for a width of the crack band, unless they are there already.
@@ -73,6 +74,7 @@ contains
       call place_knots(model%compression, 1.0_rk, placed%compression, whole)
     end if
     call place_knots(model%tension, used, placed%tension, placed%factor)
+    placed%rounding = placed%factor*model%rounding
     placed%width = used
   end subroutine place_curves
 
@@ -89,10 +91,34 @@ contains
     end do
   end subroutine stiffness_of
 
+  !> a of Eq 25, xi sigma_10 tan psi, but no larger than what the work of flow,
+  !> q^2/sqrt(a^2 + q^2) - p tan psi, admits without turning negative where the curves end: flow at
+  !> an apex rounded wider than the surface would give energy back. That is less only where an
+  !> effective strength falls below a third of xi sigma_10 or so, and then it matters little: a
+  !> shapes the flow near the hydrostatic axis alone.
+  !>
+  !> With a principal tension under pressure q >= 3/2 p, and q >= (1 + alpha) t by Eq 19, or
+  !> (1 - alpha) c where beta is kept at zero. Without a principal tension q exceeds p tan psi by
+  !> (1 - alpha) c/(1 + 2/3 gamma) at least (see largest_safe_dilation).
+  pure real(rk) function rounding_of(model, offset) result(rounding)
+    type(concrete_model), intent(in) :: model
+    real(rk), intent(in) :: offset !< xi
+    real(rk) :: tension, compression, steepness
+    rounding = offset*model%tension%strength(1)*model%tan_dilation
+    steepness = model%tan_dilation/1.5_rk
+    if (steepness >= 1.0_rk) return
+    tension = minval(model%tension%strength/(1.0_rk - model%tension%damage))
+    compression = minval(model%compression%strength/(1.0_rk - model%compression%damage))
+    rounding = min(rounding, (1.0_rk - model%alpha)*compression &
+                   /(1.0_rk + 2.0_rk/3.0_rk*model%gamma), &
+                   sqrt(1.0_rk - steepness**2)/steepness &
+                   *min((1.0_rk + model%alpha)*tension, (1.0_rk - model%alpha)*compression))
+  end function rounding_of
+
   !> Largest tan psi for which flow never gives energy back: the slope q/p of the yield surface
   !> under high pressure where it is flattest, on the tensile meridian (s_1 = -p + 2 q/3 in Eq 19),
   !> and 3/2, the least q/p of states with a principal tension. The work of flow is
-  !> q^2/sqrt(a^2 + q^2) - p tan psi, hence not negative while q is large against a.
+  !> q^2/sqrt(a^2 + q^2) - p tan psi, not negative with this and the a of rounding_of.
   pure real(rk) function largest_safe_dilation(biaxial_ratio, meridian_ratio) result(tangent)
     real(rk), intent(in) :: biaxial_ratio !< f_b0/f_c0
     real(rk), intent(in) :: meridian_ratio !< K_c

@@ -56,7 +56,8 @@ contains
     type(flow_state), intent(inout) :: flow !< comes with guesses of its rows
     real(rk) :: slope, direction, direction_rate, share_rate, smallest, smallest_rate
     flow%x = x
-    call reduce_deviator(model, trial%q, x, flow)
+    call reduce_deviator(placed%rounding, trial%q, 3.0_rk*model%shear*x, flow)
+    flow%q_rate = -3.0_rk*model%shear*flow%q/flow%radius/flow%stiffening
     slope = 1.5_rk/flow%radius
     flow%p = trial%p + model%bulk*model%tan_dilation*x
     flow%s = flow%q*trial%shape - flow%p
@@ -65,7 +66,7 @@ contains
     share_rate = dot_product(flow%share_by, flow%s_rate)
     ! (q/sqrt(a^2 + q^2))' = a^2 q'/sqrt(a^2 + q^2)^3
     direction = slope*flow%q
-    direction_rate = slope*flow%q_rate*(model%rounding/flow%radius)**2
+    direction_rate = slope*flow%q_rate*(placed%rounding/flow%radius)**2
     flow%largest_flow = direction*trial%shape(1) + model%tan_dilation/3.0_rk
     smallest = direction*trial%shape(3) + model%tan_dilation/3.0_rk
     smallest_rate = merge(-direction_rate*trial%shape(3), 0.0_rk, smallest < 0.0_rk)
@@ -78,26 +79,24 @@ contains
     call judge(model, placed, flow)
   end subroutine flow_by
 
-  !> q after flow by x, and its derivative. The left side of the equation for q is increasing and
+  !> q after flow by x. The left side of the equation for q is increasing and
   !> concave, so Newton's iteration climbs to the root from any value below it.
-  pure subroutine reduce_deviator(model, q_trial, x, flow)
-    type(concrete_model), intent(in) :: model
-    real(rk), intent(in) :: q_trial, x
-    type(flow_state), intent(inout) :: flow !< q, q_rate, radius, stiffening come out
-    real(rk) :: reach, square, q, excess
+  pure subroutine reduce_deviator(rounding, q_trial, reach, flow)
+    real(rk), intent(in) :: rounding, q_trial !< a, q_tr [Pa]
+    real(rk), intent(in) :: reach !< 3 mu x [Pa]
+    type(flow_state), intent(inout) :: flow !< q, radius, stiffening come out
+    real(rk) :: square, q, excess
     integer :: i
-    reach = 3.0_rk*model%shear*x
-    square = model%rounding**2
-    q = max(q_trial - reach, q_trial*model%rounding/(model%rounding + reach))
+    square = rounding**2
+    q = max(q_trial - reach, q_trial*rounding/(rounding + reach))
     do i = 1, max_inner
       flow%radius = sqrt(square + q**2)
       flow%stiffening = 1.0_rk + reach*square/flow%radius**3
-      excess = (q_trial - q*(1.0_rk + reach/flow%radius))/flow%stiffening
-      q = q + excess
-      if (abs(excess) <= 1.0e-15_rk*q) exit
+      flow%q = q
+      excess = q_trial - q*(1.0_rk + reach/flow%radius)
+      if (excess <= 2.0_rk*epsilon(excess)*q_trial) exit
+      q = q + excess/flow%stiffening
     end do
-    flow%q = q
-    flow%q_rate = -3.0_rk*model%shear*q/flow%radius/flow%stiffening
   end subroutine reduce_deviator
 
   !> F and its derivative by x.
@@ -161,7 +160,7 @@ contains
   pure real(rk) function residual_limit(trial, flow) result(limit)
     type(trial_state), intent(in) :: trial
     type(flow_state), intent(in) :: flow
-    limit = 4.0_rk*epsilon(limit)*(1.0_rk + flow%f%by_largest)*(trial%q + abs(trial%p))
+    limit = epsilon(limit)*(1.0_rk + flow%f%by_largest)*(trial%q + abs(trial%p))
     limit = min(max(limit, tolerance*flow%compression%strength), &
                 acceptable*flow%compression%strength)
   end function residual_limit

@@ -1,11 +1,11 @@
-!> Yield surface, flow and the share of tension of plastic-damage concrete, in principal effective
+!> Yield surface, damage and the share of tension of plastic-damage concrete, in principal effective
 !> stresses s_1 >= s_2 >= s_3 (tension positive; p positive in compression).
 module damage_yield
   use damage_model, only: concrete_model
   use kinds, only: rk
   implicit none
   private
-  public :: yield_value, yield_at, tension_share, flow_at, total_damage, damage_gradient
+  public :: yield_value, yield_at, tension_share, total_damage, damage_gradient
 
   !> F of Eq 19 and its derivatives.
   type :: yield_value
@@ -63,14 +63,6 @@ contains
       gradient(i) = merge(1.0_rk - share, share, s(i) > 0.0_rk)/whole
     end do
   end subroutine tension_share
-
-  !> dG/ds of Eq 25 in principal directions: 3/2 S_i/sqrt(a^2 + q^2) + tan(psi)/3.
-  pure function flow_at(model, deviator, q) result(flow)
-    type(concrete_model), intent(in) :: model
-    real(rk), intent(in) :: deviator(3), q !< S_i, q [Pa]
-    real(rk) :: flow(3)
-    flow = 1.5_rk*deviator/sqrt(model%rounding**2 + q**2) + model%tan_dilation/3.0_rk
-  end function flow_at
 
   !> d of Eqs 15-16.
   pure elemental function total_damage(model, tension, compression, share) result(d)

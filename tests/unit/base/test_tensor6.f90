@@ -2,8 +2,8 @@
 program test_tensor6
   use kinds, only: rk
   use small_matrix, only: cross_product, determinant3
-  use tensor6, only: as_matrix, principal_values, second_invariant, third_invariant, trace, &
-                     von_mises
+  use tensor6, only: as_matrix, principal_axes, principal_values, second_invariant, &
+                     third_invariant, trace, von_mises
   use testing, only: check, check_close, test_log
   implicit none
   real(rk), parameter :: roundoff = 20.0_rk*epsilon(1.0_rk) !< a few operations on the largest value
@@ -21,9 +21,29 @@ contains
   subroutine expect(tensor, values, what)
     real(rk), intent(in) :: tensor(6), values(3)
     character(*), intent(in) :: what
+    real(rk) :: found(3), axes(3, 3)
     call check_close(log, maxval(abs(principal_values(tensor) - values)), 0.0_rk, &
                      roundoff*max(maxval(abs(values)), tiny(1.0_rk)), what)
+    call principal_axes(tensor, found, axes)
+    call check_close(log, axes_error(tensor, found, axes), 0.0_rk, &
+                     roundoff*max(maxval(abs(values)), tiny(1.0_rk)), what//': axes')
   end subroutine expect
+
+  !> What is left of the tensor when it is built again of values and axes, and of the unit matrix
+  !> when it is built of the axes, and how far the values are out of order.
+  pure real(rk) function axes_error(tensor, values, axes) result(error)
+    real(rk), intent(in) :: tensor(6), values(3), axes(3, 3)
+    real(rk) :: scaled(3, 3), unit(3, 3)
+    integer :: i
+    unit = matmul(transpose(axes), axes)
+    do i = 1, 3
+      scaled(:, i) = values(i)*axes(:, i)
+      unit(i, i) = unit(i, i) - 1.0_rk
+    end do
+    error = maxval(abs(matmul(scaled, transpose(axes)) - as_matrix(tensor)))
+    error = max(error, maxval(abs(unit))*maxval(abs(values)))
+    error = max(error, values(2) - values(1), values(3) - values(2))
+  end function axes_error
 
   !> States whose principal values are known at sight.
   subroutine simple_states()
@@ -56,9 +76,10 @@ contains
 
   !> Random axes, values that are apart, near or equal by turns: error a few units of roundoff.
   subroutine rotated_states()
-    real(rk) :: axes(3, 3), values(3), matrix(3, 3), chance(3), worst
+    real(rk) :: axes(3, 3), values(3), matrix(3, 3), chance(3), worst, worst_axes, tensor(6)
     integer :: i, k
     worst = 0.0_rk
+    worst_axes = 0.0_rk
     do i = 1, 3000
       call random_number(axes)
       call random_number(chance)
@@ -74,10 +95,12 @@ contains
       do k = 1, 3
         matrix = matrix + values(k)*spread(axes(:, k), 2, 3)*spread(axes(:, k), 1, 3)
       end do
-      worst = max(worst, maxval(abs(values - principal_values( &
-                                    [matrix(1, 1), matrix(2, 2), matrix(3, 3), matrix(1, 2), &
-                                     matrix(1, 3), matrix(2, 3)]))))
+      tensor = [matrix(1, 1), matrix(2, 2), matrix(3, 3), matrix(1, 2), matrix(1, 3), matrix(2, 3)]
+      worst = max(worst, maxval(abs(values - principal_values(tensor))))
+      call principal_axes(tensor, values, axes)
+      worst_axes = max(worst_axes, axes_error(tensor, values, axes))
     end do
     call check_close(log, worst, 0.0_rk, roundoff, 'random axes')
+    call check_close(log, worst_axes, 0.0_rk, roundoff, 'axes found')
   end subroutine rotated_states
 end program test_tensor6
