@@ -140,7 +140,7 @@ def test_meridians(keyway, ratio):
     side = -100e6
     pressed = Leg.of("SSSEEE", [side, side, side, 0, 0, 0])
     slopes = []
-    for axial, meridian in ((0.02, 0), (-0.02, 1)):
+    for axial, meridian in ((0.05, 0), (-0.05, 1)):
         push = Leg.of("ESSEEE", [axial, side, side, 0, 0, 0])
         stress = led(keyway, material, [pressed, push], 50).stress[-1]
         pressure, size = -np.sum(stress[:3]) / 3.0, abs(stress[0] - stress[1])
@@ -164,7 +164,7 @@ def test_hydrostatic_tension(keyway):
 
 def test_a_hundred_cycles(keyway):
     """Between a crack and a closed crack nothing more happens after the first cycle."""
-    ends = [3e-4, -1e-3] * 100
+    ends = [3e-4, -8e-4] * 100
     curve = led(keyway, JINPING, uniaxial(*ends), 5)
     for values, size in ((curve.stress[:, 0], 2.48e6), (curve.plastic[:, 0], 1e-4)):
         at_ends = curve.at_legs(values, 5).reshape(100, 2)
