@@ -1,4 +1,8 @@
-"""Duvaut and Lions' viscosity: the point lags behind what it would do without."""
+"""Duvaut and Lions' viscosity: the point lags behind what it would do without.
+
+Plastic strain and both damages lag; the share r of tension is that of the lagging effective stress,
+so that a crack closes at once.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +19,7 @@ class Lagging:
     """Lagging plastic strain and damage, and the stress they leave [Pa]."""
 
     plastic: np.ndarray
-    damage: np.ndarray
+    damage: np.ndarray  # d_t, d_c (rows, 2)
     stress: np.ndarray
 
 
@@ -34,6 +38,7 @@ def lag(values: np.ndarray, times: np.ndarray, viscosity: float) -> np.ndarray:
 def relax(law: Concrete, history: History, times: np.ndarray, viscosity: float) -> Lagging:
     """A strain-driven history with viscosity [s]; its rows must be close together in time."""
     plastic = lag(history.plastic, times, viscosity)
-    damage = lag(history.damage[:, 2:], times, viscosity)
-    stress = (1.0 - damage) * ((history.strain - plastic) @ law.stiffness)
-    return Lagging(plastic, damage[:, 0], stress)
+    damage = lag(history.damage[:, :2], times, viscosity)
+    effective = (history.strain - plastic) @ law.stiffness
+    loss = law.loss(law.share(effective), damage[:, 0], damage[:, 1])
+    return Lagging(plastic, damage, (1.0 - loss)[:, None] * effective)
