@@ -1,0 +1,84 @@
+"""A brick that is torn takes G_f times its area, along its long side and across it.
+
+Exact but for the strength that stays, a thousandth of f_t (theory 11.4): after the opening w the
+energy is G_f (1 - 1e-6) + 1e-3 f_t (w - w_u). The cube root of the volume as the width of the band
+would give 1/2.9 and 1.7 times as much in a brick of 1 x 1 x 5.
+"""
+
+import numpy as np
+import pytest
+
+YOUNG, STRENGTH, ENERGY = 25e9, 2.48e6, 400.0
+LAST_OPENING = 2.0 * ENERGY / STRENGTH
+CORNERS = np.array(
+    [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+)
+
+
+def torn_brick(size, axis, element="C3D8", energy=ENERGY, option="", opening=2.0 * LAST_OPENING):
+    """A brick with free sides, pulled along an axis (0-2) until its crack is open."""
+    lines = ["*NODE"]
+    lines += [f"{n}, {x}, {y}, {z}" for n, (x, y, z) in enumerate(CORNERS * size, start=1)]
+    lines += [f"*ELEMENT, TYPE={element}, ELSET=BRICK", "1, 1, 2, 3, 4, 5, 6, 7, 8"]
+    for name, side in (("HELD", 0), ("PULLED", 1)):
+        members = np.flatnonzero(CORNERS[:, axis] == side) + 1
+        lines += [f"*NSET, NSET={name}", ", ".join(map(str, members))]
+    lines += ["*MATERIAL, NAME=CONCRETE", "*ELASTIC", f"{YOUNG}, 0.2"]
+    lines += ["*CONCRETE DAMAGED PLASTICITY", "32.5"]
+    lines += ["*CONCRETE COMPRESSION HARDENING", "30e6, 0."]
+    lines += [f"*CONCRETE TENSION STIFFENING, TYPE=GFI{option}", f"{STRENGTH}, {energy}"]
+    lines += ["*SOLID SECTION, ELSET=BRICK, MATERIAL=CONCRETE"]
+    along, across, third = axis + 1, (axis + 1) % 3 + 1, (axis + 2) % 3 + 1
+    lines += ["*BOUNDARY", f"HELD, {along}, {along}", f"1, {across}, {across}"]
+    # the corner beside node 1 on the axis `across` keeps the brick from turning about its own
+    beside = 1 + int(np.flatnonzero((np.eye(3)[across - 1] == CORNERS).all(axis=1))[0])
+    lines += [f"1, {third}, {third}", f"{beside}, {third}, {third}"]
+    lines += ["*STEP, INC=1000", "*STATIC", "0.005, 1., 1e-8, 0.02"]
+    lines += ["*BOUNDARY", f"PULLED, {along}, {along}, {opening!r}"]
+    lines += ["*EL PRINT, ELSET=BRICK", "S", "*END STEP", ""]
+    return "\n".join(lines)
+
+
+def energy_of_crack(run):
+    return run.json["steps"][-1]["energy"]["fracture"]
+
+
+@pytest.mark.parametrize("element", ["C3D8", "C3D8B", "C3D8I", "C3D8R"])
+@pytest.mark.parametrize("axis", [0, 2])
+def test_energy_of_a_long_brick(keyway, element, axis):
+    """0.2 %: the midpoint rule at the kinks of the curve, in increments of 2 % of the path."""
+    size = np.array([0.5, 0.5, 2.5])
+    run = keyway(torn_brick(size, axis, element))
+    area = size.prod() / size[axis]
+    stays = 1e-3 * STRENGTH * LAST_OPENING
+    assert energy_of_crack(run) / area == pytest.approx(ENERGY + stays, rel=2e-3)
+
+
+def test_strength_of_a_brick_that_is_too_long(keyway):
+    """Four times as long as 2 E G_f / f_t^2: half the strength (2 %: an increment of the pull),
+    the same energy (1 %: the curve drops at once, within an increment) and a warning."""
+    longest = 2.0 * YOUNG * ENERGY / STRENGTH**2
+    deck = torn_brick(
+        np.array([1.0, 1.0, 4.0 * longest]),
+        2,
+        option=", LONG ELEMENTS=LOWER STRENGTH",
+        opening=3.0 * LAST_OPENING,
+    )
+    run = keyway(deck)
+    assert max(run.csv("el_BRICK")["S33"]) == pytest.approx(0.5 * STRENGTH, rel=0.02)
+    assert energy_of_crack(run) == pytest.approx(ENERGY, rel=0.01)
+    (warning,) = run.json["warnings"]
+    assert "1 of 1 elements are longer" in warning
+    assert warning.endswith("elements 1")
+
+
+@pytest.mark.parametrize("energy", [100.0, 150.0, 200.0, 300.0])
+def test_longest_brick(keyway, energy):
+    """2 E G_f / f_t^2, VALIDATION.md: 0.813, 1.219, 1.626, 2.439 m."""
+    longest = 2.0 * YOUNG * energy / STRENGTH**2
+    fits = torn_brick(np.array([0.5, 0.5, 0.999 * longest]), 2, energy=energy)
+    keyway(fits, "--check")
+    too_long = torn_brick(np.array([0.5, 0.5, 1.001 * longest]), 2, energy=energy)
+    run = keyway(too_long, "--check", code=2, name="long")
+    assert "element 1 is " in run.stderr
+    assert float(run.stderr.split("at most ")[1].split()[0]) == pytest.approx(longest, rel=1e-5)
