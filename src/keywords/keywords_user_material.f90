@@ -18,6 +18,7 @@ contains
 
   subroutine describe_user_material(spec)
     type(keyword), intent(out) :: spec
+    type(field) :: constant
     spec%name = 'USER MATERIAL'
     spec%family = 'material'
     spec%place = 'material'
@@ -31,11 +32,10 @@ contains
               field('CONSTANTS', kind_integer, 'number of constants', is_required=.true., &
                     lowest=0.0_rk), &
               field('UNSYMM', kind_flag, 'DDSDDE is used as it comes, else symmetrised'), &
-              field('TYPE', kind_choice, 'a law that is not coupled with temperature', &
+              field('TYPE', kind_choice, 'of the law: no coupling with temperature', &
                     default='MECHANICAL', choices='MECHANICAL')])
-    spec%repeats_columns = .true.
-    allocate (spec%columns, source=[ &
-              field('constant', kind_real, 'of the law (PROPS)', default='0')])
+    constant = field('constant', kind_real, 'of the law (PROPS)', default='0')
+    allocate (spec%columns, source=spread(constant, 1, constants_of_line))
   end subroutine describe_user_material
 
   subroutine read_user_material(this, model, faults)
@@ -61,10 +61,9 @@ contains
     allocate (values(max(num_wanted, 0)), source=0.0_rk)
     num_given = 0
     do line = 1, this%num_lines
-      if (this%num_fields(line) > constants_of_line .or. &
-          (line < this%num_lines .and. this%num_fields(line) < constants_of_line)) then
+      if (line < this%num_lines .and. this%num_fields(line) < constants_of_line) then
         call this%fault_at(faults, line, 0, 'found '//as_text(this%num_fields(line))// &
-                           ' constants', '8 a line, and what is left in the last')
+                           ' constants', '8 in every line but the last')
         return
       end if
       do i = 1, this%num_fields(line)

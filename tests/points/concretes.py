@@ -37,6 +37,7 @@ class Material:
     recovery: str = "LEE-FENVES"
     tension_recovery: float = 0.0
     compression_recovery: float = 1.0
+    stiffening: str = "STRAIN"  # or DISPLACEMENT: tables of tension against the opening [m]
     tension: np.ndarray = field(default_factory=lambda: TABLE_1[:, :2])
     tension_damage: np.ndarray = field(default_factory=lambda: TABLE_1[:, [2, 1]])
     compression: np.ndarray = field(default_factory=lambda: np.array([[30e6, 0.0]]))

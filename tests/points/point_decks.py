@@ -27,8 +27,9 @@ def material_cards(name: str, material: Material) -> str:
         f"*CONCRETE COMPRESSION HARDENING\n{rows_of(m.compression)}"
         f"*CONCRETE COMPRESSION DAMAGE, TENSION RECOVERY={m.tension_recovery!r}\n"
         f"{rows_of(m.compression_damage)}"
-        f"*CONCRETE TENSION STIFFENING\n{rows_of(m.tension)}"
-        f"*CONCRETE TENSION DAMAGE, COMPRESSION RECOVERY={m.compression_recovery!r}\n"
+        f"*CONCRETE TENSION STIFFENING, TYPE={m.stiffening}\n{rows_of(m.tension)}"
+        f"*CONCRETE TENSION DAMAGE, TYPE={m.stiffening}, "
+        f"COMPRESSION RECOVERY={m.compression_recovery!r}\n"
         f"{rows_of(m.tension_damage)}"
     )
 
@@ -79,16 +80,31 @@ class PointDeck:
         increments: int = 100,
         time: float = 1.0,
     ) -> None:
-        """A test; a material that was given before is not given again."""
+        """A test along legs, all with as many increments and as much time."""
+        self.tests.append(test_cards(name, self._name_of(material), legs, increments, time))
+
+    def add_kind(self, name: str, material: Material, kind: str, targets, increments=100) -> None:
+        """A test of one of the driver's kinds, as in kind='BIAXIAL, RATIO=0.5'."""
+        head = f"*MATERIAL TEST, NAME={name}, MATERIAL={self._name_of(material)}, TYPE={kind}"
+        lines = "".join(f"{float(target)!r}\n" for target in targets)
+        self.tests.append(f"{head}, INCREMENTS={increments}\n{lines}")
+
+    def _name_of(self, material: Material) -> str:
+        """Of a material in the deck; it is put there when it is new."""
         known = next((k for k, m in self.materials.items() if m is material), None)
         if known is None:
             known = f"M{len(self.materials) + 1}"
             self.materials[known] = material
-        self.tests.append(test_cards(name, known, legs, increments, time))
+        return known
 
     def text(self) -> str:
         cards = [material_cards(name, material) for name, material in self.materials.items()]
         return "".join(cards + self.tests)
+
+    @property
+    def names(self) -> list[str]:
+        """Of all tests."""
+        return [t.split("NAME=")[1].split(",")[0] for t in self.tests]
 
     def run(self, keyway: Program, name: str = "job") -> Curves:
         return Curves(keyway(self.text(), "--material", name=name))

@@ -88,6 +88,8 @@ KUPFER_HALF = np.array(  # the other stress 0.52 of this
     ]
 )
 
+KUPFER_RATIOS = ((0.0, KUPFER_UNIAXIAL), (0.52, KUPFER_HALF), (1.0, KUPFER_EQUAL))
+
 
 def kupfer_gerstle(ratio):
     """Larger stress at failure over f_c under two compressions: the fit of Kupfer & Gerstle.
@@ -102,7 +104,7 @@ def gopalaratnam_shah(opening):
     """Tensile stress over its peak at a crack opening [m]: the fit of Gopalaratnam & Shah.
 
     1985, Softening response of plain concrete in direct tension, ACI Journal 82(3): 310-323:
-    exp(-k w^1.01), k = 1.544e-3 with w in millionths of an inch.
+    exp(-k w^1.01), k = 1.544e-3 with w in millionths of an inch (constants as quoted elsewhere).
     """
     return np.exp(-1.544e-3 * (np.asarray(opening) / 25.4e-9) ** 1.01)
 
