@@ -32,7 +32,7 @@ module cli
 
   character(*), parameter :: options = '-o | -j | -q | --check | --keywords | --version | '// &
                              '--help | -h | --continue | --umat | --umat-flags | '// &
-                             '--umat-threadsafe | --umat-check | --material'
+                             '--umat-library | --umat-threadsafe | --umat-check | --material'
 
 contains
 
@@ -47,6 +47,7 @@ contains
            '  --umat FILE ..     the user''s own materials: UMAT as Fortran source or '// &
            'shared library'//nl// &
            '  --umat-flags TEXT  of the compiler, for these sources'//nl// &
+           '  --umat-library LIB keep the library they make; without a deck do no more'//nl// &
            '  --umat-threadsafe  the UMAT may be called by several threads at once'//nl// &
            '  --umat-check       compare its DDSDDE with differences of STRESS'//nl// &
            '  --keywords [NAME]  the reference of the deck, from the program itself'//nl// &
@@ -66,6 +67,7 @@ contains
     given%folder = '.'
     given%keyword = ''
     given%umat%flags = ''
+    given%umat%target = ''
     allocate (given%umat%files(0))
     given%is_empty = command_argument_count() == 0
     i = 1
@@ -75,6 +77,7 @@ contains
     end do
     if (given%is_empty .or. given%wants_help .or. given%wants_version) return
     if (given%wants_keywords .or. len(given%deck) > 0) return
+    if (size(given%umat%files) > 0 .and. len(given%umat%target) > 0) return
     call raise(error, 'keyway: no deck is named'//nl//usage(), deck_is_wrong)
   end subroutine parse_command_line
 
@@ -87,7 +90,7 @@ contains
     word = argument(i)
     i = i + 1
     select case (word)
-    case ('-o', '-j', '--umat', '--umat-flags')
+    case ('-o', '-j', '--umat', '--umat-flags', '--umat-library')
       if (i > command_argument_count()) then
         call raise(error, 'keyway: '//word//' needs a value'//nl//usage(), deck_is_wrong)
         return
@@ -95,6 +98,7 @@ contains
       if (word == '-o') given%folder = argument(i)
       if (word == '-j') call read_threads(argument(i), given, error)
       if (word == '--umat-flags') given%umat%flags = given%umat%flags//' '//argument(i)
+      if (word == '--umat-library') given%umat%target = argument(i)
       if (word == '--umat') call read_umat_files(i, given)
       i = i + 1
     case ('--check')

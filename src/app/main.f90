@@ -12,6 +12,7 @@ program keyway
   use run_analysis, only: run_problem
   use run_material, only: run_tests
   use timer, only: wall_clock
+  use umat_loader, only: keep_library
   implicit none
 
   interface
@@ -37,6 +38,11 @@ program keyway
   call print_answer(options, is_answered, error)
   call end_on(error)
   if (is_answered) stop
+  if (len(options%deck) == 0) then
+    call keep_library(options%umat, error)
+    call end_on(error)
+    stop
+  end if
   call restart_with_fast_libraries()
   call load_deck(options, scene, remarks, echo, error)
   call end_on(error)

@@ -1,6 +1,6 @@
 !> What is odd about the constants of a concrete, and what they are in a line for people.
 module concrete_remarks
-  use damage_checks, only: find_longest_band, table_fault
+  use damage_checks, only: find_longest_band, stiffening_table, table_fault
   use damage_constants, only: concrete_constants
   use damage_model, only: concrete_model, largest_safe_dilation, make_concrete_model
   use diagnostics, only: diagnostic_list
@@ -11,6 +11,7 @@ module concrete_remarks
   private
   public :: warn_of_constants, describe_concrete
 
+  real(rk), parameter :: usual_strain = 1.0e-4_rk !< f_t/E of concrete
   real(rk), parameter :: degree = acos(-1.0_rk)/180.0_rk
 
 contains
@@ -20,9 +21,24 @@ contains
     type(concrete_request), intent(in) :: given !< whose tables are free of faults
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
+    call warn_of_units(given, model, faults)
     call warn_of_dilation(given, model, faults)
     call warn_of_steep_strain(given, model, faults)
   end subroutine warn_of_constants
+
+  !> Concrete of any quality cracks at a strain of about 1e-4 (f_t 1 to 5 MPa, E 15 to 45 GPa);
+  !> far from that the strength and the modulus are in two units.
+  subroutine warn_of_units(given, model, faults)
+    type(concrete_request), intent(in) :: given
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    real(rk) :: strain
+    strain = given%constants%tension(1, 1)/given%constants%young
+    if (strain > 0.01_rk*usual_strain .and. strain < 100.0_rk*usual_strain) return
+    call model%cards(given%stiffening%card)%warn( &
+      faults, 'it would crack at a strain f_t/E of '//as_text(strain), 'about '// &
+      as_text(usual_strain)//' for concrete: f_t and E in one unit')
+  end subroutine warn_of_units
 
   !> On the tensile meridian of Eq 19 (s_1 = 2/3 q - p) q (1 + 2/3 gamma) = (3 alpha + gamma) p +
   !> (1 - alpha) c: where its slope is less than tan psi, q - p tan psi and with it the work of flow
@@ -56,7 +72,7 @@ contains
     as_openings = given%constants
     as_openings%stiffening = 'DISPLACEMENT' ! of a band 1 m wide
     call find_longest_band(as_openings, longest, limit)
-    if (longest >= 1.0_rk) return
+    if (longest >= 1.0_rk .or. limit%keyword /= stiffening_table) return
     call model%cards(given%stiffening%card)%warn( &
       faults, 'the stress falls by more than E times the inelastic strain that comes with it '// &
       'in row '//as_text(limit%row)//': a test with growing strain passes over it')

@@ -57,24 +57,26 @@ contains
     real(rk), intent(in) :: width(:), longest !< [m]
     type(diagnostic_list), intent(inout) :: faults
     type(table_fault) :: limit
-    character(:), allocatable :: problem
+    character(:), allocatable :: problem, remedy
     real(rk) :: same
     integer :: worst, num_others, card
     call find_longest_band(given%constants, same, limit)
     worst = maxloc(width, 1)
     problem = 'element '//as_text(elements(worst))//' is '//as_text(width(worst))//' m long: '
     card = given%stiffening%card
+    remedy = '; or LONG ELEMENTS=LOWER STRENGTH'
     if (limit%keyword == stiffening_table) then
       problem = problem//'it would give back more energy than a crack in it takes (snap-back)'
     else
       card = given%tension_damage%card
+      remedy = '; or a smaller damage'//remedy
       problem = problem//'the plastic strain opening/length - d/(1 - d) sigma/E decreases in it'
     end if
     num_others = count(width > longest*(1.0_rk + rounding)) - 1
     if (num_others == 1) problem = problem//'; 1 more is too long'
     if (num_others > 1) problem = problem//'; '//as_text(num_others)//' more are too long'
     call model%cards(card)%fault_at(faults, limit%row, 0, problem, 'at most '//as_text(longest)// &
-                                    ' m, '//limit%expected//'; or LONG ELEMENTS=LOWER STRENGTH')
+                                    ' m, '//limit%expected//remedy)
   end subroutine fault_length
 
   !> Lists the elements that crack below the strength of the table.

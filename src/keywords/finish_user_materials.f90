@@ -19,12 +19,28 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer :: i
+    call check_library(model, faults)
     do i = 1, size(model%user_materials)
       call check_request(i, model, faults)
       if (faults%has_errors()) cycle
       call make_law(i, model, faults)
     end do
   end subroutine complete_user_materials
+
+  !> User materials need a UMAT; told at the first of them.
+  subroutine check_library(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i
+    if (associated(model%scene%umat)) return
+    do i = 1, size(model%user_materials)
+      if (model%user_materials(i)%spot%card == 0) cycle
+      call model%cards(model%user_materials(i)%spot%card)%fault( &
+        faults, 'no UMAT is given', 'the option --umat with its source or library: keyway '// &
+        '--umat law.for job.inp')
+      return
+    end do
+  end subroutine check_library
 
   subroutine check_request(number, model, faults)
     integer, intent(in) :: number
@@ -44,10 +60,6 @@ contains
         else if (any(model%concretes%material == given%material)) then
           call place%fault(faults, "material '"//given%constants%name//"' has the keywords of "// &
                            'concrete, too', 'one law')
-        else if (.not. associated(model%scene%umat)) then
-          call place%fault(faults, 'no UMAT is given', &
-                           'the option --umat with its source or library: keyway --umat '// &
-                           'law.for job.inp')
         end if
       end associate
     end associate

@@ -37,7 +37,8 @@ contains
       kinds = kinds//' | '//trim(element_kinds(i)%name)
     end do
     allocate (spec%parameters, source=[ &
-              field('TYPE', kind_choice, 'a formulation', choices=kinds, is_required=.true.), &
+              field('TYPE', kind_choice, 'a solid of 8 nodes or a joint (no plane elements, no '// &
+                    'shells)', choices=kinds, is_required=.true.), &
               field('ELSET', kind_word, 'an element set that gets these elements')])
     allocate (spec%columns, source=[ &
               field('id', kind_integer, 'number of the element', is_required=.true., &

@@ -3,7 +3,7 @@ module keywords_step
   use deck_card, only: card
   use diagnostics, only: diagnostic_list, place
   use finish_step, only: close_step, open_step
-  use keyword_spec, only: keyword, field, kind_flag, kind_integer, kind_real, kind_word
+  use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, kind_real, kind_word
   use kinds, only: rk
   use model_draft, only: draft
   use write_text, only: as_text
@@ -29,7 +29,9 @@ contains
     spec%checks_own_data = .true.
     allocate (spec%parameters, source=[ &
               field('NAME', kind_word, 'name of the step', default='STEP-<number>'), &
-              field('INC', kind_integer, 'largest number of increments', default='100000')])
+              field('INC', kind_integer, 'largest number of increments', default='100000'), &
+              field('NLGEOM', kind_choice, 'small strains and rotations: finite ones are not '// &
+                    'analysed', choices='NO')])
     spec%parameters(2)%lowest = 1
   end subroutine describe_step
 

@@ -18,7 +18,6 @@ contains
 
   subroutine describe_user_material(spec)
     type(keyword), intent(out) :: spec
-    type(field) :: constant
     spec%name = 'USER MATERIAL'
     spec%family = 'material'
     spec%place = 'material'
@@ -32,10 +31,11 @@ contains
               field('CONSTANTS', kind_integer, 'number of constants', is_required=.true., &
                     lowest=0.0_rk), &
               field('UNSYMM', kind_flag, 'DDSDDE is used as it comes, else symmetrised'), &
-              field('TYPE', kind_choice, 'of the law: no coupling with temperature', &
+              field('TYPE', kind_choice, 'a law that is not coupled with temperature', &
                     default='MECHANICAL', choices='MECHANICAL')])
-    constant = field('constant', kind_real, 'of the law (PROPS)', default='0')
-    allocate (spec%columns, source=spread(constant, 1, constants_of_line))
+    spec%repeats_columns = .true.
+    allocate (spec%columns, source=[ &
+              field('constant', kind_real, 'of the law (PROPS)', default='0')])
   end subroutine describe_user_material
 
   subroutine read_user_material(this, model, faults)
@@ -61,9 +61,10 @@ contains
     allocate (values(max(num_wanted, 0)), source=0.0_rk)
     num_given = 0
     do line = 1, this%num_lines
-      if (line < this%num_lines .and. this%num_fields(line) < constants_of_line) then
+      if (this%num_fields(line) > constants_of_line .or. &
+          (line < this%num_lines .and. this%num_fields(line) < constants_of_line)) then
         call this%fault_at(faults, line, 0, 'found '//as_text(this%num_fields(line))// &
-                           ' constants', '8 in every line but the last')
+                           ' constants', '8 a line, and what is left in the last')
         return
       end if
       do i = 1, this%num_fields(line)

@@ -50,8 +50,8 @@ contains
   subroutine build_library(files, user_flags, folder, library, error)
     type(umat_file), intent(in) :: files(:)
     character(*), intent(in) :: user_flags !< of the compiler, for all sources
-    character(*), intent(in) :: folder !< for what is made
-    character(:), allocatable, intent(out) :: library !< path
+    character(*), intent(in) :: folder !< for what is needed in between
+    character(*), intent(in) :: library !< path of what is made
     type(error_type), allocatable, intent(out) :: error
     character(:), allocatable :: objects, object
     integer :: i
@@ -70,7 +70,6 @@ contains
       objects = objects//' '//object
     end do
     if (allocated(error)) return
-    library = folder//'/umat.so'
     call run(flags_of_linker//objects//' '//user_flags//' -o '//quoted(library), folder, &
              'cannot link the UMAT', error)
   end subroutine build_library

@@ -15,7 +15,7 @@ module umat_loader
   use write_text, only: as_text
   implicit none
   private
-  public :: user_library, umat_request, open_library
+  public :: user_library, umat_request, open_library, keep_library
   public :: at_start, at_increment_start, at_increment_end, at_end, at_restart
 
   !> When UEXTERNALDB is called: its argument LOP.
@@ -28,6 +28,7 @@ module umat_loader
   type :: umat_request
     type(umat_file), allocatable :: files(:) !< sources, or one shared library; none: not given
     character(:), allocatable :: flags !< of the compiler
+    character(:), allocatable :: target !< path of the library that is kept, '' for none
     logical :: is_threadsafe = .false. !< may be called by several threads at once
     logical :: checks_tangent = .false. !< compare DDSDDE with differences of STRESS
   end type umat_request
@@ -56,7 +57,6 @@ contains
     type(user_library), intent(out) :: library
     type(error_type), allocatable, intent(out) :: error
     character(:), allocatable :: path, temporary
-    character(kind=c_char) :: room(longest_path)
     library%files = request%files
     library%is_threadsafe = request%is_threadsafe
     library%checks_tangent = request%checks_tangent
@@ -66,12 +66,11 @@ contains
       if (index(path, '/') == 0) path = './'//path
       call load(path, library, error)
     else
-      call keyway_make_temporary(room, size(room, kind=c_size_t))
-      temporary = text_from_c(room)
-      if (temporary == '') then
-        call raise(error, 'keyway: there is no folder for temporary files (TMPDIR)', system_failed)
-        return
-      end if
+      call open_temporary(temporary, error)
+      if (allocated(error)) return
+      path = temporary//'/umat.so'
+      if (request%target /= '') path = request%target
+      if (index(path, '/') == 0) path = './'//path
       call build_library(request%files, request%flags, temporary, path, error)
       if (.not. allocated(error)) call load(path, library, error)
       call keyway_remove_temporary(temporary//c_null_char)
@@ -82,6 +81,27 @@ contains
       call library%call_external(at_start, [0.0_rk, 0.0_rk], 0.0_rk, 0, 0, error)
     end if
   end subroutine open_library
+
+  !> Builds the library of the request and keeps it, for runs to come.
+  subroutine keep_library(request, error)
+    type(umat_request), intent(in) :: request
+    type(error_type), allocatable, intent(out) :: error
+    character(:), allocatable :: temporary
+    call open_temporary(temporary, error)
+    if (allocated(error)) return
+    call build_library(request%files, request%flags, temporary, request%target, error)
+    call keyway_remove_temporary(temporary//c_null_char)
+  end subroutine keep_library
+
+  subroutine open_temporary(path, error)
+    character(:), allocatable, intent(out) :: path
+    type(error_type), allocatable, intent(out) :: error
+    character(kind=c_char) :: room(longest_path)
+    call keyway_make_temporary(room, size(room, kind=c_size_t))
+    path = text_from_c(room)
+    if (path /= '') return
+    call raise(error, 'keyway: there is no folder for temporary files (TMPDIR)', system_failed)
+  end subroutine open_temporary
 
   !> Loads a library and finds its routines.
   subroutine load(path, library, error)

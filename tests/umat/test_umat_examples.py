@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+
 import numpy as np
 import pytest
 from harness import ROOT
@@ -54,3 +56,29 @@ def test_j2_bar_in_the_structure(keyway):
     # of the table, s = 295 MPa + 0.5 GPa p, from -s/E + 2 p1 - p = 0.
     p = (2 * 0.06 / 7 - 295e6 / 200e9) / (1 + 0.5e9 / 200e9)
     assert np.allclose(table["S11"][at == 2.0], -(295e6 + 0.5e9 * p), rtol=1e-6)
+
+
+def test_a_library_can_be_kept(keyway, tmp_path):
+    library = tmp_path / "kept.so"
+    done = keyway.call(
+        "--umat", str(FOLDER / "plastic_j2.f90"), "--umat-library", str(library)
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    run = keyway(FOLDER / "plastic_j2.inp", "--umat", str(library), "--material")
+    assert run.csv("material_PULL")["S11"].max() == pytest.approx(2e9 / 7, rel=1e-8)
+
+
+def test_the_function_of_cmake(keyway, program_path, tmp_path):
+    (tmp_path / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.22)\nproject(laws NONE)\n"
+        f'list(APPEND CMAKE_MODULE_PATH "{ROOT}/cmake")\ninclude(KeywayUmat)\n'
+        f'keyway_add_umat(j2 SOURCES "{FOLDER}/plastic_j2.f90" FLAGS -O1 -g)\n'
+    )
+    build = tmp_path / "build"
+    for command in (
+        ["cmake", "-S", tmp_path, "-B", build, f"-DKEYWAY_PROGRAM={program_path.resolve()}"],
+        ["cmake", "--build", build],
+    ):
+        subprocess.run(command, check=True, capture_output=True)
+    run = keyway(FOLDER / "plastic_j2.inp", "--umat", str(build / "j2.so"), "--material")
+    assert run.csv("material_PULL")["S11"].max() == pytest.approx(2e9 / 7, rel=1e-8)

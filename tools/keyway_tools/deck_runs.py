@@ -17,7 +17,7 @@ from typing import Any
 from keyway_tools.results_folder import ResultsFolder
 
 RECORD = ".batch.json"
-EXTREMES = ("S1", "S3", "OPENING")
+EXTREMES = ("S1", "S3", "OPENING", "DAMAGET")
 # What the exit code of the program says (DECK, "Running").
 STATUS_OF_CODE = {0: "finished", 1: "stopped", 2: "bad deck", 3: "system failed"}
 GRACE = 10.0  # seconds between the request to end and the end by force
@@ -193,4 +193,6 @@ def read_summary(deck: Path, record: Record) -> None:
     for name in EXTREMES:
         extreme = (envelopes.get(name) or {}).get("anywhere") or {}
         record.extremes[name] = extreme.get("value")
+    damage = (summary.get("damage") or {}).get("DAMAGET") or {}
+    record.extremes["DAMAGET"] = damage.get("value")  # told without *ENVELOPE as well
     record.message = summary.get("message") or ""

@@ -35,8 +35,8 @@ class Curve:
         return MEGA * self.table[f"S{self.component}"]
 
     def has(self, column: str) -> bool:
-        """There is such a column with something in it."""
-        return column in self.table and bool(np.abs(self.table[column]).max() > 0.0)
+        """There is such a column with more than roundoff in it (damage, or energy in J/m3)."""
+        return column in self.table and bool(np.abs(self.table[column]).max() > 1e-6)
 
 
 def read_curve(path: Path, component: str | None = None) -> Curve:
@@ -101,8 +101,9 @@ def _stress_panel(axis, curves: list[Curve], experiments: list[Path]) -> None:
         label, strain, stress = read_points(experiment)
         marker = MARKERS[number % len(MARKERS)]
         axis.plot(strain, stress, marker, ms=5, mfc="none", mec="black", label=label)
-    for curve, colour in zip(curves, _colours(curves), strict=True):
-        axis.plot(curve.strain, curve.stress, color=colour, label=curve.name)
+    for number, (curve, colour) in enumerate(zip(curves, _colours(curves), strict=True)):
+        width = max(1.0, 1.4 + 0.5 * (len(curves) - 1 - number))  # curves that coincide all show
+        axis.plot(curve.strain, curve.stress, color=colour, lw=width, label=curve.name)
     axis.axhline(0.0, color=GREY, lw=0.8)
     axis.axvline(0.0, color=GREY, lw=0.8)
     components = sorted({c.component for c in curves})
