@@ -100,6 +100,8 @@ contains
       call place_curves(model, width, placed)
       call flow_by(model, placed, trial, 0.0_rk, flow)
       end_state%trial_excess = flow%f%value
+      end_state%has_converged = abs(flow%f%value) < huge(width) ! not for NaN
+      if (.not. end_state%has_converged) return
       end_state%has_yielded = flow%f%value > yield_tolerance*flow%compression%strength
       if (.not. end_state%has_yielded) return
       call find_flow(model, placed, trial, flow, end_state%has_converged)

@@ -14,12 +14,13 @@ module material_damage_plasticity
   use damage_constants, only: concrete_constants
   use damage_model, only: concrete_model, make_concrete_model, placed_curves, stiffness_of
   use damage_point, only: point_answer, point_history, point_motion, update_point
+  use damage_screen, only: screen_points
   use errors, only: deck_is_wrong, error_type, raise
   use kinds, only: rk
   use material_law, only: stress_law
-  use material_points, only: consistent_tangent, crushing_energy, fracture_energy, no_tangent, &
-                             point_set, point_state, secant_tangent, stored_energy, &
-                             time_increment, update_report
+  use material_points, only: crushing_energy, fracture_energy, no_tangent, point_set, &
+                             point_state, secant_tangent, stored_energy, time_increment, &
+                             update_report
   use write_text, only: as_text
   implicit none
   private
@@ -69,7 +70,7 @@ contains
     call stiffness_of(self%model, d)
   end subroutine elastic_stiffness
 
-  !> The points of a block, one after the other.
+  !> Virgin points that surely stay elastic in one sweep, the others one after the other.
   subroutine update(self, points, time, old, new, tangent, report)
     class(concrete_law), intent(in) :: self
     type(point_set), intent(in) :: points
@@ -79,32 +80,70 @@ contains
     real(rk), intent(inout) :: tangent(:, :, :)
     type(update_report), intent(out) :: report
     type(point_motion) :: motion
-    type(point_history) :: before, after
     type(point_answer) :: answer
     type(placed_curves) :: placed
+    real(rk) :: d(6, 6), stored(points%num_points)
     integer :: i
+    call screen_points(self%model, least_factor(self%model, points), new%strain, new%stress, &
+                       stored, new%is_elastic)
+    call self%elastic_stiffness(d)
     motion%time = time%size
     motion%wants_tangent = time%tangent /= no_tangent
     motion%is_secant = time%tangent == secant_tangent
     do i = 1, points%num_points
-      motion%before = old%strain(:, i)
-      motion%strain = new%strain(:, i)
-      motion%edges = points%edges(:, :, i)
-      call unpack_history(old%internal(:, i), before)
-      call update_point(self%model, motion, before, placed, after, answer)
-      call pack_history(after, new%internal(:, i))
-      new%stress(:, i) = answer%stress
-      new%is_elastic(i) = answer%is_elastic
-      new%energy(stored_energy, i) = answer%stored
-      new%energy(fracture_energy, i) = old%energy(fracture_energy, i) + answer%fracture
-      new%energy(crushing_energy, i) = old%energy(crushing_energy, i) + answer%crushing
-      if (motion%wants_tangent) tangent(:, :, i) = answer%tangent
-      if (.not. answer%has_converged .and. report%failed_point == 0) then
+      if (new%is_elastic(i) .and. old%is_elastic(i)) then
+        new%internal(:, i) = old%internal(:, i)
+        new%energy(:, i) = old%energy(:, i)
+        new%energy(stored_energy, i) = stored(i)
+        if (motion%wants_tangent) tangent(:, :, i) = d
+      else
+        motion%edges = points%edges(:, :, i)
+        call yield_point(self%model, motion, i, old, placed, new, answer)
+        if (motion%wants_tangent) tangent(:, :, i) = answer%tangent
+        if (answer%has_converged .or. report%failed_point > 0) cycle
         report%failed_point = i
         report%message = 'the return map of concrete did not converge'
       end if
     end do
   end subroutine update
+
+  !> The least factor on the strength in tension of any band in the block: where the sum of squares
+  !> of the edges, not below any width, is within the longest band there is none.
+  pure real(rk) function least_factor(model, points) result(factor)
+    type(concrete_model), intent(in) :: model
+    type(point_set), intent(in) :: points
+    real(rk) :: widest
+    integer :: i
+    factor = 1.0_rk
+    if (.not. model%tension%longest < huge(widest)) return
+    widest = 0.0_rk
+    do i = 1, points%num_points
+      widest = max(widest, sum(points%edges(:, :, i)**2))
+    end do
+    if (sqrt(widest) > model%tension%longest) factor = sqrt(model%tension%longest/sqrt(widest))
+  end function least_factor
+
+  !> A point that may yield or has yielded.
+  pure subroutine yield_point(model, motion, i, old, placed, new, answer)
+    type(concrete_model), intent(in) :: model
+    type(point_motion), intent(inout) :: motion !< comes without strains
+    integer, intent(in) :: i !< point
+    type(point_state), intent(in) :: old
+    type(placed_curves), intent(inout) :: placed
+    type(point_state), intent(inout) :: new
+    type(point_answer), intent(out) :: answer
+    type(point_history) :: before, after
+    motion%before = old%strain(:, i)
+    motion%strain = new%strain(:, i)
+    call unpack_history(old%internal(:, i), before)
+    call update_point(model, motion, before, placed, after, answer)
+    call pack_history(after, new%internal(:, i))
+    new%stress(:, i) = answer%stress
+    new%is_elastic(i) = answer%is_elastic
+    new%energy(stored_energy, i) = answer%stored
+    new%energy(fracture_energy, i) = old%energy(fracture_energy, i) + answer%fracture
+    new%energy(crushing_energy, i) = old%energy(crushing_energy, i) + answer%crushing
+  end subroutine yield_point
 
   !> The history of a point out of its internal variables.
   pure subroutine unpack_history(internal, history)
