@@ -24,12 +24,14 @@ contains
     character(:), allocatable, intent(out) :: echo !< the deck with every default made visible
     type(error_type), allocatable, intent(out) :: error
     type(user_library), pointer :: umat
+    character(:), allocatable :: note
     call load_user_routines(given, umat, error)
     if (allocated(error)) return
     call read_problem(given%deck, scene, faults, echo, given%is_material, umat)
     if (faults%num_warnings > 0 .and. .not. given%is_quiet) then
       write (error_unit, '(a)') text_of_warnings(faults)
     end if
+    if (associated(umat) .and. (given%is_check .or. faults%has_errors())) call umat%close(note)
     if (faults%has_errors()) call raise(error, text_of_errors(faults), deck_is_wrong)
   end subroutine load_deck
 

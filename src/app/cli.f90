@@ -76,6 +76,8 @@ contains
       if (allocated(error)) return
     end do
     if (given%is_empty .or. given%wants_help .or. given%wants_version) return
+    call check_umat_options(given, error)
+    if (allocated(error)) return
     if (given%wants_keywords .or. len(given%deck) > 0) return
     if (size(given%umat%files) > 0 .and. len(given%umat%target) > 0) return
     call raise(error, 'keyway: no deck is named'//nl//usage(), deck_is_wrong)
@@ -128,6 +130,19 @@ contains
       call read_deck_name(word, given, error)
     end select
   end subroutine read_argument
+
+  !> The options of UMATs need one.
+  subroutine check_umat_options(given, error)
+    type(command_line), intent(in) :: given
+    type(error_type), allocatable, intent(out) :: error
+    associate (umat => given%umat)
+      if (size(umat%files) > 0) return
+      if (len(umat%flags) + len(umat%target) == 0 .and. .not. umat%is_threadsafe .and. &
+          .not. umat%checks_tangent) return
+    end associate
+    call raise(error, 'keyway: --umat-flags, --umat-library, --umat-threadsafe and '// &
+               '--umat-check go with --umat'//nl//usage(), deck_is_wrong)
+  end subroutine check_umat_options
 
   !> The word behind --umat, and those behind it that end like code; `i` is the last of them.
   subroutine read_umat_files(i, given)

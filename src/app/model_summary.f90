@@ -1,6 +1,7 @@
 !> What a model holds, in lines for people.
 module model_summary
   use kinds, only: rk
+  use material_law, only: material
   use mesh_sets, only: named_set
   use problem_definition, only: problem
   use step_plan, only: step, step_load
@@ -88,8 +89,7 @@ contains
     if (size(scene%materials) > 0) text = nl//'Materials'
     do i = 1, size(scene%materials)
       associate (now => scene%materials(i))
-        text = text//nl//row(now%name, 'E '//as_text(now%young)//' Pa, nu '// &
-                             as_text(now%poisson)//', density '//as_text(now%density)// &
+        text = text//nl//row(now%name, elastic_text(now)//', density '//as_text(now%density)// &
                              ' kg/m3, damping ALPHA '//as_text(now%alpha)//' 1/s, BETA '// &
                              as_text(now%beta)//' s'// &
                              elements_of(scene, i))
@@ -97,6 +97,14 @@ contains
       end associate
     end do
   end function materials_of
+
+  !> 'E .. Pa, nu ..'; a UMAT has none that anyone knows.
+  pure function elastic_text(now) result(text)
+    type(material), intent(in) :: now
+    character(:), allocatable :: text
+    text = 'E '//as_text(now%young)//' Pa, nu '//as_text(now%poisson)
+    if (now%young <= 0.0_rk) text = 'a UMAT'
+  end function elastic_text
 
   !> '; 12 elements', where there are any.
   pure function elements_of(scene, material) result(text)

@@ -1,13 +1,14 @@
 !> Makes the laws of user materials when the whole deck is read: the UMAT is asked for the stiffness
 !> of each at the start.
 module finish_user_materials
-  use diagnostics, only: diagnostic_list
+  use diagnostics, only: diagnostic_list, place, severity_warning
   use element_hex8, only: hex8_gradients
   use errors, only: error_type
   use kinds, only: rk
   use material_points, only: consistent_tangent, point_set, time_increment
   use material_user, only: find_stiffness, make_user_law, user_law
   use model_draft, only: draft
+  use write_text, only: as_text
   implicit none
   private
   public :: complete_user_materials
@@ -27,12 +28,21 @@ contains
     end do
   end subroutine complete_user_materials
 
-  !> User materials need a UMAT; told at the first of them.
+  !> User materials need a UMAT, told at the first of them; and a UMAT needs one of them.
   subroutine check_library(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
+    type(place) :: deck
     integer :: i
-    if (associated(model%scene%umat)) return
+    if (associated(model%scene%umat)) then
+      if (size(model%user_materials) > 0) return
+      deck%file = model%scene%deck_file ! a constructor of the type would take a wrong length
+      deck%keyword = ''
+      deck%source = ''
+      call faults%add(severity_warning, deck, '--umat is given and no material asks for it', &
+                      '*USER MATERIAL in a *MATERIAL')
+      return
+    end if
     do i = 1, size(model%user_materials)
       if (model%user_materials(i)%spot%card == 0) cycle
       call model%cards(model%user_materials(i)%spot%card)%fault( &
@@ -53,13 +63,13 @@ contains
           'it beside *DEPVAR')
         return
       end if
-      associate (place => model%cards(given%spot%card))
+      associate (spot => model%cards(given%spot%card))
         if (allocated(model%scene%materials(given%material)%law)) then
-          call place%fault(faults, "material '"//given%constants%name//"' has an *ELASTIC, too", &
-                           'one law: the UMAT gives the elastic stiffness')
+          call spot%fault(faults, "material '"//given%constants%name//"' has an *ELASTIC, too", &
+                          'one law: the UMAT gives the elastic stiffness')
         else if (any(model%concretes%material == given%material)) then
-          call place%fault(faults, "material '"//given%constants%name//"' has the keywords of "// &
-                           'concrete, too', 'one law')
+          call spot%fault(faults, "material '"//given%constants%name//"' has the keywords of "// &
+                          'concrete, too', 'one law')
         end if
       end associate
     end associate
@@ -86,7 +96,11 @@ contains
       call model%cards(model%user_materials(number)%spot%card)%fault(faults, error%message)
       return
     end if
-    allocate (model%scene%materials(model%user_materials(number)%material)%law, source=law)
+    associate (now => model%scene%materials(model%user_materials(number)%material))
+      allocate (now%law, source=law)
+      now%remark = 'UMAT with '//as_text(size(law%constants%values))//' constants and '// &
+                   as_text(law%constants%num_variables)//' state variables'
+    end associate
   end subroutine make_law
 
   !> The middle of the first element of a material; of a unit cube where there is none.

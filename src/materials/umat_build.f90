@@ -104,6 +104,8 @@ contains
     character(:), allocatable :: command, words, reason
     integer :: status, launched
     command = compiler()
+    status = 0
+    launched = 0
     call execute_command_line(command//' '//arguments//' >'//quoted(folder//'/words')//' 2>&1', &
                               exitstat=status, cmdstat=launched)
     if (status == 0 .and. launched == 0) return

@@ -232,3 +232,15 @@ def test_what_cannot_be_used_is_an_error_of_usage(keyway, source, word):
 def test_without_the_option(keyway):
     run = keyway(deck(), "--material", code=2)
     assert "job.inp:2: *USER MATERIAL: no UMAT is given; expected the option --umat" in run.stderr
+
+
+def test_options_and_routines_that_belong_together(keyway, tmp_path):
+    run = keyway(deck(), "--umat-check", "--material", code=2)
+    assert "--umat-check go with --umat" in run.stderr
+    (tmp_path / "lacks.for").write_text("      SUBROUTINE UMAT\n      CALL NOSUCH\n      END\n")
+    run = keyway(deck(), "--umat", str(tmp_path / "lacks.for"), "--material", code=2)
+    assert "cannot load the UMAT" in run.stderr
+    assert "undefined symbol: nosuch_" in run.stderr
+    text = deck().replace("*USER MATERIAL, CONSTANTS=2", "*ELASTIC")
+    run = pull(keyway, "free_in_for.for", text)
+    assert "--umat is given and no material asks for it" in run.stderr
