@@ -69,9 +69,14 @@ contains
                         model%scene%materials(test%material)%name//"' into strains: 1 is taken", &
                         'LENGTH, the side of an element [m]')
       end if
-      if (model%concretes(i)%constants%lowers_strength) return
       call find_longest_band(model%concretes(i)%constants, longest, limit)
       if (test%length <= longest) return
+      if (model%concretes(i)%constants%lowers_strength) then
+        call place%warn(faults, 'in a length of '//as_text(test%length)//' m the concrete '// &
+                        'cracks at a lower strength, with the same energy', &
+                        'at most '//as_text(longest)//' m for its own strength')
+        return
+      end if
       call place%fault_parameter(faults, 'LENGTH', 'the concrete snaps back in a length of '// &
                                  as_text(test%length)//' m', 'at most '//as_text(longest)// &
                                  ' m: '//limit%expected)

@@ -49,13 +49,13 @@ contains
     type(point_state), intent(inout) :: new
     real(rk), intent(inout) :: tangent(:, :, :)
     type(update_report), intent(out) :: report
-    real(rk) :: d(6, 6), deviator(6), normal(6), flow(6), q, excess, slip, ratio
+    real(rk) :: d(6, 6), deviator(6), normal(6), flow(6), q, excess, slip, change
     integer :: i
     call self%elastic_stiffness(d)
     new%internal = old%internal
     do i = 1, points%num_points
-      ratio = self%largest_change/max(maxval(abs(new%strain(:, i) - old%strain(:, i))), 1e-30_rk)
-      if (ratio < 1.0_rk) report%size_ratio = ratio
+      change = maxval(abs(new%strain(:, i) - old%strain(:, i)))
+      if (change > self%largest_change) report%size_ratio = self%largest_change/change
       new%stress(:, i) = matmul(d, new%strain(:, i) - old%internal(:6, i))
       if (time%tangent /= no_tangent) tangent(:, :, i) = d
       q = von_mises(new%stress(:, i))
