@@ -108,3 +108,9 @@ def test_deck_of_an_analysis_may_hold_tests(keyway):
     deck = "*NODE\n1, 0., 0., 0.\n" + MATERIAL + "*MATERIAL TEST, NAME=T\n1e-4\n*STEP\n*STATIC\n"
     run = keyway(deck + "*END STEP\n", "--material")
     assert run.csv("material_T")["S11"][-1] == pytest.approx(1e-4 * E)
+
+
+def test_check_lists_the_tests_and_runs_none(keyway):
+    run = keyway(MATERIAL + "*MATERIAL TEST, NAME=T\n1e-4\n0., 20\n", "--material", "--check")
+    assert "UNIAXIAL of CONCRETE, length 1 m, 2 legs, 120 increments" in run.stdout
+    assert not run.folder.exists()
