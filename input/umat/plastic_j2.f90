@@ -13,10 +13,10 @@
 !
 ! With q the equivalent stress of the elastic trial and n its deviatoric direction (n:n = 1), the
 ! plastic strain grows by sqrt(3/2) dp n, and dp solves q - 3 G dp = yield(p + dp). The table being
-! straight between its rows, that is one division in the right segment. Differentiating the equation
-! gives the tangent, H being the slope of the segment and 1 - 3 G dp/q the share of the trial that is
-! left:
+! straight between its rows, that is one division in the right segment. Differentiating it gives the
+! tangent; H is the slope of the segment, 1 - 3 G dp/q the share of the trial that stays:
 !   D = K 1 1 + 2 G (1 - 3 G dp/q) I_dev - 6 G^2 (1/(3 G + H) - dp/q) n n
+! allow(C092) other programs look for this very symbol
 subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, &
                 dstran, time, dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, &
                 nstatv, props, nprops, coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, &
