@@ -12,6 +12,12 @@ program test_solid_iteration
   use material_elastic, only: elastic_law
   use row_scene, only: make_row, put_at_wall, shake_base, new_step, fix, recorder, calls_of
   use softening_law, only: damage_law, put_law
+  use equilibrium, only: balance_outcome
+  use motion_state, only: motion, start_motion
+  use solid_iteration, only: solid_solver, increment_task
+  use step_equilibrium, only: make_equilibrium, prepare_equilibrium, add_moving_supports
+  use step_loads, only: step_time, prescribed_values
+  use step_system, only: dam_system, build_structure, build_loads
   use testing, only: test_log, check, check_close
   implicit none
 
@@ -29,6 +35,7 @@ program test_solid_iteration
   end do
   call elastic_bar_costs_nothing(log)
   call law_gives_up(log)
+  call newton_is_quadratic(log)
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
 
@@ -213,4 +220,56 @@ contains
     call check(log, now%u(1, 5) > 4.9e-4_rk .and. now%u(1, 5) <= 5.0e-4_rk, &
                'the last state is kept, cut down to the limit')
   end subroutine law_gives_up
+  !> Residuals of one large increment of a crooked bar: the order log(r3/r2)/log(r2/r1) of the last
+  !> three above round-off is that of Newton's method, 2.
+  subroutine newton_is_quadratic(log)
+    type(test_log), intent(inout) :: log
+    type(problem) :: scene
+    type(balance_outcome) :: outcome
+    real(rk) :: order
+    integer :: last, k
+    call make_bar(8, 1.2e-3_rk, 1.0_rk, 'CONSISTENT', scene)
+    scene%steps(1)%controls%residual_tolerance = 1.0e-13_rk
+    scene%mesh%x = scene%mesh%x + 0.05_rk*sin(reshape([(37.0_rk*k, k=1, size(scene%mesh%x))], &
+                                                      shape(scene%mesh%x)))
+    call put_law(damage_law(elastic=elastic_law(young=young, poisson=0.2_rk)), &
+                 [4], scene)
+    call solve_increment(scene, outcome)
+    print '(a,*(es9.1))', 'residuals of Newton iterations:', outcome%history
+    call check(log, outcome%has_converged, 'Newton converges')
+    last = count(outcome%history > 1.0e-12_rk)
+    associate (r => log10(outcome%history(last - 2:last)))
+      order = (r(3) - r(2))/(r(2) - r(1))
+    end associate
+    call check(log, order > 1.8_rk, 'quadratically')
+  end subroutine newton_is_quadratic
+
+  !> The first increment of a static step, by itself.
+  subroutine solve_increment(scene, outcome)
+    type(problem), intent(in) :: scene
+    type(balance_outcome), intent(out) :: outcome
+    type(dam_system) :: system
+    type(solid_solver) :: solids
+    type(increment_task) :: task
+    type(motion) :: before, after
+    type(state) :: now
+    type(error_type), allocatable :: error
+    call start_analysis(scene, now, error)
+    call build_structure(scene, scene%steps(1), system, error)
+    call build_loads(scene, scene%steps(1), now%u, system)
+    call make_equilibrium(scene%steps(1), system, .false., solids%solver, error)
+    call prepare_equilibrium(scene, system, system%stiffness, 1.0_rk, solids%solver, error)
+    call start_motion(system%numbers, scene%joints, now, before)
+    call solids%open(scene, system, 'CONSISTENT', before)
+    call solids%open_increment(now, 1.0_rk)
+    solids%values = system%stiffness
+    after = before
+    task%start = before%q
+    call prescribed_values(system%supports, scene%amplitudes, step_time(now=1.0_rk), task%start)
+    allocate (task%x(size(before%q)), task%balance%rhs(system%matrix%num_free))
+    task%balance%rhs = 0.0_rk
+    call add_moving_supports(system, system%stiffness, task%start, task%balance%rhs)
+    task%counts_reactions = .true.
+    call solids%solve(scene, system, task, before, after, outcome, error)
+  end subroutine solve_increment
 end program test_solid_iteration
