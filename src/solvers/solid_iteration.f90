@@ -42,13 +42,14 @@ module solid_iteration
     real(rk), allocatable :: values(:) !< of K_eff, joints apart
     real(rk) :: weight = 1.0_rk !< of the forces of the solids
     character(16) :: tangent = 'ELASTIC' !< 'CONSISTENT', 'SECANT' or 'ELASTIC'
+    integer :: patience = 0 !< iterations with one matrix before it is judged; 0: none is kept
     type(time_increment) :: time
     type(tangent_matrix) :: matrix
     type(block_answer), allocatable :: answers(:) !< (blocks)
     type(mixer) :: mixer
   contains
     procedure :: open => open_solids
-    procedure :: open_increment, solve
+    procedure :: open_increment, solve, effort
     procedure, private :: iterate, start_iteration, try, measure, advance, linearise
   end type solid_solver
 
@@ -76,15 +77,15 @@ module solid_iteration
   real(rk), parameter :: roundoff = 1.0e-12_rk
   !> A secant matrix is taken anew when more than so many iterations with it have not brought the
   !> out-of-balance down to this part.
-  integer, parameter :: patience = 3
-  real(rk), parameter :: sufficient_decrease = 0.1_rk
+  integer, parameter :: secant_patience = 3
+  real(rk), parameter :: sufficient_decrease = 0.05_rk
   !> A step of Newton's that leaves the balance so much worse is halved.
   real(rk), parameter :: largest_growth = 1.0_rk
   real(rk), parameter :: smallest_share = 0.1_rk !< of a step
 
 contains
 
-  !> The tangent that a step takes.
+  !> The tangent that a step takes; AUTO by docs/studies/tangents_of_solids.
   pure function choose_tangent(scene, plan) result(tangent)
     type(problem), intent(in) :: scene
     type(step), intent(in) :: plan
@@ -94,7 +95,7 @@ contains
     if (size(scene%inelastic) == 0) return
     tangent = plan%controls%tangent
     if (tangent /= 'AUTO') return
-    tangent = 'ELASTIC'
+    tangent = 'SECANT'
     if (plan%procedure == 'STATIC' .and. size(scene%joints) == 0) tangent = 'CONSISTENT'
   end function choose_tangent
 
@@ -106,8 +107,16 @@ contains
     character(*), intent(in) :: tangent
     type(motion), intent(inout) :: moving
     self%tangent = tangent
+    select case (tangent)
+    case ('CONSISTENT')
+      self%patience = 0
+    case ('SECANT')
+      self%patience = secant_patience
+    case default
+      self%patience = huge(1)
+    end select
     if (size(moving%points) == 0) return
-    self%matrix%is_symmetric = tangent /= 'CONSISTENT'
+    self%matrix%is_symmetric = self%tangent /= 'CONSISTENT'
     call open_answers(scene%inelastic, self%answers)
     call recall_points(scene, moving%points, self%answers)
     call sum_released(scene, system%numbers, self%answers, moving%released)
@@ -132,6 +141,15 @@ contains
       self%time%tangent = no_tangent
     end select
   end subroutine open_increment
+
+  !> Iterations as they count for the size of increments: cheap ones count less.
+  pure integer function effort(self, iterations)
+    class(solid_solver), intent(in) :: self
+    integer, intent(in) :: iterations
+    effort = iterations
+    if (self%patience == 0 .or. .not. allocated(self%answers)) return
+    effort = (iterations + cheap_iterations - 1)/cheap_iterations
+  end function effort
 
   !> Solves the balance for `task%x`; joints and points come with it in `after`. No convergence is
   !> no error.
@@ -167,7 +185,7 @@ contains
     type(iterate_state) :: now
     integer :: most_iterations
     most_iterations = self%solver%controls%max_iterations
-    if (self%tangent /= 'CONSISTENT') most_iterations = cheap_iterations*most_iterations
+    if (self%patience > 0) most_iterations = cheap_iterations*most_iterations
     now%task = task
     allocate (outcome%history(0))
     call self%start_iteration(system, before, now)
@@ -276,10 +294,10 @@ contains
     type(iterate_state), intent(inout) :: now
     type(error_type), allocatable, intent(out) :: error
     now%tries = now%tries + 1
-    if (self%tangent == 'ELASTIC' .or. (self%tangent == 'SECANT' .and. .not. is_slow(now))) then
+    if (self%patience > 0 .and. .not. is_slow(now, self%patience)) then
       if (now%tries == 1) now%base_force = now%force
       call self%mixer%advance(now%answer - now%guess, now%guess)
-    else if (self%tangent == 'CONSISTENT' .and. goes_astray(now)) then
+    else if (self%patience == 0 .and. goes_astray(now)) then
       now%share = 0.5_rk*now%share
       now%guess = now%base - (1.0_rk - now%share)*now%unbalance
     else
@@ -288,8 +306,9 @@ contains
   end subroutine advance
 
   !> A matrix that does not bring the balance nearer is taken anew.
-  pure logical function is_slow(now)
+  pure logical function is_slow(now, patience)
     type(iterate_state), intent(in) :: now
+    integer, intent(in) :: patience
     is_slow = now%tries > patience .and. now%force > sufficient_decrease*now%base_force
   end function is_slow
 

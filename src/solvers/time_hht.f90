@@ -166,7 +166,7 @@ contains
       call results%costs%stop('energy')
       call swap(moving, trial)
       call show_motion(system%numbers, moving, now)
-      call control%accept(outcome%iterations)
+      call control%accept(tool%solids%effort(outcome%iterations))
       call close_increment(scene, plan, when, control, outcome, now, results, error)
       if (allocated(error)) return
     end do

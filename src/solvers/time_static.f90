@@ -122,7 +122,7 @@ contains
       call add_static_work(scene, system%matrix%num_free, moving, trial, now%energy)
       moving = trial
       call show_motion(system%numbers, moving, now)
-      call control%accept(outcome%iterations)
+      call control%accept(solids%effort(outcome%iterations))
       call close_increment(scene, plan, when, control, outcome, now, results, error)
       if (allocated(error)) return
     end do
