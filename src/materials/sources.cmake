@@ -12,6 +12,8 @@ set(sources
   damage_point.f90
   damage_screen.f90
   material_damage_plasticity.f90
+  umat_concrete.f90
+  umat_damage_plasticity.f90
   material_points.f90
   material_law.f90
   material_elastic.f90

@@ -1,0 +1,164 @@
+!> The constants and the state of plastic-damage concrete as a UMAT's lists of numbers: which is
+!> which stands in umat_damage_plasticity.f90.
+module umat_concrete
+  use damage_checks, only: find_longest_band, find_table_faults, table_fault
+  use damage_constants, only: concrete_constants
+  use damage_model, only: concrete_model, make_concrete_model
+  use damage_point, only: point_history
+  use kinds, only: rk
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: num_state, make_model, unpack, pack
+
+  integer, parameter :: num_scalars = 18 !< constants before the tables
+  integer, parameter :: num_state = 17
+  integer, parameter :: own_width = 14 !< in place of CELENT
+  integer, parameter :: first_count = 15 !< of the four numbers of rows
+  integer, parameter :: last_strain = 6, last_measure = 8, last_damage = 10, width_row = 11
+  character(12), parameter :: kinds_of_table(0:2) = ['STRAIN      ', 'DISPLACEMENT', 'GFI         ']
+
+contains
+
+  !> PROPS by name; `fault` tells what is wrong, '' when nothing is.
+  subroutine read_constants(props, constants, fault)
+    real(rk), intent(in) :: props(:)
+    type(concrete_constants), intent(out) :: constants
+    character(:), allocatable, intent(out) :: fault
+    integer :: first, num_rows(4)
+    fault = ''
+    if (size(props) < num_scalars) then
+      fault = 'fewer than '//as_text(num_scalars)//' constants'
+      return
+    end if
+    num_rows = nint(props(first_count:num_scalars))
+    call check_scalars(props, num_rows, fault)
+    if (len(fault) > 0) return
+    constants%young = props(1)
+    constants%poisson = props(2)
+    constants%dilation = props(3)
+    constants%offset = props(4)
+    constants%biaxial_ratio = props(5)
+    constants%meridian_ratio = props(6)
+    constants%viscosity = props(7)
+    constants%recovers_by_sign = nint(props(8)) == 1
+    constants%tension_recovery = props(9)
+    constants%compression_recovery = props(10)
+    constants%stiffening = kinds_of_table(nint(props(11)))
+    constants%tension_damage_type = kinds_of_table(nint(props(12)))
+    constants%lowers_strength = nint(props(13)) == 1
+    first = num_scalars
+    call take_table(props, num_rows(1), first, constants%tension)
+    call take_table(props, num_rows(2), first, constants%tension_damage)
+    call take_table(props, num_rows(3), first, constants%compression)
+    call take_table(props, num_rows(4), first, constants%compression_damage)
+  end subroutine read_constants
+
+  !> The next table, row by row; none stays unallocated.
+  pure subroutine take_table(props, num_rows, first, table)
+    real(rk), intent(in) :: props(:)
+    integer, intent(in) :: num_rows
+    integer, intent(inout) :: first !< constants read so far
+    real(rk), allocatable, intent(out) :: table(:, :) !< (2, rows)
+    if (num_rows == 0) return
+    table = reshape(props(first + 1:first + 2*num_rows), [2, num_rows])
+    first = first + 2*num_rows
+  end subroutine take_table
+
+  !> Ranges of what is not a table.
+  subroutine check_scalars(props, num_rows, fault)
+    real(rk), intent(in) :: props(:)
+    integer, intent(in) :: num_rows(4)
+    character(:), allocatable, intent(inout) :: fault
+    integer :: i
+    call want(props(1) > 0.0_rk, 1, 'E_0 > 0')
+    call want(abs(props(2)) < 0.5_rk, 2, 'nu between -0.5 and 0.5')
+    call want(props(3) > 0.0_rk .and. props(3) < 56.3_rk, 3, 'degrees between 0 and 56.3')
+    call want(props(4) > 0.0_rk, 4, 'an offset > 0')
+    call want(props(5) >= 1.0_rk, 5, 'f_b0/f_c0 >= 1')
+    call want(props(6) > 0.5_rk .and. props(6) <= 1.0_rk, 6, 'K_c above 0.5, at most 1')
+    call want(props(7) >= 0.0_rk, 7, 'a viscosity >= 0')
+    call want(any(nint(props(8)) == [0, 1]), 8, 'recovery 0 or 1')
+    call want(abs(props(9) - 0.5_rk) <= 0.5_rk, 9, 'w_t between 0 and 1')
+    call want(abs(props(10) - 0.5_rk) <= 0.5_rk, 10, 'w_c between 0 and 1')
+    call want(any(nint(props(11)) == [0, 1, 2]), 11, 'tension against 0, 1 or 2')
+    call want(any(nint(props(12)) == [0, 1]), 12, 'tension damage against 0 or 1')
+    call want(any(nint(props(13)) == [0, 1]), 13, 'long elements 0 or 1')
+    call want(props(14) >= 0.0_rk, 14, 'a width >= 0')
+    do i = 1, 4
+      call want(num_rows(i) >= mod(i, 2), first_count + i - 1, 'a number of rows')
+    end do
+    if (len(fault) > 0) return
+    if (size(props) /= num_scalars + 2*sum(num_rows)) then
+      fault = as_text(size(props))//' constants; expected '// &
+              as_text(num_scalars + 2*sum(num_rows))//' by the numbers of rows'
+    end if
+
+  contains
+
+    !> Keeps the first fault.
+    subroutine want(is_so, number, expected)
+      logical, intent(in) :: is_so
+      integer, intent(in) :: number !< of the constant
+      character(*), intent(in) :: expected
+      if (is_so .or. len(fault) > 0) return
+      fault = 'constant '//as_text(number)//' is '//as_text(props(number))//'; expected '//expected
+    end subroutine want
+  end subroutine check_scalars
+
+  !> The model and the width of its crack band; `fault` as above.
+  subroutine make_model(props, celent, model, width, fault)
+    real(rk), intent(in) :: props(:)
+    real(rk), intent(in) :: celent !< of the caller [m]
+    type(concrete_model), intent(out) :: model
+    real(rk), intent(out) :: width !< [m]
+    character(:), allocatable, intent(out) :: fault
+    type(concrete_constants) :: constants
+    type(table_fault), allocatable :: faults(:)
+    type(table_fault) :: limit
+    real(rk) :: longest
+    width = celent
+    call read_constants(props, constants, fault)
+    if (len(fault) > 0) return
+    if (props(own_width) > 0.0_rk) width = props(own_width)
+    call find_table_faults(constants, faults)
+    if (size(faults) > 0) then
+      fault = 'table of '//faults(1)%keyword//', row '//as_text(faults(1)%row)//': '// &
+              faults(1)%problem//'; expected '//faults(1)%expected
+      return
+    end if
+    call make_concrete_model(constants, model)
+    if (.not. model%by_opening) return
+    if (width <= 0.0_rk) then
+      fault = 'no width of the crack band: CELENT is not positive, nor is constant 14'
+      return
+    end if
+    call find_longest_band(constants, longest, limit)
+    if (width > longest .and. .not. constants%lowers_strength) then
+      fault = 'a crack band of '//as_text(width)//'; expected at most '//as_text(longest)// &
+              ', '//limit%expected
+    end if
+  end subroutine make_model
+
+  !> STATEV by name.
+  pure subroutine unpack(statev, history)
+    real(rk), intent(in) :: statev(num_state)
+    type(point_history), intent(out) :: history
+    history%plastic_strain = statev(:last_strain)
+    history%backbone%measures = statev(last_strain + 1:last_measure)
+    history%damage = statev(last_measure + 1:last_damage)
+    history%backbone%width = statev(width_row)
+    history%backbone%strain = statev(width_row + 1:)
+  end subroutine unpack
+
+  !> And back.
+  pure subroutine pack(history, statev)
+    type(point_history), intent(in) :: history
+    real(rk), intent(inout) :: statev(num_state)
+    statev(:last_strain) = history%plastic_strain
+    statev(last_strain + 1:last_measure) = history%backbone%measures
+    statev(last_measure + 1:last_damage) = history%damage
+    statev(width_row) = history%backbone%width
+    statev(width_row + 1:) = history%backbone%strain
+  end subroutine pack
+end module umat_concrete
