@@ -20,7 +20,7 @@ contains
     call json%open_array('damaged_volume')
     do i = 1, size(levels)
       call json%open_object()
-      call json%put_real(levels(i), 'above')
+      call json%put_real(levels(i), 'at_least')
       call json%put_real(record%volume(i), 'volume')
       call json%put_integer(record%elements(i), 'elements')
       call json%close_object()

@@ -15,8 +15,10 @@ module damage_readings
   public :: damage_record, damage_extreme, open_damage_record, note_damage, note_damage_on_faces
   public :: levels, damage_columns, damage_row
 
-  !> Damage in tension above which volumes and elements are counted.
+  !> Damage in tension from which on volumes and elements are counted. The largest of a table, often
+  !> a round number, counts as reached although roundoff keeps it below.
   real(rk), parameter :: levels(3) = [0.1_rk, 0.5_rk, 0.9_rk]
+  real(rk), parameter :: least(3) = levels - 1.0e-9_rk
 
   !> Names of what `damage_row` gives.
   character(*), parameter :: damage_columns = 'DAMAGET,DAMAGEC,volume_10,volume_50,volume_90,'// &
@@ -39,8 +41,8 @@ module damage_readings
     type(damage_extreme) :: tension, compression
     type(block_faces), allocatable :: faces(:) !< (inelastic blocks)
     ! Of the last increment:
-    real(rk) :: volume(size(levels)) = 0.0_rk !< with damage in tension above each level [m3]
-    integer :: elements(size(levels)) = 0 !< with a point above each level
+    real(rk) :: volume(size(levels)) = 0.0_rk !< with each level of damage in tension [m3]
+    integer :: elements(size(levels)) = 0 !< with a point of each level
     real(rk) :: inelastic_volume = 0.0_rk !< that has left elasticity [m3]
     integer :: inelastic_elements = 0 !< with a point that has
     real(rk) :: cracking = 0.0_rk, crushing = 0.0_rk !< energy dissipated in solids so far [J]
@@ -142,10 +144,10 @@ contains
         record%crushing = record%crushing + sum(weight*points%energy(crushing_energy, first:last))
         if (.not. allocated(tension)) cycle
         do level = 1, size(levels)
-          if (.not. any(tension(1, first:last) > levels(level))) exit
+          if (maxval(tension(1, first:last)) < least(level)) exit
           record%elements(level) = record%elements(level) + 1
           record%volume(level) = record%volume(level) + &
-                                 sum(weight, mask=tension(1, first:last) > levels(level))
+                                 sum(weight, mask=tension(1, first:last) >= least(level))
         end do
       end associate
     end do

@@ -131,9 +131,9 @@ def test_damage_in_the_summary(results: ResultsFolder):
     assert damage["DAMAGEC"]["value"] == 0.25
     # Points of element 10 hold 0.75 m3 each, the one of element 20 6 m3.
     assert damage["damaged_volume"] == [
-        {"above": 0.1, "volume": pytest.approx(7 * 0.75 + 6), "elements": 2},
-        {"above": 0.5, "volume": pytest.approx(3 * 0.75 + 6), "elements": 2},
-        {"above": 0.9, "volume": pytest.approx(6), "elements": 1},
+        {"at_least": 0.1, "volume": pytest.approx(8 * 0.75 + 6), "elements": 2},
+        {"at_least": 0.5, "volume": pytest.approx(4 * 0.75 + 6), "elements": 2},
+        {"at_least": 0.9, "volume": pytest.approx(6), "elements": 1},
     ]
     assert damage["inelastic"] == {"volume": pytest.approx(12), "elements": 2}
     assert damage["dissipated"] == {
@@ -154,7 +154,7 @@ def test_growth_of_damage(folder: Path, results: ResultsFolder):
     assert list(table["increment"]) == [1, 2, 3]
     assert table["DAMAGET"] == pytest.approx([0, 0.8, 0.95], rel=PRINTED)
     assert table["DAMAGEC"] == pytest.approx([0, 0, 0.25], rel=PRINTED)
-    assert table["volume_50"] == pytest.approx([0, 3 * 0.75, 3 * 0.75 + 6])
+    assert table["volume_50"] == pytest.approx([0, 4 * 0.75, 4 * 0.75 + 6])
     assert table["cracking"] == pytest.approx([0, 0, 600])
     with h5py.File(folder / f"{JOB}.h5") as file:
         names = file["history/damage"].attrs["columns"].decode().split(",")

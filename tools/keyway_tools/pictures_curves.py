@@ -112,7 +112,7 @@ def plot_damage_growth(results: Results, path: Path) -> Path | None:
     axes[0].plot(table["time"], table["inelastic_volume"], color=GREY, label="beyond elasticity")
     for percent, colour in zip((10, 50, 90), COLOURS, strict=False):
         axes[0].plot(
-            table["time"], table[f"volume_{percent}"], color=colour, label=f"damage > {percent} %"
+            table["time"], table[f"volume_{percent}"], color=colour, label=f"damage ≥ {percent} %"
         )
     axes[0].set_title("Growth of damage in tension")
     axes[0].set_ylabel("volume [m³]")
