@@ -47,8 +47,8 @@ contains
   end function elastic_stress
 
   !> The increment in one piece; where its return map fails, in 2, 4, ... equal parts of the strain.
-  !> Uniform flow and curves need no parts (see damage_return): they are the way out for states that
-  !> roundoff spoils.
+  !> The one equation always has a root (see damage_return); parts help where roundoff of a very
+  !> large trial stress hides it from a strength that is nearly gone.
   pure subroutine integrate_increment(model, before, strain, edges, old, placed, end_state)
     type(concrete_model), intent(in) :: model
     real(rk), intent(in) :: before(6), strain(6) !< at both ends of the increment
