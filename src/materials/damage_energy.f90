@@ -8,7 +8,7 @@ module damage_energy
   use tensor6, only: principal_values, second_invariant, trace
   implicit none
   private
-  public :: flow_path, onset_of_flow, dissipated_work
+  public :: flow_path, onset_of_flow, dissipated_work, cracking_share
 
   !> What flows in an increment.
   type :: flow_path
@@ -50,18 +50,30 @@ contains
   !> mean of onset and end stands for the stress on the way; where it would give energy back (a path
   !> that turns within a large increment) the end does, whose work is not negative (see
   !> largest_safe_dilation).
-  pure real(rk) function dissipated_work(model, path) result(work)
+  pure function dissipated_work(model, path) result(work)
     type(concrete_model), intent(in) :: model
     type(flow_path), intent(in) :: path
-    real(rk) :: intact, energy
+    real(rk) :: work(2) !< by flow, by damage [J/m3]
+    real(rk) :: intact
     associate (damages => path%damages)
       intact = 1.0_rk - 0.5_rk*(damages(1) + damages(2))
-      work = intact*0.5_rk*dot_product(path%onset + path%finish, path%flow)
-      if (work < 0.0_rk) work = (1.0_rk - damages(2))*dot_product(path%finish, path%flow)
-      energy = 0.5_rk*(undamaged_energy(model, path%onset) + undamaged_energy(model, path%finish))
-      work = work + energy*(damages(2) - damages(1))
+      work(1) = intact*0.5_rk*dot_product(path%onset + path%finish, path%flow)
+      if (work(1) < 0.0_rk) work(1) = (1.0_rk - damages(2))*dot_product(path%finish, path%flow)
+      work(2) = 0.5_rk*(damages(2) - damages(1)) &
+                *(undamaged_energy(model, path%onset) + undamaged_energy(model, path%finish))
     end associate
   end function dissipated_work
+
+  !> What of the work of flow is cracking: that of the principal directions in tension. A crack that
+  !> opens under pressure along it is a crack, whatever the weight r of the state.
+  pure real(rk) function cracking_share(s, flow) result(share)
+    real(rk), intent(in) :: s(3) !< principal effective stresses [Pa]
+    real(rk), intent(in) :: flow(3) !< in their directions, of any size
+    real(rk) :: whole
+    whole = dot_product(s, flow)
+    share = merge(1.0_rk, 0.0_rk, s(1) > 0.0_rk)
+    if (whole > 0.0_rk) share = min(1.0_rk, max(0.0_rk, sum(s*flow, s > 0.0_rk)/whole))
+  end function cracking_share
 
   !> Elastic energy of an effective stress without damage [J/m3].
   pure real(rk) function undamaged_energy(model, stress) result(energy)

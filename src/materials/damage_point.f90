@@ -1,7 +1,7 @@
 !> A point of plastic-damage concrete: all that one increment does to it. The kernel of the material
 !> of the deck and of the user subroutine for other programs.
 module damage_point
-  use damage_energy, only: dissipated_work, flow_path, onset_of_flow
+  use damage_energy, only: cracking_share, dissipated_work, flow_path, onset_of_flow
   use damage_increment, only: elastic_stress, increment_result, integrate_increment, plastic_state
   use damage_model, only: concrete_model, placed_curves, stiffness_of
   use damage_tangent, only: effective_tangent, has_regular_flow, share_row
@@ -141,8 +141,8 @@ contains
     end do
   end subroutine differentiate_stress
 
-  !> What the increment dissipates, shared between cracking and crushing by the weight of Lee and
-  !> Fenves at its end.
+  !> What the increment dissipates: by flow, cracking in the principal directions in tension and
+  !> crushing in those in compression; by damage, each by its own.
   pure subroutine dissipate(model, motion, old, placed, backbone, finish, new, answer)
     type(concrete_model), intent(in) :: model
     type(point_motion), intent(in) :: motion
@@ -154,7 +154,7 @@ contains
     type(point_answer), intent(inout) :: answer !< fracture and crushing come out
     type(damage_gradient) :: before
     type(flow_path) :: path
-    real(rk) :: trial(6), work
+    real(rk) :: trial(6), work(2), share(2), losses(2)
     before = total_damage(model, old%damage(1), old%damage(2), finish%share)
     path%onset = elastic_stress(model, motion%before - old%plastic_strain)
     if (model%viscosity <= 0.0_rk) then
@@ -166,7 +166,14 @@ contains
     path%flow = new%plastic_strain - old%plastic_strain
     path%damages = [before%value, finish%d%value]
     work = dissipated_work(model, path)
-    answer%fracture = backbone%flow%share*work
-    answer%crushing = work - answer%fracture
+    associate (flow => backbone%flow)
+      share(1) = cracking_share(flow%s, 1.5_rk*flow%q/flow%radius*backbone%trial%shape &
+                                + model%tan_dilation/3.0_rk)
+    end associate
+    losses = [finish%d%by_tension, finish%d%by_compression]*(new%damage - old%damage)
+    share(2) = 1.0_rk
+    if (losses(2) > 0.0_rk) share(2) = losses(1)/sum(losses)
+    answer%fracture = dot_product(share, work)
+    answer%crushing = dot_product(1.0_rk - share, work)
   end subroutine dissipate
 end module damage_point
