@@ -90,13 +90,13 @@ contains
     call make_tension_curve(concrete, curve)
     allocate (knots(size(curve%abscissa)))
     call place_knots(curve, 0.5_rk, knots, factor)
-    ! Parts of 1/24 of f_t and of a damage of 1 between the rows of Table 1.
-    call check(log, size(knots) == 1 + 16 + 7 + 4 + 3 + 2 + 1 + 1, 'knots between the rows')
-    call check_close(log, maxval(abs(knots([1, 17, 24, 28, 31, 33, 34, 35]) - strain_knots)), &
+    ! Parts of 1/32 of f_t and of a damage of 1 between the rows of Table 1.
+    call check(log, size(knots) == 1 + 21 + 9 + 5 + 4 + 2 + 1 + 1, 'knots between the rows')
+    call check_close(log, maxval(abs(knots([1, 22, 31, 36, 40, 42, 43, 44]) - strain_knots)), &
                      0.0_rk, roundoff, 'w over l')
     ! 25 GPa: the first branch loses 1.622 MPa over 0.0875 mm.
     call check_close(log, curve%longest, 0.0875e-3_rk*25.0e9_rk/1.622e6_rk, roundoff, 'longest')
-    call check(log, curve%steepest <= 17, 'the first branch is the steepest')
+    call check(log, curve%steepest <= 22, 'the first branch is the steepest')
   end subroutine openings
 
   !> Linear softening with damage keeps its fracture energy: work over the openings w = l (eps_pl +
@@ -131,8 +131,8 @@ contains
           before = [opening, stress]
         end do
       end do
-      ! 24 knots leave up to 0.3 %.
-      call check_close(log, work, 200.0_rk, 1.0_rk, 'fracture energy with damage')
+      ! Some 30 knots leave up to 0.2 %.
+      call check_close(log, work, 200.0_rk, 0.6_rk, 'fracture energy with damage')
     end do
   end subroutine energy_with_damage
 
