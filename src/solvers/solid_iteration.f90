@@ -11,10 +11,9 @@ module solid_iteration
   use kinds, only: rk
   use errors, only: error_type, analysis_failed
   use problem_definition, only: problem
-  use step_plan, only: step
   use analysis_state, only: state
   use matrix_pattern, only: multiply
-  use material_points, only: time_increment, no_tangent, secant_tangent, consistent_tangent
+  use material_points, only: time_increment
   use inelastic_forces, only: block_answer, open_answers, update_points, recall_points, &
                               sum_released, find_failure
   use joint_forces, only: gather_jumps
@@ -23,9 +22,10 @@ module solid_iteration
   use motion_state, only: motion
   use anderson_mixing, only: mixer
   use solid_tangent, only: tangent_matrix
+  use tangent_choice, only: tangent
   implicit none
   private
-  public :: increment_task, solid_solver, choose_tangent
+  public :: increment_task, solid_solver
 
   !> What an increment asks for.
   type :: increment_task
@@ -41,8 +41,8 @@ module solid_iteration
     class(equilibrium_solver), allocatable :: solver !< with a linear bulk
     real(rk), allocatable :: values(:) !< of K_eff, joints apart
     real(rk) :: weight = 1.0_rk !< of the forces of the solids
-    character(16) :: tangent = 'ELASTIC' !< 'CONSISTENT', 'SECANT' or 'ELASTIC'
-    integer :: patience = 0 !< iterations with one matrix before it is judged; 0: none is kept
+    type(tangent), allocatable :: choices(:) !< to try, one after the other
+    type(tangent) :: chosen !< of them
     type(time_increment) :: time
     type(tangent_matrix) :: matrix
     type(block_answer), allocatable :: answers(:) !< (blocks)
@@ -75,48 +75,25 @@ module solid_iteration
   real(rk), parameter :: smallest_increment = 1.0e-3_rk
   !> Out of balance by this part is round-off, whatever correction it asks for.
   real(rk), parameter :: roundoff = 1.0e-12_rk
-  !> A secant matrix is taken anew when more than so many iterations with it have not brought the
-  !> out-of-balance down to this part.
-  integer, parameter :: secant_patience = 3
-  real(rk), parameter :: sufficient_decrease = 0.05_rk
+  !> A matrix is taken anew when its patient iterations have not brought the out-of-balance down to
+  !> this part.
+  real(rk), parameter :: sufficient_decrease = 0.1_rk
   !> A step of Newton's that leaves the balance so much worse is halved.
   real(rk), parameter :: largest_growth = 1.0_rk
   real(rk), parameter :: smallest_share = 0.1_rk !< of a step
 
 contains
 
-  !> The tangent that a step takes; AUTO by docs/studies/tangents_of_solids.
-  pure function choose_tangent(scene, plan) result(tangent)
-    type(problem), intent(in) :: scene
-    type(step), intent(in) :: plan
-    character(16) :: tangent
-    tangent = 'ELASTIC'
-    if (.not. allocated(scene%inelastic)) return
-    if (size(scene%inelastic) == 0) return
-    tangent = plan%controls%tangent
-    if (tangent /= 'AUTO') return
-    tangent = 'SECANT'
-    if (plan%procedure == 'STATIC' .and. size(scene%joints) == 0) tangent = 'CONSISTENT'
-  end function choose_tangent
-
   !> Makes ready for a step: what the solids have released so far, in its unknowns.
-  subroutine open_solids(self, scene, system, tangent, moving)
+  subroutine open_solids(self, scene, system, choices, moving)
     class(solid_solver), intent(inout) :: self
     type(problem), intent(in) :: scene
     type(dam_system), intent(in) :: system
-    character(*), intent(in) :: tangent
+    type(tangent), intent(in) :: choices(:)
     type(motion), intent(inout) :: moving
-    self%tangent = tangent
-    select case (tangent)
-    case ('CONSISTENT')
-      self%patience = 0
-    case ('SECANT')
-      self%patience = secant_patience
-    case default
-      self%patience = huge(1)
-    end select
+    self%choices = choices
+    self%chosen = choices(1)
     if (size(moving%points) == 0) return
-    self%matrix%is_symmetric = self%tangent /= 'CONSISTENT'
     call open_answers(scene%inelastic, self%answers)
     call recall_points(scene, moving%points, self%answers)
     call sum_released(scene, system%numbers, self%answers, moving%released)
@@ -132,14 +109,6 @@ contains
     self%time%step_time = now%step_time
     self%time%total_time = now%total_time
     self%time%size = increment
-    select case (self%tangent)
-    case ('CONSISTENT')
-      self%time%tangent = consistent_tangent
-    case ('SECANT')
-      self%time%tangent = secant_tangent
-    case default
-      self%time%tangent = no_tangent
-    end select
   end subroutine open_increment
 
   !> Iterations as they count for the size of increments: cheap ones count less.
@@ -147,7 +116,7 @@ contains
     class(solid_solver), intent(in) :: self
     integer, intent(in) :: iterations
     effort = iterations
-    if (self%patience == 0 .or. .not. allocated(self%answers)) return
+    if (self%chosen%patience == 0 .or. .not. allocated(self%answers)) return
     effort = (iterations + cheap_iterations - 1)/cheap_iterations
   end function effort
 
@@ -162,14 +131,22 @@ contains
     type(motion), intent(inout) :: after
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
+    integer :: i
     if (size(before%points) == 0) then
       call self%solver%solve(task%balance, scene%joints, before%joints, after%joints, task%x, &
                              outcome, error)
       return
     end if
-    call self%iterate(scene, system, task, before, after, outcome, error)
-    if (allocated(error) .or. outcome%has_converged .or. self%matrix%is_elastic) return
-    call self%matrix%factorise_elastic(scene, system, self%values, self%solver, error)
+    do i = 1, size(self%choices)
+      self%chosen = self%choices(i)
+      self%time%tangent = self%chosen%kind
+      call self%iterate(scene, system, task, before, after, outcome, error)
+      if (allocated(error) .or. outcome%has_converged) return
+      if (.not. self%matrix%is_elastic) then
+        call self%matrix%factorise_elastic(scene, system, self%values, self%solver, error)
+        if (allocated(error)) return
+      end if
+    end do
   end subroutine solve
 
   !> Iterates until the laws agree with the balance.
@@ -185,7 +162,7 @@ contains
     type(iterate_state) :: now
     integer :: most_iterations
     most_iterations = self%solver%controls%max_iterations
-    if (self%patience > 0) most_iterations = cheap_iterations*most_iterations
+    if (self%chosen%patience > 0) most_iterations = cheap_iterations*most_iterations
     now%task = task
     allocate (outcome%history(0))
     call self%start_iteration(system, before, now)
@@ -294,10 +271,10 @@ contains
     type(iterate_state), intent(inout) :: now
     type(error_type), allocatable, intent(out) :: error
     now%tries = now%tries + 1
-    if (self%patience > 0 .and. .not. is_slow(now, self%patience)) then
+    if (self%chosen%patience > 0 .and. .not. is_slow(now, self%chosen%patience)) then
       if (now%tries == 1) now%base_force = now%force
       call self%mixer%advance(now%answer - now%guess, now%guess)
-    else if (self%patience == 0 .and. goes_astray(now)) then
+    else if (self%chosen%patience == 0 .and. goes_astray(now)) then
       now%share = 0.5_rk*now%share
       now%guess = now%base - (1.0_rk - now%share)*now%unbalance
     else
@@ -334,6 +311,7 @@ contains
     now%share = 1.0_rk
     now%tries = 0
     call self%mixer%forget()
+    self%matrix%is_symmetric = self%chosen%is_symmetric()
     call self%matrix%factorise(scene, system, self%answers, self%values, self%weight, self%solver, &
                                error)
     if (allocated(error)) then

@@ -50,13 +50,14 @@ contains
     real(rk), allocatable :: tangent(:)
     self%is_elastic = .false.
     call solver%costs%start('stiffness', 'material')
+    if (allocated(self%lost)) deallocate (self%lost)
     if (self%is_symmetric) then
-      if (.not. allocated(self%lost)) allocate (self%lost(size(values)))
+      allocate (self%lost(size(values)))
       call lost_stiffness(scene, system%numbers, answers, system%matrix, self%lost)
       tangent = values - weight*self%lost
     else
       if (.not. allocated(self%full_matrix%row)) call full_pattern(system%matrix, self%full_matrix)
-      if (.not. allocated(self%lost)) allocate (self%lost(size(self%full_matrix%row)))
+      allocate (self%lost(size(self%full_matrix%row)))
       call lost_stiffness(scene, system%numbers, answers, self%full_matrix, self%lost)
       allocate (tangent(size(self%lost)))
       call spread_values(system%matrix, values, self%full_matrix, tangent)

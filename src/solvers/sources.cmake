@@ -29,6 +29,7 @@ set(sources
   motion_state.f90
   anderson_mixing.f90
   solid_tangent.f90
+  tangent_choice.f90
   solid_iteration.f90
   hht_scheme.f90
   energy_account.f90

@@ -19,7 +19,7 @@ module time_hht
   use motion_state, only: motion, start_motion, show_motion, sum_contact
   use initial_acceleration, only: find_acceleration
   use hht_scheme, only: make_scheme
-  use solid_iteration, only: choose_tangent
+  use tangent_choice, only: choose_tangents
   use hht_increment, only: stepper, effective_values, take_increment
   use energy_account, only: open_account, add_dynamic_work
   implicit none
@@ -49,7 +49,7 @@ contains
     call start_motion(system%numbers, scene%joints, now, moving)
     allocate (moving%stiffness(system%matrix%num_total))
     call diagonal(system%matrix, system%stiffness, moving%stiffness)
-    call tool%solids%open(scene, system, choose_tangent(scene, plan), moving)
+    call tool%solids%open(scene, system, choose_tangents(scene, plan), moving)
     call results%costs%start('initial acceleration', 'solver')
     call start_dynamic(scene, plan, system, now%total_time, moving, error)
     call results%costs%stop('initial acceleration')
@@ -59,7 +59,7 @@ contains
     call results%increment_done(scene, now, error)
     if (allocated(error)) return
     call results%costs%start('analyse', 'solver')
-    call make_equilibrium(plan, system, tool%solids%tangent /= 'CONSISTENT', &
+    call make_equilibrium(plan, system, all(tool%solids%choices%is_symmetric()), &
                           tool%solids%solver, error)
     call results%costs%stop('analyse')
     if (allocated(error)) return

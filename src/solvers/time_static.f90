@@ -19,7 +19,8 @@ module time_static
   use step_report, only: close_increment, give_up
   use user_increments, only: begin_user_increment
   use motion_state, only: motion, start_motion, show_motion, sum_contact, solid_force
-  use solid_iteration, only: solid_solver, increment_task, choose_tangent
+  use solid_iteration, only: solid_solver, increment_task
+  use tangent_choice, only: tangent, choose_tangents
   use energy_account, only: open_account, add_static_work
   implicit none
   private
@@ -40,15 +41,15 @@ contains
     type(dam_system) :: system
     type(motion) :: moving
     type(solid_solver) :: solids
-    character(16) :: tangent
+    type(tangent), allocatable :: choices(:)
     call results%costs%start('assemble', 'solver')
     call build_structure(scene, plan, system, error)
     if (allocated(error)) return
     call build_loads(scene, plan, now%u, system)
     call results%costs%stop('assemble')
     call results%costs%start('analyse', 'solver')
-    tangent = choose_tangent(scene, plan)
-    call make_equilibrium(plan, system, tangent /= 'CONSISTENT', solids%solver, error)
+    choices = choose_tangents(scene, plan)
+    call make_equilibrium(plan, system, all(choices%is_symmetric()), solids%solver, error)
     call results%costs%stop('analyse')
     if (allocated(error)) return
     call results%costs%start('forces', 'solver')
@@ -61,7 +62,7 @@ contains
     call start_motion(system%numbers, scene%joints, now, moving)
     allocate (moving%stiffness(system%matrix%num_total))
     call diagonal(system%matrix, system%stiffness, moving%stiffness)
-    call solids%open(scene, system, tangent, moving)
+    call solids%open(scene, system, choices, moving)
     if (size(moving%points) > 0) solids%values = system%stiffness
     call start_forces(scene, plan, system, now, moving)
     call open_account(scene, moving, now%total_time <= 0.0_rk, now%energy)

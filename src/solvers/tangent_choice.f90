@@ -1,0 +1,54 @@
+!> Which tangent of inelastic solids a step takes, by *CONTROLS, TANGENT; AUTO by what has been
+!> measured (docs/studies/tangents_of_solids).
+module tangent_choice
+  use problem_definition, only: problem
+  use step_plan, only: step
+  use material_points, only: no_tangent, secant_tangent, consistent_tangent
+  implicit none
+  private
+  public :: tangent, choose_tangents
+
+  !> A way to iterate.
+  type :: tangent
+    integer :: kind = no_tangent !< asked of the laws
+    integer :: patience = huge(1) !< iterations with one matrix before it is judged; 0: none is kept
+  contains
+    procedure :: is_symmetric
+  end type tangent
+
+  type(tangent), parameter :: consistent = tangent(consistent_tangent, 0)
+  type(tangent), parameter :: secant = tangent(secant_tangent, 6)
+  type(tangent), parameter :: elastic = tangent(no_tangent, huge(1))
+
+contains
+
+  !> The tangents of a step: the first one, and one to try where it does not converge. A static step
+  !> has few iterations to spend on many factors; in motion a matrix that is kept does for most.
+  !> Where joints iterate too, so that Newton's method would factor for each of their iterates, the
+  !> secant is taken.
+  pure function choose_tangents(scene, plan) result(choices)
+    type(problem), intent(in) :: scene
+    type(step), intent(in) :: plan
+    type(tangent), allocatable :: choices(:)
+    choices = [elastic]
+    if (.not. allocated(scene%inelastic)) return
+    if (size(scene%inelastic) == 0) return
+    select case (plan%controls%tangent)
+    case ('CONSISTENT')
+      choices = [consistent]
+    case ('SECANT')
+      choices = [secant]
+    case ('ELASTIC')
+      choices = [elastic]
+    case default
+      choices = [secant]
+      if (plan%procedure == 'STATIC' .and. size(scene%joints) == 0) choices = [consistent, secant]
+    end select
+  end function choose_tangents
+
+  !> The tangents of the laws are.
+  elemental logical function is_symmetric(self)
+    class(tangent), intent(in) :: self
+    is_symmetric = self%kind /= consistent_tangent
+  end function is_symmetric
+end module tangent_choice
