@@ -29,6 +29,7 @@ module damage_point
     !> The symmetric (1 - d) D instead of the consistent tangent. It also stands in where that does
     !> not exist: see has_regular_flow.
     logical :: is_secant = .false.
+    logical :: holds_switch = .false. !< r of Eq 17 stays as it was at the start of the increment
   end type point_motion
 
   !> What it answers.
@@ -73,7 +74,7 @@ contains
     finish%axes = backbone%axes
     finish%principal = backbone%flow%s
     if (model%viscosity > 0.0_rk) call relax(model, motion, old, new, finish)
-    call recover(model, new%damage, finish)
+    call recover(model, motion, old, new%damage, finish)
     answer%stress = (1.0_rk - finish%d%value)*finish%stress
     answer%stored = 0.5_rk*dot_product(answer%stress, motion%strain - new%plastic_strain)
     if (backbone%has_yielded .or. model%viscosity > 0.0_rk) then
@@ -103,13 +104,21 @@ contains
     call principal_axes(finish%stress, finish%principal, finish%axes)
   end subroutine relax
 
-  !> r of the stiffness, Eq 17 or NOTES 8, and d.
-  pure subroutine recover(model, damage, finish)
+  !> r of the stiffness, Eq 17 or NOTES 8, and d. A switch that is held is that of the start, unless
+  !> the point was sound then.
+  pure subroutine recover(model, motion, old, damage, finish)
     type(concrete_model), intent(in) :: model
+    type(point_motion), intent(in) :: motion
+    type(point_history), intent(in) :: old
     real(rk), intent(in) :: damage(2) !< d_t, d_c
     type(end_state), intent(inout) :: finish
+    real(rk) :: stretch
     if (model%recovers_by_sign) then
-      finish%share = merge(1.0_rk, 0.0_rk, sum(finish%principal) > 0.0_rk)
+      stretch = sum(finish%principal)
+      if (motion%holds_switch .and. any(old%damage > 0.0_rk)) then
+        stretch = sum(motion%before(1:3) - old%plastic_strain(1:3))
+      end if
+      finish%share = merge(1.0_rk, 0.0_rk, stretch > 0.0_rk)
       finish%share_by = 0.0_rk
     else
       call tension_share(finish%principal, finish%share, finish%share_by)

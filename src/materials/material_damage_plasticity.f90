@@ -54,6 +54,7 @@ contains
     end if
     call make_concrete_model(constants, law%model)
     law%is_nonlinear = .true.
+    law%has_switch = constants%recovers_by_sign
     law%num_state = num_state_of(constants%viscosity)
   end subroutine make_concrete_law
 
@@ -90,6 +91,7 @@ contains
     motion%time = time%size
     motion%wants_tangent = time%tangent /= no_tangent
     motion%is_secant = time%tangent == secant_tangent
+    motion%holds_switch = time%holds_switches
     do i = 1, points%num_points
       if (new%is_elastic(i) .and. old%is_elastic(i)) then
         new%internal(:, i) = old%internal(:, i)

@@ -10,6 +10,7 @@ module material_law
   type, abstract :: stress_law
     integer :: num_state = 0 !< internal variables per point
     logical :: is_nonlinear = .false. !< else stress = D strain always and the points keep nothing
+    logical :: has_switch = .false. !< its stress jumps; see time_increment%holds_switches
     logical :: is_serial = .false. !< one call at a time (user subroutines with memory of their own)
     logical :: wants_gradient = .false. !< of the displacement, besides the strain
   contains

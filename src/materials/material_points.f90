@@ -49,6 +49,8 @@ module material_points
     real(rk) :: step_time = 0.0_rk, total_time = 0.0_rk !< at its start [s]
     real(rk) :: size = 1.0_rk !< [s]
     integer :: tangent = consistent_tangent !< wanted
+    !> A switch that makes the stress jump stays as it was at the start of the increment.
+    logical :: holds_switches = .false.
   end type time_increment
 
   !> What went wrong in an update.

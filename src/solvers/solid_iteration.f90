@@ -140,6 +140,7 @@ contains
     do i = 1, size(self%choices)
       self%chosen = self%choices(i)
       self%time%tangent = self%chosen%kind
+      self%time%holds_switches = self%chosen%holds_switches
       call self%iterate(scene, system, task, before, after, outcome, error)
       if (allocated(error) .or. outcome%has_converged) return
       if (.not. self%matrix%is_elastic) then

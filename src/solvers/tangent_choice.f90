@@ -12,6 +12,7 @@ module tangent_choice
   type :: tangent
     integer :: kind = no_tangent !< asked of the laws
     integer :: patience = huge(1) !< iterations with one matrix before it is judged; 0: none is kept
+    logical :: holds_switches = .false. !< of the laws, for the increment
   contains
     procedure :: is_symmetric
   end type tangent
@@ -44,7 +45,23 @@ contains
       choices = [secant]
       if (plan%procedure == 'STATIC' .and. size(scene%joints) == 0) choices = [consistent, secant]
     end select
+    if (.not. has_switches(scene)) return
+    choices = [choices, choices(size(choices))]
+    choices(size(choices))%holds_switches = .true.
   end function choose_tangents
+
+  !> A law jumps: there may be no equilibrium, a point goes to and fro for ever. Where nothing else
+  !> converges the switches keep for the increment what they were (theory 12).
+  pure logical function has_switches(scene)
+    type(problem), intent(in) :: scene
+    integer :: i
+    has_switches = .false.
+    do i = 1, size(scene%inelastic)
+      associate (law => scene%materials(scene%inelastic(i)%material)%law)
+        has_switches = has_switches .or. law%has_switch
+      end associate
+    end do
+  end function has_switches
 
   !> The tangents of the laws are.
   elemental logical function is_symmetric(self)

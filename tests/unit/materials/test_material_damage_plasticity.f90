@@ -36,6 +36,7 @@ program test_material_damage_plasticity
   call cycles()
   call energy()
   call what_it_tells()
+  call held_switch()
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
 
@@ -335,4 +336,39 @@ contains
     call make_concrete_law(concrete, body%law, error)
     call check(log, allocated(error), 'tables at fault')
   end subroutine what_it_tells
+
+  !> Cracked, then pressed in one go: with w_c = 1 the switch of Eq 17 gives back E_0 at once;
+  !> held, it leaves (1 - d_t) of the same effective stress for this increment. A sound point does
+  !> not hold it.
+  subroutine held_switch()
+    type(concrete_constants) :: concrete
+    type(specimen) :: body
+    type(point_state) :: closed, held
+    type(time_increment) :: time
+    type(update_report) :: report
+    real(rk) :: tangent(6, 6, 0), cracked(6), pressed(6), left
+    concrete = table_one()
+    concrete%recovers_by_sign = .true.
+    call make_point(concrete, one, body)
+    call check(log, body%law%has_switch, 'the law tells of its switch')
+    cracked = [4.0e-4_rk, 0.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 0.0_rk]
+    pressed = -0.25_rk*cracked
+    time%tangent = no_tangent
+    time%holds_switches = .true.
+    held = body%state
+    held%strain(:, 1) = cracked
+    call body%law%update(body%points, time, body%state, held, tangent, report)
+    call move(body, cracked)
+    call check_close(log, held%stress(1, 1), body%state%stress(1, 1), 0.0_rk, 'sound at the start')
+    left = 1.0_rk - body%state%internal(9, 1)
+    held = body%state
+    held%strain(:, 1) = pressed
+    call body%law%update(body%points, time, body%state, held, tangent, report)
+    time%holds_switches = .false.
+    closed = body%state
+    closed%strain(:, 1) = pressed
+    call body%law%update(body%points, time, body%state, closed, tangent, report)
+    call check(log, left < 0.5_rk .and. closed%stress(1, 1) < -1.0e6_rk, 'cracked and pressed')
+    call check_close(log, held%stress(1, 1), left*closed%stress(1, 1), 1.0e-6_rk, 'held')
+  end subroutine held_switch
 end program test_material_damage_plasticity
