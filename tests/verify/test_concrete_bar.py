@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from concrete_decks import Bar, Concrete, force_of, pull, work_of
+from concrete_decks import Bar, Concrete, force_of, paper_concrete, pull, work_of
+from joint_decks import dynamic, static
 
 YOUNG, STRENGTH, FRACTURE = 25e9, 2.48e6, 150.0  # [Pa], [Pa], [N/m]
 LENGTH, SIDE = 0.5, 0.1  # [m]; the bar itself snaps back above 1.219 m
@@ -85,3 +86,50 @@ def test_sides_that_are_held(keyway, num_rest):
     _, work, dissipated = measure(run)
     assert 0.99 < work < 1.09
     assert 0.99 < dissipated < 1.09
+
+
+def test_more_load_than_strength(keyway):
+    """Led by its load a bar has no equilibrium past its strength: the run stops there, within 1e-4,
+    with a message, and what it has computed is kept.
+    """
+    load = 1.5 * STRENGTH * AREA / 4.0
+    bar = Bar(paper_concrete(), None, LENGTH, SIDE, num_rest=3)
+    step = static(f"*CLOAD\nRIGHT, 1, {load!r}\n*NODE PRINT, NSET=RIGHT\nU\n", "0.1, 1.")
+    run = keyway(bar.deck(step), code=1)
+    assert run.json["status"] == "stopped"
+    assert "no equilibrium" in run.json["message"]
+    last = run.csv("node_RIGHT")
+    assert last["time"][-1] == pytest.approx(1.0 / 1.5, abs=1e-4)
+    assert last["U1"][-1] == pytest.approx(STRENGTH / YOUNG * LENGTH, rel=1e-3)
+
+
+def test_bar_that_snaps_back(keyway):
+    """5 m are more than 2 E G_f / f_t^2 = 1.219 m: at rest nothing balances the bar once it cracks.
+    In motion it breaks with G_f A. The halves part with 2 f_t / (rho c) = 0.64 m/s, so that the
+    crack opens in 0.19 ms: increments of 10 us follow it, larger ones dissipate more in it. The
+    thousandth of f_t that stays works over 1 mm of opening besides: 2 % of G_f A.
+    """
+    weak = Concrete(
+        young=YOUNG,
+        poisson=0.0,
+        density=2400.0,
+        flow=STRAIGHT,
+        tension_type="GFI",
+        tension=((STRENGTH, FRACTURE),),
+    )
+    rest = replace(weak, tension=((2.0 * STRENGTH, 4.0 * FRACTURE),))
+    bar = Bar(weak, rest, 5.0, SIDE, num_rest=9, weak_at=4)
+    stop = keyway(bar.deck(pull([6e-4])), code=1, name="at_rest")
+    assert stop.json["message"].startswith("no equilibrium")
+    last = 5.0 * STRENGTH / YOUNG
+    moving = "*BOUNDARY, AMPLITUDE={}\nRIGHT, 1, 1, 1.\n*NODE PRINT, NSET=RIGHT\nU, RF\n"
+    ramp = f"*AMPLITUDE, NAME=SLOW\n0., 0., 1., {0.99 * last!r}\n"
+    ramp += f"*AMPLITUDE, NAME=ON\n0., {0.99 * last!r}, 0.002, {1.02 * last!r}\n"
+    steps = static(moving.format("SLOW"), "0.1, 1.")
+    steps += dynamic(moving.format("ON"), 1e-5, 0.004).replace(", DIRECT", "")
+    run = keyway(bar.deck(ramp + steps), name="in_motion")
+    table = run.csv("energy")
+    _, force = force_of(run)
+    print(f"largest {force.max() / (STRENGTH * AREA):.4f}", run.json["steps"][-1]["energy"])
+    assert table["fracture"][-1] == pytest.approx(FRACTURE * AREA, rel=0.02)
+    assert table["error"].max() < 1e-3

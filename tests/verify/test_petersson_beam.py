@@ -91,3 +91,38 @@ def test_cohesive_crack(keyway, name, mesh):
     worst = np.abs(apart).max() / wanted.load.max()
     print(f"{name}: largest {beam.load.max():.1f}, {wanted.load.max():.1f} N; apart {worst:.4f}")
     assert worst < 0.03
+
+
+@pytest.mark.parametrize("recovery", ["LEE-FENVES", pytest.param("SIGN", marks=pytest.mark.full)])
+def test_crack_opens_and_closes(keyway, recovery):
+    """Pressed, lifted until the crack closes, three times over: never cut back more than once, and
+    going on where the crack had come to: the largest load of each way is on the first curve.
+    """
+    path = (0.0, -0.45e-3, 0.1e-3, -0.6e-3, 0.1e-3, -0.8e-3)
+    ramp = "".join(f"{float(t)}, {u!r}\n" for t, u in enumerate(path))
+    cards = concrete_cards(exponential_curve())
+    cards = cards.replace("PLASTICITY\n", f"PLASTICITY, RECOVERY={recovery}\n")
+    deck = petersson_deck(COARSE, cards, "C3D8")
+    for old, new in (
+        ("*STEP, NAME=BENDING", f"*AMPLITUDE, NAME=WAYS\n{ramp}*STEP, NAME=BENDING"),
+        ("0.01, 1., 1.e-6, 0.02", "0.02, 5., 1.e-6, 0.02"),
+        (
+            f"*BOUNDARY\nLOADED, 3, 3, {-DEFLECTION!r}",
+            "*BOUNDARY, AMPLITUDE=WAYS\nLOADED, 3, 3, 1.",
+        ),
+    ):
+        assert old in deck
+        deck = deck.replace(old, new)
+    run = keyway(deck, name="ways")
+    place, load = force_of(run, "LOADED", 3)
+    once = keyway(petersson_deck(COARSE, concrete_cards(exponential_curve()), "C3D8"), name="once")
+    first_place, first_load = force_of(once, "LOADED", 3)
+    envelope = np.interp(-place, -first_place, -first_load)
+    step = run.json["steps"][0]
+    print(
+        f"{step['increments']} increments, {step['iterations']} iterations, {step['cutbacks']} cut"
+    )
+    print(f"over the first curve by {np.max(-load - envelope):.1f} N", step["energy"])
+    assert step["cutbacks"] <= 1
+    assert step["energy"]["error"] < 1e-3
+    assert np.max(-load - envelope) < 0.01 * np.max(-first_load)
