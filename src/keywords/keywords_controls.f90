@@ -24,7 +24,8 @@ contains
                     '1e-6', lowest=0.0_rk, highest=1.0_rk, excludes_lowest=.true.), &
               field('INCREMENT', kind_real, 'last correction over the increment', '', '1e-6', &
                     lowest=0.0_rk, highest=1.0_rk, excludes_lowest=.true.), &
-              field('ITERATIONS', kind_integer, 'most iterations before the increment is cut', &
+              field('ITERATIONS', kind_integer, 'most iterations before the increment is cut, '// &
+                    'five times as many with a matrix of the solids that is kept (TANGENT)', &
                     default='15', lowest=1.0_rk), &
               field('JOINT SOLVER', kind_choice, 'iterate on the joints alone (condensed) or '// &
                     'on everything (full Newton)', default='AUTO', &
