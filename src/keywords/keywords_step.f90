@@ -167,7 +167,8 @@ contains
     spec%name = 'FREQUENCY'
     spec%family = 'step'
     spec%place = 'step'
-    spec%meaning = 'Lowest frequencies and modes, with the mass of the water and closed joints.'
+    spec%meaning = 'Lowest frequencies and modes, with the mass of the water, closed joints '// &
+                   'and sound solids.'
     spec%example = '*FREQUENCY'//nl//'10'
     spec%fewest_lines = 1
     spec%most_lines = 1

@@ -24,7 +24,7 @@ module energy_account
 contains
 
   !> Kinetic and strain energy of the motion as it is; on the first call of an analysis they are
-  !> the energy it begins with.
+  !> the energy it begins with, and so is what initial displacements have dissipated.
   subroutine open_account(scene, moving, is_first, energy)
     type(problem), intent(in) :: scene
     type(motion), intent(in) :: moving
@@ -33,7 +33,9 @@ contains
     real(rk) :: kinetic_before
     kinetic_before = energy%kinetic
     call set_stored(scene, moving, energy)
-    if (is_first) energy%initial = energy%kinetic + energy%strain
+    if (is_first) then
+      energy%initial = energy%kinetic + energy%strain + energy%friction + energy%fracture
+    end if
     ! Velocities that a step does not take over are taken by the stepping.
     if (.not. is_first) energy%numerical = energy%numerical + kinetic_before - energy%kinetic
     call find_error(energy)

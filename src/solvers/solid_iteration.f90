@@ -121,7 +121,7 @@ contains
   end function effort
 
   !> Solves the balance for `task%x`; joints and points come with it in `after`. No convergence is
-  !> no error.
+  !> no error. A law that wants a smaller increment is not asked again with another tangent.
   subroutine solve(self, scene, system, task, before, after, outcome, error)
     class(solid_solver), intent(inout) :: self
     type(problem), intent(in) :: scene
@@ -147,6 +147,7 @@ contains
         call self%matrix%factorise_elastic(scene, system, self%values, self%solver, error)
         if (allocated(error)) return
       end if
+      if (outcome%size_ratio < 1.0_rk) return
     end do
   end subroutine solve
 

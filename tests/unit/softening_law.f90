@@ -18,6 +18,7 @@ module softening_law
     real(rk) :: threshold = 1.0e-4_rk !< e0
     real(rk) :: slope = 1.0e-3_rk !< ef
     real(rk) :: largest_strain = huge(1.0_rk) !< more cannot be integrated
+    real(rk) :: largest_change = huge(1.0_rk) !< of e in an increment: more asks for a smaller one
   contains
     procedure :: elastic_stiffness, update, set_start
   end type damage_law
@@ -72,6 +73,11 @@ contains
         report%failed_point = p
         report%message = 'strained too far'
       end if
+      associate (change => abs(e - norm2(max(0.0_rk, old%strain(1:3, p)))))
+        if (change > self%largest_change) then
+          report%size_ratio = min(report%size_ratio, self%largest_change/change)
+        end if
+      end associate
       largest = max(e, old%internal(1, p))
       new%internal(1, p) = largest
       stress = matmul(d, new%strain(:, p))

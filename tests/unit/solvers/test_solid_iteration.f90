@@ -10,7 +10,8 @@ program test_solid_iteration
   use run_steps, only: run_all_steps
   use joint_contraction, only: contraction_law
   use material_elastic, only: elastic_law
-  use row_scene, only: make_row, put_at_wall, shake_base, new_step, fix, recorder, calls_of
+  use row_scene, only: make_row, put_at_wall, shake_base, new_step, fix, kick, recorder, &
+                       calls_of
   use softening_law, only: damage_law, put_law
   use equilibrium, only: balance_outcome
   use motion_state, only: motion, start_motion
@@ -36,6 +37,8 @@ program test_solid_iteration
   end do
   call elastic_bar_costs_nothing(log)
   call law_gives_up(log)
+  call law_wants_less(log)
+  call starts_cracked(log)
   call newton_is_quadratic(log)
   call auto_falls_back(log)
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
@@ -222,6 +225,41 @@ contains
     call check(log, now%u(1, 5) > 4.9e-4_rk .and. now%u(1, 5) <= 5.0e-4_rk, &
                'the last state is kept, cut down to the limit')
   end subroutine law_gives_up
+
+  !> A law that wants a smaller increment gets it at once: it is not asked again with the tangent
+  !> that stands by. Each increment is elastic and takes one call.
+  subroutine law_wants_less(log)
+    type(test_log), intent(inout) :: log
+    type(problem) :: scene
+    type(recorder) :: results
+    type(state) :: now
+    call make_bar(1, 0.8e-4_rk, 1.0_rk, 'AUTO', scene)
+    scene%steps(1)%is_direct = .false.
+    call put_law(damage_law(elastic=elastic_law(young=young), largest_change=2.0e-5_rk), [1], scene)
+    call run(scene, results, now, log)
+    call check(log, now%cutbacks > 0, 'increments are cut')
+    call check(log, calls_of(results, 'laws') == results%num_increments + now%cutbacks, &
+               'one call for each increment, taken or cut')
+  end subroutine law_wants_less
+
+  !> Initial displacements beyond the strength: what they have dissipated is there from the start,
+  !> and the energies add up (`run` checks it).
+  subroutine starts_cracked(log)
+    type(test_log), intent(inout) :: log
+    type(problem) :: scene
+    type(recorder) :: results
+    type(state) :: now
+    call make_bar(1, 0.0_rk, 1.0_rk, 'AUTO', scene)
+    scene%steps = scene%steps(:0)
+    call new_step('DYNAMIC', 1.0e-6_rk, 1.0e-5_rk, scene)
+    scene%steps(1)%controls%residual_tolerance = 1.0e-10_rk
+    call fix([1, 2, 3, 4], 1, scene)
+    call kick([5, 6, 7, 8], 1, 5.0e-4_rk, .false., scene)
+    call put_law(damage_law(elastic=elastic_law(young=young)), [1], scene)
+    call run(scene, results, now, log)
+    call check(log, now%energy%fracture > 0.1_rk*now%energy%initial, 'cracks at the start')
+  end subroutine starts_cracked
+
   !> Residuals of one large increment of a crooked bar: the order log(r3/r2)/log(r2/r1) of the last
   !> three above round-off is that of Newton's method, 2.
   subroutine newton_is_quadratic(log)
