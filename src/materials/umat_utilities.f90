@@ -3,12 +3,12 @@
 !> shear), 2 strain (engineering shear).
 module umat_utilities
   use, intrinsic :: iso_c_binding, only: c_double, c_int
+  use tensor6, only: principal_axes
   implicit none
   private
   public :: rotsig, sinv, sprinc, sprind
 
   integer, parameter :: strain_kind = 2
-  integer, parameter :: most_sweeps = 30 !< of Jacobi; six do for double precision
   integer, parameter :: row_of_shear(3) = [1, 1, 2], column_of_shear(3) = [2, 3, 3]
 
 contains
@@ -55,59 +55,12 @@ contains
     real(c_double), intent(in) :: s(ndi + nshr)
     real(c_double), intent(out) :: ps(3)
     real(c_double), intent(out) :: an(3, 3) !< row k is the unit vector of ps(k)
-    real(c_double) :: vectors(3, 3), values(3)
-    logical :: is_left(3)
-    integer :: k, largest
-    call solve_by_jacobi(matrix_of(s, lstr, ndi), values, vectors)
-    is_left = .true.
-    do k = 1, 3
-      largest = maxloc(values, 1, is_left)
-      is_left(largest) = .false.
-      ps(k) = values(largest)
-      an(k, :) = vectors(:, largest)
-    end do
+    real(c_double) :: matrix(3, 3), axes(3, 3)
+    matrix = matrix_of(s, lstr, ndi)
+    call principal_axes([matrix(1, 1), matrix(2, 2), matrix(3, 3), matrix(1, 2), matrix(1, 3), &
+                         matrix(2, 3)], ps, axes)
+    an = transpose(axes)
   end subroutine sprind
-
-  !> Eigenvalues and eigenvectors by rotations that take the shear components away in turn.
-  pure subroutine solve_by_jacobi(matrix, values, vectors)
-    real(c_double), intent(in) :: matrix(3, 3) !< symmetric
-    real(c_double), intent(out) :: values(3)
-    real(c_double), intent(out) :: vectors(3, 3) !< in columns
-    real(c_double) :: a(3, 3), turn(3, 3), t, c, theta
-    integer :: sweep, k, i, j
-    a = matrix
-    vectors = unit_matrix()
-    do sweep = 1, most_sweeps
-      if (abs(a(1, 2)) + abs(a(1, 3)) + abs(a(2, 3)) <= tiny(1.0_c_double)) exit
-      do k = 1, 3
-        i = row_of_shear(k)
-        j = column_of_shear(k)
-        if (abs(a(i, j)) <= tiny(1.0_c_double)) cycle
-        theta = (a(j, j) - a(i, i))/(2.0_c_double*a(i, j))
-        t = sign(1.0_c_double, theta)/(abs(theta) + hypot(theta, 1.0_c_double))
-        c = 1.0_c_double/hypot(t, 1.0_c_double)
-        turn = unit_matrix()
-        turn(i, i) = c
-        turn(j, j) = c
-        turn(i, j) = t*c
-        turn(j, i) = -t*c
-        a = matmul(transpose(turn), matmul(a, turn))
-        a(i, j) = 0.0_c_double
-        a(j, i) = 0.0_c_double
-        vectors = matmul(vectors, turn)
-      end do
-    end do
-    values = [a(1, 1), a(2, 2), a(3, 3)]
-  end subroutine solve_by_jacobi
-
-  pure function unit_matrix() result(matrix)
-    real(c_double) :: matrix(3, 3)
-    integer :: i
-    matrix = 0.0_c_double
-    do i = 1, 3
-      matrix(i, i) = 1.0_c_double
-    end do
-  end function unit_matrix
 
   !> The tensor as a matrix; components that are not given are zero.
   pure function matrix_of(s, lstr, ndi) result(matrix)
