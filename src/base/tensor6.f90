@@ -9,6 +9,7 @@ module tensor6
   public :: as_matrix
 
   real(rk), parameter :: third_of_turn = 2.0_rk*acos(-1.0_rk)/3.0_rk
+  real(rk), parameter :: sin_of_third = sqrt(0.75_rk) !< of a turn
   real(rk), parameter :: safe_cosine = 0.9_rk !< below, the angle loses no digits (factor 2.3)
 
 contains
@@ -43,7 +44,9 @@ contains
   pure function as_matrix(t) result(matrix)
     real(rk), intent(in) :: t(6)
     real(rk) :: matrix(3, 3)
-    matrix = reshape([t(1), t(4), t(5), t(4), t(2), t(6), t(5), t(6), t(3)], [3, 3])
+    matrix(:, 1) = t([1, 4, 5])
+    matrix(:, 2) = t([4, 2, 6])
+    matrix(:, 3) = t([5, 6, 3])
   end function as_matrix
 
   !> Principal values, the largest first; accurate to roundoff also where values coincide.
@@ -67,13 +70,22 @@ contains
     cosine = 0.5_rk*third_invariant(s)/(j2*sqrt(j2))
     angle = acos(max(-1.0_rk, min(1.0_rk, cosine)))/3.0_rk
     if (abs(cosine) < safe_cosine) then
-      values = [cos(angle), cos(angle - third_of_turn), cos(angle + third_of_turn)]
+      values = cosines_by_thirds(angle)
       values = mean + 2.0_rk*scale*sqrt(j2)*values
     else
       if (cosine < 0.0_rk) angle = angle + third_of_turn
       values = mean + scale*values_around(s, 2.0_rk*sqrt(j2)*cos(angle))
     end if
   end function principal_values
+
+  !> Cosines of an angle between 0 and 60 degrees, of it less and of it plus a third of a turn.
+  pure function cosines_by_thirds(angle) result(cosines)
+    real(rk), intent(in) :: angle
+    real(rk) :: cosines(3), cosine, sine
+    cosine = cos(angle)
+    sine = sin_of_third*sin(angle)
+    cosines = [cosine, sine - 0.5_rk*cosine, -sine - 0.5_rk*cosine]
+  end function cosines_by_thirds
 
   !> Principal values, the largest first, and an orthonormal basis of principal directions; accurate
   !> to roundoff also where values coincide, when the directions of these are one choice of many.
@@ -90,7 +102,10 @@ contains
     s(4:6) = t(4:6)
     scale = max(abs(s(1)), abs(s(2)), abs(s(3)), abs(s(4)), abs(s(5)), abs(s(6)))
     values = mean
-    axes = reshape([1.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 1.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 1.0_rk], [3, 3])
+    axes = 0.0_rk
+    axes(1, 1) = 1.0_rk
+    axes(2, 2) = 1.0_rk
+    axes(3, 3) = 1.0_rk
     if (scale < tiny(1.0_rk)) return
     s = s/scale
     j2 = second_invariant(s)/3.0_rk
@@ -119,12 +134,13 @@ contains
     real(rk), intent(inout) :: plane(3, 2) !< unit vectors normal to each other
     real(rk), intent(out) :: pair(2) !< values, the larger first
     real(rk) :: image(3), a, b, c, half, radius, cosine, sine, first(3)
-    image = matmul(matrix, plane(:, 2))
-    a = dot_product(plane(:, 1), matmul(matrix, plane(:, 1)))
+    image = matrix(:, 1)*plane(1, 1) + matrix(:, 2)*plane(2, 1) + matrix(:, 3)*plane(3, 1)
+    a = dot_product(plane(:, 1), image)
+    image = matrix(:, 1)*plane(1, 2) + matrix(:, 2)*plane(2, 2) + matrix(:, 3)*plane(3, 2)
     b = dot_product(plane(:, 2), image)
     c = dot_product(plane(:, 1), image)
     half = 0.5_rk*(a - b)
-    radius = hypot(half, c)
+    radius = sqrt(half**2 + c**2)
     pair = 0.5_rk*(a + b) + [radius, -radius]
     if (.not. radius > tiny(radius)) return
     if (half >= 0.0_rk) then
@@ -157,37 +173,42 @@ contains
     end if
   end function values_around
 
-  !> Two unit vectors normal to each other and to the axis of a single principal value.
+  !> Two unit vectors normal to each other and to the axis of a single principal value. The columns
+  !> of the tensor less that value lie in the plane: the longest is one direction; the axis is
+  !> normal to it and to the column that differs most from it.
   pure subroutine span_normal_plane(matrix, value, first, second)
     real(rk), intent(in) :: matrix(3, 3), value !< the tensor and its principal value
     real(rk), intent(out) :: first(3), second(3)
-    real(rk) :: columns(3, 3), axis(3), candidate(3), largest
+    real(rk) :: columns(3, 3), axis(3), other(3), squares(3)
+    integer, parameter :: next(3) = [2, 3, 1]
     integer :: i, pivot
     columns = matrix
     do i = 1, 3
       columns(i, i) = columns(i, i) - value
+      squares(i) = columns(1, i)**2 + columns(2, i)**2 + columns(3, i)**2
     end do
-    pivot = maxloc(sum(columns**2, dim=1), dim=1)
-    first = columns(:, pivot)/norm2(columns(:, pivot))
-    largest = -1.0_rk
-    do i = 1, 3
-      if (i == pivot) cycle
-      candidate = columns(:, i) - dot_product(first, columns(:, i))*first
-      if (sum(candidate**2) <= largest) cycle
-      largest = sum(candidate**2)
-      second = candidate
-    end do
-    second = second/sqrt(largest)
-    axis = cross_product(first, second)
-    second = cross_product(axis/norm2(axis), first)
+    pivot = 1
+    if (squares(2) > squares(1)) pivot = 2
+    if (squares(3) > squares(pivot)) pivot = 3
+    first = columns(:, pivot)/sqrt(squares(pivot))
+    axis = cross_product(first, columns(:, next(pivot)))
+    other = cross_product(first, columns(:, next(next(pivot))))
+    if (square_of(other) > square_of(axis)) axis = other
+    second = cross_product(axis/sqrt(square_of(axis)), first)
   end subroutine span_normal_plane
+
+  !> v . v, without the call that norm2 makes.
+  pure real(rk) function square_of(v)
+    real(rk), intent(in) :: v(3)
+    square_of = v(1)**2 + v(2)**2 + v(3)**2
+  end function square_of
 
   !> Eigenvalues of [a c; c b], the larger first, without cancellation.
   pure function values_of_pair(a, b, c) result(values)
     real(rk), intent(in) :: a, b, c
     real(rk) :: values(2), middle, radius
     middle = 0.5_rk*(a + b)
-    radius = hypot(0.5_rk*(a - b), c)
+    radius = sqrt((0.5_rk*(a - b))**2 + c**2)
     values = [middle + radius, middle - radius]
   end function values_of_pair
 end module tensor6

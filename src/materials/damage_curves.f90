@@ -186,16 +186,17 @@ contains
     real(rk), intent(in) :: length !< l [m]; 1 for tables over strain
     real(rk), intent(out) :: knots(:) !< (rows)
     real(rk), intent(out) :: factor !< f, 1 unless the band is too wide
-    real(rk) :: width
+    real(rk) :: width, scale, least
     integer :: i
     factor = 1.0_rk
     if (length > curve%longest) factor = sqrt(curve%longest/length)
     width = min(length, curve%longest)
+    scale = factor/width
+    least = smallest_plastic_share*scale
     knots(1) = 0.0_rk
     do i = 2, size(knots)
-      knots(i) = max(factor*(curve%abscissa(i)/width - curve%recoverable(i)), &
-                     knots(i - 1) + smallest_plastic_share*factor/width &
-                     *(curve%abscissa(i) - curve%abscissa(i - 1)))
+      knots(i) = max(scale*curve%abscissa(i) - factor*curve%recoverable(i), &
+                     knots(i - 1) + least*(curve%abscissa(i) - curve%abscissa(i - 1)))
     end do
   end subroutine place_knots
 
@@ -206,7 +207,7 @@ contains
     real(rk), intent(in) :: plastic !< strain, not negative
     integer, intent(inout) :: row !< of the knot below; comes with a guess, 1 when there is none
     type(curve_value), intent(out) :: value
-    real(rk) :: strength, strength_slope, step, rest
+    real(rk) :: strength, strength_slope, step, inverse
     do while (row > 1)
       if (knots(row) <= plastic) exit
       row = row - 1
@@ -225,9 +226,8 @@ contains
       strength = strength + strength_slope*(plastic - knots(row))
       value%damage = value%damage + value%damage_slope*(plastic - knots(row))
     end if
-    rest = factor/(1.0_rk - value%damage)
-    value%strength = strength*rest
-    value%strength_slope = (strength_slope + strength/(1.0_rk - value%damage)*value%damage_slope) &
-                           *rest
+    inverse = 1.0_rk/(1.0_rk - value%damage)
+    value%strength = strength*factor*inverse
+    value%strength_slope = (strength_slope + strength*inverse*value%damage_slope)*factor*inverse
   end subroutine value_of_curve
 end module damage_curves

@@ -20,6 +20,7 @@ module damage_return
   real(rk), parameter :: acceptable = 1.0e-9_rk !< the same, where roundoff forbids more
   integer, parameter :: max_steps = 400 !< a table of 100 rows, and bisection to roundoff
   integer, parameter :: max_inner = 60
+  real(rk), parameter :: roundoff = 2.0_rk*epsilon(1.0_rk) !< of the equation for q
   real(rk), parameter :: overshoot = 1.0e-6_rk !< past a knot, to be on the next branch
 
   !> The state that elasticity alone would lead to.
@@ -54,11 +55,12 @@ contains
     type(trial_state), intent(in) :: trial
     real(rk), intent(in) :: x !< multiplier, >= 0
     type(flow_state), intent(inout) :: flow !< comes with guesses of its rows
-    real(rk) :: slope, direction, direction_rate, share_rate, smallest, smallest_rate
+    real(rk) :: inverse, slope, direction, direction_rate, share_rate, smallest, smallest_rate
     flow%x = x
     call reduce_deviator(placed%rounding, trial%q, 3.0_rk*model%shear*x, flow)
-    flow%q_rate = -3.0_rk*model%shear*flow%q/flow%radius/flow%stiffening
-    slope = 1.5_rk/flow%radius
+    inverse = 1.0_rk/flow%radius
+    flow%q_rate = -3.0_rk*model%shear*flow%q*inverse/flow%stiffening
+    slope = 1.5_rk*inverse
     flow%p = trial%p + model%bulk*model%tan_dilation*x
     flow%s = flow%q*trial%shape - flow%p
     flow%s_rate = flow%q_rate*trial%shape - model%bulk*model%tan_dilation
@@ -66,7 +68,7 @@ contains
     share_rate = dot_product(flow%share_by, flow%s_rate)
     ! (q/sqrt(a^2 + q^2))' = a^2 q'/sqrt(a^2 + q^2)^3
     direction = slope*flow%q
-    direction_rate = slope*flow%q_rate*(placed%rounding/flow%radius)**2
+    direction_rate = slope*flow%q_rate*(placed%rounding*inverse)**2
     flow%largest_flow = direction*trial%shape(1) + model%tan_dilation/3.0_rk
     smallest = direction*trial%shape(3) + model%tan_dilation/3.0_rk
     smallest_rate = merge(-direction_rate*trial%shape(3), 0.0_rk, smallest < 0.0_rk)
@@ -79,23 +81,27 @@ contains
     call judge(model, placed, flow)
   end subroutine flow_by
 
-  !> q after flow by x. The left side of the equation for q is increasing and
-  !> concave, so Newton's iteration climbs to the root from any value below it.
+  !> q after flow by x. The left side of the equation for q is increasing and concave, so Newton's
+  !> iteration climbs to the root from any value below it, and from above lands below it. The first
+  !> guess takes q/sqrt(a^2 + q^2) from the last x: it hardly changes unless q is small.
   pure subroutine reduce_deviator(rounding, q_trial, reach, flow)
     real(rk), intent(in) :: rounding, q_trial !< a, q_tr [Pa]
     real(rk), intent(in) :: reach !< 3 mu x [Pa]
     type(flow_state), intent(inout) :: flow !< q, radius, stiffening come out
-    real(rk) :: square, q, excess
+    real(rk) :: square, q, excess, inverse, least
     integer :: i
     square = rounding**2
-    q = max(q_trial - reach, q_trial*rounding/(rounding + reach))
+    least = max(q_trial - reach, q_trial*rounding/(rounding + reach))
+    q = least
+    if (flow%radius > 0.0_rk) q = max(least, q_trial - reach*flow%q/flow%radius)
     do i = 1, max_inner
       flow%radius = sqrt(square + q**2)
-      flow%stiffening = 1.0_rk + reach*square/flow%radius**3
+      inverse = 1.0_rk/flow%radius
+      flow%stiffening = 1.0_rk + reach*square*inverse*inverse*inverse
       flow%q = q
-      excess = q_trial - q*(1.0_rk + reach/flow%radius)
-      if (excess <= 2.0_rk*epsilon(excess)*q_trial) exit
-      q = q + excess/flow%stiffening
+      excess = q_trial - q*(1.0_rk + reach*inverse)
+      if (excess <= roundoff*q_trial .and. (i > 1 .or. excess >= -roundoff*q_trial)) exit
+      q = max(least, q + excess/flow%stiffening)
     end do
   end subroutine reduce_deviator
 
@@ -144,7 +150,7 @@ contains
       else
         x = low
         if (flow%f_rate < 0.0_rk .and. abs(flow%f%value) < 0.5_rk*f_before) then
-          x = flow%x - flow%f%value/flow%f_rate
+          x = newton_point(flow)
         end if
         if (x <= low .or. x >= high) x = 0.5_rk*(low + high)
         if (x <= low .or. x >= high) exit
@@ -172,12 +178,28 @@ contains
     type(flow_state), intent(in) :: flow !< with F > 0
     real(rk) :: knot
     x = huge(x)
-    if (flow%f_rate < 0.0_rk) x = flow%x - flow%f%value/flow%f_rate
+    if (flow%f_rate < 0.0_rk) x = newton_point(flow)
     knot = min(step_to_knot(placed%tension, flow, 1), step_to_knot(placed%compression, flow, 2))
     x = min(x, flow%x + knot)
     if (x < huge(x)) return
     x = 2.0_rk*flow%x + flow%f%value/(3.0_rk*model%shear + model%bulk*model%tan_dilation)
   end function next_step
+
+  !> Newton's next multiplier, F falling. Under tension F is c/t s_1 - c in the main, a hyperbola
+  !> of a strength t that falls; F t/c is nearly straight and has the same roots.
+  pure real(rk) function newton_point(flow) result(x)
+    type(flow_state), intent(in) :: flow
+    real(rk) :: rate, scaled
+    rate = flow%f_rate
+    if (flow%f%by_tension < 0.0_rk) then
+      scaled = rate + flow%f%value &
+               *(flow%tension%strength_slope*flow%measure_rates(1)/flow%tension%strength &
+                 - flow%compression%strength_slope*flow%measure_rates(2) &
+                 /flow%compression%strength)
+      if (scaled < 0.0_rk) rate = scaled
+    end if
+    x = flow%x - flow%f%value/rate
+  end function newton_point
 
   !> How much further the multiplier takes a measure to its next knot; huge without one.
   pure real(rk) function step_to_knot(knots, flow, measure) result(step)

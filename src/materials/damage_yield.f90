@@ -30,17 +30,18 @@ contains
     real(rk), intent(in) :: q, p, largest !< Eqs 20-21 and s_1 [Pa]
     real(rk), intent(in) :: tension, compression !< effective strengths t, c [Pa]
     type(yield_value) :: f
-    real(rk) :: beta, scale
+    real(rk) :: beta, scale, ratio
     scale = 1.0_rk/(1.0_rk - model%alpha)
     f%by_q = scale
     f%by_p = -3.0_rk*model%alpha*scale
     f%by_compression = -1.0_rk
     f%value = f%by_q*q + f%by_p*p - compression
     if (largest > 0.0_rk) then
-      beta = compression/tension*(1.0_rk - model%alpha) - (1.0_rk + model%alpha)
+      ratio = compression/tension
+      beta = ratio*(1.0_rk - model%alpha) - (1.0_rk + model%alpha)
       if (beta <= 0.0_rk) return
       f%by_largest = beta*scale
-      f%by_tension = -compression/tension**2*largest
+      f%by_tension = -ratio/tension*largest
       f%by_compression = largest/tension - 1.0_rk
     else
       f%by_largest = model%gamma*scale
@@ -52,15 +53,16 @@ contains
   pure subroutine tension_share(s, share, gradient)
     real(rk), intent(in) :: s(3)
     real(rk), intent(out) :: share, gradient(3)
-    real(rk) :: whole
+    real(rk) :: whole, inverse
     integer :: i
     whole = abs(s(1)) + abs(s(2)) + abs(s(3))
     share = 0.0_rk
     gradient = 0.0_rk
     if (whole <= tiny(whole)) return
+    inverse = 1.0_rk/whole
     share = (max(s(1), 0.0_rk) + max(s(2), 0.0_rk) + max(s(3), 0.0_rk))/whole
     do i = 1, 3
-      gradient(i) = merge(1.0_rk - share, share, s(i) > 0.0_rk)/whole
+      gradient(i) = merge(1.0_rk - share, share, s(i) > 0.0_rk)*inverse
     end do
   end subroutine tension_share
 
