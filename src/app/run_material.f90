@@ -14,7 +14,6 @@ module run_material
   use user_routines, only: end_user_routines
   use write_material, only: write_curve
   use write_text, only: as_text
-  use user_routines, only: end_user_routines
   implicit none
   private
   public :: run_tests
@@ -47,8 +46,6 @@ contains
       call move_alloc(failure, error)
       if (error%exit_code == system_failed) return
     end do
-    call end_user_routines(scene, 0.0_rk, log, failure)
-    if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
     call end_user_routines(scene, maxval(summaries%time), log, failure)
     if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
     call write_test_summary(stem//'.json', scene%deck_file, summaries, failure)

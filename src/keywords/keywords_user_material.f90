@@ -105,7 +105,7 @@ contains
       number = this%integer_at(1, 1)
       if (this%num_fields(1) /= 1 .or. .not. this%is_integer_at(1, 1) .or. number < 0) then
         call this%fault_at(faults, 1, 1, "found '"//this%text_at(1, 1)//"'", &
-                           'the number of state variables, alone in its line')
+                           'the number of state variables, an integer >= 0, alone in its line')
         return
       end if
       now%constants%num_variables = number

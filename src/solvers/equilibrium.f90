@@ -33,6 +33,7 @@ module equilibrium
     real(rk) :: residual = 0.0_rk !< out-of-balance over the reference force
     real(rk) :: correction = 0.0_rk !< that the out-of-balance still asks for, over the increment
     integer :: worst_point = 0 !< of the joints, where the out-of-balance is largest
+    integer :: worst_unknown = 0 !< where that of inelastic solids is largest, when joints agree
     real(rk), allocatable :: history(:) !< residuals of the iterations on inelastic solids
     real(rk) :: size_ratio = 1.0_rk !< of the increment that a material asks for, over this one
     character(:), allocatable :: failure !< why a material asks for a smaller one

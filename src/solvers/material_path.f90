@@ -213,10 +213,10 @@ contains
       text = text//outcome%message
     else
       text = text//'the law gives no strains for the stresses that are asked for'
-    end if
-    if (any(test%legs(number)%is_stress)) then
-      text = text//'; past a peak the test must follow a strain (CONTROL=STRAIN, or E in place '// &
-             'of S in the component that softens)'
+      if (any(test%legs(number)%is_stress)) then
+        text = text//'; past a peak the test must follow a strain (CONTROL=STRAIN, or E in '// &
+               'place of S in the component that softens)'
+      end if
     end if
     call raise(error, text)
   end subroutine tell_failure

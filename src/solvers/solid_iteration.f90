@@ -254,6 +254,8 @@ contains
     end if
     outcome%residual = now%force/max(reference, tiny(1.0_rk))
     outcome%history = [outcome%history, outcome%residual]
+    outcome%worst_point = 0
+    outcome%worst_unknown = maxloc(abs(now%answer - now%guess), 1)
     increment = max(norm2(q - before%q), smallest_increment*norm2(q), tiny(1.0_rk))
     outcome%correction = now%moved/increment*min(1.0_rk, now%force/max(now%last_force, &
                                                                        tiny(1.0_rk)))

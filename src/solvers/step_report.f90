@@ -64,7 +64,7 @@ contains
       control%last_size, ', last equilibrium at time ', now%total_time
     p = outcome%worst_point
     if (p == 0) then
-      call raise(error, trim(text))
+      call raise(error, trim(text)//worst_node(scene, system, outcome, now%step))
       return
     end if
     j = count(system%operator%first_point <= p)
@@ -72,6 +72,24 @@ contains
     call raise(error, trim(text)//'; worst in joint '//scene%joints(j)%name//' at '// &
                place_text(scene%joints(j)%x(:, p))//hint(scene%steps(now%step), outcome))
   end subroutine give_up
+
+  !> Where inelastic solids are farthest from balance: '; worst at node 12 at (0., 1., 3.)'.
+  pure function worst_node(scene, system, outcome, step) result(text)
+    type(problem), intent(in) :: scene
+    type(dam_system), intent(in) :: system
+    type(balance_outcome), intent(in) :: outcome
+    integer, intent(in) :: step
+    character(:), allocatable :: text
+    integer :: node
+    text = ''
+    if (outcome%worst_unknown == 0) return
+    node = system%numbers%node(outcome%worst_unknown)
+    text = '; worst at node '//count_text(scene%mesh%node_id(node))//' at '// &
+           place_text(scene%mesh%x(:, node))
+    if (scene%steps(step)%procedure /= 'STATIC') return
+    text = text//' (past its largest load a structure that cracks can follow a displacement, '// &
+           'not a force; where it does, smaller increments or *CONTROLS, TANGENT=CONSISTENT)'
+  end function worst_node
 
   !> A material that no increment is small enough for.
   pure function failure_text(outcome, control, now) result(text)

@@ -188,6 +188,7 @@ def test_the_check_finds_the_wrong_entry(keyway):
     # DDSDDE(1,2) is 1.5 lambda, lambda = E nu/((1 + nu)(1 - 2 nu)) = 80 GPa; D11 = 240 GPa.
     assert "DDSDDE(1,2) = 1.2e11, difference quotient 8e10" in run.stderr
     assert re.search(r"farthest apart by 0\.16666\d? of its largest entry", run.stderr)
+    assert run.stderr.count("farthest apart") == 1
     run = pull(keyway, "unsymmetric.for", deck(3, third=0.0), "--umat-check")
     apart = float(re.search(r"farthest apart by (\S+) of", run.stderr)[1])
     assert apart < 1e-8  # round-off of the differences

@@ -107,6 +107,19 @@ def test_newton_is_quadratic_in_a_notched_beam(keyway):
     assert order > 1.7
 
 
+def test_a_beam_loaded_past_its_peak_says_where(keyway):
+    """A force of 1 MN on the top, far above what the beam bears, ends with a node and its place."""
+    step = pressed(0.3, 0.1, "TANGENT=AUTO").replace(
+        "*STATIC, DIRECT\n0.1, 1.", "*STATIC\n0.1, 1., 0.05"
+    )
+    step = re.sub(r"\*BOUNDARY\n.*", "*CLOAD\nTOP, 3, -1e6", step)
+    run = keyway(notched_beam() + step, code=1, name="overloaded")
+    print(run.stderr)
+    assert re.search(r"no equilibrium: .*; worst at node \d+ at \(.*, .*, .*\)", run.stderr)
+    assert "can follow a displacement, not a force" in run.stderr
+    assert len(run.csv("node_TOP")["RF3"]) > 0
+
+
 def test_tangents_agree_in_a_notched_beam(keyway):
     """Past the peak, to a fifth of it: curves apart by no more than the tolerance of the balance
     makes of them: 1e-8 of the force, times what a beam that softens makes of it, 100."""
