@@ -108,11 +108,11 @@ def test_newton_is_quadratic_in_a_notched_beam(keyway):
 
 
 def test_a_beam_loaded_past_its_peak_says_where(keyway):
-    """A force of 1 MN on the top, far above what the beam bears, ends with a node and its place."""
+    """10 kN on each node of the top, more than the beam bears: a node and its place are told."""
     step = pressed(0.3, 0.1, "TANGENT=AUTO").replace(
         "*STATIC, DIRECT\n0.1, 1.", "*STATIC\n0.1, 1., 0.05"
     )
-    step = re.sub(r"\*BOUNDARY\n.*", "*CLOAD\nTOP, 3, -1e6", step)
+    step = re.sub(r"\*BOUNDARY\n.*", "*CLOAD\nTOP, 3, -1e4", step)
     run = keyway(notched_beam() + step, code=1, name="overloaded")
     print(run.stderr)
     assert re.search(r"no equilibrium: .*; worst at node \d+ at \(.*, .*, .*\)", run.stderr)
