@@ -103,17 +103,21 @@ contains
     end associate
   end subroutine make_law
 
-  !> The middle of the first element of a material; of a unit cube where there is none.
+  !> The middle of the first element of a material; where there is none, of a cube as long as its
+  !> first *MATERIAL TEST says.
   subroutine first_point(model, material, points)
     type(draft), intent(in) :: model
     integer, intent(in) :: material !< position
     type(point_set), intent(out) :: points
     real(rk) :: x(3, 8), gradient(3, 8, 8), weight(8)
-    integer :: e, corner
+    integer :: e, i, corner
     points%num_points = 1
     points%element = [1]
     points%number = [1]
     points%length = [1.0_rk]
+    do i = size(model%scene%tests), 1, -1
+      if (model%scene%tests(i)%material == material) points%length = model%scene%tests(i)%length
+    end do
     allocate (points%x(3, 1), points%edges(3, 3, 1), source=0.0_rk)
     if (.not. allocated(model%scene%mesh%material_of_element)) return
     e = findloc(model%scene%mesh%material_of_element, material, dim=1)

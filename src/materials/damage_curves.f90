@@ -113,24 +113,31 @@ contains
   !> strength and of a whole damage.
   pure subroutine add_knots(curve)
     type(strength_curve), intent(inout) :: curve
-    type(strength_curve) :: rows
+    integer :: parts(2:size(curve%abscissa)) !< of the interval before each row
+    real(rk), dimension(size(curve%abscissa)) :: abscissa, strength, damage
     real(rk) :: share, change
-    integer :: i, k, parts
-    rows%abscissa = curve%abscissa
-    rows%strength = curve%strength
-    rows%damage = curve%damage
-    curve%abscissa = curve%abscissa(:1)
-    curve%strength = curve%strength(:1)
-    curve%damage = curve%damage(:1)
-    do i = 2, size(rows%abscissa)
-      change = max(abs(rows%strength(i) - rows%strength(i - 1))/rows%strength(1), &
-                   rows%damage(i) - rows%damage(i - 1))
-      parts = max(1, ceiling(change*knots_over_unit))
-      do k = 1, parts
-        share = real(k, rk)/parts
-        curve%abscissa = [curve%abscissa, mix(rows%abscissa(i - 1:i), share)]
-        curve%strength = [curve%strength, mix(rows%strength(i - 1:i), share)]
-        curve%damage = [curve%damage, mix(rows%damage(i - 1:i), share)]
+    integer :: i, k, knot
+    abscissa = curve%abscissa
+    strength = curve%strength
+    damage = curve%damage
+    do i = 2, size(abscissa)
+      change = max(abs(strength(i) - strength(i - 1))/strength(1), damage(i) - damage(i - 1))
+      parts(i) = max(1, ceiling(change*knots_over_unit))
+    end do
+    deallocate (curve%abscissa, curve%strength, curve%damage)
+    knot = 1 + sum(parts)
+    allocate (curve%abscissa(knot), curve%strength(knot), curve%damage(knot))
+    curve%abscissa(1) = abscissa(1)
+    curve%strength(1) = strength(1)
+    curve%damage(1) = damage(1)
+    knot = 1
+    do i = 2, size(abscissa)
+      do k = 1, parts(i)
+        knot = knot + 1
+        share = real(k, rk)/parts(i)
+        curve%abscissa(knot) = mix(abscissa(i - 1:i), share)
+        curve%strength(knot) = mix(strength(i - 1:i), share)
+        curve%damage(knot) = mix(damage(i - 1:i), share)
       end do
     end do
   end subroutine add_knots

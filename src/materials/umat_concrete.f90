@@ -107,38 +107,50 @@ contains
   end subroutine check_scalars
 
   !> The model and the width of its crack band; `fault` as above.
-  subroutine make_model(props, celent, model, width, fault)
+  !>
+  !> The tables are looked at where the caller asks for it, the rest in every call. Faults of the
+  !> tables are those of the first increment: a caller does not come further with them.
+  subroutine make_model(props, celent, checks_tables, model, width, fault)
     real(rk), intent(in) :: props(:)
     real(rk), intent(in) :: celent !< of the caller [m]
+    logical, intent(in) :: checks_tables
     type(concrete_model), intent(out) :: model
     real(rk), intent(out) :: width !< [m]
     character(:), allocatable, intent(out) :: fault
     type(concrete_constants) :: constants
     type(table_fault), allocatable :: faults(:)
-    type(table_fault) :: limit
-    real(rk) :: longest
     width = celent
     call read_constants(props, constants, fault)
     if (len(fault) > 0) return
     if (props(own_width) > 0.0_rk) width = props(own_width)
-    call find_table_faults(constants, faults)
-    if (size(faults) > 0) then
-      fault = 'table of '//faults(1)%keyword//', row '//as_text(faults(1)%row)//': '// &
-              faults(1)%problem//'; expected '//faults(1)%expected
-      return
+    if (checks_tables) then
+      call find_table_faults(constants, faults)
+      if (size(faults) > 0) then
+        fault = 'table of '//faults(1)%keyword//', row '//as_text(faults(1)%row)//': '// &
+                faults(1)%problem//'; expected '//faults(1)%expected
+        return
+      end if
     end if
     call make_concrete_model(constants, model)
-    if (.not. model%by_opening) return
-    if (width <= 0.0_rk) then
+    if (model%by_opening) call check_width(constants, model, width, fault)
+  end subroutine make_model
+
+  !> For tables over openings.
+  subroutine check_width(constants, model, width, fault)
+    type(concrete_constants), intent(in) :: constants
+    type(concrete_model), intent(in) :: model
+    real(rk), intent(in) :: width !< [m]
+    character(:), allocatable, intent(inout) :: fault
+    type(table_fault) :: limit
+    real(rk) :: longest
+    if (.not. width > 0.0_rk) then
       fault = 'no width of the crack band: CELENT is not positive, nor is constant 14'
-      return
-    end if
-    call find_longest_band(constants, longest, limit)
-    if (width > longest .and. .not. constants%lowers_strength) then
+    else if (width > model%tension%longest .and. .not. constants%lowers_strength) then
+      call find_longest_band(constants, longest, limit)
       fault = 'a crack band of '//as_text(width)//'; expected at most '//as_text(longest)// &
               ', '//limit%expected
     end if
-  end subroutine make_model
+  end subroutine check_width
 
   !> STATEV by name.
   pure subroutine unpack(statev, history)

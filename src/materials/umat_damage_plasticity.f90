@@ -27,11 +27,13 @@
 !>
 !> For solids of six stress components and small strains. The tangent is unsymmetric. SSE is what
 !> unloading would give back, SPD what has been dissipated. Constants at fault are told on the
-!> standard output, and the stress becomes NaN: nothing goes on with that in silence. A point that
-!> cannot be integrated asks for a quarter of the increment.
+!> standard output, and the stress becomes NaN: nothing goes on with that in silence; the tables
+!> are looked at in the first increment of the first step. A point that cannot be integrated asks
+!> for a quarter of the increment.
 module umat_damage_plasticity
   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int
+  use, intrinsic :: iso_fortran_env, only: output_unit
   use damage_model, only: concrete_model, placed_curves
   use damage_point, only: point_answer, point_history, point_motion, update_point
   use kinds, only: rk
@@ -45,7 +47,8 @@ module umat_damage_plasticity
 contains
 
   !> The interface of user subroutines. What it does not use: RPL, SCD and the rest of temperature,
-  !> PREDEF, COORDS, DROT, DFGRD0, DFGRD1, LAYER, KSPT, KSTEP, KINC.
+  !> PREDEF, COORDS, DROT, DFGRD0, DFGRD1, LAYER, KSPT. KSTEP and KINC tell the first increment,
+  !> in which the tables are checked.
   subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, &
                   dstran, time, dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, &
                   nstatv, props, nprops, coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, &
@@ -72,11 +75,12 @@ contains
     else if (nstatv < num_state) then
       fault = 'fewer than 17 state variables'
     else
-      call make_model(props, celent, model, width, fault)
+      call make_model(props, celent, kinc <= 1 .and. kstep(1) <= 1, model, width, fault)
     end if
     if (len(fault) > 0) then
       write (*, '(80a)') cmname
       write (*, '(2a,i0,a,i0)') fault, '; element ', noel, ', point ', npt
+      flush (output_unit)
       stress = ieee_value(width, ieee_quiet_nan)
       return
     end if
