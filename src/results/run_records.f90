@@ -20,6 +20,10 @@ module run_records
   !> schemes compared in docs/theory.md, 7.2, sound ones feed 2 %, others 100 %.
   real(rk), parameter :: largest_gain = 0.1_rk
 
+  !> Part of the energy stored at most that solids may lose within one static increment. A crack
+  !> that is followed takes a few percent; one that snaps back takes most of it.
+  real(rk), parameter :: largest_release = 0.3_rk
+
   type :: text_item
     character(:), allocatable :: text
   end type text_item
@@ -35,13 +39,14 @@ module run_records
     type(text_item), allocatable :: files(:) !< names of what was written, beside job.json
     integer :: step = 0 !< the present step
     real(rk), private :: most_taken = 0.0_rk !< by the stepping in this step so far [J]
+    real(rk), private :: last_strain = 0.0_rk, last_fracture = 0.0_rk !< energies before [J]
   contains
     procedure :: open => open_record
     procedure :: begin_step
     procedure :: note
     procedure :: warn_once
     procedure :: list_file
-    procedure, private :: watch_stepping
+    procedure, private :: watch_stepping, watch_release
     procedure, private :: note_one
   end type run_record
 
@@ -103,6 +108,7 @@ contains
     integer :: j, i
     call self%stresses%forget()
     if (scene%steps(now%step)%procedure == 'DYNAMIC') call self%watch_stepping(now)
+    if (self%damage%is_present) call self%watch_release(scene, now)
     do j = 1, size(scene%joints)
       call note_joint(self%joints(j), scene%joints(j), now%joints(j), now%total_time)
     end do
@@ -122,6 +128,23 @@ contains
                         '("numerical" in the energy balance): do not trust this motion; try '// &
                         'smaller increments, or an ALPHA further below 0')
   end subroutine watch_stepping
+
+  !> Warns of a static increment in which cracks took much of the energy that was stored: it has
+  !> jumped from one equilibrium to another.
+  subroutine watch_release(self, scene, now)
+    class(run_record), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    real(rk) :: released
+    released = min(self%last_strain - now%energy%strain, now%energy%fracture - self%last_fracture)
+    self%last_strain = now%energy%strain
+    self%last_fracture = now%energy%fracture
+    if (scene%steps(now%step)%procedure /= 'STATIC') return
+    if (released <= largest_release*now%energy%largest) return
+    call self%warn_once('a static increment has given much of the stored energy to cracks at '// &
+                        'once: the structure has jumped from one equilibrium to another; take '// &
+                        'smaller increments, or a *DYNAMIC step where it still jumps')
+  end subroutine watch_release
 
   !> One envelope.
   subroutine note_one(self, scene, now, item)
