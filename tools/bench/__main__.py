@@ -5,6 +5,7 @@ usage: .venv/bin/python tools/bench [run] [accuracy] [--sizes 48000 145000] [--j
 run (default): ratios of times taken in one process, which hardly depend on the machine:
   static    the whole program, from deck to results, over analyse + factor + solve
   dynamic   one linear increment over one solve with the same matrix; with two joints too
+  sound     increments of concrete that could crack and does not, over the same without its laws
 Peak memory and the reading of a large deck are told with them. A figure past its limit is marked,
 and the exit code is 1.
 

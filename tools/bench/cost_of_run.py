@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from measured_run import Program, Run
-from scenes import INCREMENT, dam_of_size, scaled_dam, write_deck
+from scenes import INCREMENT, dam_of_size, make_concrete, scaled_dam, write_deck
 
 STATIC_LIMIT = 1.6  # whole program over analyse + factor + solve
 STEP_LIMIT = 2.0  # linear increment over solve
+SOUND_LIMIT = 1.5  # increment of concrete that stays sound over the same without its laws
 MEMORY_LIMIT_MB = {145_000: 1600.0}  # of a static run
 READING_LIMIT = 2.0  # [s] for 150 000 nodes and elements
 
@@ -70,6 +71,20 @@ def measure_jointed(program: Program, folder: Path, size: int, count: int) -> Fi
     return ratio_of_increment(run, "solve|eliminate|substitute", what, None)
 
 
+def measure_sound(program: Program, folder: Path, size: int, count: int) -> Figure:
+    """Increments of a dam of concrete that could crack and does not, with and less the laws."""
+    mesh = dam_of_size(size)
+    deck = write_deck(folder, f"sound_{size}", mesh, count * INCREMENT, has_envelopes=False)
+    run = program.run(make_concrete(deck))
+    laws, calls = run.cost("laws")
+    once, _ = run.cost(ONCE)
+    whole = run.results.find("ledger.wall_s") - once
+    told = f"{len(mesh.brick_sets['DAM'])} elements, laws {laws / calls * 1e3:.1f} ms a call"
+    scene = f"arch dam, {run.unknowns} unknowns"
+    what = "increment of sound concrete / without its laws"
+    return Figure(scene, what, whole / (whole - laws), SOUND_LIMIT, told)
+
+
 def ratio_of_increment(run: Run, solving: str, what: str, limit: float | None) -> Figure:
     """Everything between the first increment and the end, over the solves; all in one process."""
     time_of_solves, count = run.cost(solving)
@@ -96,4 +111,5 @@ def measure_all(program: Program, folder: Path, sizes: list[int], count: int) ->
         figures += measure_static(program, folder, size)
         figures += measure_dynamic(program, folder, size, count)
         figures.append(measure_jointed(program, folder, size, count))
+        figures.append(measure_sound(program, folder, size, count))
     return figures

@@ -15,6 +15,16 @@ from keyway_tools.mesh_data import BrickMesh
 INCREMENT = 0.01  # [s]
 ENVELOPES = "*ENVELOPE\n"  # and the line behind it
 
+# Concrete so strong and tough that no motion of the bench cracks it.
+STRONG = """*CONCRETE DAMAGED PLASTICITY
+36.31, 0.1, 1.16, 0.6667, 0.
+*CONCRETE COMPRESSION HARDENING
+1.e9, 0.
+1.2e9, 0.01
+*CONCRETE TENSION STIFFENING, TYPE=GFI
+1.e8, 1.e7
+"""
+
 
 def unknowns_of(mesh: BrickMesh) -> int:
     return 3 * (len(mesh.x) - len(mesh.node_sets["FIXED"]))
@@ -104,5 +114,15 @@ def write_deck(
             if ENVELOPES not in (line, before)
         ]
     deck = folder / f"{name}.inp"
+    deck.write_text("".join(lines))
+    return deck
+
+
+def make_concrete(deck: Path) -> Path:
+    """The same dam with a concrete that could crack."""
+    lines = deck.read_text().splitlines(keepends=True)
+    first = lines.index("*MATERIAL, NAME=CONCRETE\n")
+    constants = first + lines[first:].index("*ELASTIC\n") + 1
+    lines.insert(constants + 1, STRONG)
     deck.write_text("".join(lines))
     return deck
