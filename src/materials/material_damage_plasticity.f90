@@ -104,7 +104,9 @@ contains
         if (motion%wants_tangent) tangent(:, :, i) = answer%tangent
         if (answer%has_converged .or. report%failed_point > 0) cycle
         report%failed_point = i
-        report%message = 'the return map of concrete did not converge'
+        report%message = 'concrete cannot follow a strain that changes by '// &
+                         as_text(maxval(abs(new%strain(:, i) - old%strain(:, i))))// &
+                         ' in the increment'
       end if
     end do
   end subroutine update

@@ -181,3 +181,10 @@ def test_stress_past_the_peak_ends_with_the_rows_so_far(keyway):
         "stopped",
         "finished",
     )
+
+
+def test_strain_beyond_all_sense_is_told(keyway):
+    """An iteration that runs away shows as such, not as a fault of the law."""
+    test = "*MATERIAL TEST, NAME=T, TYPE=OEDOMETER, LENGTH=0.2\n1e9, 1\n"
+    run = keyway(GFI + test, "--material", code=1)
+    assert "concrete cannot follow a strain that changes by " in run.stderr
