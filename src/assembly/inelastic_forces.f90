@@ -18,6 +18,10 @@ module inelastic_forces
   implicit none
   private
   public :: block_answer, open_answers, update_points, recall_points, sum_released, find_failure
+  public :: has_many_elements
+
+  !> Solids that one thread is done with before the others have woken up.
+  integer, parameter :: few_elements = 32
 
   !> What the points of a block have answered.
   type :: block_answer
@@ -50,7 +54,8 @@ contains
     type(point_state), intent(inout) :: new(:) !< (blocks)
     type(block_answer), intent(inout) :: answers(:) !< (blocks)
     integer :: i
-    !$omp parallel do schedule(dynamic) default(none) shared(scene, u, time, old, new, answers)
+    !$omp parallel do schedule(dynamic) default(none) shared(scene, u, time, old, new, answers) &
+    !$omp if (has_many_elements(answers))
     do i = 1, size(answers)
       if (scene%materials(scene%inelastic(i)%material)%law%is_serial) cycle
       call update_block(scene, scene%inelastic(i), u, time, old(i), new(i), answers(i))
@@ -61,6 +66,17 @@ contains
       call update_block(scene, scene%inelastic(i), u, time, old(i), new(i), answers(i))
     end do
   end subroutine update_points
+
+  !> Threads are worth their while.
+  pure logical function has_many_elements(answers)
+    type(block_answer), intent(in) :: answers(:)
+    integer :: i, num_elements
+    num_elements = 0
+    do i = 1, size(answers)
+      num_elements = num_elements + size(answers(i)%has_released)
+    end do
+    has_many_elements = num_elements > few_elements
+  end function has_many_elements
 
   !> The answers that belong to states reached before; no law is called, tangents are left out.
   subroutine recall_points(scene, points, answers)

@@ -6,7 +6,7 @@ module inelastic_stiffness
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
   use inelastic_blocks, only: inelastic_block
-  use inelastic_forces, only: block_answer
+  use inelastic_forces, only: block_answer, has_many_elements
   use scatter_matrix, only: scatter_nodes
   implicit none
   private
@@ -34,7 +34,8 @@ contains
     allocate (ke(24, 24, largest, batch))
     do first = 1, size(answers), batch
       last = min(first + batch - 1, size(answers))
-      !$omp parallel do schedule(dynamic) default(none) shared(scene, answers, ke, first, last)
+      !$omp parallel do schedule(dynamic) default(none) shared(scene, answers, ke, first, last) &
+      !$omp if (has_many_elements(answers))
       do i = first, last
         call integrate_block(scene, scene%inelastic(i), answers(i), ke(:, :, :, i - first + 1))
       end do
