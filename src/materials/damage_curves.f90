@@ -66,7 +66,6 @@ contains
       call unite_rows(constants%tension, constants%tension_damage, constants%young, &
                       has_openings, curve)
     end if
-    if (has_openings) call limit_band(curve, constants%young)
   end subroutine make_tension_curve
 
   !> Compression; the tables must be free of faults.
@@ -92,10 +91,20 @@ contains
     curve%strength = max(curve%strength, smallest_strength*strength(1, 1))
     if (allocated(damage)) then
       curve%damage = [(value_of_table(damage, curve%abscissa(i)), i=1, size(curve%abscissa))]
-      if (has_openings) call add_knots(curve)
     end if
-    curve%recoverable = curve%damage/(1.0_rk - curve%damage)*curve%strength/young
+    call find_recoverable(curve, young)
+    if (.not. has_openings) return
+    call limit_band(curve, young)
+    if (allocated(damage)) call add_knots(curve)
+    call find_recoverable(curve, young)
   end subroutine unite_rows
+
+  !> c_i.
+  pure subroutine find_recoverable(curve, young)
+    type(strength_curve), intent(inout) :: curve
+    real(rk), intent(in) :: young !< E_0 [Pa]
+    curve%recoverable = curve%damage/(1.0_rk - curve%damage)*curve%strength/young
+  end subroutine find_recoverable
 
   !> Adds what is new to a list that increases.
   pure subroutine merge_abscissae(new, list)
@@ -116,7 +125,8 @@ contains
     integer :: parts(2:size(curve%abscissa)) !< of the interval before each row
     real(rk), dimension(size(curve%abscissa)) :: abscissa, strength, damage
     real(rk) :: share, change
-    integer :: i, k, knot
+    integer :: i, k, knot, steepest
+    steepest = curve%steepest
     abscissa = curve%abscissa
     strength = curve%strength
     damage = curve%damage
@@ -139,6 +149,7 @@ contains
         curve%strength(knot) = mix(strength(i - 1:i), share)
         curve%damage(knot) = mix(damage(i - 1:i), share)
       end do
+      if (i == steepest) curve%steepest = knot
     end do
   end subroutine add_knots
 
@@ -166,8 +177,9 @@ contains
   end function value_of_table
 
   !> Widest crack band of a curve over openings [m]: in a wider one the strain w/l + sigma/E would
-  !> turn back from one row to the next (snap-back), or the plastic strain would decrease. Linear
-  !> softening without damage: 2 E G_f/f_t^2.
+  !> turn back from one row to the next (snap-back), or the plastic strain decrease (NOTES 11).
+  !> Linear softening without damage: 2 E G_f/f_t^2. Of the rows alone: knots between them do not
+  !> go beyond the next row.
   pure subroutine limit_band(curve, young)
     type(strength_curve), intent(inout) :: curve
     real(rk), intent(in) :: young !< E_0 [Pa]
@@ -191,7 +203,7 @@ contains
   pure subroutine place_knots(curve, length, knots, factor)
     type(strength_curve), intent(in) :: curve
     real(rk), intent(in) :: length !< l [m]; 1 for tables over strain
-    real(rk), intent(out) :: knots(:) !< (rows)
+    real(rk), intent(out) :: knots(:) !< (knots)
     real(rk), intent(out) :: factor !< f, 1 unless the band is too wide
     real(rk) :: width, scale, least
     integer :: i
@@ -200,10 +212,14 @@ contains
     width = min(length, curve%longest)
     scale = factor/width
     least = smallest_plastic_share*scale
+    knots = scale*curve%abscissa - factor*curve%recoverable
+    do i = size(knots) - 1, 1, -1
+      knots(i) = min(knots(i), knots(i + 1))
+    end do
     knots(1) = 0.0_rk
     do i = 2, size(knots)
-      knots(i) = max(scale*curve%abscissa(i) - factor*curve%recoverable(i), &
-                     knots(i - 1) + least*(curve%abscissa(i) - curve%abscissa(i - 1)))
+      knots(i) = max(knots(i), knots(i - 1) &
+                     + least*(curve%abscissa(i) - curve%abscissa(i - 1)))
     end do
   end subroutine place_knots
 
