@@ -24,6 +24,7 @@ module analysis_state
     integer :: step = 0, increment = 0, iterations = 0
     integer :: cutbacks = 0 !< in this step so far
     integer :: num_unknowns = 0 !< free unknowns of the step's system
+    logical :: has_held_switches = .false. !< in this increment, of laws whose stress jumps
     logical :: is_last_of_step = .false.
     logical :: is_stop = .false. !< told once more, because the run stops here before its end
     real(rk) :: step_time = 0.0_rk, total_time = 0.0_rk, increment_size = 0.0_rk !< [s]

@@ -109,6 +109,11 @@ contains
     call self%stresses%forget()
     if (scene%steps(now%step)%procedure == 'DYNAMIC') call self%watch_stepping(now)
     if (self%damage%is_present) call self%watch_release(scene, now)
+    if (now%has_held_switches) then
+      call self%warn_once('step '//scene%steps(now%step)%name//': where the jump of '// &
+                          'RECOVERY=SIGN let no balance be found its switch was kept for the '// &
+                          'increment as it had been before')
+    end if
     do j = 1, size(scene%joints)
       call note_joint(self%joints(j), scene%joints(j), now%joints(j), now%total_time)
     end do

@@ -30,6 +30,7 @@ module equilibrium
   type :: balance_outcome
     logical :: has_converged = .false.
     integer :: iterations = 0
+    logical :: has_held_switches = .false. !< of laws whose stress jumps (theory 12)
     real(rk) :: residual = 0.0_rk !< out-of-balance over the reference force
     real(rk) :: correction = 0.0_rk !< that the out-of-balance still asks for, over the increment
     integer :: worst_point = 0 !< of the joints, where the out-of-balance is largest

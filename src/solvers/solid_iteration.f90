@@ -142,6 +142,7 @@ contains
       self%time%tangent = self%chosen%kind
       self%time%holds_switches = self%chosen%holds_switches
       call self%iterate(scene, system, task, before, after, outcome, error)
+      outcome%has_held_switches = self%chosen%holds_switches
       if (allocated(error) .or. outcome%has_converged) return
       if (.not. self%matrix%is_elastic) then
         call self%matrix%factorise_elastic(scene, system, self%values, self%solver, error)

@@ -31,6 +31,7 @@ contains
     now%iterations = outcome%iterations
     now%cutbacks = control%cutbacks
     now%residual = outcome%residual
+    now%has_held_switches = outcome%has_held_switches
     now%increment_size = when%increment
     now%step_time = when%now
     now%total_time = when%start + when%now
