@@ -1,6 +1,7 @@
 !> A CSV file that grows by whole lines: neither a killed run nor a full disk leaves a torn one.
 module csv_files
   use errors, only: error_type, raise, system_failed
+  use kinds, only: rk
   use text_buffers, only: text_buffer
   use raw_files, only: raw_file
   implicit none
@@ -14,6 +15,7 @@ module csv_files
     type(raw_file), private :: file
   contains
     procedure :: open => open_csv
+    procedure :: add_row
     procedure :: save
     procedure :: close => close_csv
   end type csv_file
@@ -36,6 +38,22 @@ contains
     call self%lines%add(header//new_line('a'))
     call self%save(error)
   end subroutine open_csv
+
+  !> Adds a line of one increment: step, increment, numbers.
+  subroutine add_row(self, step, increment, row)
+    class(csv_file), intent(inout) :: self
+    integer, intent(in) :: step, increment
+    real(rk), intent(in) :: row(:)
+    integer :: i
+    call self%lines%add_integer(step)
+    call self%lines%add(',')
+    call self%lines%add_integer(increment)
+    do i = 1, size(row)
+      call self%lines%add(',')
+      call self%lines%add_real(row(i))
+    end do
+    call self%lines%add(new_line('a'))
+  end subroutine add_row
 
   !> Writes the gathered lines, all or none.
   subroutine save(self, error)

@@ -43,21 +43,9 @@ contains
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
-    integer :: i
     if (.false.) call record%begin_step(scene, now%step)
     if (.not. (self%is_open .and. is_due(now, 1))) return
-    associate (lines => self%file%lines, row => damage_row(record%damage))
-      call lines%add_integer(now%step)
-      call lines%add(',')
-      call lines%add_integer(now%increment)
-      call lines%add(',')
-      call lines%add_real(now%total_time)
-      do i = 1, size(row)
-        call lines%add(',')
-        call lines%add_real(row(i))
-      end do
-      call lines%add(new_line('a'))
-    end associate
+    call self%file%add_row(now%step, now%increment, [now%total_time, damage_row(record%damage)])
     call self%file%save(error)
   end subroutine write_row
 

@@ -1,6 +1,7 @@
 !> job_energy.csv: the energy balance of every increment.
 module write_energy
   use errors, only: error_type
+  use kinds, only: rk
   use problem_definition, only: problem
   use analysis_state, only: state
   use run_records, only: run_record
@@ -40,22 +41,14 @@ contains
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
-    integer :: i
+    real(rk) :: row(10)
     if (.false.) call record%begin_step(scene, now%step)
     if (.not. is_due(now, 1)) return
-    associate (e => now%energy, lines => self%file%lines)
-      call lines%add_integer(now%step)
-      call lines%add(',')
-      call lines%add_integer(now%increment)
-      associate (row => [now%total_time, e%external, e%kinetic, e%strain, e%damping, e%friction, &
-                         e%fracture, e%crushing, e%numerical, e%error])
-        do i = 1, size(row)
-          call lines%add(',')
-          call lines%add_real(row(i))
-        end do
-      end associate
-      call lines%add(new_line('a'))
+    associate (e => now%energy, time => now%total_time)
+      row = [time, e%external, e%kinetic, e%strain, e%damping, e%friction, e%fracture, &
+             e%crushing, e%numerical, e%error]
     end associate
+    call self%file%add_row(now%step, now%increment, row)
     call self%file%save(error)
   end subroutine write_energies
 
