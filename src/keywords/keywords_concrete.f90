@@ -3,11 +3,12 @@ module keywords_concrete
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use keyword_spec, only: keyword, field, kind_choice, kind_real
+  use keywords_material, only: claim_card
   use kinds, only: rk
-  use model_draft, only: concrete_request, draft, origin
+  use model_draft, only: concrete_request, draft
   implicit none
   private
-  public :: describe_plasticity, read_plasticity, find_concrete, claim_card, no_dependencies
+  public :: describe_plasticity, read_plasticity, find_concrete, no_dependencies
 
   character, parameter :: nl = new_line('a')
 
@@ -89,20 +90,4 @@ contains
     end if
     model%concretes(i)%is_right = model%concretes(i)%is_right .and. model%is_right
   end subroutine find_concrete
-
-  !> Notes where a keyword of the material stands; a second one is a fault.
-  subroutine claim_card(this, model, spot, faults)
-    type(card), intent(in) :: this
-    type(draft), intent(in) :: model
-    type(origin), intent(inout) :: spot !< of the keyword in its concrete
-    type(diagnostic_list), intent(inout) :: faults
-    if (spot%card > 0) then
-      associate (now => model%scene%materials(size(model%scene%materials)))
-        call this%fault(faults, "material '"//now%name//"' has a *"//this%spec%name//' already', &
-                        'one only', first=model%cards(spot%card)%place())
-      end associate
-    else
-      spot = model%here(0)
-    end if
-  end subroutine claim_card
 end module keywords_concrete

@@ -4,7 +4,8 @@ module keywords_concrete_tables
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use keyword_spec, only: keyword, field, kind_choice, kind_real
-  use keywords_concrete, only: claim_card, find_concrete, no_dependencies
+  use keywords_concrete, only: find_concrete, no_dependencies
+  use keywords_material, only: claim_card
   use kinds, only: rk
   use model_draft, only: draft
   implicit none

@@ -6,11 +6,12 @@ module keywords_material
   use kinds, only: rk
   use material_catalogue, only: make_stress_law
   use material_law, only: material
-  use model_draft, only: draft
+  use model_draft, only: draft, origin
   implicit none
   private
   public :: describe_material, describe_density, describe_elastic, describe_material_damping
   public :: read_material, read_density, read_elastic, read_material_damping
+  public :: claim_card
 
   character, parameter :: nl = new_line('a')
 
@@ -137,4 +138,20 @@ contains
       now%beta = this%real('BETA')
     end associate
   end subroutine read_material_damping
+
+  !> Notes where a keyword of the material stands; a second one is a fault.
+  subroutine claim_card(this, model, spot, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    type(origin), intent(inout) :: spot !< of the keyword in its material
+    type(diagnostic_list), intent(inout) :: faults
+    if (spot%card > 0) then
+      associate (now => model%scene%materials(size(model%scene%materials)))
+        call this%fault(faults, "material '"//now%name//"' has a *"//this%spec%name//' already', &
+                        'one only', first=model%cards(spot%card)%place())
+      end associate
+    else
+      spot = model%here(0)
+    end if
+  end subroutine claim_card
 end module keywords_material

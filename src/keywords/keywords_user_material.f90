@@ -4,8 +4,9 @@ module keywords_user_material
   use diagnostics, only: diagnostic_list
   use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, kind_real, &
                           kind_text
+  use keywords_material, only: claim_card
   use kinds, only: rk
-  use model_draft, only: draft, origin, user_request
+  use model_draft, only: draft, user_request
   use write_text, only: as_text
   implicit none
   private
@@ -45,7 +46,7 @@ contains
     integer :: i
     call find_request(model, i)
     associate (now => model%user_materials(i))
-      call claim(this, model, now%spot, faults)
+      call claim_card(this, model, now%spot, faults)
       now%constants%is_unsymmetric = this%has('UNSYMM')
       call read_constants(this, now%constants%values, faults)
     end associate
@@ -101,7 +102,7 @@ contains
     integer :: i, line, number
     call find_request(model, i)
     associate (now => model%user_materials(i))
-      call claim(this, model, now%depvar, faults)
+      call claim_card(this, model, now%depvar, faults)
       number = this%integer_at(1, 1)
       if (this%num_fields(1) /= 1 .or. .not. this%is_integer_at(1, 1) .or. number < 0) then
         call this%fault_at(faults, 1, 1, "found '"//this%text_at(1, 1)//"'", &
@@ -139,20 +140,4 @@ contains
     model%user_materials = [model%user_materials, new]
     i = size(model%user_materials)
   end subroutine find_request
-
-  !> Notes where a keyword of the material stands; a second one is a fault.
-  subroutine claim(this, model, spot, faults)
-    type(card), intent(in) :: this
-    type(draft), intent(in) :: model
-    type(origin), intent(inout) :: spot
-    type(diagnostic_list), intent(inout) :: faults
-    if (spot%card > 0) then
-      associate (now => model%scene%materials(size(model%scene%materials)))
-        call this%fault(faults, "material '"//now%name//"' has a *"//this%spec%name//' already', &
-                        'one only', first=model%cards(spot%card)%place())
-      end associate
-    else
-      spot = model%here(0)
-    end if
-  end subroutine claim
 end module keywords_user_material

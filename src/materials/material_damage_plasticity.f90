@@ -1,17 +1,11 @@
-!> Plastic-damage concrete (paper, section 3; theory 11) as a material of the deck.
+!> Plastic-damage concrete (paper, section 3; theory 11) as a material of the deck; its internal
+!> variables are those of damage_history.
 !>
-!> Internal variables of a point:
-!>
-!> | number | is |
-!> |---|---|
-!> | 1-6 | plastic strain 11 22 33 12 13 23, engineering shear |
-!> | 7, 8 | kappa_t, kappa_c: measures of cracking and crushing |
-!> | 9, 10 | d_t, d_c |
-!> | 11 | width of the crack band [m], 0 before the first crack |
-!> | 12-17 | with viscosity only: plastic strain as it would be without |
 module material_damage_plasticity
   use damage_checks, only: find_table_faults, table_fault
   use damage_constants, only: concrete_constants
+  use damage_history, only: last_backbone, last_damage, last_measure, last_strain, pack_history, &
+                            unpack_history, width_row
   use damage_model, only: concrete_model, make_concrete_model, placed_curves, stiffness_of
   use damage_point, only: point_answer, point_history, point_motion, update_point
   use damage_screen, only: screen_points
@@ -24,11 +18,7 @@ module material_damage_plasticity
   use write_text, only: as_text
   implicit none
   private
-  public :: concrete_law, make_concrete_law, num_state_of
-
-  !> Where the internal variables stand.
-  integer, parameter :: last_strain = 6, last_measure = 8, last_damage = 10, width_row = 11
-  integer, parameter :: last_backbone = 17
+  public :: concrete_law, make_concrete_law
 
   type, extends(stress_law) :: concrete_law
     type(concrete_model) :: model
@@ -148,29 +138,6 @@ contains
     new%energy(fracture_energy, i) = old%energy(fracture_energy, i) + answer%fracture
     new%energy(crushing_energy, i) = old%energy(crushing_energy, i) + answer%crushing
   end subroutine yield_point
-
-  !> The history of a point out of its internal variables.
-  pure subroutine unpack_history(internal, history)
-    real(rk), intent(in) :: internal(:)
-    type(point_history), intent(out) :: history
-    history%plastic_strain = internal(:last_strain)
-    history%backbone%measures = internal(last_strain + 1:last_measure)
-    history%damage = internal(last_measure + 1:last_damage)
-    history%backbone%width = internal(width_row)
-    history%backbone%strain = history%plastic_strain
-    if (size(internal) == last_backbone) history%backbone%strain = internal(width_row + 1:)
-  end subroutine unpack_history
-
-  !> And back.
-  pure subroutine pack_history(history, internal)
-    type(point_history), intent(in) :: history
-    real(rk), intent(inout) :: internal(:)
-    internal(:last_strain) = history%plastic_strain
-    internal(last_strain + 1:last_measure) = history%backbone%measures
-    internal(last_measure + 1:last_damage) = history%damage
-    internal(width_row) = history%backbone%width
-    if (size(internal) == last_backbone) internal(width_row + 1:) = history%backbone%strain
-  end subroutine pack_history
 
   !> PE, DAMAGET, DAMAGEC, SDV.
   subroutine read_field(self, name, state, values)

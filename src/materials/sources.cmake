@@ -10,6 +10,7 @@ set(sources
   damage_energy.f90
   damage_tangent.f90
   damage_point.f90
+  damage_history.f90
   damage_screen.f90
   material_damage_plasticity.f90
   umat_concrete.f90

@@ -4,18 +4,15 @@ module umat_concrete
   use damage_checks, only: find_longest_band, find_table_faults, table_fault
   use damage_constants, only: concrete_constants
   use damage_model, only: concrete_model, make_concrete_model
-  use damage_point, only: point_history
   use kinds, only: rk
   use write_text, only: as_text
   implicit none
   private
-  public :: num_state, make_model, unpack, pack
+  public :: make_model
 
   integer, parameter :: num_scalars = 18 !< constants before the tables
-  integer, parameter :: num_state = 17
   integer, parameter :: own_width = 14 !< in place of CELENT
   integer, parameter :: first_count = 15 !< of the four numbers of rows
-  integer, parameter :: last_strain = 6, last_measure = 8, last_damage = 10, width_row = 11
   character(12), parameter :: kinds_of_table(0:2) = ['STRAIN      ', 'DISPLACEMENT', 'GFI         ']
 
 contains
@@ -151,26 +148,4 @@ contains
               ', '//limit%expected
     end if
   end subroutine check_width
-
-  !> STATEV by name.
-  pure subroutine unpack(statev, history)
-    real(rk), intent(in) :: statev(num_state)
-    type(point_history), intent(out) :: history
-    history%plastic_strain = statev(:last_strain)
-    history%backbone%measures = statev(last_strain + 1:last_measure)
-    history%damage = statev(last_measure + 1:last_damage)
-    history%backbone%width = statev(width_row)
-    history%backbone%strain = statev(width_row + 1:)
-  end subroutine unpack
-
-  !> And back.
-  pure subroutine pack(history, statev)
-    type(point_history), intent(in) :: history
-    real(rk), intent(inout) :: statev(num_state)
-    statev(:last_strain) = history%plastic_strain
-    statev(last_strain + 1:last_measure) = history%backbone%measures
-    statev(last_measure + 1:last_damage) = history%damage
-    statev(width_row) = history%backbone%width
-    statev(width_row + 1:) = history%backbone%strain
-  end subroutine pack
 end module umat_concrete

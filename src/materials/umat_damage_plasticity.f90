@@ -6,7 +6,8 @@
 !>   materials/damage_constants.f90 materials/damage_curves.f90 materials/damage_checks.f90
 !>   materials/damage_model.f90 materials/damage_yield.f90 materials/crack_band.f90
 !>   materials/damage_return.f90 materials/damage_increment.f90 materials/damage_tangent.f90
-!>   materials/damage_energy.f90 materials/damage_point.f90 materials/umat_concrete.f90
+!>   materials/damage_energy.f90 materials/damage_point.f90 materials/damage_history.f90
+!>   materials/umat_concrete.f90
 !> and this file. Free form, Fortran 2008; `tools/make_umat` writes all of it into one file.
 !>
 !> Constants, PROPS, in consistent units (docs/concrete_umat.md has an example):
@@ -34,10 +35,11 @@ module umat_damage_plasticity
   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int
   use, intrinsic :: iso_fortran_env, only: output_unit
+  use damage_history, only: last_backbone, pack_history, unpack_history
   use damage_model, only: concrete_model, placed_curves
   use damage_point, only: point_answer, point_history, point_motion, update_point
   use kinds, only: rk
-  use umat_concrete, only: make_model, num_state, pack, unpack
+  use umat_concrete, only: make_model
   implicit none
   private
   public :: umat
@@ -72,7 +74,7 @@ contains
     integer :: i
     if (ntens /= 6 .or. ndi /= 3) then
       fault = 'elements without six stress components'
-    else if (nstatv < num_state) then
+    else if (nstatv < last_backbone) then
       fault = 'fewer than 17 state variables'
     else
       call make_model(props, celent, kinc <= 1 .and. kstep(1) <= 1, model, width, fault)
@@ -88,11 +90,11 @@ contains
     motion%strain = stran + dstran
     motion%time = dtime
     motion%edges = reshape([width, (0.0_rk, 0.0_rk, 0.0_rk, width, i=1, 2)], [3, 3])
-    call unpack(statev(:num_state), old)
+    call unpack_history(statev(:last_backbone), old)
     call update_point(model, motion, old, placed, new, answer)
     if (.not. answer%has_converged) pnewdt = smaller
     if (.not. answer%has_converged) return
-    call pack(new, statev(:num_state))
+    call pack_history(new, statev(:last_backbone))
     stress = answer%stress
     ddsdde = answer%tangent
     sse = answer%stored
