@@ -58,8 +58,8 @@ contains
       if (.not. joints(j)%is_nodal) cycle
       do p = 1, joints(j)%num_points
         num_pairs = num_pairs + 1
-        slave(num_pairs) = joints(j)%slave(1, p)
-        master(num_pairs) = joints(j)%master(1, p)
+        slave(num_pairs) = joints(j)%node(joints(j)%first(p))
+        master(num_pairs) = joints(j)%node(joints(j)%first_master(p))
         rotation(:, :, num_pairs) = joints(j)%rotation(:, :, p)
       end do
     end do

@@ -36,7 +36,7 @@ contains
     num_items = 8*num_cells
     do j = 1, size(joints)
       num_cells = num_cells + joints(j)%num_points
-      num_items = num_items + size(joints(j)%master) + size(joints(j)%slave)
+      num_items = num_items + size(joints(j)%node)
     end do
     allocate (cells%first(num_cells + 1), cells%node(num_items))
     cells%first(1) = 1
@@ -46,7 +46,7 @@ contains
     end do
     do j = 1, size(joints)
       do p = 1, joints(j)%num_points
-        call add_cell([joints(j)%master(:, p), joints(j)%slave(:, p)])
+        call add_cell(joints(j)%node(joints(j)%first(p):joints(j)%first(p + 1) - 1))
       end do
     end do
     cells%first = cells%first(:num_cells + 1)

@@ -7,6 +7,8 @@ module problem_definition
   use material_law, only: material
   use material_tests, only: material_test
   use joint_points, only: joint
+  use node_ties, only: node_tie
+  use surface_coupling, only: coupling
   use applied_load, only: load_slot
   use inelastic_blocks, only: inelastic_block
   use umat_loader, only: user_library
@@ -26,6 +28,8 @@ module problem_definition
     type(material_test), allocatable :: tests(:) !< of materials at one point
     logical :: has_lumped_mass = .false.
     type(joint), allocatable :: joints(:)
+    type(node_tie), allocatable :: ties(:) !< exact ones
+    type(coupling), allocatable :: couplings(:) !< springs between faces of different meshes
     type(inelastic_block), allocatable :: inelastic(:) !< solids whose law is not linear
     type(load_slot), allocatable :: loads(:)
     type(initial_value), allocatable :: initial_values(:)

@@ -9,7 +9,7 @@ module element_joint8
   use element_catalogue, only: is_solid
   use errors, only: error_type, raise
   use gauss_rules, only: quad_point
-  use joint_points, only: joint
+  use joint_points, only: joint, list_faces
   use kinds, only: rk
   use mesh_faces, only: face_nodes, face_table, face_vector, find_face, insert_face, open_table
   use shape_quad4, only: cross, facet_point
@@ -26,6 +26,16 @@ module element_joint8
 
   !> A normal this close to the vertical takes slip 1 along x.
   real(rk), parameter :: vertical = 1.0e-6_rk
+
+  !> Points of two faces that coincide, while they are gathered.
+  type :: face_points
+    integer :: num_points = 0
+    integer, allocatable :: master(:, :), slave(:, :) !< (nodes a side, capacity)
+    real(rk), allocatable :: shape(:, :) !< (nodes a side, capacity)
+    real(rk), allocatable :: x(:, :) !< (3, capacity) [m]
+    real(rk), allocatable :: normal(:, :) !< (3, capacity) of any length
+    real(rk), allocatable :: area(:) !< (capacity) [m2]
+  end type face_points
 
 contains
 
@@ -158,13 +168,12 @@ contains
     integer, intent(in) :: elements(:), side(:)
     type(joint), intent(inout) :: built
     integer, allocatable :: newest(:), next(:)
-    real(rk), allocatable :: normal(:, :)
+    type(face_points) :: points
     real(rk) :: share(3, 4)
     integer :: e, a, p, master, slave
 
-    call open_points(1, 4*size(elements), built)
+    call open_points(1, 4*size(elements), points)
     allocate (newest(model%num_nodes), next(4*size(elements)), source=0)
-    allocate (normal(3, 4*size(elements)), source=0.0_rk)
     do e = 1, size(elements)
       share = side(e)*corner_shares(model%x(:, model%nodes(1:4, elements(e))))
       do a = 1, 4
@@ -173,25 +182,25 @@ contains
         if (master == slave) cycle
         p = newest(master)
         do while (p > 0)
-          if (built%slave(1, p) == slave .and. dot_product(normal(:, p), share(:, a)) &
-              >= same_plane*norm2(normal(:, p))*norm2(share(:, a))) exit
+          if (points%slave(1, p) == slave .and. dot_product(points%normal(:, p), share(:, a)) &
+              >= same_plane*norm2(points%normal(:, p))*norm2(share(:, a))) exit
           p = next(p)
         end do
         if (p == 0) then
-          built%num_points = built%num_points + 1
-          p = built%num_points
+          points%num_points = points%num_points + 1
+          p = points%num_points
           next(p) = newest(master)
           newest(master) = p
-          built%master(1, p) = master
-          built%slave(1, p) = slave
-          built%x(:, p) = model%x(:, master)
+          points%master(1, p) = master
+          points%slave(1, p) = slave
+          points%x(:, p) = model%x(:, master)
         end if
-        normal(:, p) = normal(:, p) + share(:, a)
-        built%area(p) = built%area(p) + norm2(share(:, a))
+        points%normal(:, p) = points%normal(:, p) + share(:, a)
+        points%area(p) = points%area(p) + norm2(share(:, a))
       end do
     end do
-    built%shape = 1.0_rk
-    call close_points(normal, built)
+    points%shape = 1.0_rk
+    call close_points(points, built)
   end subroutine gather_pairs
 
   !> Area vectors that belong to the corners of a facet: integrals of N_a n dA [m2].
@@ -214,58 +223,53 @@ contains
     type(mesh), intent(in) :: model
     integer, intent(in) :: elements(:), side(:)
     type(joint), intent(inout) :: built
-    real(rk), allocatable :: normal(:, :)
+    type(face_points) :: points
     real(rk) :: x(3, 4), n(4), area(3)
     integer :: e, q, p, nodes(8)
 
-    call open_points(4, 4*size(elements), built)
-    allocate (normal(3, 4*size(elements)))
+    call open_points(4, 4*size(elements), points)
     do e = 1, size(elements)
       nodes = model%nodes(:, elements(e))
       if (all(nodes(:4) == nodes(5:))) cycle
       x = model%x(:, nodes(:4))
       do q = 1, 4
         call facet_point(x, q, n, area)
-        built%num_points = built%num_points + 1
-        p = built%num_points
-        built%master(:, p) = nodes(:4)
-        built%slave(:, p) = nodes(5:)
-        built%shape(:, p) = n
-        built%x(:, p) = matmul(x, n)
-        built%area(p) = norm2(area)
-        normal(:, p) = side(e)*area
+        points%num_points = points%num_points + 1
+        p = points%num_points
+        points%master(:, p) = nodes(:4)
+        points%slave(:, p) = nodes(5:)
+        points%shape(:, p) = n
+        points%x(:, p) = matmul(x, n)
+        points%area(p) = norm2(area)
+        points%normal(:, p) = side(e)*area
       end do
     end do
-    call close_points(normal, built)
+    call close_points(points, built)
   end subroutine gather_gauss_points
 
   !> Room for points.
-  subroutine open_points(nodes_a_side, capacity, built)
+  subroutine open_points(nodes_a_side, capacity, points)
     integer, intent(in) :: nodes_a_side, capacity
-    type(joint), intent(inout) :: built
-    built%num_points = 0
-    built%master = reshape([integer ::], [nodes_a_side, capacity], pad=[0])
-    built%slave = built%master
-    built%shape = reshape([real(rk) ::], [nodes_a_side, capacity], pad=[0.0_rk])
-    built%x = reshape([real(rk) ::], [3, capacity], pad=[0.0_rk])
-    built%area = built%x(1, :)
+    type(face_points), intent(out) :: points
+    allocate (points%master(nodes_a_side, capacity), points%slave(nodes_a_side, capacity), source=0)
+    allocate (points%shape(nodes_a_side, capacity), source=0.0_rk)
+    allocate (points%x(3, capacity), points%normal(3, capacity), points%area(capacity), &
+              source=0.0_rk)
   end subroutine open_points
 
   !> Cuts the room to size and makes the local axes out of the normals.
-  subroutine close_points(normal, built)
-    real(rk), intent(in) :: normal(:, :) !< (3, capacity), of any length
+  subroutine close_points(points, built)
+    type(face_points), intent(in) :: points
     type(joint), intent(inout) :: built
     integer :: p, n
-    n = built%num_points
-    built%master = built%master(:, :n)
-    built%slave = built%slave(:, :n)
-    built%shape = built%shape(:, :n)
-    built%x = built%x(:, :n)
-    built%area = built%area(:n)
+    n = points%num_points
+    call list_faces(points%slave(:, :n), points%master(:, :n), points%shape(:, :n), built)
+    built%x = points%x(:, :n)
+    built%area = points%area(:n)
     if (allocated(built%rotation)) deallocate (built%rotation)
     allocate (built%rotation(3, 3, n))
     do p = 1, n
-      built%rotation(:, :, p) = local_axes(normal(:, p))
+      built%rotation(:, :, p) = local_axes(points%normal(:, p))
     end do
   end subroutine close_points
 

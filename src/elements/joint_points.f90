@@ -1,25 +1,81 @@
 !> The points of a joint: where its two faces lie on each other, and how they see the nodes.
 !>
 !> The relative displacement of point p in local axes is
-!>   jump = rotation(:, :, p) * sum_a shape(a, p) * (u(slave(a, p)) - u(master(a, p))).
-!> Integrated at the nodes a point is one pair of nodes (one node a side, shape 1); at Gauss points
-!> it sees four nodes a side.
+!>   jump = rotation(:, :, p) * sum_k weight(k) * u(node(k)),   k = first(p) .. first(p + 1) - 1,
+!> nodes of the slave face first (their weights add up to 1), then, from first_master(p) on, those
+!> of the master face (their weights add up to -1). Integrated at the nodes a point belongs to one
+!> node of the slave face, which is the only one of that face that it sees: the other end is a node
+!> (JOINT8) or a mortar projection of the master face (surfaces of different meshes).
 module joint_points
   use kinds, only: rk
   use joint_law, only: traction_law
   implicit none
   private
-  public :: joint
+  public :: joint, joint_cells, list_faces, apart
+
+  !> What results draw of a joint: polygons on its face. A corner lies at, moves with and shows the
+  !> values of sum weight * node, over nodes that points of the joint belong to.
+  type :: joint_cells
+    integer, allocatable :: first(:) !< (cells + 1) corners of each cell
+    integer, allocatable :: corner(:) !< numbers of corners, right-hand rule about the normal
+    integer, allocatable :: element(:) !< (cells) JOINT8 or the solid behind the slave face
+    integer, allocatable :: first_node(:) !< (corners + 1)
+    integer, allocatable :: node(:) !< positions in the mesh
+    real(rk), allocatable :: weight(:) !< they add up to 1 at each corner
+  end type joint_cells
 
   type :: joint
     character(:), allocatable :: name !< upper case
     class(traction_law), allocatable :: law
-    logical :: is_nodal = .true. !< points are pairs of nodes
+    logical :: is_nodal = .true. !< each point belongs to a slave node, else to a place between them
+    logical :: is_matching = .true. !< made of JOINT8 elements, else of two surfaces
     integer :: num_points = 0
-    integer, allocatable :: master(:, :), slave(:, :) !< node positions; (nodes a side, points)
-    real(rk), allocatable :: shape(:, :) !< (nodes a side, points)
+    integer, allocatable :: first(:) !< (points + 1) nodes of each point
+    integer, allocatable :: first_master(:) !< (points) the first of them on the master face
+    integer, allocatable :: node(:) !< positions in the mesh
+    real(rk), allocatable :: weight(:) !< slave positive in sum, master negative
     real(rk), allocatable :: x(:, :) !< (3, points) [m]
     real(rk), allocatable :: rotation(:, :, :) !< (3, 3, points); rows: normal, slip 1, slip 2
     real(rk), allocatable :: area(:) !< tributary area of each point [m2]
+    real(rk), allocatable :: clearance(:) !< (points) as meshed, beside the law's gap [m]
+    real(rk), allocatable :: reach(:) !< (points) the slip that small sliding allows [m]
+    type(joint_cells) :: cells
   end type joint
+
+contains
+
+  !> Gives a joint points that see as many nodes on the slave as on the master face, with the same
+  !> weights: those of two faces that coincide.
+  pure subroutine list_faces(slave, master, shape, built)
+    integer, intent(in) :: slave(:, :), master(:, :) !< (nodes a side, points) positions
+    real(rk), intent(in) :: shape(:, :) !< (nodes a side, points)
+    type(joint), intent(inout) :: built
+    integer :: p, n, k
+    n = size(slave, 1)
+    built%num_points = size(slave, 2)
+    built%first = [(1 + 2*n*(p - 1), p=1, built%num_points + 1)]
+    built%first_master = built%first(:built%num_points) + n
+    if (allocated(built%node)) deallocate (built%node, built%weight)
+    allocate (built%node(2*n*built%num_points), built%weight(2*n*built%num_points))
+    do p = 1, built%num_points
+      k = built%first(p)
+      built%node(k:k + 2*n - 1) = [slave(:, p), master(:, p)]
+      built%weight(k:k + 2*n - 1) = [shape(:, p), -shape(:, p)]
+    end do
+    built%clearance = spread(0.0_rk, 1, built%num_points)
+    built%reach = spread(huge(1.0_rk), 1, built%num_points)
+  end subroutine list_faces
+
+  !> Slave minus master at a point, in global axes.
+  pure function apart(seam, p, u)
+    type(joint), intent(in) :: seam
+    integer, intent(in) :: p !< point
+    real(rk), intent(in) :: u(:, :) !< (3, nodes)
+    real(rk) :: apart(3)
+    integer :: k
+    apart = 0.0_rk
+    do k = seam%first(p), seam%first(p + 1) - 1
+      apart = apart + seam%weight(k)*u(:, seam%node(k))
+    end do
+  end function apart
 end module joint_points

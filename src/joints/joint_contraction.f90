@@ -33,7 +33,7 @@ module joint_contraction
 
   !> What the history holds of one point.
   type :: point_state
-    real(rk) :: jump(3), traction(3), slip(2), friction_work, fracture_work
+    real(rk) :: gap, jump(3), traction(3), slip(2), friction_work, fracture_work
     real(rk) :: cohesion !< c, or 0 when the point has parted within the increment [Pa]
     logical :: is_broken
     integer :: status
@@ -41,16 +41,19 @@ module joint_contraction
 
 contains
 
-  !> Bonded where there is strength, else closed without pressure, else open by the gap.
-  pure subroutine start_state(self, num_points, state)
+  !> Bonded where there is strength, else closed, else open by the gap.
+  pure subroutine start_state(self, clearance, state)
     class(contraction_law), intent(in) :: self
-    integer, intent(in) :: num_points
+    real(rk), intent(in) :: clearance(:)
     type(joint_state), intent(out) :: state
-    call allocate_state(num_points, state)
+    call allocate_state(self%gap + clearance, state)
     state%is_broken = self%strength <= 0.0_rk
     state%status = state_stick
     if (self%strength > 0.0_rk) state%status = state_bonded
-    if (self%gap > 0.0_rk) state%status = state_open
+    where (state%gap > 0.0_rk)
+      state%status = state_open
+      state%is_broken = .true.
+    end where
   end subroutine start_state
 
   !> k_n, k_t, k_t.
@@ -84,7 +87,7 @@ contains
     type(point_state) :: before, after
     integer :: p
     do p = 1, size(jump, 2)
-      before = point_state(old%jump(:, p), old%traction(:, p), old%slip(:, p), &
+      before = point_state(old%gap(p), old%jump(:, p), old%traction(:, p), old%slip(:, p), &
                            old%friction_work(p), old%fracture_work(p), self%cohesion, &
                            old%is_broken(p), old%status(p))
       after = before
@@ -93,7 +96,7 @@ contains
       if (.not. (before%is_broken .or. new%has_parted(p)) .and. &
           jump(1, p)*self%normal_stiffness <= self%strength) then
         call stay_bonded(self, after, iterate(:, p), tangent(:, :, p))
-      else if (jump(1, p) + self%gap > 0.0_rk) then
+      else if (jump(1, p) + old%gap(p) > 0.0_rk) then
         call open_point(self, before, after, iterate(:, p), tangent(:, :, p))
       else
         call close_point(self, before, after)
@@ -137,7 +140,7 @@ contains
     real(rk) :: k(3), share, step(3), opening, limit
     call law%reference_stiffness(k)
     step = point%jump - before%jump
-    opening = before%jump(1) + law%gap
+    opening = before%jump(1) + before%gap
     if (.not. before%is_broken) then
       share = 0.0_rk ! parted: what was stored before is set free
       if (point%jump(1) > law%strength/k(1)) share = (law%strength/k(1) - before%jump(1))/step(1)
@@ -162,8 +165,8 @@ contains
     type(point_state), intent(in) :: before
     type(point_state), intent(inout) :: point
     real(rk) :: opening, old_opening, limit, k, trial(2), size_of_trial
-    opening = point%jump(1) + law%gap
-    old_opening = before%jump(1) + law%gap
+    opening = point%jump(1) + point%gap
+    old_opening = before%jump(1) + before%gap
     limit = slip_limit(law, opening, point%cohesion)
     k = law%tangent_stiffness
     trial = k*(point%jump(2:3) - before%slip)
@@ -199,7 +202,7 @@ contains
     real(rk), intent(out) :: iterate(3), tangent(3, 3)
     real(rk) :: k, z(2), size_of_z, limit, e(2), rest(2), rho, softening
     k = law%tangent_stiffness
-    limit = slip_limit(law, point%jump(1) + law%gap, point%cohesion)
+    limit = slip_limit(law, point%jump(1) + point%gap, point%cohesion)
     z = multiplier + scale*(point%jump(2:3) - slip - multiplier/k)
     size_of_z = norm2(z)
     iterate(1) = point%traction(1)

@@ -13,6 +13,7 @@ module joint_law
 
   !> History of all points of one joint; two of them exist, converged and trial.
   type :: joint_state
+    real(rk), allocatable :: gap(:) !< (points) at the start; the opening is jump(1) + gap [m]
     real(rk), allocatable :: jump(:, :) !< (3, points) relative displacement [m]
     real(rk), allocatable :: traction(:, :) !< (3, points) by the law at `jump` [Pa]
     real(rk), allocatable :: slip(:, :) !< (2, points) irrecoverable sliding [m]
@@ -30,7 +31,7 @@ module joint_law
   !> in Newton's iteration the traction follows iterate + tangent*(correction of the jump).
   type, abstract :: traction_law
     character(:), allocatable :: name !< upper case
-    real(rk) :: gap = 0.0_rk !< initial gap [m]; the opening of a point is jump(1) + gap
+    real(rk) :: gap = 0.0_rk !< at the start, of every point [m]
   contains
     procedure(start_state), deferred :: start_state
     procedure(reference_stiffness), deferred :: reference_stiffness
@@ -40,11 +41,11 @@ module joint_law
 
   abstract interface
     !> History of a joint that has not moved yet, as the law wants it.
-    pure subroutine start_state(self, num_points, state)
-      import :: traction_law, joint_state
+    pure subroutine start_state(self, clearance, state)
+      import :: traction_law, joint_state, rk
       implicit none
       class(traction_law), intent(in) :: self
-      integer, intent(in) :: num_points
+      real(rk), intent(in) :: clearance(:) !< (points) of the faces as meshed, beside the gap [m]
       type(joint_state), intent(out) :: state
     end subroutine start_state
 
@@ -84,10 +85,13 @@ module joint_law
 
 contains
 
-  !> Room for the history of the points of one joint, all zero.
-  pure subroutine allocate_state(num_points, state)
-    integer, intent(in) :: num_points
+  !> Room for the history of the points of one joint, all zero but the gap.
+  pure subroutine allocate_state(gap, state)
+    real(rk), intent(in) :: gap(:) !< (points) [m]
     type(joint_state), intent(out) :: state
+    integer :: num_points
+    num_points = size(gap)
+    state%gap = gap
     allocate (state%jump(3, num_points), state%traction(3, num_points), source=0.0_rk)
     allocate (state%slip(2, num_points), source=0.0_rk)
     allocate (state%friction_work(num_points), state%fracture_work(num_points), source=0.0_rk)

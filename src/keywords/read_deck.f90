@@ -72,6 +72,7 @@ contains
       scene%deck_file = path
       scene%heading = ''
       allocate (scene%surfaces(0), scene%amplitudes(0), scene%materials(0), scene%joints(0))
+      allocate (scene%ties(0), scene%couplings(0))
       allocate (scene%loads(0), scene%initial_values(0), scene%steps(0), scene%tests(0))
     end associate
     allocate (model%surface_origin(0), model%material_origin(0), model%test_origin(0))

@@ -6,6 +6,7 @@ set(sources
   step_plan.f90
   material_tests.f90
   dof_numbering.f90
+  node_ties.f90
   jump_links.f90
   id_map.f90
   sorted_lists.f90

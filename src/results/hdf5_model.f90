@@ -95,9 +95,11 @@ contains
     call file%put(group//'/area', item%area)
     ! The axes are the rows for a reader whose last index runs fastest.
     call file%put(group//'/rotation', reshape(item%rotation, shape(item%rotation), order=[2, 1, 3]))
-    call file%put(group//'/shape', item%shape)
-    call file%put(group//'/master', reshape(scene%mesh%node_id([item%master]), shape(item%master)))
-    call file%put(group//'/slave', reshape(scene%mesh%node_id([item%slave]), shape(item%slave)))
+    call file%put(group//'/clearance', item%clearance)
+    call file%put(group//'/first', item%first)
+    call file%put(group//'/first_master', item%first_master)
+    call file%put(group//'/node', scene%mesh%node_id(item%node))
+    call file%put(group//'/weight', item%weight)
     call file%put(group//'/upstream', merge(1, 0, faces%is_upstream))
     call file%put(group//'/downstream', merge(1, 0, faces%is_downstream))
   end subroutine write_joint

@@ -193,7 +193,7 @@ contains
     integer, intent(in) :: points(:)
     real(rk) :: opening(scene%joints(joint)%num_points)
     integer :: k, p
-    opening = opening_at_points(scene%joints(joint), now%joints(joint))
+    opening = opening_at_points(now%joints(joint))
     do k = 1, size(points)
       p = points(k)
       call add_time(lines, now)

@@ -21,11 +21,10 @@ module joint_readings
 contains
 
   !> Signed opening of each point: jump and gap, positive when open [m].
-  pure function opening_at_points(item, now) result(opening)
-    type(joint), intent(in) :: item
+  pure function opening_at_points(now) result(opening)
     type(joint_state), intent(in) :: now
-    real(rk) :: opening(item%num_points)
-    opening = now%jump(1, :) + item%law%gap
+    real(rk) :: opening(size(now%gap))
+    opening = now%jump(1, :) + now%gap
   end function opening_at_points
 
   !> Signed opening on the nodes of all joints, on both sides; zero on other nodes [m]. A node of
@@ -35,20 +34,18 @@ contains
     type(state), intent(in) :: now
     real(rk) :: opening(scene%mesh%num_nodes)
     real(rk) :: weight(scene%mesh%num_nodes)
-    integer :: j, p, a
-    real(rk) :: at_point, share
+    integer :: j, p, k
+    real(rk) :: share
     opening = 0.0_rk
     weight = 0.0_rk
     do j = 1, size(scene%joints)
       associate (item => scene%joints(j))
         do p = 1, item%num_points
-          at_point = now%joints(j)%jump(1, p) + item%law%gap
-          do a = 1, size(item%master, 1)
-            share = item%shape(a, p)*item%area(p)
-            opening(item%master(a, p)) = opening(item%master(a, p)) + share*at_point
-            weight(item%master(a, p)) = weight(item%master(a, p)) + share
-            opening(item%slave(a, p)) = opening(item%slave(a, p)) + share*at_point
-            weight(item%slave(a, p)) = weight(item%slave(a, p)) + share
+          do k = item%first(p), item%first(p + 1) - 1
+            share = abs(item%weight(k))*item%area(p)
+            opening(item%node(k)) = opening(item%node(k)) &
+                                    + share*(now%joints(j)%jump(1, p) + now%joints(j)%gap(p))
+            weight(item%node(k)) = weight(item%node(k)) + share
           end do
         end do
       end associate
@@ -62,14 +59,14 @@ contains
     type(joint), intent(in) :: item
     type(dam_skin), intent(in) :: skin
     type(joint_record), intent(out) :: record
-    integer :: p, a
+    integer :: p, k, slave, master
     allocate (record%is_upstream(item%num_points), record%is_downstream(item%num_points))
     do p = 1, item%num_points
-      a = maxloc(item%shape(:, p), dim=1)
-      record%is_upstream(p) = skin%is_upstream(item%master(a, p)) .or. &
-                              skin%is_upstream(item%slave(a, p))
-      record%is_downstream(p) = skin%is_downstream(item%master(a, p)) .or. &
-                                skin%is_downstream(item%slave(a, p))
+      k = item%first_master(p)
+      slave = item%node(item%first(p) - 1 + maxloc(item%weight(item%first(p):k - 1), dim=1))
+      master = item%node(k - 1 + minloc(item%weight(k:item%first(p + 1) - 1), dim=1))
+      record%is_upstream(p) = skin%is_upstream(master) .or. skin%is_upstream(slave)
+      record%is_downstream(p) = skin%is_downstream(master) .or. skin%is_downstream(slave)
     end do
   end subroutine open_joint_record
 
@@ -79,7 +76,7 @@ contains
     type(joint), intent(in) :: item
     type(joint_state), intent(in) :: now
     real(rk), intent(in) :: time !< total time [s]
-    call note(record%opening, max(0.0_rk, opening_at_points(item, now)))
+    call note(record%opening, max(0.0_rk, opening_at_points(now)))
     call note(record%slip, hypot(now%slip(1, :), now%slip(2, :)))
     call note(record%pressure, max(0.0_rk, -now%traction(1, :)))
 

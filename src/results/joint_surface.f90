@@ -56,17 +56,15 @@ contains
     type(problem), intent(in) :: scene
     integer, allocatable, intent(out) :: owner(:) !< (elements) 0: none
     integer, allocatable :: hits(:), partner(:, :)
-    integer :: j, p, a, e
+    integer :: j, p, e
     allocate (owner(scene%mesh%num_elements), source=0)
     allocate (hits(scene%mesh%num_elements), source=0)
     do j = 1, size(scene%joints)
       associate (item => scene%joints(j))
         allocate (partner(2, scene%mesh%num_nodes), source=0)
         do p = 1, item%num_points
-          do a = 1, size(item%master, 1)
-            partner(1, item%master(a, p)) = 1
-            partner(2, item%slave(a, p)) = 1
-          end do
+          partner(2, item%node(item%first(p):item%first_master(p) - 1)) = 1
+          partner(1, item%node(item%first_master(p):item%first(p + 1) - 1)) = 1
         end do
       end associate
       do e = 1, scene%mesh%num_elements
@@ -85,16 +83,16 @@ contains
     type(problem), intent(in) :: scene
     integer, intent(in) :: j, corner_at(:)
     type(drawn_joints), intent(inout) :: drawn
-    integer :: p, a, corner
+    integer :: p, k, corner
     associate (item => scene%joints(j))
       do p = 1, item%num_points
-        do a = 1, size(item%master, 1)
-          corner = corner_at(item%master(a, p))
+        do k = item%first_master(p), item%first(p + 1) - 1
+          corner = corner_at(item%node(k))
           if (corner == 0) cycle
           drawn%corner_of = [drawn%corner_of, corner]
           drawn%joint_of = [drawn%joint_of, j]
           drawn%point_of = [drawn%point_of, p]
-          drawn%weight = [drawn%weight, item%shape(a, p)*item%area(p)]
+          drawn%weight = [drawn%weight, -item%weight(k)*item%area(p)]
         end do
       end do
     end associate
@@ -117,8 +115,7 @@ contains
   end subroutine make_means
 
   !> Opening [m], slip [m] and traction [Pa] on the corners; zero where a corner has no point.
-  subroutine values_on_corners(scene, now, drawn, values)
-    type(problem), intent(in) :: scene
+  subroutine values_on_corners(now, drawn, values)
     type(state), intent(in) :: now
     type(drawn_joints), intent(in) :: drawn
     real(rk), intent(out) :: values(:, :) !< (num_values, corners)
@@ -128,7 +125,7 @@ contains
       p = drawn%point_of(i)
       associate (joint => now%joints(drawn%joint_of(i)), at_corner => values(:, drawn%corner_of(i)))
         at_corner(1) = at_corner(1) + drawn%weight(i)* &
-                       (joint%jump(1, p) + scene%joints(drawn%joint_of(i))%law%gap)
+                       (joint%jump(1, p) + joint%gap(p))
         at_corner(2:3) = at_corner(2:3) + drawn%weight(i)*joint%slip(:, p)
         at_corner(4:6) = at_corner(4:6) + drawn%weight(i)*joint%traction(:, p)
       end associate

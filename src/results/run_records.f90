@@ -173,7 +173,7 @@ contains
       call note_envelope(item, max(0.0_rk, opening_at_nodes(scene, now)), now%total_time)
       do j = 1, size(scene%joints)
         call note_values(item%largest, &
-                         max(0.0_rk, opening_at_points(scene%joints(j), now%joints(j))), &
+                         max(0.0_rk, opening_at_points(now%joints(j))), &
                          scene%joints(j)%x, self%joints(j)%is_upstream, &
                          self%joints(j)%is_downstream, now%total_time, wants_smallest=.false.)
       end do

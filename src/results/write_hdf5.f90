@@ -120,7 +120,7 @@ contains
     end if
     do j = 1, size(scene%joints)
       associate (joint => now%joints(j))
-        opening = max(0.0_rk, maxval(opening_at_points(scene%joints(j), joint)))
+        opening = max(0.0_rk, maxval(opening_at_points(joint)))
         slip = max(0.0_rk, maxval(hypot(joint%slip(1, :), joint%slip(2, :))))
         pressure = max(0.0_rk, -minval(joint%traction(1, :)))
         call self%joints(j)%add(self%file, [time, opening, slip, pressure])
@@ -171,7 +171,7 @@ contains
     do j = 1, size(scene%joints)
       place = group//'/'//link_name(scene%joints(j)%name)
       call file%make_group(place)
-      call file%put(place//'/opening', opening_at_points(scene%joints(j), now%joints(j)))
+      call file%put(place//'/opening', opening_at_points(now%joints(j)))
       call file%put(place//'/slip', now%joints(j)%slip)
       call file%put(place//'/traction', now%joints(j)%traction)
       call file%put(place//'/state', now%joints(j)%status)

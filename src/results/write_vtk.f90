@@ -112,7 +112,7 @@ contains
     integer :: i, num_quads
     num_quads = size(self%joints%element)
     if (num_quads == 0) return
-    call values_on_corners(scene, now, self%joints, values)
+    call values_on_corners(now, self%joints, values)
     call file%start(scene%mesh%x(:, self%joints%node), reshape(self%joints%quad - 1, &
                                                                [4*num_quads]), &
                     [(4*i, i=1, num_quads)], [(cell_quad, i=1, num_quads)])

@@ -2,7 +2,7 @@
 module initial_state
   use kinds, only: rk
   use problem_definition, only: problem
-  use joint_points, only: joint
+  use joint_points, only: joint, apart
   use joint_law, only: joint_state
   use joint_forces, only: start_joints
   use errors, only: error_type, raise
@@ -82,15 +82,11 @@ contains
     real(rk), intent(in) :: u(:, :) !< (3, nodes) [m]
     type(joint_state), intent(inout) :: history
     real(rk), dimension(3, seam%num_points) :: jump, iterate
-    real(rk) :: tangent(3, 3, seam%num_points), k(3), apart(3)
+    real(rk) :: tangent(3, 3, seam%num_points), k(3)
     type(joint_state) :: old
-    integer :: p, a
+    integer :: p
     do p = 1, seam%num_points
-      apart = 0.0_rk
-      do a = 1, size(seam%shape, 1)
-        apart = apart + seam%shape(a, p)*(u(:, seam%slave(a, p)) - u(:, seam%master(a, p)))
-      end do
-      jump(:, p) = matmul(seam%rotation(:, :, p), apart)
+      jump(:, p) = matmul(seam%rotation(:, :, p), apart(seam, p, u))
     end do
     old = history
     call seam%law%reference_stiffness(k)

@@ -7,10 +7,12 @@ module joint_forces
   implicit none
   private
   public :: joint_field, joint_work, start_joints, reference_stiffness
-  public :: evaluate_joints, gather_tractions, gather_jumps, linear_tractions, sum_joint_work
+  public :: evaluate_joints, gather_tractions, gather_jumps, gather_gaps, linear_tractions
+  public :: sum_joint_work
 
   !> What the laws say at a trial jump, all points of all joints in one row.
   type :: joint_field
+    real(rk), allocatable :: gap(:) !< (points) at the start [m]
     real(rk), allocatable :: jump(:, :) !< (3, points) where the laws were evaluated [m]
     real(rk), allocatable :: multiplier(:, :) !< (2, points) friction of the last iterate [Pa]
     real(rk), allocatable :: scale(:) !< (points) r of the augmented form [Pa/m]
@@ -45,7 +47,7 @@ contains
     integer :: j
     allocate (states(size(joints)))
     do j = 1, size(joints)
-      call joints(j)%law%start_state(joints(j)%num_points, states(j))
+      call joints(j)%law%start_state(joints(j)%clearance, states(j))
     end do
   end subroutine start_joints
 
@@ -95,6 +97,18 @@ contains
       traction(:, operator%first_point(j):operator%first_point(j + 1) - 1) = states(j)%traction
     end do
   end subroutine gather_tractions
+
+  !> The gaps of all points.
+  subroutine gather_gaps(operator, states, gap)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: states(:)
+    real(rk), allocatable, intent(out) :: gap(:) !< (points) [m]
+    integer :: j
+    allocate (gap(operator%num_points))
+    do j = 1, size(states)
+      gap(operator%first_point(j):operator%first_point(j + 1) - 1) = states(j)%gap
+    end do
+  end subroutine gather_gaps
 
   !> The jumps of all points.
   subroutine gather_jumps(operator, states, jump)

@@ -5,7 +5,7 @@ module joint_iteration
   use joint_law, only: joint_state
   use joint_points, only: joint
   use joint_operator, only: jump_operator
-  use joint_forces, only: joint_field, evaluate_joints, gather_tractions, gather_jumps
+  use joint_forces, only: joint_field, evaluate_joints, gather_tractions, gather_jumps, gather_gaps
   use equilibrium, only: force_balance, balance_outcome
   implicit none
   private
@@ -55,13 +55,14 @@ contains
     field%response = balance%guess
     call gather_tractions(operator, old, field%traction)
     call gather_jumps(operator, old, field%start_jump)
+    call gather_gaps(operator, old, field%gap)
     field%start_force = norm2(spread(operator%area, 1, 3)*field%traction)
     field%multiplier = field%traction(2:3, :)
     field%tangent = closed_tangent(reference)
     if (.not. balance%starts_bonded) then
       where (field%traction(1, :) >= 0.0_rk) field%tangent(1, 1, :) = 0.0_rk
       call linearise(joints, operator, old, reference, field, new)
-      call approach_contact(joints, operator, reference, field, is_moved)
+      call approach_contact(reference, field, is_moved)
       if (is_moved) call linearise(joints, operator, old, reference, field, new)
       return
     end if
@@ -124,7 +125,7 @@ contains
       field%jump = field%response - 0.5_rk*field%step
       field%multiplier = field%multiplier - 0.5_rk*field%multiplier_step
     end if
-    call approach_contact(joints, operator, reference, field, is_nearer)
+    call approach_contact(reference, field, is_nearer)
     if (is_halfway .or. is_nearer) call linearise(joints, operator, old, reference, field, new)
     if (outcome%iterations >= patience_with_friction .and. outcome%residual > near_by) then
       field%tangent(2:3, 1, :) = 0.0_rk
@@ -136,22 +137,18 @@ contains
   !> resistance it went far too deep; friction would take that for pressure and stick. The point is
   !> put where the joint carries what the structure's own stiffness would give, r times the depth
   !> (the normal part of the augmented form).
-  pure subroutine approach_contact(joints, operator, reference, field, is_nearer)
-    type(joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
+  pure subroutine approach_contact(reference, field, is_nearer)
     real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
     type(joint_field), intent(inout) :: field
     logical, intent(out) :: is_nearer !< the laws have to be evaluated anew
     real(rk) :: depth
-    integer :: j, p
+    integer :: p
     is_nearer = .false.
-    do j = 1, size(joints)
-      do p = operator%first_point(j), operator%first_point(j + 1) - 1
-        depth = -(field%jump(1, p) + joints(j)%law%gap)
-        if (.not. field%was_open(p) .or. depth <= 0.0_rk) cycle
-        field%jump(1, p) = -joints(j)%law%gap - depth*min(1.0_rk, field%scale(p)/reference(1, p))
-        is_nearer = .true.
-      end do
+    do p = 1, size(field%gap)
+      depth = -(field%jump(1, p) + field%gap(p))
+      if (.not. field%was_open(p) .or. depth <= 0.0_rk) cycle
+      field%jump(1, p) = -field%gap(p) - depth*min(1.0_rk, field%scale(p)/reference(1, p))
+      is_nearer = .true.
     end do
   end subroutine approach_contact
 

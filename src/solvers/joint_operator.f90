@@ -77,11 +77,10 @@ contains
     !> Slave minus master along one local axis.
     subroutine add_faces(axis)
       real(rk), intent(in) :: axis(3)
-      integer :: a, direction
-      do a = 1, size(seam%shape, 1)
+      integer :: k, direction
+      do k = seam%first(p), seam%first(p + 1) - 1
         do direction = 1, 3
-          call add_dof(seam%slave(a, p), direction, axis(direction)*seam%shape(a, p))
-          call add_dof(seam%master(a, p), direction, -axis(direction)*seam%shape(a, p))
+          call add_dof(seam%node(k), direction, axis(direction)*seam%weight(k))
         end do
       end do
     end subroutine add_faces

@@ -5,7 +5,7 @@
 module motion_state
   use kinds, only: rk
   use joint_law, only: joint_state
-  use joint_points, only: joint
+  use joint_points, only: joint, apart
   use dof_numbering, only: numbering
   use analysis_state, only: state
   use material_points, only: point_state
@@ -80,8 +80,7 @@ contains
         pair = pair + 1
         first = numbers%first_jump(pair)
         if (first == 0) cycle
-        q(first:first + 2) = matmul(joints(j)%rotation(:, :, p), &
-                                    u(:, joints(j)%slave(1, p)) - u(:, joints(j)%master(1, p)))
+        q(first:first + 2) = matmul(joints(j)%rotation(:, :, p), apart(joints(j), p, u))
       end do
     end do
   end subroutine compress

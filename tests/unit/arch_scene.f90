@@ -4,7 +4,7 @@ module arch_scene
   use problem_definition, only: problem
   use material_law, only: material
   use material_elastic, only: elastic_law
-  use joint_points, only: joint
+  use joint_points, only: joint, list_faces
   use step_plan, only: step_fixity
   implicit none
   private
@@ -22,6 +22,7 @@ contains
     call make_material(scene)
     call make_mesh(across, along, over, num_blocks, scene)
     allocate (scene%joints(num_blocks - 1), scene%loads(0))
+    allocate (scene%ties(0), scene%couplings(0))
     do b = 1, num_blocks - 1
       call make_joint(across, along, over, b, num_blocks, scene, scene%joints(b))
     end do
@@ -105,23 +106,22 @@ contains
     type(problem), intent(in) :: scene
     type(joint), intent(out) :: seam
     real(rk) :: angle
+    integer, allocatable :: master(:, :), slave(:, :)
     integer :: i, k, p, nodes_of_block
     nodes_of_block = (across + 1)*(along + 1)*(over + 1)
     angle = (real(b, rk)/num_blocks - 0.5_rk)*1.745_rk
-    seam%num_points = (across + 1)*over
-    allocate (seam%master(1, seam%num_points), seam%slave(1, seam%num_points))
-    allocate (seam%shape(1, seam%num_points), seam%rotation(3, 3, seam%num_points))
-    allocate (seam%area(seam%num_points))
+    p = (across + 1)*over
+    allocate (master(1, p), slave(1, p), seam%rotation(3, 3, p), seam%area(p))
     p = 0
     do k = 1, over
       do i = 0, across
         p = p + 1
-        seam%master(1, p) = 1 + i + (across + 1)*(along + (along + 1)*k) + (b - 1)*nodes_of_block
-        seam%slave(1, p) = 1 + i + (across + 1)*(along + 1)*k + b*nodes_of_block
+        master(1, p) = 1 + i + (across + 1)*(along + (along + 1)*k) + (b - 1)*nodes_of_block
+        slave(1, p) = 1 + i + (across + 1)*(along + 1)*k + b*nodes_of_block
       end do
     end do
-    seam%x = scene%mesh%x(:, seam%master(1, :))
-    seam%shape = 1.0_rk
+    call list_faces(slave, master, reshape([1.0_rk], shape(slave), pad=[1.0_rk]), seam)
+    seam%x = scene%mesh%x(:, master(1, :))
     seam%area = 2000.0_rk/seam%num_points
     do p = 1, seam%num_points
       seam%rotation(1, :, p) = [cos(angle), -sin(angle), 0.0_rk]

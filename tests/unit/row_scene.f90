@@ -10,7 +10,7 @@ module row_scene
   use applied_load, only: load_slot
   use material_elastic, only: elastic_law
   use joint_contraction, only: contraction_law
-  use joint_points, only: joint
+  use joint_points, only: joint, list_faces
   use load_gravity, only: gravity_load
   use load_base_motion, only: base_motion
   use step_plan, only: step, step_fixity, step_load, initial_value
@@ -49,6 +49,7 @@ contains
                                               x(i), width, height, x(i), 0.0_rk, height], [3, 4])
     end do
     allocate (scene%materials(n), scene%joints(0), scene%loads(0), scene%amplitudes(0), &
+              scene%ties(0), scene%couplings(0), &
               scene%initial_values(0), scene%steps(0))
     do i = 1, n
       scene%mesh%nodes(:, i) = [4*i - 3, 4*i - 2, 4*i - 1, 4*i, 4*i + 1, 4*i + 2, 4*i + 3, 4*i + 4]
@@ -94,15 +95,12 @@ contains
     n = size(slave)
     seam%name = 'GROUND'
     allocate (seam%law, source=law)
-    seam%num_points = n
-    allocate (seam%master(1, n), seam%slave(1, n), seam%shape(1, n), seam%rotation(3, 3, n), &
-              seam%area(n))
-    seam%slave(1, :) = slave
-    seam%master(1, :) = [(scene%mesh%num_nodes + p, p=1, n)]
-    seam%shape = 1.0_rk
+    call list_faces(reshape(slave, [1, n]), &
+                    reshape([(scene%mesh%num_nodes + p, p=1, n)], [1, n]), &
+                    reshape([1.0_rk], [1, n], pad=[1.0_rk]), seam)
     seam%x = scene%mesh%x(:, slave)
     seam%rotation = spread(real(rotation, rk), 3, n)
-    seam%area = area
+    seam%area = spread(area, 1, n)
     scene%mesh%x = reshape([scene%mesh%x, seam%x], [3, scene%mesh%num_nodes + n])
     scene%mesh%num_nodes = scene%mesh%num_nodes + n
     scene%mesh%node_id = [(p, p=1, scene%mesh%num_nodes)]

@@ -90,7 +90,8 @@ contains
     allocate (traction(0), x(0))
     do p = 1, built%num_points
       if (built%x(2, p) > 0.4_rk) cycle
-      traction = [traction, stiffness*sum(built%shape(:, p)*u(3*built%slave(:, p)))]
+      traction = [traction, stiffness*dot_product(slave_weights(built, p), &
+                                                  u(3*slave_nodes(built, p)))]
       x = [x, built%x(1, p)]
     end do
     ripple = reversals(x, traction)
@@ -122,18 +123,32 @@ contains
     real(rk), intent(inout) :: k(:, :)
     integer :: p, a, b, i, row, column
     do p = 1, built%num_points
-      do a = 1, size(built%slave, 1)
-        do b = 1, size(built%slave, 1)
+      do a = built%first(p), built%first_master(p) - 1
+        do b = built%first(p), built%first_master(p) - 1
           do i = 1, 3
-            row = 3*built%slave(a, p) - 3 + i
-            column = 3*built%slave(b, p) - 3 + i
+            row = 3*built%node(a) - 3 + i
+            column = 3*built%node(b) - 3 + i
             k(row, column) = k(row, column) &
-                             + stiffness*built%area(p)*built%shape(a, p)*built%shape(b, p)
+                             + stiffness*built%area(p)*built%weight(a)*built%weight(b)
           end do
         end do
       end do
     end do
   end subroutine add_springs
+
+  pure function slave_nodes(built, p) result(nodes)
+    type(joint), intent(in) :: built
+    integer, intent(in) :: p
+    integer, allocatable :: nodes(:)
+    nodes = built%node(built%first(p):built%first_master(p) - 1)
+  end function slave_nodes
+
+  pure function slave_weights(built, p) result(weights)
+    type(joint), intent(in) :: built
+    integer, intent(in) :: p
+    real(rk), allocatable :: weights(:)
+    weights = built%weight(built%first(p):built%first_master(p) - 1)
+  end function slave_weights
 
   !> How far the traction goes back against its fading, in all, over its largest value.
   function reversals(x, traction) result(ripple)

@@ -54,7 +54,7 @@ contains
     type(contraction_law) :: law
     type(joint_state) :: state
     law = joint_of(1.0e6_rk, 0.6_rk, 0.0_rk, 0.0_rk)
-    call law%start_state(1, state)
+    call law%start_state([0.0_rk], state)
     call go(law, [0.9e-6_rk, 1.0e-6_rk, 0.0_rk], state)
     call check_close(log, state%traction(1, 1), 0.9e6_rk, 1.0e-6_rk, 'bonded tension')
     call check_close(log, state%traction(2, 1), 0.4e6_rk, 1.0e-6_rk, 'bonded shear has no limit')
@@ -73,7 +73,7 @@ contains
     type(joint_state) :: state
     real(rk) :: energy(1)
     law = joint_of(0.0_rk, 0.6_rk, 0.0_rk, 0.0_rk)
-    call law%start_state(1, state)
+    call law%start_state([0.0_rk], state)
     call check(log, state%status(1) == state_stick, 'starts closed')
     call go(law, [1.0e-9_rk, 0.0_rk, 0.0_rk], state)
     call check_close(log, state%traction(1, 1), 0.0_rk, 0.0_rk, 'no tension')
@@ -88,7 +88,7 @@ contains
     type(contraction_law) :: law
     type(joint_state) :: state
     law = joint_of(0.0_rk, 0.6_rk, 0.0_rk, 1.0e-3_rk)
-    call law%start_state(1, state)
+    call law%start_state([0.0_rk], state)
     call check(log, state%status(1) == state_open, 'starts open')
     call go(law, [-0.9e-3_rk, 0.0_rk, 0.0_rk], state)
     call check_close(log, state%traction(1, 1), 0.0_rk, 0.0_rk, 'still open')
@@ -103,7 +103,7 @@ contains
     type(joint_state) :: state
     real(rk), parameter :: limit = 0.7e6_rk
     law = joint_of(0.0_rk, 0.6_rk, 0.1e6_rk, 0.0_rk)
-    call law%start_state(1, state)
+    call law%start_state([0.0_rk], state)
     call go(law, [-1.0e-6_rk, 0.0_rk, 1.0e-6_rk], state)
     call check_close(log, state%traction(3, 1), 0.4e6_rk, 1.0e-6_rk, 'sticks')
     call go(law, [-1.0e-6_rk, 0.0_rk, 5.0e-6_rk], state)
@@ -126,7 +126,7 @@ contains
     type(contraction_law) :: law
     type(joint_state) :: state
     law = joint_of(0.0_rk, 0.6_rk, 0.0_rk, 0.0_rk)
-    call law%start_state(1, state)
+    call law%start_state([0.0_rk], state)
     call go(law, [-1.0e-6_rk, 1.0e-6_rk, 0.0_rk], state)
     call go(law, [1.0e-6_rk, 8.0e-6_rk, -2.0e-6_rk], state)
     call check_close(log, state%slip(1, 1), 8.0e-6_rk, 0.0_rk, 'slip follows')
@@ -140,7 +140,7 @@ contains
     type(contraction_law) :: law
     type(joint_state) :: state
     law = joint_of(0.0_rk, 0.5_rk, 1.0e5_rk, 0.0_rk)
-    call law%start_state(1, state)
+    call law%start_state([0.0_rk], state)
     state%has_parted = .true.
     call go(law, [-1.0e-6_rk, 8.0e-6_rk, 0.0_rk], state)
     call check_close(log, state%traction(2, 1), 5.0e5_rk, 1.0e-6_rk, 'parted: mu p')
@@ -148,7 +148,7 @@ contains
     call go(law, [-1.0e-6_rk, 16.0e-6_rk, 0.0_rk], state)
     call check_close(log, state%traction(2, 1), 6.0e5_rk, 1.0e-6_rk, 'whole: mu p + c')
     law = joint_of(1.0e6_rk, 0.5_rk, 0.0_rk, 0.0_rk)
-    call law%start_state(1, state)
+    call law%start_state([0.0_rk], state)
     state%has_parted = .true.
     call go(law, [0.5e-6_rk, 0.0_rk, 0.0_rk], state)
     call check(log, state%status(1) == state_open .and. state%is_broken(1), 'parted: broken')
@@ -162,7 +162,7 @@ contains
     type(contraction_law) :: law
     type(joint_state) :: state
     law = joint_of(1.0e6_rk, 0.6_rk, 0.0_rk, 0.0_rk)
-    call law%start_state(1, state)
+    call law%start_state([0.0_rk], state)
     call go(law, [1.0e-3_rk, 0.0_rk, 0.0_rk], state)
     call check_close(log, state%fracture_work(1), 0.5_rk, 1.0e-12_rk, 'energy of breaking')
     call check_close(log, state%friction_work(1), 0.0_rk, 0.0_rk, 'no friction')
@@ -180,8 +180,8 @@ contains
                                                    -1.5e-6_rk, 2.0e-6_rk, 0.0_rk, &
                                                    1.0e-6_rk, 1.0e-6_rk, 0.0_rk], [3, 4])
     law = joint_of(0.0_rk, 0.6_rk, 0.0_rk, 0.0_rk)
-    call law%start_state(1, coarse)
-    call law%start_state(1, fine)
+    call law%start_state([0.0_rk], coarse)
+    call law%start_state([0.0_rk], fine)
     from = 0.0_rk
     do leg = 1, 4
       to = corner(:, leg)
@@ -207,7 +207,7 @@ contains
     real(rk), parameter :: h = 1.0e-12_rk
     integer :: i
     law = joint_of(0.0_rk, 0.6_rk, 0.1e6_rk, 0.0_rk)
-    call law%start_state(1, old)
+    call law%start_state([0.0_rk], old)
     call go(law, [-1.0e-6_rk, 0.5e-6_rk, 0.3e-6_rk], old)
     jump(:, 1) = [-1.3e-6_rk, 4.0e-6_rk, -3.0e-6_rk]
     new = old
@@ -243,7 +243,7 @@ contains
     real(rk), parameter :: h = 1.0_rk
     integer :: i
     law = joint_of(0.0_rk, 0.6_rk, 0.1e6_rk, 0.0_rk)
-    call law%start_state(1, old)
+    call law%start_state([0.0_rk], old)
     new = old
     jump(:, 1) = [-1.3e-6_rk, 12.0e-6_rk, -9.0e-6_rk]
     multiplier(:, 1) = [-0.2e6_rk, 0.4e6_rk]

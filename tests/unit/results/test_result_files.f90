@@ -10,7 +10,7 @@ program test_result_files
   use step_plan, only: step, print_request, field_request
   use material_elastic, only: elastic_law
   use joint_contraction, only: contraction_law
-  use joint_points, only: joint
+  use joint_points, only: joint, list_faces
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
   use result_files, only: result_folder
@@ -92,15 +92,13 @@ contains
   subroutine make_joint(scene)
     type(problem), intent(inout) :: scene
     integer :: p
-    allocate (scene%joints(1))
+    allocate (scene%joints(1), scene%ties(0), scene%couplings(0))
     associate (item => scene%joints(1))
       item%name = 'MIDDLE'
       allocate (item%law, source=contraction_law(name='LAW', gap=1.0e-4_rk))
-      item%num_points = 4
-      item%master = reshape([7, 8, 16, 15], [1, 4])
-      item%slave = reshape([9, 10, 18, 17], [1, 4])
+      call list_faces(reshape([9, 10, 18, 17], [1, 4]), reshape([7, 8, 16, 15], [1, 4]), &
+                      reshape([1.0_rk], [1, 4], pad=[1.0_rk]), item)
       item%x = scene%mesh%x(:, [7, 8, 16, 15])
-      allocate (item%shape(1, 4), source=1.0_rk)
       allocate (item%area(4), source=0.75_rk)
       allocate (item%rotation(3, 3, 4), source=0.0_rk)
       do p = 1, 4
@@ -194,7 +192,7 @@ contains
     if (number == 2) now%v = now%u/time
     if (number == 2) now%a = 0.0_rk*now%u
     allocate (now%joints(1))
-    call scene%joints(1)%law%start_state(4, now%joints(1))
+    call scene%joints(1)%law%start_state(scene%joints(1)%clearance, now%joints(1))
     now%joints(1)%jump(1, :) = 1.0e-3_rk*(time*scene%joints(1)%x(3, :) - 1.0_rk)
     now%joints(1)%slip(2, :) = -1.0e-3_rk*time*scene%joints(1)%x(1, :)
     now%joints(1)%traction(1, :) = -1.0e6_rk*scene%joints(1)%x(1, :)

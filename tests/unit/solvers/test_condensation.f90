@@ -50,7 +50,6 @@ contains
     allocate (scene%amplitudes(0), scene%initial_values(0), scene%steps(0))
     do i = 1, size(scene%joints)
       scene%joints(i)%name = 'J'
-      scene%joints(i)%x = scene%mesh%x(:, scene%joints(i)%slave(1, :))
       allocate (scene%joints(i)%law, source=contraction_law(normal_stiffness=1.0e11_rk, &
                                                             tangent_stiffness=4.0e10_rk, &
                                                             friction=0.6_rk))
