@@ -1,4 +1,10 @@
 set(sources
   surface_segments.f90
+  surface_facets.f90
+  facet_plane.f90
+  facet_clip.f90
+  facet_search.f90
+  facet_segments.f90
+  segment_quadrature.f90
   surface_coupling.f90
 )

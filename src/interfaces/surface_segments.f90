@@ -1,39 +1,37 @@
 !> Where two faces of different meshes lie on each other, in segments: pieces of a slave facet under
-!> one master facet, with points that integrate over them.
+!> one master facet (13.1).
 !>
-!> Integrals over the contact area are sums over the points: int f dA = sum_q area(q) f(q). A point
-!> is one place on the slave face; slave_shape and master_shape are the bilinear shape functions of
-!> both facets there, so that both faces' fields meet in it whatever their meshes.
+!> A segment is a convex polygon in the mean plane of its slave facet. Only the polygons are kept;
+!> `segment_quadrature` lays points into one segment when they are wanted.
 module surface_segments
   use kinds, only: rk
   implicit none
   private
   public :: facet_set, segment_set, surface_cover
 
-  !> Facets of one side of an interface.
+  !> Facets of one side of an interface. A triangle repeats a node; the second of two equal corners
+  !> then has the shape function 0 everywhere, the first that of the triangle's corner.
   type :: facet_set
     integer, allocatable :: node(:, :) !< (4, facets) positions; right-hand rule out of their solid
     integer, allocatable :: element(:) !< (facets) the solid behind (position), 0 for none
   end type facet_set
 
-  !> The segments of two faces and their points.
+  !> The segments of two faces, slave facet by slave facet in ascending order.
   type :: segment_set
     integer :: num_segments = 0
     integer, allocatable :: slave(:), master(:) !< (segments) facets of the two sets
     integer, allocatable :: first_vertex(:) !< (segments + 1)
-    real(rk), allocatable :: vertex_shape(:, :) !< (4, vertices) of the slave facet, at the corners
-    integer, allocatable :: first_point(:) !< (segments + 1)
-    real(rk), allocatable :: slave_shape(:, :), master_shape(:, :) !< (4, points)
-    real(rk), allocatable :: area(:) !< (points) on the slave face [m2]
-    real(rk), allocatable :: normal(:, :) !< (3, points) unit, out of the slave's solid
-    real(rk), allocatable :: gap(:) !< (points) from slave to master along the normal [m]
+    real(rk), allocatable :: vertex(:, :) !< (2, vertices) in the slave facet's plane [m], see
+    !< facet_plane; anticlockwise about the slave facet's normal
+    real(rk), allocatable :: vertex_shape(:, :) !< (4, vertices) shape functions of the slave facet
   end type segment_set
 
   !> How well two faces cover each other; told to the user.
   type :: surface_cover
     real(rk) :: slave_area = 0.0_rk, master_area = 0.0_rk !< of the faces [m2]
     real(rk) :: covered_area = 0.0_rk !< of the slave face [m2]
-    real(rk), allocatable :: bare(:) !< (slave facets) part of each that has no partner, 0..1
+    real(rk), allocatable :: bare(:) !< (slave facets) part of each that has no partner, 0..1;
+    !< below 0 by more than round-off where master facets lie upon each other
     real(rk) :: largest_gap = 0.0_rk, largest_overlap = 0.0_rk !< [m]
     real(rk) :: gap_place(3) = 0.0_rk, overlap_place(3) = 0.0_rk !< [m]
   end type surface_cover

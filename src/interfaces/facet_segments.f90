@@ -1,0 +1,239 @@
+!> Finds the segments of two faces: box-tree search, projection on the slave facets' mean planes and
+!> clipping (13.1).
+module facet_segments
+  use facet_clip, only: clip_polygon, most_corners
+  use facet_plane, only: facet_pair, find_plane, natural_at, plane_area, project_facet, shape_at
+  use facet_search, only: box_tree, build_tree, find_boxes
+  use kinds, only: rk
+  use mesh_faces, only: face_vector
+  use shape_quad4, only: facet_point
+  use surface_segments, only: facet_set, segment_set, surface_cover
+  implicit none
+  private
+  public :: find_segments, facet_area
+
+  !> Facets farther apart than this part of the longer one's diagonal are no partners.
+  real(rk), parameter :: farthest = 0.5_rk
+
+  !> Facets are partners when their mean normals are within 60 degrees of opposite.
+  real(rk), parameter :: least_cosine = 0.5_rk
+
+  !> A segment below this part of its slave facet is round-off of the clipping; it is left out and
+  !> counts as bare.
+  real(rk), parameter :: smallest_part = 1.0e-14_rk
+
+contains
+
+  !> The segments of two faces and how well they cover each other. Nothing is dropped in silence:
+  !> what has no partner is in `cover`.
+  pure subroutine find_segments(x, slave, master, segments, cover)
+    real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
+    type(facet_set), intent(in) :: slave, master
+    type(segment_set), intent(out) :: segments
+    type(surface_cover), intent(out) :: cover
+    type(box_tree) :: tree
+    integer, allocatable :: near(:)
+    real(rk) :: low(3), high(3), covered
+    integer :: f, num
+    call open_segments(size(slave%element), segments)
+    allocate (cover%bare(size(slave%element)), source=1.0_rk)
+    do f = 1, size(master%element)
+      cover%master_area = cover%master_area + facet_area(x(:, master%node(:, f)))
+    end do
+    call build_master_tree(x, master, tree)
+    do f = 1, size(slave%element)
+      call reach_box(x(:, slave%node(:, f)), low, high)
+      num = 0
+      if (size(master%element) > 0) call find_boxes(tree, low, high, num, near)
+      covered = 0.0_rk
+      if (num > 0) call cut_facet(x, slave, master, f, near(:num), segments, cover, covered)
+      cover%bare(f) = 1.0_rk - covered
+      cover%slave_area = cover%slave_area + facet_area(x(:, slave%node(:, f)))
+      cover%covered_area = cover%covered_area + covered*facet_area(x(:, slave%node(:, f)))
+    end do
+    call close_segments(segments)
+  end subroutine find_segments
+
+  !> Area of a facet: exact when it is plane, by 2 x 2 points when it is warped [m2].
+  pure real(rk) function facet_area(x) result(total)
+    real(rk), intent(in) :: x(3, 4) !< corners [m]
+    real(rk) :: n(4), vector(3)
+    integer :: q
+    total = 0.0_rk
+    do q = 1, 4
+      call facet_point(x, q, n, vector)
+      total = total + norm2(vector)
+    end do
+  end function facet_area
+
+  !> A tree over boxes that reach as far as the master facets find partners.
+  pure subroutine build_master_tree(x, master, tree)
+    real(rk), intent(in) :: x(:, :)
+    type(facet_set), intent(in) :: master
+    type(box_tree), intent(out) :: tree
+    real(rk), allocatable :: low(:, :), high(:, :)
+    integer :: f
+    allocate (low(3, size(master%element)), high(3, size(master%element)))
+    do f = 1, size(master%element)
+      call reach_box(x(:, master%node(:, f)), low(:, f), high(:, f))
+    end do
+    call build_tree(low, high, tree)
+  end subroutine build_master_tree
+
+  !> The box of a facet and of what lies within its reach above and below.
+  pure subroutine reach_box(x, low, high)
+    real(rk), intent(in) :: x(3, 4)
+    real(rk), intent(out) :: low(3), high(3)
+    low = minval(x, dim=2) - farthest*diameter(x)
+    high = maxval(x, dim=2) + farthest*diameter(x)
+  end subroutine reach_box
+
+  !> The longer diagonal of a facet [m].
+  pure real(rk) function diameter(x)
+    real(rk), intent(in) :: x(3, 4)
+    diameter = max(norm2(x(:, 3) - x(:, 1)), norm2(x(:, 4) - x(:, 2)))
+  end function diameter
+
+  !> Cuts the segments of one slave facet.
+  pure subroutine cut_facet(x, slave, master, f, near, segments, cover, covered)
+    real(rk), intent(in) :: x(:, :)
+    type(facet_set), intent(in) :: slave, master
+    integer, intent(in) :: f !< slave facet
+    integer, intent(in) :: near(:) !< master facets
+    type(segment_set), intent(inout) :: segments
+    type(surface_cover), intent(inout) :: cover
+    real(rk), intent(out) :: covered !< part of the facet
+    type(facet_pair) :: pair
+    real(rk) :: polygon(2, most_corners), area, whole
+    integer :: k, num
+    covered = 0.0_rk
+    pair%slave = x(:, slave%node(:, f))
+    call find_plane(pair%slave, pair%ground)
+    call project_facet(pair%ground, pair%slave, pair%own)
+    if (pair%own%num_corners == 0) return
+    whole = plane_area(pair%own%corner(:, :pair%own%num_corners))
+    do k = 1, size(near)
+      pair%master = x(:, master%node(:, near(k)))
+      if (.not. are_opposed(pair, slave%element(f), master%element(near(k)))) cycle
+      call project_facet(pair%ground, pair%master, pair%other)
+      if (pair%other%num_corners == 0) cycle
+      num = pair%own%num_corners
+      polygon(:, :num) = pair%own%corner(:, :num)
+      call clip_polygon(pair%other%corner(:, :pair%other%num_corners), num, polygon)
+      area = plane_area(polygon(:, :num))
+      if (area <= smallest_part*whole) cycle
+      call add_segment(pair, polygon(:, :num), segments, cover, num)
+      if (num == 0) cycle
+      segments%slave(segments%num_segments) = f
+      segments%master(segments%num_segments) = near(k)
+      covered = covered + area/whole
+    end do
+  end subroutine cut_facet
+
+  !> Two facets look against each other; one without a solid behind may look either way.
+  pure logical function are_opposed(pair, slave_solid, master_solid)
+    type(facet_pair), intent(in) :: pair
+    integer, intent(in) :: slave_solid, master_solid !< 0 for none
+    real(rk) :: vector(3), cosine
+    vector = face_vector(pair%master)
+    are_opposed = .false.
+    if (norm2(vector) <= tiny(1.0_rk)) return
+    cosine = dot_product(vector, pair%ground%normal)/norm2(vector)
+    if (slave_solid == 0 .or. master_solid == 0) cosine = -abs(cosine)
+    are_opposed = cosine <= -least_cosine
+  end function are_opposed
+
+  !> Adds a polygon to the segments, unless the facets are too far apart there.
+  pure subroutine add_segment(pair, polygon, segments, cover, num)
+    type(facet_pair), intent(in) :: pair
+    real(rk), intent(in) :: polygon(:, :) !< (2, corners)
+    type(segment_set), intent(inout) :: segments
+    type(surface_cover), intent(inout) :: cover
+    integer, intent(out) :: num !< corners; 0: no segment
+    real(rk) :: shape(4, most_corners), opposite(4), gap(most_corners), place(3, most_corners)
+    integer :: i, last
+    num = size(polygon, 2)
+    do i = 1, num
+      shape(:, i) = shape_at(pair%own, natural_at(pair%own, polygon(:, i)))
+      opposite = shape_at(pair%other, natural_at(pair%other, polygon(:, i)))
+      place(:, i) = matmul(pair%slave, shape(:, i))
+      gap(i) = dot_product(matmul(pair%master, opposite) - place(:, i), pair%ground%normal)
+    end do
+    if (.not. pair%other%is_turned) gap(:num) = -gap(:num)
+    if (abs(sum(gap(:num)))/num > farthest*max(diameter(pair%slave), diameter(pair%master))) then
+      num = 0
+      return
+    end if
+    call note_gaps(gap(:num), place(:, :num), cover)
+    call make_room(segments, num)
+    segments%num_segments = segments%num_segments + 1
+    last = segments%first_vertex(segments%num_segments) + num
+    segments%first_vertex(segments%num_segments + 1) = last
+    segments%vertex(:, last - num:last - 1) = polygon
+    segments%vertex_shape(:, last - num:last - 1) = shape(:, :num)
+  end subroutine add_segment
+
+  !> Keeps the largest gap and the largest overlap and where they are.
+  pure subroutine note_gaps(gap, place, cover)
+    real(rk), intent(in) :: gap(:), place(:, :) !< (corners), (3, corners) [m]
+    type(surface_cover), intent(inout) :: cover
+    integer :: i
+    do i = 1, size(gap)
+      if (gap(i) > cover%largest_gap) then
+        cover%largest_gap = gap(i)
+        cover%gap_place = place(:, i)
+      end if
+      if (-gap(i) > cover%largest_overlap) then
+        cover%largest_overlap = -gap(i)
+        cover%overlap_place = place(:, i)
+      end if
+    end do
+  end subroutine note_gaps
+
+  pure subroutine open_segments(num_facets, segments)
+    integer, intent(in) :: num_facets
+    type(segment_set), intent(out) :: segments
+    allocate (segments%slave(2*num_facets), segments%master(2*num_facets))
+    allocate (segments%first_vertex(2*num_facets + 1), source=1)
+    allocate (segments%vertex(2, 8*num_facets), segments%vertex_shape(4, 8*num_facets))
+  end subroutine open_segments
+
+  !> Doubles the lists where one more segment needs it.
+  pure subroutine make_room(segments, num_vertices)
+    type(segment_set), intent(inout) :: segments
+    integer, intent(in) :: num_vertices !< of the next segment
+    integer :: used
+    if (segments%num_segments == size(segments%slave)) then
+      segments%slave = [segments%slave, segments%slave]
+      segments%master = [segments%master, segments%master]
+      segments%first_vertex = [segments%first_vertex, segments%first_vertex]
+    end if
+    used = segments%first_vertex(segments%num_segments + 1) - 1
+    if (used + num_vertices <= size(segments%vertex, 2)) return
+    call lengthen(segments%vertex, used)
+    call lengthen(segments%vertex_shape, used)
+  end subroutine make_room
+
+  !> Makes a table twice as long, with room for a polygon at least.
+  pure subroutine lengthen(table, used)
+    real(rk), allocatable, intent(inout) :: table(:, :)
+    integer, intent(in) :: used !< columns
+    real(rk), allocatable :: longer(:, :)
+    allocate (longer(size(table, 1), 2*used + most_corners))
+    longer(:, :used) = table(:, :used)
+    call move_alloc(longer, table)
+  end subroutine lengthen
+
+  !> Cuts the lists to what is used.
+  pure subroutine close_segments(segments)
+    type(segment_set), intent(inout) :: segments
+    integer :: num, used
+    num = segments%num_segments
+    used = segments%first_vertex(num + 1) - 1
+    segments%slave = segments%slave(:num)
+    segments%master = segments%master(:num)
+    segments%first_vertex = segments%first_vertex(:num + 1)
+    segments%vertex = segments%vertex(:, :used)
+    segments%vertex_shape = segments%vertex_shape(:, :used)
+  end subroutine close_segments
+end module facet_segments

@@ -1,0 +1,43 @@
+!> Lists of facets: of surfaces of solids, and of interface quads.
+module surface_facets
+  use dam_mesh, only: mesh
+  use mesh_faces, only: count_corners, face_nodes
+  use mesh_sets, only: surface
+  use surface_segments, only: facet_set
+  implicit none
+  private
+  public :: list_surface_facets, list_interface_facets
+
+contains
+
+  !> The facets of a surface of solids; faces that have collapsed to an edge are left out.
+  pure subroutine list_surface_facets(model, faces, facets)
+    type(mesh), intent(in) :: model
+    type(surface), intent(in) :: faces
+    type(facet_set), intent(out) :: facets
+    integer :: i, used
+    allocate (facets%node(4, size(faces%element)), facets%element(size(faces%element)))
+    used = 0
+    do i = 1, size(faces%element)
+      facets%node(:, used + 1) = face_nodes(model, faces%element(i), faces%face(i))
+      if (count_corners(facets%node(:, used + 1)) < 3) cycle
+      used = used + 1
+      facets%element(used) = faces%element(i)
+    end do
+    facets%node = facets%node(:, :used)
+    facets%element = facets%element(:used)
+  end subroutine list_surface_facets
+
+  !> The facets of IFACE4 elements: no solid behind them, so that they may look either way.
+  pure subroutine list_interface_facets(model, elements, facets)
+    type(mesh), intent(in) :: model
+    integer, intent(in) :: elements(:) !< positions
+    type(facet_set), intent(out) :: facets
+    integer :: i
+    allocate (facets%node(4, size(elements)))
+    do i = 1, size(elements)
+      facets%node(:, i) = model%nodes(1:4, elements(i))
+    end do
+    allocate (facets%element(size(elements)), source=0)
+  end subroutine list_interface_facets
+end module surface_facets
