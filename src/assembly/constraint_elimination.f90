@@ -1,28 +1,33 @@
-!> The dependent dofs of a step: where joints, later ties and equations, meet the numbering.
+!> The dependent dofs of a step: where joints and ties, later equations, meet the numbering.
 module constraint_elimination
   use kinds, only: rk
   use errors, only: error_type
   use dam_mesh, only: mesh
   use joint_points, only: joint
+  use node_ties, only: node_tie
   use step_plan, only: step_fixity
   use dof_numbering, only: numbering, linear_links, number_unknowns
-  use jump_links, only: link_pairs
+  use jump_links, only: nodal_points, link_nodes
   implicit none
   private
   public :: number_step
 
+  !> Most nodes that points without jumps may see to be ordered last: the end of the factor is
+  !> dense, 0.3 GB for the 6000 unknowns of so many.
+  integer, parameter :: most_last_nodes = 2000
+
 contains
 
-  !> Numbers the unknowns of a step from its elements, its joints and its supports.
-  subroutine number_step(model, joints, fixities, numbers, error)
+  !> Numbers the unknowns of a step from its elements, its joints, its ties and its supports.
+  subroutine number_step(model, joints, ties, fixities, numbers, error)
     type(mesh), intent(in) :: model
     type(joint), intent(in) :: joints(:)
+    type(node_tie), intent(in) :: ties(:)
     type(step_fixity), intent(in) :: fixities(:)
     type(numbering), intent(out) :: numbers
     type(error_type), allocatable, intent(out) :: error
     logical, allocatable :: is_used(:), is_fixed(:, :)
-    integer, allocatable :: slave(:), master(:)
-    real(rk), allocatable :: rotation(:, :, :)
+    type(nodal_points) :: points
     type(linear_links) :: links
     integer :: e, k
     allocate (is_used(model%num_nodes), is_fixed(3, model%num_nodes))
@@ -37,31 +42,58 @@ contains
     do k = 1, size(fixities)
       is_fixed(fixities(k)%dof, fixities(k)%node) = .true.
     end do
-    call list_pairs(joints, slave, master, rotation)
-    call link_pairs(slave, master, rotation, is_used, is_fixed, links)
+    call list_points(joints, points)
+    call link_nodes(points, ties, is_used, is_fixed, links, error)
+    if (allocated(error)) return
+    call mark_last(joints, links%first_jump, is_used, links%is_last)
     call number_unknowns(is_used, is_fixed, links, numbers, error)
   end subroutine number_step
 
-  !> The pairs of the joints that are integrated at nodes, joint by joint, point by point.
-  subroutine list_pairs(joints, slave, master, rotation)
+  !> The points of the joints that are integrated at nodes, joint by joint, point by point.
+  subroutine list_points(joints, points)
     type(joint), intent(in) :: joints(:)
-    integer, allocatable, intent(out) :: slave(:), master(:)
-    real(rk), allocatable, intent(out) :: rotation(:, :, :)
-    integer :: j, p, num_pairs
-    num_pairs = 0
-    do j = 1, size(joints)
-      if (joints(j)%is_nodal) num_pairs = num_pairs + joints(j)%num_points
-    end do
-    allocate (slave(num_pairs), master(num_pairs), rotation(3, 3, num_pairs))
-    num_pairs = 0
+    type(nodal_points), intent(out) :: points
+    integer :: j, p, n, t, length
+    n = sum(joints%num_points, mask=joints%is_nodal)
+    allocate (points%slave(n), points%first(n + 1), points%rotation(3, 3, n))
+    allocate (points%master(sum([(size(joints(j)%node), j=1, size(joints))])))
+    allocate (points%weight(size(points%master)))
+    points%first(1) = 1
+    n = 0
     do j = 1, size(joints)
       if (.not. joints(j)%is_nodal) cycle
       do p = 1, joints(j)%num_points
-        num_pairs = num_pairs + 1
-        slave(num_pairs) = joints(j)%node(joints(j)%first(p))
-        master(num_pairs) = joints(j)%node(joints(j)%first_master(p))
-        rotation(:, :, num_pairs) = joints(j)%rotation(:, :, p)
+        n = n + 1
+        t = joints(j)%first_master(p)
+        length = joints(j)%first(p + 1) - t
+        points%slave(n) = joints(j)%node(joints(j)%first(p))
+        points%rotation(:, :, n) = joints(j)%rotation(:, :, p)
+        points%first(n + 1) = points%first(n) + length
+        points%master(points%first(n):points%first(n + 1) - 1) = joints(j)%node(t:t + length - 1)
+        points%weight(points%first(n):points%first(n + 1) - 1) = -joints(j)%weight(t:t + length - 1)
       end do
     end do
-  end subroutine list_pairs
+    points%master = points%master(:points%first(n + 1) - 1)
+  end subroutine list_points
+
+  !> Marks the nodes that points without jumps see.
+  pure subroutine mark_last(joints, first_jump, is_used, is_last)
+    type(joint), intent(in) :: joints(:)
+    integer, intent(in) :: first_jump(:) !< (points of nodal joints) 0 for none
+    logical, intent(in) :: is_used(:) !< (nodes)
+    logical, allocatable, intent(out) :: is_last(:) !< (nodes)
+    integer :: j, p, n
+    allocate (is_last(size(is_used)), source=.false.)
+    n = 0
+    do j = 1, size(joints)
+      do p = 1, joints(j)%num_points
+        if (joints(j)%is_nodal) then
+          n = n + 1
+          if (first_jump(n) > 0) cycle
+        end if
+        is_last(joints(j)%node(joints(j)%first(p):joints(j)%first(p + 1) - 1)) = .true.
+      end do
+    end do
+    if (count(is_last .and. is_used) > most_last_nodes) is_last = .false.
+  end subroutine mark_last
 end module constraint_elimination

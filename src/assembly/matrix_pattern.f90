@@ -12,7 +12,7 @@ module matrix_pattern
   type :: pattern
     integer :: num_free = 0 !< free unknowns come first
     integer :: num_total = 0 !< free and prescribed
-    integer :: num_jumps = 0 !< last of the free ones; a factor keeps them last
+    integer :: num_last = 0 !< last of the free ones; a factor keeps them last
     logical :: is_symmetric = .true. !< lower triangle only
     integer, allocatable :: column_start(:) !< (num_total + 1), 1-based
     integer, allocatable :: row(:) !< ascending in each column (symmetric: the diagonal first)
@@ -162,7 +162,7 @@ contains
     is_kept(matrix%column_start(:matrix%num_total)) = .true.
     thin%num_free = matrix%num_free
     thin%num_total = matrix%num_total
-    thin%num_jumps = matrix%num_jumps
+    thin%num_last = matrix%num_last
     thin%row = pack(matrix%row, is_kept)
     thin_values = pack(values, is_kept)
     allocate (thin%column_start(matrix%num_total + 1), source=1)
@@ -186,7 +186,7 @@ contains
     integer, allocatable :: next(:)
     full%num_free = lower%num_free
     full%num_total = lower%num_total
-    full%num_jumps = lower%num_jumps
+    full%num_last = lower%num_last
     full%is_symmetric = .false.
     allocate (full%column_start(lower%num_total + 1), next(lower%num_total))
     allocate (full%row(2*size(lower%row) - lower%num_total))

@@ -72,7 +72,7 @@ contains
     call list_neighbours(groups_of_cell, cells_of_group, neighbours)
     matrix%num_free = numbers%num_free
     matrix%num_total = numbers%num_total
-    matrix%num_jumps = numbers%num_jumps
+    matrix%num_last = numbers%num_last
     call expand_groups(first_unknown, neighbours, matrix)
   end subroutine build_pattern
 
@@ -81,10 +81,11 @@ contains
     type(numbering), intent(in) :: numbers
     integer, allocatable, intent(out) :: group(:) !< (unknowns)
     integer, allocatable, intent(out) :: first_unknown(:) !< (groups + 1)
-    integer :: j, num_groups, first_jump
+    integer :: j, num_groups, first_jump, first_last
     allocate (group(numbers%num_total), first_unknown(numbers%num_total + 1))
     num_groups = 0
     first_jump = numbers%num_free - numbers%num_jumps + 1
+    first_last = numbers%num_free - numbers%num_last + 1
     do j = 1, numbers%num_total
       if (starts_group(j)) then
         num_groups = num_groups + 1
@@ -97,7 +98,8 @@ contains
   contains
     pure logical function starts_group(j)
       integer, intent(in) :: j
-      starts_group = j == 1 .or. j == first_jump .or. j == numbers%num_free + 1
+      starts_group = j == 1 .or. j == first_last .or. j == first_jump &
+                     .or. j == numbers%num_free + 1
       if (starts_group) return
       starts_group = numbers%node(j) /= numbers%node(j - 1) &
                      .or. numbers%direction(j) <= numbers%direction(j - 1)

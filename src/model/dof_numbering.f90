@@ -1,8 +1,9 @@
 !> The numbering of unknowns: every physical dof is a combination of unknowns, u = T q.
 !>
-!> Most dofs have an unknown of their own. A dependent dof (the slave side of a joint, later ties
-!> and equations) is written through others and through jumps. Free unknowns come first, jumps last
-!> among the free, prescribed ones after them. Nodes without any element have no unknowns.
+!> Most dofs have an unknown of their own. A dependent dof (the slave side of a joint or of a tie,
+!> later equations) is written through others and through jumps. Free unknowns come first,
+!> prescribed ones after them. Last among the free are what the joints work in: dofs that points
+!> without a jump see, then the jumps. Nodes without any element have no unknowns.
 module dof_numbering
   use kinds, only: rk
   use errors, only: error_type, raise
@@ -18,21 +19,23 @@ module dof_numbering
     integer, allocatable :: first(:) !< (links + 1) first term of each link
     integer, allocatable :: term(:) !< a dof, or -k for jump unknown k
     real(rk), allocatable :: coefficient(:)
-    integer :: num_jumps = 0 !< jump unknowns, three for each pair that has them
-    integer, allocatable :: first_jump(:) !< (pairs) first jump unknown of a pair, 0 for none
+    integer :: num_jumps = 0 !< jump unknowns, three for each point that has them
+    integer, allocatable :: first_jump(:) !< (points) first jump unknown of a point, 0 for none
     integer, allocatable :: jump_node(:) !< (jumps) the node that the jump separates from the rest
+    logical, allocatable :: is_last(:) !< (nodes) ordered with the jumps; not allocated: none
   end type linear_links
 
   type :: numbering
     integer :: num_nodes = 0
     integer :: num_free = 0, num_total = 0 !< unknowns: free; free and prescribed
-    integer :: num_jumps = 0 !< the last of the free ones
+    integer :: num_last = 0 !< of the free ones: all that joints work in, jumps included
+    integer :: num_jumps = 0 !< the last of these
     integer, allocatable :: row_start(:) !< (3*num_nodes + 1) rows of T: 3*(node - 1) + direction
     integer, allocatable :: unknown(:) !< columns of T
     real(rk), allocatable :: coefficient(:) !< values of T
     integer, allocatable :: node(:) !< (num_total) node of each unknown
     integer, allocatable :: direction(:) !< (num_total) 1..3: x, y, z; of a jump: n, s1, s2
-    integer, allocatable :: first_jump(:) !< (pairs) first unknown of a pair's jump, 0 for none
+    integer, allocatable :: first_jump(:) !< (points) first unknown of a point's jump, 0 for none
   contains
     procedure :: expand, add_expanded, reduce, add_reduced, describe
   end type numbering
@@ -80,13 +83,17 @@ contains
     type(linear_links), intent(in) :: links
     type(numbering), intent(inout) :: numbers
     integer, allocatable, intent(out) :: own(:) !< (3*nodes) unknown of each dof, 0 for none
-    integer :: k, first
+    logical, allocatable :: is_last(:, :)
+    integer :: k, first, first_last
     allocate (own(size(link)), numbers%node(size(link) + links%num_jumps))
     allocate (numbers%direction(size(link) + links%num_jumps))
     own = 0
     numbers%num_nodes = size(is_used)
     numbers%num_jumps = links%num_jumps
-    call number_where(is_used, is_fixed .eqv. .false., link, numbers, own)
+    call find_last(links, size(is_used), is_last)
+    call number_where(is_used,.not. (is_fixed .or. is_last), link, numbers, own)
+    first_last = numbers%num_total
+    call number_where(is_used, is_last .and. .not. is_fixed, link, numbers, own)
     first = numbers%num_total
     do k = 1, links%num_jumps
       numbers%node(first + k) = links%jump_node(k)
@@ -94,6 +101,7 @@ contains
     end do
     numbers%num_total = first + links%num_jumps
     numbers%num_free = numbers%num_total
+    numbers%num_last = numbers%num_free - first_last
     numbers%first_jump = [integer ::]
     if (allocated(links%first_jump)) then
       numbers%first_jump = merge(links%first_jump + first, 0, links%first_jump > 0)
@@ -102,6 +110,25 @@ contains
     numbers%node = numbers%node(:numbers%num_total)
     numbers%direction = numbers%direction(:numbers%num_total)
   end subroutine number_own
+
+  !> The dofs that stand last: of nodes so marked, or what these follow.
+  pure subroutine find_last(links, num_nodes, is_last)
+    type(linear_links), intent(in) :: links
+    integer, intent(in) :: num_nodes
+    logical, allocatable, intent(out) :: is_last(:, :) !< (3, nodes)
+    integer :: k, t
+    allocate (is_last(3, num_nodes), source=.false.)
+    if (.not. allocated(links%is_last)) return
+    is_last = spread(links%is_last, 1, 3)
+    do k = links%num_links, 1, -1
+      if (.not. is_last(1 + mod(links%dof(k) - 1, 3), (links%dof(k) + 2)/3)) cycle
+      do t = links%first(k), links%first(k + 1) - 1
+        associate (term => links%term(t))
+          if (term > 0) is_last(1 + mod(term - 1, 3), (term + 2)/3) = .true.
+        end associate
+      end do
+    end do
+  end subroutine find_last
 
   !> Numbers the independent dofs of used nodes where `wanted` holds, node by node.
   pure subroutine number_where(is_used, wanted, link, numbers, own)
@@ -166,8 +193,11 @@ contains
     integer, allocatable, intent(out) :: start(:), unknown(:)
     real(rk), allocatable, intent(out) :: coefficient(:)
     type(error_type), allocatable, intent(out) :: error
+    integer, allocatable :: place(:)
     integer :: k, t, term, s
-    allocate (start(links%num_links + 1), unknown(0), coefficient(0))
+    allocate (start(links%num_links + 1), unknown(4*links%num_terms))
+    allocate (coefficient(4*links%num_terms))
+    allocate (place(before_jumps + links%num_jumps + count(own > before_jumps)), source=0)
     start = 1
     do k = 1, links%num_links
       start(k + 1) = start(k)
@@ -186,26 +216,25 @@ contains
           return
         end if
       end do
+      place(unknown(start(k):start(k + 1) - 1)) = 0
     end do
   contains
     !> Adds to the row under way, whose end is start(k + 1).
     subroutine add_term(column, value)
       integer, intent(in) :: column
       real(rk), intent(in) :: value
-      integer :: j
       if (abs(value) < tiny(1.0_rk)) return
-      do j = start(k), start(k + 1) - 1
-        if (unknown(j) == column) then
-          coefficient(j) = coefficient(j) + value
-          return
-        end if
-      end do
+      if (place(column) > 0) then
+        coefficient(place(column)) = coefficient(place(column)) + value
+        return
+      end if
       if (start(k + 1) > size(unknown)) then
-        unknown = [unknown, spread(0, 1, size(unknown) + 64)]
-        coefficient = [coefficient, spread(0.0_rk, 1, size(coefficient) + 64)]
+        unknown = [unknown, unknown]
+        coefficient = [coefficient, coefficient]
       end if
       unknown(start(k + 1)) = column
       coefficient(start(k + 1)) = value
+      place(column) = start(k + 1)
       start(k + 1) = start(k + 1) + 1
     end subroutine add_term
   end subroutine resolve_links

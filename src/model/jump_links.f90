@@ -1,93 +1,205 @@
-!> Jumps across pairs of nodes as unknowns: u_slave = u_master + R^T d.
+!> Dependent nodes: those of ties, u_s = sum_m w_m u_m, and those across points of joints, whose
+!> jumps d are unknowns in their place, u_s = sum_m w_m u_m + R^T d (theory.md, 3; 13.3).
 !>
-!> The pairs are edges of a graph of nodes. Each of its trees is written through one root, so chains
-!> of joints resolve. A pair that would close a loop, that joins two trees held by supports, whose
-!> nodes have no element or are the same node, gets no jump: the joint then works in the unknowns
-!> that are there.
+!> A node follows others once at most, and not where a support holds any of its directions. Ties
+!> come first, then points that see several nodes of the master face, whose slave node follows them;
+!> then pairs of nodes, where either may follow the other. Pairs are edges of a graph: each of its
+!> trees is written through one node, so chains of joints resolve. A point that would close a circle
+!> gets no jump, nor one with a node that is held, has no element or is on both sides: the joint
+!> then works in the unknowns that are there.
 module jump_links
   use kinds, only: rk
+  use errors, only: error_type
+  use node_ties, only: node_tie
   use dof_numbering, only: linear_links
+  use link_graph, only: dependence
+  use link_order, only: order_links
   implicit none
   private
-  public :: link_pairs
+  public :: nodal_points, link_nodes, pairs_of_nodes
+
+  !> Points of joints that belong to one node of the slave face.
+  type :: nodal_points
+    integer, allocatable :: slave(:) !< (points) node positions
+    integer, allocatable :: first(:) !< (points + 1)
+    integer, allocatable :: master(:)
+    real(rk), allocatable :: weight(:) !< of the masters; they add up to 1
+    real(rk), allocatable :: rotation(:, :, :) !< (3, 3, points) rows: normal, slip 1, slip 2
+  end type nodal_points
 
 contains
 
-  !> Chooses the pairs that get jump unknowns and writes the dependent dofs.
-  subroutine link_pairs(slave, master, rotation, is_used, is_fixed, links)
-    integer, intent(in) :: slave(:), master(:) !< (pairs) node positions
-    real(rk), intent(in) :: rotation(:, :, :) !< (3, 3, pairs) rows: normal, slip 1, slip 2
+  !> Points of which each sees one node on either face.
+  pure subroutine pairs_of_nodes(slave, master, rotation, points)
+    integer, intent(in) :: slave(:), master(:) !< (pairs)
+    real(rk), intent(in) :: rotation(:, :, :) !< (3, 3, pairs)
+    type(nodal_points), intent(out) :: points
+    integer :: p
+    points%slave = slave
+    points%master = master
+    points%first = [(p, p=1, size(slave) + 1)]
+    points%weight = spread(1.0_rk, 1, size(slave))
+    points%rotation = rotation
+  end subroutine pairs_of_nodes
+
+  !> Chooses the points that get jump unknowns and writes the dependent dofs. Fails where ties
+  !> depend on each other in a circle.
+  subroutine link_nodes(points, ties, is_used, is_fixed, links, error)
+    type(nodal_points), intent(in) :: points
+    type(node_tie), intent(in) :: ties(:)
     logical, intent(in) :: is_used(:) !< (nodes)
     logical, intent(in) :: is_fixed(:, :) !< (3, nodes)
     type(linear_links), intent(out) :: links
-    logical, allocatable :: is_held(:)
-    integer :: p
-    allocate (is_held, source=any(is_fixed, 1))
-    call choose_pairs(slave, master, is_used, is_held, links)
-    allocate (links%jump_node(links%num_jumps), links%dof(links%num_jumps))
-    allocate (links%first(links%num_jumps + 1), links%term(4*links%num_jumps))
-    allocate (links%coefficient(4*links%num_jumps))
-    links%first(:) = [(1 + 4*(p - 1), p=1, links%num_jumps + 1)]
-    call walk_trees(slave, master, rotation, is_held, links)
-  end subroutine link_pairs
+    type(error_type), allocatable, intent(out) :: error
+    type(dependence) :: graph
+    integer :: i
+    call make_room(points, ties, links)
+    call graph%start(any(is_fixed, 1), size(points%slave) + sum([(size(ties(i)%node), i=1, &
+                                                                  size(ties))]), &
+                     size(points%master) + sum([(size(ties(i)%master), i=1, size(ties))]))
+    do i = 1, size(ties)
+      call link_tie(ties(i), graph, links)
+    end do
+    call link_wide_points(points, is_used, graph, links)
+    call link_pairs(points, is_used, graph, links)
+    call walk_trees(points, graph, size(is_used), links)
+    call order_links(3*size(is_used), links, error)
+  end subroutine link_nodes
+
+  !> Room for all links that can come.
+  pure subroutine make_room(points, ties, links)
+    type(nodal_points), intent(in) :: points
+    type(node_tie), intent(in) :: ties(:)
+    type(linear_links), intent(inout) :: links
+    integer :: i, num_links, num_terms
+    num_links = 3*size(points%slave)
+    num_terms = 3*size(points%master) + 9*size(points%slave)
+    do i = 1, size(ties)
+      num_links = num_links + 3*size(ties(i)%node)
+      num_terms = num_terms + 3*size(ties(i)%master)
+    end do
+    allocate (links%dof(num_links), links%term(num_terms), links%coefficient(num_terms))
+    allocate (links%first(num_links + 1), source=1)
+    allocate (links%jump_node(3*size(points%slave)))
+    allocate (links%first_jump(size(points%slave)), source=0)
+  end subroutine make_room
+
+  !> One more dependent dof.
+  pure subroutine add_link(dof, term, coefficient, links)
+    integer, intent(in) :: dof
+    integer, intent(in) :: term(:) !< dofs, or -k for jump k
+    real(rk), intent(in) :: coefficient(:)
+    type(linear_links), intent(inout) :: links
+    integer :: last
+    links%num_links = links%num_links + 1
+    last = links%num_terms + size(term)
+    links%dof(links%num_links) = dof
+    links%term(links%num_terms + 1:last) = term
+    links%coefficient(links%num_terms + 1:last) = coefficient
+    links%num_terms = last
+    links%first(links%num_links + 1) = last + 1
+  end subroutine add_link
+
+  !> The nodes that follow by a tie, in the directions in which they do.
+  subroutine link_tie(tie, graph, links)
+    type(node_tie), intent(in) :: tie
+    type(dependence), intent(inout) :: graph
+    type(linear_links), intent(inout) :: links
+    integer :: k, i
+    do k = 1, size(tie%node)
+      associate (first => tie%first(k), last => tie%first(k + 1) - 1)
+        call graph%add_row(tie%node(k), tie%master(first:last))
+        do i = 1, 3
+          if (.not. tie%is_tied(i, k)) cycle
+          call add_link(3*(tie%node(k) - 1) + i, 3*(tie%master(first:last) - 1) + i, &
+                        tie%weight(first:last), links)
+        end do
+      end associate
+    end do
+  end subroutine link_tie
+
+  !> Jumps of points that see several nodes of the master face.
+  subroutine link_wide_points(points, is_used, graph, links)
+    type(nodal_points), intent(in) :: points
+    logical, intent(in) :: is_used(:)
+    type(dependence), intent(inout) :: graph
+    type(linear_links), intent(inout) :: links
+    logical :: is_linked
+    integer :: p, i, jump
+    do p = 1, size(points%slave)
+      if (is_pair(points, p) .or. .not. is_used(points%slave(p))) cycle
+      associate (masters => points%master(points%first(p):points%first(p + 1) - 1))
+        if (.not. all(is_used(masters))) cycle
+        call graph%follow(points%slave(p), masters, is_linked)
+        if (.not. is_linked) cycle
+        call add_jump(p, points%slave(p), links, jump)
+        do i = 1, 3
+          call add_link(3*(points%slave(p) - 1) + i, &
+                        [3*(masters - 1) + i, -jump, -jump - 1, -jump - 2], &
+                        [points%weight(points%first(p):points%first(p + 1) - 1), &
+                         points%rotation(:, i, p)], links)
+        end do
+      end associate
+    end do
+  end subroutine link_wide_points
+
+  pure logical function is_pair(points, p)
+    type(nodal_points), intent(in) :: points
+    integer, intent(in) :: p
+    is_pair = points%first(p + 1) == points%first(p) + 1
+  end function is_pair
+
+  !> The next three jumps are those of a point.
+  pure subroutine add_jump(p, node, links, jump)
+    integer, intent(in) :: p
+    integer, intent(in) :: node !< that follows
+    type(linear_links), intent(inout) :: links
+    integer, intent(out) :: jump !< the first of the three
+    jump = links%num_jumps + 1
+    links%num_jumps = links%num_jumps + 3
+    links%first_jump(p) = jump
+    links%jump_node(jump:jump + 2) = node
+  end subroutine add_jump
 
   !> Numbers the jumps of the pairs that join two trees, at most one of which is held.
-  subroutine choose_pairs(slave, master, is_used, is_held, links)
-    integer, intent(in) :: slave(:), master(:)
-    logical, intent(in) :: is_used(:), is_held(:)
+  subroutine link_pairs(points, is_used, graph, links)
+    type(nodal_points), intent(in) :: points
+    logical, intent(in) :: is_used(:)
+    type(dependence), intent(inout) :: graph
     type(linear_links), intent(inout) :: links
-    logical, allocatable :: tree_is_held(:)
-    integer, allocatable :: parent(:)
-    integer :: p, a, b
-    allocate (links%first_jump(size(slave)))
-    links%first_jump = 0
-    allocate (tree_is_held, source=is_held)
-    allocate (parent(size(is_used)))
-    parent(:) = [(p, p=1, size(is_used))]
-    do p = 1, size(slave)
-      if (.not. (is_used(slave(p)) .and. is_used(master(p)))) cycle
-      call find_root(parent, slave(p), a)
-      call find_root(parent, master(p), b)
-      if (a == b .or. (tree_is_held(a) .and. tree_is_held(b))) cycle
-      parent(a) = b
-      tree_is_held(b) = tree_is_held(a) .or. tree_is_held(b)
-      links%first_jump(p) = links%num_jumps + 1
-      links%num_jumps = links%num_jumps + 3
+    logical :: is_joined
+    integer :: p, jump
+    do p = 1, size(points%slave)
+      if (.not. is_pair(points, p)) cycle
+      associate (slave => points%slave(p), master => points%master(points%first(p)))
+        if (.not. (is_used(slave) .and. is_used(master))) cycle
+        call graph%join(slave, master, is_joined)
+        if (is_joined) call add_jump(p, slave, links, jump)
+      end associate
     end do
-  end subroutine choose_pairs
+  end subroutine link_pairs
 
-  !> The root of a node's tree, halving the path to it on the way.
-  pure subroutine find_root(parent, node, root)
-    integer, intent(inout) :: parent(:)
-    integer, intent(in) :: node
-    integer, intent(out) :: root
-    root = node
-    do while (parent(root) /= root)
-      parent(root) = parent(parent(root))
-      root = parent(root)
-    end do
-  end subroutine find_root
-
-  !> Walks every tree from its root: a held node, else a node that is never a slave, else any.
-  subroutine walk_trees(slave, master, rotation, is_held, links)
-    integer, intent(in) :: slave(:), master(:)
-    real(rk), intent(in) :: rotation(:, :, :)
-    logical, intent(in) :: is_held(:)
+  !> Walks every tree of pairs from its root: a node that cannot follow, else one that is never a
+  !> slave, else any.
+  subroutine walk_trees(points, graph, num_nodes, links)
+    type(nodal_points), intent(in) :: points
+    type(dependence), intent(in) :: graph
+    integer, intent(in) :: num_nodes
     type(linear_links), intent(inout) :: links
     integer, allocatable :: first(:), edge(:), queue(:)
     logical, allocatable :: is_seen(:), is_slave(:)
     integer :: rank, node, p
-    call list_edges(slave, master, links%first_jump, size(is_held), first, edge)
-    allocate (is_seen(size(is_held)), is_slave(size(is_held)), queue(size(is_held)))
-    is_seen = .false.
-    is_slave = .false.
-    do p = 1, size(slave)
-      if (links%first_jump(p) > 0) is_slave(slave(p)) = .true.
+    call list_edges(points, links%first_jump, num_nodes, first, edge)
+    if (size(edge) == 0) return
+    allocate (is_seen(num_nodes), is_slave(num_nodes), source=.false.)
+    allocate (queue(num_nodes))
+    do p = 1, size(points%slave)
+      if (links%first_jump(p) > 0 .and. is_pair(points, p)) is_slave(points%slave(p)) = .true.
     end do
     do rank = 1, 3
-      do node = 1, size(is_held)
+      do node = 1, num_nodes
         if (is_seen(node) .or. first(node + 1) == first(node)) cycle
-        if (rank == 1 .and. .not. is_held(node)) cycle
+        if (rank == 1 .and. .not. graph%is_end(node)) cycle
         if (rank == 2 .and. is_slave(node)) cycle
         call walk_from(node)
       end do
@@ -96,7 +208,7 @@ contains
     !> Breadth first, so that the links of a node stand behind those of its parent.
     subroutine walk_from(root)
       integer, intent(in) :: root
-      integer :: head, tail, k, child, pair
+      integer :: head, tail, k, child
       is_seen(root) = .true.
       queue(1) = root
       tail = 1
@@ -104,66 +216,59 @@ contains
       do while (head < tail)
         head = head + 1
         do k = first(queue(head)), first(queue(head) + 1) - 1
-          pair = edge(k)
-          child = slave(pair)
-          if (child == queue(head)) child = master(pair)
+          child = points%slave(edge(k))
+          if (child == queue(head)) child = points%master(points%first(edge(k)))
           if (is_seen(child)) cycle
           is_seen(child) = .true.
           tail = tail + 1
           queue(tail) = child
-          call add_links(child, queue(head), links%first_jump(pair), rotation(:, :, pair), &
-                         child == slave(pair), links)
+          call add_links(points, edge(k), child, queue(head), links)
         end do
       end do
     end subroutine walk_from
   end subroutine walk_trees
 
   !> The chosen pairs at each node.
-  subroutine list_edges(slave, master, first_jump, num_nodes, first, edge)
-    integer, intent(in) :: slave(:), master(:), first_jump(:), num_nodes
+  subroutine list_edges(points, first_jump, num_nodes, first, edge)
+    type(nodal_points), intent(in) :: points
+    integer, intent(in) :: first_jump(:), num_nodes
     integer, allocatable, intent(out) :: first(:), edge(:)
     integer, allocatable :: next(:)
-    integer :: p, node
-    allocate (first(num_nodes + 1))
-    first = 0
-    do p = 1, size(slave)
-      if (first_jump(p) == 0) cycle
-      first(slave(p) + 1) = first(slave(p) + 1) + 1
-      first(master(p) + 1) = first(master(p) + 1) + 1
-    end do
-    first(1) = 1
-    do node = 1, num_nodes
-      first(node + 1) = first(node) + first(node + 1)
-    end do
-    allocate (next, source=first)
-    allocate (edge(first(num_nodes + 1) - 1))
-    do p = 1, size(slave)
-      if (first_jump(p) == 0) cycle
-      edge(next(slave(p))) = p
-      next(slave(p)) = next(slave(p)) + 1
-      edge(next(master(p))) = p
-      next(master(p)) = next(master(p)) + 1
+    integer :: p, node, pass, i, ends(2)
+    allocate (first(num_nodes + 1), next(num_nodes + 1), source=0)
+    do pass = 1, 2
+      do p = 1, size(points%slave)
+        if (first_jump(p) == 0 .or. .not. is_pair(points, p)) cycle
+        ends = [points%slave(p), points%master(points%first(p))]
+        do i = 1, 2
+          if (pass == 2) edge(next(ends(i))) = p
+          next(ends(i)) = next(ends(i)) + 1
+        end do
+      end do
+      if (pass == 2) exit
+      first(1) = 1
+      do node = 1, num_nodes
+        first(node + 1) = first(node) + next(node)
+      end do
+      next(:) = first
+      allocate (edge(first(num_nodes + 1) - 1))
     end do
   end subroutine list_edges
 
   !> The three links of a child node: u_child = u_parent +- R^T d.
-  pure subroutine add_links(child, parent, jump, rotation, is_slave, links)
+  pure subroutine add_links(points, p, child, parent, links)
+    type(nodal_points), intent(in) :: points
+    integer, intent(in) :: p !< the pair
     integer, intent(in) :: child, parent
-    integer, intent(in) :: jump !< first of three
-    real(rk), intent(in) :: rotation(3, 3)
-    logical, intent(in) :: is_slave !< of the child
     type(linear_links), intent(inout) :: links
     real(rk) :: sign
-    integer :: i, t
-    sign = merge(1.0_rk, -1.0_rk, is_slave)
+    integer :: i, jump
+    sign = merge(1.0_rk, -1.0_rk, child == points%slave(p))
+    jump = links%first_jump(p)
     do i = 1, 3
-      links%num_links = links%num_links + 1
-      t = links%first(links%num_links)
-      links%dof(links%num_links) = 3*(child - 1) + i
-      links%term(t:t + 3) = [3*(parent - 1) + i, -jump, -jump - 1, -jump - 2]
-      links%coefficient(t:t + 3) = [1.0_rk, sign*rotation(:, i)]
+      call add_link(3*(child - 1) + i, [3*(parent - 1) + i, -jump, -jump - 1, -jump - 2], &
+                    [1.0_rk, sign*points%rotation(:, i, p)], links)
     end do
-    links%num_terms = 4*links%num_links
     links%jump_node(jump:jump + 2) = child
   end subroutine add_links
 end module jump_links

@@ -7,6 +7,8 @@ set(sources
   material_tests.f90
   dof_numbering.f90
   node_ties.f90
+  link_graph.f90
+  link_order.f90
   jump_links.f90
   id_map.f90
   sorted_lists.f90

@@ -51,7 +51,7 @@ contains
     call self%costs%stop('factorise')
     if (allocated(error)) return
     call self%costs%start('compliance', 'joint')
-    call take_jump_factor(self%factor, operator, matrix%num_free, matrix%num_jumps, self%jumps)
+    call take_jump_factor(self%factor, operator, matrix%num_free, matrix%num_last, self%jumps)
     if (self%jumps%is_there) then
       call use_many_threads(levels)
       call compliance_of_jumps(self%jumps, operator, self%condensed%compliance)

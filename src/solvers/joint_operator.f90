@@ -1,5 +1,5 @@
 !> The joints as one operator on the unknowns: jumps v = B q in local axes, three rows per point,
-!> and forces B^T (area t). A pair of nodes with jump unknowns sees them alone: v = d exactly.
+!> and forces B^T (area t). A point with jump unknowns sees them alone: v = d exactly.
 module joint_operator
   use kinds, only: rk
   use joint_points, only: joint
@@ -24,12 +24,13 @@ module joint_operator
 
 contains
 
-  !> Makes B from the points of the joints and T. Pairs of nodes are counted through all nodal
+  !> Makes B from the points of the joints and T. Points are counted through all nodal
   !> joints, as in the numbering's `first_jump`.
   subroutine build_jump_operator(numbers, joints, operator)
     type(numbering), intent(in) :: numbers
     type(joint), intent(in) :: joints(:)
     type(jump_operator), intent(out) :: operator
+    integer, allocatable :: place(:)
     integer :: j, p, pair, point
     allocate (operator%first_point(size(joints) + 1))
     operator%first_point(1) = 1
@@ -39,6 +40,7 @@ contains
     operator%num_points = operator%first_point(size(joints) + 1) - 1
     allocate (operator%area(operator%num_points), operator%row_start(3*operator%num_points + 1))
     allocate (operator%unknown(9*operator%num_points), operator%coefficient(9*operator%num_points))
+    allocate (place(numbers%num_total), source=0)
     operator%row_start = 1
     pair = 0
     do j = 1, size(joints)
@@ -46,7 +48,8 @@ contains
         if (joints(j)%is_nodal) pair = pair + 1
         point = operator%first_point(j) + p - 1
         operator%area(point) = joints(j)%area(p)
-        call add_rows(joints(j), p, merge(pair, 0, joints(j)%is_nodal), numbers, point, operator)
+        call add_rows(joints(j), p, merge(pair, 0, joints(j)%is_nodal), numbers, point, place, &
+                      operator)
       end do
     end do
     operator%unknown = operator%unknown(:operator%row_start(3*operator%num_points + 1) - 1)
@@ -54,12 +57,13 @@ contains
   end subroutine build_jump_operator
 
   !> The three rows of B of one point.
-  subroutine add_rows(seam, p, pair, numbers, point, operator)
+  subroutine add_rows(seam, p, pair, numbers, point, place, operator)
     type(joint), intent(in) :: seam
     integer, intent(in) :: p !< point of the joint
-    integer, intent(in) :: pair !< of nodes, 0 for none
+    integer, intent(in) :: pair !< among the points of nodal joints, 0 for none
     type(numbering), intent(in) :: numbers
     integer, intent(in) :: point !< of the operator
+    integer, intent(inout) :: place(:) !< (unknowns) work space, all zero
     type(jump_operator), intent(inout) :: operator
     integer :: i, jump, next
     jump = 0
@@ -72,6 +76,7 @@ contains
         call add_faces(seam%rotation(i, :, p))
       end if
       operator%row_start(3*point - 2 + i) = next
+      place(operator%unknown(operator%row_start(3*point - 3 + i):next - 1)) = 0
     end do
   contains
     !> Slave minus master along one local axis.
@@ -101,18 +106,17 @@ contains
     subroutine add_term(column, value)
       integer, intent(in) :: column
       real(rk), intent(in) :: value
-      integer :: k
-      do k = operator%row_start(3*point - 3 + i), next - 1
-        if (operator%unknown(k) /= column) cycle
-        operator%coefficient(k) = operator%coefficient(k) + value
+      if (place(column) > 0) then
+        operator%coefficient(place(column)) = operator%coefficient(place(column)) + value
         return
-      end do
+      end if
       if (next > size(operator%unknown)) then
         operator%unknown = [operator%unknown, spread(0, 1, next)]
         operator%coefficient = [operator%coefficient, spread(0.0_rk, 1, next)]
       end if
       operator%unknown(next) = column
       operator%coefficient(next) = value
+      place(column) = next
       next = next + 1
     end subroutine add_term
   end subroutine add_rows

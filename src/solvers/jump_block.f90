@@ -1,6 +1,7 @@
-!> The end of the factor of K_0 = L L^T: the jumps of the joints, which are eliminated last, see the
-!> rest of the structure through the Schur complement S = E E^T alone, E the end of L. So the
-!> compliance needs no solves, and Newton on the jumps fits between the two halves of one solve.
+!> The end of the factor of K_0 = L L^T: what the joints work in (jumps, and the nodes that points
+!> without jumps see) is eliminated last and sees the rest of the structure through the Schur
+!> complement S = E E^T alone, E the end of L. So the compliance needs no solves, and Newton on the
+!> jumps fits between the two halves of one solve.
 module jump_block
   use kinds, only: rk
   use linear_solver, only: equation_solver
@@ -13,23 +14,23 @@ module jump_block
   type :: jump_factor
     logical :: is_there = .false.
     integer :: num_free = 0
-    real(rk), allocatable :: lower(:, :) !< E (jumps, jumps)
-    integer, allocatable :: unknown(:) !< (jumps) of each row of E
+    real(rk), allocatable :: lower(:, :) !< E (last unknowns, last unknowns)
+    integer, allocatable :: unknown(:) !< (last unknowns) of each row of E
   contains
     procedure :: show, add_forces
   end type jump_factor
 
 contains
 
-  !> Takes E where the factor ends with the jumps and the joints work in nothing else.
-  subroutine take_jump_factor(factor, operator, num_free, num_jumps, jumps)
+  !> Takes E where the factor ends with all that the joints work in.
+  subroutine take_jump_factor(factor, operator, num_free, num_last, jumps)
     class(equation_solver), intent(in) :: factor !< of K_0
     type(jump_operator), intent(in) :: operator
-    integer, intent(in) :: num_free, num_jumps
+    integer, intent(in) :: num_free, num_last
     type(jump_factor), intent(out) :: jumps
     jumps%num_free = num_free
-    if (any(operator%unknown <= num_free - num_jumps)) return
-    call factor%take_end(num_jumps, jumps%lower, jumps%unknown, jumps%is_there)
+    if (any(operator%unknown <= num_free - num_last)) return
+    call factor%take_end(num_last, jumps%lower, jumps%unknown, jumps%is_there)
   end subroutine take_jump_factor
 
   !> G = B S^-1 B^T = Z^T Z with Z = E^-1 B^T.

@@ -1,8 +1,8 @@
-!> The order of elimination: nested dissection on the graph of nodes, the jumps of joints last.
+!> The order of elimination: nested dissection on the graph of nodes, what joints work in last.
 !>
 !> Unknowns that stand together and are coupled with the same others (those of one node) are one
-!> vertex, weighted by their number. With the jumps last, the end of the factor is that of the Schur
-!> complement onto them.
+!> vertex, weighted by their number. With the jumps last (and what points without jumps see), the
+!> end of the factor is that of the Schur complement onto them.
 module nested_dissection
   use, intrinsic :: iso_c_binding, only: c_int
   use errors, only: error_type, raise, system_failed
@@ -33,7 +33,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     integer, allocatable :: first(:), start(:), neighbour(:), vertex_order(:)
     integer :: v, j, k, num_plain, num_vertices, status
-    num_plain = matrix%num_free - matrix%num_jumps
+    num_plain = matrix%num_free - matrix%num_last
     call find_vertices(matrix, num_plain, first)
     num_vertices = size(first) - 1
     allocate (vertex_order(num_vertices), source=[(v - 1, v=1, num_vertices)])

@@ -39,7 +39,7 @@ contains
     type(dam_system), intent(out) :: system
     type(error_type), allocatable, intent(out) :: error
     type(cell_list) :: cells
-    call number_step(scene%mesh, scene%joints, plan%fixities, system%numbers, error)
+    call number_step(scene%mesh, scene%joints, scene%ties, plan%fixities, system%numbers, error)
     if (allocated(error)) return
     call list_cells(scene%mesh, scene%joints, cells)
     call build_pattern(system%numbers, cells, system%matrix)

@@ -31,7 +31,7 @@ contains
     call number_unknowns(is_used, is_fixed, links, numbers, error)
     if (allocated(error)) error stop 'spring_box: numbering'
     call build_pattern(numbers, cells, matrix)
-    matrix%num_jumps = num_jumps
+    matrix%num_last = num_jumps
     allocate (values(size(matrix%row)))
     values = 0.0_rk
     do c = 1, size(cells%first) - 1

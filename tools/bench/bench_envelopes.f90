@@ -55,7 +55,7 @@ contains
     integer :: i
     deallocate (scene%joints)
     allocate (scene%joints(0))
-    call number_step(scene%mesh, scene%joints, fixities, numbers, error)
+    call number_step(scene%mesh, scene%joints, scene%ties, fixities, numbers, error)
     call list_cells(scene%mesh, scene%joints, cells)
     call build_pattern(numbers, cells, matrix)
     call assemble_stiffness(scene, numbers, matrix, stiffness, error)

@@ -37,7 +37,7 @@ program bench_linear
   end do
   call make_arch(sizes(1), sizes(2), sizes(3), sizes(4), scene, fixities)
   call begin()
-  call number_step(scene%mesh, scene%joints, fixities, numbers, error)
+  call number_step(scene%mesh, scene%joints, scene%ties, fixities, numbers, error)
   call note('number')
   call list_cells(scene%mesh, scene%joints, cells)
   call build_pattern(numbers, cells, matrix)

@@ -38,7 +38,7 @@ contains
     type(cell_list) :: cells
     type(error_type), allocatable :: error
     call make_arch(2, 3, 4, 3, scene, fixities)
-    call number_step(scene%mesh, scene%joints, fixities, numbers, error)
+    call number_step(scene%mesh, scene%joints, scene%ties, fixities, numbers, error)
     call check(log, allocated(error) .eqv. .false., 'numbering')
     call check(log, numbers%num_jumps == 2*3*12, 'a jump for every pair')
     call list_cells(scene%mesh, scene%joints, cells)
@@ -93,7 +93,7 @@ contains
     type(error_type), allocatable :: error
     real(rk), allocatable :: values(:), q(:), y(:)
     call make_arch(2, 3, 4, 3, apart, fixities)
-    call number_step(apart%mesh, apart%joints(:0), fixities(:0), own, error)
+    call number_step(apart%mesh, apart%joints(:0), apart%ties, fixities(:0), own, error)
     call list_cells(apart%mesh, apart%joints(:0), cells)
     call build_pattern(own, cells, own_matrix)
     call assemble_stiffness(apart, own, own_matrix, values, error)

@@ -4,7 +4,8 @@ program test_matrix_pattern
   use errors, only: error_type
   use testing, only: test_log, check, check_close
   use dof_numbering, only: numbering, linear_links, number_unknowns
-  use jump_links, only: link_pairs
+  use jump_links, only: nodal_points, link_nodes, pairs_of_nodes
+  use node_ties, only: node_tie
   use matrix_pattern, only: pattern, position_of, multiply, diagonal, full_pattern, &
                             spread_values, drop_zeros
   use pattern_builder, only: cell_list, build_pattern
@@ -26,6 +27,8 @@ contains
   !> that sees the nodes 1, 2 and 5, 6; node 1 is partly fixed.
   subroutine make_model()
     type(linear_links) :: links
+    type(nodal_points) :: points
+    type(node_tie) :: ties(0)
     type(cell_list) :: cells
     type(error_type), allocatable :: error
     logical :: is_used(6), is_fixed(3, 6)
@@ -34,7 +37,8 @@ contains
     is_used = .true.
     is_fixed = .false.
     is_fixed(2, 1) = .true.
-    call link_pairs([4], [3], reshape(r, [3, 3, 1]), is_used, is_fixed, links)
+    call pairs_of_nodes([4], [3], reshape(r, [3, 3, 1]), points)
+    call link_nodes(points, ties, is_used, is_fixed, links, error)
     call number_unknowns(is_used, is_fixed, links, numbers, error)
     cells%first = [1, 4, 7, 9, 13]
     cells%node = [1, 2, 3, 4, 5, 6, 3, 4, 1, 2, 5, 6]

@@ -4,7 +4,8 @@ program test_dof_numbering
   use errors, only: error_type
   use testing, only: test_log, check, check_close, check_text
   use dof_numbering, only: numbering, linear_links, number_unknowns
-  use jump_links, only: link_pairs
+  use jump_links, only: nodal_points, link_nodes, pairs_of_nodes
+  use node_ties, only: node_tie
   implicit none
   type(test_log) :: log
   log%suite = 'dof_numbering'
@@ -27,10 +28,13 @@ contains
     logical, intent(in) :: is_fixed(3, 5)
     type(numbering), intent(out) :: numbers
     type(linear_links) :: links
+    type(nodal_points) :: points
+    type(node_tie) :: ties(0)
     type(error_type), allocatable :: error
     logical :: is_used(5)
     is_used = [.true., .true., .true., .true., .false.]
-    call link_pairs(slave, master, spread(turned(), 3, size(slave)), is_used, is_fixed, links)
+    call pairs_of_nodes(slave, master, spread(turned(), 3, size(slave)), points)
+    call link_nodes(points, ties, is_used, is_fixed, links, error)
     call number_unknowns(is_used, is_fixed, links, numbers, error)
     call check(log, allocated(error) .eqv. .false., 'numbering succeeds')
   end subroutine number_five

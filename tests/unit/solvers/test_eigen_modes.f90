@@ -37,7 +37,7 @@ contains
     type(error_type), allocatable :: error
     integer :: j, k
     call make_arch(1, 3, 6, 2, scene, fixities)
-    call number_step(scene%mesh, scene%joints, fixities, numbers, error)
+    call number_step(scene%mesh, scene%joints, scene%ties, fixities, numbers, error)
     call list_cells(scene%mesh, scene%joints, cells)
     call build_pattern(numbers, cells, matrix)
     call assemble_stiffness(scene, numbers, matrix, stiffness, error)
