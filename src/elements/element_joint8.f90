@@ -9,23 +9,17 @@ module element_joint8
   use element_catalogue, only: is_solid
   use errors, only: error_type, raise
   use gauss_rules, only: quad_point
+  use joint_axes, only: local_axes, share_a_plane
   use joint_points, only: joint, list_faces
   use kinds, only: rk
   use mesh_faces, only: face_nodes, face_table, face_vector, find_face, insert_face, open_table
-  use shape_quad4, only: cross, facet_point
+  use shape_quad4, only: facet_point
   implicit none
   private
-  public :: build_joint_points, find_attached_solids, local_axes
+  public :: build_joint_points, find_attached_solids
 
   !> Two nodes of a pair may lie apart by this part of the facet's longer diagonal.
   real(rk), parameter :: coincidence = 1.0e-4_rk
-
-  !> Elements that share a pair of nodes make one point of it unless their normals differ by more
-  !> than 30 degrees.
-  real(rk), parameter :: same_plane = 0.5_rk*sqrt(3.0_rk)
-
-  !> A normal this close to the vertical takes slip 1 along x.
-  real(rk), parameter :: vertical = 1.0e-6_rk
 
   !> Points of two faces that coincide, while they are gathered.
   type :: face_points
@@ -182,8 +176,8 @@ contains
         if (master == slave) cycle
         p = newest(master)
         do while (p > 0)
-          if (points%slave(1, p) == slave .and. dot_product(points%normal(:, p), share(:, a)) &
-              >= same_plane*norm2(points%normal(:, p))*norm2(share(:, a))) exit
+          if (points%slave(1, p) == slave .and. &
+              share_a_plane(points%normal(:, p), share(:, a))) exit
           p = next(p)
         end do
         if (p == 0) then
@@ -272,18 +266,4 @@ contains
       built%rotation(:, :, p) = local_axes(points%normal(:, p))
     end do
   end subroutine close_points
-
-  !> Rows: normal, slip 1 (horizontal; x when the normal is vertical), slip 2 = normal x slip 1.
-  pure function local_axes(direction) result(rotation)
-    real(rk), intent(in) :: direction(3) !< along the normal, of any length
-    real(rk) :: rotation(3, 3)
-    real(rk) :: n(3), s(3)
-    n = direction/norm2(direction)
-    s = [-n(2), n(1), 0.0_rk]
-    if (norm2(s) <= vertical) s = [1.0_rk, 0.0_rk, 0.0_rk] - n(1)*n
-    s = s/norm2(s)
-    rotation(1, :) = n
-    rotation(2, :) = s
-    rotation(3, :) = cross(n, s)
-  end function local_axes
 end module element_joint8

@@ -10,6 +10,7 @@ set(sources
   element_catalogue.f90
   element_widths.f90
   element_matrices.f90
+  joint_axes.f90
   joint_points.f90
   element_joint8.f90
 )

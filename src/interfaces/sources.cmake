@@ -6,5 +6,8 @@ set(sources
   facet_search.f90
   facet_segments.f90
   segment_quadrature.f90
+  mortar_facet.f90
+  mortar_projection.f90
+  coupling_joint.f90
   surface_coupling.f90
 )

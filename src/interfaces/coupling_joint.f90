@@ -1,0 +1,188 @@
+!> The points of a joint between two surfaces whose meshes differ, without interface elements.
+!>
+!> At the nodes of the slave face (default) the relative displacement is the mortar projection of
+!> mortar_projection: the law works at one point a node and plane, as in a joint of JOINT8 elements,
+!> and its tractions do not oscillate (13.2). At Gauss points the law works where the segments have
+!> theirs, a penalty that does. The normal points out of the master's solid, from master to slave.
+module coupling_joint
+  use joint_axes, only: local_axes
+  use joint_points, only: joint, joint_cells
+  use kinds, only: rk
+  use mortar_facet, only: facet_extent
+  use mortar_projection, only: mortar_rows, project
+  use segment_quadrature, only: integrate_segment, segment_points
+  use surface_segments, only: facet_set, segment_set
+  implicit none
+  private
+  public :: lay_node_points, lay_gauss_points
+
+contains
+
+  !> One point for each node of the slave face that has cover, and plane. Nodes that both faces
+  !> share have none; they hold the faces together. Name and law of the joint are the caller's.
+  subroutine lay_node_points(x, slave, master, segments, is_measured, built, is_bare)
+    real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
+    type(facet_set), intent(in) :: slave, master
+    type(segment_set), intent(in) :: segments
+    logical, intent(in) :: is_measured !< the distance as meshed counts, else the faces touch
+    type(joint), intent(inout) :: built
+    logical, allocatable, intent(out) :: is_bare(:) !< (slave facets) too little covered
+    type(mortar_rows) :: rows
+    integer :: p, k
+    call project(x, slave, master, segments, shared_nodes(size(x, 2), slave, master), rows)
+    built%is_nodal = .true.
+    call open_points(rows%num_rows, rows%num_rows + size(rows%master), built)
+    k = 0
+    do p = 1, rows%num_rows
+      associate (own => [(k, k=rows%first(p), rows%first(p + 1) - 1)])
+        call add_nodes(p, rows%node(p:p), [1.0_rk], rows%master(own), rows%weight(own), built)
+      end associate
+      built%rotation(:, :, p) = local_axes(-rows%normal(:, p))
+    end do
+    built%x = x(:, rows%node)
+    built%area = rows%area
+    built%reach = rows%reach
+    built%clearance = merge(rows%gap, 0.0_rk, is_measured)
+    call close_points(built)
+    call list_cells(slave, segments, rows%is_bare, built%cells)
+    call move_alloc(rows%is_bare, is_bare)
+  end subroutine lay_node_points
+
+  !> The points of the segments, each seeing one facet of either face.
+  subroutine lay_gauss_points(x, slave, master, segments, is_measured, built)
+    real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
+    type(facet_set), intent(in) :: slave, master
+    type(segment_set), intent(in) :: segments
+    logical, intent(in) :: is_measured
+    type(joint), intent(inout) :: built
+    type(segment_points) :: points
+    integer :: s, q, p, num_points
+    built%is_nodal = .false.
+    num_points = 0
+    do s = 1, segments%num_segments
+      call integrate_segment(x, slave, master, segments, s, points)
+      num_points = num_points + points%num_points
+    end do
+    call open_points(num_points, 8*num_points, built)
+    p = 0
+    do s = 1, segments%num_segments
+      call integrate_segment(x, slave, master, segments, s, points)
+      associate (own => slave%node(:, segments%slave(s)), &
+                 other => master%node(:, segments%master(s)))
+        do q = 1, points%num_points
+          p = p + 1
+          call add_nodes(p, own, points%slave_shape(:, q), other, points%master_shape(:, q), built)
+          built%rotation(:, :, p) = local_axes(-points%normal(:, q))
+          built%x(:, p) = points%x(:, q)
+          built%area(p) = points%area(q)
+          built%clearance(p) = merge(points%gap(q), 0.0_rk, is_measured)
+          built%reach(p) = min(facet_extent(x(:, own)), facet_extent(x(:, other)))
+        end do
+      end associate
+    end do
+    call close_points(built)
+    call list_cells(slave, segments, spread(.false., 1, size(slave%node, 2)), built%cells)
+  end subroutine lay_gauss_points
+
+  !> Room for points and the nodes they see.
+  subroutine open_points(num_points, most_nodes, built)
+    integer, intent(in) :: num_points, most_nodes
+    type(joint), intent(inout) :: built
+    built%is_matching = .false.
+    built%num_points = num_points
+    allocate (built%first(num_points + 1), built%first_master(num_points), source=1)
+    allocate (built%node(most_nodes), built%weight(most_nodes))
+    allocate (built%rotation(3, 3, num_points), built%x(3, num_points))
+    allocate (built%area(num_points), built%clearance(num_points), built%reach(num_points))
+  end subroutine open_points
+
+  !> The nodes that point p sees, slave first; those without weight are left out.
+  subroutine add_nodes(p, slave, slave_weight, master, master_weight, built)
+    integer, intent(in) :: p !< point; the one before has its nodes
+    integer, intent(in) :: slave(:), master(:) !< positions in the mesh
+    real(rk), intent(in) :: slave_weight(:), master_weight(:) !< each adds up to 1
+    type(joint), intent(inout) :: built
+    integer :: next
+    next = built%first(p)
+    call add(slave, slave_weight)
+    built%first_master(p) = next
+    call add(master, -master_weight)
+    built%first(p + 1) = next
+  contains
+    !> Nodes of one side.
+    subroutine add(nodes, weights)
+      integer, intent(in) :: nodes(:)
+      real(rk), intent(in) :: weights(:)
+      integer :: k
+      do k = 1, size(nodes)
+        if (.not. abs(weights(k)) > 0.0_rk) cycle
+        built%node(next) = nodes(k)
+        built%weight(next) = weights(k)
+        next = next + 1
+      end do
+    end subroutine add
+  end subroutine add_nodes
+
+  !> Cuts the lists of nodes to size.
+  subroutine close_points(built)
+    type(joint), intent(inout) :: built
+    integer :: used
+    used = built%first(built%num_points + 1) - 1
+    built%node = built%node(:used)
+    built%weight = built%weight(:used)
+  end subroutine close_points
+
+  !> Nodes that belong to both faces.
+  pure function shared_nodes(num_nodes, slave, master) result(is_shared)
+    integer, intent(in) :: num_nodes
+    type(facet_set), intent(in) :: slave, master
+    logical :: is_shared(num_nodes)
+    logical :: is_master(num_nodes)
+    integer :: f
+    is_shared = .false.
+    is_master = .false.
+    do f = 1, size(master%node, 2)
+      is_master(master%node(:, f)) = .true.
+    end do
+    do f = 1, size(slave%node, 2)
+      is_shared(slave%node(:, f)) = is_master(slave%node(:, f))
+    end do
+  end function shared_nodes
+
+  !> What results draw: the polygons of the segments, with the slave facets' shape functions.
+  pure subroutine list_cells(slave, segments, is_bare, cells)
+    type(facet_set), intent(in) :: slave
+    type(segment_set), intent(in) :: segments
+    logical, intent(in) :: is_bare(:) !< (slave facets) not drawn
+    type(joint_cells), intent(out) :: cells
+    integer :: s, v, corner, c, most
+    most = segments%first_vertex(segments%num_segments + 1) - 1
+    allocate (cells%first(segments%num_segments + 1), cells%element(segments%num_segments))
+    allocate (cells%corner(most), cells%first_node(most + 1))
+    allocate (cells%node(4*most), cells%weight(4*most))
+    c = 0
+    corner = 0
+    cells%first(1) = 1
+    do s = 1, segments%num_segments
+      if (is_bare(segments%slave(s))) cycle
+      c = c + 1
+      cells%element(c) = slave%element(segments%slave(s))
+      ! Anticlockwise about the slave's outward normal, against which the joint's points.
+      do v = segments%first_vertex(s + 1) - 1, segments%first_vertex(s), -1
+        corner = corner + 1
+        cells%corner(corner) = corner
+        cells%first_node(corner) = 4*corner - 3
+        cells%node(4*corner - 3:4*corner) = slave%node(:, segments%slave(s))
+        cells%weight(4*corner - 3:4*corner) = segments%vertex_shape(:, v)
+      end do
+      cells%first(c + 1) = corner + 1
+    end do
+    cells%first_node(corner + 1) = 4*corner + 1
+    cells%first = cells%first(:c + 1)
+    cells%element = cells%element(:c)
+    cells%corner = cells%corner(:corner)
+    cells%first_node = cells%first_node(:corner + 1)
+    cells%node = cells%node(:4*corner)
+    cells%weight = cells%weight(:4*corner)
+  end subroutine list_cells
+end module coupling_joint

@@ -1,0 +1,273 @@
+!> The mortar projection of one face onto the nodes of another whose mesh differs (13.2).
+!>
+!> Row a says where node a of the slave face stands on the master face: its relative displacement
+!> is
+!>   u(node(a)) - sum_k weight(k) u(master(k)),   k = first(a) .. first(a + 1) - 1,
+!> weights (1/A_a) int phi_a N_m dA with the dual functions phi of mortar_facet and the area
+!> A_a = int N_a dA.
+!> The weights add up to 1 and a linear field is met exactly where the faces lie on each other.
+module mortar_projection
+  use joint_axes, only: share_a_plane
+  use kinds, only: rk
+  use mortar_facet, only: facet_extent, facet_part, integrate_facet, share_bound
+  use segment_quadrature, only: segment_points
+  use surface_segments, only: facet_set, segment_set
+  implicit none
+  private
+  public :: mortar_rows, project
+
+  !> Weights below this are round-off of the orthogonality of phi and N; the largest weight of the
+  !> row takes their sum.
+  real(rk), parameter :: no_weight = 1.0e-13_rk
+
+  type :: mortar_rows
+    integer :: num_rows = 0
+    integer, allocatable :: node(:) !< (rows) node of the slave face
+    integer, allocatable :: first(:) !< (rows + 1)
+    integer, allocatable :: master(:) !< nodes of the master face, and bound ones of the slave face
+    real(rk), allocatable :: weight(:) !< they add up to 1
+    real(rk), allocatable :: area(:) !< (rows) A_a [m2]
+    real(rk), allocatable :: normal(:, :) !< (3, rows) unit, out of the slave's solid
+    real(rk), allocatable :: gap(:) !< (rows) (1/A_a) int phi_a gap dA, from slave to master [m]
+    real(rk), allocatable :: reach(:) !< (rows) shortest side of the facets that meet there [m]
+    logical, allocatable :: is_bare(:) !< (slave facets) too little covered to take part
+  end type mortar_rows
+
+  !> Rows while they are gathered.
+  type :: gathering
+    integer, allocatable :: newest(:) !< (nodes) last row of each node, 0 for none
+    integer, allocatable :: next(:) !< (rows) the row of the same node before
+    integer :: num_terms = 0
+    integer, allocatable :: row(:), node(:) !< (terms)
+    real(rk), allocatable :: value(:) !< (terms) [m2]
+  end type gathering
+
+contains
+
+  !> Makes the rows. A slave node without cover has none; one whose facets' normals differ by more
+  !> than 30 degrees has one for each plane, unless planes are merged (ties need one row a node).
+  !>
+  !> Slave nodes that are bound have no row: on each facet their dual functions go to its other
+  !> nodes (Wohlmuth's modification), whose rows then hold the bound nodes with their weights.
+  subroutine project(x, slave, master, segments, is_bound, rows, merges_planes)
+    real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
+    type(facet_set), intent(in) :: slave, master
+    type(segment_set), intent(in) :: segments
+    logical, intent(in) :: is_bound(:) !< (nodes) slave nodes without multiplier
+    type(mortar_rows), intent(out) :: rows
+    logical, intent(in), optional :: merges_planes !< default: not
+    type(gathering) :: gathered
+    type(facet_part) :: part
+    type(segment_points) :: points
+    integer, allocatable :: first(:), order(:), partners(:, :)
+    logical :: splits
+    integer :: f
+    splits = .true.
+    if (present(merges_planes)) splits = .not. merges_planes
+    call sort_by_facet(segments, size(slave%node, 2), first, order)
+    call open_rows(size(x, 2), size(slave%node, 2), segments%num_segments, rows, gathered)
+    do f = 1, size(slave%node, 2)
+      if (first(f + 1) == first(f)) cycle
+      associate (own => order(first(f):first(f + 1) - 1))
+        call integrate_facet(x, slave, master, segments, own, points, part)
+        if (part%is_bare) cycle
+        rows%is_bare(f) = .false.
+        partners = master%node(:, segments%master(own))
+        call add_facet(part, partners, is_bound, splits, &
+                       smallest_extent(x, slave%node(:, f), partners), rows, gathered)
+      end associate
+    end do
+    call close_rows(gathered, rows)
+  end subroutine project
+
+  !> The segments of each slave facet, as a list of lists.
+  pure subroutine sort_by_facet(segments, num_facets, first, order)
+    type(segment_set), intent(in) :: segments
+    integer, intent(in) :: num_facets
+    integer, allocatable, intent(out) :: first(:) !< (facets + 1)
+    integer, allocatable, intent(out) :: order(:) !< (segments)
+    call sort_by_key(segments%slave(:segments%num_segments), num_facets, first, order)
+  end subroutine sort_by_facet
+
+  !> Positions in a list by their key, in their order: a counting sort.
+  pure subroutine sort_by_key(key, num_keys, first, order)
+    integer, intent(in) :: key(:) !< 1 .. num_keys
+    integer, intent(in) :: num_keys
+    integer, allocatable, intent(out) :: first(:) !< (num_keys + 1)
+    integer, allocatable, intent(out) :: order(:)
+    integer, allocatable :: next(:)
+    integer :: i
+    allocate (first(num_keys + 1), source=0)
+    allocate (order(size(key)))
+    do i = 1, size(key)
+      first(key(i) + 1) = first(key(i) + 1) + 1
+    end do
+    first(1) = 1
+    do i = 1, num_keys
+      first(i + 1) = first(i) + first(i + 1)
+    end do
+    allocate (next, source=first)
+    do i = 1, size(key)
+      order(next(key(i))) = i
+      next(key(i)) = next(key(i)) + 1
+    end do
+  end subroutine sort_by_key
+
+  !> Room for the most rows and terms that there can be.
+  subroutine open_rows(num_nodes, num_facets, num_segments, rows, gathered)
+    integer, intent(in) :: num_nodes, num_facets, num_segments
+    type(mortar_rows), intent(inout) :: rows
+    type(gathering), intent(out) :: gathered
+    integer :: most_terms
+    most_terms = 16*num_segments + 4*num_facets
+    allocate (gathered%newest(num_nodes), gathered%next(4*num_facets), source=0)
+    allocate (gathered%row(most_terms), gathered%node(most_terms), gathered%value(most_terms))
+    allocate (rows%node(4*num_facets), rows%area(4*num_facets), rows%normal(3, 4*num_facets))
+    allocate (rows%gap(4*num_facets), rows%reach(4*num_facets))
+    allocate (rows%is_bare(num_facets), source=.true.)
+  end subroutine open_rows
+
+  !> Adds the integrals of one facet to the rows of its free corners.
+  subroutine add_facet(part, masters, is_bound, splits, extent, rows, gathered)
+    type(facet_part), intent(in) :: part
+    integer, intent(in) :: masters(:, :) !< (4, segments) nodes
+    logical, intent(in) :: is_bound(:) !< (nodes)
+    logical, intent(in) :: splits !< planes have rows of their own
+    real(rk), intent(in) :: extent !< of the smallest facet here [m]
+    type(mortar_rows), intent(inout) :: rows
+    type(gathering), intent(inout) :: gathered
+    real(rk) :: share(4, 4)
+    logical :: corner_is_bound(4)
+    integer :: a, b, n, row, s, m
+    n = part%num_corners
+    corner_is_bound = .true.
+    corner_is_bound(:n) = is_bound(part%node(:n))
+    call share_bound(part, corner_is_bound, share)
+    do a = 1, n
+      if (corner_is_bound(a)) cycle
+      share(a, a) = 1.0_rk
+      call find_row(part%node(a), part%normal(:, a), splits, rows, gathered, row)
+      rows%area(row) = rows%area(row) + part%diagonal(a)
+      rows%normal(:, row) = rows%normal(:, row) + part%normal(:, a)
+      rows%gap(row) = rows%gap(row) + dot_product(share(a, :), part%gap)
+      rows%reach(row) = min(rows%reach(row), extent)
+      do s = 1, size(part%coupling, 3)
+        do m = 1, 4
+          call add_term(row, masters(m, s), dot_product(share(a, :), part%coupling(:, m, s)))
+        end do
+      end do
+      do b = 1, n
+        if (corner_is_bound(b)) call add_term(row, part%node(b), -share(a, b)*part%diagonal(b))
+      end do
+    end do
+  contains
+    !> One more term of a row; terms of one node are added up in the end.
+    subroutine add_term(at, node, value)
+      integer, intent(in) :: at, node
+      real(rk), intent(in) :: value !< [m2]
+      if (.not. abs(value) > 0.0_rk) return
+      gathered%num_terms = gathered%num_terms + 1
+      gathered%row(gathered%num_terms) = at
+      gathered%node(gathered%num_terms) = node
+      gathered%value(gathered%num_terms) = value
+    end subroutine add_term
+  end subroutine add_facet
+
+  !> The row of a node in the plane of a normal; a new one where there is none.
+  subroutine find_row(node, normal, splits, rows, gathered, row)
+    integer, intent(in) :: node
+    real(rk), intent(in) :: normal(3) !< of any length
+    logical, intent(in) :: splits
+    type(mortar_rows), intent(inout) :: rows
+    type(gathering), intent(inout) :: gathered
+    integer, intent(out) :: row
+    row = gathered%newest(node)
+    do while (row > 0)
+      if (.not. splits) return
+      if (share_a_plane(rows%normal(:, row), normal)) return
+      row = gathered%next(row)
+    end do
+    rows%num_rows = rows%num_rows + 1
+    row = rows%num_rows
+    gathered%next(row) = gathered%newest(node)
+    gathered%newest(node) = row
+    rows%node(row) = node
+    rows%area(row) = 0.0_rk
+    rows%normal(:, row) = 0.0_rk
+    rows%gap(row) = 0.0_rk
+    rows%reach(row) = huge(1.0_rk)
+  end subroutine find_row
+
+  !> Cuts the rows to size, divides them by their areas and adds up terms of one node.
+  subroutine close_rows(gathered, rows)
+    type(gathering), intent(inout) :: gathered
+    type(mortar_rows), intent(inout) :: rows
+    integer, allocatable :: first(:), order(:), at(:)
+    integer :: n, a, i, k, used, node
+    n = rows%num_rows
+    rows%node = rows%node(:n)
+    rows%area = rows%area(:n)
+    rows%gap = rows%gap(:n)/rows%area
+    rows%reach = rows%reach(:n)
+    rows%normal = rows%normal(:, :n)/spread(norm2(rows%normal(:, :n), dim=1), 1, 3)
+    call sort_by_key(gathered%row(:gathered%num_terms), n, first, order)
+    allocate (rows%first(n + 1), rows%master(gathered%num_terms), rows%weight(gathered%num_terms))
+    allocate (at(size(gathered%newest)), source=0)
+    used = 0
+    rows%first(1) = 1
+    do a = 1, n
+      do i = first(a), first(a + 1) - 1
+        node = gathered%node(order(i))
+        k = at(node)
+        if (k < rows%first(a)) then
+          used = used + 1
+          k = used
+          at(node) = k
+          rows%master(k) = node
+          rows%weight(k) = 0.0_rk
+        end if
+        rows%weight(k) = rows%weight(k) + gathered%value(order(i))/rows%area(a)
+      end do
+      at(rows%master(rows%first(a):used)) = 0
+      call drop_round_off(rows%first(a), used, rows)
+      rows%first(a + 1) = used + 1
+    end do
+    rows%master = rows%master(:used)
+    rows%weight = rows%weight(:used)
+  end subroutine close_rows
+
+  !> Leaves out the weights of one row that are round-off.
+  pure subroutine drop_round_off(first, last, rows)
+    integer, intent(in) :: first
+    integer, intent(inout) :: last
+    type(mortar_rows), intent(inout) :: rows
+    integer :: k, used, largest
+    real(rk) :: dropped
+    used = first - 1
+    dropped = 0.0_rk
+    do k = first, last
+      if (abs(rows%weight(k)) < no_weight) then
+        dropped = dropped + rows%weight(k)
+      else
+        used = used + 1
+        rows%master(used) = rows%master(k)
+        rows%weight(used) = rows%weight(k)
+      end if
+    end do
+    last = used
+    if (last < first) return
+    largest = first - 1 + maxloc(abs(rows%weight(first:last)), dim=1)
+    rows%weight(largest) = rows%weight(largest) + dropped
+  end subroutine drop_round_off
+
+  !> The shortest side of the facets that meet here [m].
+  pure real(rk) function smallest_extent(x, own, masters) result(extent)
+    real(rk), intent(in) :: x(:, :) !< (3, nodes)
+    integer, intent(in) :: own(4), masters(:, :) !< (4, facets) corners
+    integer :: f
+    extent = facet_extent(x(:, own))
+    do f = 1, size(masters, 2)
+      extent = min(extent, facet_extent(x(:, masters(:, f))))
+    end do
+  end function smallest_extent
+end module mortar_projection
