@@ -6,6 +6,11 @@ contraction joints. Example:
 
     tools/make_dam.py -o my_dam/dam.inp --height 200 --crest-arc 500 --joints 4 \\
         --motion acc_x.txt acc_y.txt acc_z.txt
+
+Blocks between joints may have meshes of their own, here the middle one 3:2:
+
+    tools/make_dam.py -o dam.inp --arc 16 --levels 7 --bottom 2 --thick 2 --joints 2 \\
+        --refine 2 --fine 2 --fine-refine 3 --fine-thick 3
 """
 
 from __future__ import annotations
@@ -15,13 +20,16 @@ import os
 import sys
 from pathlib import Path
 
+from keyway_tools.arch_blocks import JOINS, BlockOptions, build_block_dam
 from keyway_tools.arch_dam import DamOptions, build_arch_dam
 from keyway_tools.arch_deck import DeckOptions, arch_dam_deck
 from keyway_tools.arch_header import header
+from keyway_tools.arch_lattice import PartMesh
 from keyway_tools.arch_rock import RockOptions
 from keyway_tools.arch_shape import ArchShape
 from keyway_tools.deck_text import mesh_deck
 from keyway_tools.mesh_quality import find_faults, report
+from keyway_tools.surface_fit import fit_report
 
 ELEMENT_TYPES = ("C3D8", "C3D8B", "C3D8I", "C3D8R")
 
@@ -66,6 +74,39 @@ def add_mesh_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--no-rock", action="store_true", help="fix the abutment instead")
     group.add_argument(
         "--element", choices=ELEMENT_TYPES, default="C3D8", help="of dam and rock (C3D8)"
+    )
+
+
+def add_block_options(parser: argparse.ArgumentParser) -> None:
+    """Options that become BlockOptions."""
+    group = parser.add_argument_group(
+        "blocks meshed by their own; the elements above are then cells of a lattice"
+    )
+    group.add_argument("--refine", type=int, default=1, help="elements along a cell's side (1)")
+    group.add_argument(
+        "--fine", type=int, nargs="+", default=[], metavar="B", help="blocks, 1 at the left end"
+    )
+    group.add_argument("--fine-refine", type=int, help="elements along a cell's side there (twice)")
+    group.add_argument("--fine-thick", type=int, help="through the thickness there (twice)")
+    group.add_argument(
+        "--fine-above", type=float, default=0.0, help="only above this share of the height (0)"
+    )
+    group.add_argument(
+        "--shift", type=float, default=0.0, help="levels there by this part of an element (0)"
+    )
+    group.add_argument(
+        "--join",
+        choices=JOINS,
+        default="auto",
+        help="JOINT8 between equal meshes, joints on surfaces, the paper's chain; auto: surfaces "
+        "where meshes differ",
+    )
+    group.add_argument(
+        "--slave", choices=("fine", "coarse"), default="fine", help="side of such joints (fine)"
+    )
+    group.add_argument("--tie-all", action="store_true", help="tie all blocks to the rock")
+    group.add_argument(
+        "--interface-stiffness", type=float, help="of the chain [Pa/m] (E of the concrete)"
     )
 
 
@@ -123,6 +164,7 @@ def read_options(arguments: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--picture", action="store_true", help="draw the mesh to NAME_mesh.png")
     add_shape_options(parser)
     add_mesh_options(parser)
+    add_block_options(parser)
     add_deck_options(parser)
     return parser.parse_args(arguments)
 
@@ -142,6 +184,27 @@ def mesh_options_of(chosen: argparse.Namespace) -> DamOptions:
         num_bottom=chosen.bottom,
         num_joints=chosen.joints,
         rock=None if chosen.no_rock else rock,
+    )
+
+
+def block_options_of(chosen: argparse.Namespace) -> BlockOptions | None:
+    """BlockOptions from the command line; None for the classical dam of one mesh."""
+    is_classical = chosen.refine == 1 and not chosen.fine and not chosen.tie_all
+    if is_classical and chosen.join in ("auto", "matching"):
+        return None
+    own = PartMesh(
+        refine=2 * chosen.refine if chosen.fine_refine is None else chosen.fine_refine,
+        thick=2 * chosen.thick if chosen.fine_thick is None else chosen.fine_thick,
+        shift=chosen.shift,
+    )
+    return BlockOptions(
+        refine=chosen.refine,
+        fine=tuple(chosen.fine),
+        fine_mesh=own,
+        fine_above=chosen.fine_above,
+        join=chosen.join,
+        slave=chosen.slave,
+        is_tied=chosen.tie_all,
     )
 
 
@@ -167,6 +230,7 @@ def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
         shear_stiffness=chosen.kt,
         tensile_strength=chosen.strength,
         friction=chosen.friction,
+        interface_stiffness=chosen.interface_stiffness or chosen.concrete[0],
         cohesion=chosen.cohesion,
         has_joint_law=not chosen.bonded,
         water_depth=water if water > 0.0 else None,
@@ -187,7 +251,11 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         shape = ArchShape(**{name: getattr(chosen, name) for name in names})
         mesh_options, options = mesh_options_of(chosen), deck_options_of(chosen)
-        mesh = build_arch_dam(shape, mesh_options)
+        blocks = block_options_of(chosen)
+        if blocks is None:
+            mesh = build_arch_dam(shape, mesh_options)
+        else:
+            mesh = build_block_dam(shape, mesh_options, blocks)
     except ValueError as fault:
         print(f"make_dam: {fault}", file=sys.stderr)
         return 2
@@ -201,11 +269,14 @@ def main(arguments: list[str] | None = None) -> int:
     mesh_file.write_text(
         mesh_deck(mesh, types, f"Mesh of {chosen.output.name}, made by tools/make_dam.py")
     )
-    heading = header(mesh, shape, mesh_options, options.title, tuple(chosen.note))
+    heading = header(mesh, shape, mesh_options, options.title, tuple(chosen.note), blocks)
     chosen.output.write_text(arch_dam_deck(mesh, heading, mesh_file.name, options))
     free = 3 * (len(mesh.x) - len(mesh.node_sets["FIXED"]))
     print(report(mesh))
+    if mesh.surface_joints or mesh.ties:
+        print(fit_report(mesh))
     counts = f"{len(mesh.x)} nodes, {len(mesh.bricks)} bricks, {len(mesh.joints)} joint elements"
+    counts += f", {len(mesh.quads)} interface quads" if len(mesh.quads) else ""
     print(f"{counts}, {free} unknowns")
     print(f"wrote {chosen.output} and {mesh_file}")
     if chosen.picture:

@@ -75,3 +75,35 @@ def test_options_out_of_range_are_told(tmp_path, capsys, options, message):
 def test_the_water_follows_the_height(tmp_path):
     deck, _ = write_deck(tmp_path, "--height", "271", "--crest-arc", "889.72")
     assert "LEVEL=210," in deck
+
+
+BLOCKS = ["--refine", "2", "--fine", "2", "--fine-refine", "3", "--fine-thick", "3"]
+
+
+def test_blocks_of_their_own_meet_on_surfaces(tmp_path):
+    deck, mesh = write_deck(tmp_path, *BLOCKS)
+    assert "*JOINT, NAME=JOINT1, LAW=CONTRACTION\nJOINT1_SLAVE, JOINT1_MASTER" in deck
+    assert "*TIE, NAME=BASE2\nBASE2_DAM, BASE2_ROCK" in deck
+    assert "** Blocks: " in deck
+    assert "TYPE=JOINT8" not in mesh
+    assert max(len(line) for line in deck.splitlines()) <= 100
+
+
+def test_chain_of_the_paper(tmp_path):
+    deck, mesh = write_deck(tmp_path, *BLOCKS, "--join", "chain")
+    card = "*INTERFACE, NAME=IFACE2, ELSET=IFACE2, SURFACE=JOINT2_FINE, STIFFNESS=2.2e+10"
+    assert card in deck
+    assert "*JOINT, NAME=JOINT2, LAW=CONTRACTION, ELSET=JOINT2" in deck
+    assert "*ELEMENT, TYPE=IFACE4, ELSET=IFACE1" in mesh
+    ids = [
+        int(line.split(",")[0])
+        for name in ("C3D8, ELSET=DAM", "C3D8, ELSET=ROCK", "JOINT8, ELSET=JOINT1",
+                     "JOINT8, ELSET=JOINT2", "IFACE4, ELSET=IFACE1", "IFACE4, ELSET=IFACE2")
+        for line in data_of(mesh, f"*ELEMENT, TYPE={name}")
+    ]  # fmt: skip
+    assert ids == list(range(1, len(ids) + 1))
+
+
+def test_blocks_that_cannot_be_are_told(tmp_path, capsys):
+    assert make_dam.main(["-o", str(tmp_path / "x.inp"), *BLOCKS[:2], "--fine", "7"]) == 2
+    assert "fine blocks must lie in 1..3" in capsys.readouterr().err

@@ -22,6 +22,8 @@ class DeckOptions:
     tensile_strength: float = 0.0  # q_on [Pa]
     friction: float = 0.6
     cohesion: float = 0.0  # [Pa]
+    # of *INTERFACE [Pa/m]: the E of concrete as a number (NOTES 1)
+    interface_stiffness: float = 22.0e9
     has_joint_law: bool = True  # False: the run without joints (joints bonded by a high strength)
     water_depth: float | None = 105.0  # over the foot of the crown [m]; None: empty
     added_mass_direction: str = "DIAGONAL"
@@ -38,7 +40,7 @@ class DeckOptions:
 def arch_dam_deck(mesh: BrickMesh, heading: str, mesh_file: str, options: DeckOptions) -> str:
     """Main file of the deck; the mesh comes in by *INCLUDE."""
     parts = [comment(heading), "*HEADING", options.title, f"*INCLUDE, INPUT={mesh_file}"]
-    parts += _materials(mesh, options) + _joints(mesh, options)
+    parts += _materials(mesh, options) + _joints(mesh, options) + _couplings(mesh, options)
     parts += ["*BOUNDARY", "FIXED, 1, 3", *_amplitudes(options), *_static_step(mesh, options)]
     if options.num_modes > 0:
         parts += ["**", "** Natural modes: joints closed, added mass of the water included"]
@@ -65,7 +67,7 @@ def _materials(mesh: BrickMesh, options: DeckOptions) -> list[str]:
 
 
 def _joints(mesh: BrickMesh, options: DeckOptions) -> list[str]:
-    if not mesh.joint_sets:
+    if not mesh.joint_names:
         return []
     law = "*JOINT LAW, NAME=CONTRACTION"
     normal, shear = options.normal_stiffness, options.shear_stiffness
@@ -79,8 +81,24 @@ def _joints(mesh: BrickMesh, options: DeckOptions) -> list[str]:
     strength = options.tensile_strength if options.has_joint_law else 1.0e12
     law += f", TENSILE STRENGTH={strength:g}"
     law += f", FRICTION={options.friction:g}, COHESION={options.cohesion:g}"
-    names = mesh.joint_sets
-    return [law, *(f"*JOINT, NAME={name}, LAW=CONTRACTION, ELSET={name}" for name in names)]
+    parts = [law]
+    for name in mesh.joint_names:
+        if name in mesh.joint_sets:
+            parts += [f"*JOINT, NAME={name}, LAW=CONTRACTION, ELSET={name}"]
+        else:
+            parts += [f"*JOINT, NAME={name}, LAW=CONTRACTION", ", ".join(mesh.surface_joints[name])]
+    return parts
+
+
+def _couplings(mesh: BrickMesh, options: DeckOptions) -> list[str]:
+    """Ties, and the interfaces of the paper's chain."""
+    parts = []
+    for name, surfaces in mesh.ties.items():
+        parts += [f"*TIE, NAME={name}", ", ".join(surfaces)]
+    for name, (quads, surface) in mesh.interfaces.items():
+        stiffness = f"STIFFNESS={options.interface_stiffness:g}"
+        parts += [f"*INTERFACE, NAME={name}, ELSET={quads}, SURFACE={surface}, {stiffness}"]
+    return parts
 
 
 def _amplitudes(options: DeckOptions) -> list[str]:
@@ -94,11 +112,11 @@ def _amplitudes(options: DeckOptions) -> list[str]:
 
 def _requests(mesh: BrickMesh, options: DeckOptions) -> list[str]:
     parts = ["*NODE PRINT, NSET=CROWN_CREST", "U, A"]
-    for name in mesh.joint_sets:
+    for name in mesh.joint_names:
         parts += [f"*JOINT PRINT, JOINT={name}, NSET={name}_CREST"]
     parts += [f"*NODE FILE, FREQUENCY={options.picture_frequency}", "U"]
     parts += [f"*EL FILE, FREQUENCY={options.picture_frequency}", "SP"]
-    parts += ["*ENVELOPE", "S1, S3, U" + (", OPENING" if mesh.joint_sets else "")]
+    parts += ["*ENVELOPE", "S1, S3, U" + (", OPENING" if mesh.joint_names else "")]
     return parts
 
 

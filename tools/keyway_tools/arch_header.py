@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import textwrap
 
+from .arch_blocks import BlockOptions
 from .arch_dam import DamOptions
 from .arch_shape import ArchShape
 from .mesh_data import BrickMesh
 from .mesh_quality import report
+from .surface_fit import fit_report
 
 WIDTH = 96
 
@@ -18,7 +20,12 @@ def paragraph(head: str, text: str) -> list[str]:
 
 
 def header(
-    mesh: BrickMesh, shape: ArchShape, options: DamOptions, title: str, notes: tuple[str, ...]
+    mesh: BrickMesh,
+    shape: ArchShape,
+    options: DamOptions,
+    title: str,
+    notes: tuple[str, ...],
+    blocks: BlockOptions | None = None,
 ) -> str:
     """Title, axes, shape, mesh, rock, joints, notes and the report on the mesh."""
     lines = [title, ""]
@@ -30,6 +37,8 @@ def header(
         "thickness), wedges (corners 3 = 4, 7 = 8) where the abutment climbs by a level; "
         "left-right symmetric to the last bit",
     )
+    if blocks is not None:
+        lines += _block_lines(mesh, options, blocks)
     if options.rock is not None:
         lines += paragraph(
             "Rock",
@@ -37,19 +46,61 @@ def header(
             "massless (no *DENSITY), linear, outer faces fixed, ground surface free, no initial "
             "stress, no water load on the valley (all assumed)",
         )
-    if mesh.joint_sets:
+    if mesh.joint_names:
+        has_one_mesh = not mesh.surface_joints and not mesh.interfaces
+        ends = (
+            "same mesh on both sides (classical joint); the foot row is shared with the rock, "
+            "where the joint ends"
+        )
         lines += paragraph(
             "Joints",
-            f"{len(mesh.joint_sets)} vertical planes through the axis of the crest's upstream arc, "
-            "at equal parts of the crest (places assumed), same mesh on both sides (classical "
-            "joint); the foot row is shared with the rock, where the joint ends",
+            f"{len(mesh.joint_names)} vertical planes through the axis of the crest's upstream arc,"
+            " at equal parts of the crest (places assumed)" + (f", {ends}" if has_one_mesh else ""),
         )
     lines += paragraph(
         "Weight", "acts on the finished dam at once: no stages of building, no grouting (assumed)"
     )
     for note in notes:
         lines += paragraph(*note.split(": ", 1))
-    return "\n".join([*lines, "", report(mesh)])
+    lines += ["", report(mesh)]
+    for line in fit_report(mesh).splitlines():
+        lines += paragraph(*line.split(": ", 1))
+    return "\n".join(lines)
+
+
+def _block_lines(mesh: BrickMesh, options: DamOptions, blocks: BlockOptions) -> list[str]:
+    """Lines on blocks with meshes of their own and on what joins them."""
+    own = blocks.fine_mesh
+    text = (
+        f"the elements above are cells of a lattice; blocks and rock have {blocks.refine} elements "
+        f"along each side of a cell and {options.num_thick} through the thickness"
+    )
+    if blocks.fine:
+        names = "block " if len(blocks.fine) == 1 else "blocks "
+        names += ", ".join(map(str, blocks.fine))
+        above = f"above {blocks.fine_above:g} of the height " if blocks.fine_above else ""
+        shift = f", levels shifted by up to {own.shift:g} element" if own.shift else ""
+        text += f"; {names} (from the left end) {above}{own.refine} and {own.thick}{shift}"
+    lines = paragraph("Blocks", f"{text}. Cells are trilinear, so all meshes fill one body")
+    if mesh.surface_joints:
+        lines += paragraph(
+            "Different meshes",
+            f"{', '.join(mesh.surface_joints)} lie on surfaces: no joint elements, no interface "
+            "elements (mortar, docs/different_meshes.md)",
+        )
+    if mesh.interfaces:
+        lines += paragraph(
+            "Different meshes",
+            "the paper's chain: fine face, *INTERFACE (Eq 8, E of concrete as a number, NOTES 1), "
+            "IFACE4 quads with nodes of their own on the coarse face, JOINT8, coarse face",
+        )
+    if mesh.ties:
+        lines += paragraph(
+            "Ties",
+            f"{', '.join(mesh.ties)}: meshes that differ where concrete meets rock or concrete, "
+            "held together by *TIE",
+        )
+    return lines
 
 
 def _shape_lines(shape: ArchShape) -> list[str]:

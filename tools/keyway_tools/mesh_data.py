@@ -28,6 +28,17 @@ class BrickMesh:
     joint_sets: dict[str, np.ndarray] = field(default_factory=dict)  # positions of joint elements
     node_sets: dict[str, np.ndarray] = field(default_factory=dict)  # positions of nodes
     surfaces: dict[str, list[tuple[int, int]]] = field(default_factory=dict)  # (brick, face 1..6)
+    # interface quads with nodes of their own (IFACE4), shape (quads, 4)
+    quads: np.ndarray = field(default_factory=lambda: np.zeros((0, 4), dtype=int))
+    quad_sets: dict[str, np.ndarray] = field(default_factory=dict)  # positions of quads
+    surface_joints: dict[str, tuple[str, str]] = field(default_factory=dict)  # slave, master
+    ties: dict[str, tuple[str, str]] = field(default_factory=dict)  # slave, master surface
+    interfaces: dict[str, tuple[str, str]] = field(default_factory=dict)  # quad set, surface
+
+    @property
+    def joint_names(self) -> list[str]:
+        """Joints of elements and joints on surfaces, in order of their names."""
+        return sorted([*self.joint_sets, *self.surface_joints], key=lambda name: (len(name), name))
 
     def face_nodes(self, brick: int, face: int) -> np.ndarray:
         """Nodes of face 1..6 of a brick."""

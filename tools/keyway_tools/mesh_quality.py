@@ -114,8 +114,9 @@ def find_faults(mesh: BrickMesh) -> list[str]:
             faults.append(f"joint faces do not coincide: {gap:.3g} m apart")
     used = np.zeros(len(mesh.x), dtype=bool)
     used[mesh.bricks] = True
+    used[mesh.quads] = True
     if not used.all():
-        faults.append(f"{(~used).sum()} nodes belong to no brick")
+        faults.append(f"{(~used).sum()} nodes belong to no brick or quad")
     return faults
 
 
