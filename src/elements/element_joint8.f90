@@ -10,6 +10,7 @@ module element_joint8
   use errors, only: error_type, raise
   use gauss_rules, only: quad_point
   use joint_axes, only: local_axes, share_a_plane
+  use joint8_cells, only: draw_elements
   use joint_points, only: joint, list_faces
   use kinds, only: rk
   use mesh_faces, only: face_nodes, face_table, face_vector, find_face, insert_face, open_table
@@ -56,6 +57,7 @@ contains
     else
       call gather_gauss_points(model, elements, side, built)
     end if
+    call draw_elements(model, elements, side, built)
   end subroutine build_joint_points
 
   !> The solids behind the faces of JOINT8 elements, and which way the normal goes.

@@ -12,5 +12,6 @@ set(sources
   element_matrices.f90
   joint_axes.f90
   joint_points.f90
+  joint8_cells.f90
   element_joint8.f90
 )

@@ -1,13 +1,14 @@
 !> Which nodes lie on the upstream and which on the downstream face of the dam.
 !>
 !> Upstream is the surface of the reservoir. Downstream are the dam's outer faces, not covered by
-!> joints, that look away from the nearest facet of the upstream face. The dam is what has a mass,
-!> where the rock has none; otherwise the sections that hold the reservoir's surface.
+!> joints or ties, that look away from the nearest facet of the upstream face. The dam is what has a
+!> mass, where the rock has none; otherwise the sections that hold the reservoir's surface.
 module dam_faces
   use kinds, only: rk
   use dam_mesh, only: mesh
   use mesh_sets, only: surface
-  use mesh_faces, only: face_nodes, face_vector, face_centre, find_exterior, mark_covered
+  use mesh_faces, only: face_nodes, face_vector, face_centre, find_exterior
+  use covered_faces, only: mark_joined
   use element_catalogue, only: is_solid
   use problem_definition, only: problem
   implicit none
@@ -38,7 +39,7 @@ contains
       call mark_nodes(scene%mesh, upstream, skin%is_upstream)
       call list_dam_elements(scene, upstream, body)
       call find_exterior(scene%mesh, body, outside)
-      call keep_downstream(scene%mesh, outside, upstream, downstream)
+      call keep_downstream(scene, outside, upstream, downstream)
       call mark_nodes(scene%mesh, downstream, skin%is_downstream)
     end associate
   end subroutine find_dam_faces
@@ -80,27 +81,27 @@ contains
   end subroutine list_dam_elements
 
   !> Those outer faces that look away from the nearest upstream facet.
-  subroutine keep_downstream(model, outside, upstream, downstream)
-    type(mesh), intent(in) :: model
+  subroutine keep_downstream(scene, outside, upstream, downstream)
+    type(problem), intent(in) :: scene
     type(surface), intent(in) :: outside, upstream
     type(surface), intent(out) :: downstream
     logical, allocatable :: is_covered(:), is_kept(:)
     real(rk), allocatable :: centre(:, :), normal(:, :)
     real(rk) :: here(3), looks(3)
     integer :: i, nodes(4), nearest
-    call mark_covered(model, outside, is_covered)
+    call mark_joined(scene, outside, is_covered)
     allocate (centre(3, size(upstream%element)), normal(3, size(upstream%element)))
     do i = 1, size(upstream%element)
-      nodes = face_nodes(model, upstream%element(i), upstream%face(i))
-      centre(:, i) = face_centre(model, nodes)
-      normal(:, i) = unit_vector(face_vector(model%x(:, nodes)))
+      nodes = face_nodes(scene%mesh, upstream%element(i), upstream%face(i))
+      centre(:, i) = face_centre(scene%mesh, nodes)
+      normal(:, i) = unit_vector(face_vector(scene%mesh%x(:, nodes)))
     end do
     is_kept = .not. is_covered
     do i = 1, size(outside%element)
       if (is_covered(i)) cycle
-      nodes = face_nodes(model, outside%element(i), outside%face(i))
-      here = face_centre(model, nodes)
-      looks = unit_vector(face_vector(model%x(:, nodes)))
+      nodes = face_nodes(scene%mesh, outside%element(i), outside%face(i))
+      here = face_centre(scene%mesh, nodes)
+      looks = unit_vector(face_vector(scene%mesh%x(:, nodes)))
       nearest = nearest_point(centre, here)
       is_kept(i) = dot_product(looks, normal(:, nearest)) < largest_cosine
     end do

@@ -2,7 +2,7 @@
 module hdf5_model
   use problem_definition, only: problem
   use mesh_sets, only: named_set
-  use joint_points, only: joint
+  use joint_points, only: joint, joint_cells
   use run_records, only: run_record
   use joint_readings, only: joint_record
   use hdf5_files, only: hdf5_file
@@ -96,11 +96,28 @@ contains
     ! The axes are the rows for a reader whose last index runs fastest.
     call file%put(group//'/rotation', reshape(item%rotation, shape(item%rotation), order=[2, 1, 3]))
     call file%put(group//'/clearance', item%clearance)
+    call file%put(group//'/reach', item%reach)
     call file%put(group//'/first', item%first)
     call file%put(group//'/first_master', item%first_master)
     call file%put(group//'/node', scene%mesh%node_id(item%node))
     call file%put(group//'/weight', item%weight)
     call file%put(group//'/upstream', merge(1, 0, faces%is_upstream))
     call file%put(group//'/downstream', merge(1, 0, faces%is_downstream))
+    if (allocated(item%cells%first)) call write_cells(file, scene, item%cells, group//'/cells')
   end subroutine write_joint
+
+  !> The polygons that are drawn of a joint.
+  subroutine write_cells(file, scene, cells, group)
+    type(hdf5_file), intent(inout) :: file
+    type(problem), intent(in) :: scene
+    type(joint_cells), intent(in) :: cells
+    character(*), intent(in) :: group
+    call file%make_group(group)
+    call file%put(group//'/first', cells%first)
+    call file%put(group//'/corner', cells%corner)
+    call file%put(group//'/element', scene%mesh%element_id(cells%element))
+    call file%put(group//'/first_node', cells%first_node)
+    call file%put(group//'/node', scene%mesh%node_id(cells%node))
+    call file%put(group//'/weight', cells%weight)
+  end subroutine write_cells
 end module hdf5_model

@@ -27,48 +27,75 @@ contains
     opening = now%jump(1, :) + now%gap
   end function opening_at_points
 
-  !> Signed opening on the nodes of all joints, on both sides; zero on other nodes [m]. A node of
-  !> several points takes their mean by area.
+  !> Signed opening on the nodes of all joints, on both sides; zero on other nodes [m]. A node takes
+  !> the mean by area of its points: one on the slave face (one for each plane at a kink), on the
+  !> master face those that lean on it. Negative weights of a mortar projection do not count, so
+  !> that no node shows more than any point.
   pure function opening_at_nodes(scene, now) result(opening)
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
     real(rk) :: opening(scene%mesh%num_nodes)
-    real(rk) :: weight(scene%mesh%num_nodes)
+    real(rk) :: total(scene%mesh%num_nodes)
+    real(rk), allocatable :: of_points(:)
     integer :: j, p, k
     real(rk) :: share
     opening = 0.0_rk
-    weight = 0.0_rk
+    total = 0.0_rk
     do j = 1, size(scene%joints)
+      of_points = opening_at_points(now%joints(j))
       associate (item => scene%joints(j))
         do p = 1, item%num_points
           do k = item%first(p), item%first(p + 1) - 1
-            share = abs(item%weight(k))*item%area(p)
-            opening(item%node(k)) = opening(item%node(k)) &
-                                    + share*(now%joints(j)%jump(1, p) + now%joints(j)%gap(p))
-            weight(item%node(k)) = weight(item%node(k)) + share
+            share = item%weight(k)*item%area(p)
+            if (k >= item%first_master(p)) share = -share
+            if (share <= 0.0_rk) cycle
+            opening(item%node(k)) = opening(item%node(k)) + share*of_points(p)
+            total(item%node(k)) = total(item%node(k)) + share
           end do
         end do
       end associate
     end do
-    where (weight > 0.0_rk) opening = opening/weight
+    where (total > 0.0_rk) opening = opening/total
   end function opening_at_nodes
 
-  !> An empty record. A point lies on a face of the dam when the node nearest to it, on either side,
-  !> does: at a Gauss point the node with the largest shape function.
+  !> An empty record. A point lies on a face of the dam when its node does, at a Gauss point the one
+  !> with the largest shape function: on either side of JOINT8 elements, on the slave side of
+  !> surfaces, since a coarse master node draws on points far away from it. Where no slave node lies
+  !> on a face (the rock under a dam) the master side speaks: more than half of the weights.
   subroutine open_joint_record(item, skin, record)
     type(joint), intent(in) :: item
     type(dam_skin), intent(in) :: skin
     type(joint_record), intent(out) :: record
-    integer :: p, k, slave, master
-    allocate (record%is_upstream(item%num_points), record%is_downstream(item%num_points))
+    integer :: slave(item%num_points), master(item%num_points), p
     do p = 1, item%num_points
-      k = item%first_master(p)
-      slave = item%node(item%first(p) - 1 + maxloc(item%weight(item%first(p):k - 1), dim=1))
-      master = item%node(k - 1 + minloc(item%weight(k:item%first(p + 1) - 1), dim=1))
-      record%is_upstream(p) = skin%is_upstream(master) .or. skin%is_upstream(slave)
-      record%is_downstream(p) = skin%is_downstream(master) .or. skin%is_downstream(slave)
+      associate (k => item%first_master(p))
+        slave(p) = item%node(item%first(p) - 1 + maxloc(item%weight(item%first(p):k - 1), dim=1))
+        master(p) = item%node(k - 1 + minloc(item%weight(k:item%first(p + 1) - 1), dim=1))
+      end associate
     end do
+    record%is_upstream = skin%is_upstream(slave)
+    record%is_downstream = skin%is_downstream(slave)
+    if (item%is_matching) then
+      record%is_upstream = record%is_upstream .or. skin%is_upstream(master)
+      record%is_downstream = record%is_downstream .or. skin%is_downstream(master)
+    else if (.not. any(record%is_upstream .or. record%is_downstream)) then
+      record%is_upstream = leans_on(item, skin%is_upstream)
+      record%is_downstream = leans_on(item, skin%is_downstream)
+    end if
   end subroutine open_joint_record
+
+  !> Does more than half of a point's master side lie on these nodes?
+  pure function leans_on(item, is_marked) result(leans)
+    type(joint), intent(in) :: item
+    logical, intent(in) :: is_marked(:) !< (nodes)
+    logical :: leans(item%num_points)
+    integer :: p
+    do p = 1, item%num_points
+      associate (first => item%first_master(p), last => item%first(p + 1) - 1)
+        leans(p) = -sum(item%weight(first:last), mask=is_marked(item%node(first:last))) > 0.5_rk
+      end associate
+    end do
+  end function leans_on
 
   !> Takes note of one increment: opening (0 while closed), slip (its length) and closing pressure.
   subroutine note_joint(record, item, now, time)

@@ -6,7 +6,7 @@ module pvd_files
   use whole_files, only: write_whole_file
   implicit none
   private
-  public :: pvd_file
+  public :: pvd_file, frame_name
 
   character, parameter :: nl = new_line('a')
 
@@ -63,4 +63,15 @@ contains
       end select
     end do
   end function escaped
+
+  !> 'job_0001.vtu'
+  pure function frame_name(stem, number) result(name)
+    character(*), intent(in) :: stem
+    integer, intent(in) :: number
+    character(:), allocatable :: name
+    character(12) :: digits
+    write (digits, '(i4.4)') number
+    if (number > 9999) write (digits, '(i0)') number
+    name = stem//'_'//trim(digits)//'.vtu'
+  end function frame_name
 end module pvd_files

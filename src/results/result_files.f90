@@ -17,6 +17,7 @@ module result_files
   use write_energy, only: energy_file
   use write_damage, only: damage_file
   use write_vtk, only: vtk_series, open_vtk
+  use write_joint_vtk, only: joint_series, open_joint_vtk
   use write_hdf5, only: hdf5_results, open_hdf5
   use summary_json, only: write_summary
   use sha256, only: digest_of_file
@@ -40,6 +41,7 @@ module result_files
     type(energy_file), private :: energies
     type(damage_file), private :: damages
     type(vtk_series), private :: pictures
+    type(joint_series), private :: surfaces
     type(hdf5_results), private :: data
   contains
     procedure :: open => open_results
@@ -96,6 +98,7 @@ contains
     call open_hdf5(scene, self%stem, self%record, self%data, error)
     if (allocated(error)) return
     call open_vtk(folder//'/', base_name(scene%deck_file), self%pictures)
+    call open_joint_vtk(folder//'/', base_name(scene%deck_file), self%surfaces)
   end subroutine open_writers
 
   !> An increment has converged: maxima, files, log.
@@ -144,6 +147,10 @@ contains
     call self%costs%start('write VTK', 'output')
     call self%pictures%write_increment(scene, now, self%record, error)
     call self%costs%stop('write VTK')
+    if (allocated(error) .or. size(scene%joints) == 0) return
+    call self%costs%start('draw joints', 'output')
+    call self%surfaces%write_increment(scene, now, self%record, error)
+    call self%costs%stop('draw joints')
   end subroutine write_increment
 
   !> The run stops within a step: what was not due at its last increment is written now.

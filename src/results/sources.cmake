@@ -6,6 +6,7 @@ set(sources
   earlier_files.f90
   whole_files.f90
   vtk_order.f90
+  covered_faces.f90
   dam_faces.f90
   extremes.f90
   joint_readings.f90
@@ -30,6 +31,7 @@ set(sources
   vtu_files.f90
   pvd_files.f90
   write_vtk.f90
+  write_joint_vtk.f90
   hdf5_files.f90
   hdf5_tables.f90
   hdf5_model.f90

@@ -6,6 +6,7 @@ module summary_json
   use diagnostics, only: severity_ignored
   use diagnostic_text, only: headline
   use timer, only: ledger, wall_clock, peak_memory
+  use joint_points, only: joint
   use problem_definition, only: problem
   use extremes, only: extremes_by_face, face_names
   use run_records, only: run_record
@@ -236,6 +237,7 @@ contains
     call json%open_object('joints')
     do j = 1, size(scene%joints)
       call json%open_object(scene%joints(j)%name)
+      call put_make(json, scene%joints(j))
       call put_extremes(json, 'opening', record%joints(j)%opening)
       call put_extremes(json, 'slip', record%joints(j)%slip)
       call put_extremes(json, 'pressure', record%joints(j)%pressure)
@@ -243,6 +245,16 @@ contains
     end do
     call json%close_object()
   end subroutine put_joints
+
+  !> What a joint is made of.
+  subroutine put_make(json, item)
+    type(json_text), intent(inout) :: json
+    type(joint), intent(in) :: item
+    call json%put_text(trim(merge('elements', 'surfaces', item%is_matching)), 'kind')
+    call json%put_text(trim(merge('nodes', 'gauss', item%is_nodal)), 'integration')
+    call json%put_integer(item%num_points, 'points')
+    call json%put_real(sum(item%area), 'area')
+  end subroutine put_make
 
   !> Anywhere, upstream, downstream: those that exist.
   subroutine put_extremes(json, name, found)

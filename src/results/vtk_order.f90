@@ -4,9 +4,10 @@ module vtk_order
   implicit none
   private
   public :: tensor_in_vtk_order, tensor_names_in_vtk_order, cell_of_solid
-  public :: cell_hexahedron, cell_wedge, cell_quad
+  public :: cell_hexahedron, cell_wedge, cell_of_polygon
 
-  integer, parameter :: cell_quad = 9, cell_hexahedron = 12, cell_wedge = 13
+  integer, parameter :: cell_triangle = 5, cell_polygon = 7, cell_quad = 9
+  integer, parameter :: cell_hexahedron = 12, cell_wedge = 13
 
 contains
 
@@ -54,6 +55,19 @@ contains
       end do
     end do
   end subroutine cell_of_solid
+
+  !> The cell of a polygon.
+  pure elemental integer function cell_of_polygon(num_corners) result(kind)
+    integer, intent(in) :: num_corners
+    select case (num_corners)
+    case (3)
+      kind = cell_triangle
+    case (4)
+      kind = cell_quad
+    case default
+      kind = cell_polygon
+    end select
+  end function cell_of_polygon
 
   !> The ring without its member number `gone`.
   pure function without(ring, gone) result(triangle)

@@ -1,4 +1,4 @@
-!> The VTK series: job_vtk/job_NNNN.vtu with job.pvd, the joints' surfaces, envelopes and modes.
+!> The VTK series: job_vtk/job_NNNN.vtu with job.pvd, envelopes and modes.
 module write_vtk
   use kinds, only: rk
   use errors, only: error_type
@@ -10,10 +10,9 @@ module write_vtk
   use requested_fields, only: list_due_fields, field_on_nodes, components_of, is_tensor
   use law_fields, only: mean_of_elements
   use envelopes, only: name_of_field
-  use joint_surface, only: drawn_joints, find_drawn_joints, values_on_corners, num_values
-  use vtk_order, only: tensor_in_vtk_order, tensor_names_in_vtk_order, cell_of_solid, cell_quad
+  use vtk_order, only: tensor_in_vtk_order, tensor_names_in_vtk_order, cell_of_solid
   use vtu_files, only: vtu_file
-  use pvd_files, only: pvd_file
+  use pvd_files, only: pvd_file, frame_name
   use text_buffers, only: text_of
   use file_system, only: make_folder
   implicit none
@@ -27,15 +26,13 @@ module write_vtk
     logical :: has_grid = .false. !< the arrays below and the folder are there
     integer :: num_frames = 0
     integer, allocatable :: connectivity(:), ends(:), kinds(:), elements(:) !< of the solids' cells
-    type(drawn_joints) :: joints
-    type(pvd_file) :: frames, joint_frames
+    type(pvd_file) :: frames
   contains
     procedure :: write_increment => write_frame
     procedure :: write_modes => write_mode_shapes
     procedure :: write_envelopes
     procedure, private :: prepare
     procedure, private :: start_grid
-    procedure, private :: write_joints
   end type vtk_series
 
 contains
@@ -47,7 +44,6 @@ contains
     series%folder = results//job//'_vtk/'
     series%job = job
     call series%frames%open(results//job//'.pvd', job//'_vtk/')
-    call series%joint_frames%open(results//job//'_joints.pvd', job//'_vtk/')
   end subroutine open_vtk
 
   !> One file of the series, when a request is due.
@@ -78,8 +74,6 @@ contains
     if (allocated(error)) return
     call self%frames%add(now%total_time, frame_name(self%job, self%num_frames), error)
     call record%list_file(self%job//'.pvd')
-    if (allocated(error) .or. .not. any(fields == 'OPENING')) return
-    call self%write_joints(scene, now, record, error)
   end subroutine write_frame
 
   !> One field on the nodes.
@@ -98,35 +92,6 @@ contains
       call file%put_point_reals(trim(name), values, components_of(name, size(values, 1)))
     end if
   end subroutine put_field
-
-  !> The joints' surfaces, with a series of their own.
-  subroutine write_joints(self, scene, now, record, error)
-    class(vtk_series), intent(inout) :: self
-    type(problem), intent(in) :: scene
-    type(state), intent(in) :: now
-    type(run_record), intent(inout) :: record
-    type(error_type), allocatable, intent(out) :: error
-    real(rk) :: values(num_values, size(self%joints%node))
-    character(:), allocatable :: name
-    type(vtu_file) :: file
-    integer :: i, num_quads
-    num_quads = size(self%joints%element)
-    if (num_quads == 0) return
-    call values_on_corners(now, self%joints, values)
-    call file%start(scene%mesh%x(:, self%joints%node), reshape(self%joints%quad - 1, &
-                                                               [4*num_quads]), &
-                    [(4*i, i=1, num_quads)], [(cell_quad, i=1, num_quads)])
-    call file%put_point_integers('NODE_ID', scene%mesh%node_id(self%joints%node))
-    call file%put_point_reals('OPENING', values(1:1, :), '')
-    call file%put_point_reals('SLIP', values(2:3, :), 'SLIP1,SLIP2')
-    call file%put_point_reals('TRACTION', values(4:6, :), 'TN,T1,T2')
-    call file%put_cell_integers('JOINT', self%joints%joint)
-    call file%put_cell_integers('ELEMENT_ID', scene%mesh%element_id(self%joints%element))
-    name = frame_name(self%job//'_joints', self%num_frames)
-    call file%save(self%folder//name, error)
-    if (.not. allocated(error)) call self%joint_frames%add(now%total_time, name, error)
-    call record%list_file(self%job//'_joints.pvd')
-  end subroutine write_joints
 
   !> The envelopes of a step in one file; nothing where the step has none.
   subroutine write_envelopes(self, scene, record, error)
@@ -212,7 +177,6 @@ contains
       self%ends(c) = last
     end do
     self%connectivity = self%connectivity(:last)
-    call find_drawn_joints(scene, self%joints)
     self%has_grid = .true.
   end subroutine prepare
 
@@ -226,15 +190,4 @@ contains
     call file%put_cell_integers('MATERIAL', scene%mesh%material_of_element(self%elements))
     call file%put_cell_integers('ELEMENT_ID', scene%mesh%element_id(self%elements))
   end subroutine start_grid
-
-  !> 'job_0001.vtu'
-  pure function frame_name(stem, number) result(name)
-    character(*), intent(in) :: stem
-    integer, intent(in) :: number
-    character(:), allocatable :: name
-    character(12) :: digits
-    write (digits, '(i4.4)') number
-    if (number > 9999) write (digits, '(i0)') number
-    name = stem//'_'//trim(digits)//'.vtu'
-  end function frame_name
 end module write_vtk

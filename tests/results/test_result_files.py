@@ -127,6 +127,17 @@ def test_opening_lives_on_both_sides_of_a_joint(folder: Path):
     surface = read_grid(folder, "joints_0004")
     assert surface["OPENING"] == pytest.approx(np.where(surface.points[:, 2] > 0, 3e-3, -0.9e-3))
     assert list(surface["ELEMENT_ID"]) == [30]
+    assert set(surface.point_data) == {
+        "NODE_ID", "U", "OPENING", "SLIP", "TRACTION", "STATE", "REACH_USED"
+    }  # fmt: skip
+    # The slave nodes, which are numbered 90, 100, 170, 180 in the deck.
+    assert surface["U"] == pytest.approx(grid["U"][surface["NODE_ID"] // 10 - 1])
+    assert sorted(surface["NODE_ID"]) == [90, 100, 170, 180]
+    assert surface["TRACTION"][:, 0] == pytest.approx(-1e6 * surface.points[:, 0])
+    # The right-hand rule about the joint's normal, y.
+    corner = surface.get_cell(0).points
+    normal = np.cross(corner[2] - corner[0], corner[3] - corner[1])
+    assert normal / np.linalg.norm(normal) == pytest.approx([0, 1, 0])
 
 
 def test_envelopes_keep_value_and_time(folder: Path):
@@ -156,6 +167,11 @@ def test_hdf5_layout(folder: Path):
         assert file["mesh/connectivity"][1].tolist() == [8, 9, 11, 10, 16, 17, 19, 18]
         assert file["mesh/element_type"][2] == b"JOINT8"
         assert file["joints/MIDDLE/rotation"][0].tolist() == [[0, 1, 0], [-1, 0, 0], [0, 0, 1]]
+        cells = file["joints/MIDDLE/cells"]
+        assert cells["first"][:].tolist() == [1, 5]
+        assert sorted(cells["node"][cells["corner"][:] - 1]) == [90, 100, 170, 180]
+        assert cells["element"][:].tolist() == [30]
+        assert cells["weight"][:].tolist() == [1, 1, 1, 1]
         assert file["steps/0001"].attrs["procedure"] == b"STATIC"
         group = file["steps/0002/increments/000003"]
         assert group.attrs["time"] == pytest.approx(1.3)
@@ -196,6 +212,8 @@ def test_summary(results: ResultsFolder):
 
 def test_extremes_have_place_and_time(results: ResultsFolder):
     joint = results.find("joints.MIDDLE")
+    make = {name: joint[name] for name in ("kind", "integration", "points", "area")}
+    assert make == {"kind": "elements", "integration": "nodes", "points": 4, "area": 3.0}
     assert joint["opening"]["anywhere"]["value"] == pytest.approx(3e-3)
     assert joint["opening"]["anywhere"]["time"] == pytest.approx(1.3)
     assert joint["opening"]["upstream"]["x"] == [0, 2, 3]

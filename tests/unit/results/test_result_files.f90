@@ -10,6 +10,7 @@ program test_result_files
   use step_plan, only: step, print_request, field_request
   use material_elastic, only: elastic_law
   use joint_contraction, only: contraction_law
+  use joint8_cells, only: draw_elements
   use joint_points, only: joint, list_faces
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
@@ -98,6 +99,7 @@ contains
       allocate (item%law, source=contraction_law(name='LAW', gap=1.0e-4_rk))
       call list_faces(reshape([9, 10, 18, 17], [1, 4]), reshape([7, 8, 16, 15], [1, 4]), &
                       reshape([1.0_rk], [1, 4], pad=[1.0_rk]), item)
+      call draw_elements(scene%mesh, [3], [-1], item)
       item%x = scene%mesh%x(:, [7, 8, 16, 15])
       allocate (item%area(4), source=0.75_rk)
       allocate (item%rotation(3, 3, 4), source=0.0_rk)

@@ -1,0 +1,87 @@
+!> Which outer faces of a body lie on another one: under JOINT8 elements, joints on surfaces, ties
+!> and interfaces. They are no free surface, although no element shares them.
+module covered_faces
+  use kinds, only: rk
+  use dam_mesh, only: mesh
+  use mesh_sets, only: surface
+  use mesh_faces, only: face_nodes, face_vector, mark_covered
+  use joint_points, only: joint
+  use problem_definition, only: problem
+  implicit none
+  private
+  public :: mark_joined
+
+  !> Cosine between a face and the normal of the joint at its nodes: less is another face of the
+  !> same solid (a key that is one element thick has all its nodes in the joint). At the corner of
+  !> three faces the mean normal makes 1/sqrt(3) with each.
+  real(rk), parameter :: least_cosine = 0.5_rk
+
+contains
+
+  !> Tells which faces of a skin are covered, as a whole or in part.
+  subroutine mark_joined(scene, skin, is_covered)
+    type(problem), intent(in) :: scene
+    type(surface), intent(in) :: skin
+    logical, allocatable, intent(out) :: is_covered(:) !< (faces of the skin)
+    integer :: i
+    call mark_covered(scene%mesh, skin, is_covered)
+    do i = 1, size(scene%joints)
+      if (.not. scene%joints(i)%is_matching) call mark_joint(scene, skin, i, is_covered)
+    end do
+    do i = 1, size(scene%ties)
+      call mark_between(scene%mesh, skin, [scene%ties(i)%node, scene%ties(i)%master], is_covered)
+    end do
+    do i = 1, size(scene%couplings)
+      call mark_between(scene%mesh, skin, scene%couplings(i)%node, is_covered)
+    end do
+  end subroutine mark_joined
+
+  !> Faces whose nodes all belong to a joint that lies along them.
+  subroutine mark_joint(scene, skin, number, is_covered)
+    type(problem), intent(in) :: scene
+    type(surface), intent(in) :: skin
+    integer, intent(in) :: number !< of the joint
+    logical, intent(inout) :: is_covered(:) !< (faces of the skin)
+    real(rk) :: normal(3, scene%mesh%num_nodes), looks(3), along(4)
+    integer :: i, nodes(4)
+    call add_normals(scene%joints(number), normal)
+    do i = 1, size(skin%element)
+      nodes = face_nodes(scene%mesh, skin%element(i), skin%face(i))
+      looks = face_vector(scene%mesh%x(:, nodes))
+      along = abs(matmul(looks, normal(:, nodes)))
+      if (any(along <= 0.0_rk)) cycle
+      if (all(along >= least_cosine*norm2(looks)*norm2(normal(:, nodes), dim=1))) then
+        is_covered(i) = .true.
+      end if
+    end do
+  end subroutine mark_joint
+
+  !> Mean normal of a joint at each node of both its faces; zero at other nodes.
+  pure subroutine add_normals(item, normal)
+    type(joint), intent(in) :: item
+    real(rk), intent(out) :: normal(:, :) !< (3, nodes) of any length
+    integer :: p, k
+    normal = 0.0_rk
+    do p = 1, item%num_points
+      do k = item%first(p), item%first(p + 1) - 1
+        normal(:, item%node(k)) = normal(:, item%node(k)) &
+                                  + abs(item%weight(k))*item%area(p)*item%rotation(1, :, p)
+      end do
+    end do
+  end subroutine add_normals
+
+  !> Faces whose nodes are all among those of a tie or an interface.
+  subroutine mark_between(model, skin, nodes, is_covered)
+    type(mesh), intent(in) :: model
+    type(surface), intent(in) :: skin
+    integer, intent(in) :: nodes(:)
+    logical, intent(inout) :: is_covered(:) !< (faces of the skin)
+    logical :: is_joined(model%num_nodes)
+    integer :: i
+    is_joined = .false.
+    is_joined(nodes) = .true.
+    do i = 1, size(skin%element)
+      if (all(is_joined(face_nodes(model, skin%element(i), skin%face(i))))) is_covered(i) = .true.
+    end do
+  end subroutine mark_between
+end module covered_faces
