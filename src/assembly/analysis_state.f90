@@ -22,12 +22,15 @@ module analysis_state
 
   type :: state
     integer :: step = 0, increment = 0, iterations = 0
+    integer :: augmentations = 0 !< of contact without penetration, in this increment
     integer :: cutbacks = 0 !< in this step so far
     integer :: num_unknowns = 0 !< free unknowns of the step's system
     logical :: has_held_switches = .false. !< in this increment, of laws whose stress jumps
     logical :: is_last_of_step = .false.
     logical :: is_stop = .false. !< told once more, because the run stops here before its end
     real(rk) :: step_time = 0.0_rk, total_time = 0.0_rk, increment_size = 0.0_rk !< [s]
+    !> Of the scaled matrix with all joints closed, 1-norm; 0 without joints
+    real(rk) :: joint_condition = 0.0_rk
     real(rk) :: residual = 0.0_rk !< out-of-balance over the reference force
     real(rk) :: largest_force = 0.0_rk !< of the balance so far; kept where solids are inelastic [N]
     real(rk), allocatable :: u(:, :) !< displacement, relative to the base [m]; (3, nodes)

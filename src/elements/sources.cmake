@@ -9,6 +9,7 @@ set(sources
   element_hex8_reduced.f90
   element_catalogue.f90
   element_widths.f90
+  element_depth.f90
   element_matrices.f90
   joint_axes.f90
   joint_points.f90

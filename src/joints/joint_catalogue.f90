@@ -20,7 +20,7 @@ contains
     select case (constants%kind)
     case ('CONTRACTION')
       allocate (law, source=contraction_law( &
-                name=constants%name, gap=constants%gap, &
+                name=constants%name, gap=constants%gap, penetration=constants%penetration, &
                 normal_stiffness=constants%normal_stiffness, &
                 tangent_stiffness=constants%tangent_stiffness, strength=constants%strength, &
                 friction=constants%friction, cohesion=constants%cohesion))

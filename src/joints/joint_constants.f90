@@ -15,9 +15,11 @@ module joint_constants
     real(rk) :: cohesion = 0.0_rk !< c of the closed joint [Pa]
     real(rk) :: thickness = 0.02_rk !< for the default of k_n [m]; NOTES 3
     real(rk) :: gap = 0.0_rk !< initial gap [m]
+    real(rk) :: penetration = 0.0_rk !< allowed to points in contact [m]; 0: by their stiffness
   contains
     procedure :: needs_solid
     procedure :: complete_stiffness
+    procedure :: asks_for_layer
   end type law_constants
 
 contains
@@ -28,14 +30,25 @@ contains
     needs_solid = min(self%normal_stiffness, self%tangent_stiffness) <= 0.0_rk
   end function needs_solid
 
-  !> k_n = E/thickness and k_t = k_n/(2 (1 + nu)) where the deck gave none (NOTES 3).
+  !> Whether k_n is only to lead the iteration to contact without penetration (13.5): it is then the
+  !> stiffness of a layer of elements. A bonded joint works with k_n itself.
+  pure logical function asks_for_layer(self)
+    class(law_constants), intent(in) :: self
+    asks_for_layer = self%penetration > 0.0_rk .and. self%normal_stiffness <= 0.0_rk &
+                     .and. self%strength <= 0.0_rk
+  end function asks_for_layer
+
+  !> k_n = E/thickness and k_t = k_n/(2 (1 + nu)) where the deck gave none (NOTES 3). k_t stands for
+  !> the joint itself also where k_n does not (13.5).
   pure subroutine complete_stiffness(self, young, poisson)
     class(law_constants), intent(inout) :: self
     real(rk), intent(in) :: young !< of the solid on the slave side [Pa]
     real(rk), intent(in) :: poisson
     if (self%normal_stiffness <= 0.0_rk) self%normal_stiffness = young/self%thickness
-    if (self%tangent_stiffness <= 0.0_rk) then
-      self%tangent_stiffness = self%normal_stiffness/(2.0_rk*(1.0_rk + poisson))
+    if (self%tangent_stiffness > 0.0_rk) return
+    self%tangent_stiffness = self%normal_stiffness/(2.0_rk*(1.0_rk + poisson))
+    if (self%penetration > 0.0_rk) then
+      self%tangent_stiffness = young/self%thickness/(2.0_rk*(1.0_rk + poisson))
     end if
   end subroutine complete_stiffness
 end module joint_constants

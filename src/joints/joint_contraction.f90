@@ -33,7 +33,8 @@ module joint_contraction
 
   !> What the history holds of one point.
   type :: point_state
-    real(rk) :: gap, jump(3), traction(3), slip(2), friction_work, fracture_work
+    real(rk) :: gap !< with the shift of the contact [m]
+    real(rk) :: jump(3), traction(3), slip(2), friction_work, fracture_work
     real(rk) :: cohesion !< c, or 0 when the point has parted within the increment [Pa]
     logical :: is_broken
     integer :: status
@@ -63,15 +64,16 @@ contains
     k = [self%normal_stiffness, self%tangent_stiffness, self%tangent_stiffness]
   end subroutine reference_stiffness
 
-  !> Elastic energy of the springs at the tractions of the state.
+  !> Elastic energy of the springs at the tractions of the state. A contact that is shifted keeps
+  !> 1/2 q_n times what it penetrates (13.5).
   pure subroutine stored_energy(self, state, energy)
     class(contraction_law), intent(in) :: self
     type(joint_state), intent(in) :: state
     real(rk), intent(out) :: energy(:)
     real(rk) :: k(3)
     call self%reference_stiffness(k)
-    energy = 0.5_rk*(state%traction(1, :)**2/k(1) + state%traction(2, :)**2/k(2) &
-                     + state%traction(3, :)**2/k(3))
+    energy = 0.5_rk*(state%traction(1, :)*(state%traction(1, :)/k(1) - state%shift) &
+                     + state%traction(2, :)**2/k(2) + state%traction(3, :)**2/k(3))
   end subroutine stored_energy
 
   !> The law at all points of a joint.
@@ -87,16 +89,17 @@ contains
     type(point_state) :: before, after
     integer :: p
     do p = 1, size(jump, 2)
-      before = point_state(old%gap(p), old%jump(:, p), old%traction(:, p), old%slip(:, p), &
-                           old%friction_work(p), old%fracture_work(p), self%cohesion, &
-                           old%is_broken(p), old%status(p))
+      before = point_state(old%gap(p) + old%shift(p), old%jump(:, p), old%traction(:, p), &
+                           old%slip(:, p), old%friction_work(p), old%fracture_work(p), &
+                           self%cohesion, old%is_broken(p), old%status(p))
       after = before
       if (new%has_parted(p)) after%cohesion = 0.0_rk
       after%jump = jump(:, p)
+      after%gap = old%gap(p) + new%shift(p)
       if (.not. (before%is_broken .or. new%has_parted(p)) .and. &
           jump(1, p)*self%normal_stiffness <= self%strength) then
         call stay_bonded(self, after, iterate(:, p), tangent(:, :, p))
-      else if (jump(1, p) + old%gap(p) > 0.0_rk) then
+      else if (jump(1, p) + after%gap > 0.0_rk) then
         call open_point(self, before, after, iterate(:, p), tangent(:, :, p))
       else
         call close_point(self, before, after)
@@ -137,7 +140,7 @@ contains
     type(point_state), intent(in) :: before
     type(point_state), intent(inout) :: point
     real(rk), intent(out) :: iterate(3), tangent(3, 3)
-    real(rk) :: k(3), share, step(3), opening, limit
+    real(rk) :: k(3), share, step(3), opening, limit, rise
     call law%reference_stiffness(k)
     step = point%jump - before%jump
     opening = before%jump(1) + before%gap
@@ -147,9 +150,10 @@ contains
       point%fracture_work = before%fracture_work + 0.5_rk*sum(k*(before%jump + share*step)**2)
     else if (opening <= 0.0_rk) then
       limit = slip_limit(law, opening, law%cohesion)
+      rise = step(1) + (point%gap - before%gap)
       point%friction_work = before%friction_work &
                             + opening_work(before%traction(2:3), limit, &
-                                           -opening/step(1)*step(2:3), law%cohesion, k(2))
+                                           -opening/rise*step(2:3), law%cohesion, k(2))
     end if
     point%traction = 0.0_rk
     point%slip = point%jump(2:3)

@@ -14,6 +14,9 @@ module joint_law
   !> History of all points of one joint; two of them exist, converged and trial.
   type :: joint_state
     real(rk), allocatable :: gap(:) !< (points) at the start; the opening is jump(1) + gap [m]
+    !> (points) multiplier of the contact over the normal stiffness, <= 0: contact begins where the
+    !> opening is -shift, so that the joint carries pressure without penetration [m]
+    real(rk), allocatable :: shift(:)
     real(rk), allocatable :: jump(:, :) !< (3, points) relative displacement [m]
     real(rk), allocatable :: traction(:, :) !< (3, points) by the law at `jump` [Pa]
     real(rk), allocatable :: slip(:, :) !< (2, points) irrecoverable sliding [m]
@@ -32,6 +35,8 @@ module joint_law
   type, abstract :: traction_law
     character(:), allocatable :: name !< upper case
     real(rk) :: gap = 0.0_rk !< at the start, of every point [m]
+    !> Largest penetration of points in contact [m]; 0: as their stiffness gives it
+    real(rk) :: penetration = 0.0_rk
   contains
     procedure(start_state), deferred :: start_state
     procedure(reference_stiffness), deferred :: reference_stiffness
@@ -68,7 +73,7 @@ module joint_law
       real(rk), intent(in) :: multiplier(:, :) !< (2, points) [Pa]
       real(rk), intent(in) :: scale(:) !< (points) [Pa/m]
       type(joint_state), intent(inout) :: new !< history at the trial jump, law's own traction;
-      !! has_parted is given
+      !! has_parted and shift are given
       real(rk), intent(out) :: iterate(:, :) !< (3, points) traction of the augmented form [Pa]
       real(rk), intent(out) :: tangent(:, :, :) !< (3, 3, points) [Pa/m], unsymmetric
     end subroutine update
@@ -92,6 +97,7 @@ contains
     integer :: num_points
     num_points = size(gap)
     state%gap = gap
+    allocate (state%shift(num_points), source=0.0_rk)
     allocate (state%jump(3, num_points), state%traction(3, num_points), source=0.0_rk)
     allocate (state%slip(2, num_points), source=0.0_rk)
     allocate (state%friction_work(num_points), state%fracture_work(num_points), source=0.0_rk)

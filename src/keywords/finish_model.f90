@@ -1,6 +1,7 @@
 !> What can be said only when the whole deck is read: nothing is left open, joints are built.
 module finish_model
   use applied_load, only: load_slot
+  use contact_defaults, only: take_layer_stiffness
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use element_joint8, only: build_joint_points, find_attached_solids
@@ -218,6 +219,13 @@ contains
                          model%scene%materials(materials(1))%name//"', has no E (a UMAT) to "// &
                          'make KN and KT of', 'KN and KT in the *JOINT LAW')
         return
+      end if
+      if (law%asks_for_layer()) then
+        associate (nodes => model%scene%mesh%nodes(:, request%elements))
+          call take_layer_stiffness(model%scene, [solid(1, :), solid(2, :)], &
+                                    reshape([nodes(1:4, :), nodes(5:8, :)], &
+                                            [4, 2*size(request%elements)]), law)
+        end associate
       end if
       call law%complete_stiffness(model%scene%materials(materials(1))%young, &
                                   model%scene%materials(materials(1))%poisson)

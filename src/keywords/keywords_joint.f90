@@ -24,7 +24,13 @@ contains
     spec%meaning = 'The law of a contraction joint. Closed it is elastic (KN, KT) with Coulomb '// &
                    'friction; bonded until the normal traction reaches the tensile strength, '// &
                    'which is then lost for good; open it carries nothing. Opening and tension '// &
-                   'are positive.'
+                   'are positive. Where faces must not go into each other, PENETRATION=tol '// &
+                   'repeats each increment with a contact pressure that is carried on until '// &
+                   'no point in contact is deeper than tol (or further apart while pressed); '// &
+                   'KN is then E/h of the softer side, h the depth of its elements, and KT '// &
+                   'E/THICKNESS/(2(1+nu)), unless given; a larger KN takes fewer repetitions. '// &
+                   'Points that are still bonded keep to KN, which with a tensile strength is '// &
+                   'E/THICKNESS as ever.'
     spec%example = '*JOINT LAW, NAME=CONTRACTION, FRICTION=0.6'
     spec%most_lines = 0
     allocate (spec%parameters, source=[ &
@@ -42,7 +48,11 @@ contains
                     lowest=0.0_rk), &
               field('THICKNESS', kind_real, 'makes KN from E when KN is not given', 'm', '0.02', &
                     lowest=0.0_rk, excludes_lowest=.true.), &
-              field('GAP', kind_real, 'opening at the start', 'm', '0', lowest=0.0_rk)])
+              field('GAP', kind_real, 'opening at the start', 'm', '0', lowest=0.0_rk), &
+              field('PENETRATION', kind_real, 'largest penetration of points in contact '// &
+                    '(augmented Lagrangian); KN then only leads the iteration, KT makes a '// &
+                    'sticking point yield as ever', 'm', &
+                    'pressure/KN', lowest=0.0_rk, excludes_lowest=.true.)])
   end subroutine describe_joint_law
 
   subroutine read_joint_law(this, model, faults)
@@ -66,6 +76,7 @@ contains
     new%law%cohesion = this%real('COHESION')
     new%law%thickness = this%real('THICKNESS')
     new%law%gap = this%real('GAP')
+    new%law%penetration = this%real('PENETRATION')
     if (new%law%gap > 0.0_rk .and. new%law%strength > 0.0_rk) then
       call this%fault_parameter(faults, 'TENSILE STRENGTH', 'a joint with a GAP has no strength', &
                                 'GAP or TENSILE STRENGTH, not both')

@@ -31,6 +31,7 @@ set(sources
   concrete_remarks.f90
   finish_concrete.f90
   finish_user_materials.f90
+  contact_defaults.f90
   finish_model.f90
   finish_tests.f90
   verify_model.f90

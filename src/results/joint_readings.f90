@@ -16,6 +16,7 @@ module joint_readings
   type :: joint_record
     logical, allocatable :: is_upstream(:), is_downstream(:) !< (points)
     type(extremes_by_face) :: opening, slip, pressure
+    real(rk) :: penetration = 0.0_rk !< largest [m]
   end type joint_record
 
 contains
@@ -97,13 +98,15 @@ contains
     end do
   end function leans_on
 
-  !> Takes note of one increment: opening (0 while closed), slip (its length) and closing pressure.
+  !> Takes note of one increment: opening (0 while closed), slip (its length), closing pressure and
+  !> how far the faces have gone into each other.
   subroutine note_joint(record, item, now, time)
     type(joint_record), intent(inout) :: record
     type(joint), intent(in) :: item
     type(joint_state), intent(in) :: now
     real(rk), intent(in) :: time !< total time [s]
     call note(record%opening, max(0.0_rk, opening_at_points(now)))
+    record%penetration = max(record%penetration, -minval(opening_at_points(now)))
     call note(record%slip, hypot(now%slip(1, :), now%slip(2, :)))
     call note(record%pressure, max(0.0_rk, -now%traction(1, :)))
 

@@ -14,6 +14,8 @@ module run_summaries
     real(rk) :: time = 0.0_rk !< of the step, reached so far [s]
     integer :: increments = 0, iterations = 0, cutbacks = 0
     integer :: most_iterations = 0 !< in one increment
+    integer :: augmentations = 0, most_augmentations = 0 !< of contact; most in one increment
+    real(rk) :: joint_condition = 0.0_rk !< of the system with all joints closed
     real(rk) :: largest_residual = 0.0_rk, largest_error = 0.0_rk !< error of the energy balance
     type(energy_balance) :: energy !< at its end [J]
     type(vibration_mode), allocatable :: modes(:) !< without shapes
@@ -79,6 +81,9 @@ contains
       last%cutbacks = now%cutbacks
       last%energy = now%energy
       last%most_iterations = max(last%most_iterations, now%iterations)
+      last%augmentations = last%augmentations + now%augmentations
+      last%most_augmentations = max(last%most_augmentations, now%augmentations)
+      last%joint_condition = max(last%joint_condition, now%joint_condition)
       last%largest_residual = max(last%largest_residual, now%residual)
       last%largest_error = max(last%largest_error, abs(now%energy%error))
     end associate

@@ -46,7 +46,7 @@ contains
     call put_joints(json, scene, record)
     call put_damage(json, record%damage)
     call put_umat(json, scene%umat)
-    call put_accuracy(json, summary)
+    call put_accuracy(json, scene, summary, record)
     call put_costs(json, costs, wall_clock() - summary%started_at)
     call put_files(json, record)
     call json%close_object()
@@ -275,15 +275,45 @@ contains
   end subroutine put_extremes
 
   !> How well the equations were met.
-  subroutine put_accuracy(json, summary)
+  subroutine put_accuracy(json, scene, summary, record)
     type(json_text), intent(inout) :: json
+    type(problem), intent(in) :: scene
     type(run_summary), intent(in) :: summary
+    type(run_record), intent(in) :: record
     call json%open_object('accuracy')
     call json%put_real(maxval([0.0_rk, summary%steps%largest_residual]), 'largest_residual')
     call json%put_real(maxval([0.0_rk, summary%steps%largest_error]), 'largest_energy_error')
     call json%put_integer(maxval([0, summary%steps%most_iterations]), 'most_iterations')
+    if (size(scene%joints) > 0) call put_contact(json, scene, summary, record)
     call json%close_object()
   end subroutine put_accuracy
+
+  !> How far faces of joints go into each other, held to how far they open, and the condition of the
+  !> equations with all joints closed.
+  subroutine put_contact(json, scene, summary, record)
+    type(json_text), intent(inout) :: json
+    type(problem), intent(in) :: scene
+    type(run_summary), intent(in) :: summary
+    type(run_record), intent(in) :: record
+    real(rk) :: opening
+    integer :: j
+    call json%put_real(maxval([0.0_rk, summary%steps%joint_condition]), 'joint_condition')
+    call json%put_integer(sum([0, summary%steps%augmentations]), 'augmentations')
+    call json%put_integer(maxval([0, summary%steps%most_augmentations]), 'most_augmentations')
+    call json%open_object('joints')
+    do j = 1, size(scene%joints)
+      opening = 0.0_rk
+      if (record%joints(j)%opening%at(1)%is_found) opening = record%joints(j)%opening%at(1)%value
+      call json%open_object(scene%joints(j)%name)
+      call json%put_real(record%joints(j)%penetration, 'largest_penetration')
+      call json%put_real(opening, 'largest_opening')
+      if (opening > 0.0_rk) then
+        call json%put_real(record%joints(j)%penetration/opening, 'penetration_over_opening')
+      end if
+      call json%close_object()
+    end do
+    call json%close_object()
+  end subroutine put_contact
 
   !> The ledger of time and memory.
   subroutine put_costs(json, costs, seconds)

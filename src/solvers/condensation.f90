@@ -10,6 +10,7 @@ module condensation
   use joint_forces, only: joint_field, reference_stiffness
   use joint_iteration, only: start_iteration, relief, closed_tangent
   use joint_compliance, only: find_compliance, friction_scale
+  use matrix_condition, only: estimate_condition
   use blas_threads, only: use_many_threads, use_one_thread
   use jump_block, only: jump_factor, take_jump_factor, compliance_of_jumps
   use newton_condensed, only: condensed_joints, iterate
@@ -50,6 +51,10 @@ contains
     self%num_factorisations = self%num_factorisations + 1
     call self%costs%stop('factorise')
     if (allocated(error)) return
+    if (.not. self%condition > 0.0_rk) then
+      call estimate_condition(matrix, closed, self%factor, self%condition, error)
+      if (allocated(error)) return
+    end if
     call self%costs%start('compliance', 'joint')
     call take_jump_factor(self%factor, operator, matrix%num_free, matrix%num_last, self%jumps)
     if (self%jumps%is_there) then

@@ -30,6 +30,11 @@ module equilibrium
   type :: balance_outcome
     logical :: has_converged = .false.
     integer :: iterations = 0
+    integer :: augmentations = 0 !< of the contact, each a further pass of iterations
+    integer :: first_pass = 0 !< iterations before the first augmentation, 0 for none
+    integer :: pass_start = 0 !< iterations before the present pass
+    real(rk) :: penetration = 0.0_rk !< largest of points in contact, over what is allowed
+    logical :: gives_up = .false. !< the penetration does not come down
     logical :: has_held_switches = .false. !< of laws whose stress jumps (theory 12)
     real(rk) :: residual = 0.0_rk !< out-of-balance over the reference force
     real(rk) :: correction = 0.0_rk !< that the out-of-balance still asks for, over the increment
@@ -38,6 +43,8 @@ module equilibrium
     real(rk), allocatable :: history(:) !< residuals of the iterations on inelastic solids
     real(rk) :: size_ratio = 1.0_rk !< of the increment that a material asks for, over this one
     character(:), allocatable :: failure !< why a material asks for a smaller one
+  contains
+    procedure :: own_iterations
   end type balance_outcome
 
   type, abstract :: equilibrium_solver
@@ -46,6 +53,8 @@ module equilibrium
     type(jump_operator) :: operator !< of the joints
     real(rk) :: weight = 1.0_rk !< of the joint forces
     integer :: num_factorisations = 0
+    !> Of the first matrix with all joints closed (matrix_condition); 0 without joints
+    real(rk) :: condition = 0.0_rk
     type(ledger) :: costs !< handed over to that of the run by the step
   contains
     procedure(prepare), deferred :: prepare
@@ -81,4 +90,13 @@ module equilibrium
       type(error_type), allocatable, intent(out) :: error
     end subroutine solve
   end interface
+
+contains
+
+  !> Iterations as they count for the size of increments: those of the first pass.
+  pure integer function own_iterations(self) result(iterations)
+    class(balance_outcome), intent(in) :: self
+    iterations = self%iterations
+    if (self%first_pass > 0) iterations = self%first_pass
+  end function own_iterations
 end module equilibrium

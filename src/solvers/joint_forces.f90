@@ -4,6 +4,7 @@ module joint_forces
   use joint_law, only: joint_state
   use joint_points, only: joint
   use joint_operator, only: jump_operator
+  use contact_augmentation, only: contact_multiplier
   implicit none
   private
   public :: joint_field, joint_work, start_joints, reference_stiffness
@@ -12,7 +13,8 @@ module joint_forces
 
   !> What the laws say at a trial jump, all points of all joints in one row.
   type :: joint_field
-    real(rk), allocatable :: gap(:) !< (points) at the start [m]
+    real(rk), allocatable :: gap(:) !< (points) at the start, with the shift of the contact [m]
+    type(contact_multiplier) :: contact
     real(rk), allocatable :: jump(:, :) !< (3, points) where the laws were evaluated [m]
     real(rk), allocatable :: multiplier(:, :) !< (2, points) friction of the last iterate [Pa]
     real(rk), allocatable :: scale(:) !< (points) r of the augmented form [Pa/m]
@@ -98,7 +100,7 @@ contains
     end do
   end subroutine gather_tractions
 
-  !> The gaps of all points.
+  !> The gaps of all points, with the shifts of their contact.
   subroutine gather_gaps(operator, states, gap)
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: states(:)
@@ -106,7 +108,8 @@ contains
     integer :: j
     allocate (gap(operator%num_points))
     do j = 1, size(states)
-      gap(operator%first_point(j):operator%first_point(j + 1) - 1) = states(j)%gap
+      gap(operator%first_point(j):operator%first_point(j + 1) - 1) = states(j)%gap &
+                                                                     + states(j)%shift
     end do
   end subroutine gather_gaps
 

@@ -6,11 +6,12 @@ module joint_iteration
   use joint_points, only: joint
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, evaluate_joints, gather_tractions, gather_jumps, gather_gaps
+  use contact_augmentation, only: start_multiplier, measure_contact, update_multiplier
   use equilibrium, only: force_balance, balance_outcome
   implicit none
   private
   public :: start_iteration, take_step, linearise_next, relief, closed_tangent
-  public :: measure_residual, measure_correction
+  public :: measure_residual, measure_correction, augment_contact
 
   !> Stiffness left to open and sliding points in the iteration matrix, over the closed joint's: a
   !> block that touches nothing for an iterate moves far, but stays in reach. The balance itself is
@@ -28,6 +29,9 @@ module joint_iteration
   real(rk), parameter :: sufficient_decrease = 0.5_rk
   !> Joint forces below this part of the bulk's largest force are measured against the latter.
   real(rk), parameter :: smallest_share = 1.0e-6_rk
+  !> Passes of the augmented Lagrangian in an increment. It takes some 5 where the structure is as
+  !> stiff as the contact.
+  integer, parameter :: most_augmentations = 25
   !> An increment of the jumps below this part of the jumps is measured against the latter.
   real(rk), parameter :: smallest_increment = 1.0e-3_rk
 
@@ -55,7 +59,8 @@ contains
     field%response = balance%guess
     call gather_tractions(operator, old, field%traction)
     call gather_jumps(operator, old, field%start_jump)
-    call gather_gaps(operator, old, field%gap)
+    call start_multiplier(joints, old, new, field%contact)
+    call gather_gaps(operator, new, field%gap)
     field%start_force = norm2(spread(operator%area, 1, 3)*field%traction)
     field%multiplier = field%traction(2:3, :)
     field%tangent = closed_tangent(reference)
@@ -119,7 +124,9 @@ contains
     type(joint_field), intent(inout) :: field
     type(joint_state), intent(inout) :: new(:)
     logical :: is_halfway, is_nearer
-    is_halfway = outcome%iterations >= patience .and. &
+    integer :: iterations
+    iterations = outcome%iterations - outcome%pass_start
+    is_halfway = iterations >= patience .and. &
                  outcome%residual > sufficient_decrease*field%last_residual
     if (is_halfway) then
       field%jump = field%response - 0.5_rk*field%step
@@ -127,11 +134,38 @@ contains
     end if
     call approach_contact(reference, field, is_nearer)
     if (is_halfway .or. is_nearer) call linearise(joints, operator, old, reference, field, new)
-    if (outcome%iterations >= patience_with_friction .and. outcome%residual > near_by) then
+    if (iterations >= patience_with_friction .and. outcome%residual > near_by) then
       field%tangent(2:3, 1, :) = 0.0_rk
     end if
     field%last_residual = outcome%residual
   end subroutine linearise_next
+
+  !> After a balance: where points in contact penetrate more than their law allows, their contact is
+  !> augmented and the laws are linearised anew at the balance found; it is not converged then.
+  subroutine augment_contact(joints, operator, old, reference, field, new, outcome)
+    type(joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
+    type(joint_field), intent(inout) :: field
+    type(joint_state), intent(inout) :: new(:)
+    type(balance_outcome), intent(inout) :: outcome
+    integer :: worst_point
+    if (.not. field%contact%is_there) return
+    call measure_contact(joints, operator, new, field%contact, outcome%penetration, worst_point)
+    if (outcome%penetration <= 1.0_rk) return
+    outcome%has_converged = .false.
+    outcome%worst_point = worst_point
+    outcome%gives_up = outcome%augmentations >= most_augmentations
+    if (outcome%gives_up) return
+    outcome%augmentations = outcome%augmentations + 1
+    if (outcome%augmentations == 1) outcome%first_pass = outcome%iterations
+    outcome%pass_start = outcome%iterations
+    field%last_residual = huge(1.0_rk)
+    call update_multiplier(joints, operator, field%scale/reference(1, :), field%contact, new)
+    call gather_gaps(operator, new, field%gap)
+    call linearise(joints, operator, old, reference, field, new)
+  end subroutine augment_contact
 
   !> Goes nearer to the contact where a point that was open has run through it. Without the joint's
   !> resistance it went far too deep; friction would take that for pressure and stick. The point is

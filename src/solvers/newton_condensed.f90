@@ -12,7 +12,7 @@ module newton_condensed
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, linear_tractions
   use joint_iteration, only: measure_residual, measure_correction, take_step, &
-                             linearise_next
+                             linearise_next, augment_contact
   use dense_factor, only: lu_factor, factorise_dense, solve_dense
   use equilibrium, only: balance_outcome
   use step_plan, only: step_controls
@@ -51,7 +51,7 @@ contains
     type(balance_outcome), intent(out) :: outcome
     type(changed_tangent) :: tangent
     real(rk), dimension(3, operator%num_points) :: correction, linear
-    do while (outcome%iterations < controls%max_iterations)
+    do while (outcome%iterations - outcome%pass_start < controls%max_iterations)
       outcome%iterations = outcome%iterations + 1
       call change_tangent(self, operator%area, field%tangent, tangent)
       if (tangent%factor%is_singular) return ! a smaller increment may pass by such an iterate
@@ -63,7 +63,10 @@ contains
         call correct(self, tangent, excess_jump(field%traction), correction)
         call measure_correction(field, correction, controls%increment_tolerance, outcome)
       end if
-      if (outcome%has_converged) exit
+      if (outcome%has_converged) then
+        call augment_contact(joints, operator, old, self%reference, field, new, outcome)
+        if (outcome%has_converged .or. outcome%gives_up) exit
+      end if
       call linearise_next(joints, operator, old, self%reference, outcome, field, new)
       field%response = field%response &
                        + excess_jump(field%iterate - self%reference*(field%jump - field%response))

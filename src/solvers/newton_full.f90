@@ -10,9 +10,10 @@ module newton_full
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, reference_stiffness, linear_tractions
   use joint_iteration, only: start_iteration, take_step, linearise_next, closed_tangent, &
-                             measure_residual, measure_correction
+                             measure_residual, measure_correction, augment_contact
   use joint_compliance, only: find_compliance, friction_scale
   use linear_solver, only: equation_solver
+  use matrix_condition, only: estimate_condition
   use solver_catalogue, only: make_solver, unsymmetric_solver
   use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
   implicit none
@@ -44,7 +45,7 @@ contains
     type(joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: compliance(:, :)
+    real(rk), allocatable :: compliance(:, :), closed(:)
     self%operator = operator
     self%weight = weight
     self%matrix = matrix
@@ -53,6 +54,12 @@ contains
     call reference_stiffness(joints, operator, self%reference)
     call self%factorise_tangent(operator, closed_tangent(self%reference), error)
     if (allocated(error)) return
+    if (.not. self%condition > 0.0_rk) then
+      allocate (closed, source=values)
+      call operator%add_stiffness(weight*closed_tangent(self%reference), matrix, closed)
+      call estimate_condition(matrix, closed, self%factor, self%condition, error)
+      if (allocated(error)) return
+    end if
     call find_compliance(self%factor, operator, matrix%num_free, compliance, error)
     if (allocated(error)) return
     call friction_scale(compliance, operator, self%reference, weight, self%scale)
@@ -73,7 +80,7 @@ contains
     real(rk) :: unused(size(x))
     call start_iteration(balance, joints, self%operator, self%reference, self%scale, old, field, &
                          new)
-    do while (outcome%iterations < self%controls%max_iterations)
+    do while (outcome%iterations - outcome%pass_start < self%controls%max_iterations)
       outcome%iterations = outcome%iterations + 1
       call self%factorise_tangent(self%operator, field%tangent, error)
       if (allocated(error)) then
@@ -94,7 +101,10 @@ contains
         if (allocated(error)) return
         call measure_correction(field, answer, self%controls%increment_tolerance, outcome)
       end if
-      if (outcome%has_converged) return
+      if (outcome%has_converged) then
+        call augment_contact(joints, self%operator, old, self%reference, field, new, outcome)
+        if (outcome%has_converged .or. outcome%gives_up) return
+      end if
       call linearise_next(joints, self%operator, old, self%reference, outcome, field, new)
     end do
   end subroutine solve

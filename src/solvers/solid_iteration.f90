@@ -219,7 +219,10 @@ contains
       end if
       call self%solver%solve(task%balance, scene%joints, before%joints, after%joints, task%x, &
                              inner, error)
-      outcome%iterations = max(outcome%iterations + 1, inner%iterations)
+      outcome%iterations = max(outcome%iterations + 1, inner%own_iterations())
+      outcome%augmentations = outcome%augmentations + inner%augmentations
+      outcome%penetration = inner%penetration
+      outcome%gives_up = inner%gives_up
       outcome%worst_point = inner%worst_point
       outcome%residual = inner%residual
       now%is_lost = .not. inner%has_converged

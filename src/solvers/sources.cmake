@@ -11,6 +11,8 @@ set(sources
   arpack.f90
   eigen_modes.f90
   joint_operator.f90
+  contact_augmentation.f90
+  matrix_condition.f90
   joint_forces.f90
   equilibrium.f90
   equilibrium_linear.f90
@@ -25,6 +27,7 @@ set(sources
   step_equilibrium.f90
   step_control.f90
   user_increments.f90
+  slip_reach.f90
   step_report.f90
   motion_state.f90
   anderson_mixing.f90

@@ -10,6 +10,7 @@ module step_report
   use step_control, only: increment_control
   use step_loads, only: step_time
   use step_system, only: dam_system
+  use slip_reach, only: check_reach
   use user_increments, only: end_user_increment
   implicit none
   private
@@ -29,6 +30,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     now%increment = now%increment + 1
     now%iterations = outcome%iterations
+    now%augmentations = outcome%augmentations
     now%cutbacks = control%cutbacks
     now%residual = outcome%residual
     now%has_held_switches = outcome%has_held_switches
@@ -39,6 +41,8 @@ contains
     call results%increment_done(scene, now, error)
     if (allocated(error)) return
     call end_user_increment(scene, now, results, error)
+    if (allocated(error)) return
+    call check_reach(scene%joints, now%joints, now%total_time, error)
     if (allocated(error) .or. now%is_last_of_step) return
     if (now%increment >= plan%max_increments) then
       call raise(error, "step '"//plan%name//"' has used its "//count_text(plan%max_increments)// &
@@ -54,15 +58,22 @@ contains
     type(increment_control), intent(in) :: control
     type(state), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
-    character(200) :: text
+    character(240) :: text
     integer :: p, j
     if (allocated(outcome%failure)) then
       call raise(error, failure_text(outcome, control, now))
       return
     end if
-    write (text, '(a,es9.2,a,i0,a,es8.1,a,es12.5)') 'no equilibrium: out of balance by ', &
-      outcome%residual, ' after ', outcome%iterations, ' iterations with an increment of ', &
-      control%last_size, ', last equilibrium at time ', now%total_time
+    if (outcome%gives_up) then
+      write (text, '(a,g0.3,a,i0,a,es8.1,a,es12.5)') 'contact penetrates ', outcome%penetration, &
+        ' times as far as *JOINT LAW, PENETRATION allows after ', outcome%augmentations, &
+        ' augmentations (a larger KN needs fewer) with an increment of ', control%last_size, &
+        ', last equilibrium at time ', now%total_time
+    else
+      write (text, '(a,es9.2,a,i0,a,es8.1,a,es12.5)') 'no equilibrium: out of balance by ', &
+        outcome%residual, ' after ', outcome%iterations, ' iterations with an increment of ', &
+        control%last_size, ', last equilibrium at time ', now%total_time
+    end if
     p = outcome%worst_point
     if (p == 0) then
       call raise(error, trim(text)//worst_node(scene, system, outcome, now%step))
@@ -110,7 +121,7 @@ contains
     type(balance_outcome), intent(in) :: outcome
     character(:), allocatable :: text
     text = ''
-    if (plan%procedure /= 'STATIC' .or. outcome%has_converged) return
+    if (plan%procedure /= 'STATIC' .or. outcome%has_converged .or. outcome%gives_up) return
     text = ' (a block that its joints no longer hold has no static equilibrium)'
   end function hint
 

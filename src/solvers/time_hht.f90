@@ -166,7 +166,8 @@ contains
       call results%costs%stop('energy')
       call swap(moving, trial)
       call show_motion(system%numbers, moving, now)
-      call control%accept(tool%solids%effort(outcome%iterations))
+      now%joint_condition = max(now%joint_condition, tool%solids%solver%condition)
+      call control%accept(tool%solids%effort(outcome%own_iterations()))
       call close_increment(scene, plan, when, control, outcome, now, results, error)
       if (allocated(error)) return
     end do

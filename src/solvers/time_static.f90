@@ -57,6 +57,7 @@ contains
     call results%costs%stop('forces')
     if (allocated(error)) return
     now%num_unknowns = system%matrix%num_free
+    now%joint_condition = max(now%joint_condition, solids%solver%condition)
     now%v = 0.0_rk
     now%a = 0.0_rk
     call start_motion(system%numbers, scene%joints, now, moving)
@@ -123,7 +124,7 @@ contains
       call add_static_work(scene, system%matrix%num_free, moving, trial, now%energy)
       moving = trial
       call show_motion(system%numbers, moving, now)
-      call control%accept(solids%effort(outcome%iterations))
+      call control%accept(solids%effort(outcome%own_iterations()))
       call close_increment(scene, plan, when, control, outcome, now, results, error)
       if (allocated(error)) return
     end do

@@ -15,6 +15,7 @@ program test_joint_contraction
   call bonded_opens_once(log)
   call contact_is_unilateral(log)
   call gap_closes_first(log)
+  call shifted_contact(log)
   call friction_cycle(log)
   call slip_restarts_after_opening(log)
   call parted_point_has_no_cohesion(log)
@@ -95,6 +96,28 @@ contains
     call go(law, [-1.001e-3_rk, 0.0_rk, 0.0_rk], state)
     call check_close(log, state%traction(1, 1), -1.0e6_rk, 1.0e-3_rk, 'closed after the gap')
   end subroutine gap_closes_first
+
+  !> A multiplier of 1 MPa, shift 1 um: contact presses before the faces touch, friction feels what
+  !> it carries, and the springs store half the pressure times what really penetrates.
+  subroutine shifted_contact(log)
+    type(test_log), intent(inout) :: log
+    type(contraction_law) :: law
+    type(joint_state) :: state
+    real(rk) :: energy(1)
+    law = joint_of(0.0_rk, 0.6_rk, 0.0_rk, 1.0e-3_rk)
+    call law%start_state([0.0_rk], state)
+    state%shift = -1.0e-6_rk
+    call go(law, [-1.0e-3_rk + 0.2e-6_rk, 0.0_rk, 0.0_rk], state)
+    call check_close(log, state%traction(1, 1), -0.8e6_rk, 1.0e-3_rk, 'presses while apart')
+    call go(law, [-1.0e-3_rk - 0.1e-6_rk, 0.0_rk, 0.0_rk], state)
+    call check_close(log, state%traction(1, 1), -1.1e6_rk, 1.0e-3_rk, 'multiplier and spring')
+    call law%stored_energy(state, energy)
+    call check_close(log, energy(1), 0.5_rk*1.1e6_rk*0.1e-6_rk, 1.0e-9_rk, 'stored energy')
+    call go(law, [-1.0e-3_rk - 0.1e-6_rk, 1.0_rk, 0.0_rk], state)
+    call check_close(log, state%traction(2, 1), 0.6_rk*1.1e6_rk, 1.0e-3_rk, 'friction of it')
+    call go(law, [-1.0e-3_rk + 1.1e-6_rk, 1.0_rk, 0.0_rk], state)
+    call check(log, state%status(1) == state_open, 'opens beyond the shift')
+  end subroutine shifted_contact
 
   !> Pressure 1 MPa, limit 0.7 MPa: stick, slip, back, slip the other way.
   subroutine friction_cycle(log)

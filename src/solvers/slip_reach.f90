@@ -1,0 +1,51 @@
+!> Small sliding: segments between faces of different meshes are built once, on the faces as meshed.
+!> A point that slips farther than a facet faces another part of the other face; results would be
+!> those of another structure.
+module slip_reach
+  use kinds, only: rk
+  use errors, only: error_type, raise
+  use joint_law, only: joint_state
+  use joint_points, only: joint
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: check_reach
+
+contains
+
+  !> Names the point that has gone farthest beyond its reach, closed or open.
+  subroutine check_reach(joints, states, time, error)
+    type(joint), intent(in) :: joints(:)
+    type(joint_state), intent(in) :: states(:)
+    real(rk), intent(in) :: time !< total time [s]
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: ratio, largest
+    integer :: j, p, worst(2)
+    largest = 1.0_rk
+    worst = 0
+    do j = 1, size(joints)
+      if (.not. allocated(joints(j)%reach)) cycle
+      do p = 1, joints(j)%num_points
+        ratio = slip_at(states(j), p)/joints(j)%reach(p)
+        if (ratio <= largest) cycle
+        largest = ratio
+        worst = [j, p]
+      end do
+    end do
+    if (worst(1) == 0) return
+    associate (seam => joints(worst(1)), p => worst(2))
+      call raise(error, 'joint '//seam%name//' has slipped '// &
+                 as_text(slip_at(states(worst(1)), p))//' m at ('//as_text(seam%x(1, p))//', '// &
+                 as_text(seam%x(2, p))//', '//as_text(seam%x(3, p))//') by time '// &
+                 as_text(time)//'; its faces are matched as they were meshed, which allows '// &
+                 as_text(seam%reach(p))//' m there (a facet)')
+    end associate
+  end subroutine check_reach
+
+  !> How far the two sides have moved along the joint [m].
+  pure real(rk) function slip_at(now, p) result(slip)
+    type(joint_state), intent(in) :: now
+    integer, intent(in) :: p
+    slip = hypot(now%jump(2, p), now%jump(3, p))
+  end function slip_at
+end module slip_reach
