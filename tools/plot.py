@@ -25,10 +25,10 @@ import numpy as np
 from keyway_tools.pictures_curves import (
     plot_damage_growth,
     plot_energy,
-    plot_joint_areas,
     plot_nodes,
     plot_openings,
 )
+from keyway_tools.pictures_joints import plot_joint_areas
 from keyway_tools.pictures_material import COMPONENTS, plot_material, read_curve
 from keyway_tools.results_reader import Results, find_jobs
 

@@ -56,12 +56,24 @@ def _write_mesh(file: h5py.File, mesh: BrickMesh) -> None:
             flags[mesh.surface_nodes(name.upper())] = 1
         file[f"faces/{name}"] = flags
     for name, members in mesh.joint_sets.items():
-        pairs = np.unique(
-            mesh.joints[members].reshape(-1, 2, 4).transpose(0, 2, 1).reshape(-1, 2), axis=0
-        )
-        pairs = pairs[pairs[:, 0] != pairs[:, 1]]
-        file[f"joints/{name}/master"] = pairs[:, :1] + 1
-        file[f"joints/{name}/x"] = mesh.x[pairs[:, 0]]
+        _write_cells(file.create_group(f"joints/{name}/cells"), mesh, members)
+
+
+def _write_cells(group: h5py.Group, mesh: BrickMesh, members: np.ndarray) -> None:
+    """The slave face of each JOINT8 element, cut in two: corners on nodes and between them."""
+    corners, nodes, weights = [], [], []
+    for a, b, c, d in mesh.joints[members][:, 4:]:
+        start = len(nodes)
+        nodes += [(a, a), (a, b), (d, c), (d, d), (b, b), (c, c)]
+        weights += [(0.5, 0.5)] * 6
+        corners += [(start, start + 1, start + 2, start + 3)]
+        corners += [(start + 1, start + 4, start + 5, start + 2)]
+    group["element"] = np.repeat(len(mesh.bricks) + members + 1, 2)
+    group["corner"] = np.ravel(corners) + 1
+    group["first"] = 4 * np.arange(len(corners) + 1) + 1
+    group["node"] = np.ravel(nodes) + 1
+    group["weight"] = np.ravel(weights)
+    group["first_node"] = 2 * np.arange(len(nodes) + 1) + 1
 
 
 def _write_points(file: h5py.File, mesh: BrickMesh) -> None:

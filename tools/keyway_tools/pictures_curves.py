@@ -1,16 +1,13 @@
-"""Histories: joint openings, nodes, energies; openings over the area of a joint."""
+"""Histories: joint openings, nodes, energies, damage."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 import numpy as np
-from matplotlib.collections import PolyCollection
-from matplotlib.ticker import MaxNLocator
-from matplotlib.tri import Triangulation
 
 from .picture_style import COLOURS, GREY, new_figure, save_figure
-from .results_reader import Results, Step, read_csv
+from .results_reader import Results, read_csv
 
 MOST_CURVES = 6
 
@@ -125,61 +122,3 @@ def plot_damage_growth(results: Results, path: Path) -> Path | None:
         axis.margins(x=0.0)
     figure.align_ylabels()
     return save_figure(figure, path)
-
-
-def plot_joint_areas(results: Results, step: Step, path: Path) -> Path | None:
-    """Largest opening over the area of every joint, seen square to it."""
-    values = 1000.0 * step.envelopes["OPENING"]
-    quads = {name: results.joint_quads(name) for name in results.joint_names()}
-    quads = {name: faces for name, faces in quads.items() if len(faces)}
-    if not quads or np.nanmax(values) <= 0.0:
-        return None
-    columns = min(3, len(quads))
-    rows = -(-len(quads) // columns)
-    figure, axes = new_figure(
-        rows, width=2.6 * columns + 1.6, row_height=4.6, columns=columns, squeeze=False, sharey=True
-    )
-    top = max(np.nanmax(np.append(values[faces], 0.0)) for faces in quads.values())
-    shade = None
-    for axis, (name, faces) in zip(axes.flat, quads.items(), strict=False):
-        shade = _joint_panel(axis, results.x, faces, np.nan_to_num(values), top or 1.0)
-        largest = np.nanmax(np.append(values[faces], 0.0))
-        axis.set_title(f"{name}: {largest:.3g} mm")
-    for axis in axes.flat[len(quads) :]:
-        axis.set_axis_off()
-    bar = figure.colorbar(shade, ax=axes.ravel().tolist(), shrink=0.8, aspect=30)
-    bar.set_label("largest opening [mm]")
-    bar.outline.set_visible(False)
-    title = f"Joint openings over step {step.name.title()}"
-    figure.suptitle(title, x=0.01, ha="left", fontsize=12, fontweight="bold")
-    return save_figure(figure, path)
-
-
-def _joint_panel(axis, x: np.ndarray, faces: np.ndarray, values: np.ndarray, top: float):
-    """One joint in its own plane: along it and up, or in plan where it lies flat."""
-    nodes = np.unique(faces)
-    size = np.ptp(x[nodes], axis=0)
-    if size[2] > 0.05 * size.max():
-        plan = x[nodes, :2] - x[nodes, :2].mean(axis=0)
-        across = np.linalg.svd(plan, full_matrices=False)[2][0]
-        across = across if across[np.abs(across).argmax()] > 0.0 else -across
-        along, up = x[:, :2] @ across, x[:, 2]
-        along = along - along[nodes].min()
-        labels = ("along the joint [m]", "height z [m]")
-    else:
-        along, up, labels = x[:, 0], x[:, 1], ("x [m]", "y [m]")
-    triangles = np.vstack([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
-    levels = MaxNLocator(nbins=10, steps=[1, 2, 2.5, 5, 10]).tick_values(0.0, top)
-    shade = axis.tricontourf(
-        Triangulation(along, up, triangles), values, levels=levels, cmap="viridis_r"
-    )
-    ring = np.stack([along[faces], up[faces]], axis=-1)
-    axis.add_collection(PolyCollection(ring, facecolors="none", edgecolors="#00000030", lw=0.6))
-    margin = 0.03 * size.max()
-    axis.set_aspect("equal")
-    axis.set_xlim(along[nodes].min() - margin, along[nodes].max() + margin)
-    axis.set_ylim(up[nodes].min() - margin, up[nodes].max() + margin)
-    axis.set_xlabel(labels[0])
-    axis.set_ylabel(labels[1])
-    axis.grid(False)
-    return shade

@@ -63,11 +63,12 @@ class Faces:
         x = self.results.x if shift is None else self.results.x + shift
         parts = []
         for name in self.results.joint_names():
-            quads = self.results.joint_quads(name)
-            if len(quads) == 0:
+            joint = self.results.joint_faces(name)
+            if joint is None or len(joint.facets) == 0:
                 continue
-            nodes, place = np.unique(quads, return_inverse=True)
-            faces = np.hstack([np.full((len(quads), 1), 4), place.reshape(quads.shape)])
+            nodes, place = np.unique(joint.facets, return_inverse=True)
+            place = place.reshape(joint.facets.shape)
+            faces = np.hstack([np.full((len(place), 1), 4), place])
             part = pv.PolyData(x[nodes].astype(float), faces.ravel())
             if values is not None:
                 part["value"] = values[nodes]

@@ -11,6 +11,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from .joint_faces import JointFaces, read_joint_faces
+
 # Fields of *ENVELOPE and the names of their extremes in job.h5.
 ENVELOPE_NAMES = {
     "S1": "S1_MAX",
@@ -72,6 +74,16 @@ class Results:
     def node_id(self) -> np.ndarray:
         """The deck's number of each node."""
         return self.file["mesh/node_id"][:]
+
+    @cached_property
+    def node_position(self) -> dict[int, int]:
+        """The position of each node by the deck's number."""
+        return {int(number): place for place, number in enumerate(self.node_id)}
+
+    @cached_property
+    def element_id(self) -> np.ndarray:
+        """The deck's number of each element."""
+        return self.file["mesh/element_id"][:]
 
     @cached_property
     def element_types(self) -> np.ndarray:
@@ -176,16 +188,9 @@ class Results:
         """Names of the joints."""
         return list(self.file.get("joints", {}))
 
-    def joint_quads(self, name: str) -> np.ndarray:
-        """Master faces of the joint's elements, node positions, shape (elements, 4)."""
-        master = self.file[f"joints/{name}/master"][:]
-        position = {int(number): place for place, number in enumerate(self.node_id)}
-        inside = np.zeros(len(self.x), dtype=bool)
-        inside[
-            [position[int(number)] for number in np.unique(master) if int(number) in position]
-        ] = True
-        faces = self.connectivity[self.element_types == "JOINT8", :4]
-        return faces[inside[faces].any(axis=1)]
+    def joint_faces(self, name: str) -> JointFaces | None:
+        """The polygons of a joint."""
+        return read_joint_faces(self.file[f"joints/{name}"], self.node_position, self)
 
 
 def _text(word) -> str:
