@@ -1,5 +1,6 @@
 !> What a model holds, in lines for people.
 module model_summary
+  use joint_points, only: joint
   use kinds, only: rk
   use material_law, only: material
   use mesh_sets, only: named_set
@@ -24,7 +25,8 @@ contains
            row('mass', trim(merge('lumped    ', 'consistent', scene%has_lumped_mass)))
     text = text//sets_of('Node sets', 'nodes', scene%node_sets)
     text = text//sets_of('Element sets', 'elements', scene%element_sets)
-    text = text//surfaces_of(scene)//materials_of(scene)//joints_of(scene)//amplitudes_of(scene)
+    text = text//surfaces_of(scene)//materials_of(scene)//joints_of(scene)//ties_of(scene)// &
+           amplitudes_of(scene)
     text = text//loads_of(scene)//steps_of(scene)//tests_of(scene)
   end function summary_of
 
@@ -141,12 +143,42 @@ contains
     if (size(scene%joints) > 0) text = nl//'Joints'
     do i = 1, size(scene%joints)
       call scene%joints(i)%law%reference_stiffness(k)
-      text = text//nl//row(scene%joints(i)%name, as_text(scene%joints(i)%num_points)// &
+      text = text//nl//row(scene%joints(i)%name, make_of(scene%joints(i))//', '// &
+                           as_text(scene%joints(i)%num_points)// &
                            ' points, '//as_text(sum(scene%joints(i)%area))//' m2, KN '// &
                            as_text(k(1))//' Pa/m, KT '//as_text(k(2))//' Pa/m, law '// &
                            scene%joints(i)%law%name)
     end do
   end function joints_of
+
+  !> What a joint is made of, and where its law is asked.
+  pure function make_of(item) result(text)
+    type(joint), intent(in) :: item
+    character(:), allocatable :: text
+    text = 'surfaces'
+    if (item%is_matching) text = 'JOINT8'
+    if (.not. item%is_nodal) text = text//' with Gauss points'
+  end function make_of
+
+  !> Couplings of different meshes without a law: exact ties, springs.
+  pure function ties_of(scene) result(text)
+    type(problem), intent(in) :: scene
+    character(:), allocatable :: text
+    integer :: i
+    text = ''
+    if (size(scene%ties) + size(scene%couplings) > 0) text = nl//'Ties and interfaces'
+    do i = 1, size(scene%ties)
+      text = text//nl//row(scene%ties(i)%name, 'TIE, exact: '// &
+                           as_text(size(scene%ties(i)%node))//' nodes follow')
+    end do
+    do i = 1, size(scene%couplings)
+      associate (now => scene%couplings(i))
+        text = text//nl//row(now%name, now%kind//' of springs, '//as_text(size(now%area))// &
+                             ' points, '//as_text(sum(now%area))//' m2, STIFFNESS '// &
+                             as_text(now%stiffness)//' Pa/m')
+      end associate
+    end do
+  end function ties_of
 
   pure function amplitudes_of(scene) result(text)
     type(problem), intent(in) :: scene

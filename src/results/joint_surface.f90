@@ -6,6 +6,7 @@
 !> that see it, by area and shape function. A corner that cells in two planes share is drawn twice.
 module joint_surface
   use kinds, only: rk
+  use joint_axes, only: share_a_plane
   use joint_points, only: joint, joint_cells
   use problem_definition, only: problem
   use analysis_state, only: state
@@ -18,8 +19,9 @@ module joint_surface
   !> Opening, slip 1 and 2, normal and two shear tractions, part of the reach that is used.
   integer, parameter :: num_values = 7
 
-  !> Points of a place between the nodes count for a cell whose normal is less than 30 degrees away.
-  real(rk), parameter :: same_plane = 0.5_rk*sqrt(3.0_rk)
+  !> Weights this small, or that differ by so little, come from roundoff in the clipping of facets,
+  !> whose coordinates are of order 1.
+  real(rk), parameter :: nothing = 1.0e-10_rk
 
   !> Corners are not shared between joints.
   type :: drawn_joints
@@ -29,12 +31,20 @@ module joint_surface
     integer, allocatable :: element(:) !< (cells) JOINT8 or the solid behind the slave face
     integer, allocatable :: joint(:) !< (cells) position of the joint
     integer, allocatable :: joint_of(:) !< (corners) position of the joint
-    integer, allocatable :: corner_of(:) !< (corners) the corner of the joint's cells
+    integer, allocatable :: first_node(:) !< (corners + 1) where a corner's nodes start
+    integer, allocatable :: node(:) !< of the slave face, ascending
+    real(rk), allocatable :: weight(:) !< they add up to 1
     integer, allocatable :: first_point(:) !< (corners + 1) where a corner's points start
     integer, allocatable :: point(:) !< of the joint
     real(rk), allocatable :: share(:) !< what each brings
-    integer, allocatable :: before(:) !< (corners) the last one of the same corner of cells, 0: none
+    integer, allocatable :: before(:) !< (corners) the last one with the same first node, 0: none
   end type drawn_joints
+
+  !> A corner as one cell sees it.
+  type :: corner_of_cell
+    integer, allocatable :: node(:), point(:)
+    real(rk), allocatable :: weight(:), share(:)
+  end type corner_of_cell
 
   !> Which points belong to the nodes of a joint's slave face.
   type :: node_points
@@ -57,17 +67,17 @@ contains
       num_cells = num_cells + size(scene%joints(j)%cells%element)
       num_ends = num_ends + size(scene%joints(j)%cells%corner)
     end do
-    allocate (drawn%first(num_cells + 1), drawn%first_point(num_ends + 1), source=1)
+    allocate (drawn%first(num_cells + 1), source=1)
+    allocate (drawn%first_node(num_ends + 1), drawn%first_point(num_ends + 1), source=1)
     allocate (drawn%element(num_cells), drawn%joint(num_cells))
-    allocate (drawn%corner(num_ends), drawn%joint_of(num_ends), drawn%corner_of(num_ends), &
-              drawn%before(num_ends))
+    allocate (drawn%corner(num_ends), drawn%joint_of(num_ends), drawn%before(num_ends))
+    allocate (drawn%node(num_ends), drawn%weight(num_ends))
     allocate (drawn%point(num_ends), drawn%share(num_ends))
     do j = 1, size(scene%joints)
       if (allocated(scene%joints(j)%cells%first)) call draw_joint(scene, j, drawn)
     end do
     deallocate (drawn%before)
     drawn%joint_of = drawn%joint_of(:drawn%num_corners)
-    drawn%corner_of = drawn%corner_of(:drawn%num_corners)
   end subroutine find_drawn_joints
 
   !> Adds the cells of one joint.
@@ -76,13 +86,12 @@ contains
     integer, intent(in) :: j !< position of the joint
     type(drawn_joints), intent(inout) :: drawn
     type(node_points) :: at_nodes
-    integer, allocatable :: newest(:), points(:)
-    real(rk), allocatable :: shares(:)
+    type(corner_of_cell) :: seen
+    integer :: newest(scene%mesh%num_nodes), c, i, number, last
     real(rk) :: normal(3)
-    integer :: c, i, number, last
     call list_points(scene%joints(j), scene%mesh%num_nodes, at_nodes)
+    newest = 0
     associate (item => scene%joints(j), cells => scene%joints(j)%cells)
-      allocate (newest(size(cells%first_node) - 1), source=0)
       do c = 1, size(cells%element)
         drawn%num_cells = drawn%num_cells + 1
         drawn%element(drawn%num_cells) = cells%element(c)
@@ -90,12 +99,10 @@ contains
         normal = normal_of_cell(scene%mesh%x, item, c)
         last = drawn%first(drawn%num_cells) - 1
         do i = cells%first(c), cells%first(c + 1) - 1
-          call choose_points(item, at_nodes, cells%corner(i), normal, points, shares)
-          number = copy_with(drawn, newest(cells%corner(i)), points)
-          if (number == 0) then
-            call add_corner(j, cells%corner(i), points, shares, newest(cells%corner(i)), drawn)
-            number = drawn%num_corners
-          end if
+          call find_nodes(cells, cells%corner(i), seen)
+          call choose_points(item, at_nodes, normal, seen)
+          number = corner_like(drawn, newest(seen%node(1)), seen)
+          if (number == 0) call add_corner(j, seen, newest(seen%node(1)), drawn, number)
           last = last + 1
           drawn%corner(last) = number
         end do
@@ -166,77 +173,123 @@ contains
     end do
   end function at_corner
 
+  !> The nodes that a corner lies on or between, ascending, each once.
+  pure subroutine find_nodes(cells, corner, seen)
+    type(joint_cells), intent(in) :: cells
+    integer, intent(in) :: corner
+    type(corner_of_cell), intent(inout) :: seen
+    integer :: k, place
+    seen%node = [integer ::]
+    seen%weight = [real(rk) ::]
+    do k = cells%first_node(corner), cells%first_node(corner + 1) - 1
+      if (abs(cells%weight(k)) <= nothing) cycle
+      place = findloc(seen%node, cells%node(k), dim=1)
+      if (place > 0) then ! a triangle names one of its nodes twice
+        seen%weight(place) = seen%weight(place) + cells%weight(k)
+        cycle
+      end if
+      place = count(seen%node < cells%node(k))
+      seen%weight = [seen%weight(:place), cells%weight(k), seen%weight(place + 1:)]
+      seen%node = [seen%node(:place), cells%node(k), seen%node(place + 1:)]
+    end do
+    seen%weight = seen%weight/sum(seen%weight)
+  end subroutine find_nodes
+
   !> The points that a corner shows in a cell; their shares add up to 1, or to less where a node has
   !> none (both faces hang together there: nothing opens).
-  pure subroutine choose_points(item, at_nodes, corner, normal, points, shares)
+  pure subroutine choose_points(item, at_nodes, normal, seen)
     type(joint), intent(in) :: item
     type(node_points), intent(in) :: at_nodes
-    integer, intent(in) :: corner
     real(rk), intent(in) :: normal(3) !< of the cell, of any length
-    integer, allocatable, intent(out) :: points(:)
-    real(rk), allocatable, intent(out) :: shares(:)
-    real(rk), allocatable :: along(:), part(:)
+    type(corner_of_cell), intent(inout) :: seen
     logical, allocatable :: is_chosen(:)
-    integer :: k, i
-    points = [integer ::]
-    shares = [real(rk) ::]
-    do k = item%cells%first_node(corner), item%cells%first_node(corner + 1) - 1
-      associate (first => at_nodes%first(item%cells%node(k)), &
-                 last => at_nodes%first(item%cells%node(k) + 1) - 1)
+    real(rk), allocatable :: part(:)
+    integer :: k
+    seen%point = [integer ::]
+    seen%share = [real(rk) ::]
+    do k = 1, size(seen%node)
+      associate (first => at_nodes%first(seen%node(k)), &
+                 last => at_nodes%first(seen%node(k) + 1) - 1)
         if (last < first) cycle
-        along = [(dot_product(item%rotation(1, :, at_nodes%point(i)), normal), i=first, last)]
-        is_chosen = along >= min(maxval(along), same_plane*norm2(normal))
-        if (item%is_nodal) then
-          is_chosen = .false.
-          is_chosen(maxloc(along, dim=1)) = .true.
-        end if
+        is_chosen = in_plane(item, at_nodes%point(first:last), normal)
         part = pack(at_nodes%share(first:last), is_chosen)
-        points = [points, pack(at_nodes%point(first:last), is_chosen)]
-        shares = [shares, item%cells%weight(k)*part/max(sum(part), tiny(1.0_rk))]
+        seen%point = [seen%point, pack(at_nodes%point(first:last), is_chosen)]
+        seen%share = [seen%share, seen%weight(k)*part/max(sum(part), tiny(1.0_rk))]
       end associate
     end do
   end subroutine choose_points
 
-  !> The copy of a corner that shows these points, 0 when there is none yet.
-  pure integer function copy_with(drawn, newest, points) result(found)
-    type(drawn_joints), intent(in) :: drawn
-    integer, intent(in) :: newest !< copy of the corner
+  !> Which of a node's points belong to the plane of a cell: the one that fits best, between nodes
+  !> all that fit.
+  pure function in_plane(item, points, normal) result(is_chosen)
+    type(joint), intent(in) :: item
     integer, intent(in) :: points(:)
-    integer :: first, last
+    real(rk), intent(in) :: normal(3) !< of the cell, of any length
+    logical :: is_chosen(size(points))
+    real(rk) :: along(size(points))
+    integer :: i
+    do i = 1, size(points)
+      along(i) = dot_product(item%rotation(1, :, points(i)), normal)
+      is_chosen(i) = share_a_plane(item%rotation(1, :, points(i)), normal)
+    end do
+    if (any(is_chosen) .and. .not. item%is_nodal) return
+    is_chosen = .false.
+    is_chosen(maxloc(along, dim=1)) = .true.
+  end function in_plane
+
+  !> The drawn corner that lies and shows alike, 0 when there is none yet.
+  pure integer function corner_like(drawn, newest, seen) result(found)
+    type(drawn_joints), intent(in) :: drawn
+    integer, intent(in) :: newest !< corner with the same first node
+    type(corner_of_cell), intent(in) :: seen
     found = newest
     do while (found > 0)
-      first = drawn%first_point(found)
-      last = drawn%first_point(found + 1) - 1
-      if (last - first + 1 == size(points)) then
-        if (all(drawn%point(first:last) == points)) return
-      end if
+      associate (n => drawn%first_node(found), p => drawn%first_point(found), &
+                 num_nodes => drawn%first_node(found + 1) - drawn%first_node(found), &
+                 num_points => drawn%first_point(found + 1) - drawn%first_point(found))
+        if (num_nodes == size(seen%node) .and. num_points == size(seen%point)) then
+          if (all(drawn%node(n:n + num_nodes - 1) == seen%node) .and. &
+              all(abs(drawn%weight(n:n + num_nodes - 1) - seen%weight) <= nothing) .and. &
+              all(drawn%point(p:p + num_points - 1) == seen%point)) return
+        end if
+      end associate
       found = drawn%before(found)
     end do
-  end function copy_with
+  end function corner_like
 
-  !> Adds a copy of a corner.
-  pure subroutine add_corner(j, corner, points, shares, newest, drawn)
-    integer, intent(in) :: j, corner !< joint, corner of its cells
-    integer, intent(in) :: points(:)
-    real(rk), intent(in) :: shares(:)
-    integer, intent(inout) :: newest !< copy of this corner
+  !> Adds a corner.
+  pure subroutine add_corner(j, seen, newest, drawn, number)
+    integer, intent(in) :: j !< joint
+    type(corner_of_cell), intent(in) :: seen
+    integer, intent(inout) :: newest !< corner with the same first node
     type(drawn_joints), intent(inout) :: drawn
-    integer :: first, last
+    integer, intent(out) :: number
     drawn%num_corners = drawn%num_corners + 1
-    drawn%joint_of(drawn%num_corners) = j
-    drawn%corner_of(drawn%num_corners) = corner
-    drawn%before(drawn%num_corners) = newest
-    newest = drawn%num_corners
-    first = drawn%first_point(newest)
-    last = first + size(points) - 1
-    if (last > size(drawn%point)) then
-      drawn%point = [drawn%point, spread(0, 1, size(drawn%point) + last)]
-      drawn%share = [drawn%share, spread(0.0_rk, 1, size(drawn%share) + last)]
-    end if
-    drawn%point(first:last) = points
-    drawn%share(first:last) = shares
-    drawn%first_point(newest + 1) = last + 1
+    number = drawn%num_corners
+    drawn%joint_of(number) = j
+    drawn%before(number) = newest
+    newest = number
+    call append(seen%node, seen%weight, drawn%first_node(number:number + 1), drawn%node, &
+                drawn%weight)
+    call append(seen%point, seen%share, drawn%first_point(number:number + 1), drawn%point, &
+                drawn%share)
   end subroutine add_corner
+
+  !> Appends members and what each weighs to lists that grow.
+  pure subroutine append(members, weights, ends, list, list_weights)
+    integer, intent(in) :: members(:)
+    real(rk), intent(in) :: weights(:)
+    integer, intent(inout) :: ends(2) !< where they start, and where the next will
+    integer, allocatable, intent(inout) :: list(:)
+    real(rk), allocatable, intent(inout) :: list_weights(:)
+    ends(2) = ends(1) + size(members)
+    if (ends(2) - 1 > size(list)) then
+      list = [list, spread(0, 1, ends(2))]
+      list_weights = [list_weights, spread(0.0_rk, 1, ends(2))]
+    end if
+    list(ends(1):ends(2) - 1) = members
+    list_weights(ends(1):ends(2) - 1) = weights
+  end subroutine append
 
   !> Opening [m], slip [m], traction [Pa], used reach on the corners; zero where there is no point.
   subroutine values_on_corners(scene, now, drawn, values)
@@ -279,14 +332,16 @@ contains
   end function states_on_corners
 
   !> A quantity of the nodes (place, displacement) on the corners: that of the slave face.
-  pure function nodes_to_corners(scene, drawn, values) result(mean)
-    type(problem), intent(in) :: scene
+  pure function nodes_to_corners(drawn, values) result(mean)
     type(drawn_joints), intent(in) :: drawn
     real(rk), intent(in) :: values(:, :) !< (3, nodes)
     real(rk) :: mean(3, drawn%num_corners)
-    integer :: c
+    integer :: c, k
+    mean = 0.0_rk
     do c = 1, drawn%num_corners
-      mean(:, c) = at_corner(values, scene%joints(drawn%joint_of(c))%cells, drawn%corner_of(c))
+      do k = drawn%first_node(c), drawn%first_node(c + 1) - 1
+        mean(:, c) = mean(:, c) + drawn%weight(k)*values(:, drawn%node(k))
+      end do
     end do
   end function nodes_to_corners
 end module joint_surface

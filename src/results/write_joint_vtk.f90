@@ -84,11 +84,11 @@ contains
     type(vtu_file), intent(inout) :: file
     real(rk) :: values(num_values, self%drawn%num_corners)
     associate (drawn => self%drawn, ends => self%drawn%first(2:) - 1)
-      call file%start(nodes_to_corners(scene, drawn, scene%mesh%x), drawn%corner - 1, ends, &
+      call file%start(nodes_to_corners(drawn, scene%mesh%x), drawn%corner - 1, ends, &
                       cell_of_polygon(drawn%first(2:) - drawn%first(:drawn%num_cells)))
       call values_on_corners(scene, now, drawn, values)
       call file%put_point_integers('NODE_ID', node_numbers(scene, drawn))
-      call file%put_point_reals('U', nodes_to_corners(scene, drawn, now%u), 'U1,U2,U3')
+      call file%put_point_reals('U', nodes_to_corners(drawn, now%u), 'U1,U2,U3')
       call file%put_point_reals('OPENING', values(1:1, :), '')
       call file%put_point_reals('SLIP', values(2:3, :), 'SLIP1,SLIP2')
       call file%put_point_reals('TRACTION', values(4:6, :), 'TN,T1,T2')
@@ -107,10 +107,8 @@ contains
     integer :: c
     do c = 1, drawn%num_corners
       number(c) = 0
-      associate (cells => scene%joints(drawn%joint_of(c))%cells, corner => drawn%corner_of(c))
-        if (cells%first_node(corner + 1) - cells%first_node(corner) /= 1) cycle
-        number(c) = scene%mesh%node_id(cells%node(cells%first_node(corner)))
-      end associate
+      if (drawn%first_node(c + 1) - drawn%first_node(c) /= 1) cycle
+      number(c) = scene%mesh%node_id(drawn%node(drawn%first_node(c)))
     end do
   end function node_numbers
 end module write_joint_vtk
