@@ -25,6 +25,7 @@ module joint_forces
     integer, allocatable :: num_openings(:) !< (points) within the increment's iteration
     real(rk), allocatable :: response(:, :) !< (3, points) jumps by the balance as linearised [m]
     real(rk), allocatable :: start_jump(:, :) !< (3, points) of the converged state before [m]
+    real(rk), allocatable :: start_spring(:, :) !< (3, points) its traction over k_ref [m]
     real(rk), allocatable :: step(:, :) !< (3, points) of the jumps in the last iteration [m]
     real(rk), allocatable :: multiplier_step(:, :) !< (2, points) [Pa]
     real(rk) :: last_residual = huge(1.0_rk)

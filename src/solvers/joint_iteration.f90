@@ -59,6 +59,7 @@ contains
     field%response = balance%guess
     call gather_tractions(operator, old, field%traction)
     call gather_jumps(operator, old, field%start_jump)
+    field%start_spring = field%traction/reference
     call start_multiplier(joints, old, new, field%contact)
     call gather_gaps(operator, new, field%gap)
     field%start_force = norm2(spread(operator%area, 1, 3)*field%traction)
@@ -228,13 +229,17 @@ contains
   end subroutine measure_residual
 
   !> The correction of the jumps that is still asked for, over their increment; decides convergence.
-  pure subroutine measure_correction(field, correction, tolerance, outcome)
+  !> Where contact takes the jumps away, the springs' lengths are still a measure.
+  pure subroutine measure_correction(field, reference, correction, tolerance, outcome)
     type(joint_field), intent(in) :: field
+    real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
     real(rk), intent(in) :: correction(:, :) !< (3, points) [m]
     real(rk), intent(in) :: tolerance
     type(balance_outcome), intent(inout) :: outcome
-    real(rk) :: increment
+    real(rk) :: increment, spring(3, size(correction, 2))
+    spring = field%traction/reference
     increment = max(norm2(field%jump - field%start_jump), smallest_increment*norm2(field%jump), &
+                    norm2(spring - field%start_spring), smallest_increment*norm2(spring), &
                     tiny(1.0_rk))
     outcome%correction = norm2(correction)/increment
     outcome%has_converged = outcome%correction <= tolerance

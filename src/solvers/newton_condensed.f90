@@ -61,7 +61,8 @@ contains
       call measure_residual(operator, field, linear, outcome)
       if (outcome%residual <= controls%residual_tolerance) then
         call correct(self, tangent, excess_jump(field%traction), correction)
-        call measure_correction(field, correction, controls%increment_tolerance, outcome)
+        call measure_correction(field, self%reference, correction, &
+                                controls%increment_tolerance, outcome)
       end if
       if (outcome%has_converged) then
         call augment_contact(joints, operator, old, self%reference, field, new, outcome)

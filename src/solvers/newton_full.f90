@@ -99,7 +99,8 @@ contains
         call self%back_substitute(0.0_rk*balance%rhs, linear - field%traction, self%operator, &
                                   unused, answer, error)
         if (allocated(error)) return
-        call measure_correction(field, answer, self%controls%increment_tolerance, outcome)
+        call measure_correction(field, self%reference, answer, &
+                                self%controls%increment_tolerance, outcome)
       end if
       if (outcome%has_converged) then
         call augment_contact(joints, self%operator, old, self%reference, field, new, outcome)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from joint_decks import Block, amplitude, dynamic, spring_and_mass, static, weight
+from joint_decks import BOTH_MESHES, Block, amplitude, dynamic, spring_and_mass, static, weight
 from joint_histories import history, sound_energy
 from scipy.optimize import brentq
 
@@ -28,7 +28,9 @@ def slip_of_half_period(peak: float) -> float:
     return peak / w * (np.cos(w * start) * length - turned / w) - 0.5 * length**2
 
 
-def sliding_mass(peak: float, dt: float, duration: float, base_is_slave: bool = False) -> str:
+def sliding_mass(
+    peak: float, dt: float, duration: float, base_is_slave: bool = False, meshes=None
+) -> str:
     time = np.linspace(0.0, duration, round(1000 * duration) + 1)
     block = Block(
         (1.0, 1.0, 0.1),
@@ -36,14 +38,16 @@ def sliding_mass(peak: float, dt: float, duration: float, base_is_slave: bool = 
         young=1e9,
         law="KN=1e8, KT=1e8, FRICTION=0.1",
         base_is_slave=base_is_slave,
+        meshes=meshes,
         cards=amplitude("SINE", time, peak * np.sin(2.0 * np.pi * time)),
     )
     motion = "*BASE MOTION, DOF=1, AMPLITUDE=SINE, TYPE=ACCELERATION\n"
     return block.deck(static(weight(10.0)) + dynamic(motion + PRINT, dt, duration))
 
 
+@BOTH_MESHES
 @pytest.mark.parametrize(("dt", "allowed"), [(0.005, 3e-3), (0.0025, 1e-3)])
-def test_sliding_mass(keyway, dt, allowed):
+def test_sliding_mass(keyway, dt, allowed, meshes):
     """1 kg, g 10 m/s2, friction 0.1, base 1.5 sin(2 pi t) m/s2 (closed form; SDND104).
 
     Tolerance: each end of a slip lies between two increments, that is 1.3 m/s2 dt^2 = 0.16 % of the
@@ -51,7 +55,7 @@ def test_sliding_mass(keyway, dt, allowed):
     """
     exact = slip_of_half_period(1.5)
     assert exact == pytest.approx(0.0204531, rel=1e-5)
-    run = keyway(sliding_mass(1.5, dt, 4.0))
+    run = keyway(sliding_mass(1.5, dt, 4.0, meshes=meshes))
     balance = sound_energy(run)
     table = run.csv("node_BODY")
     moved = table["U1"][(table["node"] == 1) & (table["time"] > 2.0)]
@@ -60,9 +64,10 @@ def test_sliding_mass(keyway, dt, allowed):
     assert np.diff(friction)[0] / 3.0 == pytest.approx(2.0 * exact * 1.0, rel=allowed)
 
 
-def test_mass_below_the_limit_never_slides(keyway):
+@BOTH_MESHES
+def test_mass_below_the_limit_never_slides(keyway, meshes):
     """0.95 m/s2 < mu g: it sticks; the motion is elastic, 0.95 N / 1e8 N/m (5 %: it swings)."""
-    run = keyway(sliding_mass(0.95, 0.005, 2.0))
+    run = keyway(sliding_mass(0.95, 0.005, 2.0, meshes=meshes))
     sound_energy(run)
     table = run.csv("joint_BED")
     assert set(table["state"]) == {1.0}
@@ -71,21 +76,28 @@ def test_mass_below_the_limit_never_slides(keyway):
     assert np.max(np.abs(moved)) == pytest.approx(0.95e-8, rel=0.05)
 
 
-def test_fixed_side_may_be_master_or_slave(keyway):
-    """The base as slave instead of master: the same motion to round-off."""
+@BOTH_MESHES
+def test_fixed_side_may_be_master_or_slave(keyway, meshes):
+    """The base as slave instead of master: the same motion to round-off.
+
+    With different meshes the points are other ones, and so is the way a bed of springs gives way to
+    the tilt of the mass: 1e-8 m of tilt for a slip of 2e-2 m.
+    """
+    allowed = 1e-9 if meshes is None else 1e-5
     runs = [
-        keyway(sliding_mass(1.5, 0.01, 1.0, is_slave), name=f"slave_{is_slave}")
+        keyway(sliding_mass(1.5, 0.01, 1.0, is_slave, meshes), name=f"slave_{is_slave}")
         for is_slave in (False, True)
     ]
     first, second = (run.csv("node_BODY") for run in runs)
-    assert second["U1"] == pytest.approx(first["U1"], abs=1e-9 * np.max(np.abs(first["U1"])))
+    assert second["U1"] == pytest.approx(first["U1"], abs=allowed * np.max(np.abs(first["U1"])))
 
 
 # --- friction decay ----------------------------------------------------------------------------
 
 
+@BOTH_MESHES
 @pytest.mark.parametrize("elements", [1, 4])
-def test_friction_decay(keyway, elements):
+def test_friction_decay(keyway, elements, meshes):
     """k 1e4 N/m, m 1 kg, g 10, mu 0.1, released at 0.85 mm (closed form; SDND100).
 
     Tolerance 2e-6 m: one increment off an extreme misses w^2 u dt^2 / 2 = 1e-6 m;
@@ -95,7 +107,7 @@ def test_friction_decay(keyway, elements):
     release = dynamic(
         "*BOUNDARY, OP=NEW\nBASE, 1, 3\nFAR, 1, 3\nSOLID, 2\n" + PRINT, dt=dt, duration=0.2
     )
-    run = keyway(spring_and_mass(elements, 0.85e-3, release))
+    run = keyway(spring_and_mass(elements, 0.85e-3, release, meshes))
     balance = sound_energy(run)
     table = run.csv("node_BODY")
     tip = table["node"] == table["node"].max()
@@ -119,7 +131,7 @@ CONTACT = 2.0 * BAR["length"] / WAVE  # 6.19677e-3 s
 PRESSURE = BAR["density"] * WAVE * BAR["speed"]  # 7.74597e6 Pa
 
 
-def bar_on_wall(keyway, elements: int, courant: float) -> dict[str, float]:
+def bar_on_wall(keyway, elements: int, courant: float, meshes) -> dict[str, float]:
     """Contact time, pressure and energy of a bar that flies against a wall at z = 0."""
     dt = courant * BAR["length"] / elements / WAVE
     bar = Block(
@@ -128,6 +140,7 @@ def bar_on_wall(keyway, elements: int, courant: float) -> dict[str, float]:
         young=BAR["young"],
         density=BAR["density"],
         law="KN=1e12, KT=1e10, GAP=1e-5",
+        meshes=meshes,
         cards="*BOUNDARY\nBODY, 1, 2\n*INITIAL CONDITIONS, TYPE=VELOCITY\nBODY, 3, -1.\n",
     )
     steps = round(1.6 * CONTACT / dt)
@@ -149,7 +162,8 @@ def bar_on_wall(keyway, elements: int, courant: float) -> dict[str, float]:
     }
 
 
-def test_bar_on_a_wall(keyway):
+@BOTH_MESHES
+def test_bar_on_a_wall(keyway, meshes):
     """Contact for 6.19677 ms at 7.74597 MPa, then all energy is the bar's again (closed form).
 
     Tolerances. Time: the front that releases the bar is spread over some elements, three of which
@@ -160,7 +174,7 @@ def test_bar_on_a_wall(keyway):
     """
     assert pytest.approx(6.19677e-3, rel=1e-6) == CONTACT
     assert pytest.approx(7.74597e6, rel=1e-6) == PRESSURE
-    found = {n: bar_on_wall(keyway, n, 0.5) for n in (25, 50, 100)}
+    found = {n: bar_on_wall(keyway, n, 0.5, meshes) for n in (25, 50, 100)}
     for n, bar in found.items():
         assert bar["time"] == pytest.approx(1.0, abs=1.5 / n)
         assert bar["pressure"] == pytest.approx(1.0, abs=1e-3)

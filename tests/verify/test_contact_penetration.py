@@ -1,0 +1,163 @@
+"""Contact without penetration (*JOINT LAW, PENETRATION), and what job.json tells of joints."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from joint_decks import GRAVITY, Block, dynamic, static, weight
+from joint_histories import history, sound_energy
+
+PRINT = "*JOINT PRINT, JOINT=BED\n"
+HEIGHT, DENSITY = 4.0, 2400.0
+PRESSURE = DENSITY * GRAVITY * HEIGHT  # below a column [Pa]
+
+
+def column(law: str, **changes) -> Block:
+    """A column of 4 m on its bed; two elements wide, six high."""
+    values = {"young": 3e10, "density": DENSITY, "law": law} | changes
+    return Block((1.0, 1.0, HEIGHT), (2, 2, 6), **values)
+
+
+@pytest.mark.parametrize("solver", ["CONDENSED", "FULL"])
+@pytest.mark.parametrize("allowed", [1e-6, 1e-9])
+def test_a_column_does_not_sink(keyway, solver, allowed):
+    """A soft bed, 1e8 Pa/m: 0.94 mm by its stiffness, no more than allowed with PENETRATION.
+
+    The pressure is that of the weight in both, to the tolerance of the iteration.
+    """
+    runs = {}
+    for name, more in (("soft", ""), ("exact", f", PENETRATION={allowed!r}")):
+        deck = column("KN=1e8, KT=1e10, FRICTION=0.6" + more).deck(
+            static(f"*CONTROLS, JOINT SOLVER={solver}\n" + weight() + PRINT)
+        )
+        runs[name] = keyway(deck, name=name)
+        table = runs[name].csv("joint_BED")
+        assert np.mean(table["tn"]) == pytest.approx(-PRESSURE, rel=1e-2)  # by points, not areas
+        assert runs[name].csv("energy")["error"].max() < 1e-6
+    told = {name: run.json["accuracy"] for name, run in runs.items()}
+    sunk = told["soft"]["joints"]["BED"]["largest_penetration"]
+    assert sunk == pytest.approx(PRESSURE / 1e8, rel=0.05)
+    assert told["soft"]["augmentations"] == 0
+    assert told["exact"]["joints"]["BED"]["largest_penetration"] <= allowed
+    assert np.max(np.abs(runs["exact"].csv("joint_BED")["opening"])) <= allowed
+    assert 1 <= told["exact"]["most_augmentations"] <= 6
+
+
+def test_stiffness_by_default_is_that_of_a_layer(keyway):
+    """PENETRATION alone: KN = E/h, h = 4/6 m the depth of the elements. With 1 m allowed nothing is
+    repeated, and the bed sinks by p h/E (Poisson 0: uniform to 1e-6)."""
+    run = keyway(column("PENETRATION=1.").deck(static(weight() + PRINT)))
+    assert run.json["accuracy"]["augmentations"] == 0
+    opening = run.csv("joint_BED")["opening"]
+    assert opening == pytest.approx(-PRESSURE * (HEIGHT / 6.0) / 3e10, rel=1e-6)
+
+
+def test_a_bonded_joint_keeps_its_stiffness(keyway):
+    """With a tensile strength KN stays E/THICKNESS, and bonded points sink by it."""
+    law = "PENETRATION=1e-9, TENSILE STRENGTH=1e6, THICKNESS=0.5"
+    run = keyway(column(law).deck(static(weight() + PRINT)))
+    table = run.csv("joint_BED")
+    assert set(table["state"]) == {3.0}
+    assert table["opening"] == pytest.approx(-PRESSURE * 0.5 / 3e10, rel=1e-6)
+
+
+def test_a_bar_bounces_off_a_rigid_wall(keyway):
+    """The bar of test_joint_motion on a joint of KN = E/h that lets nothing through (closed form).
+
+    Tolerances as there: contact time three elements, pressure 0.1 %, energy what HHT takes. Without
+    a spring between them the last element rings against the wall: 0.3 % of ripple (0.00 % there).
+    """
+    length, young, speed, elements = 10.0, 25e9, 1.0, 50
+    wave = np.sqrt(young / DENSITY)
+    dt = 0.5 * length / elements / wave
+    steps = round(1.6 * 2.0 * length / wave / dt)
+    bar = Block(
+        (1.0, 1.0, length),
+        (1, 1, elements),
+        young=young,
+        density=DENSITY,
+        law="KT=1e10, GAP=1e-5, PENETRATION=1e-7",
+        cards="*BOUNDARY\nBODY, 1, 2\n*INITIAL CONDITIONS, TYPE=VELOCITY\nBODY, 3, -1.\n",
+    )
+    run = keyway(bar.deck(dynamic(PRINT, dt, steps * dt)))
+    balance = sound_energy(run)
+    time, pressure = history(run, 0.0, "tn")
+    touching = np.nonzero(pressure < 0.0)[0]
+    middle = pressure[touching[len(touching) // 4] : touching[3 * len(touching) // 4]]
+    contact = time[touching[-1]] - time[touching[0]] + dt
+    assert contact == pytest.approx(2.0 * length / wave, rel=1.5 / elements)
+    assert -middle.mean() == pytest.approx(DENSITY * wave * speed, rel=1e-3)
+    assert middle.std() < 5e-3 * DENSITY * wave * speed
+    assert history(run, 0.0)[1].min() >= -1e-7
+    start = balance["kinetic"][0]
+    left = (balance["kinetic"][-1] + balance["strain"][-1]) / start
+    assert left > 0.97
+    assert left + balance["numerical"][-1] / start == pytest.approx(1.0, abs=1e-6)
+
+
+def test_a_tolerance_out_of_reach_is_told(keyway):
+    """Penetration below the last digits of the displacements is refused with what it asks for."""
+    run = keyway(
+        column("KN=1e9, KT=1e10, FRICTION=0.6, PENETRATION=1e-24").deck(static(weight())), name="lost", code=1
+    )
+    assert "times as far as *JOINT LAW, PENETRATION allows after" in run.json["message"]
+    assert "a larger KN needs fewer" in run.json["message"]
+    assert "worst in joint BED at (" in run.json["message"]
+
+
+# --- the condition of the equations ------------------------------------------------------------
+
+
+def brick_stiffness(x: np.ndarray, young: float, poisson: float) -> np.ndarray:
+    """Stiffness of the trilinear brick, 2 x 2 x 2 points."""
+    lame = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
+    shear = young / (2.0 * (1.0 + poisson))
+    d = np.diag([2.0 * shear] * 3 + [shear] * 3)
+    d[:3, :3] += lame
+    corner = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+    corner = np.array([(*c, z) for z in (-1, 1) for c in corner], dtype=float)
+    k = np.zeros((24, 24))
+    for point in corner / np.sqrt(3.0):
+        terms = 1.0 + corner * point
+        dn = np.stack([corner[:, i] * np.prod(np.delete(terms, i, 1), 1) / 8.0 for i in range(3)])
+        jacobian = dn @ x
+        g = np.linalg.solve(jacobian, dn)
+        b = np.zeros((6, 24))
+        for row, (i, j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
+            b[row, i::3] += g[j]
+            if i != j:
+                b[row, j::3] += g[i]
+        k += b.T @ d @ b * np.linalg.det(jacobian)
+    return k
+
+
+@pytest.mark.parametrize("stiffness", [1e8, 1e12, 1e15])
+@pytest.mark.parametrize("solver", ["CONDENSED", "FULL"])
+def test_condition_of_the_equations_against_numpy(keyway, solver, stiffness):
+    """The estimate bounds the 1-norm condition of the scaled matrix from below, and is exact here.
+
+    Two bricks on a joint with a rigid base: the jumps are the displacements of the bottom nodes in
+    another order, so that numpy needs no more than K with the springs at these nodes. Hager's
+    estimate is a lower bound; as a rule it is exact (Higham 1988), a factor of 3 is what it may miss.
+    """
+    young, poisson = 2e10, 0.2
+    block = Block((2.0, 1.0, 1.0), (2, 1, 1), young=young, poisson=poisson)
+    block.law = f"KN={stiffness!r}, KT={0.4 * stiffness!r}, FRICTION=0.6"
+    run = keyway(block.deck(static(f"*CONTROLS, JOINT SOLVER={solver}\n" + weight())))
+    x = block.x
+    k = np.zeros((36, 36))
+    number = np.arange(12).reshape(3, 2, 2)
+    for i in range(2):
+        ring = [(i, 0), (i + 1, 0), (i + 1, 1), (i, 1)]
+        nodes = [number[a, b, c] for c in (0, 1) for a, b in ring]
+        rows = (3 * np.array(nodes)[:, None] + np.arange(3)).ravel()
+        k[np.ix_(rows, rows)] += brick_stiffness(x[nodes], young, poisson)
+    for i, area in enumerate((0.25, 0.5, 0.25)):
+        for node in number[i, :, 0]:
+            k[range(3 * node, 3 * node + 3), range(3 * node, 3 * node + 3)] += (
+                stiffness * area * np.array([0.4, 0.4, 1.0])
+            )
+    root = np.sqrt(np.diag(k))
+    exact = np.linalg.cond(k / np.outer(root, root), 1)
+    told = run.json["accuracy"]["joint_condition"]
+    assert exact / 3.0 <= told <= exact * (1.0 + 1e-6)
