@@ -79,9 +79,7 @@ class Block:
         return box_mesh(self.counts, stretched(self.size))[0].x
 
 
-BASE_CARDS = (
-    "*MATERIAL, NAME=ROCK\n*ELASTIC\n1e10, 0.\n*SOLID SECTION, ELSET=BASE, MATERIAL=ROCK\n"
-)
+BASE_CARDS = "*MATERIAL, NAME=ROCK\n*ELASTIC\n1e10, 0.\n*SOLID SECTION, ELSET=BASE, MATERIAL=ROCK\n"
 
 
 def add_base(mesh: BrickMesh, size, corner, facets: tuple[int, int]) -> np.ndarray:

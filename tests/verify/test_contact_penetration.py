@@ -98,7 +98,9 @@ def test_a_bar_bounces_off_a_rigid_wall(keyway):
 def test_a_tolerance_out_of_reach_is_told(keyway):
     """Penetration below the last digits of the displacements is refused with what it asks for."""
     run = keyway(
-        column("KN=1e9, KT=1e10, FRICTION=0.6, PENETRATION=1e-24").deck(static(weight())), name="lost", code=1
+        column("KN=1e9, KT=1e10, FRICTION=0.6, PENETRATION=1e-24").deck(static(weight())),
+        name="lost",
+        code=1,
     )
     assert "times as far as *JOINT LAW, PENETRATION allows after" in run.json["message"]
     assert "a larger KN needs fewer" in run.json["message"]
@@ -138,7 +140,7 @@ def test_condition_of_the_equations_against_numpy(keyway, solver, stiffness):
 
     Two bricks on a joint with a rigid base: the jumps are the displacements of the bottom nodes in
     another order, so that numpy needs no more than K with the springs at these nodes. Hager's
-    estimate is a lower bound; as a rule it is exact (Higham 1988), a factor of 3 is what it may miss.
+    estimate is a lower bound, as a rule exact (Higham 1988); a factor of 3 is what it may miss.
     """
     young, poisson = 2e10, 0.2
     block = Block((2.0, 1.0, 1.0), (2, 1, 1), young=young, poisson=poisson)
