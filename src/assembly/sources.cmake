@@ -1,6 +1,7 @@
 set(sources
   inelastic_blocks.f90
   problem_definition.f90
+  held_together.f90
   analysis_state.f90
   increment_listener.f90
   matrix_pattern.f90

@@ -9,5 +9,6 @@ set(sources
   mortar_facet.f90
   mortar_projection.f90
   coupling_joint.f90
+  coupling_tie.f90
   surface_coupling.f90
 )

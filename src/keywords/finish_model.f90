@@ -7,6 +7,7 @@ module finish_model
   use element_joint8, only: build_joint_points, find_attached_solids
   use errors, only: error_type
   use finish_concrete, only: complete_concretes
+  use finish_ties, only: complete_ties
   use finish_user_materials, only: complete_user_materials
   use joint_catalogue, only: make_joint_law
   use joint_constants, only: law_constants
@@ -41,6 +42,7 @@ contains
     do i = 1, size(model%joints)
       call build_joint(i, model, faults)
     end do
+    if (.not. faults%has_errors()) call complete_ties(model, faults)
   end subroutine complete_model
 
   !> Gives back the unused end of the list; loads are moved, not copied.

@@ -33,6 +33,7 @@ module keyword_catalogue
   use keywords_step, only: describe_dynamic, describe_end_step, describe_frequency, &
                            describe_static, describe_step, read_dynamic, read_end_step, &
                            read_frequency, read_static, read_step
+  use keywords_tie, only: describe_tie, read_tie
   use keywords_user_material, only: describe_depvar, describe_user_material, read_depvar, &
                                     read_user_material
   implicit none
@@ -77,6 +78,7 @@ contains
     call list%add(describe_solid_section, read_solid_section, pass_rest)
     call list%add(describe_joint_law, read_joint_law, pass_definitions)
     call list%add(describe_joint, read_joint, pass_rest)
+    call list%add(describe_tie, read_tie, pass_rest)
     call list%add(describe_amplitude, read_amplitude, pass_definitions)
     call list%add(describe_initial_conditions, read_initial_conditions, pass_rest)
   end subroutine add_model_keywords

@@ -27,9 +27,6 @@ contains
     call add_parameter(list, field('ELSET', kind_word, 'its IFACE4 elements'))
     call add_parameter(list, field('SURFACE', kind_word, 'the surface'))
     call add_parameter(list, field('STIFFNESS', kind_real, 'of the coupling', 'Pa/m'))
-    call add_later(list, 'TIE', 'joint', 'model', 'Ties two surfaces whose meshes may differ.')
-    call add_parameter(list, field('NAME', kind_word, 'name of the tie'))
-    call add_parameter(list, field('STIFFNESS', kind_real, 'of the coupling', 'Pa/m'))
   end subroutine add_coupling
 
   !> Keywords of Abaqus and CalculiX.

@@ -17,7 +17,7 @@ module model_draft
   implicit none
   private
   public :: draft, add_load, origin, section_request, law_request, joint_request
-  public :: concrete_request, user_request
+  public :: concrete_request, user_request, tie_request
 
   !> Where something stood: a card of the deck and one of its data lines (0: the keyword itself).
   type :: origin
@@ -45,6 +45,14 @@ module model_draft
     type(origin) :: spot
   end type joint_request
 
+  !> A data line of *TIE.
+  type :: tie_request
+    character(:), allocatable :: name !< upper case
+    integer :: slave = 0, master = 0 !< positions of surfaces
+    real(rk) :: stiffness = 0.0_rk !< of springs, 0 for an exact tie [Pa/m]
+    type(origin) :: spot
+  end type tie_request
+
   !> The *CONCRETE keywords of a material; a spot with card 0: not given.
   type :: concrete_request
     integer :: material = 0 !< position
@@ -71,6 +79,7 @@ module model_draft
     type(section_request), allocatable :: sections(:)
     type(law_request), allocatable :: laws(:)
     type(joint_request), allocatable :: joints(:)
+    type(tie_request), allocatable :: ties(:)
     type(concrete_request), allocatable :: concretes(:)
     type(user_request), allocatable :: user_materials(:)
     integer, allocatable :: joint_of_element(:) !< position in `joints`, 0 for none

@@ -77,7 +77,7 @@ contains
     end associate
     allocate (model%surface_origin(0), model%material_origin(0), model%test_origin(0))
     allocate (model%sections(0), model%laws(0), model%joints(0), model%concretes(0))
-    allocate (model%user_materials(0), model%procedure_card(0))
+    allocate (model%user_materials(0), model%procedure_card(0), model%ties(0))
   end subroutine open_draft
 
   !> Finds the keyword of each card and checks that it stands where it may.

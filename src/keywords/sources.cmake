@@ -14,6 +14,7 @@ set(sources
   material_test_legs.f90
   keywords_section.f90
   keywords_joint.f90
+  keywords_tie.f90
   keywords_amplitude.f90
   keywords_initial.f90
   finish_step.f90
@@ -32,6 +33,7 @@ set(sources
   finish_concrete.f90
   finish_user_materials.f90
   contact_defaults.f90
+  finish_ties.f90
   finish_model.f90
   finish_tests.f90
   verify_model.f90

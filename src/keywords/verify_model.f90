@@ -1,9 +1,10 @@
 !> What must hold before anything is solved: sound elements, mass where it is needed, supports.
 module verify_model
-  use body_parts, only: find_bodies, free_motion
+  use body_parts, only: find_bodies, free_motion, node_groups
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use element_hex8, only: hex8_gradients
+  use held_together, only: list_groups
   use kinds, only: rk
   use load_gravity, only: gravity_load
   use model_draft, only: draft
@@ -155,10 +156,12 @@ contains
   subroutine verify_supports(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
+    type(node_groups) :: groups
     integer, allocatable :: body(:), example(:)
     integer :: i, b
     integer :: num_before
-    call find_bodies(model%scene%mesh, body, example)
+    call list_groups(model%scene, groups)
+    call find_bodies(model%scene%mesh, groups, body, example)
     num_before = faults%num_errors
     do i = 1, size(model%scene%steps)
       associate (step => model%scene%steps(i), place => model%cards(model%procedure_card(i)))

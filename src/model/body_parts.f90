@@ -1,11 +1,17 @@
-!> Bodies: parts of the model that hang together through elements (joints too), and whether
-!> supports hold them.
+!> Bodies: parts of the model that hang together through elements (joints too), ties and couplings,
+!> and whether supports hold them.
 module body_parts
   use dam_mesh, only: mesh
   use kinds, only: rk
   implicit none
   private
-  public :: find_bodies, free_motion
+  public :: find_bodies, free_motion, node_groups
+
+  !> Nodes that something else than an element holds together: a tie, a joint between surfaces.
+  type :: node_groups
+    integer, allocatable :: first(:) !< (groups + 1)
+    integer, allocatable :: node(:)
+  end type node_groups
 
   !> A pivot below this part of the largest one counts as zero; coordinates are scaled to one.
   real(rk), parameter :: rank_tolerance = 1.0e-10_rk
@@ -13,18 +19,28 @@ module body_parts
 contains
 
   !> Numbers the bodies.
-  pure subroutine find_bodies(model, body, example)
+  pure subroutine find_bodies(model, groups, body, example)
     type(mesh), intent(in) :: model
+    type(node_groups), intent(in) :: groups
     integer, allocatable, intent(out) :: body(:) !< of each node; 0 for a node without an element
     integer, allocatable, intent(out) :: example(:) !< first element of each body (position)
     integer, allocatable :: parent(:)
-    integer :: e, a, node, root, num_bodies
+    integer :: e, a, g, node, root, num_bodies
     allocate (parent(model%num_nodes), source=0)
     do e = 1, model%num_elements
       do a = 1, count(model%nodes(:, e) > 0)
         node = model%nodes(a, e)
         if (parent(node) == 0) parent(node) = node
         call unite(parent, model%nodes(1, e), node)
+      end do
+    end do
+    do g = 1, size(groups%first) - 1
+      root = 0
+      do a = groups%first(g), groups%first(g + 1) - 1
+        node = groups%node(a)
+        if (parent(node) == 0) cycle
+        if (root == 0) root = node
+        call unite(parent, root, node)
       end do
     end do
     allocate (body(model%num_nodes), source=0)

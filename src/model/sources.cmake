@@ -10,6 +10,7 @@ set(sources
   link_graph.f90
   link_order.f90
   jump_links.f90
+  tie_motion.f90
   id_map.f90
   sorted_lists.f90
   set_lists.f90

@@ -10,14 +10,15 @@ module initial_state
   use material_law, only: start_points
   use material_points, only: time_increment, point_state, no_tangent
   use analysis_state, only: state
+  use tie_motion, only: follow_ties
   implicit none
   private
   public :: start_analysis
 
 contains
 
-  !> At rest, but for the initial conditions of the deck; joints and inelastic solids follow the
-  !> displacements given.
+  !> At rest, but for the initial conditions of the deck; tied nodes follow their
+  !> masters, joints and inelastic solids the displacements given.
   subroutine start_analysis(scene, now, error)
     type(problem), intent(in) :: scene
     type(state), intent(out) :: now
@@ -37,6 +38,9 @@ contains
         end if
       end associate
     end do
+    call follow_ties(scene%ties, now%u, error)
+    if (.not. allocated(error)) call follow_ties(scene%ties, now%v, error)
+    if (allocated(error)) return
     if (.not. any(abs(now%u) > 0.0_rk)) return
     do i = 1, size(scene%joints)
       call move_joint(scene%joints(i), now%u, now%joints(i))

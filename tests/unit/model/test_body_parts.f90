@@ -1,6 +1,6 @@
 !> Bodies and the rigid motions that supports leave.
 program test_body_parts
-  use body_parts, only: find_bodies, free_motion
+  use body_parts, only: find_bodies, free_motion, node_groups
   use dam_mesh, only: mesh
   use kinds, only: rk
   use testing, only: check, check_text, test_log
@@ -28,16 +28,26 @@ contains
   !> Three elements, the first and the last of which share a node.
   subroutine finds_bodies()
     type(mesh) :: model
+    type(node_groups) :: groups
     integer, allocatable :: body(:), example(:)
     integer :: i
     model%num_nodes = 24
     model%num_elements = 3
     model%nodes = reshape([(i, i=8, 1, -1), (i, i=9, 16), (i, i=16, 23)], [8, 3])
     model%nodes(1, 3) = 3
-    call find_bodies(model, body, example)
+    allocate (groups%first(1), groups%node(0))
+    groups%first(1) = 1
+    call find_bodies(model, groups, body, example)
     call check(log, all(example == [1, 2]), 'two bodies')
     call check(log, all(body(1:8) == 1) .and. all(body(17:23) == 1), 'one by a shared node')
     call check(log, all(body(9:16) == 2), 'the other')
     call check(log, body(24) == 0, 'a node without an element belongs to none')
+    groups%first = [1, 3, 7]
+    groups%node = [24, 1, 24, 12, 13, 14]
+    call find_bodies(model, groups, body, example)
+    call check(log, all(example == [1, 2]) .and. body(24) == 0, 'nothing hangs on an unused node')
+    groups%node = [1, 2, 24, 12, 13, 20]
+    call find_bodies(model, groups, body, example)
+    call check(log, size(example) == 1 .and. all(body(:23) == 1), 'a group joins bodies')
   end subroutine finds_bodies
 end program test_body_parts

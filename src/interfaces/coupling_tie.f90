@@ -1,0 +1,124 @@
+!> The exact tie of two faces whose meshes differ: a mortar constraint with dual multipliers,
+!> condensed (13.3). Each node of the slave face that bears a multiplier follows the master face,
+!>   u(a) = sum_m w_m u(m),   w the weights of mortar_projection.
+!>
+!> A slave node bears none in a direction in which it is held by a support in any step, follows
+!> others by an earlier tie, is a node of the master face too, or is followed, near or far, by the
+!> master face or by a node that bears none. Its dual function goes to its neighbours on each facet.
+module coupling_tie
+  use kinds, only: rk
+  use mortar_projection, only: mortar_rows, project
+  use node_ties, only: node_tie
+  use surface_segments, only: facet_set, segment_set
+  implicit none
+  private
+  public :: lay_tie, find_bound
+
+contains
+
+  !> The rows of a tie. Directions that bear multipliers at the same nodes share them.
+  subroutine lay_tie(x, slave, master, segments, is_fixed, earlier, tie)
+    real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
+    type(facet_set), intent(in) :: slave, master
+    type(segment_set), intent(in) :: segments
+    logical, intent(in) :: is_fixed(:, :) !< (3, nodes) by a support in any step
+    type(node_tie), intent(in) :: earlier(:) !< ties that stand before this one
+    type(node_tie), intent(inout) :: tie !< its name is the caller's
+    type(mortar_rows) :: rows
+    logical :: is_bound(size(x, 2), 3), together(3)
+    integer :: i, j
+    tie%node = [integer ::]
+    tie%first = [1]
+    tie%master = [integer ::]
+    tie%weight = [real(rk) ::]
+    allocate (tie%is_tied(3, 0))
+    do i = 1, 3
+      call find_bound(i, slave, master, is_fixed(i, :), earlier, is_bound(:, i))
+    end do
+    do i = 1, 3
+      do j = 1, 3
+        together(j) = all(is_bound(:, j) .eqv. is_bound(:, i))
+      end do
+      if (any(together(:i - 1))) cycle
+      call project(x, slave, master, segments, is_bound(:, i), rows, merges_planes=.true.)
+      call add_rows(rows, together, tie)
+    end do
+  end subroutine lay_tie
+
+  !> Appends the rows of some directions.
+  pure subroutine add_rows(rows, directions, tie)
+    type(mortar_rows), intent(in) :: rows
+    logical, intent(in) :: directions(3)
+    type(node_tie), intent(inout) :: tie
+    integer :: num_before
+    num_before = size(tie%master)
+    tie%node = [tie%node, rows%node]
+    tie%is_tied = reshape([tie%is_tied, spread(directions, 2, rows%num_rows)], [3, size(tie%node)])
+    tie%first = [tie%first, num_before + rows%first(2:)]
+    tie%master = [tie%master, rows%master]
+    tie%weight = [tie%weight, rows%weight]
+  end subroutine add_rows
+
+  !> The slave nodes without a multiplier in one direction.
+  pure subroutine find_bound(direction, slave, master, is_fixed, earlier, is_bound)
+    integer, intent(in) :: direction !< 1..3
+    type(facet_set), intent(in) :: slave, master
+    logical, intent(in) :: is_fixed(:) !< (nodes) in this direction
+    type(node_tie), intent(in) :: earlier(:)
+    logical, intent(out) :: is_bound(:) !< (nodes)
+    integer, allocatable :: row(:, :)
+    logical, allocatable :: is_slave(:), is_reached(:)
+    integer :: f
+    allocate (is_slave(size(is_fixed)), is_reached(size(is_fixed)), source=.false.)
+    call list_followers(direction, earlier, size(is_fixed), row)
+    do f = 1, size(slave%node, 2)
+      is_slave(slave%node(:, f)) = .true.
+    end do
+    is_bound = is_slave .and. (is_fixed .or. row(1, :) > 0)
+    do f = 1, size(master%node, 2)
+      is_reached(master%node(:, f)) = .true.
+    end do
+    is_reached = is_reached .or. is_bound
+    call flood(earlier, row, is_reached)
+    is_bound = is_slave .and. is_reached
+  end subroutine find_bound
+
+  !> Where it is said what each node follows: (1) the tie, 0 for none, and (2) its row.
+  pure subroutine list_followers(direction, ties, num_nodes, row)
+    integer, intent(in) :: direction, num_nodes
+    type(node_tie), intent(in) :: ties(:)
+    integer, allocatable, intent(out) :: row(:, :) !< (2, nodes)
+    integer :: t, k
+    allocate (row(2, num_nodes), source=0)
+    do t = 1, size(ties)
+      do k = 1, size(ties(t)%node)
+        if (ties(t)%is_tied(direction, k)) row(:, ties(t)%node(k)) = [t, k]
+      end do
+    end do
+  end subroutine list_followers
+
+  !> Marks all that the marked nodes follow, near or far.
+  pure subroutine flood(ties, row, is_reached)
+    type(node_tie), intent(in) :: ties(:)
+    integer, intent(in) :: row(:, :) !< (2, nodes)
+    logical, intent(inout) :: is_reached(:) !< (nodes)
+    integer, allocatable :: stack(:)
+    integer :: top, node, k
+    stack = pack([(node, node=1, size(is_reached))], is_reached)
+    top = size(stack)
+    stack = [stack, spread(0, 1, size(is_reached) - top)]
+    do while (top > 0)
+      node = stack(top)
+      top = top - 1
+      if (row(1, node) == 0) cycle
+      associate (tie => ties(row(1, node)))
+        do k = tie%first(row(2, node)), tie%first(row(2, node) + 1) - 1
+          if (is_reached(tie%master(k))) cycle
+          is_reached(tie%master(k)) = .true.
+          top = top + 1
+          stack(top) = tie%master(k)
+        end do
+      end associate
+    end do
+  end subroutine flood
+end module coupling_tie

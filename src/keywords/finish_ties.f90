@@ -1,0 +1,127 @@
+!> Builds the ties of a deck once all of it is read: the supports of all steps count.
+module finish_ties
+  use coupling_tie, only: lay_tie
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use errors, only: error_type
+  use facet_segments, only: find_segments
+  use kinds, only: rk
+  use model_draft, only: draft, tie_request
+  use node_ties, only: node_tie
+  use surface_facets, only: list_surface_facets
+  use surface_segments, only: facet_set, segment_set, surface_cover
+  use tie_motion, only: follow_ties
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: complete_ties
+
+  !> Initial values of a slave face that differ from what it follows by more than this part of the
+  !> largest are told; the round-off of the projection stays far below.
+  real(rk), parameter :: equal_values = 1.0e-9_rk
+
+contains
+
+  !> Builds all ties in the order of the deck. Surfaces, sections and steps are known to be right.
+  subroutine complete_ties(model, faults)
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    logical, allocatable :: is_fixed(:, :)
+    integer :: i
+    if (size(model%ties) == 0) return
+    call collect_supports(model, is_fixed)
+    do i = 1, size(model%ties)
+      call build_tie(model%ties(i), is_fixed, model, faults)
+    end do
+    if (faults%has_errors()) return
+    call check_initial_values(.false., model, faults)
+    if (.not. faults%has_errors()) call check_initial_values(.true., model, faults)
+  end subroutine complete_ties
+
+  !> What the supports of any step hold: a node has the same multipliers in all steps, so that a
+  !> state goes over from one to the next.
+  subroutine collect_supports(model, is_fixed)
+    type(draft), intent(in) :: model
+    logical, allocatable, intent(out) :: is_fixed(:, :) !< (3, nodes)
+    integer :: s, k
+    allocate (is_fixed(3, model%scene%mesh%num_nodes), source=.false.)
+    do s = 1, size(model%scene%steps)
+      associate (fixities => model%scene%steps(s)%fixities)
+        do k = 1, size(fixities)
+          is_fixed(fixities(k)%dof, fixities(k)%node) = .true.
+        end do
+      end associate
+    end do
+  end subroutine collect_supports
+
+  !> One pair of surfaces.
+  subroutine build_tie(request, is_fixed, model, faults)
+    type(tie_request), intent(in) :: request
+    logical, intent(in) :: is_fixed(:, :)
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(facet_set) :: slave, master
+    type(segment_set) :: segments
+    type(surface_cover) :: cover
+    type(node_tie) :: tie
+    associate (scene => model%scene, place => model%cards(request%spot%card))
+      if (request%stiffness > 0.0_rk) then
+        call place%fault_parameter(faults, 'STIFFNESS', 'springs are not available yet', &
+                                   'a tie without STIFFNESS')
+        return
+      end if
+      call list_surface_facets(scene%mesh, scene%surfaces(request%slave), slave)
+      call list_surface_facets(scene%mesh, scene%surfaces(request%master), master)
+      call find_segments(scene%mesh%x, slave, master, segments, cover)
+      if (segments%num_segments == 0) then
+        call place%fault_at(faults, request%spot%line, 1, 'the surfaces do not lie on each other', &
+                            'two surfaces that face each other')
+        return
+      end if
+      tie%name = request%name
+      call lay_tie(scene%mesh%x, slave, master, segments, is_fixed, scene%ties, tie)
+      if (size(tie%node) == 0) then
+        call place%fault_at(faults, request%spot%line, 1, 'the tie holds nothing: supports or '// &
+                            'earlier ties hold every node of the slave surface', &
+                            'the surfaces the other way round')
+        return
+      end if
+      scene%ties = [scene%ties, tie]
+    end associate
+  end subroutine build_tie
+
+  !> Initial values that the deck gives to nodes which follow others and that contradict the ties.
+  subroutine check_initial_values(is_velocity, model, faults)
+    logical, intent(in) :: is_velocity !< else displacements
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    real(rk), allocatable :: given(:, :), taken(:, :)
+    logical, allocatable :: is_given(:, :)
+    type(error_type), allocatable :: error
+    integer :: i, worst(2)
+    allocate (given(3, model%scene%mesh%num_nodes), source=0.0_rk)
+    allocate (is_given(3, model%scene%mesh%num_nodes), source=.false.)
+    do i = 1, size(model%scene%initial_values)
+      associate (item => model%scene%initial_values(i))
+        if (item%is_velocity .neqv. is_velocity) cycle
+        given(item%dof, item%node) = item%value
+        is_given(item%dof, item%node) = .true.
+      end associate
+    end do
+    if (.not. any(is_given)) return
+    taken = given
+    call follow_ties(model%scene%ties, taken, error)
+    if (allocated(error)) then
+      call model%cards(model%ties(1)%spot%card)%fault(faults, 'the ties: '//error%message)
+      return
+    end if
+    worst = maxloc(abs(taken - given), mask=is_given)
+    if (abs(taken(worst(1), worst(2)) - given(worst(1), worst(2))) &
+        <= equal_values*maxval(abs(given))) return
+    call model%cards(model%ties(1)%spot%card)%warn(faults, 'node '// &
+                    as_text(model%scene%mesh%node_id(worst(2)))//' follows others; its initial '// &
+                             trim(merge('velocity    ', 'displacement', is_velocity))//' along '// &
+                 'xyz' (worst(1):worst(1))//' is '//as_text(taken(worst(1), worst(2)))//', not '// &
+                                                   as_text(given(worst(1), worst(2)))//' as given')
+  end subroutine check_initial_values
+end module finish_ties

@@ -1,0 +1,81 @@
+!> *TIE.
+module keywords_tie
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use keyword_spec, only: keyword, field, kind_real, kind_word
+  use kinds, only: rk
+  use model_draft, only: draft, tie_request
+  use named_things, only: find_surface_name, surface_names
+  use nearest_words, only: nearest_word
+  implicit none
+  private
+  public :: describe_tie, read_tie
+
+contains
+
+  subroutine describe_tie(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'TIE'
+    spec%family = 'joint'
+    spec%place = 'model'
+   spec%meaning = 'Ties surfaces whose meshes may differ, in all directions. Without STIFFNESS '// &
+                   'the nodes of the slave surface follow the master surface exactly, as mean '// &
+                   'values over the true overlap of the facets (a dual mortar method); let the '// &
+                   'finer mesh be the slave. Where a slave node is held by *BOUNDARY in any '// &
+                   'step, or follows others by an earlier tie, it follows nothing here in that '// &
+                   'direction. With STIFFNESS, springs between the faces hold them together. '// &
+                   'Parts of the slave surface without partner stay free.'
+    spec%example = '*TIE, NAME=BLOCK1_TO_ROCK'//new_line('a')//'BLOCK1_BASE, ROCK_TOP'
+    spec%fewest_lines = 1
+    allocate (spec%parameters, source=[ &
+              field('NAME', kind_word, 'name of the tie', is_required=.true.), &
+              field('STIFFNESS', kind_real, 'of springs between the faces', 'Pa/m', &
+                    lowest=0.0_rk, excludes_lowest=.true.)])
+    allocate (spec%columns, source=[ &
+              field('slave', kind_word, 'slave surface, better the finer one', &
+                    is_required=.true.), &
+              field('master', kind_word, 'master surface', is_required=.true.)])
+  end subroutine describe_tie
+
+  subroutine read_tie(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(tie_request) :: new
+    integer :: line, i
+    new%name = this%word('NAME')
+    new%stiffness = this%real('STIFFNESS')
+    do i = 1, size(model%ties)
+      if (model%ties(i)%name /= new%name) cycle
+      if (model%ties(i)%spot%card == model%current) cycle
+      call this%fault_parameter(faults, 'NAME', "tie '"//this%text('NAME')//"' is defined twice", &
+                                'a name that is used once', &
+                                first=model%cards(model%ties(i)%spot%card)%place())
+      exit
+    end do
+    do line = 1, this%num_lines
+      new%spot = model%here(line)
+      call find_surface(this, line, 1, model, faults, new%slave)
+      call find_surface(this, line, 2, model, faults, new%master)
+      if (new%slave > 0 .and. new%slave == new%master) then
+        call this%fault_at(faults, line, 2, 'the master surface is the slave surface', &
+                           'another surface')
+      end if
+      model%ties = [model%ties, new]
+    end do
+  end subroutine read_tie
+
+  !> Position of the surface named in a field; 0 after a fault.
+  subroutine find_surface(this, line, number, model, faults, found)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line, number
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, intent(out) :: found
+    found = find_surface_name(model, this%word_at(line, number))
+    if (found > 0) return
+    call this%fault_at(faults, line, number, "there is no surface '"// &
+                       this%text_at(line, number)//"' so far", 'a surface defined above', &
+                       nearest_word(this%word_at(line, number), surface_names(model)))
+  end subroutine find_surface
+end module keywords_tie

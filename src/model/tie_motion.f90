@@ -1,0 +1,44 @@
+!> Fields at nodes that agree with the ties.
+module tie_motion
+  use kinds, only: rk
+  use errors, only: error_type
+  use node_ties, only: node_tie
+  use dof_numbering, only: linear_links
+  use jump_links, only: nodal_points, link_nodes, pairs_of_nodes
+  implicit none
+  private
+  public :: follow_ties
+
+contains
+
+  !> Gives the nodes that follow others by ties what they follow. Fails where ties depend on each
+  !> other in a circle.
+  subroutine follow_ties(ties, field, error)
+    type(node_tie), intent(in) :: ties(:)
+    real(rk), intent(inout) :: field(:, :) !< (3, nodes)
+    type(error_type), allocatable, intent(out) :: error
+    type(nodal_points) :: none
+    type(linear_links) :: links
+    logical, allocatable :: is_used(:), is_fixed(:, :)
+    real(rk) :: rotation(3, 3, 0), total
+    integer :: k, t
+    if (size(ties) == 0) return
+    allocate (is_used(size(field, 2)), source=.true.)
+    allocate (is_fixed(3, size(field, 2)), source=.false.)
+    call pairs_of_nodes([integer ::], [integer ::], rotation, none)
+    call link_nodes(none, ties, is_used, is_fixed, links, error)
+    if (allocated(error)) return
+    do k = 1, links%num_links
+      total = 0.0_rk
+      do t = links%first(k), links%first(k + 1) - 1
+        total = total + links%coefficient(t)*value_at(links%term(t))
+      end do
+      field(1 + mod(links%dof(k) - 1, 3), (links%dof(k) + 2)/3) = total
+    end do
+  contains
+    pure real(rk) function value_at(dof)
+      integer, intent(in) :: dof
+      value_at = field(1 + mod(dof - 1, 3), (dof + 2)/3)
+    end function value_at
+  end subroutine follow_ties
+end module tie_motion
