@@ -7,9 +7,12 @@ module pattern_builder
   use joint_points, only: joint
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
+  use sorted_lists, only: sorted_unique
   implicit none
   private
   public :: build_pattern, cell_list, list_cells
+
+  integer, parameter :: longest_short = 64 !< neighbours; a node of a solid has 26
 
   !> Lists of nodes, one after the other.
   type :: cell_list
@@ -203,10 +206,14 @@ contains
     end subroutine add_neighbours
   end subroutine list_neighbours
 
-  !> Sorts a short list by insertion.
+  !> Sorts a short list by insertion, a long one by merging.
   pure subroutine sort(list)
-    integer, intent(inout) :: list(:)
+    integer, intent(inout) :: list(:) !< each item once
     integer :: i, k, item
+    if (size(list) > longest_short) then
+      list = sorted_unique(list)
+      return
+    end if
     do i = 2, size(list)
       item = list(i)
       do k = i - 1, 1, -1

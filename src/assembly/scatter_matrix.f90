@@ -3,6 +3,7 @@ module scatter_matrix
   use kinds, only: rk
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern, add_block
+  use sorted_lists, only: sorted_unique
   implicit none
   private
   public :: scatter_nodes
@@ -61,33 +62,67 @@ contains
     real(rk), intent(in) :: k(:, :)
     type(pattern), intent(in) :: matrix
     real(rk), intent(inout) :: values(:)
-    integer, allocatable :: unknown(:)
-    real(rk), allocatable :: t(:, :)
-    call gather_rows(numbers, dof, unknown, t)
-    call add_block(matrix, unknown, matmul(transpose(t), matmul(k, t)), values)
+    integer, allocatable :: unknown(:), first(:), place(:)
+    real(rk), allocatable :: coefficient(:), block(:, :)
+    integer :: i, j, b
+    call gather_rows(numbers, dof, unknown, first, place, coefficient)
+    allocate (block(size(unknown), size(unknown)), source=0.0_rk)
+    do j = 1, size(dof)
+      do b = first(j), first(j + 1) - 1
+        do i = 1, size(dof)
+          associate (row => place(first(i):first(i + 1) - 1), column => place(b))
+            block(row, column) = block(row, column) + coefficient(b)*k(i, j) &
+                                 *coefficient(first(i):first(i + 1) - 1)
+          end associate
+        end do
+      end do
+    end do
+    call add_block(matrix, unknown, block, values)
   end subroutine scatter_general
 
-  !> The rows of T of these dofs as a dense matrix.
-  subroutine gather_rows(numbers, dof, unknown, t)
+  !> The rows of T of these dofs, on the unknowns that they touch.
+  subroutine gather_rows(numbers, dof, unknown, first, place, coefficient)
     type(numbering), intent(in) :: numbers
     integer, intent(in) :: dof(:)
     integer, allocatable, intent(out) :: unknown(:) !< ascending
-    real(rk), allocatable, intent(out) :: t(:, :) !< (dofs, unknowns)
-    integer :: i, k, place
-    allocate (unknown(0))
+    integer, allocatable, intent(out) :: first(:) !< (dofs + 1) of each row
+    integer, allocatable, intent(out) :: place(:) !< among the unknowns, of each term
+    real(rk), allocatable, intent(out) :: coefficient(:) !< of each term
+    integer, allocatable :: term(:)
+    integer :: i, k, length
+    allocate (first(size(dof) + 1))
+    first(1) = 1
     do i = 1, size(dof)
-      do k = numbers%row_start(dof(i)), numbers%row_start(dof(i) + 1) - 1
-        if (any(unknown == numbers%unknown(k))) cycle
-        place = count(unknown < numbers%unknown(k))
-        unknown = [unknown(:place), numbers%unknown(k), unknown(place + 1:)]
-      end do
+      first(i + 1) = first(i) + numbers%row_start(dof(i) + 1) - numbers%row_start(dof(i))
     end do
-    allocate (t(size(dof), size(unknown)))
-    t = 0.0_rk
+    allocate (term(first(size(dof) + 1) - 1), coefficient(first(size(dof) + 1) - 1))
     do i = 1, size(dof)
-      do k = numbers%row_start(dof(i)), numbers%row_start(dof(i) + 1) - 1
-        t(i, count(unknown <= numbers%unknown(k))) = numbers%coefficient(k)
-      end do
+      k = numbers%row_start(dof(i))
+      length = first(i + 1) - first(i)
+      term(first(i):first(i + 1) - 1) = numbers%unknown(k:k + length - 1)
+      coefficient(first(i):first(i + 1) - 1) = numbers%coefficient(k:k + length - 1)
+    end do
+    unknown = sorted_unique(term)
+    allocate (place(size(term)))
+    do i = 1, size(term)
+      place(i) = position_in(unknown, term(i))
     end do
   end subroutine gather_rows
+
+  !> Where an item stands that the list holds.
+  pure integer function position_in(list, item) result(low)
+    integer, intent(in) :: list(:) !< ascending
+    integer, intent(in) :: item
+    integer :: high, middle
+    low = 1
+    high = size(list)
+    do while (low < high)
+      middle = (low + high)/2
+      if (list(middle) < item) then
+        low = middle + 1
+      else
+        high = middle
+      end if
+    end do
+  end function position_in
 end module scatter_matrix

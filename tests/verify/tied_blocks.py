@@ -6,73 +6,85 @@ import numpy as np
 from harness import Run
 
 FACES = {"Z0": "S1", "Z1": "S2", "Y0": "S3", "X1": "S4", "Y1": "S5", "X0": "S6"}
+CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
 
 
 class Blocks:
-    """Bricks between lines, block by block; sides of blocks are surfaces like A_X1.
+    """Bricks between planes, block by block; sides of blocks are surfaces like A_X1.
 
-    A node is made anew for each block: blocks share nothing but ties, unless `merge` is called.
+    Each block has nodes of its own, until `share` is called.
     """
 
     def __init__(self):
-        self.x: list[np.ndarray] = []
-        self.cards = ""
-        self.blocks: dict[str, np.ndarray] = {}
-        self.num_elements = 0
-        self.lines: dict[str, tuple[np.ndarray, ...]] = {}
+        self.x = np.zeros((0, 3))
+        self.nodes: dict[str, np.ndarray] = {}  # positions, by i, j, k
 
     def add(self, name: str, x, y, z) -> None:
         """A block with planes of nodes at x, y and z; (n, a, b) are n bricks from a to b."""
-        lines = tuple(
+        lines = (
             np.linspace(v[1], v[2], v[0] + 1) if isinstance(v, tuple) else np.asarray(v, float)
             for v in (x, y, z)
         )
-        self.lines[name] = lines
-        first = len(self.x)
         grid = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1)
-        nodes = first + np.arange(grid[..., 0].size).reshape(grid.shape[:3])
-        self.x.extend(grid.reshape(-1, 3))
-        self.blocks[name] = nodes
-        n, m, o = (np.array(nodes.shape) - 1).tolist()
-        numbers = self.num_elements + 1 + np.arange(n * m * o).reshape(n, m, o)
-        self.num_elements += n * m * o
-        self.cards += f"*ELEMENT, TYPE=C3D8, ELSET={name}\n"
-        corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
-        corners += [(i, j, 1) for i, j, _ in corners]
-        for i, j, k in np.ndindex(n, m, o):
-            of = [nodes[i + a, j + b, k + c] + 1 for a, b, c in corners]
-            self.cards += ", ".join(map(str, [numbers[i, j, k], *of])) + "\n"
-        sides = {
-            "X0": numbers[0], "X1": numbers[-1], "Y0": numbers[:, 0], "Y1": numbers[:, -1],
-            "Z0": numbers[:, :, 0], "Z1": numbers[:, :, -1],
-        }  # fmt: skip
-        for side, elements in sides.items():
-            self.cards += f"*SURFACE, NAME={name}_{side}, TYPE=ELEMENT\n"
-            self.cards += "".join(f"{e}, {FACES[side]}\n" for e in elements.ravel())
+        self.nodes[name] = len(self.x) + np.arange(grid[..., 0].size).reshape(grid.shape[:3])
+        self.x = np.concatenate([self.x, grid.reshape(-1, 3)])
 
-    @property
-    def positions(self) -> np.ndarray:
-        return np.array(self.x)
-
-    def on_box(self, low, high) -> np.ndarray:
-        """Nodes on the six planes of a box (positions)."""
-        x = self.positions
-        return np.nonzero((np.isclose(x, low) | np.isclose(x, high)).any(axis=1))[0]
+    def share(self, a: str, b: str, where=None) -> None:
+        """Block b takes the nodes of block a that lie where its own do (and `where` holds)."""
+        own = self.nodes[b].ravel()
+        for k, node in enumerate(own):
+            near = np.nonzero(np.isclose(self.x[self.nodes[a]], self.x[node]).all(axis=-1))
+            if len(near[0]) and (where is None or where(self.x[node])):
+                own[k] = self.nodes[a][near][0]
+        self.nodes[b] = own.reshape(self.nodes[b].shape)
 
     def side(self, name: str, side: str) -> np.ndarray:
         """Nodes of a side of a block (positions)."""
         pick = {"0": 0, "1": -1}[side[1]]
-        return np.take(self.blocks[name], pick, axis="XYZ".index(side[0])).ravel()
+        return np.take(self.nodes[name], pick, axis="XYZ".index(side[0])).ravel()
 
-    def deck(self, material: str, steps: str) -> str:
-        """Nodes, elements, surfaces, one material for all blocks, sets ALL; then the rest."""
-        text = "*NODE, NSET=ALL\n"
-        text += "".join(f"{i}, {p[0]!r}, {p[1]!r}, {p[2]!r}\n" for i, p in
-                        enumerate(self.positions.tolist(), 1))  # fmt: skip
-        text += self.cards + f"*MATERIAL, NAME=M\n{material}"
-        for name in self.blocks:
-            text += f"*SOLID SECTION, ELSET={name}, MATERIAL=M\n"
-        return text + "*ELSET, ELSET=BODY\n" + ", ".join(self.blocks) + "\n" + steps
+    def on_box(self, low, high) -> np.ndarray:
+        """Nodes in use on the six planes of a box (positions)."""
+        used = np.unique(np.concatenate([n.ravel() for n in self.nodes.values()]))
+        planes = (np.isclose(self.x, low) | np.isclose(self.x, high)).any(axis=1)
+        return used[planes[used]]
+
+    def deck(self, materials: dict[str, str], cards: str) -> str:
+        """The model with a material for each block (all have that of '' if there is one), sets ALL
+        and BODY; then the rest.
+        """
+        text = "*NODE, NSET=ALL\n" + "".join(
+            f"{i}, {x!r}, {y!r}, {z!r}\n" for i, (x, y, z) in enumerate(self.x.tolist(), 1)
+        )
+        count = 0
+        for name, nodes in self.nodes.items():
+            shape = tuple(n - 1 for n in nodes.shape)
+            numbers = count + 1 + np.arange(np.prod(shape)).reshape(shape)
+            count += numbers.size
+            text += f"*ELEMENT, TYPE=C3D8, ELSET={name}\n"
+            for i, j, k in np.ndindex(shape):
+                of = [nodes[i + a, j + b, k + c] + 1 for a, b, c in CORNERS]
+                text += ", ".join(map(str, [numbers[i, j, k], *of])) + "\n"
+            for side, face in FACES.items():
+                behind = np.take(numbers, {"0": 0, "1": -1}[side[1]], axis="XYZ".index(side[0]))
+                text += f"*SURFACE, NAME={name}_{side}, TYPE=ELEMENT\n"
+                text += "".join(f"{e}, {face}\n" for e in behind.ravel())
+        for name, law in materials.items():
+            text += f"*MATERIAL, NAME=M{name}\n{law}"
+        for name in self.nodes:
+            material = name if name in materials else ""
+            text += f"*SOLID SECTION, ELSET={name}, MATERIAL=M{material}\n"
+        return text + "*ELSET, ELSET=BODY\n" + ", ".join(self.nodes) + "\n" + cards
+
+
+def ties(*pairs: tuple[str, str]) -> str:
+    """*TIE of pairs of surfaces, slave first."""
+    return "".join(f"*TIE, NAME=T{i}\n{s}, {m}\n" for i, (s, m) in enumerate(pairs))
+
+
+def node_set(name: str, nodes) -> str:
+    """*NSET of positions."""
+    return f"*NSET, NSET={name}\n" + "".join(f"{n + 1}\n" for n in nodes)
 
 
 def prescribe(nodes: np.ndarray, u: np.ndarray) -> str:
