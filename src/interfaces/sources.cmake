@@ -11,4 +11,6 @@ set(sources
   coupling_joint.f90
   coupling_tie.f90
   surface_coupling.f90
+  joint_rim.f90
+  water_paths.f90
 )

@@ -27,6 +27,7 @@ module joint_law
     logical, allocatable :: has_parted(:)
     real(rk), allocatable :: friction_work(:) !< dissipated so far [J/m2]
     real(rk), allocatable :: fracture_work(:) !< set free when the strength was lost [J/m2]
+    real(rk), allocatable :: water(:) !< (points) pressure of water in the joint; where there is any
   end type joint_state
 
   !> A joint law. `update` answers with the law's own traction (for the residual that decides

@@ -8,6 +8,7 @@ module finish_model
   use errors, only: error_type
   use finish_concrete, only: complete_concretes
   use finish_ties, only: complete_ties
+  use finish_uplift, only: complete_uplift
   use finish_user_materials, only: complete_user_materials
   use joint_catalogue, only: make_joint_law
   use joint_constants, only: law_constants
@@ -32,7 +33,6 @@ contains
     end if
     model%scene%node_sets = model%node_sets%trimmed()
     model%scene%element_sets = model%element_sets%trimmed()
-    call trim_loads(model)
     call check_contents(model, faults)
     call complete_concretes(model, faults)
     call complete_user_materials(model, faults)
@@ -43,6 +43,8 @@ contains
       call build_joint(i, model, faults)
     end do
     if (.not. faults%has_errors()) call complete_ties(model, faults)
+    if (.not. faults%has_errors()) call complete_uplift(model, faults)
+    call trim_loads(model)
   end subroutine complete_model
 
   !> Gives back the unused end of the list; loads are moved, not copied.

@@ -30,7 +30,10 @@ contains
                    'KN is then E/h of the softer side, h the depth of its elements, and KT '// &
                    'E/THICKNESS/(2(1+nu)), unless given; a larger KN takes fewer repetitions. '// &
                    'Points that are still bonded keep to KN, which with a tensile strength is '// &
-                   'E/THICKNESS as ever.'
+                   'E/THICKNESS as ever. '// &
+                   'UPLIFT puts the water of a reservoir into the joint: its '// &
+                   'pressure pushes the faces apart, in the steps and with the factors of the '// &
+                   'reservoir. tn stays the traction of the joint itself.'
     spec%example = '*JOINT LAW, NAME=CONTRACTION, FRICTION=0.6'
     spec%most_lines = 0
     allocate (spec%parameters, source=[ &
@@ -52,7 +55,14 @@ contains
               field('PENETRATION', kind_real, 'largest penetration of points in contact '// &
                     '(augmented Lagrangian); KN then only leads the iteration, KT makes a '// &
                     'sticking point yield as ever', 'm', &
-                    'pressure/KN', lowest=0.0_rk, excludes_lowest=.true.)])
+                    'pressure/KN', lowest=0.0_rk, excludes_lowest=.true.), &
+              field('UPLIFT', kind_word, 'name of a *RESERVOIR whose water is in the joint'), &
+              field('PROFILE', kind_choice, 'how far: LINEAR, full head at the upstream edge '// &
+                    'falling to none at the downstream edge, open or not; OPEN, full head as '// &
+                    'far as the joint is open from the upstream edge on, none elsewhere', &
+                    default='LINEAR', choices='LINEAR | OPEN'), &
+              field('TAIL WATER', kind_word, 'name of a *RESERVOIR at the downstream edge, '// &
+                    'PROFILE=LINEAR')])
   end subroutine describe_joint_law
 
   subroutine read_joint_law(this, model, faults)
@@ -84,9 +94,29 @@ contains
     if (this%has('KN') .and. this%has('THICKNESS')) then
       call this%warn(faults, 'THICKNESS has no effect: KN is given')
     end if
+    call read_water(this, new, faults)
     new%spot = model%here(0)
     model%laws = [model%laws, new]
   end subroutine read_joint_law
+
+  !> The water in the joint; whether the reservoirs exist is known at the end of the deck.
+  subroutine read_water(this, new, faults)
+    type(card), intent(in) :: this
+    type(law_request), intent(inout) :: new
+    type(diagnostic_list), intent(inout) :: faults
+    new%uplift = this%word('UPLIFT')
+    new%tail_water = this%word('TAIL WATER')
+    new%profile = this%word('PROFILE')
+    if (new%uplift == '' .and. new%tail_water /= '') then
+      call this%fault_parameter(faults, 'TAIL WATER', 'TAIL WATER stands without UPLIFT', &
+                                'UPLIFT=the reservoir upstream')
+    else if (new%uplift == '' .and. this%has('PROFILE')) then
+      call this%warn(faults, 'PROFILE has no effect: UPLIFT is not given')
+    else if (new%profile == 'OPEN' .and. new%tail_water /= '') then
+      call this%fault_parameter(faults, 'TAIL WATER', 'TAIL WATER stands beside PROFILE=OPEN', &
+                                'PROFILE=LINEAR')
+    end if
+  end subroutine read_water
 
   subroutine describe_joint(spec)
     type(keyword), intent(out) :: spec

@@ -34,6 +34,8 @@ module model_draft
   !> *JOINT LAW; stiffnesses that are zero are completed when the joint is built.
   type :: law_request
     type(law_constants) :: law
+    character(:), allocatable :: uplift, tail_water !< names of reservoirs, '' for none
+    character(:), allocatable :: profile !< of the water: 'LINEAR' or 'OPEN'
     type(origin) :: spot
   end type law_request
 

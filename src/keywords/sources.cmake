@@ -34,6 +34,7 @@ set(sources
   finish_user_materials.f90
   contact_defaults.f90
   finish_ties.f90
+  finish_uplift.f90
   finish_model.f90
   finish_tests.f90
   verify_model.f90

@@ -6,6 +6,7 @@ module load_catalogue
   use load_point, only: point_load
   use load_pressure, only: pressure_load
   use load_reservoir, only: reservoir_load
+  use load_uplift, only: uplift_load
   use mesh_sets, only: surface
   implicit none
   private
@@ -19,7 +20,7 @@ module load_catalogue
     character(64) :: meaning
   end type load_kind
 
-  type(load_kind), parameter :: load_kinds(7) = [ &
+  type(load_kind), parameter :: load_kinds(8) = [ &
                                 load_kind('CLOAD', '', 'point load', 'forces on nodes'), &
                                 load_kind('DLOAD', 'GRAV', 'gravity', 'weight of elements'), &
                                 load_kind('DLOAD', 'PN', 'pressure', 'uniform on a face'), &
@@ -28,7 +29,9 @@ module load_catalogue
                                 load_kind('RESERVOIR', '', 'reservoir', &
                                           'hydrostatic head and added mass of water'), &
                                 load_kind('BASE MOTION', '', 'base motion', &
-                                          'uniform acceleration of the base')]
+                                          'uniform acceleration of the base'), &
+                                load_kind('JOINT LAW', '', 'uplift', &
+                                          'water of a reservoir in a joint')]
 
 contains
 
@@ -47,6 +50,8 @@ contains
       allocate (reservoir_load :: item)
     case ('base motion')
       allocate (base_motion :: item)
+    case ('uplift')
+      allocate (uplift_load :: item)
     case default
       return
     end select

@@ -6,5 +6,6 @@ set(sources
   load_pressure.f90
   load_reservoir.f90
   load_base_motion.f90
+  load_uplift.f90
   load_catalogue.f90
 )

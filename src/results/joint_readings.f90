@@ -17,6 +17,7 @@ module joint_readings
     logical, allocatable :: is_upstream(:), is_downstream(:) !< (points)
     type(extremes_by_face) :: opening, slip, pressure
     real(rk) :: penetration = 0.0_rk !< largest [m]
+    type(extremes_by_face) :: water !< nothing found where the joint has none
   end type joint_record
 
 contains
@@ -109,6 +110,7 @@ contains
     record%penetration = max(record%penetration, -minval(opening_at_points(now)))
     call note(record%slip, hypot(now%slip(1, :), now%slip(2, :)))
     call note(record%pressure, max(0.0_rk, -now%traction(1, :)))
+    if (allocated(now%water)) call note(record%water, now%water)
 
   contains
 

@@ -241,6 +241,9 @@ contains
       call put_extremes(json, 'opening', record%joints(j)%opening)
       call put_extremes(json, 'slip', record%joints(j)%slip)
       call put_extremes(json, 'pressure', record%joints(j)%pressure)
+      if (any(record%joints(j)%water%at%is_found)) then
+        call put_extremes(json, 'water', record%joints(j)%water)
+      end if
       call json%close_object()
     end do
     call json%close_object()

@@ -175,6 +175,7 @@ contains
       call file%put(place//'/slip', now%joints(j)%slip)
       call file%put(place//'/traction', now%joints(j)%traction)
       call file%put(place//'/state', now%joints(j)%status)
+      if (allocated(now%joints(j)%water)) call file%put(place//'/water', now%joints(j)%water)
     end do
   end subroutine add_joints
 

@@ -23,6 +23,7 @@ set(sources
   condensation.f90
   newton_full.f90
   step_loads.f90
+  joint_water.f90
   step_system.f90
   step_equilibrium.f90
   step_control.f90

@@ -8,11 +8,12 @@ module step_loads
   use problem_definition, only: problem
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
+  use load_uplift, only: uplift_load
   use assemble_forces, only: assemble_force, sum_base_acceleration, inertia_force
   implicit none
   private
   public :: load_group, support, step_time, gather_loads, gather_supports
-  public :: external_force, prescribed_values
+  public :: external_force, prescribed_values, factor_at
 
   !> Where in time a factor is wanted.
   type :: step_time
@@ -25,9 +26,11 @@ module step_loads
     procedure :: advance
   end type step_time
 
-  !> Loads with one rule of time.
+  !> Loads with one rule of time. Water that follows the opening of a joint has a group of its own.
   type :: load_group
     type(step_load) :: rule
+    integer :: uplift = 0 !< the load that is such water, 0 for none
+    real(rk), allocatable :: pressure(:) !< (points of its joint) now, at factor 1 [Pa]
     real(rk), allocatable :: force(:) !< (num_total) at factor 1 [N]
   end type load_group
 
@@ -63,12 +66,28 @@ contains
     integer :: i, group
     allocate (groups(0))
     do i = 1, size(plan%loads)
+      if (follows_opening(scene, plan%loads(i)%load)) then
+        call open_group(plan%loads(i), numbers%num_total, groups, group)
+        groups(group)%uplift = plan%loads(i)%load
+        cycle
+      end if
       call assemble_force(scene, plan%loads(i)%load, numbers, force)
       if (size(mass) > 0) call add_base_motion(scene, plan%loads(i), numbers, matrix, mass, force)
       call find_group(plan%loads(i), numbers%num_total, groups, group)
       groups(group)%force = groups(group)%force + force
     end do
   end subroutine gather_loads
+
+  !> Whether the pattern of a load depends on what is open.
+  logical function follows_opening(scene, load)
+    type(problem), intent(in) :: scene
+    integer, intent(in) :: load
+    follows_opening = .false.
+    select type (water => scene%loads(load)%item)
+    type is (uplift_load)
+      follows_opening = water%follows_opening
+    end select
+  end function follows_opening
 
   !> -M r of the acceleration that a load gives to the base.
   subroutine add_base_motion(scene, rule, numbers, matrix, mass, force)
@@ -94,16 +113,25 @@ contains
     integer, intent(in) :: num_unknowns
     type(load_group), allocatable, intent(inout) :: groups(:)
     integer, intent(out) :: found
-    type(load_group) :: fresh
     do found = 1, size(groups)
-      if (follows(groups(found)%rule, rule)) return
+      if (groups(found)%uplift == 0 .and. follows(groups(found)%rule, rule)) return
     end do
+    call open_group(rule, num_unknowns, groups, found)
+  end subroutine find_group
+
+  !> Adds a group without forces.
+  subroutine open_group(rule, num_unknowns, groups, added)
+    type(step_load), intent(in) :: rule
+    integer, intent(in) :: num_unknowns
+    type(load_group), allocatable, intent(inout) :: groups(:)
+    integer, intent(out) :: added
+    type(load_group) :: fresh
     fresh%rule = rule
     allocate (fresh%force(num_unknowns))
     fresh%force = 0.0_rk
     groups = [groups, fresh]
-    found = size(groups)
-  end subroutine find_group
+    added = size(groups)
+  end subroutine open_group
 
   !> Whether two loads always have the same factor.
   pure logical function follows(a, b)

@@ -9,6 +9,7 @@ module time_hht
   use analysis_state, only: state
   use increment_listener, only: listener
   use joint_forces, only: gather_tractions
+  use joint_water, only: lead_water, show_water
   use equilibrium, only: balance_outcome
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium, hand_over_costs
   use step_system, only: dam_system, build_structure, build_inertia, build_damping, build_loads
@@ -72,13 +73,15 @@ contains
   subroutine start_dynamic(scene, plan, system, start, moving, error)
     type(problem), intent(in) :: scene
     type(step), intent(in) :: plan
-    type(dam_system), intent(in) :: system
+    type(dam_system), intent(inout) :: system
     real(rk), intent(in) :: start !< total time [s]
     type(motion), intent(inout) :: moving
     type(error_type), allocatable, intent(out) :: error
     type(step_time) :: when
     real(rk), allocatable :: acting(:)
+    logical :: has_changed
     when = step_time(is_dynamic=.true., start=start, duration=plan%duration)
+    call lead_water(scene, system%operator, moving%joints, system%groups, has_changed)
     call external_force(system%groups, scene%amplitudes, when, moving%external)
     call start_supports(scene, system, when, 1.0e-3_rk*plan%first_increment, moving%v)
     call multiply(system%matrix, system%stiffness, moving%q, moving%elastic)
@@ -127,7 +130,7 @@ contains
   subroutine walk(scene, plan, system, tool, start, now, results, error)
     type(problem), intent(in) :: scene
     type(step), intent(in) :: plan
-    type(dam_system), intent(in) :: system
+    type(dam_system), intent(inout) :: system
     type(stepper), intent(inout) :: tool
     type(motion), intent(in) :: start
     type(state), intent(inout) :: now
@@ -138,7 +141,7 @@ contains
     type(motion), allocatable :: moving, trial
     type(step_time) :: when
     real(rk) :: dt
-    logical :: gives_up
+    logical :: gives_up, has_changed
     when = step_time(is_dynamic=.true., start=now%total_time, duration=plan%duration)
     allocate (moving, trial, source=start)
     call start_control(plan, .true., control)
@@ -151,6 +154,7 @@ contains
       if (allocated(error)) return
       call tool%solids%open_increment(now, dt)
       call results%costs%start('forces', 'solver')
+      call lead_water(scene, system%operator, moving%joints, system%groups, has_changed)
       call take_increment(scene, system, tool, when, moving, trial, outcome, error)
       call results%costs%stop('forces')
       if (allocated(error)) return
@@ -166,6 +170,7 @@ contains
       call results%costs%stop('energy')
       call swap(moving, trial)
       call show_motion(system%numbers, moving, now)
+      call show_water(scene, plan%loads, system%groups, scene%amplitudes, when, now%joints)
       now%joint_condition = max(now%joint_condition, tool%solids%solver%condition)
       call control%accept(tool%solids%effort(outcome%own_iterations()))
       call close_increment(scene, plan, when, control, outcome, now, results, error)

@@ -8,6 +8,7 @@ module time_static
   use problem_definition, only: problem
   use step_plan, only: step
   use joint_forces, only: gather_jumps, gather_tractions
+  use joint_water, only: lead_water, show_water
   use analysis_state, only: state
   use increment_listener, only: listener
   use equilibrium, only: force_balance, balance_outcome
@@ -28,6 +29,9 @@ module time_static
 
   !> Of the force that would hold all unknowns but one: below, only round-off is left.
   real(rk), parameter :: idle_share = 1.0e-6_rk
+
+  !> So often an increment is solved anew because water has got further into a joint, or less far.
+  integer, parameter :: most_passes = 50
 
 contains
 
@@ -76,9 +80,11 @@ contains
   subroutine start_forces(scene, plan, system, now, moving)
     type(problem), intent(in) :: scene
     type(step), intent(in) :: plan
-    type(dam_system), intent(in) :: system
+    type(dam_system), intent(inout) :: system
     type(state), intent(in) :: now
     type(motion), intent(inout) :: moving
+    logical :: has_changed
+    call lead_water(scene, system%operator, moving%joints, system%groups, has_changed)
     call external_force(system%groups, scene%amplitudes, &
                         step_time(start=now%total_time, duration=plan%duration), moving%external)
     call multiply(system%matrix, system%stiffness, moving%q, moving%elastic)
@@ -91,7 +97,7 @@ contains
   subroutine walk(scene, plan, system, solids, moving, now, results, error)
     type(problem), intent(in) :: scene
     type(step), intent(in) :: plan
-    type(dam_system), intent(in) :: system
+    type(dam_system), intent(inout) :: system
     type(solid_solver), intent(inout) :: solids
     type(motion), intent(inout) :: moving
     type(state), intent(inout) :: now
@@ -112,7 +118,7 @@ contains
       if (allocated(error)) return
       call results%costs%start('forces', 'solver')
       call solids%open_increment(now, size_of_increment)
-      call take_increment(scene, system, solids, when, moving, trial, outcome, error)
+      call settle_water(scene, system, solids, when, moving, trial, outcome, error)
       call results%costs%stop('forces')
       if (allocated(error)) return
       if (.not. outcome%has_converged) then
@@ -124,11 +130,34 @@ contains
       call add_static_work(scene, system%matrix%num_free, moving, trial, now%energy)
       moving = trial
       call show_motion(system%numbers, moving, now)
+      call show_water(scene, plan%loads, system%groups, scene%amplitudes, when, now%joints)
       call control%accept(solids%effort(outcome%own_iterations()))
       call close_increment(scene, plan, when, control, outcome, now, results, error)
       if (allocated(error)) return
     end do
   end subroutine walk
+
+  !> One increment with the water where the joints are open at its end.
+  subroutine settle_water(scene, system, solids, when, before, after, outcome, error)
+    type(problem), intent(in) :: scene
+    type(dam_system), intent(inout) :: system
+    type(solid_solver), intent(inout) :: solids
+    type(step_time), intent(in) :: when !< the end of the increment
+    type(motion), intent(in) :: before
+    type(motion), intent(inout) :: after
+    type(balance_outcome), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: error
+    logical :: has_changed
+    integer :: pass
+    call lead_water(scene, system%operator, before%joints, system%groups, has_changed)
+    do pass = 1, most_passes
+      call take_increment(scene, system, solids, when, before, after, outcome, error)
+      if (allocated(error) .or. .not. outcome%has_converged) return
+      call lead_water(scene, system%operator, after%joints, system%groups, has_changed)
+      if (.not. has_changed) return
+    end do
+    outcome%has_converged = .false.
+  end subroutine settle_water
 
   !> One increment: K x + B^T (area t) = f1 - K q0 + released for the increment x of the unknowns.
   subroutine take_increment(scene, system, solids, when, before, after, outcome, error)

@@ -1,0 +1,234 @@
+!> The water in joints (*JOINT LAW, UPLIFT): a load of its own beside each *RESERVOIR that is named,
+!> at work in the same steps and with the same factors.
+module finish_uplift
+  use applied_load, only: load
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use joint_rim, only: area_of_facets, face_rim, find_rim
+  use joint_points, only: joint
+  use kinds, only: rk
+  use load_reservoir, only: reservoir_load
+  use load_uplift, only: fill_linear, fill_open, uplift_load
+  use mesh_faces, only: face_nodes
+  use mesh_sets, only: surface
+  use model_draft, only: add_load, draft, law_request
+  use named_things, only: longest_name
+  use nearest_words, only: nearest_word
+  use problem_definition, only: problem
+  use step_plan, only: step_load
+  implicit none
+  private
+  public :: complete_uplift
+
+contains
+
+  !> Once all joints are built.
+  subroutine complete_uplift(model, faults)
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i, j
+    do i = 1, size(model%laws)
+      call check_names(model, i, faults)
+    end do
+    if (faults%has_errors()) return
+    do j = 1, size(model%joints)
+      do i = 1, size(model%laws)
+        if (model%laws(i)%law%name /= model%joints(j)%law) cycle
+        call fill_joint(model, j, model%laws(i), model%laws(i)%uplift, .false., faults)
+        call fill_joint(model, j, model%laws(i), model%laws(i)%tail_water, .true., faults)
+      end do
+    end do
+  end subroutine complete_uplift
+
+  !> The reservoirs of a law exist, and press.
+  subroutine check_names(model, law, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: law !< position
+    type(diagnostic_list), intent(inout) :: faults
+    associate (request => model%laws(law), place => model%cards(model%laws(law)%spot%card))
+      call check_name(model, place, 'UPLIFT', request%uplift, faults)
+      call check_name(model, place, 'TAIL WATER', request%tail_water, faults)
+    end associate
+  end subroutine check_names
+
+  !> One of them; '' is none.
+  subroutine check_name(model, place, parameter_name, wanted, faults)
+    type(draft), intent(in) :: model
+    type(card), intent(in) :: place
+    character(*), intent(in) :: parameter_name
+    character(*), intent(in) :: wanted !< upper case
+    type(diagnostic_list), intent(inout) :: faults
+    character(longest_name) :: known(model%num_loads)
+    logical :: is_found, presses
+    integer :: i, n
+    if (wanted == '') return
+    n = 0
+    is_found = .false.
+    presses = .false.
+    do i = 1, model%num_loads
+      select type (lake => model%scene%loads(i)%item)
+      type is (reservoir_load)
+        n = n + 1
+        known(n) = lake%target
+        is_found = is_found .or. lake%target == wanted
+        presses = presses .or. (lake%target == wanted .and. lake%is_hydrostatic)
+      end select
+    end do
+    if (.not. is_found) then
+      call place%fault_parameter(faults, parameter_name, "there is no reservoir '"// &
+                                 place%text(parameter_name)//"'", &
+                                 'the NAME of a *RESERVOIR in one of the steps', &
+                                 nearest_word(wanted, known(:n)))
+    else if (.not. presses) then
+      call place%warn(faults, parameter_name//" has no effect: reservoir '"// &
+                      place%text(parameter_name)//"' has HYDROSTATIC=NO")
+    end if
+  end subroutine check_name
+
+  !> The loads of one joint: one beside each load that is the reservoir, in whichever steps.
+  subroutine fill_joint(model, j, request, lake_name, is_tail, faults)
+    type(draft), intent(inout) :: model
+    integer, intent(in) :: j !< joint
+    type(law_request), intent(in) :: request
+    character(*), intent(in) :: lake_name !< '' for none
+    logical, intent(in) :: is_tail !< it is that of TAIL WATER
+    type(diagnostic_list), intent(inout) :: faults
+    type(uplift_load) :: water
+    integer :: i, num_before
+    if (lake_name == '') return
+    num_before = model%num_loads
+    do i = 1, num_before
+      select type (lake => model%scene%loads(i)%item)
+      type is (reservoir_load)
+        if (lake%target /= lake_name) cycle
+        call fill_water(model, j, request, lake, is_tail, water, faults)
+      class default
+        cycle
+      end select
+      if (faults%has_errors()) return
+      call enter_water(model, i, water, request%profile, lake_name)
+    end do
+  end subroutine fill_joint
+
+  !> Finds the edges of the joint and the pressures at its points.
+  subroutine fill_water(model, j, request, lake, is_tail, water, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: j !< joint
+    type(law_request), intent(in) :: request
+    type(reservoir_load), intent(in) :: lake
+    logical, intent(in) :: is_tail
+    type(uplift_load), intent(out) :: water
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable :: slave(:, :), master(:, :)
+    logical, allocatable :: is_wet(:)
+    type(face_rim) :: rim
+    call list_faces(model, j, slave, master)
+    call mark_surface(model%scene, upstream_of(model, request, lake, is_tail), is_wet)
+    call choose_rim(model%scene%mesh%x, slave, master, is_wet, rim)
+    associate (place => model%cards(model%joints(j)%spot%card), seam => model%scene%joints(j))
+      if (size(rim%upstream) == 0) then
+        call place%fault(faults, "reservoir '"//request%uplift//"' (UPLIFT of law '"// &
+                         request%law%name//"') does not reach joint '"//seam%name// &
+                         "': its surface has no edge in common with the joint", &
+                         'a SURFACE of the *RESERVOIR that ends at the edge of the joint')
+        return
+      end if
+      if (size(rim%downstream) == 0 .and. request%profile == 'LINEAR') then
+        call place%fault(faults, "joint '"//seam%name//"' has no edge opposite to the one at "// &
+                         "reservoir '"//request%uplift//"'", 'a downstream edge, or PROFILE=OPEN')
+        return
+      end if
+      water%seam = j
+      water%kind = 'uplift'
+      if (request%profile == 'OPEN') then
+        call fill_open(model%scene%mesh, seam, rim, slave, lake, water)
+      else
+        call fill_linear(model%scene%mesh, seam, rim, lake, is_tail, water)
+      end if
+    end associate
+  end subroutine fill_water
+
+  !> The surface that tells the upstream edge: that of UPLIFT, for the water downstream too.
+  function upstream_of(model, request, lake, is_tail) result(faces)
+    type(draft), intent(in) :: model
+    type(law_request), intent(in) :: request
+    type(reservoir_load), intent(in) :: lake
+    logical, intent(in) :: is_tail
+    type(surface) :: faces
+    integer :: i
+    faces = lake%faces
+    if (.not. is_tail) return
+    do i = 1, model%num_loads
+      select type (upper => model%scene%loads(i)%item)
+      type is (reservoir_load)
+        if (upper%target /= request%uplift) cycle
+        faces = upper%faces
+        return
+      end select
+    end do
+  end function upstream_of
+
+  !> Marks the nodes of a surface.
+  subroutine mark_surface(scene, faces, is_wet)
+    type(problem), intent(in) :: scene
+    type(surface), intent(in) :: faces
+    logical, allocatable, intent(out) :: is_wet(:) !< (nodes)
+    integer :: i
+    allocate (is_wet(scene%mesh%num_nodes), source=.false.)
+    do i = 1, size(faces%element)
+      is_wet(face_nodes(scene%mesh, faces%element(i), faces%face(i))) = .true.
+    end do
+  end subroutine mark_surface
+
+  !> Facets of both faces of a joint.
+  subroutine list_faces(model, j, slave, master)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: j !< joint
+    integer, allocatable, intent(out) :: slave(:, :), master(:, :) !< (4, facets) nodes
+    associate (mesh => model%scene%mesh, elements => model%joints(j)%elements)
+      slave = mesh%nodes(5:8, elements)
+      master = mesh%nodes(1:4, elements)
+    end associate
+  end subroutine list_faces
+
+  !> The rim of the face that fits into the other, the smaller one; of the other one where the
+  !> reservoir's surface does not reach that.
+  subroutine choose_rim(x, slave, master, is_wet, rim)
+    real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
+    integer, intent(in) :: slave(:, :), master(:, :) !< (4, facets)
+    logical, intent(in) :: is_wet(:) !< (nodes)
+    type(face_rim), intent(out) :: rim
+    real(rk), parameter :: roundoff = 1.0e-9_rk
+    if (area_of_facets(x, slave) <= area_of_facets(x, master)*(1.0_rk + roundoff)) then
+      call find_rim(x, slave, is_wet, rim)
+      if (size(rim%upstream) == 0) call find_rim(x, master, is_wet, rim)
+    else
+      call find_rim(x, master, is_wet, rim)
+      if (size(rim%upstream) == 0) call find_rim(x, slave, is_wet, rim)
+    end if
+  end subroutine choose_rim
+
+  !> Puts the load into the problem and into the steps in which the reservoir is at work.
+  subroutine enter_water(model, lake, water, profile, lake_name)
+    type(draft), intent(inout) :: model
+    integer, intent(in) :: lake !< load that is the reservoir
+    type(uplift_load), intent(in) :: water
+    character(*), intent(in) :: profile, lake_name
+    class(load), allocatable :: item
+    type(step_load) :: rule
+    integer :: s, i
+    allocate (item, source=water)
+    call add_load(model, item, 'water of '//lake_name//' in joint '// &
+                  model%scene%joints(water%seam)%name//' ('//profile//')', 'JOINT LAW', lake_name)
+    do s = 1, size(model%scene%steps)
+      associate (step => model%scene%steps(s))
+        do i = 1, size(step%loads)
+          if (step%loads(i)%load /= lake) cycle
+          rule = step%loads(i)
+          rule%load = model%num_loads
+          step%loads = [step%loads, rule]
+        end do
+      end associate
+    end do
+  end subroutine enter_water
+end module finish_uplift

@@ -1,0 +1,121 @@
+!> *JOINT LAW, UPLIFT: the pressure of a reservoir's water in a joint. It pushes both faces apart.
+!>
+!> Source: theory (different_meshes.md, 13.6). LINEAR: the head of the reservoir at each point times
+!> the share s = b/(a + b), a and b its distances to the upstream and the downstream edge, whether
+!> the joint is open or not; a reservoir downstream gives 1 - s of its own head. OPEN: the full head
+!> where the joint is open as far as the upstream edge; the solver says where that is.
+module load_uplift
+  use applied_load, only: load
+  use dam_mesh, only: mesh
+  use joint_points, only: joint
+  use joint_rim, only: distance_to_edges, face_rim
+  use kinds, only: rk
+  use load_reservoir, only: reservoir_load
+  use water_paths, only: build_paths, find_wet, path_net
+  implicit none
+  private
+  public :: uplift_load, fill_linear, fill_open, water_where_open
+
+  type, extends(load) :: uplift_load
+    integer :: seam = 0 !< position of its joint in the problem
+    logical :: follows_opening = .false. !< profile OPEN: the forces are the solver's
+    real(rk), allocatable :: pressure(:) !< (points) at factor 1, where there is water [Pa]
+    integer, allocatable :: node(:) !< of the forces of a constant profile
+    real(rk), allocatable :: force(:, :) !< (3, nodes) [N]
+    type(path_net) :: paths !< of the water, profile OPEN
+  contains
+    procedure :: add_force
+  end type uplift_load
+
+contains
+
+  !> Head times density and gravity, as a reservoir would have it at the points of a joint [Pa].
+  pure function still_pressure(lake, seam) result(pressure)
+    type(reservoir_load), intent(in) :: lake
+    type(joint), intent(in) :: seam
+    real(rk) :: pressure(seam%num_points)
+    pressure = 0.0_rk
+    if (lake%is_hydrostatic) then
+      pressure = lake%density*lake%gravity*max(0.0_rk, lake%water%level - seam%x(lake%water%up, :))
+    end if
+  end function still_pressure
+
+  !> The classical diagram: full head at one edge, falling to nothing at the other.
+  subroutine fill_linear(model, seam, rim, lake, is_tail, self)
+    type(mesh), intent(in) :: model
+    type(joint), intent(in) :: seam
+    type(face_rim), intent(in) :: rim
+    type(reservoir_load), intent(in) :: lake
+    logical, intent(in) :: is_tail !< the water stands at the downstream edge
+    type(uplift_load), intent(inout) :: self
+    real(rk) :: a, b
+    integer :: p
+    self%pressure = still_pressure(lake, seam)
+    do p = 1, seam%num_points
+      a = distance_to_edges(model%x, rim%upstream, seam%x(:, p))
+      b = distance_to_edges(model%x, rim%downstream, seam%x(:, p))
+      if (is_tail) then
+        self%pressure(p) = self%pressure(p)*a/(a + b)
+      else
+        self%pressure(p) = self%pressure(p)*b/(a + b)
+      end if
+    end do
+    call list_forces(seam, self)
+  end subroutine fill_linear
+
+  !> Full head, and the ways by which water gets in.
+  subroutine fill_open(model, seam, rim, facets, lake, self)
+    type(mesh), intent(in) :: model
+    type(joint), intent(in) :: seam
+    type(face_rim), intent(in) :: rim
+    integer, intent(in) :: facets(:, :) !< (4, facets) of the slave face
+    type(reservoir_load), intent(in) :: lake
+    type(uplift_load), intent(inout) :: self
+    real(rk), allocatable :: distance(:)
+    integer :: p
+    self%follows_opening = .true.
+    self%pressure = still_pressure(lake, seam)
+    allocate (distance(seam%num_points), self%node(0), self%force(3, 0))
+    do p = 1, seam%num_points
+      distance(p) = distance_to_edges(model%x, rim%upstream, seam%x(:, p))
+    end do
+    call build_paths(model%num_nodes, seam, facets, distance, self%paths)
+  end subroutine fill_open
+
+  !> Forces area*pressure along the normal: on the slave face with it, on the master against it.
+  subroutine list_forces(seam, self)
+    type(joint), intent(in) :: seam
+    type(uplift_load), intent(inout) :: self
+    integer :: p, k
+    self%node = seam%node
+    allocate (self%force(3, size(seam%node)))
+    do p = 1, seam%num_points
+      do k = seam%first(p), seam%first(p + 1) - 1
+        self%force(:, k) = seam%weight(k)*seam%area(p)*self%pressure(p)*seam%rotation(1, :, p)
+      end do
+    end do
+  end subroutine list_forces
+
+  !> The forces of a constant profile; one that follows the opening has none here.
+  subroutine add_force(self, model, density, force)
+    class(uplift_load), intent(in) :: self
+    type(mesh), intent(in) :: model
+    real(rk), intent(in) :: density(:)
+    real(rk), intent(inout) :: force(:, :)
+    integer :: k
+    do k = 1, size(self%node)
+      force(:, self%node(k)) = force(:, self%node(k)) + self%force(:, k)
+    end do
+    if (.false.) force(1, 1) = density(1)*model%num_nodes
+  end subroutine add_force
+
+  !> The pressure in a joint that is open here and there, at factor 1.
+  pure subroutine water_where_open(self, is_open, pressure)
+    type(uplift_load), intent(in) :: self
+    logical, intent(in) :: is_open(:) !< (points)
+    real(rk), intent(out) :: pressure(:) !< (points) [Pa]
+    logical :: is_wet(size(is_open))
+    call find_wet(self%paths, is_open, is_wet)
+    pressure = merge(self%pressure, 0.0_rk, is_wet)
+  end subroutine water_where_open
+end module load_uplift
