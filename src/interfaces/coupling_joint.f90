@@ -16,6 +16,14 @@ module coupling_joint
   private
   public :: lay_node_points, lay_gauss_points
 
+  !> One of the Gauss points: the mean of a quarter of a segment.
+  type :: quarter
+    real(rk) :: area = 0.0_rk !< [m2]
+    real(rk) :: slave_shape(4) = 0.0_rk, master_shape(4) = 0.0_rk
+    real(rk) :: normal(3) = 0.0_rk !< out of the slave's solid, of any length
+    real(rk) :: gap = 0.0_rk !< [m]
+  end type quarter
+
 contains
 
   !> One point for each node of the slave face that has cover, and plane. Nodes that both faces
@@ -43,12 +51,12 @@ contains
     built%area = rows%area
     built%reach = rows%reach
     built%clearance = merge(rows%gap, 0.0_rk, is_measured)
-    call close_points(built)
+    call close_points(rows%num_rows, built)
     call list_cells(slave, segments, rows%is_bare, built%cells)
     call move_alloc(rows%is_bare, is_bare)
   end subroutine lay_node_points
 
-  !> The points of the segments, each seeing one facet of either face.
+  !> Four points a segment, each seeing one facet of either face.
   subroutine lay_gauss_points(x, slave, master, segments, is_measured, built)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(facet_set), intent(in) :: slave, master
@@ -56,40 +64,65 @@ contains
     logical, intent(in) :: is_measured
     type(joint), intent(inout) :: built
     type(segment_points) :: points
-    integer :: s, q, p, num_points
+    type(quarter) :: quarters(4)
+    integer :: s, q, p
     built%is_nodal = .false.
-    num_points = 0
-    do s = 1, segments%num_segments
-      call integrate_segment(x, slave, master, segments, s, points)
-      num_points = num_points + points%num_points
-    end do
-    call open_points(num_points, 8*num_points, built)
+    call open_points(4*segments%num_segments, 32*segments%num_segments, built)
     p = 0
     do s = 1, segments%num_segments
       call integrate_segment(x, slave, master, segments, s, points)
+      call find_quarters(points, quarters)
       associate (own => slave%node(:, segments%slave(s)), &
                  other => master%node(:, segments%master(s)))
-        do q = 1, points%num_points
+        do q = 1, 4
+          if (.not. quarters(q)%area > 0.0_rk) cycle
           p = p + 1
-          call add_nodes(p, own, points%slave_shape(:, q), other, points%master_shape(:, q), built)
-          built%rotation(:, :, p) = local_axes(-points%normal(:, q))
-          built%x(:, p) = points%x(:, q)
-          built%area(p) = points%area(q)
-          built%clearance(p) = merge(points%gap(q), 0.0_rk, is_measured)
+          call add_nodes(p, own, quarters(q)%slave_shape, other, quarters(q)%master_shape, built)
+          built%rotation(:, :, p) = local_axes(-quarters(q)%normal)
+          built%x(:, p) = matmul(x(:, own), quarters(q)%slave_shape)
+          built%area(p) = quarters(q)%area
+          built%clearance(p) = merge(quarters(q)%gap, 0.0_rk, is_measured)
           built%reach(p) = min(facet_extent(x(:, own)), facet_extent(x(:, other)))
         end do
       end associate
     end do
-    call close_points(built)
+    call close_points(p, built)
     call list_cells(slave, segments, spread(.false., 1, size(slave%node, 2)), built%cells)
   end subroutine lay_gauss_points
+
+  !> The points of a segment gathered into four, by the natural coordinates of the slave facet. They
+  !> see the means of its points, so that a constant traction comes over as exactly as with all.
+  pure subroutine find_quarters(points, quarters)
+    type(segment_points), intent(in) :: points
+    type(quarter), intent(out) :: quarters(4)
+    real(rk) :: xi(2, points%num_points), middle(2)
+    integer :: q, k
+    xi(1, :) = matmul([-1.0_rk, 1.0_rk, 1.0_rk, -1.0_rk], points%slave_shape(:, :points%num_points))
+    xi(2, :) = matmul([-1.0_rk, -1.0_rk, 1.0_rk, 1.0_rk], points%slave_shape(:, :points%num_points))
+    middle = matmul(xi, points%area(:points%num_points))/sum(points%area(:points%num_points))
+    do q = 1, points%num_points
+      k = 1 + count([xi(1, q) > middle(1)]) + 2*count([xi(2, q) > middle(2)])
+      associate (here => quarters(k), area => points%area(q))
+        here%area = here%area + area
+        here%slave_shape = here%slave_shape + area*points%slave_shape(:, q)
+        here%master_shape = here%master_shape + area*points%master_shape(:, q)
+        here%normal = here%normal + area*points%normal(:, q)
+        here%gap = here%gap + area*points%gap(q)
+      end associate
+    end do
+    do k = 1, 4
+      if (.not. quarters(k)%area > 0.0_rk) cycle
+      quarters(k)%slave_shape = quarters(k)%slave_shape/quarters(k)%area
+      quarters(k)%master_shape = quarters(k)%master_shape/quarters(k)%area
+      quarters(k)%gap = quarters(k)%gap/quarters(k)%area
+    end do
+  end subroutine find_quarters
 
   !> Room for points and the nodes they see.
   subroutine open_points(num_points, most_nodes, built)
     integer, intent(in) :: num_points, most_nodes
     type(joint), intent(inout) :: built
     built%is_matching = .false.
-    built%num_points = num_points
     allocate (built%first(num_points + 1), built%first_master(num_points), source=1)
     allocate (built%node(most_nodes), built%weight(most_nodes))
     allocate (built%rotation(3, 3, num_points), built%x(3, num_points))
@@ -123,13 +156,22 @@ contains
     end subroutine add
   end subroutine add_nodes
 
-  !> Cuts the lists of nodes to size.
-  subroutine close_points(built)
+  !> Cuts all to size.
+  subroutine close_points(num_points, built)
+    integer, intent(in) :: num_points
     type(joint), intent(inout) :: built
     integer :: used
-    used = built%first(built%num_points + 1) - 1
+    used = built%first(num_points + 1) - 1
+    built%num_points = num_points
+    built%first = built%first(:num_points + 1)
+    built%first_master = built%first_master(:num_points)
     built%node = built%node(:used)
     built%weight = built%weight(:used)
+    built%rotation = built%rotation(:, :, :num_points)
+    built%x = built%x(:, :num_points)
+    built%area = built%area(:num_points)
+    built%clearance = built%clearance(:num_points)
+    built%reach = built%reach(:num_points)
   end subroutine close_points
 
   !> Nodes that belong to both faces.

@@ -6,7 +6,7 @@ module keywords_joint
   use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_word
   use kinds, only: rk
   use model_draft, only: draft, joint_request, law_request
-  use named_things, only: elements_of_set
+  use named_things, only: elements_of_set, find_surface_at
   use write_text, only: as_text
   implicit none
   private
@@ -123,22 +123,28 @@ contains
     spec%name = 'JOINT'
     spec%family = 'joint'
     spec%place = 'model'
-    spec%meaning = 'A joint made of the JOINT8 elements of a set. Its points are the pairs of '// &
-                   'nodes, or 2 x 2 Gauss points an element; at the nodes the traction of a '// &
-                   'stiff joint does not oscillate. The normal points from the master to the '// &
-                   'slave. A joint between two surfaces (slave surface, master surface in a '// &
-                   'data line, without ELSET) is not available yet.'
-    spec%example = '*JOINT, NAME=J1, LAW=CONTRACTION, ELSET=JOINT1'
+    spec%meaning = 'A joint: of the JOINT8 elements of a set, or between two surfaces whose '// &
+                   'meshes may differ, without interface elements. Its points are the nodes of '// &
+                   'the slave side, or Gauss points; at the nodes the traction of a stiff '// &
+                   'joint does not oscillate. Between surfaces each node of the slave stands '// &
+                   'on a mortar projection of the master; what has no partner is told. The '// &
+                   'side with the finer mesh or the softer material is the better slave. The '// &
+                   'normal points from the master to the slave.'
+    spec%example = '*JOINT, NAME=J1, LAW=CONTRACTION, ELSET=JOINT1'//nl// &
+                   '*JOINT, NAME=J2, LAW=CONTRACTION'//nl//'LEFT_OF_2, RIGHT_OF_2'
     spec%most_lines = 1
     allocate (spec%parameters, source=[ &
               field('NAME', kind_word, 'name of the joint', is_required=.true.), &
               field('LAW', kind_word, 'name of a *JOINT LAW', is_required=.true.), &
-              field('ELSET', kind_word, 'its JOINT8 elements'), &
+              field('ELSET', kind_word, 'its JOINT8 elements, instead of surfaces'), &
               field('INTEGRATION', kind_choice, 'where its points are', default='NODES', &
-                    choices='NODES | GAUSS')])
+                    choices='NODES | GAUSS'), &
+              field('CLEARANCE', kind_choice, 'between surfaces: they touch as they are '// &
+                    'meshed, but for the GAP of the law, or their distance as meshed counts '// &
+                    'as well', default='NONE', choices='NONE | MEASURED')])
     allocate (spec%columns, source=[ &
-              field('slave', kind_word, 'slave surface (not available yet)'), &
-              field('master', kind_word, 'master surface (not available yet)')])
+              field('slave', kind_word, 'slave surface', is_required=.true.), &
+              field('master', kind_word, 'master surface', is_required=.true.)])
   end subroutine describe_joint
 
   subroutine read_joint(this, model, faults)
@@ -147,14 +153,10 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(joint_request) :: new
     integer :: i
-    if (.not. this%has('ELSET') .or. this%num_lines > 0) then
-      call this%fault(faults, 'a joint between surfaces is not available yet', &
-                      'ELSET with JOINT8 elements and no data line')
-      return
-    end if
     new%name = this%word('NAME')
     new%law = this%word('LAW')
     new%is_nodal = this%word('INTEGRATION') == 'NODES'
+    new%is_measured = this%word('CLEARANCE') == 'MEASURED'
     new%spot = model%here(0)
     do i = 1, size(model%joints)
       if (model%joints(i)%name /= new%name) cycle
@@ -162,10 +164,48 @@ contains
                                 "' is defined twice", 'a name that is used once', &
                                 first=model%cards(model%joints(i)%spot%card)%place())
     end do
-    call elements_of_set(this, 'ELSET', model, faults, new%elements)
-    call claim_elements(this, new%elements, model, faults)
+    if (this%has('ELSET') .eqv. this%num_lines > 0) then
+      call this%fault(faults, 'a joint is made of elements or lies between two surfaces', &
+                      'either ELSET with JOINT8 elements, or a data line: slave surface, '// &
+                      'master surface')
+      return
+    else if (this%has('ELSET')) then
+      call elements_of_set(this, 'ELSET', model, faults, new%elements)
+      call claim_elements(this, new%elements, model, faults)
+      if (new%is_measured) then
+        call this%fault_parameter(faults, 'CLEARANCE', 'the faces of JOINT8 elements coincide', &
+                                  'CLEARANCE for a joint between surfaces')
+      end if
+    else
+      allocate (new%elements(0))
+      call claim_surfaces(this, model, faults, new)
+      if (min(new%slave, new%master) == 0) return
+    end if
     model%joints = [model%joints, new]
   end subroutine read_joint
+
+  !> The two surfaces of a joint; they differ, and no joint has both of them already.
+  subroutine claim_surfaces(this, model, faults, new)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(joint_request), intent(inout) :: new
+    integer :: i
+    call find_surface_at(this, 1, model, faults, new%slave)
+    call find_surface_at(this, 1, model, faults, new%master, 2)
+    if (min(new%slave, new%master) == 0) return
+    if (new%slave == new%master) then
+      call this%fault_at(faults, 1, 2, 'the slave surface is the master surface', &
+                         'two different surfaces')
+    end if
+    do i = 1, size(model%joints)
+      if (min(model%joints(i)%slave, model%joints(i)%master) /= min(new%slave, new%master)) cycle
+      if (max(model%joints(i)%slave, model%joints(i)%master) /= max(new%slave, new%master)) cycle
+      call this%fault(faults, "joint '"//model%joints(i)%name// &
+                      "' lies between these two surfaces already", 'one joint for two surfaces', &
+                      first=model%cards(model%joints(i)%spot%card)%place())
+    end do
+  end subroutine claim_surfaces
 
   !> Elements of a joint are JOINT8 and belong to no other joint.
   subroutine claim_elements(this, elements, model, faults)

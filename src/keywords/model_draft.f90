@@ -39,11 +39,13 @@ module model_draft
     type(origin) :: spot
   end type law_request
 
-  !> *JOINT.
+  !> *JOINT: of JOINT8 elements or between two surfaces.
   type :: joint_request
     character(:), allocatable :: name, law !< upper case
     integer, allocatable :: elements(:) !< positions of JOINT8 elements
-    logical :: is_nodal = .true. !< points are pairs of nodes, else Gauss points
+    integer :: slave = 0, master = 0 !< surfaces, 0 for none
+    logical :: is_nodal = .true. !< points are at nodes, else Gauss points
+    logical :: is_measured = .false. !< the distance of the surfaces is a gap
     type(origin) :: spot
   end type joint_request
 

@@ -129,18 +129,22 @@ contains
     end do
   end function find_surface_name
 
-  !> Position of the surface named in the first field; 0 after a fault.
-  subroutine find_surface_at(this, line, model, faults, found)
+  !> Position of the surface named in a field, the first unless told; 0 after a fault.
+  subroutine find_surface_at(this, line, model, faults, found, field)
     type(card), intent(in) :: this
     integer, intent(in) :: line
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer, intent(out) :: found
-    found = find_surface_name(model, this%word_at(line, 1))
+    integer, intent(in), optional :: field
+    integer :: at
+    at = 1
+    if (present(field)) at = field
+    found = find_surface_name(model, this%word_at(line, at))
     if (found > 0) return
-    call this%fault_at(faults, line, 1, "there is no surface '"//this%text_at(line, 1)// &
+    call this%fault_at(faults, line, at, "there is no surface '"//this%text_at(line, at)// &
                        "' so far", 'a surface defined above', &
-                       nearest_word(this%word_at(line, 1), surface_names(model)))
+                       nearest_word(this%word_at(line, at), surface_names(model)))
   end subroutine find_surface_at
 
   !> Names of surfaces, to find the nearest among them.

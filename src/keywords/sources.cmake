@@ -33,6 +33,9 @@ set(sources
   finish_concrete.f90
   finish_user_materials.f90
   contact_defaults.f90
+  bare_elements.f90
+  surface_claims.f90
+  finish_joints.f90
   finish_ties.f90
   finish_uplift.f90
   finish_model.f90

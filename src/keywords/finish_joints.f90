@@ -1,0 +1,234 @@
+!> Joints when the whole deck is read: laws are completed, points are laid.
+module finish_joints
+  use bare_elements, only: tell_bare
+  use contact_defaults, only: take_layer_stiffness
+  use coupling_joint, only: lay_gauss_points, lay_node_points
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use element_joint8, only: build_joint_points, find_attached_solids
+  use errors, only: error_type
+  use facet_segments, only: find_segments
+  use joint_catalogue, only: make_joint_law
+  use joint_constants, only: law_constants
+  use joint_points, only: joint
+  use kinds, only: rk
+  use model_draft, only: draft
+  use named_things, only: longest_name
+  use nearest_words, only: nearest_word
+  use surface_claims, only: claim_facets, claims, open_claims
+  use surface_facets, only: list_surface_facets
+  use surface_segments, only: facet_set, segment_set, surface_cover
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: complete_joints
+
+contains
+
+  !> Builds the joints of the deck, in its order.
+  subroutine complete_joints(model, faults)
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(claims) :: taken
+    type(law_constants) :: law
+    type(joint) :: new
+    integer :: i
+    logical :: is_fit
+    call check_joint_elements(model, faults)
+    call open_claims(model%scene%mesh%num_nodes, count_slave_faces(model), taken)
+    do i = 1, size(model%joints)
+      call find_law(i, model, faults, law, is_fit)
+      if (.not. is_fit .or. faults%has_errors()) cycle
+      if (model%joints(i)%slave == 0) then
+        call build_from_elements(i, model, law, faults, new)
+      else
+        call build_from_surfaces(i, model, law, taken, faults, new)
+      end if
+      if (.not. faults%has_errors()) call append_joint(model, new)
+    end do
+  end subroutine complete_joints
+
+  !> Every JOINT8 element belongs to a joint.
+  subroutine check_joint_elements(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    logical, allocatable :: is_bare(:)
+    integer :: i
+    if (model%scene%mesh%num_elements == 0) return
+    do i = 1, size(model%joints)
+      if (size(model%joints(i)%elements) + model%joints(i)%slave == 0) return ! its fault is told
+    end do
+    is_bare = model%scene%mesh%element_type == 'JOINT8' .and. model%joint_of_element == 0
+    call tell_bare(is_bare, 'no joint', 'a *JOINT for each JOINT8 element', model, faults)
+  end subroutine check_joint_elements
+
+  !> Faces of the slave surfaces of all joints.
+  pure integer function count_slave_faces(model) result(num)
+    type(draft), intent(in) :: model
+    integer :: i
+    num = 0
+    do i = 1, size(model%joints)
+      if (model%joints(i)%slave == 0) cycle
+      num = num + size(model%scene%surfaces(model%joints(i)%slave)%element)
+    end do
+  end function count_slave_faces
+
+  !> The constants of the law that a joint names.
+  subroutine find_law(number, model, faults, law, is_found)
+    integer, intent(in) :: number !< of the joint
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(law_constants), intent(out) :: law
+    logical, intent(out) :: is_found
+    character(longest_name) :: known(size(model%laws))
+    integer :: i
+    is_found = .false.
+    do i = 1, size(known)
+      known(i) = model%laws(i)%law%name
+      if (model%laws(i)%law%name /= model%joints(number)%law) cycle
+      law = model%laws(i)%law
+      is_found = .true.
+    end do
+    if (is_found) return
+    associate (place => model%cards(model%joints(number)%spot%card))
+      call place%fault_parameter(faults, 'LAW', "there is no joint law '"//place%text('LAW')// &
+                                 "'", 'the name of a *JOINT LAW', &
+                                 nearest_word(model%joints(number)%law, known))
+    end associate
+  end subroutine find_law
+
+  !> A joint of JOINT8 elements.
+  subroutine build_from_elements(number, model, law, faults, new)
+    integer, intent(in) :: number
+    type(draft), intent(in) :: model
+    type(law_constants), intent(inout) :: law
+    type(diagnostic_list), intent(inout) :: faults
+    type(joint), intent(out) :: new
+    type(error_type), allocatable :: error
+    integer, allocatable :: solid(:, :), side(:)
+    associate (request => model%joints(number), &
+               place => model%cards(model%joints(number)%spot%card))
+      if (size(request%elements) == 0) return ! its fault is told
+      if (law%needs_solid()) then
+        allocate (side(size(request%elements)))
+        call find_attached_solids(model%scene%mesh, request%elements, solid, side)
+        associate (nodes => model%scene%mesh%nodes(:, request%elements))
+          call complete_law(place, pack(solid(2, :), solid(2, :) > 0), &
+                            [solid(1, :), solid(2, :)], [nodes(1:4, :), nodes(5:8, :)], model, &
+                            law, faults)
+        end associate
+      end if
+      new%name = request%name
+      call make_joint_law(law, new%law)
+      if (.not. allocated(new%law)) return
+      call build_joint_points(model%scene%mesh, request%elements, request%is_nodal, new, error)
+      if (allocated(error)) then
+        call place%fault(faults, error%message)
+      else if (new%num_points == 0) then
+        call place%fault(faults, 'the joint has no points', 'pairs of different nodes')
+      end if
+    end associate
+  end subroutine build_from_elements
+
+  !> A joint between two surfaces.
+  subroutine build_from_surfaces(number, model, law, taken, faults, new)
+    integer, intent(in) :: number
+    type(draft), intent(in) :: model
+    type(law_constants), intent(inout) :: law
+    type(claims), intent(inout) :: taken
+    type(diagnostic_list), intent(inout) :: faults
+    type(joint), intent(out) :: new
+    type(facet_set) :: slave, master
+    type(segment_set) :: segments
+    type(surface_cover) :: cover
+    logical, allocatable :: is_bare(:)
+    associate (request => model%joints(number), mesh => model%scene%mesh, &
+               place => model%cards(model%joints(number)%spot%card))
+      call list_surface_facets(mesh, model%scene%surfaces(request%slave), slave)
+      call list_surface_facets(mesh, model%scene%surfaces(request%master), master)
+      if (law%needs_solid()) then
+        call complete_law(place, slave%element, [slave%element, master%element], &
+                          [slave%node, master%node], model, law, faults)
+      end if
+      new%name = request%name
+      call make_joint_law(law, new%law)
+      if (.not. allocated(new%law)) return
+      call find_segments(mesh%x, slave, master, segments, cover)
+      if (request%is_nodal) then
+        call lay_node_points(mesh%x, slave, master, segments, request%is_measured, new, is_bare)
+        where (is_bare) cover%bare = 1.0_rk
+      else
+        call lay_gauss_points(mesh%x, slave, master, segments, request%is_measured, new)
+      end if
+      if (new%num_points == 0) then
+        call place%fault_at(faults, 1, 1, 'the two surfaces do not lie on each other', &
+                            'faces that look at each other, less than half a facet apart')
+      end if
+    end associate
+    call check_claims(number, slave, cover, model, taken, faults)
+  end subroutine build_from_surfaces
+
+  !> A face takes part as slave once.
+  subroutine check_claims(number, slave, cover, model, taken, faults)
+    integer, intent(in) :: number
+    type(facet_set), intent(in) :: slave
+    type(surface_cover), intent(in) :: cover
+    type(draft), intent(in) :: model
+    type(claims), intent(inout) :: taken
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: facet, earlier
+    call claim_facets(taken, number, slave, cover, facet, earlier)
+    if (facet == 0) return
+    associate (place => model%cards(model%joints(number)%spot%card))
+      call place%fault_at(faults, 1, 1, 'a face of element '// &
+                          as_text(model%scene%mesh%element_id(slave%element(facet)))// &
+                          " is a slave of joint '"//model%joints(earlier)%name//"' already", &
+                          'faces that joints cover once', &
+                          first=model%cards(model%joints(earlier)%spot%card)%place())
+    end associate
+  end subroutine check_claims
+
+  subroutine append_joint(model, new)
+    type(draft), intent(inout) :: model
+    type(joint), intent(in) :: new
+    type(joint), allocatable :: longer(:)
+    integer :: i
+    allocate (longer(size(model%scene%joints) + 1))
+    do i = 1, size(model%scene%joints)
+      longer(i) = model%scene%joints(i)
+    end do
+    longer(size(longer)) = new
+    call move_alloc(longer, model%scene%joints)
+  end subroutine append_joint
+
+  !> KN and KT that the deck does not give, from the solids on the slave side (NOTES 3).
+  subroutine complete_law(place, solids, behind, corners, model, law, faults)
+    type(card), intent(in) :: place !< of the joint
+    integer, intent(in) :: solids(:) !< of the slave side, positions
+    integer, intent(in) :: behind(:) !< the element behind each facet of either side, 0 for none
+    integer, intent(in) :: corners(:) !< nodes of these facets, four each
+    type(draft), intent(in) :: model
+    type(law_constants), intent(inout) :: law
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: materials(size(solids))
+    materials = model%scene%mesh%material_of_element(solids)
+    if (size(materials) == 0) then
+      call place%fault(faults, 'no solid on the slave side gives KN and KT', &
+                       'KN and KT in the *JOINT LAW')
+      return
+    else if (any(materials /= materials(1))) then
+      call place%warn(faults, "the slave side has several materials; KN and KT are made of '"// &
+                      model%scene%materials(materials(1))%name//"'")
+    else if (model%scene%materials(materials(1))%young <= 0.0_rk) then
+      call place%fault(faults, "the material of the slave side, '"// &
+                       model%scene%materials(materials(1))%name//"', has no E (a UMAT) to "// &
+                       'make KN and KT of', 'KN and KT in the *JOINT LAW')
+      return
+    end if
+    if (law%asks_for_layer()) then
+      call take_layer_stiffness(model%scene, behind, reshape(corners, [4, size(behind)]), law)
+    end if
+    call law%complete_stiffness(model%scene%materials(materials(1))%young, &
+                                model%scene%materials(materials(1))%poisson)
+  end subroutine complete_law
+end module finish_joints
