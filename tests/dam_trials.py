@@ -20,6 +20,7 @@ TESTS = Path(__file__).resolve().parent
 sys.path += [str(TESTS), str(TESTS.parent / "tools")]
 
 from harness import Program, Run  # noqa: E402
+from keyway_tools.arch_blocks import BlockOptions, build_block_dam  # noqa: E402
 from keyway_tools.arch_dam import DamOptions, build_arch_dam  # noqa: E402
 from keyway_tools.arch_deck import DeckOptions, arch_dam_deck  # noqa: E402
 from keyway_tools.arch_rock import RockOptions  # noqa: E402
@@ -48,6 +49,12 @@ class Trial:
     shape: ArchShape = field(default_factory=ArchShape)
     options: DeckOptions = field(default_factory=lambda: DeckOptions(damping=UNDAMPED))
     edits: tuple[tuple[str, str], ...] = ()  # of the deck's text
+    blocks: BlockOptions | None = None  # blocks with meshes of their own
+
+    @property
+    def mesh_key(self) -> tuple[int, bool, bool, ArchShape, BlockOptions | None]:
+        """What its mesh depends on."""
+        return self.num_joints, self.has_rock, self.is_coarse, self.shape, self.blocks
 
 
 @cache
@@ -60,29 +67,29 @@ def motion_of(axis: int) -> np.ndarray:
 
 
 @cache
-def mesh_of(trial_mesh: tuple[int, bool, bool, ArchShape]):
+def mesh_of(trial_mesh: tuple[int, bool, bool, ArchShape, BlockOptions | None]):
     """Mesh of a trial; about 3000 unknowns, 1000 when coarse."""
-    num_joints, has_rock, is_coarse, shape = trial_mesh
+    num_joints, has_rock, is_coarse, shape, blocks = trial_mesh
     rock = RockOptions(num_upstream=3, num_downstream=3, num_deep=3)
     if is_coarse:
         rock = RockOptions(num_upstream=2, num_downstream=2, num_deep=2)
     arc, height = (16, 6) if is_coarse else (24, 10)
-    return build_arch_dam(
-        shape,
-        DamOptions(
-            num_arc=arc,
-            num_height=height,
-            num_thick=2,
-            num_bottom=4,
-            num_joints=num_joints,
-            rock=rock if has_rock else None,
-        ),
+    options = DamOptions(
+        num_arc=arc,
+        num_height=height,
+        num_thick=2,
+        num_bottom=4,
+        num_joints=num_joints,
+        rock=rock if has_rock else None,
     )
+    if blocks:
+        return build_block_dam(shape, options, blocks)
+    return build_arch_dam(shape, options)
 
 
 def deck_of(trial: Trial) -> tuple[str, dict[str, str]]:
     """Text of the deck and of the files beside it."""
-    mesh = mesh_of((trial.num_joints, trial.has_rock, trial.is_coarse, trial.shape))
+    mesh = mesh_of(trial.mesh_key)
     types = {name: trial.options.element_type for name in mesh.brick_sets}
     files = {"mesh.inp": mesh_deck(mesh, types, "")}
     for axis, is_active in enumerate(trial.components):

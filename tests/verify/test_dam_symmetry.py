@@ -50,7 +50,7 @@ def symmetric_run(request, keyway):
         duration=2.5,
         options=dataclasses.replace(DeckOptions(), picture_frequency=1),
     )
-    mesh = mesh_of((trial.num_joints, trial.has_rock, trial.is_coarse, trial.shape))
+    mesh = mesh_of(trial.mesh_key)
     return mesh, run_trial(keyway, trial)
 
 
