@@ -26,7 +26,7 @@ contains
     text = text//sets_of('Node sets', 'nodes', scene%node_sets)
     text = text//sets_of('Element sets', 'elements', scene%element_sets)
     text = text//surfaces_of(scene)//materials_of(scene)//joints_of(scene)//ties_of(scene)// &
-           amplitudes_of(scene)
+           covers_of(scene)//amplitudes_of(scene)
     text = text//loads_of(scene)//steps_of(scene)//tests_of(scene)
   end function summary_of
 
@@ -173,12 +173,29 @@ contains
     end do
     do i = 1, size(scene%couplings)
       associate (now => scene%couplings(i))
-        text = text//nl//row(now%name, now%kind//' of springs, '//as_text(size(now%area))// &
-                             ' points, '//as_text(sum(now%area))//' m2, STIFFNESS '// &
-                             as_text(now%stiffness)//' Pa/m')
+        text = text//nl//row(now%name, now%kind//' of springs, '//as_text(size(now%node, 2))// &
+                             ' segments, STIFFNESS '//as_text(now%stiffness)//' Pa/m')
       end associate
     end do
   end function ties_of
+
+  !> How well faces of different meshes cover each other.
+  pure function covers_of(scene) result(text)
+    type(problem), intent(in) :: scene
+    character(:), allocatable :: text
+    integer :: i
+    text = ''
+    if (size(scene%covers) > 0) text = nl//'Faces of different meshes'
+    do i = 1, size(scene%covers)
+      associate (now => scene%covers(i)%cover)
+        text = text//nl//row(scene%covers(i)%name, '*'//scene%covers(i)%kind//': '// &
+                             as_text(now%covered_area)//' of '//as_text(now%slave_area)// &
+                             ' m2 of the slave face covered, largest gap '// &
+                             as_text(now%largest_gap)//' m, largest overlap '// &
+                             as_text(now%largest_overlap)//' m')
+      end associate
+    end do
+  end function covers_of
 
   pure function amplitudes_of(scene) result(text)
     type(problem), intent(in) :: scene

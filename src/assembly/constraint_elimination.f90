@@ -33,7 +33,7 @@ contains
     allocate (is_used(model%num_nodes), is_fixed(3, model%num_nodes))
     is_used = .false.
     do e = 1, model%num_elements
-      if (model%material_of_element(e) == 0) cycle
+      if (model%material_of_element(e) == 0 .and. model%element_type(e) /= 'IFACE4') cycle
       do k = 1, size(model%nodes, 1)
         if (model%nodes(k, e) > 0) is_used(model%nodes(k, e)) = .true.
       end do

@@ -8,7 +8,7 @@ module held_together
 
 contains
 
-  !> The nodes of each point of joints and couplings, and each node of a tie with what it follows.
+  !> The nodes of each point of joints and segment of springs, and each node of a tie with what it follows.
   subroutine list_groups(scene, groups)
     type(problem), intent(in) :: scene
     type(node_groups), intent(out) :: groups
@@ -20,7 +20,7 @@ contains
       num_nodes = num_nodes + size(scene%ties(j)%node) + size(scene%ties(j)%master)
     end do
     do j = 1, size(scene%couplings)
-      num_groups = num_groups + size(scene%couplings(j)%area)
+      num_groups = num_groups + size(scene%couplings(j)%node, 2)
       num_nodes = num_nodes + size(scene%couplings(j)%node)
     end do
     allocate (groups%first(num_groups + 1), groups%node(num_nodes))
@@ -40,8 +40,8 @@ contains
     end do
     do j = 1, size(scene%couplings)
       associate (springs => scene%couplings(j))
-        do k = 1, size(springs%area)
-          call add(springs%node(springs%first(k):springs%first(k + 1) - 1))
+        do k = 1, size(springs%node, 2)
+          call add(springs%node(:, k))
         end do
       end associate
     end do

@@ -1,13 +1,15 @@
 !> Builds the pattern of the matrices from what couples the nodes.
 !>
-!> A cell is a list of nodes that are coupled with each other: a solid element, or a point of a
-!> joint. Unknowns are handled in groups (those of one node, one jump), which keeps this fast.
+!> A cell is a list of nodes that are coupled with each other: a solid element, a point of a joint,
+!> or a segment of springs between faces. Unknowns are handled in groups (those of one node, one
+!> jump), which keeps this fast.
 module pattern_builder
   use dam_mesh, only: mesh
   use joint_points, only: joint
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
   use sorted_lists, only: sorted_unique
+  use surface_coupling, only: coupling
   implicit none
   private
   public :: build_pattern, cell_list, list_cells
@@ -27,10 +29,11 @@ module pattern_builder
 
 contains
 
-  !> The cells of a model: its solid elements and the points of its joints.
-  subroutine list_cells(model, joints, cells)
+  !> The cells of a model: its solid elements, the points of its joints, the segments of springs.
+  subroutine list_cells(model, joints, couplings, cells)
     type(mesh), intent(in) :: model
     type(joint), intent(in) :: joints(:)
+    type(coupling), intent(in) :: couplings(:)
     type(cell_list), intent(out) :: cells
     integer :: e, j, p, num_cells, num_items
     logical, allocatable :: is_solid(:)
@@ -41,6 +44,10 @@ contains
       num_cells = num_cells + joints(j)%num_points
       num_items = num_items + size(joints(j)%node)
     end do
+    do j = 1, size(couplings)
+      num_cells = num_cells + size(couplings(j)%node, 2)
+      num_items = num_items + size(couplings(j)%node)
+    end do
     allocate (cells%first(num_cells + 1), cells%node(num_items))
     cells%first(1) = 1
     num_cells = 0
@@ -50,6 +57,11 @@ contains
     do j = 1, size(joints)
       do p = 1, joints(j)%num_points
         call add_cell(joints(j)%node(joints(j)%first(p):joints(j)%first(p + 1) - 1))
+      end do
+    end do
+    do j = 1, size(couplings)
+      do p = 1, size(couplings(j)%node, 2)
+        call add_cell(couplings(j)%node(:, p))
       end do
     end do
     cells%first = cells%first(:num_cells + 1)

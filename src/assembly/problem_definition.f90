@@ -9,6 +9,7 @@ module problem_definition
   use joint_points, only: joint
   use node_ties, only: node_tie
   use surface_coupling, only: coupling
+  use surface_segments, only: named_cover
   use applied_load, only: load_slot
   use inelastic_blocks, only: inelastic_block
   use umat_loader, only: user_library
@@ -30,6 +31,7 @@ module problem_definition
     type(joint), allocatable :: joints(:)
     type(node_tie), allocatable :: ties(:) !< exact ones
     type(coupling), allocatable :: couplings(:) !< springs between faces of different meshes
+    type(named_cover), allocatable :: covers(:) !< how faces of different meshes cover each other
     type(inelastic_block), allocatable :: inelastic(:) !< solids whose law is not linear
     type(load_slot), allocatable :: loads(:)
     type(initial_value), allocatable :: initial_values(:)

@@ -11,6 +11,7 @@ set(sources
   damping_rayleigh.f90
   element_blocks.f90
   scatter_matrix.f90
+  coupling_stiffness.f90
   assemble_elements.f90
   assemble_forces.f90
   inelastic_forces.f90

@@ -33,7 +33,7 @@ contains
     type(surface_cover), intent(out) :: cover
     type(box_tree) :: tree
     integer, allocatable :: near(:)
-    real(rk) :: low(3), high(3), covered
+    real(rk) :: low(3), high(3), covered, area, largest_bare
     integer :: f, num
     call open_segments(size(slave%element), segments)
     allocate (cover%bare(size(slave%element)), source=1.0_rk)
@@ -41,15 +41,20 @@ contains
       cover%master_area = cover%master_area + facet_area(x(:, master%node(:, f)))
     end do
     call build_master_tree(x, master, tree)
+    largest_bare = 0.0_rk
     do f = 1, size(slave%element)
       call reach_box(x(:, slave%node(:, f)), low, high)
       num = 0
       if (size(master%element) > 0) call find_boxes(tree, low, high, num, near)
       covered = 0.0_rk
       if (num > 0) call cut_facet(x, slave, master, f, near(:num), segments, cover, covered)
+      area = facet_area(x(:, slave%node(:, f)))
       cover%bare(f) = 1.0_rk - covered
-      cover%slave_area = cover%slave_area + facet_area(x(:, slave%node(:, f)))
-      cover%covered_area = cover%covered_area + covered*facet_area(x(:, slave%node(:, f)))
+      cover%slave_area = cover%slave_area + area
+      cover%covered_area = cover%covered_area + covered*area
+      if (cover%bare(f)*area <= largest_bare) cycle
+      largest_bare = cover%bare(f)*area
+      cover%bare_place = 0.25_rk*sum(x(:, slave%node(:, f)), dim=2)
     end do
     call close_segments(segments)
   end subroutine find_segments

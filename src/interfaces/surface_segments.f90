@@ -7,7 +7,7 @@ module surface_segments
   use kinds, only: rk
   implicit none
   private
-  public :: facet_set, segment_set, surface_cover
+  public :: facet_set, segment_set, surface_cover, named_cover
 
   !> Facets of one side of an interface. A triangle repeats a node; the second of two equal corners
   !> then has the shape function 0 everywhere, the first that of the triangle's corner.
@@ -34,5 +34,13 @@ module surface_segments
     !< below 0 by more than round-off where master facets lie upon each other
     real(rk) :: largest_gap = 0.0_rk, largest_overlap = 0.0_rk !< [m]
     real(rk) :: gap_place(3) = 0.0_rk, overlap_place(3) = 0.0_rk !< [m]
+    real(rk) :: bare_place(3) = 0.0_rk !< centre of the slave facet with the largest bare area [m]
   end type surface_cover
+
+  !> The cover of one interface of the model.
+  type :: named_cover
+    character(:), allocatable :: name !< upper case
+    character(:), allocatable :: kind !< its keyword: 'JOINT', 'TIE' or 'INTERFACE'
+    type(surface_cover) :: cover
+  end type named_cover
 end module surface_segments

@@ -5,6 +5,7 @@ module finish_model
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use finish_concrete, only: complete_concretes
+  use finish_interfaces, only: complete_interfaces
   use finish_joints, only: complete_joints
   use finish_ties, only: complete_ties
   use finish_uplift, only: complete_uplift
@@ -29,6 +30,7 @@ contains
     call complete_user_materials(model, faults)
     call check_materials(model, faults)
     call check_solids(model, faults)
+    call complete_interfaces(model, faults)
     call complete_joints(model, faults)
     if (.not. faults%has_errors()) call complete_ties(model, faults)
     if (.not. faults%has_errors()) call complete_uplift(model, faults)

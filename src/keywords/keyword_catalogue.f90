@@ -11,6 +11,7 @@ module keyword_catalogue
                                read_step_damping
   use keywords_elements, only: describe_element, read_elements
   use keywords_initial, only: describe_initial_conditions, read_initial_conditions
+  use keywords_interface, only: describe_interface, read_interface
   use keywords_joint, only: describe_joint, describe_joint_law, read_joint, read_joint_law
   use keywords_later, only: add_later_keywords
   use keywords_loads, only: describe_cload, describe_dload, describe_dsload, read_cload, &
@@ -79,6 +80,7 @@ contains
     call list%add(describe_joint_law, read_joint_law, pass_definitions)
     call list%add(describe_joint, read_joint, pass_rest)
     call list%add(describe_tie, read_tie, pass_rest)
+    call list%add(describe_interface, read_interface, pass_rest)
     call list%add(describe_amplitude, read_amplitude, pass_definitions)
     call list%add(describe_initial_conditions, read_initial_conditions, pass_rest)
   end subroutine add_model_keywords

@@ -28,7 +28,8 @@ contains
                    'opposite face above them; repeated nodes make a wedge. C3D8: 2x2x2 points, '// &
                    'as in CalculiX. C3D8B: B-bar (what Abaqus calls C3D8). C3D8I: incompatible '// &
                    'modes. C3D8R: one point with hourglass control. JOINT8: two faces on each '// &
-                   'other, nodes 1-4 of the master, 5-8 of the slave.'
+                   'other, nodes 1-4 of the master, 5-8 of the slave. IFACE4: a '// &
+                   'quadrilateral with nodes of its own for an *INTERFACE.'
     spec%example = '*ELEMENT, TYPE=C3D8I, ELSET=DAM'//nl//'1, 1, 2, 3, 4, 5, 6, 7, 8'
     spec%fewest_lines = 1
     spec%checks_own_data = .true.
@@ -37,14 +38,14 @@ contains
       kinds = kinds//' | '//trim(element_kinds(i)%name)
     end do
     allocate (spec%parameters, source=[ &
-              field('TYPE', kind_choice, 'a solid of 8 nodes or a joint (no plane elements, no '// &
-                    'shells)', choices=kinds, is_required=.true.), &
+              field('TYPE', kind_choice, 'a solid of 8 nodes, a joint or an interface (no '// &
+                    'plane elements, no shells)', choices=kinds, is_required=.true.), &
               field('ELSET', kind_word, 'an element set that gets these elements')])
     allocate (spec%columns, source=[ &
               field('id', kind_integer, 'number of the element', is_required=.true., &
                     lowest=1.0_rk), &
-              field('nodes', kind_integer, '8 ids of nodes; they may go on in the next line', &
-                    is_required=.true., lowest=1.0_rk)])
+              field('nodes', kind_integer, '8 ids of nodes (IFACE4: 4); they may go on in the '// &
+                    'next line', is_required=.true., lowest=1.0_rk)])
   end subroutine describe_element
 
   !> Allocates the elements; there are no more than data lines.
@@ -84,16 +85,15 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    integer :: line, first, next, element, nodes(most_nodes)
+    integer :: line, first, next, element, kind, wanted, nodes(most_nodes)
     logical :: is_right
-    if (this%word('TYPE') == 'IFACE4') then
-      call this%fault_parameter(faults, 'TYPE', 'IFACE4 is not available yet')
-      return
-    end if
+    kind = find_element_kind(this%word('TYPE'))
+    wanted = most_nodes
+    if (kind > 0) wanted = element_kinds(kind)%num_nodes
     first = model%scene%mesh%num_elements + 1
     line = 1
     do while (line <= this%num_lines)
-      call read_nodes_of_element(this, line, model, faults, nodes, next, is_right)
+      call read_nodes_of_element(this, line, wanted, model, faults, nodes, next, is_right)
       if (is_right) call add_element(this, line, nodes, model, faults, element)
       line = next
     end do
@@ -104,16 +104,18 @@ contains
   end subroutine read_elements
 
   !> Collects the nodes of the element whose data begin at `line`.
-  subroutine read_nodes_of_element(this, line, model, faults, nodes, next, is_right)
+  subroutine read_nodes_of_element(this, line, wanted, model, faults, nodes, next, is_right)
     type(card), intent(in) :: this
     integer, intent(in) :: line
+    integer, intent(in) :: wanted !< nodes of the element
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    integer, intent(out) :: nodes(most_nodes) !< positions
+    integer, intent(out) :: nodes(most_nodes) !< positions, zeros behind those of the element
     integer, intent(out) :: next !< the line after the element
     logical, intent(out) :: is_right
     integer :: found, field
     found = 0
+    nodes = 0
     field = 2
     next = line
     is_right = this%is_integer_at(line, 1)
@@ -121,23 +123,23 @@ contains
     do
       do field = field, this%num_fields(next)
         found = found + 1
-        if (found > most_nodes) exit
+        if (found > wanted) exit
         call read_node_of_element(this, next, field, model, faults, nodes(found), is_right)
       end do
-      if (found > most_nodes) exit
+      if (found > wanted) exit
       next = next + 1
       field = 1
-      if (found == most_nodes .or. next > this%num_lines) exit
+      if (found == wanted .or. next > this%num_lines) exit
     end do
-    if (found > most_nodes) then
-      call this%fault_at(faults, next, field, 'more than 8 nodes on an element', &
-                         'an id and 8 nodes')
+    if (found > wanted) then
+      call this%fault_at(faults, next, field, 'more than '//as_text(wanted)// &
+                         ' nodes on an element', 'an id and '//as_text(wanted)//' nodes')
       next = next + 1
-    else if (found < most_nodes) then
+    else if (found < wanted) then
       call this%fault_at(faults, line, 0, 'only '//as_text(found)//' nodes on an element', &
-                         'an id and 8 nodes')
+                         'an id and '//as_text(wanted)//' nodes')
     end if
-    is_right = is_right .and. found == most_nodes
+    is_right = is_right .and. found == wanted
   end subroutine read_nodes_of_element
 
   subroutine read_node_of_element(this, line, field, model, faults, node, is_right)

@@ -1,7 +1,7 @@
 !> Keywords that are known and not available yet: each is an error at its place in the deck.
 module keywords_later
   use keyword_handler, only: keyword_list
-  use keyword_spec, only: field, kind_flag, kind_integer, kind_real, kind_word, later
+  use keyword_spec, only: field, kind_flag, kind_integer, later
   implicit none
   private
   public :: add_later_keywords
@@ -10,7 +10,6 @@ contains
 
   subroutine add_later_keywords(list)
     type(keyword_list), intent(inout) :: list
-    call add_coupling(list)
     call add_later(list, 'RESTART', 'output', 'anywhere', 'Writes a checkpoint every so many '// &
                    'increments.')
     call add_parameter(list, field('WRITE', kind_flag, 'writes checkpoints'))
@@ -18,16 +17,6 @@ contains
                                    default='1'))
     call add_foreign(list)
   end subroutine add_later_keywords
-
-  subroutine add_coupling(list)
-    type(keyword_list), intent(inout) :: list
-    call add_later(list, 'INTERFACE', 'joint', 'model', 'Couples interface quadrilaterals '// &
-                   'to a surface of another mesh.')
-    call add_parameter(list, field('NAME', kind_word, 'name of the interface'))
-    call add_parameter(list, field('ELSET', kind_word, 'its IFACE4 elements'))
-    call add_parameter(list, field('SURFACE', kind_word, 'the surface'))
-    call add_parameter(list, field('STIFFNESS', kind_real, 'of the coupling', 'Pa/m'))
-  end subroutine add_coupling
 
   !> Keywords of Abaqus and CalculiX.
   subroutine add_foreign(list)

@@ -17,7 +17,7 @@ module model_draft
   implicit none
   private
   public :: draft, add_load, origin, section_request, law_request, joint_request
-  public :: concrete_request, user_request, tie_request
+  public :: concrete_request, user_request, tie_request, interface_request
 
   !> Where something stood: a card of the deck and one of its data lines (0: the keyword itself).
   type :: origin
@@ -57,6 +57,15 @@ module model_draft
     type(origin) :: spot
   end type tie_request
 
+  !> *INTERFACE.
+  type :: interface_request
+    character(:), allocatable :: name !< upper case
+    integer, allocatable :: elements(:) !< positions of IFACE4 elements
+    integer :: surface = 0 !< position; 0: its fault is told
+    real(rk) :: stiffness = 0.0_rk !< [Pa/m]; 0: from the solids behind the surface
+    type(origin) :: spot
+  end type interface_request
+
   !> The *CONCRETE keywords of a material; a spot with card 0: not given.
   type :: concrete_request
     integer :: material = 0 !< position
@@ -84,9 +93,11 @@ module model_draft
     type(law_request), allocatable :: laws(:)
     type(joint_request), allocatable :: joints(:)
     type(tie_request), allocatable :: ties(:)
+    type(interface_request), allocatable :: interfaces(:)
     type(concrete_request), allocatable :: concretes(:)
     type(user_request), allocatable :: user_materials(:)
     integer, allocatable :: joint_of_element(:) !< position in `joints`, 0 for none
+    integer, allocatable :: interface_of_element(:) !< position in `interfaces`, 0 for none
     character(:), allocatable :: mass_kind !< MASS of *SOLID SECTION once it is given
     integer :: num_loads = 0 !< in use of scene%loads, which grows by doubling
     type(load_book) :: loads_at_work

@@ -72,12 +72,13 @@ contains
       scene%deck_file = path
       scene%heading = ''
       allocate (scene%surfaces(0), scene%amplitudes(0), scene%materials(0), scene%joints(0))
-      allocate (scene%ties(0), scene%couplings(0))
+      allocate (scene%ties(0), scene%couplings(0), scene%covers(0))
       allocate (scene%loads(0), scene%initial_values(0), scene%steps(0), scene%tests(0))
     end associate
     allocate (model%surface_origin(0), model%material_origin(0), model%test_origin(0))
     allocate (model%sections(0), model%laws(0), model%joints(0), model%concretes(0))
     allocate (model%user_materials(0), model%procedure_card(0), model%ties(0))
+    allocate (model%interfaces(0))
   end subroutine open_draft
 
   !> Finds the keyword of each card and checks that it stands where it may.
@@ -183,5 +184,6 @@ contains
     call model%supports%prepare(model%scene%mesh%num_nodes)
     call model%point_forces%prepare(model%scene%mesh%num_nodes)
     allocate (model%joint_of_element(model%scene%mesh%num_elements), source=0)
+    allocate (model%interface_of_element(model%scene%mesh%num_elements), source=0)
   end subroutine open_tables
 end module read_deck

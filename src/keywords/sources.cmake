@@ -15,6 +15,7 @@ set(sources
   keywords_section.f90
   keywords_joint.f90
   keywords_tie.f90
+  keywords_interface.f90
   keywords_amplitude.f90
   keywords_initial.f90
   finish_step.f90
@@ -35,6 +36,8 @@ set(sources
   contact_defaults.f90
   bare_elements.f90
   surface_claims.f90
+  tell_cover.f90
+  finish_interfaces.f90
   finish_joints.f90
   finish_ties.f90
   finish_uplift.f90

@@ -40,6 +40,7 @@ contains
     call json%close_object()
     call put_model(json, scene, summary)
     call put_effects(json, scene)
+    call put_interfaces(json, scene)
     call put_remarks(json, summary, record)
     call put_steps(json, scene, summary)
     call put_envelopes(json, record)
@@ -98,6 +99,9 @@ contains
     do i = 1, size(scene%joints)
       call put_effect(scene%joints(i)%name, 'joint')
     end do
+    do i = 1, size(scene%couplings)
+      call put_effect(scene%couplings(i)%name, 'coupling')
+    end do
     do i = 1, size(scene%materials)
       if (is_inelastic(scene, i)) call put_effect(scene%materials(i)%name, 'inelastic')
       if (max(scene%materials(i)%alpha, scene%materials(i)%beta) > 0.0_rk) then
@@ -120,6 +124,33 @@ contains
       call json%close_object()
     end subroutine put_effect
   end subroutine put_effects
+
+  !> How faces of different meshes cover each other.
+  subroutine put_interfaces(json, scene)
+    type(json_text), intent(inout) :: json
+    type(problem), intent(in) :: scene
+    integer :: i
+    call json%open_array('interfaces')
+    if (allocated(scene%covers)) then
+      do i = 1, size(scene%covers)
+        associate (cover => scene%covers(i)%cover)
+          call json%open_object()
+          call json%put_text(scene%covers(i)%name, 'name')
+          call json%put_text(lower(scene%covers(i)%kind), 'kind')
+          call json%put_real(cover%slave_area, 'slave_area')
+          call json%put_real(cover%master_area, 'master_area')
+          call json%put_real(cover%covered_area, 'covered_area')
+          call json%put_integer(count(cover%bare > 0.5_rk), 'facets_without_partner')
+          call json%put_real(cover%largest_gap, 'largest_gap')
+          call json%put_reals(cover%gap_place, 'gap_at')
+          call json%put_real(cover%largest_overlap, 'largest_overlap')
+          call json%put_reals(cover%overlap_place, 'overlap_at')
+          call json%close_object()
+        end associate
+      end do
+    end if
+    call json%close_array()
+  end subroutine put_interfaces
 
   !> Has a material of the scene points with a history?
   pure logical function is_inelastic(scene, m)

@@ -10,12 +10,14 @@ module step_system
   use pattern_builder, only: cell_list, list_cells, build_pattern
   use assemble_elements, only: assemble_stiffness, assemble_mass, assemble_damping, add_nodal_mass
   use assemble_forces, only: sum_added_mass
+  use coupling_stiffness, only: add_coupling_stiffness
   use damping_rayleigh, only: rayleigh_coefficients
   use joint_operator, only: jump_operator, build_jump_operator
   use step_loads, only: load_group, support, gather_loads, gather_supports
+  use timer, only: ledger
   implicit none
   private
-  public :: dam_system, build_structure, build_inertia, build_damping, build_loads
+  public :: dam_system, build_structure, add_couplings, build_inertia, build_damping, build_loads
 
   type :: dam_system
     type(numbering) :: numbers
@@ -32,7 +34,7 @@ module step_system
 
 contains
 
-  !> Numbering, pattern, stiffness and joints.
+  !> Numbering, pattern, stiffness of the solids and joints.
   subroutine build_structure(scene, plan, system, error)
     type(problem), intent(in) :: scene
     type(step), intent(in) :: plan
@@ -41,12 +43,26 @@ contains
     type(cell_list) :: cells
     call number_step(scene%mesh, scene%joints, scene%ties, plan%fixities, system%numbers, error)
     if (allocated(error)) return
-    call list_cells(scene%mesh, scene%joints, cells)
+    call list_cells(scene%mesh, scene%joints, scene%couplings, cells)
     call build_pattern(system%numbers, cells, system%matrix)
     call build_jump_operator(system%numbers, scene%joints, system%operator)
     call assemble_stiffness(scene, system%numbers, system%matrix, system%stiffness, error)
     allocate (system%mass(0), system%damping(0))
   end subroutine build_structure
+
+  !> Adds the springs between faces of different meshes to the stiffness.
+  subroutine add_couplings(scene, system, costs)
+    type(problem), intent(in) :: scene
+    type(dam_system), intent(inout) :: system
+    type(ledger), intent(inout) :: costs !< gets a part for each of them
+    integer :: i
+    do i = 1, size(scene%couplings)
+      call costs%start(scene%couplings(i)%name, 'coupling')
+      call add_coupling_stiffness(system%numbers, scene%couplings(i), system%matrix, &
+                                  system%stiffness)
+      call costs%stop(scene%couplings(i)%name)
+    end do
+  end subroutine add_couplings
 
   !> Mass of the solids and of the water that moves with them.
   subroutine build_inertia(scene, plan, system, error)

@@ -8,7 +8,7 @@ module time_frequency
   use solver_catalogue, only: make_solver, symmetric_solver
   use equilibrium_linear, only: linear_equilibrium
   use step_equilibrium, only: prepare_equilibrium, hand_over_costs
-  use step_system, only: dam_system, build_structure, build_inertia
+  use step_system, only: dam_system, build_structure, add_couplings, build_inertia
   use joint_forces, only: reference_stiffness
   use joint_iteration, only: closed_tangent
   use eigen_modes, only: find_modes
@@ -37,6 +37,7 @@ contains
     call reference_stiffness(scene%joints, system%operator, reference)
     call system%operator%add_stiffness(closed_tangent(reference), system%matrix, system%stiffness)
     call results%costs%stop('assemble')
+    call add_couplings(scene, system, results%costs)
     call results%costs%start('analyse', 'solver')
     call make_solver(symmetric_solver, balance%factor, error)
     if (.not. allocated(error)) call balance%factor%analyse(system%matrix, error)

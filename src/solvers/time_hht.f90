@@ -12,7 +12,8 @@ module time_hht
   use joint_water, only: lead_water, show_water
   use equilibrium, only: balance_outcome
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium, hand_over_costs
-  use step_system, only: dam_system, build_structure, build_inertia, build_damping, build_loads
+  use step_system, only: dam_system, build_structure, add_couplings, build_inertia, &
+                         build_damping, build_loads
   use step_loads, only: step_time, external_force, prescribed_values
   use step_control, only: increment_control, start_control
   use step_report, only: close_increment, give_up
@@ -46,6 +47,7 @@ contains
     if (allocated(error)) return
     call build_loads(scene, plan, now%u, system)
     call results%costs%stop('assemble')
+    call add_couplings(scene, system, results%costs)
     now%num_unknowns = system%matrix%num_free
     call start_motion(system%numbers, scene%joints, now, moving)
     allocate (moving%stiffness(system%matrix%num_total))

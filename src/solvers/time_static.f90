@@ -14,7 +14,7 @@ module time_static
   use equilibrium, only: force_balance, balance_outcome
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium, add_moving_supports, &
                               check_bulk, hand_over_costs
-  use step_system, only: dam_system, build_structure, build_loads
+  use step_system, only: dam_system, build_structure, add_couplings, build_loads
   use step_loads, only: step_time, external_force, prescribed_values
   use step_control, only: increment_control, start_control
   use step_report, only: close_increment, give_up
@@ -51,6 +51,7 @@ contains
     if (allocated(error)) return
     call build_loads(scene, plan, now%u, system)
     call results%costs%stop('assemble')
+    call add_couplings(scene, system, results%costs)
     call results%costs%start('analyse', 'solver')
     choices = choose_tangents(scene, plan)
     call make_equilibrium(plan, system, all(choices%is_symmetric()), solids%solver, error)

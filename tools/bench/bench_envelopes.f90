@@ -56,7 +56,7 @@ contains
     deallocate (scene%joints)
     allocate (scene%joints(0))
     call number_step(scene%mesh, scene%joints, scene%ties, fixities, numbers, error)
-    call list_cells(scene%mesh, scene%joints, cells)
+    call list_cells(scene%mesh, scene%joints, scene%couplings, cells)
     call build_pattern(numbers, cells, matrix)
     call assemble_stiffness(scene, numbers, matrix, stiffness, error)
     call solver%analyse(matrix, error)

@@ -39,7 +39,7 @@ program bench_linear
   call begin()
   call number_step(scene%mesh, scene%joints, scene%ties, fixities, numbers, error)
   call note('number')
-  call list_cells(scene%mesh, scene%joints, cells)
+  call list_cells(scene%mesh, scene%joints, scene%couplings, cells)
   call build_pattern(numbers, cells, matrix)
   call note('pattern')
   write (*, '(a,3(1x,i0))') 'free, jumps, entries:', numbers%num_free, numbers%num_jumps, &

@@ -41,7 +41,7 @@ contains
     call number_step(scene%mesh, scene%joints, scene%ties, fixities, numbers, error)
     call check(log, allocated(error) .eqv. .false., 'numbering')
     call check(log, numbers%num_jumps == 2*3*12, 'a jump for every pair')
-    call list_cells(scene%mesh, scene%joints, cells)
+    call list_cells(scene%mesh, scene%joints, scene%couplings, cells)
     call build_pattern(numbers, cells, matrix)
   end subroutine prepare
 
@@ -94,7 +94,7 @@ contains
     real(rk), allocatable :: values(:), q(:), y(:)
     call make_arch(2, 3, 4, 3, apart, fixities)
     call number_step(apart%mesh, apart%joints(:0), apart%ties, fixities(:0), own, error)
-    call list_cells(apart%mesh, apart%joints(:0), cells)
+    call list_cells(apart%mesh, apart%joints(:0), apart%couplings, cells)
     call build_pattern(own, cells, own_matrix)
     call assemble_stiffness(apart, own, own_matrix, values, error)
     allocate (q(own%num_total), y(own%num_total))

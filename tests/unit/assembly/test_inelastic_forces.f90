@@ -55,7 +55,7 @@ contains
     call put_law(damage_law(elastic=elastic_law(young=3.0e10_rk, poisson=0.2_rk)), [1], scene)
     call number_step(scene%mesh, scene%joints, scene%ties, [step_fixity(node=1, dof=1)], numbers, &
                      error)
-    call list_cells(scene%mesh, scene%joints, cells)
+    call list_cells(scene%mesh, scene%joints, scene%couplings, cells)
     call build_pattern(numbers, cells, matrix)
     call full_pattern(matrix, full)
     allocate (old(size(scene%inelastic)))

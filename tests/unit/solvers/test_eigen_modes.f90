@@ -38,7 +38,7 @@ contains
     integer :: j, k
     call make_arch(1, 3, 6, 2, scene, fixities)
     call number_step(scene%mesh, scene%joints, scene%ties, fixities, numbers, error)
-    call list_cells(scene%mesh, scene%joints, cells)
+    call list_cells(scene%mesh, scene%joints, scene%couplings, cells)
     call build_pattern(numbers, cells, matrix)
     call assemble_stiffness(scene, numbers, matrix, stiffness, error)
     call assemble_mass(scene, numbers, matrix, mass, error)

@@ -1,0 +1,140 @@
+!> Builds the couplings of *INTERFACE when the whole deck is read.
+module finish_interfaces
+  use diagnostics, only: diagnostic_list
+  use element_catalogue, only: is_solid
+  use kinds, only: rk
+  use model_draft, only: draft
+  use surface_coupling, only: build_coupling, coupling
+  use surface_facets, only: list_interface_facets, list_surface_facets
+  use surface_segments, only: facet_set, surface_cover
+  use tell_cover, only: keep_cover
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: complete_interfaces, append_coupling
+
+contains
+
+  !> Checks the IFACE4 elements and couples them to their surfaces.
+  subroutine complete_interfaces(model, faults)
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i
+    if (model%scene%mesh%num_elements == 0) return
+    if (.not. any(model%scene%mesh%element_type == 'IFACE4')) return
+    call check_quads(model, faults)
+    if (faults%has_errors()) return
+    do i = 1, size(model%interfaces)
+      call build_interface(i, model, faults)
+    end do
+  end subroutine complete_interfaces
+
+  !> Every IFACE4 belongs to an *INTERFACE, has an area, and shares no node with a solid.
+  subroutine check_quads(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    logical, allocatable :: is_of_solid(:)
+    integer :: e, a
+    allocate (is_of_solid(model%scene%mesh%num_nodes), source=.false.)
+    associate (mesh => model%scene%mesh)
+      do e = 1, mesh%num_elements
+        if (is_solid(mesh%element_type(e))) is_of_solid(mesh%nodes(:, e)) = .true.
+      end do
+      do e = 1, mesh%num_elements
+        if (mesh%element_type(e) /= 'IFACE4') cycle
+        if (model%interface_of_element(e) == 0) then
+          call fault_quad(e, 'belongs to no interface', 'an *INTERFACE for each IFACE4 element', &
+                          model, faults)
+          return
+        end if
+        do a = 1, 4
+          if (.not. is_of_solid(mesh%nodes(a, e))) cycle
+          call fault_quad(e, 'shares node '//as_text(mesh%node_id(mesh%nodes(a, e)))// &
+                          ' with a solid', 'nodes of its own: the *INTERFACE couples them', &
+                          model, faults)
+          return
+        end do
+      end do
+    end associate
+  end subroutine check_quads
+
+  !> Points at an element.
+  subroutine fault_quad(e, problem, expected, model, faults)
+    integer, intent(in) :: e !< position
+    character(*), intent(in) :: problem, expected
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    associate (spot => model%element_origin(e))
+      call model%cards(spot%card)%fault_at(faults, spot%line, 1, 'element '// &
+                                           as_text(model%scene%mesh%element_id(e))//' '// &
+                                           problem, expected)
+    end associate
+  end subroutine fault_quad
+
+  !> Couples one set of quads to its surface.
+  subroutine build_interface(number, model, faults)
+    integer, intent(in) :: number
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(facet_set) :: quads, faces
+    type(coupling) :: new
+    type(surface_cover) :: cover
+    real(rk) :: stiffness
+    associate (request => model%interfaces(number), &
+               place => model%cards(model%interfaces(number)%spot%card))
+      if (size(request%elements) == 0 .or. request%surface == 0) return
+      call list_interface_facets(model%scene%mesh, request%elements, quads)
+      call list_surface_facets(model%scene%mesh, model%scene%surfaces(request%surface), faces)
+      stiffness = request%stiffness
+      if (stiffness <= 0.0_rk) then
+        stiffness = softest(model, faces)
+        if (stiffness <= 0.0_rk) then
+          call place%fault(faults, 'the solids behind SURFACE have no E (a UMAT) to make '// &
+                           'STIFFNESS of', 'STIFFNESS')
+          return
+        end if
+      end if
+      call build_coupling(model%scene%mesh%x, quads, faces, stiffness, request%name, 'INTERFACE', &
+                          new, cover)
+      call keep_cover(place, request%name, 'INTERFACE', cover, model, faults)
+    end associate
+    call append_coupling(model, new)
+  end subroutine build_interface
+
+  !> The least E of the solids behind facets, 0 where one has none [Pa].
+  pure real(rk) function softest(model, facets) result(young)
+    type(draft), intent(in) :: model
+    type(facet_set), intent(in) :: facets
+    integer :: f, material
+    young = huge(young)
+    do f = 1, size(facets%element)
+      material = model%scene%mesh%material_of_element(facets%element(f))
+      young = min(young, model%scene%materials(material)%young)
+    end do
+    if (size(facets%element) == 0) young = 0.0_rk
+  end function softest
+
+  !> Adds springs to the problem.
+  subroutine append_coupling(model, new)
+    type(draft), intent(inout) :: model
+    type(coupling), intent(inout) :: new !< moved
+    type(coupling), allocatable :: longer(:)
+    integer :: i
+    allocate (longer(size(model%scene%couplings) + 1))
+    do i = 1, size(model%scene%couplings)
+      call move_coupling(model%scene%couplings(i), longer(i))
+    end do
+    call move_coupling(new, longer(size(longer)))
+    call move_alloc(longer, model%scene%couplings)
+  end subroutine append_coupling
+
+  !> Moves springs without copying their tables.
+  subroutine move_coupling(from, to)
+    type(coupling), intent(inout) :: from, to
+    to%stiffness = from%stiffness
+    call move_alloc(from%name, to%name)
+    call move_alloc(from%kind, to%kind)
+    call move_alloc(from%node, to%node)
+    call move_alloc(from%product, to%product)
+  end subroutine move_coupling
+end module finish_interfaces
