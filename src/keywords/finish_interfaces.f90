@@ -3,6 +3,7 @@ module finish_interfaces
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use kinds, only: rk
+  use mesh_faces, only: face_vector
   use model_draft, only: draft
   use surface_coupling, only: build_coupling, coupling
   use surface_facets, only: list_interface_facets, list_surface_facets
@@ -34,7 +35,10 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     logical, allocatable :: is_of_solid(:)
-    integer :: e, a
+    integer :: i, e, a
+    do i = 1, size(model%interfaces)
+      if (size(model%interfaces(i)%elements) == 0) return ! its fault is told
+    end do
     allocate (is_of_solid(model%scene%mesh%num_nodes), source=.false.)
     associate (mesh => model%scene%mesh)
       do e = 1, mesh%num_elements
@@ -45,6 +49,10 @@ contains
         if (model%interface_of_element(e) == 0) then
           call fault_quad(e, 'belongs to no interface', 'an *INTERFACE for each IFACE4 element', &
                           model, faults)
+          return
+        end if
+        if (norm2(face_vector(mesh%x(:, mesh%nodes(1:4, e)))) <= tiny(1.0_rk)) then
+          call fault_quad(e, 'has no area', 'four corners in a row around it', model, faults)
           return
         end if
         do a = 1, 4

@@ -62,10 +62,10 @@ contains
     model%interfaces = [model%interfaces, new]
   end subroutine read_interface
 
-  !> Elements of an interface are IFACE4 and belong to no other interface.
+  !> Elements of an interface are IFACE4 and belong to no other interface; none after a fault.
   subroutine claim_elements(this, elements, model, faults)
     type(card), intent(in) :: this
-    integer, intent(in) :: elements(:) !< positions
+    integer, allocatable, intent(inout) :: elements(:) !< positions
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer :: i, e, earlier
@@ -76,6 +76,7 @@ contains
                                   as_text(model%scene%mesh%element_id(e))//' is a '// &
                                   trim(model%scene%mesh%element_type(e)), &
                                   'a set of IFACE4 elements')
+        elements = [integer ::]
         return
       end if
       earlier = model%interface_of_element(e)
@@ -85,6 +86,7 @@ contains
                                   ' belongs to another interface', &
                                   'one interface for each element', &
                                   first=model%cards(model%interfaces(earlier)%spot%card)%place())
+        elements = [integer ::]
         return
       end if
       model%interface_of_element(e) = size(model%interfaces) + 1

@@ -19,6 +19,9 @@ module tell_cover
   !> meshes on one curved surface lie so far apart when a facet turns by 5 degrees.
   real(rk), parameter :: gap_part = 0.01_rk
 
+  !> Coordinates below this part of the largest are zero.
+  real(rk), parameter :: round_off = 1.0e-12_rk
+
 contains
 
   !> Keeps the cover of an interface and tells its faults at the card of the interface.
@@ -60,10 +63,12 @@ contains
     end if
   end subroutine keep_cover
 
-  !> '(1, 2, 3)'
+  !> '(1, 2, 3)', without round-off.
   pure function place_text(x) result(text)
     real(rk), intent(in) :: x(3) !< [m]
     character(:), allocatable :: text
-    text = '('//as_text(x(1))//', '//as_text(x(2))//', '//as_text(x(3))//')'
+    real(rk) :: y(3)
+    y = merge(x, 0.0_rk, abs(x) > round_off*maxval(abs(x)))
+    text = '('//as_text(y(1))//', '//as_text(y(2))//', '//as_text(y(3))//')'
   end function place_text
 end module tell_cover
