@@ -32,7 +32,9 @@ contains
       call mark_between(scene%mesh, skin, [scene%ties(i)%node, scene%ties(i)%master], is_covered)
     end do
     do i = 1, size(scene%couplings)
-      call mark_between(scene%mesh, skin, scene%couplings(i)%node, is_covered)
+      associate (nodes => scene%couplings(i)%node)
+        call mark_between(scene%mesh, skin, reshape(nodes, [size(nodes)]), is_covered)
+      end associate
     end do
   end subroutine mark_joined
 
