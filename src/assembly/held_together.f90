@@ -8,7 +8,8 @@ module held_together
 
 contains
 
-  !> The nodes of each point of joints and segment of springs, and each node of a tie with what it follows.
+  !> The nodes of each point of joints and segment of springs, and each node of a tie with what it
+  !> follows.
   subroutine list_groups(scene, groups)
     type(problem), intent(in) :: scene
     type(node_groups), intent(out) :: groups

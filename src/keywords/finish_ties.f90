@@ -5,11 +5,14 @@ module finish_ties
   use diagnostics, only: diagnostic_list
   use errors, only: error_type
   use facet_segments, only: find_segments
+  use finish_interfaces, only: append_coupling
   use kinds, only: rk
   use model_draft, only: draft, tie_request
   use node_ties, only: node_tie
+  use surface_coupling, only: build_coupling, coupling
   use surface_facets, only: list_surface_facets
   use surface_segments, only: facet_set, segment_set, surface_cover
+  use tell_cover, only: keep_cover
   use tie_motion, only: follow_ties
   use write_text, only: as_text
   implicit none
@@ -64,20 +67,24 @@ contains
     type(segment_set) :: segments
     type(surface_cover) :: cover
     type(node_tie) :: tie
+    type(coupling) :: springs
     associate (scene => model%scene, place => model%cards(request%spot%card))
-      if (request%stiffness > 0.0_rk) then
-        call place%fault_parameter(faults, 'STIFFNESS', 'springs are not available yet', &
-                                   'a tie without STIFFNESS')
-        return
-      end if
       call list_surface_facets(scene%mesh, scene%surfaces(request%slave), slave)
       call list_surface_facets(scene%mesh, scene%surfaces(request%master), master)
-      call find_segments(scene%mesh%x, slave, master, segments, cover)
-      if (segments%num_segments == 0) then
+      if (request%stiffness > 0.0_rk) then
+        call build_coupling(scene%mesh%x, slave, master, request%stiffness, request%name, 'TIE', &
+                            springs, cover)
+        call append_coupling(model, springs)
+      else
+        call find_segments(scene%mesh%x, slave, master, segments, cover)
+      end if
+      if (cover%covered_area <= 0.0_rk) then
         call place%fault_at(faults, request%spot%line, 1, 'the surfaces do not lie on each other', &
                             'two surfaces that face each other')
         return
       end if
+      call keep_cover(place, request%name, 'TIE', cover, model, faults)
+      if (request%stiffness > 0.0_rk) return
       tie%name = request%name
       call lay_tie(scene%mesh%x, slave, master, segments, is_fixed, scene%ties, tie)
       if (size(tie%node) == 0) then
