@@ -10,7 +10,7 @@ module facet_segments
   use surface_segments, only: facet_set, segment_set, surface_cover
   implicit none
   private
-  public :: find_segments, facet_area
+  public :: find_segments, facet_area, leave_bare
 
   !> Facets farther apart than this part of the longer one's diagonal are no partners.
   real(rk), parameter :: farthest = 0.5_rk
@@ -58,6 +58,21 @@ contains
     end do
     call close_segments(segments)
   end subroutine find_segments
+
+  !> Takes facets out of the cover that bear nothing after all.
+  pure subroutine leave_bare(x, slave, is_bare, cover)
+    real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
+    type(facet_set), intent(in) :: slave
+    logical, intent(in) :: is_bare(:) !< (slave facets)
+    type(surface_cover), intent(inout) :: cover
+    integer :: f
+    do f = 1, size(is_bare)
+      if (.not. is_bare(f) .or. cover%bare(f) >= 1.0_rk) cycle
+      cover%covered_area = cover%covered_area - (1.0_rk - cover%bare(f)) &
+                           *facet_area(x(:, slave%node(:, f)))
+      cover%bare(f) = 1.0_rk
+    end do
+  end subroutine leave_bare
 
   !> Area of a facet: exact when it is plane, by 2 x 2 points when it is warped [m2].
   pure real(rk) function facet_area(x) result(total)

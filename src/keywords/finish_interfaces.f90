@@ -104,7 +104,7 @@ contains
       end if
       call build_coupling(model%scene%mesh%x, quads, faces, stiffness, request%name, 'INTERFACE', &
                           new, cover)
-      call keep_cover(place, request%name, 'INTERFACE', cover, model, faults)
+      call keep_cover(place, request%name, 'INTERFACE', cover, .false., model, faults)
     end associate
     call append_coupling(model, new)
   end subroutine build_interface

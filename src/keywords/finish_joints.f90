@@ -7,7 +7,7 @@ module finish_joints
   use diagnostics, only: diagnostic_list
   use element_joint8, only: build_joint_points, find_attached_solids
   use errors, only: error_type
-  use facet_segments, only: find_segments
+  use facet_segments, only: find_segments, leave_bare
   use joint_catalogue, only: make_joint_law
   use joint_constants, only: law_constants
   use joint_points, only: joint
@@ -18,6 +18,7 @@ module finish_joints
   use surface_claims, only: claim_facets, claims, open_claims
   use surface_facets, only: list_surface_facets
   use surface_segments, only: facet_set, segment_set, surface_cover
+  use tell_cover, only: keep_cover
   use write_text, only: as_text
   implicit none
   private
@@ -106,6 +107,7 @@ contains
     type(joint), intent(out) :: new
     type(error_type), allocatable :: error
     integer, allocatable :: solid(:, :), side(:)
+    integer :: i
     associate (request => model%joints(number), &
                place => model%cards(model%joints(number)%spot%card))
       if (size(request%elements) == 0) return ! its fault is told
@@ -113,7 +115,8 @@ contains
         allocate (side(size(request%elements)))
         call find_attached_solids(model%scene%mesh, request%elements, solid, side)
         associate (nodes => model%scene%mesh%nodes(:, request%elements))
-          call complete_law(place, pack(solid(2, :), solid(2, :) > 0), &
+          i = merge(2, 1, any(solid(2, :) > 0))
+          call complete_law(place, pack(solid(i, :), solid(i, :) > 0), &
                             [solid(1, :), solid(2, :)], [nodes(1:4, :), nodes(5:8, :)], model, &
                             law, faults)
         end associate
@@ -133,7 +136,7 @@ contains
   !> A joint between two surfaces.
   subroutine build_from_surfaces(number, model, law, taken, faults, new)
     integer, intent(in) :: number
-    type(draft), intent(in) :: model
+    type(draft), intent(inout) :: model !< gets the cover
     type(law_constants), intent(inout) :: law
     type(claims), intent(inout) :: taken
     type(diagnostic_list), intent(inout) :: faults
@@ -156,13 +159,15 @@ contains
       call find_segments(mesh%x, slave, master, segments, cover)
       if (request%is_nodal) then
         call lay_node_points(mesh%x, slave, master, segments, request%is_measured, new, is_bare)
-        where (is_bare) cover%bare = 1.0_rk
+        call leave_bare(mesh%x, slave, is_bare, cover)
       else
         call lay_gauss_points(mesh%x, slave, master, segments, request%is_measured, new)
       end if
       if (new%num_points == 0) then
         call place%fault_at(faults, 1, 1, 'the two surfaces do not lie on each other', &
                             'faces that look at each other, less than half a facet apart')
+      else
+        call keep_cover(place, request%name, 'JOINT', cover, request%is_measured, model, faults)
       end if
     end associate
     call check_claims(number, slave, cover, model, taken, faults)
@@ -201,7 +206,8 @@ contains
     call move_alloc(longer, model%scene%joints)
   end subroutine append_joint
 
-  !> KN and KT that the deck does not give, from the solids on the slave side (NOTES 3).
+  !> KN and KT that the deck does not give, from the solids on the slave side (NOTES 3); where
+  !> interface quads stand there, from those on the master side.
   subroutine complete_law(place, solids, behind, corners, model, law, faults)
     type(card), intent(in) :: place !< of the joint
     integer, intent(in) :: solids(:) !< of the slave side, positions
@@ -213,7 +219,7 @@ contains
     integer :: materials(size(solids))
     materials = model%scene%mesh%material_of_element(solids)
     if (size(materials) == 0) then
-      call place%fault(faults, 'no solid on the slave side gives KN and KT', &
+      call place%fault(faults, 'no solid behind the joint gives KN and KT', &
                        'KN and KT in the *JOINT LAW')
       return
     else if (any(materials /= materials(1))) then

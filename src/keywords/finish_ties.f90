@@ -83,7 +83,7 @@ contains
                             'two surfaces that face each other')
         return
       end if
-      call keep_cover(place, request%name, 'TIE', cover, model, faults)
+      call keep_cover(place, request%name, 'TIE', cover, .false., model, faults)
       if (request%stiffness > 0.0_rk) return
       tie%name = request%name
       call lay_tie(scene%mesh%x, slave, master, segments, is_fixed, scene%ties, tie)

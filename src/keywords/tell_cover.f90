@@ -25,11 +25,12 @@ module tell_cover
 contains
 
   !> Keeps the cover of an interface and tells its faults at the card of the interface.
-  subroutine keep_cover(place, name, kind, cover, model, faults)
+  subroutine keep_cover(place, name, kind, cover, gaps_count, model, faults)
     type(card), intent(in) :: place
     character(*), intent(in) :: name !< upper case
     character(*), intent(in) :: kind !< 'JOINT', 'TIE' or 'INTERFACE'
     type(surface_cover), intent(in) :: cover
+    logical, intent(in) :: gaps_count !< what lies between the faces as meshed is meant
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(named_cover) :: new
@@ -52,6 +53,7 @@ contains
       call place%warn(faults, 'master facets lie upon each other: '//as_text(-bare)//' of the '// &
                       as_text(cover%slave_area)//' m2 of the slave face count twice')
     end if
+    if (gaps_count) return
     side = sqrt(cover%slave_area/max(1, size(cover%bare)))
     if (cover%largest_gap > gap_part*side) then
       call place%warn(faults, 'the faces lie up to '//as_text(cover%largest_gap)// &
