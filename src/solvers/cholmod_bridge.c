@@ -59,16 +59,44 @@ void keyway_cholmod_finish(void *handle)
   free(c);
 }
 
-/* Plans the factor. `order` lists the unknowns in the order of elimination, 0-based; NULL leaves it
- * to CHOLMOD's own METIS. Returns CHOLMOD's status, 0 for success. */
+/* Rearranges `order` by a postorder of the elimination tree, which makes supernodes, and leaves its
+ * last m unknowns where they are: any order with children before parents has the same fill. Returns
+ * 0 for success. */
+static int postorder(struct keyway_cholmod *c, cholmod_sparse *a, int m, int *order)
+{
+  int n = (int)a->nrow, k, used = 0;
+  int *work = malloc(6 * (size_t)n * sizeof *work);
+  int *post = work + n, *old = work + 5 * (size_t)n;
+  if (!work) return -1;
+  if (!cholmod_analyze_ordering(a, CHOLMOD_GIVEN, order, NULL, 0, work, post, work + 2 * (size_t)n,
+                                work + 3 * (size_t)n, work + 4 * (size_t)n, &c->common)) {
+    free(work);
+    return c->common.status ? c->common.status : -1;
+  }
+  memcpy(old, order, (size_t)n * sizeof *old);
+  for (k = 0; k < n; k++)
+    if (post[k] < n - m) order[used++] = old[post[k]];
+  free(work);
+  return 0;
+}
+
+/* Plans the factor. `order` lists the unknowns in the order of elimination, 0-based, of which the
+ * last m stay the last; NULL leaves it to CHOLMOD's own METIS. Returns CHOLMOD's status, 0 for
+ * success. */
 int keyway_cholmod_analyse(void *handle, int n, const int *start, const int *used, const int *row,
-                           const int *order)
+                           int m, int *order)
 {
   struct keyway_cholmod *c = handle;
   cholmod_sparse a = view(n, start, used, row, NULL);
   cholmod_free_factor(&c->factor, &c->common);
   c->common.method[0].ordering = order ? CHOLMOD_GIVEN : CHOLMOD_METIS;
-  c->factor = cholmod_analyze_p(&a, (int *)order, NULL, 0, &c->common);
+  if (order && m > 0) {
+    int status = postorder(c, &a, m, order);
+    if (status) return status;
+    c->common.postorder = 0;
+  }
+  c->factor = cholmod_analyze_p(&a, order, NULL, 0, &c->common);
+  c->common.postorder = 1;
   if (!c->factor) return c->common.status ? c->common.status : -1;
   return 0;
 }

@@ -1,4 +1,5 @@
-!> Symmetric positive definite equations by CHOLMOD: supernodal L L^T, METIS, the jumps last.
+!> Symmetric positive definite equations by CHOLMOD: supernodal L L^T, METIS, what joints work
+!> in last.
 module solver_cholmod
   use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_int, c_loc, c_null_ptr, c_ptr
   use kinds, only: rk
@@ -40,11 +41,11 @@ module solver_cholmod
       type(c_ptr), value :: handle
     end subroutine keyway_cholmod_finish
 
-    function keyway_cholmod_analyse(handle, n, start, used, row, order) result(status) bind(c)
+    function keyway_cholmod_analyse(handle, n, start, used, row, m, order) result(status) bind(c)
       import :: c_ptr, c_int
       implicit none
       type(c_ptr), value :: handle
-      integer(c_int), value :: n
+      integer(c_int), value :: n, m
       integer(c_int), intent(in) :: start(n + 1), used(n), row(start(n + 1))
       type(c_ptr), value :: order
       integer(c_int) :: status
@@ -137,13 +138,13 @@ contains
     call shift_pattern(matrix, self%start, self%row)
     if (self%uses_own_order) then
       status = keyway_cholmod_analyse(self%handle, self%num_free, self%start, matrix%free_entries, &
-                                      self%row, c_null_ptr)
+                                      self%row, 0, c_null_ptr)
     else
       call dissect(matrix, order, error)
       if (allocated(error)) return
       order(:) = order - 1
       status = keyway_cholmod_analyse(self%handle, self%num_free, self%start, matrix%free_entries, &
-                                      self%row, c_loc(order))
+                                      self%row, matrix%num_last, c_loc(order))
     end if
     if (status /= 0) call raise(error, 'no memory to plan the factor of the stiffness', &
                                 system_failed)
