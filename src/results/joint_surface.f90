@@ -16,8 +16,9 @@ module joint_surface
   public :: drawn_joints, find_drawn_joints, values_on_corners, nodes_to_corners, &
             states_on_corners, num_values
 
-  !> Opening, slip 1 and 2, normal and two shear tractions, part of the reach that is used.
-  integer, parameter :: num_values = 7
+  !> Opening, slip 1 and 2, normal and two shear tractions, part of the reach that is used, pressure
+  !> of water.
+  integer, parameter :: num_values = 8
 
   !> Weights this small, or that differ by so little, come from roundoff in the clipping of facets,
   !> whose coordinates are of order 1.
@@ -291,13 +292,14 @@ contains
     list_weights(ends(1):ends(2) - 1) = weights
   end subroutine append
 
-  !> Opening [m], slip [m], traction [Pa], used reach on the corners; zero where there is no point.
+  !> Opening [m], slip [m], traction [Pa], used reach, water [Pa] on the corners; zero where there
+  !> is no point.
   subroutine values_on_corners(scene, now, drawn, values)
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
     type(drawn_joints), intent(in) :: drawn
     real(rk), intent(out) :: values(:, :) !< (num_values, corners)
-    real(rk) :: used
+    real(rk) :: used, water
     integer :: c, i, p
     values = 0.0_rk
     do c = 1, drawn%num_corners
@@ -307,8 +309,10 @@ contains
           p = drawn%point(i)
           used = 0.0_rk
           if (reach(p) < huge(1.0_rk)) used = hypot(seam%jump(2, p), seam%jump(3, p))/reach(p)
+          water = 0.0_rk
+          if (allocated(seam%water)) water = seam%water(p)
           mean = mean + drawn%share(i)*[seam%jump(1, p) + seam%gap(p), seam%slip(:, p), &
-                                        seam%traction(:, p), used]
+                                        seam%traction(:, p), used, water]
         end do
       end associate
     end do

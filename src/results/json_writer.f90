@@ -5,7 +5,7 @@ module json_writer
   use text_buffers, only: text_buffer
   implicit none
   private
-  public :: json_text
+  public :: json_text, lower
 
   !> Keys are given inside objects; inside arrays the key is left out (use `item_...`).
   type :: json_text
@@ -195,4 +195,15 @@ contains
       if (width == 0) exit
     end do
   end function utf8_width
+
+  !> In lower case.
+  pure function lower(text) result(small)
+    character(*), intent(in) :: text
+    character(len(text)) :: small
+    integer :: i
+    small = text
+    do i = 1, len(text)
+      if (text(i:i) >= 'A' .and. text(i:i) <= 'Z') small(i:i) = achar(iachar(text(i:i)) + 32)
+    end do
+  end function lower
 end module json_writer

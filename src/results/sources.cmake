@@ -40,6 +40,7 @@ set(sources
   run_summaries.f90
   damage_json.f90
   umat_json.f90
+  joint_json.f90
   summary_json.f90
   result_files.f90
 )

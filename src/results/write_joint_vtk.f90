@@ -94,10 +94,21 @@ contains
       call file%put_point_reals('TRACTION', values(4:6, :), 'TN,T1,T2')
       call file%put_point_integers('STATE', states_on_corners(now, drawn))
       call file%put_point_reals('REACH_USED', values(7:7, :), '')
+      if (any_water(now)) call file%put_point_reals('WATER', values(8:8, :), '')
       call file%put_cell_integers('JOINT', drawn%joint)
       call file%put_cell_integers('ELEMENT_ID', scene%mesh%element_id(drawn%element))
     end associate
   end subroutine fill
+
+  !> Is there water in a joint?
+  pure logical function any_water(now)
+    type(state), intent(in) :: now
+    integer :: j
+    any_water = .false.
+    do j = 1, size(now%joints)
+      any_water = any_water .or. allocated(now%joints(j)%water)
+    end do
+  end function any_water
 
   !> The deck's number of the slave node that a corner lies on; 0 between nodes.
   pure function node_numbers(scene, drawn) result(number)

@@ -1,0 +1,90 @@
+!> What job.json tells of joints and of faces of different meshes; extremes by face.
+module joint_json
+  use extremes, only: extremes_by_face, face_names
+  use joint_points, only: joint
+  use json_writer, only: json_text, lower
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use run_records, only: run_record
+  implicit none
+  private
+  public :: put_joints, put_interfaces, put_extremes
+
+contains
+
+  !> What each joint is made of, and its extremes.
+  subroutine put_joints(json, scene, record)
+    type(json_text), intent(inout) :: json
+    type(problem), intent(in) :: scene
+    type(run_record), intent(in) :: record
+    integer :: j
+    call json%open_object('joints')
+    do j = 1, size(scene%joints)
+      call json%open_object(scene%joints(j)%name)
+      call put_make(json, scene%joints(j))
+      call put_extremes(json, 'opening', record%joints(j)%opening)
+      call put_extremes(json, 'slip', record%joints(j)%slip)
+      call put_extremes(json, 'pressure', record%joints(j)%pressure)
+      if (any(record%joints(j)%water%at%is_found)) then
+        call put_extremes(json, 'water', record%joints(j)%water)
+      end if
+      call json%close_object()
+    end do
+    call json%close_object()
+  end subroutine put_joints
+
+  !> What a joint is made of.
+  subroutine put_make(json, item)
+    type(json_text), intent(inout) :: json
+    type(joint), intent(in) :: item
+    call json%put_text(trim(merge('elements', 'surfaces', item%is_matching)), 'kind')
+    call json%put_text(trim(merge('nodes', 'gauss', item%is_nodal)), 'integration')
+    call json%put_integer(item%num_points, 'points')
+    call json%put_real(sum(item%area), 'area')
+  end subroutine put_make
+
+  !> Anywhere, upstream, downstream: those that exist.
+  subroutine put_extremes(json, name, found)
+    type(json_text), intent(inout) :: json
+    character(*), intent(in) :: name
+    type(extremes_by_face), intent(in) :: found
+    integer :: i
+    call json%open_object(name)
+    do i = 1, size(found%at)
+      if (.not. found%at(i)%is_found) cycle
+      call json%open_object(trim(face_names(i)))
+      call json%put_real(found%at(i)%value, 'value')
+      call json%put_real(found%at(i)%time, 'time')
+      call json%put_reals(found%at(i)%x, 'x')
+      call json%close_object()
+    end do
+    call json%close_object()
+  end subroutine put_extremes
+
+  !> How faces of different meshes cover each other.
+  subroutine put_interfaces(json, scene)
+    type(json_text), intent(inout) :: json
+    type(problem), intent(in) :: scene
+    integer :: i
+    call json%open_array('interfaces')
+    if (allocated(scene%covers)) then
+      do i = 1, size(scene%covers)
+        associate (cover => scene%covers(i)%cover)
+          call json%open_object()
+          call json%put_text(scene%covers(i)%name, 'name')
+          call json%put_text(lower(scene%covers(i)%kind), 'kind')
+          call json%put_real(cover%slave_area, 'slave_area')
+          call json%put_real(cover%master_area, 'master_area')
+          call json%put_real(cover%covered_area, 'covered_area')
+          call json%put_integer(count(cover%bare > 0.5_rk), 'facets_without_partner')
+          call json%put_real(cover%largest_gap, 'largest_gap')
+          call json%put_reals(cover%gap_place, 'gap_at')
+          call json%put_real(cover%largest_overlap, 'largest_overlap')
+          call json%put_reals(cover%overlap_place, 'overlap_at')
+          call json%close_object()
+        end associate
+      end do
+    end if
+    call json%close_array()
+  end subroutine put_interfaces
+end module joint_json
