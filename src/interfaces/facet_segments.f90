@@ -12,9 +12,6 @@ module facet_segments
   private
   public :: find_segments, facet_area, leave_bare
 
-  !> Facets farther apart than this part of the longer one's diagonal are no partners.
-  real(rk), parameter :: farthest = 0.5_rk
-
   !> Facets are partners when their mean normals are within 60 degrees of opposite.
   real(rk), parameter :: least_cosine = 0.5_rk
 
@@ -26,24 +23,26 @@ contains
 
   !> The segments of two faces and how well they cover each other. Nothing is dropped in silence:
   !> what has no partner is in `cover`.
-  pure subroutine find_segments(x, slave, master, segments, cover)
+  pure subroutine find_segments(x, slave, master, segments, cover, farthest)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(facet_set), intent(in) :: slave, master
     type(segment_set), intent(out) :: segments
     type(surface_cover), intent(out) :: cover
+    real(rk), intent(in), optional :: farthest !< apart, in diagonals of a facet
     type(box_tree) :: tree
     integer, allocatable :: near(:)
     real(rk) :: low(3), high(3), covered, area, largest_bare
     integer :: f, num
     call open_segments(size(slave%element), segments)
+    if (present(farthest)) segments%farthest = farthest
     allocate (cover%bare(size(slave%element)), source=1.0_rk)
     do f = 1, size(master%element)
       cover%master_area = cover%master_area + facet_area(x(:, master%node(:, f)))
     end do
-    call build_master_tree(x, master, tree)
+    call build_master_tree(x, master, segments%farthest, tree)
     largest_bare = 0.0_rk
     do f = 1, size(slave%element)
-      call reach_box(x(:, slave%node(:, f)), low, high)
+      call reach_box(x(:, slave%node(:, f)), segments%farthest, low, high)
       num = 0
       if (size(master%element) > 0) call find_boxes(tree, low, high, num, near)
       covered = 0.0_rk
@@ -87,22 +86,24 @@ contains
   end function facet_area
 
   !> A tree over boxes that reach as far as the master facets find partners.
-  pure subroutine build_master_tree(x, master, tree)
+  pure subroutine build_master_tree(x, master, farthest, tree)
     real(rk), intent(in) :: x(:, :)
     type(facet_set), intent(in) :: master
+    real(rk), intent(in) :: farthest !< [diagonals]
     type(box_tree), intent(out) :: tree
     real(rk), allocatable :: low(:, :), high(:, :)
     integer :: f
     allocate (low(3, size(master%element)), high(3, size(master%element)))
     do f = 1, size(master%element)
-      call reach_box(x(:, master%node(:, f)), low(:, f), high(:, f))
+      call reach_box(x(:, master%node(:, f)), farthest, low(:, f), high(:, f))
     end do
     call build_tree(low, high, tree)
   end subroutine build_master_tree
 
   !> The box of a facet and of what lies within its reach above and below.
-  pure subroutine reach_box(x, low, high)
+  pure subroutine reach_box(x, farthest, low, high)
     real(rk), intent(in) :: x(3, 4)
+    real(rk), intent(in) :: farthest !< [diagonals]
     real(rk), intent(out) :: low(3), high(3)
     low = minval(x, dim=2) - farthest*diameter(x)
     high = maxval(x, dim=2) + farthest*diameter(x)
@@ -180,7 +181,8 @@ contains
       gap(i) = dot_product(matmul(pair%master, opposite) - place(:, i), pair%ground%normal)
     end do
     if (.not. pair%other%is_turned) gap(:num) = -gap(:num)
-    if (abs(sum(gap(:num)))/num > farthest*max(diameter(pair%slave), diameter(pair%master))) then
+    if (abs(sum(gap(:num)))/num > segments%farthest &
+        *max(diameter(pair%slave), diameter(pair%master))) then
       num = 0
       return
     end if

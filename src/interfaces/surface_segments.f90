@@ -18,6 +18,8 @@ module surface_segments
 
   !> The segments of two faces, slave facet by slave facet in ascending order.
   type :: segment_set
+    real(rk) :: farthest = 0.5_rk !< facets farther apart than this part of the longer one's
+    !< diagonal are no partners
     integer :: num_segments = 0
     integer, allocatable :: slave(:), master(:) !< (segments) facets of the two sets
     integer, allocatable :: first_vertex(:) !< (segments + 1)

@@ -24,6 +24,10 @@ module finish_joints
   private
   public :: complete_joints
 
+  !> How far apart facets may be that the joint acts between, in diagonals of a facet: faces that
+  !> count as touching, and those whose distance is a gap that may close.
+  real(rk), parameter :: farthest_seam = 0.5_rk, farthest_gap = 4.0_rk
+
 contains
 
   !> Builds the joints of the deck, in its order.
@@ -156,7 +160,8 @@ contains
       new%name = request%name
       call make_joint_law(law, new%law)
       if (.not. allocated(new%law)) return
-      call find_segments(mesh%x, slave, master, segments, cover)
+      call find_segments(mesh%x, slave, master, segments, cover, &
+                         merge(farthest_gap, farthest_seam, request%is_measured))
       if (request%is_nodal) then
         call lay_node_points(mesh%x, slave, master, segments, request%is_measured, new, is_bare)
         call leave_bare(mesh%x, slave, is_bare, cover)
@@ -165,7 +170,9 @@ contains
       end if
       if (new%num_points == 0) then
         call place%fault_at(faults, 1, 1, 'the two surfaces do not lie on each other', &
-                            'faces that look at each other, less than half a facet apart')
+                            'faces that look at each other, less than '// &
+                            trim(merge('4 facets    ', 'half a facet', request%is_measured))// &
+                            ' apart')
       else
         call keep_cover(place, request%name, 'JOINT', cover, request%is_measured, model, faults)
       end if

@@ -296,6 +296,8 @@ contains
     call find_segments(x, slave, master, segments, cover)
     call check(log, segments%num_segments == 0, 'too far apart')
     call check_close(log, cover%covered_area, 0.0_rk, 0.0_rk, 'too far apart: nothing covered')
+    call find_segments(x, slave, master, segments, cover, 10.0_rk)
+    call check_close(log, cover%covered_area, 1.0_rk, round_off, 'as far apart as they may be')
   end subroutine gaps_and_overlaps
 
   !> Quads against triangles (a wedge's facet repeats a node), either way round.
