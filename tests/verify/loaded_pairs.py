@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import product
 
 import numpy as np
 from exact_fields import Field
@@ -40,11 +41,10 @@ class Loaded:
 
     def forces(self, name: str) -> np.ndarray:
         """Of the outer faces (nodes, 3) [N]."""
+        facets = np.array(self.pair.outer_faces())
         total = np.zeros_like(self.pair.x)
-        for nodes in self.pair.outer_faces():
-            local = traction_forces(self.pair.local[nodes], self.fields[name].stress)
-            np.add.at(total, nodes, local @ self.pair.turn.T)
-        return total + self.more_forces.get(name, 0.0)
+        np.add.at(total, facets, traction_forces(self.pair.local[facets], self.fields[name].stress))
+        return total @ self.pair.turn.T + self.more_forces.get(name, 0.0)
 
     def step(self, name: str, requests: str) -> str:
         """A static step."""
@@ -139,24 +139,22 @@ def at_end(table, step: int) -> np.ndarray:
     return rows & (table["increment"] == table["increment"][rows].max())
 
 
-def facet_points(x: np.ndarray, order: int = 3):
-    """Points of Gauss on a facet x (4, 3): shape functions (4) and place, weight times n dA."""
-    places, weights = np.polynomial.legendre.leggauss(order)
-    for xi, w1 in zip(places, weights, strict=True):
-        for eta, w2 in zip(places, weights, strict=True):
-            shape = 0.25 * (1.0 + FACET[:, 0] * xi) * (1.0 + FACET[:, 1] * eta)
-            along = 0.25 * FACET[:, 0] * (1.0 + FACET[:, 1] * eta) @ x
-            across = 0.25 * FACET[:, 1] * (1.0 + FACET[:, 0] * xi) @ x
-            yield shape, shape @ x, w1 * w2 * np.cross(along, across)
-
-
 def traction_forces(x: np.ndarray, stress: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """Forces (4, 3) of the tractions stress * n on a facet x (4, 3), outward by its order.
+    """Forces (facets, 4, 3) of the tractions stress * n on facets x, outward by their order.
 
     3 x 3 points: exact on flat or twisted facets for uniform stresses, and up to cubic ones on
     parallelograms.
     """
-    return sum(np.outer(shape, stress(place) @ normal) for shape, place, normal in facet_points(x))
+    total = np.zeros_like(x)
+    places, weights = np.polynomial.legendre.leggauss(3)
+    for (xi, w1), (eta, w2) in product(zip(places, weights, strict=True), repeat=2):
+        factor = 1.0 + FACET * np.array([xi, eta])
+        shape = 0.25 * factor.prod(axis=1)
+        along = np.einsum("a,fai->fi", 0.25 * FACET[:, 0] * factor[:, 1], x)
+        across = np.einsum("a,fai->fi", 0.25 * FACET[:, 1] * factor[:, 0], x)
+        traction = np.einsum("fij,fj->fi", stress(shape @ x), np.cross(along, across))
+        total += w1 * w2 * shape[:, None] * traction[:, None, :]
+    return total
 
 
 def bare_forces(pair: Pair, stress: np.ndarray) -> np.ndarray:
@@ -170,8 +168,8 @@ def bare_forces(pair: Pair, stress: np.ndarray) -> np.ndarray:
     for name in ("LOWER", "UPPER"):
         for brick, face in pair.mesh.surfaces[name]:
             nodes = pair.outward(brick, face)
-            whole = traction_forces(local[nodes], lambda x: np.broadcast_to(stress, (3, 3)))
-            np.add.at(total, nodes, whole - covered_forces(local[nodes], stress, low, high))
+            total[nodes] += traction_forces(local[nodes][None], lambda x: stress[None])[0]
+            total[nodes] -= covered_forces(local[nodes], stress, low, high)
     return total @ pair.turn.T
 
 
