@@ -9,7 +9,8 @@ module coupling_joint
   use joint_points, only: joint, joint_cells
   use kinds, only: rk
   use mortar_facet, only: facet_extent
-  use mortar_projection, only: mortar_rows, project
+  use mortar_projection, only: project
+  use mortar_table, only: mortar_rows
   use segment_quadrature, only: integrate_segment, segment_points
   use surface_segments, only: facet_set, segment_set
   implicit none

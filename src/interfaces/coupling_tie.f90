@@ -7,7 +7,8 @@
 !> master face or by a node that bears none. Its dual function goes to its neighbours on each facet.
 module coupling_tie
   use kinds, only: rk
-  use mortar_projection, only: mortar_rows, project
+  use mortar_projection, only: project
+  use mortar_table, only: mortar_rows
   use node_ties, only: node_tie
   use surface_segments, only: facet_set, segment_set
   implicit none

@@ -30,6 +30,7 @@ module mortar_facet
     real(rk) :: normal(3, 4) = 0.0_rk !< int N_a n dA, out of the slave's solid [m2]
     real(rk) :: gap(4) = 0.0_rk !< int phi_a gap dA [m3]
     real(rk), allocatable :: coupling(:, :, :) !< (4, 4, segments) int phi_a N_m dA [m2]
+    real(rk), allocatable :: pressed(:, :, :) !< (3, 4, segments) int N_m n dA [m2]
   end type facet_part
 
 contains
@@ -45,7 +46,7 @@ contains
     real(rk) :: mass(4, 4), fold(4, 4), n(4)
     integer :: s, q, a
     call fold_corners(slave%node(:, segments%slave(own(1))), part, fold)
-    allocate (part%coupling(4, 4, size(own)), source=0.0_rk)
+    allocate (part%coupling(4, 4, size(own)), part%pressed(3, 4, size(own)), source=0.0_rk)
     mass = 0.0_rk
     do s = 1, size(own)
       call integrate_segment(x, slave, master, segments, own(s), points)
@@ -57,6 +58,8 @@ contains
           part%coupling(:, a, s) = part%coupling(:, a, s) &
                                    + points%area(q)*points%master_shape(a, q)*n
           part%normal(:, a) = part%normal(:, a) + points%area(q)*n(a)*points%normal(:, q)
+          part%pressed(:, a, s) = part%pressed(:, a, s) &
+                                  + points%area(q)*points%master_shape(a, q)*points%normal(:, q)
         end do
         part%gap = part%gap + points%area(q)*points%gap(q)*n
       end do

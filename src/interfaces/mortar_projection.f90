@@ -9,29 +9,22 @@
 module mortar_projection
   use joint_axes, only: share_a_plane
   use kinds, only: rk
+  use mortar_balance, only: balance_weights
   use mortar_facet, only: facet_extent, facet_part, integrate_facet, share_bound
+  use mortar_table, only: mortar_rows
   use segment_quadrature, only: segment_points
   use surface_segments, only: facet_set, segment_set
   implicit none
   private
   public :: mortar_rows, project
 
+  !> Faces no farther apart than this part of a facet coincide, but for the digits of a mesher.
+  !> Where they do not, a constant stress has no exact way through, whatever the weights.
+  real(rk), parameter :: touching = 1.0e-6_rk
+
   !> Weights below this are round-off of the orthogonality of phi and N; the largest weight of the
   !> row takes their sum.
   real(rk), parameter :: no_weight = 1.0e-13_rk
-
-  type :: mortar_rows
-    integer :: num_rows = 0
-    integer, allocatable :: node(:) !< (rows) node of the slave face
-    integer, allocatable :: first(:) !< (rows + 1)
-    integer, allocatable :: master(:) !< nodes of the master face, and bound ones of the slave face
-    real(rk), allocatable :: weight(:) !< they add up to 1
-    real(rk), allocatable :: area(:) !< (rows) A_a [m2]
-    real(rk), allocatable :: normal(:, :) !< (3, rows) unit, out of the slave's solid
-    real(rk), allocatable :: gap(:) !< (rows) (1/A_a) int phi_a gap dA, from slave to master [m]
-    real(rk), allocatable :: reach(:) !< (rows) shortest side of the facets that meet there [m]
-    logical, allocatable :: is_bare(:) !< (slave facets) too little covered to take part
-  end type mortar_rows
 
   !> Rows while they are gathered.
   type :: gathering
@@ -40,6 +33,7 @@ module mortar_projection
     integer :: num_terms = 0
     integer, allocatable :: row(:), node(:) !< (terms)
     real(rk), allocatable :: value(:) !< (terms) [m2]
+    real(rk), allocatable :: target_force(:, :) !< (3, nodes) of a unit pressure [m2]
   end type gathering
 
 contains
@@ -78,6 +72,9 @@ contains
       end associate
     end do
     call close_rows(gathered, rows)
+    if (all(abs(rows%gap) <= touching*rows%reach)) then
+      call balance_weights(x, gathered%target_force, maxval(abs(rows%gap)/rows%reach), rows)
+    end if
   end subroutine project
 
   !> The segments of each slave facet, as a list of lists.
@@ -123,6 +120,7 @@ contains
     allocate (gathered%newest(num_nodes), gathered%next(4*num_facets), source=0)
     allocate (gathered%row(most_terms), gathered%node(most_terms), gathered%value(most_terms))
     allocate (rows%node(4*num_facets), rows%area(4*num_facets), rows%normal(3, 4*num_facets))
+    allocate (gathered%target_force(3, num_nodes), source=0.0_rk)
     allocate (rows%gap(4*num_facets), rows%reach(4*num_facets))
     allocate (rows%is_bare(num_facets), source=.true.)
   end subroutine open_rows
@@ -143,6 +141,8 @@ contains
     corner_is_bound = .true.
     corner_is_bound(:n) = is_bound(part%node(:n))
     call share_bound(part, corner_is_bound, share)
+    if (all(corner_is_bound)) return
+    call add_pressed(part, masters, corner_is_bound, gathered%target_force)
     do a = 1, n
       if (corner_is_bound(a)) cycle
       share(a, a) = 1.0_rk
@@ -172,6 +172,23 @@ contains
       gathered%value(gathered%num_terms) = value
     end subroutine add_term
   end subroutine add_facet
+
+  !> The forces of a unit pressure on the master nodes and, against them, on the bound slave nodes.
+  pure subroutine add_pressed(part, masters, corner_is_bound, force)
+    type(facet_part), intent(in) :: part
+    integer, intent(in) :: masters(:, :) !< (4, segments) nodes
+    logical, intent(in) :: corner_is_bound(4)
+    real(rk), intent(inout) :: force(:, :) !< (3, nodes) [m2]
+    integer :: s, m, b
+    do s = 1, size(masters, 2)
+      do m = 1, 4
+        force(:, masters(m, s)) = force(:, masters(m, s)) + part%pressed(:, m, s)
+      end do
+    end do
+    do b = 1, part%num_corners
+      if (corner_is_bound(b)) force(:, part%node(b)) = force(:, part%node(b)) - part%normal(:, b)
+    end do
+  end subroutine add_pressed
 
   !> The row of a node in the plane of a normal; a new one where there is none.
   subroutine find_row(node, normal, splits, rows, gathered, row)
@@ -209,6 +226,7 @@ contains
     rows%area = rows%area(:n)
     rows%gap = rows%gap(:n)/rows%area
     rows%reach = rows%reach(:n)
+    rows%pressed = rows%normal(:, :n)
     rows%normal = rows%normal(:, :n)/spread(norm2(rows%normal(:, :n), dim=1), 1, 3)
     call sort_by_key(gathered%row(:gathered%num_terms), n, first, order)
     allocate (rows%first(n + 1), rows%master(gathered%num_terms), rows%weight(gathered%num_terms))

@@ -7,6 +7,8 @@ set(sources
   facet_segments.f90
   segment_quadrature.f90
   mortar_facet.f90
+  mortar_table.f90
+  mortar_balance.f90
   mortar_projection.f90
   coupling_joint.f90
   coupling_tie.f90
