@@ -36,6 +36,7 @@ contains
     call open_segments(size(slave%element), segments)
     if (present(farthest)) segments%farthest = farthest
     allocate (cover%bare(size(slave%element)), source=1.0_rk)
+    cover%element = slave%element
     do f = 1, size(master%element)
       cover%master_area = cover%master_area + facet_area(x(:, master%node(:, f)))
     end do

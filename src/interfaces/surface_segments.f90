@@ -34,6 +34,7 @@ module surface_segments
     real(rk) :: covered_area = 0.0_rk !< of the slave face [m2]
     real(rk), allocatable :: bare(:) !< (slave facets) part of each that has no partner, 0..1;
     !< below 0 by more than round-off where master facets lie upon each other
+    integer, allocatable :: element(:) !< (slave facets) the solid behind or the IFACE4, positions
     real(rk) :: largest_gap = 0.0_rk, largest_overlap = 0.0_rk !< [m]
     real(rk) :: gap_place(3) = 0.0_rk, overlap_place(3) = 0.0_rk !< [m]
     real(rk) :: bare_place(3) = 0.0_rk !< centre of the slave facet with the largest bare area [m]

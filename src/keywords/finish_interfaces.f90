@@ -104,6 +104,7 @@ contains
       end if
       call build_coupling(model%scene%mesh%x, quads, faces, stiffness, request%name, 'INTERFACE', &
                           new, cover)
+      cover%element = request%elements
       call keep_cover(place, request%name, 'INTERFACE', cover, .false., model, faults)
     end associate
     call append_coupling(model, new)

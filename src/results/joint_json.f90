@@ -10,6 +10,11 @@ module joint_json
   private
   public :: put_joints, put_interfaces, put_extremes
 
+  !> A slave facet has no partner where more than this part of it is bare.
+  real(rk), parameter :: most_bare = 0.5_rk
+
+  integer, parameter :: most_listed = 1000 !< elements without partner
+
 contains
 
   !> What each joint is made of, and its extremes.
@@ -76,7 +81,8 @@ contains
           call json%put_real(cover%slave_area, 'slave_area')
           call json%put_real(cover%master_area, 'master_area')
           call json%put_real(cover%covered_area, 'covered_area')
-          call json%put_integer(count(cover%bare > 0.5_rk), 'facets_without_partner')
+          call json%put_integer(count(cover%bare > most_bare), 'facets_without_partner')
+          call put_elements(json, scene, pack(cover%element, cover%bare > most_bare))
           call json%put_real(cover%largest_gap, 'largest_gap')
           call json%put_reals(cover%gap_place, 'gap_at')
           call json%put_real(cover%largest_overlap, 'largest_overlap')
@@ -87,4 +93,17 @@ contains
     end if
     call json%close_array()
   end subroutine put_interfaces
+
+  !> The numbers of elements, the first of them where there are very many.
+  subroutine put_elements(json, scene, elements)
+    type(json_text), intent(inout) :: json
+    type(problem), intent(in) :: scene
+    integer, intent(in) :: elements(:) !< positions
+    integer :: i
+    call json%open_array('elements_without_partner')
+    do i = 1, min(size(elements), most_listed)
+      call json%put_integer(scene%mesh%element_id(elements(i)))
+    end do
+    call json%close_array()
+  end subroutine put_elements
 end module joint_json

@@ -116,3 +116,19 @@ def test_block_thrown_up_from_the_chain_keeps_the_balance(keyway):
     assert run.json["joints"]["J"]["opening"]["anywhere"]["value"] > 0.3
     assert run.json["steps"][1]["energy"]["error"] < 1e-6
     assert run.json["steps"][1]["cutbacks"] == 0
+
+
+def test_what_has_no_partner_is_told(keyway):
+    """The coarse block stands 1 m over the edge of the fine one, 2 cm above it."""
+    pair = Pair(Side((4, 2, 1)), Side((4, 1, 1)), (4.0, 1.0), shift=(1.0, 0.0), apart=0.02)
+    cards = chain(pair, "UPPER", ", TENSILE STRENGTH=1e12")
+    step = static("*BOUNDARY\nFAR, 1, 3\n*DSLOAD\nTOP, P, 1e5\n")
+    run = keyway(pair.deck(cards + step))
+    (cover,) = run.json["interfaces"]
+    assert abs(cover["slave_area"] - 4.0) < 1e-12 and abs(cover["master_area"] - 4.0) < 1e-12
+    assert abs(cover["covered_area"] - 3.0) < 1e-12
+    assert cover["elements_without_partner"] == [len(pair.mesh.bricks) + 8]
+    assert abs(cover["largest_gap"] - 0.02) < 1e-12 and cover["largest_overlap"] == 0.0
+    bare, gap = (w for w in run.json["warnings"] if "*INTERFACE" in w)
+    assert "1 of the 4 m2 of the slave face have no master facet opposite" in bare
+    assert "the faces lie up to 0.02 m apart" in gap
