@@ -64,16 +64,18 @@ contains
     real(rk), intent(inout) :: values(:)
     integer, allocatable :: unknown(:), first(:), place(:)
     real(rk), allocatable :: coefficient(:), block(:, :)
-    integer :: i, j, b
+    real(rk) :: factor
+    integer :: i, j, a, b
     call gather_rows(numbers, dof, unknown, first, place, coefficient)
     allocate (block(size(unknown), size(unknown)), source=0.0_rk)
     do j = 1, size(dof)
       do b = first(j), first(j + 1) - 1
         do i = 1, size(dof)
-          associate (row => place(first(i):first(i + 1) - 1), column => place(b))
-            block(row, column) = block(row, column) + coefficient(b)*k(i, j) &
-                                 *coefficient(first(i):first(i + 1) - 1)
-          end associate
+          factor = coefficient(b)*k(i, j)
+          if (.not. abs(factor) > 0.0_rk) cycle
+          do a = first(i), first(i + 1) - 1
+            block(place(a), place(b)) = block(place(a), place(b)) + factor*coefficient(a)
+          end do
         end do
       end do
     end do

@@ -1,0 +1,52 @@
+!> Times of what dependent nodes make dearer, for the first step of a deck: bench_ties DECK.
+program bench_ties
+  use kinds, only: long, rk
+  use errors, only: error_type
+  use diagnostics, only: diagnostic_list
+  use problem_definition, only: problem
+  use dof_numbering, only: numbering
+  use constraint_elimination, only: number_step
+  use matrix_pattern, only: pattern
+  use pattern_builder, only: cell_list, list_cells, build_pattern
+  use joint_operator, only: jump_operator, build_jump_operator
+  use assemble_elements, only: assemble_stiffness
+  use read_deck, only: read_problem
+  implicit none
+  type(problem), allocatable :: scene
+  type(diagnostic_list) :: faults
+  type(numbering) :: numbers
+  type(cell_list) :: cells
+  type(pattern) :: matrix
+  type(jump_operator) :: operator
+  type(error_type), allocatable :: error
+  real(rk), allocatable :: stiffness(:)
+  character(:), allocatable :: echo
+  character(400) :: path
+  integer(long) :: start
+  call get_command_argument(1, path)
+  call system_clock(start)
+  call read_problem(trim(path), scene, faults, echo)
+  if (faults%has_errors()) error stop 'the deck has faults'
+  call note('read')
+  call number_step(scene%mesh, scene%joints, scene%ties, scene%steps(1)%fixities, numbers, error)
+  if (allocated(error)) error stop 'numbering'
+  call note('number')
+  call list_cells(scene%mesh, scene%joints, scene%couplings, cells)
+  call build_pattern(numbers, cells, matrix)
+  call note('pattern')
+  call build_jump_operator(numbers, scene%joints, operator)
+  call note('joints')
+  call assemble_stiffness(scene, numbers, matrix, stiffness, error)
+  call note('stiffness')
+  write (*, '(a,4(1x,i0))') 'free, jumps, terms of T, entries:', numbers%num_free, &
+    numbers%num_jumps, size(numbers%unknown), size(matrix%row)
+contains
+  !> Prints the time since the last note.
+  subroutine note(what)
+    character(*), intent(in) :: what
+    integer(long) :: now, rate
+    call system_clock(now, rate)
+    write (*, '(a,t12,f9.3,a)') what, real(now - start, rk)/real(rate, rk), ' s'
+    call system_clock(start)
+  end subroutine note
+end program bench_ties
