@@ -73,20 +73,20 @@ contains
   end subroutine apply_rows
 
   !> r of the augmented friction per area: a part of the structure's own tangential stiffness at
-  !> each point when all points slide at once, never more than the joint's. The structure alone,
-  !> without joints, has the compliance G (I - W k_ref G)^-1, W = weight*area.
+  !> each point when all points slide at once, and alone; never more than the joint's own.
+  !> The structure alone, without joints, has the compliance G (I - W k_ref G)^-1, W = weight*area.
   subroutine friction_scale(compliance, operator, reference, weight, scale)
     real(rk), intent(in) :: compliance(:, :) !< G with the closed joints [m/N]
     type(jump_operator), intent(in) :: operator
     real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
     real(rk), intent(in) :: weight !< of the joint forces
-    real(rk), allocatable, intent(out) :: scale(:) !< (points) [Pa/m]
+    real(rk), allocatable, intent(out) :: scale(:, :) !< (2, points) together, alone [Pa/m]
     type(lu_factor) :: factor
     real(rk), allocatable :: matrix(:, :), alone(:, :)
-    real(rk) :: joint_stiffness, flexibility
+    real(rk) :: joint_stiffness, flexibility, share
     integer :: m, p, i, j, row
     m = size(compliance, 1)
-    allocate (matrix(m, m), scale(operator%num_points))
+    allocate (matrix(m, m), scale(2, operator%num_points))
     do p = 1, operator%num_points
       do i = 1, 3
         row = 3*(p - 1) + i
@@ -103,11 +103,19 @@ contains
       row = 3*(p - 1)
       flexibility = 0.0_rk
       do j = 1, operator%num_points
-        flexibility = flexibility + weight*operator%area(j)*(abs(alone(3*j - 1, row + 2)) &
-                                                             + abs(alone(3*j, row + 3)))
+        share = weight*operator%area(j)*(abs(alone(3*j - 1, row + 2)) + abs(alone(3*j, row + 3)))
+        flexibility = flexibility + share
+        if (j == p) scale(2, p) = scale_for(share, minval(reference(2:3, p)))
       end do
-      scale(p) = minval(reference(2:3, p))
-      if (flexibility*scale(p) > 2.0_rk*scale_factor) scale(p) = 2.0_rk*scale_factor/flexibility
+      scale(1, p) = scale_for(flexibility, minval(reference(2:3, p)))
     end do
   end subroutine friction_scale
+
+  !> r that goes with the compliance in two directions.
+  pure real(rk) function scale_for(flexibility, most) result(scale)
+    real(rk), intent(in) :: flexibility !< [m/Pa]
+    real(rk), intent(in) :: most !< [Pa/m]
+    scale = most
+    if (flexibility*most > 2.0_rk*scale_factor) scale = 2.0_rk*scale_factor/flexibility
+  end function scale_for
 end module joint_compliance

@@ -17,6 +17,11 @@ module joint_iteration
   !> block that touches nothing for an iterate moves far, but stays in reach. The balance itself is
   !> judged without it.
   real(rk), parameter :: stiffness_floor = 1.0e-10_rk
+  !> From this iteration on points that slide another way than their multiplier get a larger r, up
+  !> to that of a point which slides alone: r for sliding together turns a single one too slowly.
+  integer, parameter :: patience_with_turns = 4
+  real(rk), parameter :: same_friction = 0.1_rk !< tractions that differ less go the same way
+  real(rk), parameter :: growth_of_scale = 10.0_rk
   !> From this iteration on friction does not follow the pressure of the next iterate. Where a block
   !> stands on an edge, sliding can press it on as fast as it is pushed up, and the iteration loses
   !> its way; with the pressure of the last iterate each one is well posed. Near a solution, below
@@ -43,7 +48,7 @@ contains
     type(joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     real(rk), intent(in) :: reference(:, :) !< (3, points) stiffness of the closed joint [Pa/m]
-    real(rk), intent(in) :: scale(:) !< (points) r of the augmented form [Pa/m]
+    real(rk), intent(in) :: scale(:, :) !< (2, points) r of the augmented form: together, alone
     type(joint_state), intent(in) :: old(:)
     type(joint_field), intent(out) :: field
     type(joint_state), intent(inout) :: new(:)
@@ -53,7 +58,8 @@ contains
     allocate (field%traction(3, n), field%iterate(3, n), field%tangent(3, 3, n))
     allocate (field%start_jump(3, n))
     allocate (field%num_openings(n), source=0)
-    field%scale = scale
+    field%scale = scale(1, :)
+    field%own_scale = scale(2, :)
     field%bulk_force = balance%reference
     field%jump = balance%guess
     field%response = balance%guess
@@ -127,6 +133,7 @@ contains
     logical :: is_halfway, is_nearer
     integer :: iterations
     iterations = outcome%iterations - outcome%pass_start
+    if (iterations >= patience_with_turns) call turn_faster(field)
     is_halfway = iterations >= patience .and. &
                  outcome%residual > sufficient_decrease*field%last_residual
     if (is_halfway) then
@@ -140,6 +147,18 @@ contains
     end if
     field%last_residual = outcome%residual
   end subroutine linearise_next
+
+  !> Gives a larger r to points whose friction by the law is not the multiplier (theory.md, 2.3).
+  pure subroutine turn_faster(field)
+    type(joint_field), intent(inout) :: field
+    integer :: p
+    do p = 1, size(field%scale)
+      associate (own => field%traction(2:3, p), last => field%multiplier(:, p))
+        if (norm2(own - last) <= same_friction*max(norm2(own), norm2(last))) cycle
+      end associate
+      field%scale(p) = min(growth_of_scale*field%scale(p), field%own_scale(p))
+    end do
+  end subroutine turn_faster
 
   !> After a balance: where points in contact penetrate more than their law allows, their contact is
   !> augmented and the laws are linearised anew at the balance found; it is not converged then.

@@ -24,7 +24,7 @@ module newton_condensed
     real(rk) :: weight = 1.0_rk !< of the joint forces in the balance
     real(rk), allocatable :: compliance(:, :) !< G (3*points, 3*points) [m/N]
     real(rk), allocatable :: reference(:, :) !< (3, points) k_ref [Pa/m]
-    real(rk), allocatable :: scale(:) !< (points) r of the augmented friction [Pa/m]
+    real(rk), allocatable :: scale(:, :) !< (2, points) r of the augmented friction [Pa/m]
   end type condensed_joints
 
   !> A tangent that differs from k_ref on some rows.

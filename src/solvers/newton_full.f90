@@ -26,7 +26,7 @@ module newton_full
     class(equation_solver), allocatable :: unsymmetric_factor
     real(rk), allocatable :: values(:) !< K_eff
     real(rk), allocatable :: reference(:, :) !< (3, points) k_ref [Pa/m]
-    real(rk), allocatable :: scale(:) !< (points) r of the augmented friction [Pa/m]
+    real(rk), allocatable :: scale(:, :) !< (2, points) r of the augmented friction [Pa/m]
     logical :: is_unsymmetric = .false. !< the last tangent was
   contains
     procedure :: prepare, solve

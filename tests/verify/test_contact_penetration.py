@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
-from joint_decks import GRAVITY, Block, dynamic, static, weight
+from joint_decks import GRAVITY, Block, amplitude, dynamic, static, weight
 from joint_histories import history, sound_energy
 
 PRINT = "*JOINT PRINT, JOINT=BED\n"
@@ -105,6 +107,44 @@ def test_a_tolerance_out_of_reach_is_told(keyway):
     assert "times as far as *JOINT LAW, PENETRATION allows after" in run.json["message"]
     assert "a larger KN needs fewer" in run.json["message"]
     assert "worst in joint BED at (" in run.json["message"]
+
+
+# --- small sliding ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("is_open", [False, True])
+def test_a_slip_beyond_a_facet_ends_the_run(keyway, is_open):
+    """A mass on a base of other mesh that moves off with 4 m/s2, friction 0.1 (or none, and open).
+
+    Slip from rest is (4 - mu g) t^2 / 2; the run ends within the increment that passes what the
+    message names, which is of the size of a facet (1 m or a third of it), and keeps what it has.
+    """
+    dt, mu = 0.005, 0.0 if is_open else 0.1
+    steady = amplitude("STEADY", np.array([0.0, 10.0]), np.array([4.0, 4.0]))
+    law = "KN=1e8, KT=1e8, " + ("GAP=0.01" if is_open else "FRICTION=0.1")
+    block = Block((1.0, 1.0, 0.1), young=1e7, density=10.0, law=law, meshes=(3, 2), cards=steady)
+    motion = "*BASE MOTION, DOF=1, AMPLITUDE=STEADY\n" + PRINT
+    steps = ("" if is_open else static(weight(10.0))) + dynamic(motion, dt, 2.0)
+    run = keyway(block.deck(steps), code=1)
+    told = re.fullmatch(
+        r"joint BED has slipped (\S+) m at \((\S+), (\S+), 0\) by time (\S+); its faces are "
+        r"matched as they were meshed, which allows (\S+) m there \(a facet\)",
+        run.json["message"],
+    )
+    assert told
+    slipped, x, y, time, allowed = (float(text) for text in told.groups())
+    start = 0.0 if is_open else 1.0
+    assert {x, y} <= {0.0, 1.0}
+    assert 0.3 < allowed < 1.5
+    rate = 4.0 - 10.0 * mu
+    assert allowed < slipped < allowed + 2.0 * rate * dt * np.sqrt(2.0 * allowed / rate)
+    assert time - start == pytest.approx(np.sqrt(2.0 * slipped / rate), abs=2.0 * dt)
+    table = run.csv("joint_BED")
+    assert table["time"].max() == pytest.approx(time, rel=1e-5)
+    assert run.json["status"] == "stopped"
+    assert run.json["joints"]["BED"]["slip"]["anywhere"]["value"] == pytest.approx(
+        slipped, rel=1e-3
+    )
 
 
 # --- the condition of the equations ------------------------------------------------------------

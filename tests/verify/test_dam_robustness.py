@@ -4,8 +4,11 @@ Sizes of the motion, joint stiffnesses and increments as in the table of docs/ve
 bulk has no viscous damping here (that of the time stepping alone), the hardest case for energy.
 """
 
+import dataclasses
+
 import pytest
 from dam_trials import FULL_MATRIX, Trial, measure, run_trial, trial_of
+from keyway_tools.arch_blocks import BlockOptions
 
 MOST_ITERATIONS = 15
 # The energy is a difference of sums over the increments, each printed with 13 digits, of equations
@@ -26,6 +29,25 @@ def check(keyway, trial: Trial) -> None:
 @pytest.mark.parametrize(("size", "stiffness", "dt"), CORNERS)
 def test_corners_of_the_matrix(keyway, size, stiffness, dt):
     check(keyway, trial_of(size, stiffness, dt, is_coarse=True, duration=3.5))
+
+
+# Blocks of one mesh by JOINT8 elements and by surfaces, the middle block twice as fine as slave and
+# as master of its neighbours.
+MESHES = {
+    "matching": BlockOptions(),
+    "surfaces": BlockOptions(join="surfaces"),
+    "fine slave": BlockOptions(fine=(2,)),
+    "fine master": BlockOptions(fine=(2,), slave="coarse"),
+}
+
+
+@pytest.mark.parametrize("friction", [0.6, 1.33])
+@pytest.mark.parametrize("meshes", MESHES)
+def test_different_meshes(keyway, meshes, friction):
+    """A dam whose blocks have meshes of their own, its base held."""
+    trial = trial_of(1.0, 1e12, 0.01, is_coarse=True, duration=3.0, has_rock=False)
+    options = dataclasses.replace(trial.options, friction=friction)
+    check(keyway, dataclasses.replace(trial, options=options, blocks=MESHES[meshes]))
 
 
 @pytest.mark.full
