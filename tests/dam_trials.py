@@ -68,17 +68,21 @@ def motion_of(axis: int) -> np.ndarray:
 
 @cache
 def mesh_of(trial_mesh: tuple[int, bool, bool, ArchShape, BlockOptions | None]):
-    """Mesh of a trial; about 3000 unknowns, 1000 when coarse."""
+    """Mesh of a trial; about 3000 unknowns, 1000 when coarse.
+
+    Blocks that refine cells have larger ones: ordinary blocks keep their number of elements.
+    """
     num_joints, has_rock, is_coarse, shape, blocks = trial_mesh
     rock = RockOptions(num_upstream=3, num_downstream=3, num_deep=3)
     if is_coarse:
         rock = RockOptions(num_upstream=2, num_downstream=2, num_deep=2)
     arc, height = (16, 6) if is_coarse else (24, 10)
+    cell = blocks.refine if blocks else 1
     options = DamOptions(
-        num_arc=arc,
-        num_height=height,
+        num_arc=arc // cell,
+        num_height=height // cell,
         num_thick=2,
-        num_bottom=4,
+        num_bottom=4 // cell,
         num_joints=num_joints,
         rock=rock if has_rock else None,
     )

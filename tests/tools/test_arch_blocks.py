@@ -17,6 +17,7 @@ CASES = {
     "sides 3:2": BlockOptions(refine=2, fine=(1, 3), fine_mesh=THREE),
     "upper third": BlockOptions(refine=2, fine=(2,), fine_mesh=FOUR, fine_above=0.66),
     "shifted": BlockOptions(refine=2, fine=(2,), fine_mesh=PartMesh(2, 2, 0.5)),
+    "all shifted": BlockOptions(refine=2, fine=(1, 2, 3), fine_mesh=PartMesh(2, 2, 0.5)),
     "chain 3:2": BlockOptions(refine=2, fine=(2,), fine_mesh=THREE, join="chain"),
     "equal, on surfaces": BlockOptions(refine=2, join="surfaces"),
     "all fine, tied": BlockOptions(refine=2, fine=(1, 2, 3), fine_mesh=THREE),
@@ -51,11 +52,15 @@ def test_all_meshes_fill_the_same_body(case):
 
 
 def test_faces_lie_on_each_other(case):
-    _, mesh = case
+    """To round-off of coordinates of 200 m; bases of shifted end blocks cut kinks of the rock."""
+    options, mesh = case
+    cuts_kinks = 1 in options.fine and options.fine_mesh.shift != 0.0
     for slave, master in pairs_of(mesh).values():
         found = fit(mesh, slave, master)
-        assert found.slave_area == pytest.approx(found.master_area, rel=1e-4)
-        assert found.largest_distance < 1e-9  # round-off of coordinates of 200 m
+        assert found.slave_area == pytest.approx(
+            found.master_area, rel=1e-3 if cuts_kinks else 1e-4
+        )
+        assert found.largest_distance < (0.2 if cuts_kinks else 1e-9)
 
 
 def test_faces_look_at_each_other(case):

@@ -15,7 +15,7 @@ from itertools import pairwise
 import numpy as np
 
 from .arch_dam import DamOptions
-from .arch_lattice import Lattice, Part, PartMesh
+from .arch_lattice import Lattice, Part, PartMesh, in_cells
 from .arch_rock import build_rock
 from .arch_shape import ArchShape
 from .arch_stations import joint_stations, place_stations
@@ -155,12 +155,14 @@ def _build_blocks(
     if unknown:
         raise ValueError(f"fine blocks must lie in 1..{len(ends) - 1}, found {unknown[0]}")
     cut = round(options.fine_above * lattice.top)
+    slot = lattice.stations.foot_slot
+    fixed = max((int(slot[abs(joint)]) for joint in ends[1:-1]), default=0)
     blocks = []
     for number, columns in enumerate(pairwise(ends), start=1):
         is_fine = number in options.fine
         layers = [(0, lattice.top, options.fine_mesh if is_fine else base)]
         if is_fine and cut > 0:
-            foot = max(int(lattice.stations.foot_slot[abs(c)]) for c in columns)
+            foot = max(int(slot[abs(c)]) for c in columns)
             if foot > cut:
                 raise ValueError(
                     f"block {number} meets the rock at level {foot} of {lattice.top}, above "
@@ -169,10 +171,12 @@ def _build_blocks(
             layers = [(0, cut, base), (cut, lattice.top, options.fine_mesh)]
         parts = []
         for low, high, mesh in layers:
-            parts.append(Part(lattice, mesh, columns, (low, high), whole.num_nodes))
+            parts.append(Part(lattice, mesh, columns, (low, high), fixed, whole.num_nodes))
             whole.add_part(parts[-1])
         lowest = layers[0][2]
         differs = (lowest.refine, lowest.thick) != (base.refine, base.thick)
+        climbs = max(int(slot[abs(c)]) for c in columns) > fixed
+        differs = differs or (lowest.shift != 0.0 and climbs)
         blocks.append(Block(number, parts, is_fine, has_rock and (options.is_tied or differs)))
         if len(parts) == 2:
             names = f"LIFT{number}_FINE", f"LIFT{number}_COARSE"
@@ -258,7 +262,9 @@ def _add_foot(whole: Assembly, lattice: Lattice, base: PartMesh) -> np.ndarray:
     end = lattice.stations.count * base.refine
     share = np.linspace(0.0, 1.0, base.thick + 1)
     lines = [
-        lattice.line(i, base.refine, lattice.foot(i, base.refine) / base.refine, share)
+        lattice.line(
+            in_cells(i, base.refine), in_cells(lattice.foot(i, base.refine), base.refine), share
+        )
         for i in range(-end, end + 1)
     ]
     return whole.add_nodes(np.concatenate(lines)).reshape(len(lines), -1)

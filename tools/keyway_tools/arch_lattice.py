@@ -30,6 +30,12 @@ class PartMesh:
             raise ValueError(f"levels shift by less than an element, found {self.shift}")
 
 
+def in_cells(place: int, refine: int) -> float:
+    """A count of elements as a coordinate in cells, whole cells without round-off."""
+    cell, inside = divmod(abs(place), refine)
+    return (-1.0 if place < 0 else 1.0) * (cell + inside / refine)
+
+
 class Lattice:
     """Points of the body by cell coordinates."""
 
@@ -44,10 +50,10 @@ class Lattice:
         climbs = inside > 0 and slot[cell + 1] > slot[cell]
         return int(slot[cell]) * refine + (inside if climbs else 0)
 
-    def line(self, station: int, refine: int, level: float, share: np.ndarray) -> np.ndarray:
-        """Points through the thickness at a station (in elements) and a level (in cells)."""
-        column, inside = divmod(abs(station), refine)
-        a = inside / refine
+    def line(self, station: float, level: float, share: np.ndarray) -> np.ndarray:
+        """Points through the thickness at a station (from the crown) and a level, in cells."""
+        column = int(abs(station))
+        a = abs(station) - column
         row = min(int(level), self.top - 1)
         b = level - row
         weights = self._weights(column, row, a, b)
@@ -77,9 +83,7 @@ class Lattice:
 
     def levels(self, mesh: PartMesh, fixed: int) -> np.ndarray:
         """Levels of a part in cells; those above `fixed` (in cells) may be shifted."""
-        count = self.top * mesh.refine
-        levels = np.array([j // mesh.refine + (j % mesh.refine) / mesh.refine for j in
-                           range(count + 1)])  # fmt: skip
+        levels = np.array([in_cells(j, mesh.refine) for j in range(self.top * mesh.refine + 1)])
         if mesh.shift:
             above = levels > fixed
             rise = (levels[above] - fixed) / (self.top - fixed)
@@ -97,22 +101,28 @@ class Part:
         mesh: PartMesh,
         columns: tuple[int, int],
         rows: tuple[int, int],
+        fixed: int,
         first: int,
     ):
-        """Columns between two stations (signed) and rows between two levels, all in cells."""
+        """Columns between two stations (signed), rows between two levels, all in cells.
+
+        Levels above `fixed` may be shifted; the stations of the abutment go with them.
+        """
         self.lattice, self.mesh, self.rows = lattice, mesh, rows
         self.left, self.right = (c * mesh.refine for c in columns)
         self.top, self.bottom = rows[1] * mesh.refine, rows[0] * mesh.refine
         self.nodes: dict[tuple[int, int], np.ndarray] = {}
         self.faces: dict[str, list[tuple[int, int]]] = {}
-        fixed = max(int(lattice.stations.foot_slot[abs(c)]) for c in columns)
         share = np.linspace(0.0, 1.0, mesh.thick + 1)
-        height = lattice.levels(mesh, max(fixed, rows[0]))
+        height = lattice.levels(mesh, fixed)
         lines = []
         for i in range(self.left, self.right + 1):
+            at_foot = lattice.foot(i, mesh.refine)
+            shift = float(height[at_foot]) - in_cells(at_foot, mesh.refine)
+            station = in_cells(i, mesh.refine) + (-shift if i < 0 else shift)
             for j in range(self.foot(i), self.top + 1):
                 self.nodes[i, j] = first + len(lines) * len(share) + np.arange(len(share))
-                lines.append(lattice.line(i, mesh.refine, float(height[j]), share))
+                lines.append(lattice.line(station, float(height[j]), share))
         self.x = np.concatenate(lines)
         self.bricks = self._build_bricks()
 
