@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Write the decks of input/ anew: the small ones and the dam of input/xingbiling_matching."""
+"""Write the decks of input/ anew: the small ones and the two arch dams."""
 
 from __future__ import annotations
 
@@ -22,7 +22,17 @@ DAM_NOTES = (
     "Joint stiffness (NOTES 3): k_n = E / 2 cm = 1.1e12 Pa/m, k_t = k_n / (2 (1 + nu))",
 )
 DAM_MESH = "--arc 34 --levels 14 --bottom 6 --thick 3 --joints 2"
-DAM_MESH += " --rock-upstream 5 --rock-downstream 5 --rock-deep 6"
+ROCK_MESH = " --rock-upstream 5 --rock-downstream 5 --rock-deep 6"
+DIFFERENT_NOTES = (
+    "Shows: contraction joints between blocks whose meshes differ 3:2, without joint elements and "
+    "without interface elements; the finer middle block is tied to the rock",
+    *DAM_NOTES[:1],
+    "Motion (assumed): that of input/xingbiling_matching",
+    *DAM_NOTES[2:],
+    "Expect: what the dam of one mesh gives, within what the meshes differ: README.md",
+)
+DIFFERENT_MESH = "--arc 16 --levels 7 --bottom 2 --thick 2 --joints 2 --refine 2"
+DIFFERENT_MESH += " --fine 2 --fine-refine 3 --fine-thick 3"
 
 
 def write_small_decks(folder: Path) -> None:
@@ -37,14 +47,26 @@ def write_small_decks(folder: Path) -> None:
 def write_dam(folder: Path) -> None:
     """The arch dam and its ground motion."""
     make_motion.main(["-o", str(folder / "motion"), "--seed", "3"])
-    files = [str(folder / f"motion_{axis}.txt") for axis in "xyz"]
     (folder / "motion_records.png").unlink()  # the spectra say enough
-    options = ["-o", str(folder / "xingbiling_matching.inp"), *DAM_MESH.split(), "--motion", *files]
-    options += ["--title", "Xingbiling arch dam, 135.5 m, joints between matching meshes"]
-    options += ["--modes", "8"]
-    for note in DAM_NOTES:
+    title = "Xingbiling arch dam, 135.5 m, joints between matching meshes"
+    write_shaken_dam(folder, DAM_MESH, title, DAM_NOTES)
+
+
+def write_shaken_dam(folder: Path, mesh: str, title: str, notes: tuple[str, ...]) -> None:
+    """A dam under the motion of xingbiling_matching."""
+    motion = folder.parent / "xingbiling_matching"
+    files = [str(motion / f"motion_{axis}.txt") for axis in "xyz"]
+    options = ["-o", str(folder / f"{folder.name}.inp"), *(mesh + ROCK_MESH).split()]
+    options += ["--motion", *files, "--title", title, "--modes", "8"]
+    for note in notes:
         options += ["--note", note]
     make_dam.main(options)
+
+
+def write_different_dam(folder: Path) -> None:
+    """The same dam with a middle block of its own mesh."""
+    title = "Xingbiling arch dam, 135.5 m, joints between different meshes"
+    write_shaken_dam(folder, DIFFERENT_MESH, title, DIFFERENT_NOTES)
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -57,6 +79,7 @@ def main(arguments: list[str] | None = None) -> int:
         write_small_decks(chosen.folder)
     if chosen.only != "small":
         write_dam(chosen.folder / "xingbiling_matching")
+        write_different_dam(chosen.folder / "xingbiling_different")
     return 0
 
 

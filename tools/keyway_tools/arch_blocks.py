@@ -250,8 +250,9 @@ def _join_by_chain(
     quads = f"IFACE{name.removeprefix('JOINT')}"
     mesh.quad_sets[quads] = np.arange(len(mesh.quads), len(mesh.quads) + len(own))
     mesh.quads = np.concatenate((mesh.quads, own))
-    pair = (faces, own) if side[coarse.number] == "RIGHT" else (own, faces)
-    _add_joint_elements(mesh, name, *pair)
+    # the coarse face is the master, whose normal looks to the quads
+    order = slice(None) if side[coarse.number] == "RIGHT" else slice(None, None, -1)
+    _add_joint_elements(mesh, name, faces[:, order], own[:, order])
     mesh.surfaces[f"{name}_FINE"] = fine.faces_to(side[fine.number])
     mesh.interfaces[quads] = (quads, f"{name}_FINE")
     _name_crest(whole, coarse, side[coarse.number], name)

@@ -1,0 +1,141 @@
+"""An arch dam whose blocks have different meshes: against matching meshes, joined in both ways.
+
+All meshes fill one body (keyway_tools/arch_lattice.py), so that what differs is the mesh and the
+coupling. Three measures keep these apart:
+  equal meshes joined by surfaces      the machinery alone: round-off
+  levels half an element apart         the coupling at equal mesh size: non-nested faces
+  a finer middle block, 2:1 and 3:2    must lie between both matching meshes but for the coupling
+Numbers of the dam of input/xingbiling_matching: docs/studies/different_meshes.md.
+"""
+
+import dataclasses
+
+import h5py
+import numpy as np
+import pytest
+from dam_trials import (
+    BlockOptions,
+    DeckOptions,
+    Trial,
+    measure,
+    mesh_of_trial,
+    run_trial,
+    trial_of,
+)
+from keyway_tools.arch_lattice import PartMesh
+
+THREE, FOUR, SHIFTED = PartMesh(3, 3), PartMesh(4, 4), PartMesh(2, 2, 0.5)
+MESHES = {
+    "coarse": BlockOptions(refine=2),
+    "shifted": BlockOptions(refine=2, fine=(1, 2, 3), fine_mesh=SHIFTED),
+    "three": BlockOptions(refine=2, fine=(1, 2, 3), fine_mesh=THREE),
+    "four": BlockOptions(refine=2, fine=(1, 2, 3), fine_mesh=FOUR),
+    "1:1": BlockOptions(refine=2, join="surfaces"),
+    "1:1 tied": BlockOptions(refine=2, join="surfaces", is_tied=True),
+    "1:1 shifted": BlockOptions(refine=2, fine=(2,), fine_mesh=SHIFTED),
+    "3:2": BlockOptions(refine=2, fine=(2,), fine_mesh=THREE),
+    "2:1": BlockOptions(refine=2, fine=(2,), fine_mesh=FOUR),
+    "2:1 swapped": BlockOptions(refine=2, fine=(2,), fine_mesh=FOUR, slave="coarse"),
+    "upper third": BlockOptions(refine=2, fine=(2,), fine_mesh=FOUR, fine_above=0.66),
+    "3:2 chain": BlockOptions(refine=2, fine=(2,), fine_mesh=THREE, join="chain"),
+    "2:1 chain": BlockOptions(refine=2, fine=(2,), fine_mesh=FOUR, join="chain"),
+}
+MOST_ITERATIONS = 15
+ROUNDOFF = 1e-6  # of the energy: equations are solved to 1e-6 of their forces
+
+
+def trial(mesh: str, duration: float = 0.0, **changes) -> Trial:
+    """Weight and water; with a duration, that much of the motion, 5 % damped."""
+    options = dataclasses.replace(DeckOptions(), **changes)
+    moving = duration > 0.0
+    return Trial(
+        blocks=MESHES[mesh],
+        is_coarse=True,
+        duration=duration if moving else 0.01,
+        components=(moving, moving, moving),
+        options=options,
+    )
+
+
+@pytest.fixture
+def runs(keyway):
+    """Runs a mesh once."""
+    done = {}
+
+    def run(mesh: str, duration: float = 0.0, **changes):
+        key = (mesh, duration, *changes.items())
+        if key not in done:
+            done[key] = run_trial(keyway, trial(mesh, duration, **changes), name=f"dam{len(done)}")
+        return done[key]
+
+    return run
+
+
+def extremes(run) -> dict[str, float]:
+    """The values of the study: [Pa] and [m]."""
+    return {
+        f"{name} {side}": run.json["envelopes"][name][side]["value"]
+        for name in ("S1", "S3", "OPENING")
+        for side in ("upstream", "downstream")
+    }
+
+
+def crown(run) -> float:
+    """Displacement of the crest along the stream under weight and water [m]."""
+    table = run.csv("node_CROWN_CREST")
+    return float(table["U2"][table["step"] == 1][-1])
+
+
+def work(run) -> float:
+    """Work of weight and water [J]: twice the strain energy of a linear body."""
+    return run.json["steps"][0]["energy"]["external"]
+
+
+def displacements(run, trial: Trial) -> dict[tuple, np.ndarray]:
+    """Static displacements of the dam's nodes by place; nodes in one place are told apart."""
+    mesh = mesh_of_trial(trial)
+    with h5py.File(run.folder / f"{run.job}.h5") as file:
+        increments = file["steps/0001/increments"]
+        u = increments[sorted(increments)[-1]]["U"][:]
+        x = file["mesh/x"][:]
+    assert np.array_equal(x, mesh.x)
+    centre = mesh.x[mesh.bricks[mesh.brick_sets["DAM"]]].mean(axis=1)
+    found = {}
+    for brick, middle in zip(mesh.brick_sets["DAM"], centre, strict=True):
+        for node in mesh.bricks[brick]:
+            found[(*np.round(middle, 3), *np.round(mesh.x[node], 3))] = u[node]
+    return found
+
+
+@pytest.mark.parametrize("mesh", ["1:1", "1:1 tied"])
+def test_equal_meshes_on_surfaces_are_the_classical_joint(runs, mesh):
+    """The same equations but for the order of sums; the bound is the tolerance of the iteration."""
+    one, other = (displacements(runs(m), trial(m)) for m in ("coarse", mesh))
+    assert one.keys() == other.keys()
+    largest = max(np.abs(u).max() for u in one.values())
+    assert max(np.abs(one[p] - other[p]).max() for p in one) < 1e-6 * largest
+
+
+def test_equal_meshes_on_surfaces_move_as_the_classical_joint(runs):
+    """Over 1.5 s of motion, with joints that open and slide."""
+    one, other = (extremes(runs(mesh, 1.5)) for mesh in ("coarse", "1:1"))
+    assert one["OPENING downstream"] > 1e-3
+    for name, value in one.items():
+        assert other[name] == pytest.approx(value, rel=1e-6), name
+
+
+@pytest.mark.parametrize(
+    ("mesh", "fine"),
+    [("3:2", "three"), ("2:1", "four"), ("2:1 swapped", "four"), ("upper third", "four")],
+)
+def test_bonded_dam_is_as_soft_as_its_mesh(runs, mesh, fine):
+    """The work of the loads grows with the space of displacements (Galerkin).
+
+    With the fine side as slave of a nested face, 2:1, the spaces are nested and the work lies
+    between those of the matching meshes. Elsewhere the coupling lets 1e-3 of it go at most: ...
+    """
+    bonded = {"has_joint_law": False}
+    low, value, high = (work(runs(m, **bonded)) for m in ("coarse", mesh, fine))
+    assert low < high
+    slack = 1e-3 * (high - low)
+    assert low - slack < value < high + slack
