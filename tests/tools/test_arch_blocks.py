@@ -124,7 +124,9 @@ def test_blocks_that_differ_from_the_rock_are_tied():
     tied = set(mesh.surface_nodes("BASE2_DAM"))
     assert not tied & set(mesh.surface_nodes("BASE2_ROCK"))
     whole = build_block_dam(ArchShape(), CELLS, CASES["all fine, tied"])
-    assert list(whole.ties) == ["BASE1"]  # blocks that share their foot row share the tie
+    assert list(whole.ties) == ["BASE1", "BASE2", "BASE3"]
+    bases = [whole.surface_nodes(f"BASE{block}_DAM") for block in (1, 2, 3)]
+    assert len(np.unique(np.concatenate(bases))) == sum(map(len, bases))  # none tied twice
 
 
 @pytest.mark.parametrize(

@@ -11,9 +11,16 @@ import dataclasses
 import h5py
 import numpy as np
 import pytest
-from dam_trials import DeckOptions, Trial, mesh_of, run_trial
+from dam_trials import BlockOptions, DeckOptions, Trial, mesh_of, run_trial
+from keyway_tools.arch_lattice import PartMesh
 
 BOUND = 1e-8
+THREE_TO_TWO = BlockOptions(refine=2, fine=(2,), fine_mesh=PartMesh(3, 3))
+CASES = {
+    "two joints": (2, 1.0, None),
+    "three joints, twice the motion": (3, 2.0, None),
+    "middle block finer 3:2": (2, 1.0, THREE_TO_TWO),
+}
 MIRROR = np.array([-1.0, 1.0, 1.0])
 
 
@@ -39,19 +46,19 @@ def mirror_images(mesh) -> np.ndarray:
     return image
 
 
-@pytest.fixture(params=[(2, 1.0), (3, 2.0)], ids=["two joints", "three joints, twice the motion"])
+@pytest.fixture(params=CASES)
 def symmetric_run(request, keyway):
     """Mesh and finished run."""
-    num_joints, size = request.param
+    num_joints, size, blocks = CASES[request.param]
     trial = Trial(
         size=size,
         components=(False, True, True),
         num_joints=num_joints,
+        blocks=blocks,
         duration=2.5,
         options=dataclasses.replace(DeckOptions(), picture_frequency=1),
     )
-    mesh = mesh_of(trial.mesh_key)
-    return mesh, run_trial(keyway, trial)
+    return mesh_of(trial.mesh_key), run_trial(keyway, trial)
 
 
 def fields_of(run, step: str, field: str) -> np.ndarray:

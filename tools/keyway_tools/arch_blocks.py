@@ -196,7 +196,7 @@ def _join(whole: Assembly, left: Block, right: Block, options: BlockOptions) -> 
     if join == "matching":
         if not is_equal:
             raise ValueError(f"{name}: JOINT8 elements need equal meshes on both sides")
-        _join_by_elements(whole, left.parts[0], right.parts[0], name)
+        _join_by_elements(whole, left, right, name)
         return
     slave, master = (right, left) if right.is_fine or not left.is_fine else (left, right)
     side = {left.number: "RIGHT", right.number: "LEFT"}
@@ -225,11 +225,13 @@ def _add_joint_elements(mesh: BrickMesh, name: str, master: np.ndarray, slave: n
     mesh.joint_sets[name] = np.arange(first, len(mesh.joints))
 
 
-def _join_by_elements(whole: Assembly, left: Part, right: Part, name: str) -> None:
-    """The classical joint: JOINT8 between equal faces; the foot row is shared."""
+def _join_by_elements(whole: Assembly, one: Block, other: Block, name: str) -> None:
+    """The classical joint: JOINT8 between equal faces; blocks not tied share their foot row."""
+    left, right = one.parts[0], other.parts[0]
     _add_joint_elements(whole.mesh, name, left.side(left.right), right.side(right.left))
     foot = left.foot(left.right)
-    whole.merge(right.nodes[right.left, foot], left.nodes[left.right, foot])
+    if not (one.is_tied and other.is_tied):
+        whole.merge(right.nodes[right.left, foot], left.nodes[left.right, foot])
     line = left.nodes[left.right, left.top]
     whole.mesh.node_sets[f"{name}_CREST"] = line[[0, -1]]
 
@@ -285,27 +287,24 @@ def _rest_on_rock(whole: Assembly, block: Block, feet: list[np.ndarray], base: P
 
 
 def _name_ground(mesh: BrickMesh, blocks: list[Block], foot: np.ndarray, base: PartMesh) -> None:
-    """Ties of blocks to the rock under them; blocks that share their foot row share a tie."""
+    """Ties of blocks to the rock under them."""
     rock = mesh.brick_sets["ROCK"]
     faces = mesh.bricks[rock][:, [2, 3, 6, 7]]
     column_of = np.full(len(mesh.x), -1)
     column_of[foot] = np.arange(len(foot))[:, None]
     column = column_of[faces].min(axis=1)  # -1 away from the dam
-    middle, tie = len(foot) // 2, ""
+    middle = len(foot) // 2
     for block in blocks:
-        if not block.is_tied:
-            continue
-        if not tie or f"JOINT{block.number - 1}" not in mesh.joint_sets or mesh.quad_sets:
-            tie = f"BASE{block.number}"
-            mesh.ties[tie] = f"{tie}_DAM", f"{tie}_ROCK"
-        part = block.parts[0]
-        first, last = (
-            s // part.mesh.refine * base.refine + middle for s in (part.left, part.right)
-        )
-        under = rock[(column >= first) & (column < last)]
-        dam, ground = mesh.ties[tie]
-        mesh.surfaces.setdefault(dam, []).extend(part.faces["BASE"])
-        mesh.surfaces.setdefault(ground, []).extend((int(brick), 5) for brick in under)
+        if block.is_tied:
+            part = block.parts[0]
+            first, last = (
+                s // part.mesh.refine * base.refine + middle for s in (part.left, part.right)
+            )
+            under = rock[(column >= first) & (column < last)]
+            names = f"BASE{block.number}_DAM", f"BASE{block.number}_ROCK"
+            mesh.surfaces[names[0]] = part.faces["BASE"]
+            mesh.surfaces[names[1]] = [(int(brick), 5) for brick in under]
+            mesh.ties[f"BASE{block.number}"] = names
 
 
 def _name_nodes(mesh: BrickMesh, shape: ArchShape) -> None:

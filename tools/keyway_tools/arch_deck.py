@@ -71,6 +71,8 @@ def _joints(mesh: BrickMesh, options: DeckOptions) -> list[str]:
         return []
     law = "*JOINT LAW, NAME=CONTRACTION"
     normal, shear = options.normal_stiffness, options.shear_stiffness
+    if normal is None and mesh.interfaces:  # the quads have no solid that gives E
+        normal = options.concrete[0] / options.joint_thickness
     if normal is None:
         law += f", THICKNESS={options.joint_thickness:g}"
     else:
