@@ -34,7 +34,9 @@ class BlockOptions:
     fine_mesh: PartMesh = FINE
     fine_above: float = 0.0  # share of the height above which they are finer
     join: str = "auto"  # auto: JOINT8 between equal meshes, surfaces between different ones
-    slave: str = "fine"  # side of a joint on surfaces: fine or coarse (equal meshes: right, left)
+    # side of a joint on surfaces: fine or coarse (equal meshes: right, left). A block of two parts
+    # is never the slave: its nodes along the tie between them follow others
+    slave: str = "fine"
     is_tied: bool = False  # tie every block to the rock, also where the meshes agree
 
     def __post_init__(self) -> None:
@@ -203,7 +205,7 @@ def _join(whole: Assembly, left: Block, right: Block, options: BlockOptions) -> 
     if join == "chain":
         _join_by_chain(whole, slave, master, side, name)
         return
-    if options.slave == "coarse":
+    if options.slave == "coarse" or len(slave.parts) > 1:
         slave, master = master, slave
     names = f"{name}_SLAVE", f"{name}_MASTER"
     for surface, block in zip(names, (slave, master), strict=True):
