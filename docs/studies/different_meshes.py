@@ -33,6 +33,8 @@ THREE = "--fine-refine 3 --fine-thick 3"
 FOUR = "--fine-refine 4 --fine-thick 4"
 SAME = "--fine-refine 2 --fine-thick 2"
 SHIFT = f"--fine 2 {SAME} --shift 0.5"
+BASE3 = "--refine 3 --thick 3"
+SHIFT3 = f"{THREE} --shift 0.5"
 QUANTITIES = tuple(
     (name, side) for name in ("S1", "S3", "OPENING") for side in ("upstream", "downstream")
 )
@@ -46,6 +48,7 @@ class Case:
     joined: str
     options: str
     fine: str = ""  # "" for a matching mesh
+    coarse: str = "coarse"  # the matching mesh whose other blocks it has
 
 
 CASES = {
@@ -75,6 +78,16 @@ CASES = {
     "shifted_surfaces": Case("1:1, levels half an element apart", "surfaces", SHIFT, "shifted"),
     "shifted_chain": Case(
         "1:1, levels half an element apart", "chain", f"{SHIFT} --join chain", "shifted"
+    ),
+    "base3": Case("matching, 3, rock 3", "JOINT8", BASE3, coarse="base3"),
+    "shifted3": Case(
+        "the same, levels shifted", "JOINT8", f"{BASE3} --fine 1 2 3 {SHIFT3}", coarse="base3"
+    ),
+    "shifted3_surfaces": Case(
+        "1:1 of these", "surfaces", f"{BASE3} --fine 2 {SHIFT3}", "shifted3", "base3"
+    ),
+    "shifted3_chain": Case(
+        "1:1 of these", "chain", f"{BASE3} --fine 2 {SHIFT3} --join chain", "shifted3", "base3"
     ),
 }
 
@@ -118,7 +131,7 @@ def excess(value: float, ends: tuple[float, float]) -> float:
 def row(folder: Path, name: str, reports: dict[str, dict]) -> str:
     """Line of the main table: values, and in percent the distance from the coarse matching mesh."""
     case, report = CASES[name], reports[name]
-    coarse = extremes(reports["coarse"])
+    coarse = extremes(reports[case.coarse])
     cells = [case.title, case.joined, str(report["model"]["unknowns"])]
     worst = {"stress": 0.0, "opening": 0.0}
     fine = extremes(reports[case.fine]) if case.fine in reports else coarse
@@ -128,7 +141,7 @@ def row(folder: Path, name: str, reports: dict[str, dict]) -> str:
         scale, digits = (1e3, 2) if quantity == "OPENING" else (1e-6, 3)
         change = 100.0 * (value / old - 1.0) if abs(old) > 1e-5 else 0.0
         cells.append(
-            f"{scale * value:.{digits}f}" + ("" if name == "coarse" else f" ({change:+.2f})")
+            f"{scale * value:.{digits}f}" + ("" if name == case.coarse else f" ({change:+.2f})")
         )
         kind = "opening" if quantity == "OPENING" else "stress"
         worst[kind] = max(worst[kind], 100.0 * excess(value, (old, new)))
@@ -176,7 +189,7 @@ def face_envelopes(folder: Path, name: str) -> dict[tuple, np.ndarray]:
 
 def field_row(folder: Path, name: str) -> str:
     """How far S1 and S3 lie outside of both matching meshes, at nodes that all three have."""
-    meshes = [face_envelopes(folder, n) for n in (name, "coarse", CASES[name].fine)]
+    meshes = [face_envelopes(folder, n) for n in (name, CASES[name].coarse, CASES[name].fine)]
     places = [p for p in meshes[0] if p in meshes[1] and p in meshes[2] and p[3] > FOOT]
     value, coarse, fine = (np.array([mesh[p] for p in places]) for mesh in meshes)
     low, high = np.minimum(coarse, fine), np.maximum(coarse, fine)

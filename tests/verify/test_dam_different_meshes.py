@@ -136,11 +136,13 @@ def test_equal_meshes_on_surfaces_move_as_the_classical_joint(runs):
 def test_bonded_dam_is_as_soft_as_its_mesh(runs, mesh, fine):
     """The work of the loads grows with the space of displacements (Galerkin).
 
-    With the fine side as slave of a nested face, 2:1, the spaces are nested and the work lies
-    between those of the matching meshes. Elsewhere the coupling lets 1e-3 of it go at most: ...
+    With the fine side as slave of a nested face, 2:1, the spaces are nested: the work lies between
+    those of the matching meshes. Elsewhere the coupling may add or take a thousandth of what these
+    are apart, which is less than any of them is off.
     """
     bonded = {"has_joint_law": False}
     low, value, high = (work(runs(m, **bonded)) for m in ("coarse", mesh, fine))
+    print(f"{mesh}: {(value - low) / (high - low):.4f} of the way from coarse to fine")
     assert low < high
     slack = 1e-3 * (high - low)
     assert low - slack < value < high + slack
@@ -151,7 +153,7 @@ def test_bonded_dam_is_as_soft_as_its_mesh(runs, mesh, fine):
 # two meshes has frequencies and contact times of its own, no mean of others.
 MOVING = 2.5
 OF_GAIN = 0.1
-DYNAMIC = [("1:1 shifted", "shifted"), ("3:2", "three"), ("2:1", "four"), ("upper third", "four")]
+DYNAMIC = [("1:1 shifted", "shifted"), ("3:2", "three"), ("2:1", "four")]
 
 
 @pytest.mark.parametrize(
@@ -199,8 +201,14 @@ CORNERS = [(1.0, 1e10, 0.01), (2.0, 1e13, 0.01), (2.0, 1e10, 0.002), (1.0, 1e13,
 JOINED = ("3:2", "2:1", "upper third", "3:2 chain")
 
 
-@pytest.mark.parametrize("mesh", JOINED)
-@pytest.mark.parametrize(("size", "stiffness", "dt"), CORNERS)
+HARD = [
+    pytest.param(mesh, *corner, marks=[] if mesh == "3:2" else [pytest.mark.full])
+    for mesh in JOINED
+    for corner in CORNERS
+]
+
+
+@pytest.mark.parametrize(("mesh", "size", "stiffness", "dt"), HARD)
 def test_hard_motions_run_through(keyway, mesh, size, stiffness, dt):
     """As test_dam_robustness.py: no increment cut back, no energy that grows; no damping at all."""
     case = trial_of(size, stiffness, dt, is_coarse=True, duration=3.5, blocks=MESHES[mesh])
