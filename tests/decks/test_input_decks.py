@@ -8,7 +8,7 @@ import pytest
 from harness import ROOT
 
 # Decks that take longer than a minute.
-LONG = {"xingbiling_matching"}
+LONG = {"xingbiling_matching", "xingbiling_different"}
 DECKS = {
     p.stem: p
     for p in sorted((ROOT / "input").rglob("*.inp"))

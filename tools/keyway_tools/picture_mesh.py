@@ -19,10 +19,12 @@ def block_of_brick(mesh: BrickMesh) -> np.ndarray:
     dam = mesh.bricks[mesh.brick_sets["DAM"]]
     block = np.zeros(len(dam), dtype=int)
     centre = mesh.x[dam].mean(axis=1)
-    for members in mesh.joint_sets.values():
-        face = mesh.x[mesh.joints[members[0], :4]]
+    faces = [mesh.joints[members[0], :4] for members in mesh.joint_sets.values()]
+    faces += [mesh.face_nodes(*mesh.surfaces[one][0]) for one, _ in mesh.surface_joints.values()]
+    for nodes in faces:
+        face = mesh.x[nodes]
         normal = np.cross(face[1] - face[0], face[3] - face[0])
-        block += (centre - face[0]) @ normal > 0.0
+        block += (centre - face[0]) @ normal * np.sign(normal[0]) > 0.0
     return block
 
 
