@@ -18,21 +18,23 @@ module coupling_tie
 contains
 
   !> The rows of a tie. Directions that bear multipliers at the same nodes share them.
-  subroutine lay_tie(x, slave, master, segments, is_fixed, earlier, tie)
+  subroutine lay_tie(x, slave, master, segments, is_fixed, earlier, tie, is_idle)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(facet_set), intent(in) :: slave, master
     type(segment_set), intent(in) :: segments
     logical, intent(in) :: is_fixed(:, :) !< (3, nodes) by a support in any step
     type(node_tie), intent(in) :: earlier(:) !< ties that stand before this one
     type(node_tie), intent(inout) :: tie !< its name is the caller's
+    logical, allocatable, intent(out) :: is_idle(:, :) !< (3, slave facets) no corner bears any
     type(mortar_rows) :: rows
     logical :: is_bound(size(x, 2), 3), together(3)
-    integer :: i, j
+    integer :: i, j, f
     tie%node = [integer ::]
     tie%first = [1]
     tie%master = [integer ::]
     tie%weight = [real(rk) ::]
     allocate (tie%is_tied(3, 0))
+    allocate (is_idle(3, size(slave%node, 2)), source=.false.)
     do i = 1, 3
       call find_bound(i, slave, master, is_fixed(i, :), earlier, is_bound(:, i))
     end do
@@ -43,6 +45,10 @@ contains
       if (any(together(:i - 1))) cycle
       call project(x, slave, master, segments, is_bound(:, i), rows, merges_planes=.true.)
       call add_rows(rows, together, tie)
+      do f = 1, size(slave%node, 2)
+        if (rows%is_bare(f)) cycle
+        is_idle(:, f) = is_idle(:, f) .or. (together .and. all(is_bound(slave%node(:, f), i)))
+      end do
     end do
   end subroutine lay_tie
 

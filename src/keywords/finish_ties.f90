@@ -34,12 +34,12 @@ contains
   subroutine complete_ties(model, faults)
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    logical, allocatable :: is_fixed(:, :)
+    logical, allocatable :: is_fixed(:, :), is_always(:, :)
     integer :: i
     if (size(model%ties) == 0) return
-    call collect_supports(model, is_fixed)
+    call collect_supports(model, is_fixed, is_always)
     do i = 1, size(model%ties)
-      call build_tie(model%ties(i), is_fixed, model, faults)
+      call build_tie(model%ties(i), is_fixed, is_always, model, faults)
     end do
     if (faults%has_errors()) return
     call check_initial_values(.false., model, faults)
@@ -48,24 +48,31 @@ contains
 
   !> What the supports of any step hold: a node has the same multipliers in all steps, so that a
   !> state goes over from one to the next.
-  subroutine collect_supports(model, is_fixed)
+  subroutine collect_supports(model, is_fixed, is_always)
     type(draft), intent(in) :: model
-    logical, allocatable, intent(out) :: is_fixed(:, :) !< (3, nodes)
+    logical, allocatable, intent(out) :: is_fixed(:, :) !< (3, nodes) in any step
+    logical, allocatable, intent(out) :: is_always(:, :) !< (3, nodes) in all steps
+    logical, allocatable :: is_now(:, :)
     integer :: s, k
     allocate (is_fixed(3, model%scene%mesh%num_nodes), source=.false.)
+    allocate (is_always(3, model%scene%mesh%num_nodes), source=.true.)
+    allocate (is_now(3, model%scene%mesh%num_nodes))
     do s = 1, size(model%scene%steps)
+      is_now = .false.
       associate (fixities => model%scene%steps(s)%fixities)
         do k = 1, size(fixities)
-          is_fixed(fixities(k)%dof, fixities(k)%node) = .true.
+          is_now(fixities(k)%dof, fixities(k)%node) = .true.
         end do
       end associate
+      is_fixed = is_fixed .or. is_now
+      is_always = is_always .and. is_now
     end do
   end subroutine collect_supports
 
   !> One pair of surfaces.
-  subroutine build_tie(request, is_fixed, model, faults)
+  subroutine build_tie(request, is_fixed, is_always, model, faults)
     type(tie_request), intent(in) :: request
-    logical, intent(in) :: is_fixed(:, :)
+    logical, intent(in) :: is_fixed(:, :), is_always(:, :) !< (3, nodes) by supports
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(facet_set) :: slave, master
@@ -73,6 +80,7 @@ contains
     type(surface_cover) :: cover
     type(node_tie) :: tie
     type(coupling) :: springs
+    logical, allocatable :: is_idle(:, :)
     associate (scene => model%scene, place => model%cards(request%spot%card))
       call list_surface_facets(scene%mesh, scene%surfaces(request%slave), slave)
       call list_surface_facets(scene%mesh, scene%surfaces(request%master), master)
@@ -91,7 +99,7 @@ contains
       call keep_cover(place, request%name, 'TIE', cover, .false., model, faults)
       if (request%stiffness > 0.0_rk) return
       tie%name = request%name
-      call lay_tie(scene%mesh%x, slave, master, segments, is_fixed, scene%ties, tie)
+      call lay_tie(scene%mesh%x, slave, master, segments, is_fixed, scene%ties, tie, is_idle)
       if (size(tie%node) == 0) then
         call place%fault_at(faults, request%spot%line, 1, 'the tie holds nothing: supports or '// &
                             'earlier ties hold every node of the slave surface', &
@@ -103,9 +111,35 @@ contains
                         as_text(size(tie%master)/size(tie%node))//' others in the mean, which '// &
                         'makes large and dense equations', 'the finer surface as slave')
       end if
+      call tell_idle(place, slave%node, is_idle, is_always, model, faults)
       scene%ties = [scene%ties, tie]
     end associate
   end subroutine build_tie
+
+  !> Tells of facets that transmit nothing because supports of some steps or earlier ties hold all
+  !> their corners; where supports always do, they carry what arrives there.
+  subroutine tell_idle(place, corner, is_idle, is_always, model, faults)
+    type(card), intent(in) :: place
+    integer, intent(in) :: corner(:, :) !< (4, slave facets)
+    logical, intent(in) :: is_idle(:, :) !< (3, slave facets)
+    logical, intent(in) :: is_always(:, :) !< (3, nodes)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: f, i, num_idle, worst
+    num_idle = 0
+    worst = 0
+    do f = 1, size(corner, 2)
+      if (.not. any([(is_idle(i, f) .and. .not. all(is_always(i, corner(:, f))), i=1, 3)])) cycle
+      num_idle = num_idle + 1
+      if (worst == 0) worst = f
+    end do
+    if (num_idle == 0) return
+   call place%warn(faults, as_text(num_idle)//' of '//as_text(size(corner, 2))//' slave facets '// &
+                    'pass on nothing: supports of some step or earlier ties hold all their '// &
+                    'corners, the first at node '// &
+                    as_text(model%scene%mesh%node_id(corner(1, worst))), &
+                    'more facets across, or the surfaces the other way round')
+  end subroutine tell_idle
 
   !> Initial values that the deck gives to nodes which follow others and that contradict the ties.
   subroutine check_initial_values(is_velocity, model, faults)

@@ -112,3 +112,45 @@ def test_patch_of_a_block_on_a_wider_one(keyway):
     held = [blocks.side(block, side) for block in ("ROCK", "DAM") for side in ("X0", "X1")]
     tied = [("DAM_Z0", "ROCK_Z1")]
     check_patch(keyway, blocks, tied, np.concatenate(held), is_full=False)
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+def test_nodes_that_a_later_step_holds(keyway, swapped):
+    """Some nodes inside the slave face are held in the second step only, where they are: both
+    steps are exact, for these nodes bear no multiplier in either.
+    """
+    blocks = Blocks()
+    blocks.add("A", (2, 0, 1), (6, 0, 1), (5, 0, 1))
+    blocks.add("B", (2, 1, 2), (5, 0, 1), (6, 0, 1))
+    exact = blocks.x @ FULL.T
+    pair = ("A_X1", "B_X0")
+    middle = np.abs(blocks.x - [1, 0.5, 0.5]).max(axis=1) < 0.2
+    inner = np.array(
+        [n for n in blocks.side(*(("B", "X0") if swapped else ("A", "X1"))) if middle[n]]
+    )
+    assert len(inner) >= 2
+    cards = ties(pair[::-1] if swapped else pair)
+    cards += "*STEP\n*STATIC\n*BOUNDARY\n" + prescribe(blocks.on_box([0, 0, 0], [2, 1, 1]), exact)
+    cards += "*NODE PRINT, NSET=ALL\nU\n*END STEP\n"
+    later = prescribe(inner[:2], exact).splitlines()
+    cards += "*STEP\n*STATIC\n*BOUNDARY\n" + "\n".join([later[0], *later[3:]]) + "\n*END STEP\n"
+    run = keyway(blocks.deck({"": ELASTIC}, cards))
+    for step in (1, 2):
+        u = state_of(run, "ALL", "U", step)
+        assert np.abs(u - exact).max() < EXACT * np.abs(exact).max()
+
+
+def test_springs_part_by_traction_over_stiffness(keyway):
+    """*TIE with STIFFNESS on a bar in tension: its faces part by t / k, everywhere."""
+    blocks = Blocks()
+    blocks.add("A", (2, 0, 1), (3, 0, 1), (2, 0, 1))
+    blocks.add("B", (2, 1, 2), (2, 0, 1), (5, 0, 1))
+    traction, stiffness = 1000.0, 1e7
+    cards = ties(("A_X1", "B_X0")).replace("T0", f"T0, STIFFNESS={stiffness}")
+    held = np.concatenate([blocks.side("A", "X0"), blocks.side("B", "X1")])
+    exact = blocks.x @ ALONG_X.T
+    exact[blocks.nodes["B"].ravel(), 0] += traction / stiffness
+    cards += "*STEP\n*STATIC\n*BOUNDARY\n" + prescribe(held, exact)
+    cards += "*NODE PRINT, NSET=ALL\nU\n*END STEP\n"
+    u = state_of(keyway(blocks.deck({"": ELASTIC}, cards)), "ALL")
+    assert np.abs(u - exact).max() < EXACT * np.abs(exact).max()

@@ -43,8 +43,9 @@ contains
     type(node_tie), intent(out) :: tie
     type(segment_set) :: segments
     type(surface_cover) :: cover
+    logical, allocatable :: is_idle(:, :)
     call find_segments(x, slave, master, segments, cover)
-    call lay_tie(x, slave, master, segments, is_fixed, earlier, tie)
+    call lay_tie(x, slave, master, segments, is_fixed, earlier, tie, is_idle)
   end subroutine tie_faces
 
   !> How often each node follows in each direction.
