@@ -158,7 +158,7 @@ def test_threads_do_not_change_a_crack(keyway):
 DAM = """*SOLID SECTION, ELSET=DAM, MATERIAL=CONCRETE
 *BOUNDARY
 FIXED, 1, 3
-*JOINT LAW, NAME=CONTRACTION, THICKNESS=0.02, FRICTION=0.6
+*JOINT LAW, NAME=CONTRACTION, THICKNESS=0.02, FRICTION=0.6{law}
 *JOINT, NAME=JOINT1, LAW=CONTRACTION, ELSET=JOINT1
 *JOINT, NAME=JOINT2, LAW=CONTRACTION, ELSET=JOINT2
 *AMPLITUDE, NAME=QUAKE
@@ -182,23 +182,31 @@ U
 """
 
 
-def test_a_jointed_dam_cracks(keyway):
+@pytest.mark.parametrize(("law", "allowed"), [("", 1e-6), (", PENETRATION=1e-6", 1e-5)])
+def test_a_jointed_dam_cracks(keyway, law, allowed):
     """Joints open and slide while the concrete cracks: two tangents give one motion, and the energy
-    balance closes."""
+    balance closes.
+
+    Residuals are 1e-8, over 64 increments. Without penetration what is left of it, up to 1e-6 m in
+    openings of 20 mm, differs as well.
+    """
     mesh = build_arch_dam(
         ArchShape(), DamOptions(num_joints=2, rock=None, num_arc=16, num_height=6, num_thick=2)
     )
     mesh.node_sets["ALL"] = np.arange(len(mesh.x))
     head = mesh_deck(mesh, {"DAM": "C3D8"}, "") + CONCRETE.format(type="STRAIN")
     runs = [
-        keyway(head + DAM.replace("{tangent}", tangent), name=f"dam_{tangent.lower()}")
+        keyway(
+            head + DAM.replace("{tangent}", tangent).replace("{law}", law),
+            name=f"dam_{tangent.lower()}",
+        )
         for tangent in ("SECANT", "CONSISTENT")
     ]
     moved = [np.stack([run.csv("node_ALL")[f"U{i}"] for i in (1, 2, 3)]) for run in runs]
     apart = np.abs(moved[0] - moved[1]).max() / np.abs(moved[0]).max()
     energies = [run.json["steps"][1]["energy"] for run in runs]
     print("apart", apart, energies, [run.json["steps"][1]["iterations"] for run in runs])
-    assert apart <= 1e-6  # residuals of 1e-8, over 64 increments
+    assert apart <= allowed
     for energy in energies:
         assert energy["fracture"] > 0.01 * energy["external"]
         assert energy["friction"] > 0.0
