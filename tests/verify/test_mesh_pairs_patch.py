@@ -136,3 +136,15 @@ def test_faces_that_lie_upon_each_other_in_part(keyway, way, slave):
     cards, give = JOINED[way]
     pair = Pair(Side((3, 4, 1)), Side((5, 3, 1), graded(2.0)), shift=(0.37, -0.21))
     assert max(worst_errors(keyway, pair, cards(slave), give)) < 1e-10
+
+
+@pytest.mark.parametrize("way", JOINED)
+def test_threads_agree(keyway, way):
+    """One and two threads, which add in other orders: displacements within 1e-12 of the largest."""
+    cards, give = JOINED[way]
+    pair = Pair(*MESHES["by lot"])
+    loaded = Loaded(pair, {"33": uniform(six_states()["33"], pair, give)})
+    deck = loaded.deck(cards("UPPER"))
+    runs = [keyway(deck, "-j", str(j), name=f"threads_{j}") for j in (1, 2)]
+    one, two = (loaded.wrong_displacement(run, "33") for run in runs)
+    assert np.abs(one - two).max() < 1e-12 * np.abs(loaded.displacement("33")).max()

@@ -97,7 +97,7 @@ def inf_sup(keyway, slave_parts: int, master_parts: int, name: str) -> float:
 
 def test_stability_does_not_fade_with_refinement_of_one_side(keyway):
     """Measured: 1.295 with 8 facets on both faces; slave refined to 16 and 32: 0.665, 0.665; master
-    refined to 16: 1.675; 14 against 6: 0.668, 6 against 14: 1.127.
+    refined to 16: 1.675; 14 against 6: 0.668.
 
     A traction that changes sign from one fine slave node to the next does work on the slave alone,
     the master being too coarse to follow: half of what two equal faces give, and no less.
@@ -106,5 +106,5 @@ def test_stability_does_not_fade_with_refinement_of_one_side(keyway):
     finer = [inf_sup(keyway, n, 8, f"slave_{n}") for n in (16, 32)]
     assert min(finer) > 0.5 * equal
     assert finer[1] == pytest.approx(finer[0], rel=0.01)
-    for slave, master in ((8, 16), (6, 14), (14, 6)):
+    for slave, master in ((8, 16), (14, 6)):
         assert inf_sup(keyway, slave, master, f"pair_{slave}_{master}") > 0.5 * equal
