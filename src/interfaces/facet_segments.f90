@@ -2,7 +2,8 @@
 !> clipping (13.1).
 module facet_segments
   use facet_clip, only: clip_polygon, most_corners
-  use facet_plane, only: facet_pair, find_plane, natural_at, plane_area, project_facet, shape_at
+  use facet_plane, only: facet_pair, find_plane, natural_at, plane, plane_area, project_facet, &
+                         shape_at
   use facet_search, only: box_tree, build_tree, find_boxes
   use kinds, only: rk
   use mesh_faces, only: face_vector
@@ -19,6 +20,9 @@ module facet_segments
   !> counts as bare.
   real(rk), parameter :: smallest_part = 1.0e-14_rk
 
+  !> Boxes are enlarged by this part of a diagonal, so that faces that touch do meet.
+  real(rk), parameter :: touching = 1.0e-6_rk
+
 contains
 
   !> The segments of two faces and how well they cover each other. Nothing is dropped in silence:
@@ -31,7 +35,7 @@ contains
     real(rk), intent(in), optional :: farthest !< apart, in diagonals of a facet
     type(box_tree) :: tree
     integer, allocatable :: near(:)
-    real(rk) :: low(3), high(3), covered, area, largest_bare
+    real(rk) :: low(3), high(3), covered, area, largest, largest_bare
     integer :: f, num
     call open_segments(size(slave%element), segments)
     if (present(farthest)) segments%farthest = farthest
@@ -40,10 +44,11 @@ contains
     do f = 1, size(master%element)
       cover%master_area = cover%master_area + facet_area(x(:, master%node(:, f)))
     end do
-    call build_master_tree(x, master, segments%farthest, tree)
+    call build_master_tree(x, master, tree, largest)
     largest_bare = 0.0_rk
     do f = 1, size(slave%element)
-      call reach_box(x(:, slave%node(:, f)), segments%farthest, low, high)
+      call reach_box(x(:, slave%node(:, f)), segments%farthest &
+                     *max(largest, diameter(x(:, slave%node(:, f)))), low, high)
       num = 0
       if (size(master%element) > 0) call find_boxes(tree, low, high, num, near)
       covered = 0.0_rk
@@ -86,28 +91,35 @@ contains
     end do
   end function facet_area
 
-  !> A tree over boxes that reach as far as the master facets find partners.
-  pure subroutine build_master_tree(x, master, farthest, tree)
+  !> A tree over the boxes of the master facets.
+  pure subroutine build_master_tree(x, master, tree, largest)
     real(rk), intent(in) :: x(:, :)
     type(facet_set), intent(in) :: master
-    real(rk), intent(in) :: farthest !< [diagonals]
     type(box_tree), intent(out) :: tree
+    real(rk), intent(out) :: largest !< diameter of a facet [m]
     real(rk), allocatable :: low(:, :), high(:, :)
     integer :: f
     allocate (low(3, size(master%element)), high(3, size(master%element)))
+    largest = 0.0_rk
     do f = 1, size(master%element)
-      call reach_box(x(:, master%node(:, f)), farthest, low(:, f), high(:, f))
+      low(:, f) = minval(x(:, master%node(:, f)), dim=2)
+      high(:, f) = maxval(x(:, master%node(:, f)), dim=2)
+      largest = max(largest, diameter(x(:, master%node(:, f))))
     end do
     call build_tree(low, high, tree)
   end subroutine build_master_tree
 
-  !> The box of a facet and of what lies within its reach above and below.
-  pure subroutine reach_box(x, farthest, low, high)
+  !> The box of what lies above and below a slave facet, as far as it finds partners.
+  pure subroutine reach_box(x, reach, low, high)
     real(rk), intent(in) :: x(3, 4)
-    real(rk), intent(in) :: farthest !< [diagonals]
+    real(rk), intent(in) :: reach !< [m]
     real(rk), intent(out) :: low(3), high(3)
-    low = minval(x, dim=2) - farthest*diameter(x)
-    high = maxval(x, dim=2) + farthest*diameter(x)
+    type(plane) :: ground
+    real(rk) :: along(3)
+    call find_plane(x, ground)
+    along = reach*abs(ground%normal) + touching*diameter(x)
+    low = minval(x, dim=2) - along
+    high = maxval(x, dim=2) + along
   end subroutine reach_box
 
   !> The longer diagonal of a facet [m].
@@ -136,6 +148,7 @@ contains
     whole = plane_area(pair%own%corner(:, :pair%own%num_corners))
     do k = 1, size(near)
       pair%master = x(:, master%node(:, near(k)))
+      if (lies_beside(pair)) cycle
       if (.not. are_opposed(pair, slave%element(f), master%element(near(k)))) cycle
       call project_facet(pair%ground, pair%master, pair%other)
       if (pair%other%num_corners == 0) cycle
@@ -151,6 +164,18 @@ contains
       covered = covered + area/whole
     end do
   end subroutine cut_facet
+
+  !> Seen along the slave facet's normal, circles around the two facets do not meet.
+  pure logical function lies_beside(pair)
+    type(facet_pair), intent(in) :: pair
+    real(rk) :: centre(3), away(3), radii
+    centre = 0.25_rk*sum(pair%master, dim=2)
+    radii = sqrt(maxval(sum((pair%master - spread(centre, 2, 4))**2, dim=1))) &
+            + sqrt(maxval(sum((pair%slave - spread(pair%ground%origin, 2, 4))**2, dim=1)))
+    away = centre - pair%ground%origin
+    away = away - dot_product(away, pair%ground%normal)*pair%ground%normal
+    lies_beside = sum(away**2) > radii**2
+  end function lies_beside
 
   !> Two facets look against each other; one without a solid behind may look either way.
   pure logical function are_opposed(pair, slave_solid, master_solid)
