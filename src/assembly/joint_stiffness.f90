@@ -2,6 +2,7 @@
 module joint_stiffness
   use kinds, only: rk
   use matrix_pattern, only: pattern, add_block
+  use sorted_lists, only: sorted_unique, place_in
   implicit none
   private
   public :: add_joint_stiffness
@@ -39,18 +40,12 @@ contains
     real(rk), intent(in) :: coefficient(:)
     integer, allocatable, intent(out) :: column(:) !< the unknowns, ascending
     real(rk), allocatable, intent(out) :: b(:, :) !< (3, columns)
-    integer :: i, k, last
-    allocate (column(0))
-    last = 0
-    do while (any(unknown > last))
-      last = minval(unknown, mask=unknown > last)
-      column = [column, last]
-    end do
-    allocate (b(3, size(column)))
-    b = 0.0_rk
+    integer :: i, k
+    column = sorted_unique(unknown)
+    allocate (b(3, size(column)), source=0.0_rk)
     do i = 1, 3
       do k = start(i), start(i + 1) - 1
-        associate (place => count(column <= unknown(k)))
+        associate (place => place_in(column, unknown(k)))
           b(i, place) = b(i, place) + coefficient(k)
         end associate
       end do

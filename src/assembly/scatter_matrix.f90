@@ -3,7 +3,7 @@ module scatter_matrix
   use kinds, only: rk
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern, add_block
-  use sorted_lists, only: sorted_unique
+  use sorted_lists, only: sorted_unique, place_in
   implicit none
   private
   public :: scatter_nodes
@@ -107,24 +107,7 @@ contains
     unknown = sorted_unique(term)
     allocate (place(size(term)))
     do i = 1, size(term)
-      place(i) = position_in(unknown, term(i))
+      place(i) = place_in(unknown, term(i))
     end do
   end subroutine gather_rows
-
-  !> Where an item stands that the list holds.
-  pure integer function position_in(list, item) result(low)
-    integer, intent(in) :: list(:) !< ascending
-    integer, intent(in) :: item
-    integer :: high, middle
-    low = 1
-    high = size(list)
-    do while (low < high)
-      middle = (low + high)/2
-      if (list(middle) < item) then
-        low = middle + 1
-      else
-        high = middle
-      end if
-    end do
-  end function position_in
 end module scatter_matrix

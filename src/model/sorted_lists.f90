@@ -2,7 +2,7 @@
 module sorted_lists
   implicit none
   private
-  public :: sorted_unique, contains_position
+  public :: sorted_unique, contains_position, place_in
 
 contains
 
@@ -21,24 +21,30 @@ contains
     members = pack(work, [.true., work(2:) /= work(:size(work) - 1)])
   end function sorted_unique
 
-  !> The list holds a position (binary search in an ascending list).
+  !> The list holds a position.
   pure logical function contains_position(list, position) result(is_member)
     integer, intent(in) :: list(:) !< ascending
     integer, intent(in) :: position
-    integer :: low, high, middle
+    is_member = .false.
+    if (size(list) > 0) is_member = list(place_in(list, position)) == position
+  end function contains_position
+
+  !> Where an item stands, or would stand, in an ascending list (binary search).
+  pure integer function place_in(list, item) result(low)
+    integer, intent(in) :: list(:) !< ascending, not empty
+    integer, intent(in) :: item
+    integer :: high, middle
     low = 1
     high = size(list)
     do while (low < high)
       middle = (low + high)/2
-      if (list(middle) < position) then
+      if (list(middle) < item) then
         low = middle + 1
       else
         high = middle
       end if
     end do
-    is_member = .false.
-    if (size(list) > 0) is_member = list(low) == position
-  end function contains_position
+  end function place_in
 
   pure logical function is_ascending(list)
     integer, intent(in) :: list(:)
