@@ -1,6 +1,8 @@
 set(sources
   inelastic_blocks.f90
   problem_definition.f90
+  rigid_blocks.f90
+  block_motion.f90
   held_together.f90
   analysis_state.f90
   increment_listener.f90

@@ -12,5 +12,6 @@ set(sources
   logging.f90
   small_matrix.f90
   dense_factor.f90
+  symmetric_modes.f90
   tensor6.f90
 )

@@ -29,6 +29,7 @@ module joint_contraction
     procedure :: reference_stiffness
     procedure :: update
     procedure :: stored_energy
+    procedure :: limits
   end type contraction_law
 
   !> What the history holds of one point.
@@ -63,6 +64,15 @@ contains
     real(rk), intent(out) :: k(3)
     k = [self%normal_stiffness, self%tangent_stiffness, self%tangent_stiffness]
   end subroutine reference_stiffness
+
+  !> mu, c and q_on.
+  pure subroutine limits(self, friction, cohesion, strength)
+    class(contraction_law), intent(in) :: self
+    real(rk), intent(out) :: friction, cohesion, strength
+    friction = self%friction
+    cohesion = self%cohesion
+    strength = self%strength
+  end subroutine limits
 
   !> Elastic energy of the springs at the tractions of the state. A contact that is shifted keeps
   !> 1/2 q_n times what it penetrates (13.5).

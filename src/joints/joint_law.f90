@@ -43,6 +43,7 @@ module joint_law
     procedure(reference_stiffness), deferred :: reference_stiffness
     procedure(update), deferred :: update
     procedure(stored_energy), deferred :: stored_energy
+    procedure :: limits => no_limits
   end type traction_law
 
   abstract interface
@@ -90,6 +91,17 @@ module joint_law
   end interface
 
 contains
+
+  !> What a closed point may carry, whatever its stiffness: friction, cohesion and strength [Pa]. A
+  !> law that says nothing of it presses and does no more.
+  pure subroutine no_limits(self, friction, cohesion, strength)
+    class(traction_law), intent(in) :: self
+    real(rk), intent(out) :: friction, cohesion, strength
+    friction = 0.0_rk
+    cohesion = 0.0_rk
+    strength = 0.0_rk
+    if (.false.) friction = self%gap
+  end subroutine no_limits
 
   !> Room for the history of the points of one joint, all zero but the gap.
   pure subroutine allocate_state(gap, state)

@@ -16,6 +16,8 @@ module finish_uplift
   use nearest_words, only: nearest_word
   use problem_definition, only: problem
   use step_plan, only: step_load
+  use surface_facets, only: list_surface_facets
+  use surface_segments, only: facet_set
   implicit none
   private
   public :: complete_uplift
@@ -185,9 +187,17 @@ contains
     type(draft), intent(in) :: model
     integer, intent(in) :: j !< joint
     integer, allocatable, intent(out) :: slave(:, :), master(:, :) !< (4, facets) nodes
-    associate (mesh => model%scene%mesh, elements => model%joints(j)%elements)
-      slave = mesh%nodes(5:8, elements)
-      master = mesh%nodes(1:4, elements)
+    type(facet_set) :: facets
+    associate (mesh => model%scene%mesh, request => model%joints(j))
+      if (request%slave == 0) then
+        slave = mesh%nodes(5:8, request%elements)
+        master = mesh%nodes(1:4, request%elements)
+        return
+      end if
+      call list_surface_facets(mesh, model%scene%surfaces(request%slave), facets)
+      slave = facets%node
+      call list_surface_facets(mesh, model%scene%surfaces(request%master), facets)
+      master = facets%node
     end associate
   end subroutine list_faces
 

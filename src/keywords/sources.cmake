@@ -43,6 +43,7 @@ set(sources
   finish_uplift.f90
   finish_model.f90
   finish_tests.f90
+  verify_blocks.f90
   verify_model.f90
   check_requests.f90
   deck_echo.f90

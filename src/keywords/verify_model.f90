@@ -10,6 +10,7 @@ module verify_model
   use model_draft, only: draft
   use shape_hex8, only: corner_fault
   use sorted_lists, only: contains_position
+  use verify_blocks, only: verify_free_blocks
   use write_text, only: as_text
   implicit none
   private
@@ -26,6 +27,7 @@ contains
     call verify_velocities(model, faults)
     if (.not. faults%has_errors()) call verify_weight(model, faults)
     if (.not. faults%has_errors()) call verify_supports(model, faults)
+    if (.not. faults%has_errors()) call verify_free_blocks(model, faults)
   end subroutine verify
 
   !> The Jacobian is positive at the integration points; a bad corner alone is a warning.

@@ -5,7 +5,7 @@ module body_parts
   use kinds, only: rk
   implicit none
   private
-  public :: find_bodies, free_motion, node_groups
+  public :: find_bodies, free_motion, node_groups, unite, root_of
 
   !> Nodes that something else than an element holds together: a tie, a joint between surfaces.
   type :: node_groups

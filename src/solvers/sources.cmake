@@ -39,6 +39,8 @@ set(sources
   energy_account.f90
   initial_acceleration.f90
   hht_increment.f90
+  joint_capacity.f90
+  free_blocks.f90
   time_static.f90
   time_hht.f90
   time_frequency.f90

@@ -82,7 +82,7 @@ contains
     j = count(system%operator%first_point <= p)
     p = p - system%operator%first_point(j) + 1
     call raise(error, trim(text)//'; worst in joint '//scene%joints(j)%name//' at '// &
-               place_text(scene%joints(j)%x(:, p))//hint(scene%steps(now%step), outcome))
+               place_text(scene%joints(j)%x(:, p)))
   end subroutine give_up
 
   !> Where inelastic solids are farthest from balance: '; worst at node 12 at (0., 1., 3.)'.
@@ -114,16 +114,6 @@ contains
       control%last_size, ' s, last equilibrium at time ', now%total_time
     text = outcome%failure//trim(place)//')'
   end function failure_text
-
-  !> What the user may look for.
-  pure function hint(plan, outcome) result(text)
-    type(step), intent(in) :: plan
-    type(balance_outcome), intent(in) :: outcome
-    character(:), allocatable :: text
-    text = ''
-    if (plan%procedure /= 'STATIC' .or. outcome%has_converged .or. outcome%gives_up) return
-    text = ' (a block that its joints no longer hold has no static equilibrium)'
-  end function hint
 
   !> A whole number as text.
   pure function count_text(number) result(text)

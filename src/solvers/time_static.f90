@@ -8,6 +8,7 @@ module time_static
   use problem_definition, only: problem
   use step_plan, only: step
   use joint_forces, only: gather_jumps, gather_tractions
+  use free_blocks, only: name_free_block
   use joint_water, only: lead_water, show_water
   use analysis_state, only: state
   use increment_listener, only: listener
@@ -125,6 +126,9 @@ contains
       if (.not. outcome%has_converged) then
         call control%cut(size_of_increment, outcome%size_ratio, gives_up)
         if (gives_up) call give_up(scene, system, outcome, control, now, error)
+        if (gives_up .and. .not. allocated(outcome%failure)) then
+          call name_free_block(scene, plan, system, moving%joints, when, error)
+        end if
         if (gives_up) return
         cycle
       end if

@@ -1,5 +1,7 @@
 """Water in joints (*JOINT LAW, UPLIFT): statics of a rigid dam section, code_aster's SSNP142."""
 
+import dataclasses
+
 import h5py
 import numpy as np
 import pytest
@@ -38,12 +40,16 @@ def rigid_tractions(section: Section, found: dict[str, np.ndarray], uplift: np.n
 
 @pytest.mark.parametrize("integration", ["NODES", "GAUSS"])
 @pytest.mark.parametrize("ground_is_slave", [False, True])
-def test_linear_uplift_under_a_rigid_block(keyway, integration, ground_is_slave) -> None:
+@pytest.mark.parametrize("ground_counts", [0, 14, 29], ids=["JOINT8", "coarse", "fine"])
+def test_linear_uplift_under_a_rigid_block(
+    keyway, integration, ground_is_slave, ground_counts
+) -> None:
     """Bonded springs: the tractions vary linearly, the sums of forces and moments are zero."""
     section = Section(
         law="KN=1e8, KT=1e8, TENSILE STRENGTH=1e9, UPLIFT=LAKE",
         integration=integration,
         ground_is_slave=ground_is_slave,
+        ground_counts=ground_counts,
         grading=1.4,
     )
     run = keyway(section.deck(static(weight() + lake(LEVEL) + OUTPUT)))
@@ -87,14 +93,19 @@ def crack_under_open_uplift(section: Section) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("increments", [1, 8])
-def test_open_uplift_under_a_rigid_block(keyway, increments) -> None:
+@pytest.mark.parametrize("ground_counts", [0, 67], ids=["JOINT8", "3:2"])
+def test_open_uplift_under_a_rigid_block(keyway, increments, ground_counts) -> None:
     """The crack settles where water, weight and springs balance, however many increments it takes.
 
     The crack's tip lies between two points of the joint: half a column, 0.025 m. The pressure of
     the water ends there too, so that forces are wrong by at most half a column's share of the
     head, 0.4 % of the weight's moment; 1 % is allowed.
     """
-    section = Section(counts=(100, 4), law="KN=1e8, KT=1e8, FRICTION=2., UPLIFT=LAKE, PROFILE=OPEN")
+    section = Section(
+        counts=(100, 4),
+        ground_counts=ground_counts,
+        law="KN=1e8, KT=1e8, FRICTION=2., UPLIFT=LAKE, PROFILE=OPEN",
+    )
     step = static(weight() + lake(LEVEL) + OUTPUT, f"{1.0 / increments!r}, 1.")
     run = keyway(section.deck(step))
     found = joint_fields(run)
@@ -141,10 +152,12 @@ def test_water_comes_and_goes_with_its_reservoir(keyway) -> None:
 
 
 @pytest.mark.parametrize("profile", ["LINEAR", "OPEN"])
-def test_energy_with_water_in_a_shaken_joint(keyway, profile) -> None:
+@pytest.mark.parametrize("ground_counts", [0, 13], ids=["JOINT8", "3:2"])
+def test_energy_with_water_in_a_shaken_joint(keyway, profile, ground_counts) -> None:
     """The dam rocks on its joint, water follows the opening: the books still balance."""
     section = Section(
         counts=(20, 10),
+        ground_counts=ground_counts,
         crest=1.5,
         young=2e10,
         law=f"KN=1e10, KT=1e10, FRICTION=0.8, UPLIFT=LAKE, PROFILE={profile}",
@@ -171,12 +184,14 @@ ASTER = Section(
 )
 
 
-def test_code_aster_ssnp142(keyway) -> None:
+@pytest.mark.parametrize("ground_counts", [0, 37], ids=["JOINT8", "4:3"])
+def test_code_aster_ssnp142(keyway, ground_counts) -> None:
     """Heel 4.01e-7 m (7 %), toe -4.25e-7 m and -4.25e5 Pa (5 %): GEFDYN, with code_aster's bounds.
 
     Along the joint code_aster's own values, on another mesh: 2 % of the opening at the heel.
     """
-    run = keyway(ASTER.deck(static(weight() + lake(LEVEL) + OUTPUT)))
+    section = dataclasses.replace(ASTER, ground_counts=ground_counts)
+    run = keyway(section.deck(static(weight() + lake(LEVEL) + OUTPUT)))
     found = joint_fields(run)
     x = found["x"][:, 0]
     heel, toe = np.argmin(x), np.argmax(x)

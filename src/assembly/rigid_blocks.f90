@@ -1,0 +1,194 @@
+!> Blocks: parts of the model that hang together without joints, as rigid bodies.
+!>
+!> Elements, ties and couplings hold a block together; joints and supports hold it in its place. Its
+!> six motions are v + w x (x - centre); as unknowns they are v and reach*w, reach the distance of
+!> its farthest node, so that all six are lengths (theory: different_meshes.md, 13.7).
+module rigid_blocks
+  use body_parts, only: root_of, unite
+  use joint_points, only: joint
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use shape_quad4, only: cross
+  implicit none
+  private
+  public :: block_set, find_blocks, add_node_motion, jump_rows, add_supports
+
+  type :: block_set
+    integer :: num_blocks = 0
+    integer, allocatable :: block_of(:) !< (nodes) 0: a node without an element
+    integer, allocatable :: example(:) !< (blocks) element with the lowest number (position)
+    real(rk), allocatable :: centre(:, :) !< (3, blocks) mean of the nodes [m]
+    real(rk), allocatable :: reach(:) !< (blocks) [m]
+  end type block_set
+
+contains
+
+  !> Finds the blocks of a model.
+  subroutine find_blocks(scene, blocks)
+    type(problem), intent(in) :: scene
+    type(block_set), intent(out) :: blocks
+    integer, allocatable :: parent(:)
+    allocate (parent(scene%mesh%num_nodes), source=0)
+    call unite_elements(scene, parent)
+    call unite_bonds(scene, parent)
+    call number_blocks(scene, parent, blocks)
+    call measure_blocks(scene%mesh%x, blocks)
+  end subroutine find_blocks
+
+  !> Elements but joints hold their nodes together.
+  subroutine unite_elements(scene, parent)
+    type(problem), intent(in) :: scene
+    integer, intent(inout) :: parent(:)
+    integer :: e, a, node
+    do e = 1, scene%mesh%num_elements
+      if (scene%mesh%element_type(e) == 'JOINT8') cycle
+      do a = 1, count(scene%mesh%nodes(:, e) > 0)
+        node = scene%mesh%nodes(a, e)
+        if (parent(node) == 0) parent(node) = node
+        call unite(parent, scene%mesh%nodes(1, e), node)
+      end do
+    end do
+  end subroutine unite_elements
+
+  !> So do ties and couplings.
+  subroutine unite_bonds(scene, parent)
+    type(problem), intent(in) :: scene
+    integer, intent(inout) :: parent(:)
+    integer :: i, p, k
+    do i = 1, size(scene%ties)
+      associate (tie => scene%ties(i))
+        do p = 1, size(tie%node)
+          do k = tie%first(p), tie%first(p + 1) - 1
+            call unite_nodes(tie%node(p), tie%master(k))
+          end do
+        end do
+      end associate
+    end do
+    do i = 1, size(scene%couplings)
+      associate (bond => scene%couplings(i))
+        do p = 1, size(bond%node, 2)
+          do k = 1, size(bond%node, 1)
+            call unite_nodes(bond%node(1, p), bond%node(k, p))
+          end do
+        end do
+      end associate
+    end do
+  contains
+    !> Puts two nodes into one block.
+    subroutine unite_nodes(a, b)
+      integer, intent(in) :: a, b
+      if (parent(a) == 0) parent(a) = a
+      if (parent(b) == 0) parent(b) = b
+      call unite(parent, a, b)
+    end subroutine unite_nodes
+  end subroutine unite_bonds
+
+  !> Numbers the blocks in the order of their elements.
+  subroutine number_blocks(scene, parent, blocks)
+    type(problem), intent(in) :: scene
+    integer, intent(in) :: parent(:)
+    type(block_set), intent(inout) :: blocks
+    integer, allocatable :: number(:)
+    integer :: e, node, root
+    associate (mesh => scene%mesh)
+      allocate (number(mesh%num_nodes), blocks%block_of(mesh%num_nodes), source=0)
+      allocate (blocks%example(mesh%num_elements))
+      do e = 1, mesh%num_elements
+        if (mesh%element_type(e) == 'JOINT8') cycle
+        root = root_of(parent, mesh%nodes(1, e))
+        if (number(root) == 0) then
+          blocks%num_blocks = blocks%num_blocks + 1
+          number(root) = blocks%num_blocks
+          blocks%example(blocks%num_blocks) = e
+        end if
+        associate (first => blocks%example(number(root)))
+          if (mesh%element_id(e) < mesh%element_id(first)) first = e
+        end associate
+      end do
+      blocks%example = blocks%example(:blocks%num_blocks)
+      do node = 1, mesh%num_nodes
+        if (parent(node) > 0) blocks%block_of(node) = number(root_of(parent, node))
+      end do
+    end associate
+  end subroutine number_blocks
+
+  !> Centres and reaches.
+  subroutine measure_blocks(x, blocks)
+    real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
+    type(block_set), intent(inout) :: blocks
+    integer :: members(blocks%num_blocks), node, b
+    allocate (blocks%centre(3, blocks%num_blocks), blocks%reach(blocks%num_blocks))
+    blocks%centre = 0.0_rk
+    blocks%reach = tiny(1.0_rk)
+    members = 0
+    do node = 1, size(x, 2)
+      b = blocks%block_of(node)
+      if (b == 0) cycle
+      members(b) = members(b) + 1
+      blocks%centre(:, b) = blocks%centre(:, b) + x(:, node)
+    end do
+    do b = 1, blocks%num_blocks
+      blocks%centre(:, b) = blocks%centre(:, b)/max(1, members(b))
+    end do
+    do node = 1, size(x, 2)
+      b = blocks%block_of(node)
+      if (b == 0) cycle
+      blocks%reach(b) = max(blocks%reach(b), norm2(x(:, node) - blocks%centre(:, b)))
+    end do
+  end subroutine measure_blocks
+
+  !> Adds to a row what a node moves in a direction when the blocks move.
+  pure subroutine add_node_motion(blocks, x, node, direction, row)
+    type(block_set), intent(in) :: blocks
+    real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
+    integer, intent(in) :: node
+    real(rk), intent(in) :: direction(3) !< of any length
+    real(rk), intent(inout) :: row(:, :) !< (6, blocks)
+    integer :: b
+    b = blocks%block_of(node)
+    if (b == 0) return
+    row(1:3, b) = row(1:3, b) + direction
+    row(4:6, b) = row(4:6, b) &
+                  + cross(x(:, node) - blocks%centre(:, b), direction)/blocks%reach(b)
+  end subroutine add_node_motion
+
+  !> The jumps of a point of a joint, in its axes, when the blocks move.
+  pure subroutine jump_rows(blocks, x, seam, p, rows)
+    type(block_set), intent(in) :: blocks
+    real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
+    type(joint), intent(in) :: seam
+    integer, intent(in) :: p !< point
+    real(rk), intent(out) :: rows(:, :, :) !< (6, blocks, 3)
+    integer :: i, k
+    rows = 0.0_rk
+    do i = 1, 3
+      do k = seam%first(p), seam%first(p + 1) - 1
+        call add_node_motion(blocks, x, seam%node(k), seam%weight(k)*seam%rotation(i, :, p), &
+                             rows(:, :, i))
+      end do
+    end do
+  end subroutine jump_rows
+
+  !> Adds what supports hold to the matrix sum row^T row.
+  pure subroutine add_supports(blocks, x, node, dof, matrix)
+    type(block_set), intent(in) :: blocks
+    real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
+    integer, intent(in) :: node(:), dof(:) !< (supports)
+    real(rk), intent(inout) :: matrix(:, :) !< (6*blocks, 6*blocks)
+    real(rk) :: row(6, blocks%num_blocks), direction(3)
+    integer :: i, j, b
+    do i = 1, size(node)
+      b = blocks%block_of(node(i))
+      if (b == 0) cycle
+      direction = 0.0_rk
+      direction(dof(i)) = 1.0_rk
+      row(:, b) = 0.0_rk
+      call add_node_motion(blocks, x, node(i), direction, row)
+      associate (part => matrix(6*b - 5:6*b, 6*b - 5:6*b))
+        do j = 1, 6
+          part(:, j) = part(:, j) + row(:, b)*row(j, b)
+        end do
+      end associate
+    end do
+  end subroutine add_supports
+end module rigid_blocks

@@ -1,0 +1,105 @@
+!> Blocks that only joints hold, and not in every direction: told when the deck is read.
+!>
+!> What is certain is told: a closed joint without friction, cohesion and strength lets its faces
+!> slide. A block that only such joints and the supports hold is free along them, in whatever state
+!> the joints are. It may stand all the same, when no load works that way: a warning, no error.
+module verify_blocks
+  use block_motion, only: block_name, freedom_text
+  use diagnostics, only: diagnostic_list
+  use joint_points, only: joint
+  use kinds, only: rk
+  use model_draft, only: draft
+  use rigid_blocks, only: add_supports, block_set, find_blocks, jump_rows
+  use symmetric_modes, only: find_modes, null_space
+  implicit none
+  private
+  public :: verify_free_blocks
+
+  integer, parameter :: most_blocks = 100 !< more are not looked at
+  integer, parameter :: most_told = 5 !< blocks; the others are counted
+  !> A block's share in the motions that are left, squared: less is round-off.
+  real(rk), parameter :: no_share = 1.0e-6_rk
+
+contains
+
+  !> Warns of free blocks at the first static step that has any.
+  subroutine verify_free_blocks(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(block_set) :: blocks
+    real(rk), allocatable :: by_joints(:, :), matrix(:, :), ways(:, :)
+    integer :: i, n
+    if (size(model%scene%joints) == 0) return
+    call find_blocks(model%scene, blocks)
+    if (blocks%num_blocks > most_blocks) return
+    n = 6*blocks%num_blocks
+    allocate (by_joints(n, n), source=0.0_rk)
+    do i = 1, size(model%scene%joints)
+      call add_joint(model%scene%mesh%x, blocks, model%scene%joints(i), by_joints)
+    end do
+    do i = 1, size(model%scene%steps)
+      associate (step => model%scene%steps(i))
+        if (step%procedure /= 'STATIC') cycle
+        matrix = by_joints
+        call add_supports(blocks, model%scene%mesh%x, step%fixities%node, step%fixities%dof, &
+                          matrix)
+        call null_space(matrix, ways)
+        if (size(ways, 2) == 0) cycle
+        call tell(model, i, blocks, ways, faults)
+        return
+      end associate
+    end do
+  end subroutine verify_free_blocks
+
+  !> Adds sum row^T row of what the closed points of a joint hold.
+  subroutine add_joint(x, blocks, seam, matrix)
+    real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
+    type(block_set), intent(in) :: blocks
+    type(joint), intent(in) :: seam
+    real(rk), intent(inout) :: matrix(:, :) !< (6*blocks, 6*blocks)
+    real(rk) :: rows(6, blocks%num_blocks, 3), row(6*blocks%num_blocks)
+    real(rk) :: friction, cohesion, strength
+    integer, allocatable :: used(:)
+    integer :: p, i, k, num_held
+    call seam%law%limits(friction, cohesion, strength)
+    num_held = merge(3, 1, max(friction, cohesion, strength) > 0.0_rk)
+    do p = 1, seam%num_points
+      call jump_rows(blocks, x, seam, p, rows)
+      do i = 1, num_held
+        row = reshape(rows(:, :, i), [size(row)])
+        used = pack([(k, k=1, size(row))], abs(row) > 0.0_rk)
+        do k = 1, size(used)
+          matrix(used, used(k)) = matrix(used, used(k)) + row(used)*row(used(k))
+        end do
+      end do
+    end do
+  end subroutine add_joint
+
+  !> One warning for each block that takes part in the motions that are left.
+  subroutine tell(model, number, blocks, ways, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: number !< of the step
+    type(block_set), intent(in) :: blocks
+    real(rk), intent(in) :: ways(:, :) !< (6*blocks, motions) orthonormal
+    type(diagnostic_list), intent(inout) :: faults
+    real(rk), allocatable :: share(:), motion(:, :)
+    integer :: b, num_told
+    num_told = 0
+    do b = 1, blocks%num_blocks
+      associate (own => ways(6*b - 5:6*b, :))
+        call find_modes(matmul(own, transpose(own)), share, motion)
+      end associate
+      if (share(6) <= no_share) cycle
+      num_told = num_told + 1
+      if (num_told > most_told) cycle
+      call model%cards(model%procedure_card(number))%warn( &
+        faults, block_name(model%scene, blocks, b)//' is free to '// &
+        freedom_text(blocks, b, motion(:, findloc(share > no_share, .true., 1):))// &
+        ': only joints hold it, and they do not resist that (no friction, no cohesion, no '// &
+        'strength)')
+    end do
+    if (num_told <= most_told) return
+    call model%cards(model%procedure_card(number))%warn( &
+      faults, 'more such blocks are free; these were the first')
+  end subroutine tell
+end module verify_blocks

@@ -1,0 +1,239 @@
+!> Says which block its joints cannot hold, when a static step finds no equilibrium.
+!>
+!> Rigid blocks and the strength of the joints alone decide (joint_capacity); nothing is said where
+!> they leave it open. The way the block goes is told by the joints that have reached their limit:
+!> of all motions that open points let go, points at the limit of friction let slide and the others
+!> do not resist, the one that the loads drive.
+module free_blocks
+  use block_motion, only: block_name, freedom_text, motion_text
+  use errors, only: error_type
+  use joint_capacity, only: best_forces, find_best_forces, point_limits
+  use joint_law, only: joint_state
+  use kinds, only: rk
+  use motion_state, only: compress
+  use problem_definition, only: problem
+  use rigid_blocks, only: add_supports, block_set, find_blocks, jump_rows
+  use step_loads, only: external_force, step_time
+  use step_plan, only: step
+  use step_system, only: dam_system
+  use symmetric_modes, only: find_modes, null_space
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: name_free_block
+
+  !> Above so many numbers in the rows of the joints no block is looked for.
+  integer, parameter :: most_entries = 20000000
+  integer, parameter :: most_blocks = 100
+  !> Of the loads left unbalanced: more is beyond what the projections leave.
+  real(rk), parameter :: certain = 1.0e-2_rk
+  !> Forces below this part of the largest count as none; a point so near to its limit slides.
+  real(rk), parameter :: no_force = 1.0e-3_rk, at_limit = 1.0e-2_rk
+  !> A block that moves by more than this part of the one that moves most goes with it.
+  real(rk), parameter :: goes_along = 0.1_rk
+
+  !> The blocks of a step between its supports.
+  type :: block_task
+    type(block_set) :: blocks
+    real(rk), allocatable :: free(:, :) !< (6*blocks, motions) that supports leave, orthonormal
+    real(rk), allocatable :: rows(:, :) !< (motions, 3*points) jumps of the joints
+    type(point_limits), allocatable :: limits(:) !< (points)
+  end type block_task
+
+contains
+
+  !> Adds to the message of an error what can be said of blocks.
+  subroutine name_free_block(scene, plan, system, states, when, error)
+    type(problem), intent(in) :: scene
+    type(step), intent(in) :: plan
+    type(dam_system), intent(in) :: system
+    type(joint_state), intent(in) :: states(:) !< of the last equilibrium
+    type(step_time), intent(in) :: when !< of the increment that failed
+    type(error_type), allocatable, intent(inout) :: error
+    type(block_task) :: task
+    type(step_time) :: asked
+    character(:), allocatable :: text
+    if (.not. allocated(error) .or. size(scene%joints) == 0) return
+    call find_blocks(scene, task%blocks)
+    if (task%blocks%num_blocks > most_blocks) return
+    if (6*task%blocks%num_blocks*3*system%operator%num_points > most_entries) return
+    call open_task(scene, plan, states, task)
+    if (size(task%rows, 1) == 0) return
+    asked = when
+    text = judge(scene, system, task, asked)
+    if (text == '') then
+      asked%now = when%duration
+      text = judge(scene, system, task, asked)
+    end if
+    if (text /= '') then
+      text = '; the joints cannot hold '//text//', with the loads at step time '//as_text(asked%now)
+    else
+      text = idle_motion(scene, task)
+    end if
+    if (text == '') then
+      text = '; the statics of rigid blocks would leave it an equilibrium, which may need a '// &
+             'thrust that these loads do not bring, smaller increments, or more ITERATIONS '// &
+             '(*CONTROLS)'
+    end if
+    error%message = error%message//text
+  end subroutine name_free_block
+
+  !> Motions that supports leave, and what joints may do about them.
+  subroutine open_task(scene, plan, states, task)
+    type(problem), intent(in) :: scene
+    type(step), intent(in) :: plan
+    type(joint_state), intent(in) :: states(:)
+    type(block_task), intent(inout) :: task
+    real(rk), allocatable :: matrix(:, :), rows(:, :, :)
+    integer :: j, p, i, n, point
+    n = 6*task%blocks%num_blocks
+    allocate (matrix(n, n), source=0.0_rk)
+    call add_supports(task%blocks, scene%mesh%x, plan%fixities%node, plan%fixities%dof, matrix)
+    call null_space(matrix, task%free)
+    allocate (task%rows(size(task%free, 2), 3*sum(scene%joints%num_points)))
+    allocate (task%limits(sum(scene%joints%num_points)))
+    allocate (rows(6, task%blocks%num_blocks, 3))
+    point = 0
+    do j = 1, size(scene%joints)
+      do p = 1, scene%joints(j)%num_points
+        point = point + 1
+        call jump_rows(task%blocks, scene%mesh%x, scene%joints(j), p, rows)
+        associate (now => task%limits(point), area => scene%joints(j)%area(p))
+          call scene%joints(j)%law%limits(now%friction, now%cohesion, now%tension)
+          now%cohesion = area*now%cohesion
+          now%tension = area*now%tension
+          now%is_bonded = .not. states(j)%is_broken(p)
+          if (.not. (now%is_bonded .or. max(now%friction, now%cohesion) > 0.0_rk)) then
+            rows(:, :, 2:3) = 0.0_rk
+          end if
+        end associate
+        do i = 1, 3
+          task%rows(:, 3*(point - 1) + i) = matmul(reshape(rows(:, :, i), [n]), task%free)
+        end do
+      end do
+    end do
+  end subroutine open_task
+
+  !> Which block goes where under the loads of a time; '' when the joints may hold them all.
+  function judge(scene, system, task, when) result(text)
+    type(problem), intent(in) :: scene
+    type(dam_system), intent(in) :: system
+    type(block_task), intent(in) :: task
+    type(step_time), intent(in) :: when
+    character(:), allocatable :: text
+    real(rk), allocatable :: load(:), motion(:, :), amount(:)
+    type(best_forces) :: best
+    integer :: b, others
+    call sum_loads(scene, system, task, when, load)
+    text = ''
+    if (.not. norm2(load) > 0.0_rk) return
+    call find_best_forces(task%rows, task%limits, load, best)
+    if (best%left < certain) return
+    motion = reshape(matmul(task%free, driven_motion(task, best, load)), &
+                     [6, task%blocks%num_blocks])
+    amount = norm2(motion, dim=1)
+    b = maxloc(amount, 1)
+    others = count(amount > goes_along*amount(b)) - 1
+    text = block_name(scene, task%blocks, b)//': it is free to '// &
+           motion_text(task%blocks, b, motion(:, b))
+    if (others > 0) text = text//' ('//as_text(others)//' more blocks move with it)'
+  end function judge
+
+  !> The loads on the motions of the blocks.
+  subroutine sum_loads(scene, system, task, when, load)
+    type(problem), intent(in) :: scene
+    type(dam_system), intent(in) :: system
+    type(block_task), intent(in) :: task
+    type(step_time), intent(in) :: when
+    real(rk), allocatable, intent(out) :: load(:) !< (motions)
+    real(rk), allocatable :: force(:), q(:), u(:, :), on_blocks(:)
+    real(rk) :: motion(6)
+    integer :: b, k
+    allocate (force(system%numbers%num_total), q(system%numbers%num_total))
+    allocate (u(3, scene%mesh%num_nodes), on_blocks(6*task%blocks%num_blocks))
+    call external_force(system%groups, scene%amplitudes, when, force)
+    do b = 1, task%blocks%num_blocks
+      do k = 1, 6
+        motion = 0.0_rk
+        motion(k) = 1.0_rk
+        call move_block(scene, task%blocks, b, motion, u)
+        call compress(system%numbers, scene%joints, u, q)
+        on_blocks(6*(b - 1) + k) = dot_product(force, q)
+      end do
+    end do
+    load = matmul(on_blocks, task%free)
+  end subroutine sum_loads
+
+  !> Displacements when one block moves.
+  subroutine move_block(scene, blocks, b, motion, u)
+    type(problem), intent(in) :: scene
+    type(block_set), intent(in) :: blocks
+    integer, intent(in) :: b
+    real(rk), intent(in) :: motion(6) !< v, reach*w
+    real(rk), intent(out) :: u(:, :) !< (3, nodes)
+    real(rk) :: r(3)
+    integer :: node
+    u = 0.0_rk
+    do node = 1, size(u, 2)
+      if (blocks%block_of(node) /= b) cycle
+      r = (scene%mesh%x(:, node) - blocks%centre(:, b))/blocks%reach(b)
+      u(:, node) = motion(1:3) + [motion(5)*r(3) - motion(6)*r(2), &
+                                  motion(6)*r(1) - motion(4)*r(3), &
+                                  motion(4)*r(2) - motion(5)*r(1)]
+    end do
+  end subroutine move_block
+
+  !> A motion that no joint resists and no load drives: '' when there is none.
+  function idle_motion(scene, task) result(text)
+    type(problem), intent(in) :: scene
+    type(block_task), intent(in) :: task
+    character(:), allocatable :: text
+    real(rk), allocatable :: ways(:, :), shares(:), own(:, :), motion(:, :)
+    integer :: b
+    text = ''
+    call null_space(matmul(task%rows, transpose(task%rows)), ways)
+    if (size(ways, 2) == 0) return
+    ways = matmul(task%free, ways)
+    shares = [(sum(ways(6*b - 5:6*b, :)**2), b=1, task%blocks%num_blocks)]
+    b = maxloc(shares, 1)
+    own = ways(6*b - 5:6*b, :)
+    call find_modes(matmul(own, transpose(own)), shares, motion)
+    motion = motion(:, findloc(shares > no_force, .true., 1):)
+    text = '; '//block_name(scene, task%blocks, b)//' is free to '// &
+           freedom_text(task%blocks, b, motion)//': no load drives it and nothing holds it; a '// &
+           'support would'
+  end function idle_motion
+
+  !> The motion that joints at their limit do not resist and that the loads drive.
+  function driven_motion(task, best, load) result(motion)
+    type(block_task), intent(in) :: task
+    type(best_forces), intent(in) :: best
+    real(rk), intent(in) :: load(:) !< (motions)
+    real(rk) :: motion(size(load))
+    real(rk), allocatable :: matrix(:, :), ways(:, :)
+    real(rk) :: largest, shear
+    integer :: p, i, num_held
+    allocate (matrix(size(load), size(load)), source=0.0_rk)
+    largest = maxval(abs(best%force))
+    motion = best%mechanism
+    if (.not. largest > 0.0_rk) return
+    do p = 1, size(task%limits)
+      associate (f => best%force(:, p), now => task%limits(p))
+        shear = norm2(f(2:3))
+        num_held = 3
+        if (.not. now%is_bonded) then
+          if (shear >= (1.0_rk - at_limit)*(now%cohesion - now%friction*f(1))) num_held = 1
+          if (norm2(f) <= no_force*largest) num_held = 0
+        end if
+      end associate
+      do i = 1, num_held
+        associate (row => task%rows(:, 3*(p - 1) + i))
+          matrix = matrix + spread(row, 2, size(row))*spread(row, 1, size(row))
+        end associate
+      end do
+    end do
+    call null_space(matrix, ways)
+    motion = matmul(ways, matmul(load, ways))
+    if (norm2(motion) <= no_force*norm2(load)) motion = best%mechanism
+  end function driven_motion
+end module free_blocks

@@ -1,0 +1,142 @@
+!> Whether joints could balance given forces on rigid blocks at all: forces of joints that press, do
+!> not pull beyond what strength is left, and rub within mu p + c, whatever their stiffness.
+!>
+!> Of all such forces those are sought that leave least of the loads (theory: different_meshes.md,
+!> 13.7): the nearest point of a convex set, by projections with Nesterov's acceleration. With the
+!> rows of the joints made orthonormal every step is as long as it may be. Where something is left
+!> no equilibrium exists, for none of the admissible forces has one (safe theorem of limit
+!> analysis); bonded points count with all that they may carry.
+module joint_capacity
+  use kinds, only: rk
+  use symmetric_modes, only: find_modes
+  implicit none
+  private
+  public :: point_limits, best_forces, find_best_forces
+
+  !> What one point may carry.
+  type :: point_limits
+    real(rk) :: friction = 0.0_rk !< mu
+    real(rk) :: cohesion = 0.0_rk !< c times the area [N]
+    real(rk) :: tension = 0.0_rk !< strength times the area [N]
+    logical :: is_bonded = .false. !< holds any shear
+  end type point_limits
+
+  type :: best_forces
+    real(rk), allocatable :: force(:, :) !< (3, points) normal, positive pulls, and two tangents [N]
+    real(rk), allocatable :: mechanism(:) !< motion on which what is left of the loads works
+    !> What is not balanced, over the loads; 1 where it works in a direction that no joint resists.
+    real(rk) :: left = 0.0_rk
+  end type best_forces
+
+  !> Rows of joints below this part of the largest (squared) hold nothing.
+  real(rk), parameter :: rank_tolerance = 1.0e-10_rk
+  !> Of the loads; more of them in directions that no joint resists has no balance.
+  real(rk), parameter :: roundoff = 1.0e-8_rk
+  integer, parameter :: most_projections = 20000
+  integer, parameter :: watch_every = 100
+  !> Less than this left counts as balance; less progress in `watch_every` projections as the end.
+  real(rk), parameter :: balanced = 1.0e-3_rk, least_progress = 1.0e-5_rk
+
+contains
+
+  !> Balances `load` as far as the joints can: G t = load.
+  subroutine find_best_forces(rows, limits, load, best)
+    real(rk), intent(in), contiguous :: rows(:, :) !< G (motions, 3*points)
+    type(point_limits), intent(in) :: limits(:) !< (points)
+    real(rk), intent(in) :: load(:) !< (motions)
+    type(best_forces), intent(out) :: best
+    real(rk), allocatable :: values(:), modes(:, :), white(:, :), target(:), left(:), t(:)
+    integer :: first, k, n
+    n = size(load)
+    call find_modes(matmul(rows, transpose(rows)), values, modes)
+    first = n + 1
+    if (n > 0) first = n - count(values > rank_tolerance*max(values(n), tiny(1.0_rk))) + 1
+    allocate (best%force(3, size(limits)), source=0.0_rk)
+    left = matmul(load, modes(:, :first - 1))
+    if (norm2(left) > roundoff*norm2(load)) then
+      best%mechanism = matmul(modes(:, :first - 1), left)
+      best%left = 1.0_rk
+      return
+    end if
+    white = matmul(transpose(modes(:, first:)), rows)
+    target = matmul(load, modes(:, first:))
+    do k = 1, size(target)
+      white(k, :) = white(k, :)/sqrt(values(first - 1 + k))
+      target(k) = target(k)/sqrt(values(first - 1 + k))
+    end do
+    call project(white, limits, target, t, left)
+    best%force = reshape(t, [3, size(limits)])
+    best%left = norm2(left)/max(norm2(target), tiny(1.0_rk))
+    best%mechanism = matmul(modes(:, first:), left/sqrt(values(first:)))
+  end subroutine find_best_forces
+
+  !> Least |white t - target| over admissible t; the rows of `white` are orthonormal.
+  subroutine project(white, limits, target, t, left)
+    real(rk), intent(in), contiguous :: white(:, :) !< (motions, 3*points)
+    type(point_limits), intent(in) :: limits(:)
+    real(rk), intent(in) :: target(:)
+    real(rk), allocatable, intent(out) :: t(:) !< (3*points) [N]
+    real(rk), allocatable, intent(out) :: left(:) !< target - white t
+    real(rk), allocatable :: ahead(:), before(:)
+    real(rk) :: momentum, next, last
+    integer :: i
+    allocate (t(size(white, 2)), ahead(size(white, 2)), source=0.0_rk)
+    momentum = 1.0_rk
+    last = huge(last)
+    do i = 1, most_projections
+      before = t
+      t = ahead + matmul(target - matmul(white, ahead), white)
+      call admit(limits, t)
+      if (dot_product(ahead - t, t - before) > 0.0_rk) momentum = 1.0_rk
+      next = 0.5_rk*(1.0_rk + sqrt(1.0_rk + 4.0_rk*momentum**2))
+      ahead = t + (momentum - 1.0_rk)/next*(t - before)
+      momentum = next
+      if (mod(i, watch_every) /= 0) cycle
+      left = target - matmul(white, t)
+      if (norm2(left) <= balanced*norm2(target)) return
+      if (norm2(left) > (1.0_rk - least_progress)*last) return
+      last = norm2(left)
+    end do
+    left = target - matmul(white, t)
+  end subroutine project
+
+  !> The nearest admissible forces.
+  pure subroutine admit(limits, t)
+    type(point_limits), intent(in) :: limits(:)
+    real(rk), intent(inout) :: t(:) !< (3*points)
+    real(rk) :: shear, pull
+    integer :: p
+    do p = 1, size(limits)
+      associate (now => limits(p), f => t(3*p - 2:3*p))
+        if (now%is_bonded) then
+          f(1) = min(f(1), now%tension)
+          cycle
+        end if
+        shear = norm2(f(2:3))
+        pull = f(1)
+        call nearest_in_cone(now, pull, shear)
+        f(2:3) = f(2:3)*(shear/max(norm2(f(2:3)), tiny(1.0_rk)))
+        f(1) = pull
+      end associate
+    end do
+  end subroutine admit
+
+  !> In the plane of pull and shear: pull <= 0, shear <= c - mu pull.
+  pure subroutine nearest_in_cone(limits, pull, shear)
+    type(point_limits), intent(in) :: limits
+    real(rk), intent(inout) :: pull
+    real(rk), intent(inout) :: shear !< >= 0
+    real(rk) :: beyond
+    associate (mu => limits%friction, c => limits%cohesion)
+      if (pull <= 0.0_rk .and. shear <= c - mu*pull) return
+      beyond = (shear + mu*pull - c)/(1.0_rk + mu**2)
+      if (beyond > 0.0_rk .and. pull - mu*beyond <= 0.0_rk) then
+        pull = pull - mu*beyond
+        shear = shear - beyond
+      else
+        pull = 0.0_rk
+        shear = min(shear, c)
+      end if
+    end associate
+  end subroutine nearest_in_cone
+end module joint_capacity

@@ -1,0 +1,192 @@
+"""Blocks that only joints hold: they stand where statics lets them, else the message says so."""
+
+import re
+
+import numpy as np
+import pytest
+from block_decks import MESHES, Pair, joint_state
+from joint_decks import material, static
+from keyway_tools.box_mesh import box_mesh
+from keyway_tools.deck_text import mesh_deck
+from uplift_decks import facets, joined
+
+OUTPUT = "*NODE FILE\nU, OPENING\n"
+WEIGHT = "*DLOAD\nBLOCK, GRAV, 9.81, 0., 0., -1.\n"
+meshes = pytest.mark.parametrize("mesh", MESHES.values(), ids=MESHES.keys())
+
+
+def message(run) -> str:
+    """What stopped a run."""
+    return run.json["message"]
+
+
+@meshes
+@pytest.mark.parametrize("slope", [0.0, 20.0])
+def test_a_block_stands_on_a_slope(keyway, mesh, slope) -> None:
+    """tan 20 = 0.36 < 0.6: the joint carries both parts of the weight."""
+    pair = Pair(slope=slope, law="KN=1e10, KT=1e10, FRICTION=0.6", **mesh)
+    run = keyway(pair.deck(static(WEIGHT + OUTPUT)))
+    found = joint_state(run)
+    a = np.radians(slope)
+    assert found["force"][0] == pytest.approx(-pair.weight * np.cos(a), rel=1e-6)
+    shear = np.hypot(*found["force"][1:])
+    assert shear == pytest.approx(pair.weight * np.sin(a), rel=1e-6, abs=1e-6 * pair.weight)
+    assert run.json["warnings"] == []
+
+
+@meshes
+def test_a_block_slides_off_a_slope(keyway, mesh) -> None:
+    """tan 35 = 0.70 > 0.6: down the slope."""
+    pair = Pair(slope=35.0, law="KN=1e10, KT=1e10, FRICTION=0.6", **mesh)
+    run = keyway(pair.deck(static(WEIGHT)), code=1)
+    told = re.search(r"cannot hold (.*): it is free to move along \((.*)\)", message(run))
+    assert told[1] == "the block with element 1 of set BLOCK"
+    assert [float(word) for word in told[2].split(",")] == pytest.approx(
+        pair.turned([1.0, 0.0, 0.0]), abs=0.002
+    )
+
+
+@meshes
+def test_cohesion_holds_and_gives_way(keyway, mesh) -> None:
+    """On 35 degrees friction lacks 0.08 of the weight: cohesion of 1.2 times that is enough."""
+    pair = Pair(slope=35.0, **mesh)
+    a = np.radians(35.0)
+    lacking = float(pair.weight * (np.sin(a) - 0.6 * np.cos(a)) / pair.area)
+    for share, code in ((1.2, 0), (0.5, 1)):
+        pair.law = f"KN=1e10, KT=1e10, FRICTION=0.6, COHESION={share * lacking!r}"
+        run = keyway(pair.deck(static(WEIGHT + OUTPUT)), code=code, name=f"share_{code}")
+    assert "cannot hold the block with element 1" in message(run)
+
+
+def test_a_push_beyond_friction(keyway) -> None:
+    """The weight first, then a push that grows past mu W: the message tells its direction."""
+    pair = Pair(law="KN=1e10, KT=1e10, FRICTION=0.6")
+    push = "*CLOAD\nTOP, 1, -4000.\n"  # nine nodes: 36 kN beside mu W = 28 kN
+    run = keyway(pair.deck(static(WEIGHT, "0.5, 1.") + static(push, "0.1, 1.")), code=1)
+    assert "the block with element 1 of set BLOCK: it is free to move along -x" in message(run)
+    assert run.json["steps"][1]["time"] == pytest.approx(28251.0 / 36000.0, abs=0.02)
+
+
+def test_a_block_topples(keyway) -> None:
+    """A tower pushed at its top turns about its edge."""
+    pair = Pair(size=(1.0, 1.0, 5.0), law="KN=1e10, KT=1e10, FRICTION=2.")
+    push = "*CLOAD\nTOP, 1, 1600.\n"  # nine nodes, 5 m: 72 kNm beside W/2 = 59 kNm
+    run = keyway(pair.deck(static(WEIGHT) + static(push, "0.1, 1.")), code=1)
+    told = re.search(r"free to turn about the axis y through \((.*), 0.5, (.*)\)", message(run))
+    assert [float(told[1]), float(told[2])] == pytest.approx([1.0, 0.0], abs=0.01)
+
+
+def test_a_block_is_lifted(keyway) -> None:
+    """Pulled up by more than its weight: all open."""
+    pair = Pair(law="KN=1e10, KT=1e10, FRICTION=0.6")
+    pull = "*CLOAD\nTOP, 3, 6000.\n"
+    run = keyway(pair.deck(static(WEIGHT) + static(pull, "0.1, 1.")), code=1)
+    assert "the block with element 1 of set BLOCK: it is free to move along z" in message(run)
+
+
+def test_without_friction_the_deck_is_warned(keyway) -> None:
+    """The block stands, nothing pushes it along; with a push there is no equilibrium."""
+    pair = Pair()
+    words = (
+        "the block with element 1 of set BLOCK is free to move along x, y and turn about the "
+        "axis z through (1, 0.5, 0.5): only joints hold it"
+    )
+    run = keyway(pair.deck(static(WEIGHT)))
+    assert words in run.stderr
+    run = keyway(pair.deck(static(WEIGHT + "*CLOAD\nTOP, 1, 1.\n")), code=1, name="pushed")
+    assert "it is free to move along x" in message(run)
+    held = "BODY, 2\n1, 1\n"  # one node along x, all along y
+    run = keyway(pair.deck(static(WEIGHT), held), name="held")
+    assert "is free to" not in run.stderr
+
+
+def arch_stone(
+    taper: float, friction: float, steps: str, different: bool, supports: str = ""
+) -> str:
+    """A stone between two abutments whose faces lean by `taper` degrees; joints LEFT and RIGHT."""
+    lean = np.tan(np.radians(taper))
+
+    def stone(a, b, c):
+        half = 0.5 + lean * c
+        return np.stack([(2.0 * a - 1.0) * half, b, c], axis=-1)
+
+    def abutment(side):
+        def place(a, b, c):
+            inner = 0.5 + lean * c
+            return np.stack([side * (inner + 0.5 * a), side * b + 0.5 * (1.0 - side), c], axis=-1)
+
+        return place
+
+    fine = (2, 3, 3) if different else (2, 2, 2)
+    mesh, (middle, right, left) = joined(
+        box_mesh((2, 2, 2), stone), box_mesh(fine, abutment(1.0)), box_mesh(fine, abutment(-1.0))
+    )
+    bricks = np.arange(8).reshape(2, 2, 2)
+    count = int(np.prod(fine))
+    beyond = [8 + i * count + np.arange(count).reshape(fine) for i in range(2)]
+    mesh.brick_sets = {"STONE": bricks.ravel(), "WALLS": np.arange(8, 8 + 2 * count)}
+    mesh.node_sets = {
+        "STONE": middle.ravel(),
+        "WALLS": np.concatenate([right.ravel(), left.ravel()]),
+    }
+    mesh.surfaces = {
+        "STONE_R": [(int(brick), 4) for brick in bricks[-1].ravel()],
+        "STONE_L": [(int(brick), 6) for brick in bricks[0].ravel()],
+        "WALL_R": [(int(brick), 6) for brick in beyond[0][0].ravel()],
+        "WALL_L": [(int(brick), 6) for brick in beyond[1][0].ravel()],
+    }
+    joints = "*JOINT, NAME=RIGHT, LAW=LAW\nSTONE_R, WALL_R\n"
+    joints += "*JOINT, NAME=LEFT, LAW=LAW\nSTONE_L, WALL_L\n"
+    if not different:
+        walls = [facets(right[0]), facets(left[0][::-1])]
+        stones = [facets(middle[-1]), facets(middle[0])]
+        mesh.joints = np.concatenate([np.concatenate(walls), np.concatenate(stones)], axis=1)
+        mesh.joint_sets = {"RIGHT": np.arange(4), "LEFT": np.arange(4, 8)}
+        joints = "".join(f"*JOINT, NAME={n}, LAW=LAW, ELSET={n}\n" for n in ("RIGHT", "LEFT"))
+    return (
+        mesh_deck(mesh, {"STONE": "C3D8", "WALLS": "C3D8"}, "")
+        + material("STUFF", 1e13, 0.0, 2400.0)
+        + "*SOLID SECTION, ELSET=STONE, MATERIAL=STUFF\n"
+        + "*SOLID SECTION, ELSET=WALLS, MATERIAL=STUFF\n"
+        + f"*JOINT LAW, NAME=LAW, KN=1e10, KT=1e10, FRICTION={friction!r}\n{joints}"
+        + f"*BOUNDARY\nWALLS, 1, 3\n{supports}"
+        + steps
+    )
+
+
+STONE_WEIGHT = "*DLOAD\nSTONE, GRAV, 9.81, 0., 0., -1.\n"
+
+
+@pytest.mark.parametrize("different", [False, True])
+@pytest.mark.parametrize("friction", [0.0, 0.6])
+def test_an_arch_stone_stands(keyway, different, friction) -> None:
+    """It widens upwards: the two abutments carry its weight, without friction by pressure alone."""
+    taper = 20.0
+    held = "" if friction else "STONE, 2, 2\n"
+    run = keyway(arch_stone(taper, friction, static(STONE_WEIGHT + OUTPUT), different, held))
+    load = 2400.0 * 9.81 * (1.0 + np.tan(np.radians(taper)))
+    up = 0.0
+    for name in ("LEFT", "RIGHT"):
+        found = joint_state(run, name=name)
+        forces = found["area"][:, None, None] * found["rotation"] * found["traction"][:, :, None]
+        up -= forces.sum(axis=(0, 1))[2]
+        if not friction:
+            pressure = load / 2.0 / np.sin(np.radians(taper))
+            assert -found["force"][0] == pytest.approx(pressure, rel=1e-3)
+    assert up == pytest.approx(load, rel=1e-6)
+    assert "is free to" not in run.stderr
+
+
+@pytest.mark.parametrize("different", [False, True])
+def test_a_stone_between_upright_abutments_falls(keyway, different) -> None:
+    """No friction, no taper: nothing holds it up."""
+    run = keyway(arch_stone(0.0, 0.0, static(STONE_WEIGHT), different), code=1)
+    assert "of set STONE is free to move along y, z" in run.stderr
+    assert "the block with element 1 of set STONE: it is free to move along -z" in message(run)
+
+
+def test_a_stone_that_nothing_drives(keyway) -> None:
+    """Held up by its taper, free along y: the deck is warned; where the iteration is lost, why."""
+    run = keyway(arch_stone(20.0, 0.0, static(STONE_WEIGHT), False), code=1)
+    assert "the block with element 1 of set STONE is free to move along y" in run.stderr
+    assert "no load drives it and nothing holds it" in message(run)
