@@ -53,6 +53,7 @@ contains
     type(block_task) :: task
     type(step_time) :: asked
     character(:), allocatable :: text
+    logical :: is_known
     if (.not. allocated(error) .or. size(scene%joints) == 0) return
     call find_blocks(scene, task%blocks)
     if (task%blocks%num_blocks > most_blocks) return
@@ -60,10 +61,12 @@ contains
     call open_task(scene, plan, states, task)
     if (size(task%rows, 1) == 0) return
     asked = when
-    text = judge(scene, system, task, asked)
+    call judge(scene, system, task, asked, text, is_known)
+    if (.not. is_known) return
     if (text == '') then
       asked%now = when%duration
-      text = judge(scene, system, task, asked)
+      call judge(scene, system, task, asked, text, is_known)
+      if (.not. is_known) return
     end if
     if (text /= '') then
       text = '; the joints cannot hold '//text//', with the loads at step time '//as_text(asked%now)
@@ -115,20 +118,23 @@ contains
   end subroutine open_task
 
   !> Which block goes where under the loads of a time; '' when the joints may hold them all.
-  function judge(scene, system, task, when) result(text)
+  subroutine judge(scene, system, task, when, text, is_known)
     type(problem), intent(in) :: scene
     type(dam_system), intent(in) :: system
     type(block_task), intent(in) :: task
     type(step_time), intent(in) :: when
-    character(:), allocatable :: text
+    character(:), allocatable, intent(out) :: text
+    logical, intent(out) :: is_known !< whether they may
     real(rk), allocatable :: load(:), motion(:, :), amount(:)
     type(best_forces) :: best
     integer :: b, others
     call sum_loads(scene, system, task, when, load)
     text = ''
+    is_known = .true.
     if (.not. norm2(load) > 0.0_rk) return
     call find_best_forces(task%rows, task%limits, load, best)
-    if (best%left < certain) return
+    is_known = best%has_settled .or. best%left < certain
+    if (best%left < certain .or. .not. is_known) return
     motion = reshape(matmul(task%free, driven_motion(task, best, load)), &
                      [6, task%blocks%num_blocks])
     amount = norm2(motion, dim=1)
@@ -137,7 +143,7 @@ contains
     text = block_name(scene, task%blocks, b)//': it is free to '// &
            motion_text(task%blocks, b, motion(:, b))
     if (others > 0) text = text//' ('//as_text(others)//' more blocks move with it)'
-  end function judge
+  end subroutine judge
 
   !> The loads on the motions of the blocks.
   subroutine sum_loads(scene, system, task, when, load)

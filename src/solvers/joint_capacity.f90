@@ -26,6 +26,7 @@ module joint_capacity
     real(rk), allocatable :: mechanism(:) !< motion on which what is left of the loads works
     !> What is not balanced, over the loads; 1 where it works in a direction that no joint resists.
     real(rk) :: left = 0.0_rk
+    logical :: has_settled = .false. !< else the projections ended too early to say anything
   end type best_forces
 
   !> Rows of joints below this part of the largest (squared) hold nothing.
@@ -33,6 +34,7 @@ module joint_capacity
   !> Of the loads; more of them in directions that no joint resists has no balance.
   real(rk), parameter :: roundoff = 1.0e-8_rk
   integer, parameter :: most_projections = 20000
+  real(rk), parameter :: most_work = 1.0e10_rk !< products of numbers: some seconds
   integer, parameter :: watch_every = 100
   !> Less than this left counts as balance; less progress in `watch_every` projections as the end.
   real(rk), parameter :: balanced = 1.0e-3_rk, least_progress = 1.0e-5_rk
@@ -56,6 +58,7 @@ contains
     if (norm2(left) > roundoff*norm2(load)) then
       best%mechanism = matmul(modes(:, :first - 1), left)
       best%left = 1.0_rk
+      best%has_settled = .true.
       return
     end if
     white = matmul(transpose(modes(:, first:)), rows)
@@ -64,26 +67,29 @@ contains
       white(k, :) = white(k, :)/sqrt(values(first - 1 + k))
       target(k) = target(k)/sqrt(values(first - 1 + k))
     end do
-    call project(white, limits, target, t, left)
+    call project(white, limits, target, t, left, best%has_settled)
     best%force = reshape(t, [3, size(limits)])
     best%left = norm2(left)/max(norm2(target), tiny(1.0_rk))
     best%mechanism = matmul(modes(:, first:), left/sqrt(values(first:)))
   end subroutine find_best_forces
 
   !> Least |white t - target| over admissible t; the rows of `white` are orthonormal.
-  subroutine project(white, limits, target, t, left)
+  subroutine project(white, limits, target, t, left, has_settled)
     real(rk), intent(in), contiguous :: white(:, :) !< (motions, 3*points)
     type(point_limits), intent(in) :: limits(:)
     real(rk), intent(in) :: target(:)
     real(rk), allocatable, intent(out) :: t(:) !< (3*points) [N]
     real(rk), allocatable, intent(out) :: left(:) !< target - white t
+    logical, intent(out) :: has_settled
     real(rk), allocatable :: ahead(:), before(:)
     real(rk) :: momentum, next, last
-    integer :: i
+    integer :: i, most
     allocate (t(size(white, 2)), ahead(size(white, 2)), source=0.0_rk)
     momentum = 1.0_rk
     last = huge(last)
-    do i = 1, most_projections
+    has_settled = .true.
+    most = int(min(real(most_projections, rk), most_work/max(1, 2*size(white))))
+    do i = 1, most
       before = t
       t = ahead + matmul(target - matmul(white, ahead), white)
       call admit(limits, t)
@@ -97,6 +103,7 @@ contains
       if (norm2(left) > (1.0_rk - least_progress)*last) return
       last = norm2(left)
     end do
+    has_settled = .false.
     left = target - matmul(white, t)
   end subroutine project
 

@@ -6,13 +6,13 @@
 !> dynamic step the water is where the joint was open at the end of the increment before.
 module joint_water
   use kinds, only: rk
-  use amplitudes, only: amplitude
   use joint_law, only: joint_state, state_open
   use joint_operator, only: jump_operator
   use load_uplift, only: uplift_load, water_where_open
   use problem_definition, only: problem
   use step_loads, only: load_group, step_time, factor_at
   use step_plan, only: step_load
+  use timer, only: ledger
   implicit none
   private
   public :: lead_water, show_water
@@ -61,23 +61,24 @@ contains
   end subroutine push_faces
 
   !> The pressure of the water at the points of the joints that have any, for the results.
-  subroutine show_water(scene, loads, groups, histories, when, states)
+  subroutine show_water(scene, loads, groups, when, states, costs)
     type(problem), intent(in) :: scene
     type(step_load), intent(in) :: loads(:) !< of the step
     type(load_group), intent(in) :: groups(:)
-    type(amplitude), intent(in) :: histories(:)
     type(step_time), intent(in) :: when
     type(joint_state), intent(inout) :: states(:)
+    type(ledger), intent(inout) :: costs
     real(rk) :: factor
     integer :: i, j, g
     do j = 1, size(states)
       if (allocated(states(j)%water)) deallocate (states(j)%water)
     end do
     do i = 1, size(loads)
-      factor = factor_at(loads(i)%start_factor, loads(i)%end_factor, loads(i)%amplitude, &
-                         histories, when)
       select type (water => scene%loads(loads(i)%load)%item)
       type is (uplift_load)
+        call costs%start('water in joints', 'load')
+        factor = factor_at(loads(i)%start_factor, loads(i)%end_factor, loads(i)%amplitude, &
+                           scene%amplitudes, when)
         associate (now => states(water%seam))
           if (.not. allocated(now%water)) now%water = 0.0_rk*water%pressure
           g = findloc(groups%uplift, loads(i)%load, dim=1)
@@ -87,6 +88,7 @@ contains
             now%water = now%water + factor*groups(g)%pressure
           end if
         end associate
+        call costs%stop('water in joints')
       end select
     end do
   end subroutine show_water

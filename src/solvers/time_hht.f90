@@ -172,7 +172,7 @@ contains
       call results%costs%stop('energy')
       call swap(moving, trial)
       call show_motion(system%numbers, moving, now)
-      call show_water(scene, plan%loads, system%groups, scene%amplitudes, when, now%joints)
+      call show_water(scene, plan%loads, system%groups, when, now%joints, results%costs)
       now%joint_condition = max(now%joint_condition, tool%solids%solver%condition)
       call control%accept(tool%solids%effort(outcome%own_iterations()))
       call close_increment(scene, plan, when, control, outcome, now, results, error)

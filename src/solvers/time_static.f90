@@ -135,7 +135,7 @@ contains
       call add_static_work(scene, system%matrix%num_free, moving, trial, now%energy)
       moving = trial
       call show_motion(system%numbers, moving, now)
-      call show_water(scene, plan%loads, system%groups, scene%amplitudes, when, now%joints)
+      call show_water(scene, plan%loads, system%groups, when, now%joints, results%costs)
       call control%accept(solids%effort(outcome%own_iterations()))
       call close_increment(scene, plan, when, control, outcome, now, results, error)
       if (allocated(error)) return

@@ -60,6 +60,7 @@ def test_linear_uplift_under_a_rigid_block(
     assert found["traction"][:, 0] == pytest.approx(wanted, abs=RIGID * np.abs(wanted).max())
     assert run.json["steps"][0]["energy"]["error"] < 1e-7
     assert {"name": "water of LAKE in joint BED (LINEAR)", "kind": "uplift"} in run.json["effects"]
+    assert "water in joints" in [part["name"] for part in run.json["ledger"]["parts"]]
 
 
 def test_tail_water(keyway) -> None:

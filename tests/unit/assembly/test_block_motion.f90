@@ -8,6 +8,7 @@ program test_block_motion
   type(test_log) :: log
   type(block_set) :: blocks
   real(rk), parameter :: s = sqrt(0.5_rk)
+  real(rk) :: skew(6, 2)
 
   log%suite = 'block_motion'
   blocks%num_blocks = 1
@@ -27,9 +28,9 @@ program test_block_motion
   call check_text(log, freedom_text(blocks, 1, unit_vectors([3])), 'move along z', 'one way')
   call check_text(log, freedom_text(blocks, 1, unit_vectors([1, 2, 3])), 'move along x, y, z', &
                   'all ways')
-  call check_text(log, freedom_text(blocks, 1, reshape( &
-                  [s, 0.0_rk, s, 0.0_rk, 0.0_rk, 0.0_rk, &
-                   0.0_rk, 1.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 0.0_rk], [6, 2])), &
+  skew = unit_vectors([1, 2])
+  skew([1, 3], 1) = s
+  call check_text(log, freedom_text(blocks, 1, skew), &
                   'move in all directions across (0.707, 0, -0.707)', 'a skew plane')
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
