@@ -127,10 +127,10 @@ contains
                    'meshes may differ, without interface elements. Its points are the nodes of '// &
                    'the slave side, or Gauss points; at the nodes the traction of a stiff '// &
                    'joint does not oscillate. Between surfaces each node of the slave stands '// &
-                   'on a mortar projection of the master; what has no partner is told. '// &
-                   'Tractions are smoothest with the coarser side as slave; a finer one '// &
-                   'follows openings more closely and costs less. The normal points from the '// &
-                   'master to the slave.'
+                   'on a mortar projection of the master; what has no partner is told. The '// &
+                   'finer side is the better slave, as a rule; where the face itself bends '// &
+                   'between very unequal meshes, tractions are smoother with the coarser one. '// &
+                   'The normal points from the master to the slave.'
     spec%example = '*JOINT, NAME=J1, LAW=CONTRACTION, ELSET=JOINT1'//nl// &
                    '*JOINT, NAME=J2, LAW=CONTRACTION'//nl//'LEFT_OF_2, RIGHT_OF_2'
     spec%most_lines = 1

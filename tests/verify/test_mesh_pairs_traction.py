@@ -29,8 +29,13 @@ class Traction:
     variation: float  # total, of the normal traction
 
 
-def traction(keyway, n: int, ratio: tuple[int, int], slave: str, integration: str = "NODES"):
-    """Elements a metre of the lower and the upper half: n times `ratio`; one across."""
+def traction_along(
+    keyway, n: int, ratio: tuple[int, int], slave: str, integration: str = "NODES"
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Places along one line of the joint, normal and shear tractions over the bending stress.
+
+    Elements a metre of the lower and the upper half: n times `ratio`; one across.
+    """
     sides = [Side((4 * n * r, 1, max(1, n * r // 2))) for r in ratio]
     pair = Pair(*sides, size=(4.0, 0.25), heights=(0.5, 0.5), poisson=0.0)
     pair.hold_end()
@@ -45,10 +50,15 @@ def traction(keyway, n: int, ratio: tuple[int, int], slave: str, integration: st
     x = np.stack([table[c] for c in "xyz"], axis=1) @ pair.turn
     line = (x[:, 1] < x[:, 1].min() + 1e-9) & (x[:, 0] > 0.5) & (x[:, 0] < 3.5)
     order = np.argsort(x[line, 0])
-    normal = table["tn"][line][order] / STRESS
     shear = np.hypot(table["t1"], table["t2"])[line][order]
+    return x[line, 0][order], table["tn"][line][order] / STRESS, shear / STRESS
+
+
+def traction(keyway, *of) -> Traction:
+    """How far the tractions are from the exact ones; arguments of traction_along."""
+    _, normal, shear = traction_along(keyway, *of)
     return Traction(
-        np.abs(normal).max(), np.abs(shear - SHEAR).max() / STRESS, np.abs(np.diff(normal)).sum()
+        np.abs(normal).max(), np.abs(shear - SHEAR / STRESS).max(), np.abs(np.diff(normal)).sum()
     )
 
 
