@@ -8,7 +8,7 @@ module free_blocks
   use block_motion, only: block_name, freedom_text, motion_text
   use errors, only: error_type
   use joint_capacity, only: best_forces, find_best_forces, point_limits
-  use joint_law, only: joint_state
+  use joint_law, only: joint_state, state_open
   use kinds, only: rk
   use motion_state, only: compress
   use problem_definition, only: problem
@@ -43,11 +43,12 @@ module free_blocks
 contains
 
   !> Adds to the message of an error what can be said of blocks.
-  subroutine name_free_block(scene, plan, system, states, when, error)
+  subroutine name_free_block(scene, plan, system, states, last, when, error)
     type(problem), intent(in) :: scene
     type(step), intent(in) :: plan
     type(dam_system), intent(in) :: system
     type(joint_state), intent(in) :: states(:) !< of the last equilibrium
+    type(joint_state), intent(in) :: last(:) !< where the iteration has ended
     type(step_time), intent(in) :: when !< of the increment that failed
     type(error_type), allocatable, intent(inout) :: error
     type(block_task) :: task
@@ -74,9 +75,9 @@ contains
       text = idle_motion(scene, task)
     end if
     if (text == '') then
-      text = '; the statics of rigid blocks would leave it an equilibrium, which may need a '// &
-             'thrust that these loads do not bring, smaller increments, or more ITERATIONS '// &
-             '(*CONTROLS)'
+      text = '; as rigid blocks the model has an equilibrium, which may need a thrust that '// &
+             'these loads do not bring, smaller increments, or more ITERATIONS (*CONTROLS)'// &
+             parted_block(scene, task%blocks, last)
     end if
     error%message = error%message//text
   end subroutine name_free_block
@@ -188,6 +189,31 @@ contains
                                   motion(4)*r(2) - motion(5)*r(1)]
     end do
   end subroutine move_block
+
+  !> The first block that the iteration has left with open joints alone; '' when there is none.
+  function parted_block(scene, blocks, last) result(text)
+    type(problem), intent(in) :: scene
+    type(block_set), intent(in) :: blocks
+    type(joint_state), intent(in) :: last(:)
+    character(:), allocatable :: text
+    logical :: has_joint(0:blocks%num_blocks), is_touched(0:blocks%num_blocks)
+    integer :: j, p, k, b
+    has_joint = .false.
+    is_touched = .false.
+    do j = 1, size(scene%joints)
+      do p = 1, scene%joints(j)%num_points
+        do k = scene%joints(j)%first(p), scene%joints(j)%first(p + 1) - 1
+          b = blocks%block_of(scene%joints(j)%node(k))
+          has_joint(b) = .true.
+          if (last(j)%status(p) /= state_open) is_touched(b) = .true.
+        end do
+      end do
+    end do
+    text = ''
+    b = findloc(has_joint(1:) .and. .not. is_touched(1:), .true., 1)
+    if (b == 0) return
+    text = '; where the iteration ended all joints of '//block_name(scene, blocks, b)//' were open'
+  end function parted_block
 
   !> A motion that no joint resists and no load drives: '' when there is none.
   function idle_motion(scene, task) result(text)

@@ -127,7 +127,8 @@ contains
         call control%cut(size_of_increment, outcome%size_ratio, gives_up)
         if (gives_up) call give_up(scene, system, outcome, control, now, error)
         if (gives_up .and. .not. allocated(outcome%failure)) then
-          call name_free_block(scene, plan, system, moving%joints, when, error)
+          call name_free_block(scene, plan, system, moving%joints, trial%joints, when, &
+                               error)
         end if
         if (gives_up) return
         cycle

@@ -190,3 +190,35 @@ def test_a_stone_that_nothing_drives(keyway) -> None:
     run = keyway(arch_stone(20.0, 0.0, static(STONE_WEIGHT), False), code=1)
     assert "the block with element 1 of set STONE is free to move along y" in run.stderr
     assert "no load drives it and nothing holds it" in message(run)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.6])
+def test_a_row_of_stones(keyway, friction) -> None:
+    """Three stones in a row between walls fall together; with friction a thrust is missing."""
+    mesh, n = joined(
+        *[
+            box_mesh((1, 2, 2), lambda a, b, c, s=s: np.stack([s + a, b, c], axis=-1))
+            for s in range(5)
+        ]
+    )
+    pairs = [(facets(n[i][-1]), facets(n[i + 1][0])) for i in range(4)]
+    mesh.joints = np.concatenate([np.concatenate(pair, axis=1) for pair in pairs])
+    names = [f"B{i}" for i in range(5)]
+    mesh.brick_sets = {name: np.arange(4 * i, 4 * i + 4) for i, name in enumerate(names)}
+    mesh.joint_sets["ALL"] = np.arange(len(mesh.joints))
+    mesh.node_sets = {"WALLS": np.concatenate([n[0].ravel(), n[4].ravel()])}
+    deck = (
+        mesh_deck(mesh, dict.fromkeys(names, "C3D8"), "")
+        + material("STUFF", 1e11, 0.0, 2400.0)
+        + "".join(f"*SOLID SECTION, ELSET={name}, MATERIAL=STUFF\n" for name in names)
+        + f"*JOINT LAW, NAME=L, KN=1e10, KT=1e10, FRICTION={friction!r}\n"
+        + "*JOINT, NAME=J, LAW=L, ELSET=ALL\n*BOUNDARY\nWALLS, 1, 3\n"
+        + static("*DLOAD\n" + "".join(f"{b}, GRAV, 9.81, 0., 0., -1.\n" for b in names))
+    )
+    run = keyway(deck, code=1)
+    if friction:
+        assert "as rigid blocks the model has an equilibrium" in message(run)
+        assert "may need a thrust that these loads do not bring" in message(run)
+    else:
+        assert run.stderr.count("is free to move along y, z and turn about the axis x") == 3
+        assert "it is free to move along -z (2 more blocks move with it)" in message(run)
