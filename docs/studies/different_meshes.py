@@ -216,12 +216,10 @@ def field_table(folder: Path) -> str:
 
 
 def effort_table(folder: Path) -> str:
-    """Iterations and time of every case."""
-    lines = [
-        "| case | joint points | iterations an increment | cut back | s |",
-        "|---|---|---|---|---|",
-    ]
-    for name in CASES:
+    """Points of the joints, iterations, cut-backs of every case."""
+    lines = ["| mesh | joined by | joint points | iterations an increment | most | cut back |"]
+    lines += ["|---|---|---|---|---|---|"]
+    for name, case in CASES.items():
         report = read(folder, name)
         if report is None:
             continue
@@ -229,9 +227,10 @@ def effort_table(folder: Path) -> str:
         increments = sum(step["increments"] for step in steps)
         iterations = sum(step["iterations"] for step in steps) / increments
         cuts = sum(step["cutbacks"] for step in steps)
-        points = report.get("accuracy", {}).get("joint_points", "")
-        wall = report["ledger"]["wall_s"]
-        lines.append(f"| {name} | {points} | {iterations:.2f} | {cuts} | {wall:.1f} |")
+        points = sum(joint["points"] for joint in report["joints"].values())
+        most = report["accuracy"]["most_iterations"]
+        cells = (case.title, case.joined, points, f"{iterations:.2f}", most, cuts)
+        lines.append("| " + " | ".join(map(str, cells)) + " |")
     return "\n".join(lines) + "\n"
 
 
