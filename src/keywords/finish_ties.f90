@@ -35,16 +35,32 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     logical, allocatable :: is_fixed(:, :), is_always(:, :)
+    type(node_tie), allocatable :: adjusting(:)
     integer :: i
     if (size(model%ties) == 0) return
+    allocate (adjusting(0))
     call collect_supports(model, is_fixed, is_always)
     do i = 1, size(model%ties)
       call build_tie(model%ties(i), is_fixed, is_always, model, faults)
+      if (faults%has_errors()) return
+      if (model%ties(i)%adjusts) adjusting = [adjusting, model%scene%ties(size(model%scene%ties))]
     end do
-    if (faults%has_errors()) return
+    call adjust_nodes(adjusting, model, faults)
     call check_initial_values(.false., model, faults)
     if (.not. faults%has_errors()) call check_initial_values(.true., model, faults)
   end subroutine complete_ties
+
+  !> Moves nodes to the places that they follow: any motion that is linear in space, a rotation
+  !> above all, then agrees with the ties.
+  subroutine adjust_nodes(ties, model, faults)
+    type(node_tie), intent(in) :: ties(:)
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(error_type), allocatable :: error
+    call follow_ties(ties, model%scene%mesh%x, error)
+    if (.not. allocated(error)) return
+    call model%cards(model%ties(1)%spot%card)%fault(faults, 'the ties: '//error%message)
+  end subroutine adjust_nodes
 
   !> What the supports of any step hold: a node has the same multipliers in all steps, so that a
   !> state goes over from one to the next.

@@ -2,7 +2,7 @@
 module keywords_tie
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
-  use keyword_spec, only: keyword, field, kind_real, kind_word
+  use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_word
   use kinds, only: rk
   use model_draft, only: draft, tie_request
   use named_things, only: find_surface_name, surface_names
@@ -30,7 +30,10 @@ contains
     allocate (spec%parameters, source=[ &
               field('NAME', kind_word, 'name of the tie', is_required=.true.), &
               field('STIFFNESS', kind_real, 'of springs between the faces', 'Pa/m', &
-                    lowest=0.0_rk, excludes_lowest=.true.)])
+                    lowest=0.0_rk, excludes_lowest=.true.), &
+              field('ADJUST', kind_choice, 'moves slave nodes onto the master surface before '// &
+                    'the analysis, so that where the faces lie apart (curved ones) a rotation '// &
+                    'leaves no stress', default='NO', choices='YES | NO')])
     allocate (spec%columns, source=[ &
               field('slave', kind_word, 'slave surface, better the finer one', &
                     is_required=.true.), &
@@ -45,6 +48,11 @@ contains
     integer :: line, i
     new%name = this%word('NAME')
     new%stiffness = this%real('STIFFNESS')
+    new%adjusts = this%word('ADJUST') == 'YES'
+    if (new%adjusts .and. this%has('STIFFNESS')) then
+      call this%fault_parameter(faults, 'ADJUST', 'springs have no use for it', &
+                                'ADJUST without STIFFNESS')
+    end if
     do i = 1, size(model%ties)
       if (model%ties(i)%name /= new%name) cycle
       if (model%ties(i)%spot%card == model%current) cycle

@@ -54,6 +54,7 @@ module model_draft
     character(:), allocatable :: name !< upper case
     integer :: slave = 0, master = 0 !< positions of surfaces
     real(rk) :: stiffness = 0.0_rk !< of springs, 0 for an exact tie [Pa/m]
+    logical :: adjusts = .false. !< slave nodes are moved onto what they follow
     type(origin) :: spot
   end type tie_request
 

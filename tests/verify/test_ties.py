@@ -154,3 +154,26 @@ def test_springs_part_by_traction_over_stiffness(keyway):
     cards += "*NODE PRINT, NSET=ALL\nU\n*END STEP\n"
     u = state_of(keyway(blocks.deck({"": ELASTIC}, cards)), "ALL")
     assert np.abs(u - exact).max() < EXACT * np.abs(exact).max()
+
+
+def test_a_curved_tie_can_turn(keyway):
+    """Two rings of facets that are chords of one cylinder: with ADJUST a rotation of the outside
+    turns the inside without stress; without, stresses are of the order of the chords' gaps.
+    """
+    worst = []
+    for adjust in ("NO", "YES"):
+        blocks = Blocks()
+        blocks.add("A", (2, 1, 2), (4, 0, 1), (3, 0, 1))
+        blocks.add("B", (2, 2, 3), (6, 0, 1), (4, 0, 1))
+        held = blocks.on_box([1, 0, 0], [3, 1, 1])
+        r, angle, z = blocks.x.T
+        blocks.x = np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1)
+        turned = 1e-3 * np.cross([0.3, -0.5, 1.0], blocks.x)
+        cards = ties(("B_X0", "A_X1")).replace("T0", f"T0, ADJUST={adjust}")
+        cards += "*STEP\n*STATIC\n*BOUNDARY\n" + prescribe(held, turned)
+        cards += "*NODE PRINT, NSET=ALL\nU\n*EL PRINT, ELSET=BODY\nS\n*END STEP\n"
+        table = keyway(blocks.deck({"": ELASTIC}, cards), name=adjust).csv("el_BODY")
+        worst.append(max(np.abs(table[name]).max() for name in NAMES) / (1e6 * 1e-3))
+    print(worst)
+    assert worst[0] > 1e-3
+    assert worst[1] < 1e-10
