@@ -19,7 +19,7 @@ module tell_cover
   !> meshes on one curved surface lie so far apart when a facet turns by 5 degrees.
   real(rk), parameter :: gap_part = 0.01_rk
 
-  !> Coordinates below this part of the largest are zero.
+  !> Coordinates and distances below this part of the largest coordinate are zero.
   real(rk), parameter :: round_off = 1.0e-12_rk
 
 contains
@@ -34,10 +34,13 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(named_cover) :: new
-    real(rk) :: side, bare
+    real(rk) :: side, bare, least
     new%name = name
     new%kind = kind
     new%cover = cover
+    least = round_off*maxval(abs(model%scene%mesh%x))
+    if (cover%largest_gap <= least) new%cover%largest_gap = 0.0_rk
+    if (cover%largest_overlap <= least) new%cover%largest_overlap = 0.0_rk
     model%scene%covers = [model%scene%covers, new]
     if (cover%covered_area <= 0.0_rk) then
       call place%fault(faults, 'no facet of one face lies opposite a facet of the other', &
