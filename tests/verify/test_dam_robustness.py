@@ -41,11 +41,15 @@ MESHES = {
 }
 
 
-@pytest.mark.parametrize("friction", [0.6, 1.33])
+@pytest.mark.parametrize(("size", "stiffness", "friction"), [(1.0, 1e12, 0.6), (0.8, 3e12, 1.35)])
 @pytest.mark.parametrize("meshes", MESHES)
-def test_different_meshes(keyway, meshes, friction):
-    """A dam whose blocks have meshes of their own, its base held."""
-    trial = trial_of(1.0, 1e12, 0.01, is_coarse=True, duration=3.0, has_rock=False)
+def test_different_meshes(keyway, meshes, size, stiffness, friction):
+    """A dam whose blocks have meshes of their own, its base held.
+
+    The second case stops with the fine slave unless points whose slip turns alone take an r of
+    their own (theory.md, 2.3).
+    """
+    trial = trial_of(size, stiffness, 0.01, is_coarse=True, duration=3.0, has_rock=False)
     options = dataclasses.replace(trial.options, friction=friction)
     check(keyway, dataclasses.replace(trial, options=options, blocks=MESHES[meshes]))
 
