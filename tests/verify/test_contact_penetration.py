@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from joint_decks import GRAVITY, Block, amplitude, dynamic, static, weight
+from joint_decks import BOTH_MESHES, GRAVITY, Block, amplitude, dynamic, static, weight
 from joint_histories import history, sound_energy
 
 PRINT = "*JOINT PRINT, JOINT=BED\n"
@@ -45,10 +45,12 @@ def test_a_column_does_not_sink(keyway, solver, allowed):
     assert 1 <= told["exact"]["most_augmentations"] <= 6
 
 
-def test_stiffness_by_default_is_that_of_a_layer(keyway):
+@BOTH_MESHES
+def test_stiffness_by_default_is_that_of_a_layer(keyway, meshes):
     """PENETRATION alone: KN = E/h, h = 4/6 m the depth of the elements. With 1 m allowed nothing is
-    repeated, and the bed sinks by p h/E (Poisson 0: uniform to 1e-6)."""
-    run = keyway(column("PENETRATION=1.").deck(static(weight() + PRINT)))
+    repeated, and the bed sinks by p h/E (Poisson 0: uniform to 1e-6). The base of other mesh has
+    1e10 Pa and 0.1 m: it is the stiffer side."""
+    run = keyway(column("PENETRATION=1.", meshes=meshes).deck(static(weight() + PRINT)))
     assert run.json["accuracy"]["augmentations"] == 0
     opening = run.csv("joint_BED")["opening"]
     assert opening == pytest.approx(-PRESSURE * (HEIGHT / 6.0) / 3e10, rel=1e-6)
