@@ -55,7 +55,7 @@ contains
     type(nodal_points), intent(out) :: points
     integer :: j, p, n, t, length
     n = sum(joints%num_points, mask=joints%is_nodal)
-    allocate (points%slave(n), points%first(n + 1), points%rotation(3, 3, n))
+    allocate (points%slave(n), points%own(n), points%first(n + 1), points%rotation(3, 3, n))
     allocate (points%master(sum([(size(joints(j)%node), j=1, size(joints))])))
     allocate (points%weight(size(points%master)))
     points%first(1) = 1
@@ -64,13 +64,15 @@ contains
       if (.not. joints(j)%is_nodal) cycle
       do p = 1, joints(j)%num_points
         n = n + 1
-        t = joints(j)%first_master(p)
+        t = joints(j)%first(p) + 1
         length = joints(j)%first(p + 1) - t
-        points%slave(n) = joints(j)%node(joints(j)%first(p))
+        points%slave(n) = joints(j)%node(t - 1)
+        points%own(n) = joints(j)%weight(t - 1)
         points%rotation(:, :, n) = joints(j)%rotation(:, :, p)
         points%first(n + 1) = points%first(n) + length
         points%master(points%first(n):points%first(n + 1) - 1) = joints(j)%node(t:t + length - 1)
-        points%weight(points%first(n):points%first(n + 1) - 1) = -joints(j)%weight(t:t + length - 1)
+        points%weight(points%first(n):points%first(n + 1) - 1) = &
+          -joints(j)%weight(t:t + length - 1)/points%own(n)
       end do
     end do
     points%master = points%master(:points%first(n + 1) - 1)

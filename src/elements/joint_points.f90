@@ -4,8 +4,9 @@
 !>   jump = rotation(:, :, p) * sum_k weight(k) * u(node(k)),   k = first(p) .. first(p + 1) - 1,
 !> nodes of the slave face first (their weights add up to 1), then, from first_master(p) on, those
 !> of the master face (their weights add up to -1). Integrated at the nodes a point belongs to one
-!> node of the slave face, which is the only one of that face that it sees: the other end is a node
-!> (JOINT8) or a mortar projection of the master face (surfaces of different meshes).
+!> node of the slave face, the first of its list: the other end is a node (JOINT8) or a mortar
+!> projection of the master face (surfaces of different meshes). It sees no other slave node but
+!> those beside it that follow others by a tie.
 module joint_points
   use kinds, only: rk
   use joint_law, only: traction_law

@@ -28,34 +28,58 @@ module coupling_joint
 contains
 
   !> One point for each node of the slave face that has cover, and plane. Nodes that both faces
-  !> share have none; they hold the faces together. Name and law of the joint are the caller's.
-  subroutine lay_node_points(x, slave, master, segments, is_measured, built, is_bare)
+  !> share have none; they hold the faces together. Nodes that follow others by a tie have none
+  !> either, for their jumps are no freedom of the joint: the points beside them see them too. Name
+  !> and law of the joint are the caller's.
+  subroutine lay_node_points(x, slave, master, segments, is_tied, is_measured, built, is_bare)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(facet_set), intent(in) :: slave, master
     type(segment_set), intent(in) :: segments
+    logical, intent(in) :: is_tied(:) !< (nodes) follows others by a tie
     logical, intent(in) :: is_measured !< the distance as meshed counts, else the faces touch
     type(joint), intent(inout) :: built
     logical, allocatable, intent(out) :: is_bare(:) !< (slave facets) too little covered
     type(mortar_rows) :: rows
-    integer :: p, k
-    call project(x, slave, master, segments, shared_nodes(size(x, 2), slave, master), rows)
+    logical :: is_shared(size(x, 2)), is_beside(size(x, 2))
+    integer :: p
+    is_shared = shared_nodes(size(x, 2), slave, master)
+    is_beside = face_nodes(size(x, 2), slave) .and. is_tied .and. .not. is_shared
+    call project(x, slave, master, segments, is_shared .or. is_beside, rows)
     built%is_nodal = .true.
     call open_points(rows%num_rows, rows%num_rows + size(rows%master), built)
-    k = 0
     do p = 1, rows%num_rows
-      associate (own => [(k, k=rows%first(p), rows%first(p + 1) - 1)])
-        call add_nodes(p, rows%node(p:p), [1.0_rk], rows%master(own), rows%weight(own), built)
+      associate (first => rows%first(p), last => rows%first(p + 1) - 1)
+        call add_row(p, rows%node(p), rows%area(p), rows%master(first:last), &
+                     rows%weight(first:last), is_beside, built)
       end associate
       built%rotation(:, :, p) = local_axes(-rows%normal(:, p))
     end do
     built%x = x(:, rows%node)
-    built%area = rows%area
     built%reach = rows%reach
     built%clearance = merge(rows%gap, 0.0_rk, is_measured)
     call close_points(rows%num_rows, built)
     call list_cells(slave, segments, rows%is_bare, built%cells)
     call move_alloc(rows%is_bare, is_bare)
   end subroutine lay_node_points
+
+  !> The point of a row. A tied node beside it has given its dual function to the row: it goes to
+  !> the slave side, with its area, and the jump is the mean over the two.
+  subroutine add_row(p, node, area, masters, weights, is_beside, built)
+    integer, intent(in) :: p, node
+    real(rk), intent(in) :: area !< of the node itself [m2]
+    integer, intent(in) :: masters(:)
+    real(rk), intent(in) :: weights(:) !< of the row; negative at nodes beside it
+    logical, intent(in) :: is_beside(:) !< (nodes)
+    type(joint), intent(inout) :: built
+    logical :: is_slave(size(masters))
+    real(rk) :: whole
+    is_slave = is_beside(masters)
+    whole = 1.0_rk - sum(weights, mask=is_slave)
+    built%area(p) = area*whole
+    call add_nodes(p, [node, pack(masters, is_slave)], &
+                   [1.0_rk, -pack(weights, is_slave)]/whole, &
+                   pack(masters,.not. is_slave), pack(weights,.not. is_slave)/whole, built)
+  end subroutine add_row
 
   !> Four points a segment, each seeing one facet of either face.
   subroutine lay_gauss_points(x, slave, master, segments, is_measured, built)
@@ -175,21 +199,24 @@ contains
     built%reach = built%reach(:num_points)
   end subroutine close_points
 
+  !> Nodes of a face.
+  pure function face_nodes(num_nodes, face) result(is_there)
+    integer, intent(in) :: num_nodes
+    type(facet_set), intent(in) :: face
+    logical :: is_there(num_nodes)
+    integer :: f
+    is_there = .false.
+    do f = 1, size(face%node, 2)
+      is_there(face%node(:, f)) = .true.
+    end do
+  end function face_nodes
+
   !> Nodes that belong to both faces.
   pure function shared_nodes(num_nodes, slave, master) result(is_shared)
     integer, intent(in) :: num_nodes
     type(facet_set), intent(in) :: slave, master
     logical :: is_shared(num_nodes)
-    logical :: is_master(num_nodes)
-    integer :: f
-    is_shared = .false.
-    is_master = .false.
-    do f = 1, size(master%node, 2)
-      is_master(master%node(:, f)) = .true.
-    end do
-    do f = 1, size(slave%node, 2)
-      is_shared(slave%node(:, f)) = is_master(slave%node(:, f))
-    end do
+    is_shared = face_nodes(num_nodes, slave) .and. face_nodes(num_nodes, master)
   end function shared_nodes
 
   !> What results draw: the polygons of the segments, with the slave facets' shape functions.

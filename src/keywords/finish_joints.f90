@@ -163,7 +163,8 @@ contains
       call find_segments(mesh%x, slave, master, segments, cover, &
                          merge(farthest_gap, farthest_seam, request%is_measured))
       if (request%is_nodal) then
-        call lay_node_points(mesh%x, slave, master, segments, request%is_measured, new, is_bare)
+        call lay_node_points(mesh%x, slave, master, segments, followers(model), &
+                             request%is_measured, new, is_bare)
         call leave_bare(mesh%x, slave, is_bare, cover)
       else
         call lay_gauss_points(mesh%x, slave, master, segments, request%is_measured, new)
@@ -179,6 +180,17 @@ contains
     end associate
     call check_claims(number, slave, cover, model, taken, faults)
   end subroutine build_from_surfaces
+
+  !> Nodes that follow others by a tie.
+  pure function followers(model) result(is_tied)
+    type(draft), intent(in) :: model
+    logical, allocatable :: is_tied(:)
+    integer :: i
+    allocate (is_tied(model%scene%mesh%num_nodes), source=.false.)
+    do i = 1, size(model%scene%ties)
+      is_tied(model%scene%ties(i)%node) = .true.
+    end do
+  end function followers
 
   !> A face takes part as slave once.
   subroutine check_claims(number, slave, cover, model, taken, faults)

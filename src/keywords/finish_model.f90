@@ -31,8 +31,8 @@ contains
     call check_materials(model, faults)
     call check_solids(model, faults)
     call complete_interfaces(model, faults)
-    call complete_joints(model, faults)
     if (.not. faults%has_errors()) call complete_ties(model, faults)
+    call complete_joints(model, faults)
     if (.not. faults%has_errors()) call complete_uplift(model, faults)
     call trim_loads(model)
   end subroutine complete_model

@@ -21,9 +21,10 @@ module jump_links
   !> Points of joints that belong to one node of the slave face.
   type :: nodal_points
     integer, allocatable :: slave(:) !< (points) node positions
+    real(rk), allocatable :: own(:) !< (points) weight of the slave node in the jump
     integer, allocatable :: first(:) !< (points + 1)
     integer, allocatable :: master(:)
-    real(rk), allocatable :: weight(:) !< of the masters; they add up to 1
+    real(rk), allocatable :: weight(:) !< of the masters, over that of the slave; they add up to 1
     real(rk), allocatable :: rotation(:, :, :) !< (3, 3, points) rows: normal, slip 1, slip 2
   end type nodal_points
 
@@ -36,6 +37,7 @@ contains
     type(nodal_points), intent(out) :: points
     integer :: p
     points%slave = slave
+    points%own = spread(1.0_rk, 1, size(slave))
     points%master = master
     points%first = [(p, p=1, size(slave) + 1)]
     points%weight = spread(1.0_rk, 1, size(slave))
@@ -137,7 +139,7 @@ contains
           call add_link(3*(points%slave(p) - 1) + i, &
                         [3*(masters - 1) + i, -jump, -jump - 1, -jump - 2], &
                         [points%weight(points%first(p):points%first(p + 1) - 1), &
-                         points%rotation(:, i, p)], links)
+                         points%rotation(:, i, p)/points%own(p)], links)
         end do
       end associate
     end do

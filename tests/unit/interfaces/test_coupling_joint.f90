@@ -14,12 +14,14 @@ program test_coupling_joint
 
   !> Round-off of sums of some hundred products; the quadrature leaves 1e-14.
   real(rk), parameter :: round_off = 1.0e-12_rk
+  integer, parameter :: size_of_pair = 31 !< nodes of lay_faces
   type(test_log) :: log
 
   log%suite = 'coupling_joint'
   call nodes_stand_on_the_master(log)
   call equal_meshes_are_joint8(log)
   call shared_nodes_hold_together(log)
+  call tied_nodes_leave_their_share(log)
   call gauss_points_share_the_area(log)
   call cells_draw_the_face(log)
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
@@ -46,7 +48,8 @@ contains
     integer :: p
     logical :: is_right
     call lay_faces(0.01_rk, pair)
-    call lay_node_points(pair%x, pair%slave, pair%master, pair%segments, .false., built, is_bare)
+    call lay_node_points(pair%x, pair%slave, pair%master, pair%segments, none(pair), &
+                         .false., built, is_bare)
     call check(log, built%num_points == 16, 'one point a node')
     call check(log, built%is_nodal .and. .not. built%is_matching, 'at nodes of surfaces')
     call check(log, all(built%first_master == built%first(:16) + 1), 'one slave node a point')
@@ -63,7 +66,8 @@ contains
     call check(log, all(abs(built%clearance) <= 0.0_rk), 'faces count as touching')
     call check(log, count(is_bare) == 0, 'all covered')
     call check_close(log, maxval(built%reach), 0.25_rk, round_off, 'reach: the masters are shorter')
-    call lay_node_points(pair%x, pair%slave, pair%master, pair%segments, .true., measured, is_bare)
+    call lay_node_points(pair%x, pair%slave, pair%master, pair%segments, none(pair), &
+                         .true., measured, is_bare)
     call check_close(log, maxval(abs(measured%clearance - 0.01_rk)), 0.0_rk, round_off, &
                      'distance as meshed')
   end subroutine nodes_stand_on_the_master
@@ -83,7 +87,8 @@ contains
     call add_sheet(parts(2, 3.0_rk), parts(2, 1.0_rk), .true., pair%x, pair%master)
     pair%x = bent(pair%x, 'rotated')
     call find_segments(pair%x, pair%slave, pair%master, pair%segments, pair%cover)
-    call lay_node_points(pair%x, pair%slave, pair%master, pair%segments, .false., built, is_bare)
+    call lay_node_points(pair%x, pair%slave, pair%master, pair%segments, none(pair), &
+                         .false., built, is_bare)
     model%num_nodes = 18
     model%num_elements = 4
     model%x = pair%x
@@ -121,7 +126,8 @@ contains
     call add_sheet(parts(1, 1.0_rk), parts(3, 1.0_rk), .true., pair%x, pair%master)
     pair%master%node = merge(pair%master%node - 8, pair%master%node, pair%master%node <= 10)
     call find_segments(pair%x, pair%slave, pair%master, pair%segments, pair%cover)
-    call lay_node_points(pair%x, pair%slave, pair%master, pair%segments, .false., built, is_bare)
+    call lay_node_points(pair%x, pair%slave, pair%master, pair%segments, none(pair), &
+                         .false., built, is_bare)
     call check(log, built%num_points == 6, 'points of the free nodes')
     call check(log, all(built%node(built%first(:6)) > 2), 'none where both faces have the node')
     force = 0.0_rk
@@ -134,6 +140,62 @@ contains
     call check_close(log, maxval(abs(force - expected)), 0.0_rk, round_off, &
                      'the edge takes its part of a pressure itself')
   end subroutine shared_nodes_hold_together
+
+  !> Nodes that follow others by a tie have no point; the points beside them see them, so that a
+  !> constant traction still puts int N dA on every node, and a uniform opening reads as it is.
+  subroutine tied_nodes_leave_their_share(log)
+    type(test_log), intent(inout) :: log
+    type(two_faces) :: pair
+    type(joint) :: free, beside
+    logical, allocatable :: is_bare(:), is_tied(:)
+    real(rk) :: expected(size_of_pair), force(size_of_pair), jump, field
+    integer :: p, k
+    call lay_faces(0.0_rk, pair)
+    is_tied = none(pair)
+    is_tied(1:4) = .true.
+    call lay_node_points(pair%x, pair%slave, pair%master, pair%segments, none(pair), .false., &
+                         free, is_bare)
+    call lay_node_points(pair%x, pair%slave, pair%master, pair%segments, is_tied, .false., &
+                         beside, is_bare)
+    call check(log, beside%num_points == 12, 'no points at tied nodes')
+    call unit_traction(free, expected)
+    call unit_traction(beside, force)
+    call check_close(log, maxval(abs(force - expected)), 0.0_rk, round_off, 'forces on all nodes')
+    jump = 0.0_rk
+    field = 0.0_rk
+    do p = 1, beside%num_points
+      jump = max(jump, abs(sum(beside%weight(beside%first(p):beside%first_master(p) - 1)) - 1.0_rk))
+      field = max(field, abs(sum([(beside%weight(k)*linear(pair%x(:, beside%node(k))), &
+                                   k=beside%first(p), beside%first(p + 1) - 1)])))
+    end do
+    call check_close(log, jump, 0.0_rk, round_off, 'uniform opening')
+    call check_close(log, field, 0.0_rk, round_off, 'linear field on both faces')
+  end subroutine tied_nodes_leave_their_share
+
+  !> Forces of a unit traction on the nodes [m2].
+  pure subroutine unit_traction(built, force)
+    type(joint), intent(in) :: built
+    real(rk), intent(out) :: force(:) !< (nodes)
+    integer :: p, k
+    force = 0.0_rk
+    do p = 1, built%num_points
+      do k = built%first(p), built%first(p + 1) - 1
+        force(built%node(k)) = force(built%node(k)) + built%area(p)*built%weight(k)
+      end do
+    end do
+  end subroutine unit_traction
+
+  pure real(rk) function linear(x) result(value)
+    real(rk), intent(in) :: x(3)
+    value = 0.3_rk + 0.7_rk*x(1) - 1.1_rk*x(2)
+  end function linear
+
+  !> No node follows others.
+  pure function none(pair) result(is_tied)
+    type(two_faces), intent(in) :: pair
+    logical, allocatable :: is_tied(:)
+    allocate (is_tied(size(pair%x, 2)), source=.false.)
+  end function none
 
   subroutine gauss_points_share_the_area(log)
     type(test_log), intent(inout) :: log
@@ -176,7 +238,8 @@ contains
     real(rk) :: corner(3, 12), area
     integer :: c, i, k, n
     call lay_faces(0.0_rk, pair)
-    call lay_node_points(pair%x, pair%slave, pair%master, pair%segments, .false., built, is_bare)
+    call lay_node_points(pair%x, pair%slave, pair%master, pair%segments, none(pair), &
+                         .false., built, is_bare)
     area = 0.0_rk
     associate (cells => built%cells)
       do c = 1, size(cells%element)
