@@ -56,7 +56,8 @@ contains
       area = facet_area(x(:, slave%node(:, f)))
       cover%bare(f) = 1.0_rk - covered
       cover%slave_area = cover%slave_area + area
-      cover%covered_area = cover%covered_area + covered*area
+      cover%covered_area = cover%covered_area + min(covered, 1.0_rk)*area
+      cover%excess_area = cover%excess_area + max(covered - 1.0_rk, 0.0_rk)*area
       if (cover%bare(f)*area <= largest_bare) cycle
       largest_bare = cover%bare(f)*area
       cover%bare_place = 0.25_rk*sum(x(:, slave%node(:, f)), dim=2)
@@ -70,11 +71,14 @@ contains
     type(facet_set), intent(in) :: slave
     logical, intent(in) :: is_bare(:) !< (slave facets)
     type(surface_cover), intent(inout) :: cover
+    real(rk) :: covered, area
     integer :: f
     do f = 1, size(is_bare)
       if (.not. is_bare(f) .or. cover%bare(f) >= 1.0_rk) cycle
-      cover%covered_area = cover%covered_area - (1.0_rk - cover%bare(f)) &
-                           *facet_area(x(:, slave%node(:, f)))
+      covered = 1.0_rk - cover%bare(f)
+      area = facet_area(x(:, slave%node(:, f)))
+      cover%covered_area = cover%covered_area - min(covered, 1.0_rk)*area
+      cover%excess_area = cover%excess_area - max(covered - 1.0_rk, 0.0_rk)*area
       cover%bare(f) = 1.0_rk
     end do
   end subroutine leave_bare

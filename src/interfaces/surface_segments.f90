@@ -31,7 +31,8 @@ module surface_segments
   !> How well two faces cover each other; told to the user.
   type :: surface_cover
     real(rk) :: slave_area = 0.0_rk, master_area = 0.0_rk !< of the faces [m2]
-    real(rk) :: covered_area = 0.0_rk !< of the slave face [m2]
+    real(rk) :: covered_area = 0.0_rk !< of the slave face, no facet more than once [m2]
+    real(rk) :: excess_area = 0.0_rk !< what covers slave facets beyond the whole of each [m2]
     real(rk), allocatable :: bare(:) !< (slave facets) part of each that has no partner, 0..1;
     !< below 0 by more than round-off where master facets lie upon each other
     integer, allocatable :: element(:) !< (slave facets) the solid behind or the IFACE4, positions

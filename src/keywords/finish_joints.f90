@@ -241,14 +241,14 @@ contains
       call place%fault(faults, 'no solid behind the joint gives KN and KT', &
                        'KN and KT in the *JOINT LAW')
       return
-    else if (any(materials /= materials(1))) then
-      call place%warn(faults, "the slave side has several materials; KN and KT are made of '"// &
-                      model%scene%materials(materials(1))%name//"'")
     else if (model%scene%materials(materials(1))%young <= 0.0_rk) then
       call place%fault(faults, "the material of the slave side, '"// &
                        model%scene%materials(materials(1))%name//"', has no E (a UMAT) to "// &
                        'make KN and KT of', 'KN and KT in the *JOINT LAW')
       return
+    else if (any(materials /= materials(1))) then
+      call place%warn(faults, "the slave side has several materials; KN and KT are made of '"// &
+                      model%scene%materials(materials(1))%name//"'")
     end if
     if (law%asks_for_layer()) then
       call take_layer_stiffness(model%scene, behind, reshape(corners, [4, size(behind)]), law)

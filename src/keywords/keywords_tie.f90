@@ -69,9 +69,31 @@ contains
         call this%fault_at(faults, line, 2, 'the master surface is the slave surface', &
                            'another surface')
       end if
+      call check_pair(this, line, new, model, faults)
       model%ties = [model%ties, new]
     end do
   end subroutine read_tie
+
+  !> No tie holds the same two surfaces already: springs would add up.
+  subroutine check_pair(this, line, new, model, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line
+    type(tie_request), intent(in) :: new
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i
+    if (min(new%slave, new%master) == 0) return
+    do i = 1, size(model%ties)
+      associate (other => model%ties(i))
+        if (min(other%slave, other%master) /= min(new%slave, new%master)) cycle
+        if (max(other%slave, other%master) /= max(new%slave, new%master)) cycle
+        call this%fault_at(faults, line, 1, "tie '"//other%name//"' holds these two surfaces "// &
+                           'already', 'one tie for two surfaces', &
+                           first=model%cards(other%spot%card)%place())
+      end associate
+      return
+    end do
+  end subroutine check_pair
 
   !> Position of the surface named in a field; 0 after a fault.
   subroutine find_surface(this, line, number, model, faults, found)

@@ -52,9 +52,11 @@ contains
       call place%warn(faults, as_text(bare)//' of the '//as_text(cover%slave_area)// &
                       ' m2 of the slave face have no master facet opposite, most of it at '// &
                       place_text(cover%bare_place))
-    else if (-bare > bare_part*cover%slave_area) then
-      call place%warn(faults, 'master facets lie upon each other: '//as_text(-bare)//' of the '// &
-                      as_text(cover%slave_area)//' m2 of the slave face count twice')
+    end if
+    if (cover%excess_area > bare_part*cover%slave_area) then
+      call place%warn(faults, 'master facets lie upon each other: '// &
+                      as_text(cover%excess_area)//' of the '//as_text(cover%slave_area)// &
+                      ' m2 of the slave face count twice')
     end if
     if (gaps_count) return
     side = sqrt(cover%slave_area/max(1, size(cover%bare)))

@@ -42,7 +42,7 @@ module equilibrium
     integer :: worst_unknown = 0 !< where that of inelastic solids is largest, when joints agree
     real(rk), allocatable :: history(:) !< residuals of the iterations on inelastic solids
     real(rk) :: size_ratio = 1.0_rk !< of the increment that a material asks for, over this one
-    character(:), allocatable :: failure !< why a material asks for a smaller one
+    character(:), allocatable :: failure !< why a material, or water, asks for a smaller one
   contains
     procedure :: own_iterations
   end type balance_outcome

@@ -103,7 +103,7 @@ contains
            'not a force; where it does, smaller increments or *CONTROLS, TANGENT=CONSISTENT)'
   end function worst_node
 
-  !> A material that no increment is small enough for.
+  !> A material, or water in a joint, that no increment is small enough for.
   pure function failure_text(outcome, control, now) result(text)
     type(balance_outcome), intent(in) :: outcome
     type(increment_control), intent(in) :: control

@@ -163,6 +163,8 @@ contains
       if (.not. has_changed) return
     end do
     outcome%has_converged = .false.
+    outcome%failure = 'water and opening of joints (*JOINT LAW, PROFILE=OPEN) do not '// &
+                      'settle: points open and close by turns'
   end subroutine settle_water
 
   !> One increment: K x + B^T (area t) = f1 - K q0 + released for the increment x of the unknowns.
