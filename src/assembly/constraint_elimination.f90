@@ -43,11 +43,23 @@ contains
       is_fixed(fixities(k)%dof, fixities(k)%node) = .true.
     end do
     call list_points(joints, points)
+    points%is_light = nodes_of_quads(model)
     call link_nodes(points, ties, is_used, is_fixed, links, error)
     if (allocated(error)) return
     call mark_last(joints, links%first_jump, is_used, links%is_last)
     call number_unknowns(is_used, is_fixed, links, numbers, error)
   end subroutine number_step
+
+  !> Nodes of interface quadrilaterals, which have no mass.
+  pure function nodes_of_quads(model) result(is_there)
+    type(mesh), intent(in) :: model
+    logical :: is_there(model%num_nodes)
+    integer :: e
+    is_there = .false.
+    do e = 1, model%num_elements
+      if (model%element_type(e) == 'IFACE4') is_there(model%nodes(1:4, e)) = .true.
+    end do
+  end function nodes_of_quads
 
   !> The points of the joints that are integrated at nodes, joint by joint, point by point.
   subroutine list_points(joints, points)

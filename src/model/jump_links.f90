@@ -26,6 +26,9 @@ module jump_links
     integer, allocatable :: master(:)
     real(rk), allocatable :: weight(:) !< of the masters, over that of the slave; they add up to 1
     real(rk), allocatable :: rotation(:, :, :) !< (3, 3, points) rows: normal, slip 1, slip 2
+    !> Nodes without mass, which had better follow: where a node with mass follows one, the mass
+    !> matrix over the two and their jump is singular where forces act. Not allocated: none.
+    logical, allocatable :: is_light(:)
   end type nodal_points
 
 contains
@@ -182,14 +185,14 @@ contains
   end subroutine link_pairs
 
   !> Walks every tree of pairs from its root: a node that cannot follow, else one that is never a
-  !> slave, else any.
+  !> slave, else any; those without mass come last.
   subroutine walk_trees(points, graph, num_nodes, links)
     type(nodal_points), intent(in) :: points
     type(dependence), intent(in) :: graph
     integer, intent(in) :: num_nodes
     type(linear_links), intent(inout) :: links
     integer, allocatable :: first(:), edge(:), queue(:)
-    logical, allocatable :: is_seen(:), is_slave(:)
+    logical, allocatable :: is_seen(:), is_slave(:), is_light(:)
     integer :: rank, node, p
     call list_edges(points, links%first_jump, num_nodes, first, edge)
     if (size(edge) == 0) return
@@ -198,11 +201,14 @@ contains
     do p = 1, size(points%slave)
       if (links%first_jump(p) > 0 .and. is_pair(points, p)) is_slave(points%slave(p)) = .true.
     end do
-    do rank = 1, 3
+    allocate (is_light(num_nodes), source=.false.)
+    if (allocated(points%is_light)) is_light = points%is_light
+    do rank = 1, 4
       do node = 1, num_nodes
         if (is_seen(node) .or. first(node + 1) == first(node)) cycle
         if (rank == 1 .and. .not. graph%is_end(node)) cycle
         if (rank == 2 .and. is_slave(node)) cycle
+        if (rank <= 3 .and. is_light(node) .and. .not. graph%is_end(node)) cycle
         call walk_from(node)
       end do
     end do

@@ -14,6 +14,7 @@ program test_jump_links
   call tie_of_some_directions()
   call chain_of_ties()
   call circles()
+  call light_nodes()
   call tie_and_joint()
   call last_unknowns()
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
@@ -24,6 +25,7 @@ contains
   subroutine no_points(points)
     type(nodal_points), intent(out) :: points
     allocate (points%slave(0), points%master(0), points%weight(0), points%rotation(3, 3, 0))
+    points%own = [real(rk) ::]
     points%first = [1]
   end subroutine no_points
 
@@ -37,6 +39,7 @@ contains
                      [3, 3])
     points%slave = [points%slave, slave]
     points%master = [points%master, master]
+    points%own = [points%own, 1.0_rk]
     points%weight = [points%weight, weight]
     points%first = [points%first, size(points%master) + 1]
     points%rotation = reshape([points%rotation, turned], [3, 3, size(points%slave)])
@@ -176,6 +179,30 @@ contains
                         [.true., .true., .false., .false., .true., .false., .true.]), &
                'no jump closes a circle')
   end subroutine circles
+
+  !> A node without mass follows its partner, whichever of the two is the slave.
+  subroutine light_nodes()
+    type(nodal_points) :: points
+    type(node_tie) :: none(0)
+    type(numbering) :: numbers
+    real(rk), allocatable :: q(:)
+    real(rk) :: u(3, n), d(3)
+    logical :: is_fixed(3, n)
+    integer :: p
+    is_fixed = .false.
+    call no_points(points)
+    call add_point(1, [5], [1.0_rk], points)
+    call add_point(6, [2], [1.0_rk], points)
+    points%is_light = [(any([5, 6] == p), p=1, n)]
+    call number_nodes(points, none, is_fixed, numbers, q, u)
+    call check(log, all([(any(numbers%node == p), p=1, 2)]), 'nodes with mass are unknowns')
+    do p = 1, 2
+      d = matmul(points%rotation(:, :, p), u(:, points%slave(p)) - u(:, points%master(p)))
+      call check_close(log, norm2(d - q(numbers%first_jump(p) + [0, 1, 2])), 0.0_rk, 1.0e-15_rk, &
+                       'and the jump is')
+      call check(log, count(numbers%node == 4 + p) == 3, 'a light node stands for its jump alone')
+    end do
+  end subroutine light_nodes
 
   !> Both ends of a joint are tied to a third body; where one is, the other follows it.
   subroutine tie_and_joint()
