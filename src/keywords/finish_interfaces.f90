@@ -5,6 +5,7 @@ module finish_interfaces
   use kinds, only: rk
   use mesh_faces, only: face_vector
   use model_draft, only: draft
+  use shape_quad4, only: cross
   use surface_coupling, only: build_coupling, coupling
   use surface_facets, only: list_interface_facets, list_surface_facets
   use surface_segments, only: facet_set, surface_cover
@@ -13,6 +14,9 @@ module finish_interfaces
   implicit none
   private
   public :: complete_interfaces, append_coupling
+
+  !> A corner of 180 degrees, but for the digits of a mesher.
+  real(rk), parameter :: round_off = 1.0e-6_rk
 
 contains
 
@@ -30,7 +34,7 @@ contains
     end do
   end subroutine complete_interfaces
 
-  !> Every IFACE4 belongs to an *INTERFACE, has an area, and shares no node with a solid.
+  !> Every IFACE4 belongs to an *INTERFACE, is convex, and shares no node with a solid.
   subroutine check_quads(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
@@ -55,6 +59,10 @@ contains
           call fault_quad(e, 'has no area', 'four corners in a row around it', model, faults)
           return
         end if
+        if (bends_inward(mesh%x(:, mesh%nodes(1:4, e)))) then
+          call fault_quad(e, 'bends inward at a corner', 'a convex quadrilateral', model, faults)
+          return
+        end if
         do a = 1, 4
           if (.not. is_of_solid(mesh%nodes(a, e))) cycle
           call fault_quad(e, 'shares node '//as_text(mesh%node_id(mesh%nodes(a, e)))// &
@@ -65,6 +73,23 @@ contains
       end do
     end associate
   end subroutine check_quads
+
+  !> Whether a corner lies within the triangle of the others, or two sides cross: the shape
+  !> functions do not cover such a quad once.
+  pure logical function bends_inward(x)
+    real(rk), intent(in) :: x(3, 4) !< corners [m]
+    real(rk) :: vector(3), to_next(3), to_last(3)
+    integer :: a
+    vector = face_vector(x)
+    bends_inward = .false.
+    do a = 1, 4
+      to_next = x(:, mod(a, 4) + 1) - x(:, a)
+      to_last = x(:, mod(a + 2, 4) + 1) - x(:, a)
+      if (dot_product(cross(to_next, to_last), vector) < -round_off*sum(vector**2)) then
+        bends_inward = .true.
+      end if
+    end do
+  end function bends_inward
 
   !> Points at an element.
   subroutine fault_quad(e, problem, expected, model, faults)
