@@ -54,6 +54,7 @@ module deck_card
     procedure :: fault
     procedure :: fault_parameter
     procedure :: fault_at
+    procedure :: warn_at
     procedure :: warn
     procedure :: ignore
   end type card
@@ -290,6 +291,16 @@ contains
     character(*), intent(in), optional :: expected !< what was expected
     call faults%add(severity_warning, self%place(), problem, expected)
   end subroutine warn
+
+  !> Adds a warning that points at a field (0: the whole line).
+  subroutine warn_at(self, faults, line, field, problem, expected)
+    class(card), intent(in) :: self
+    type(diagnostic_list), intent(inout) :: faults
+    integer, intent(in) :: line, field !< data line and field
+    character(*), intent(in) :: problem !< what is odd
+    character(*), intent(in), optional :: expected !< what was expected
+    call faults%add(severity_warning, self%place_at(line, field), problem, expected)
+  end subroutine warn_at
 
   !> Notes that the keyword has no effect here (`ignored_input` of job.json).
   subroutine ignore(self, faults, why)

@@ -1,4 +1,4 @@
-!> Requests for fields that no material of the model has: a warning each, where the deck asks first.
+!> Requests for fields that nothing of the model has: a warning each, where the deck asks first.
 module check_requests
   use card_reader, only: field_reader
   use diagnostics, only: diagnostic_list
@@ -29,7 +29,13 @@ contains
         reader = field_reader()
         do while (reader%advance(request))
           word = request%word_at(reader%line, reader%field)
-          if (.not. is_field_of_law(word) .or. any(told == word)) cycle
+          if (any(told == word)) cycle
+          if (word == 'OPENING' .and. request%keyword == 'ENVELOPE' &
+              .and. size(model%scene%joints) == 0) then
+            told = [character(8) :: told, word]
+            call request%warn(faults, 'the model has no joints; OPENING is not written')
+          end if
+          if (.not. is_field_of_law(word)) cycle
           if (width_of_field(model%scene, trim(word)) > 0) cycle
           told = [character(8) :: told, word]
           call request%warn(faults, 'no material of the model has '//trim(word)// &

@@ -22,7 +22,7 @@ module finish_joints
   use write_text, only: as_text
   implicit none
   private
-  public :: complete_joints
+  public :: complete_joints, farthest_gap, farthest_seam
 
   !> How far apart facets may be that the joint acts between, in diagonals of a facet: faces that
   !> count as touching, and those whose distance is a gap that may close.
@@ -169,7 +169,10 @@ contains
       else
         call lay_gauss_points(mesh%x, slave, master, segments, request%is_measured, new)
       end if
-      if (new%num_points == 0) then
+      if (new%num_points == 0 .and. segments%num_segments > 0) then
+        call place%fault_at(faults, 1, 1, 'the joint holds nothing: ties hold every node of '// &
+                            'the slave surface', 'the surfaces the other way round')
+      else if (new%num_points == 0) then
         call place%fault_at(faults, 1, 1, 'the two surfaces do not lie on each other', &
                             'faces that look at each other, less than '// &
                             trim(merge('4 facets    ', 'half a facet', request%is_measured))// &

@@ -10,6 +10,7 @@ module finish_model
   use finish_ties, only: complete_ties
   use finish_uplift, only: complete_uplift
   use finish_user_materials, only: complete_user_materials
+  use joined_twice, only: refuse_joined_twice
   use model_draft, only: draft
   implicit none
   private
@@ -31,6 +32,7 @@ contains
     call check_materials(model, faults)
     call check_solids(model, faults)
     call complete_interfaces(model, faults)
+    if (.not. faults%has_errors()) call refuse_joined_twice(model, faults)
     if (.not. faults%has_errors()) call complete_ties(model, faults)
     call complete_joints(model, faults)
     if (.not. faults%has_errors()) call complete_uplift(model, faults)

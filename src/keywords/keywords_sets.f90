@@ -178,7 +178,7 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(surface) :: new
-    integer, allocatable :: members(:)
+    integer, allocatable :: members(:), seen(:)
     integer :: line, face, i, used, earlier
     earlier = find_surface_name(model, this%word('NAME'))
     if (earlier > 0) then
@@ -189,11 +189,13 @@ contains
     end if
     new%name = this%word('NAME')
     allocate (new%element(64), new%face(64))
+    allocate (seen(model%scene%mesh%num_elements), source=0)
     used = 0
     do line = 1, this%num_lines
       call elements_at(this, line, 1, model, faults, members)
       face = index('S1S2S3S4S5S6', this%word_at(line, 2))/2 + 1
       call check_faces(this, line, members, face, model, faults)
+      call drop_repeats(this, line, face, model, seen, members, faults)
       i = used
       call append(new%element, used, members)
       call append(new%face, i, spread(face, 1, size(members)))
@@ -203,6 +205,31 @@ contains
     model%scene%surfaces = [model%scene%surfaces, new]
     model%surface_origin = [model%surface_origin, model%here(0)]
   end subroutine read_surface
+
+  !> A face counts once, however often a surface names it.
+  subroutine drop_repeats(this, line, face, model, seen, members, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line
+    integer, intent(in) :: face !< 1..6
+    type(draft), intent(in) :: model
+    integer, intent(inout) :: seen(:) !< (elements) bits 1..6: faces in the surface
+    integer, allocatable, intent(inout) :: members(:) !< positions of elements
+    type(diagnostic_list), intent(inout) :: faults
+    logical :: is_new(size(members))
+    integer :: i
+    do i = 1, size(members)
+      is_new(i) = .not. btest(seen(members(i)), face)
+      seen(members(i)) = ibset(seen(members(i)), face)
+    end do
+    if (all(is_new)) return
+    i = findloc(is_new, .false., dim=1)
+    call this%warn_at(faults, line, 1, 'face '//this%text_at(line, 2)//' of element '// &
+                      as_text(model%scene%mesh%element_id(members(i)))// &
+                      trim(merge(' is in the surface twice; it counts once              ', &
+                                 ' and others are in the surface twice; they count once ', &
+                                 count(.not. is_new) == 1)))
+    members = pack(members, is_new)
+  end subroutine drop_repeats
 
   !> A face must belong to a solid and must not have collapsed.
   subroutine check_faces(this, line, members, face, model, faults)

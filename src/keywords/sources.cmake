@@ -28,6 +28,7 @@ set(sources
   keywords_output.f90
   keywords_user_material.f90
   keywords_later.f90
+  joined_twice.f90
   keyword_catalogue.f90
   concrete_widths.f90
   concrete_remarks.f90

@@ -30,7 +30,7 @@ contains
     character(*), intent(in) :: name !< upper case
     character(*), intent(in) :: kind !< 'JOINT', 'TIE' or 'INTERFACE'
     type(surface_cover), intent(in) :: cover
-    logical, intent(in) :: gaps_count !< what lies between the faces as meshed is meant
+    logical, intent(in) :: gaps_count !< gaps between the faces as meshed are meant
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(named_cover) :: new
@@ -58,9 +58,8 @@ contains
                       as_text(cover%excess_area)//' of the '//as_text(cover%slave_area)// &
                       ' m2 of the slave face count twice')
     end if
-    if (gaps_count) return
     side = sqrt(cover%slave_area/max(1, size(cover%bare)))
-    if (cover%largest_gap > gap_part*side) then
+    if (cover%largest_gap > gap_part*side .and. .not. gaps_count) then
       call place%warn(faults, 'the faces lie up to '//as_text(cover%largest_gap)// &
                       ' m apart, at '//place_text(cover%gap_place))
     end if
