@@ -63,7 +63,7 @@ contains
   !> An empty record. A point lies on a face of the dam when its node does, at a Gauss point the one
   !> with the largest shape function: on either side of JOINT8 elements, on the slave side of
   !> surfaces, since a coarse master node draws on points far away from it. Where no slave node lies
-  !> on a face (the rock under a dam) the master side speaks: more than half of the weights.
+  !> on a face (the rock under a dam) the master side speaks.
   subroutine open_joint_record(item, skin, record)
     type(joint), intent(in) :: item
     type(dam_skin), intent(in) :: skin
@@ -86,17 +86,20 @@ contains
     end if
   end subroutine open_joint_record
 
-  !> Does more than half of a point's master side lie on these nodes?
+  !> Does a point's master side lie on these nodes, more than half as much as that of any other?
+  !> Under a slave facet much larger than the master's no point lies on them by half itself.
   pure function leans_on(item, is_marked) result(leans)
     type(joint), intent(in) :: item
     logical, intent(in) :: is_marked(:) !< (nodes)
     logical :: leans(item%num_points)
+    real(rk) :: part(item%num_points)
     integer :: p
     do p = 1, item%num_points
       associate (first => item%first_master(p), last => item%first(p + 1) - 1)
-        leans(p) = -sum(item%weight(first:last), mask=is_marked(item%node(first:last))) > 0.5_rk
+        part(p) = -sum(item%weight(first:last), mask=is_marked(item%node(first:last)))
       end associate
     end do
+    leans = part > max(0.5_rk*maxval(part), 0.0_rk)
   end function leans_on
 
   !> Takes note of one increment: opening (0 while closed), slip (its length), closing pressure and

@@ -7,7 +7,7 @@ module condensation
   use joint_law, only: joint_state
   use joint_points, only: joint
   use joint_operator, only: jump_operator
-  use joint_forces, only: joint_field, reference_stiffness
+  use joint_forces, only: joint_field, reference_stiffness, gather_jumps, gather_tractions
   use joint_iteration, only: start_iteration, relief, closed_tangent
   use joint_compliance, only: find_compliance, friction_scale
   use matrix_condition, only: estimate_condition
@@ -24,8 +24,11 @@ module condensation
     type(jump_factor) :: jumps !< where there is one, an increment takes one solve in place of two
   contains
     procedure :: prepare, solve
-    procedure, private :: begin_solve, end_solve
+    procedure, private :: solve_from, has_drifted, begin_solve, end_solve
   end type condensed_equilibrium
+
+  !> Part of the tolerance that the drift of jumps may use up.
+  real(rk), parameter :: allowed_drift = 0.1_rk
 
 contains
 
@@ -72,9 +75,51 @@ contains
     call self%costs%stop('compliance')
   end subroutine prepare
 
+  !> Solves, and once more from the jumps found where they have drifted from the balance.
+  subroutine solve(self, balance, joints, old, new, x, outcome, error)
+    class(condensed_equilibrium), intent(inout) :: self
+    type(force_balance), intent(in) :: balance
+    type(joint), intent(in) :: joints(:)
+    type(joint_state), intent(in) :: old(:)
+    type(joint_state), intent(inout) :: new(:)
+    real(rk), intent(out) :: x(:)
+    type(balance_outcome), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: error
+    type(force_balance) :: nearer
+    integer :: iterations
+    call self%solve_from(balance, joints, old, new, x, outcome, error)
+    if (allocated(error) .or. .not. outcome%has_converged) return
+    if (.not. self%has_drifted(balance, new, x)) return
+    nearer = balance
+    nearer%starts_bonded = .false.
+    call gather_jumps(self%operator, new, nearer%guess)
+    iterations = outcome%iterations
+    call self%solve_from(nearer, joints, old, new, x, outcome, error)
+    outcome%iterations = outcome%iterations + iterations
+  end subroutine solve
+
+  !> Are the jumps of the solution others than those the laws were evaluated at? A block that
+  !> touched nothing for an iterate went so far that the digits of its way back are missing.
+  logical function has_drifted(self, balance, new, x)
+    class(condensed_equilibrium), intent(in) :: self
+    type(force_balance), intent(in) :: balance
+    type(joint_state), intent(in) :: new(:)
+    real(rk), intent(in) :: x(:)
+    real(rk), dimension(3, self%operator%num_points) :: jump, drift, traction
+    real(rk) :: force
+    call self%operator%jumps(x, drift)
+    call gather_jumps(self%operator, new, jump)
+    call gather_tractions(self%operator, new, traction)
+    drift = self%condensed%reference*(drift + balance%offset - jump)
+    associate (area => spread(self%operator%area, 1, 3))
+      force = max(norm2(area*traction), balance%reference)
+      has_drifted = norm2(area*drift) > allowed_drift*self%controls%residual_tolerance*force
+    end associate
+  end function has_drifted
+
   !> Newton on the jumps between the two halves of one solve; where the jumps are not at the end of
   !> the factor, between two solves: one for the guess, one for what has changed.
-  subroutine solve(self, balance, joints, old, new, x, outcome, error)
+  subroutine solve_from(self, balance, joints, old, new, x, outcome, error)
     class(condensed_equilibrium), intent(inout) :: self
     type(force_balance), intent(in) :: balance
     type(joint), intent(in) :: joints(:)
@@ -101,7 +146,7 @@ contains
       excess = relief(reference, field%jump, balance%offset, field%iterate)
     end associate
     call self%end_solve(excess - first_excess, half, x, error)
-  end subroutine solve
+  end subroutine solve_from
 
   !> The response to the guess: all unknowns, or the jumps alone and half a solve.
   subroutine begin_solve(self, rhs, excess, half, x, error)

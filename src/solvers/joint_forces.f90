@@ -19,6 +19,7 @@ module joint_forces
     real(rk), allocatable :: multiplier(:, :) !< (2, points) friction of the last iterate [Pa]
     real(rk), allocatable :: scale(:) !< (points) r of the augmented form [Pa/m]
     real(rk), allocatable :: own_scale(:) !< (points) r of a point that slides alone [Pa/m]
+    real(rk), allocatable :: shared_scale(:) !< (points) r of all points together [Pa/m]
     real(rk), allocatable :: traction(:, :) !< (3, points) the laws' own [Pa]
     real(rk), allocatable :: iterate(:, :) !< (3, points) of the augmented form [Pa]
     real(rk), allocatable :: tangent(:, :, :) !< (3, 3, points) [Pa/m]

@@ -40,6 +40,10 @@ module joint_iteration
   !> An increment of the jumps below this part of the jumps is measured against the latter.
   real(rk), parameter :: smallest_increment = 1.0e-3_rk
 
+  !> An out-of-balance below this part of the joint forces is round-off: sums of some hundred
+  !> products of full precision.
+  real(rk), parameter :: nothing_left = 1.0e-13_rk
+
 contains
 
   !> Linearises the laws about the guess: as they are, or all closed and sticking.
@@ -60,6 +64,7 @@ contains
     allocate (field%num_openings(n), source=0)
     field%scale = scale(1, :)
     field%own_scale = scale(2, :)
+    field%shared_scale = field%scale
     field%bulk_force = balance%reference
     field%jump = balance%guess
     field%response = balance%guess
@@ -182,7 +187,7 @@ contains
     if (outcome%augmentations == 1) outcome%first_pass = outcome%iterations
     outcome%pass_start = outcome%iterations
     field%last_residual = huge(1.0_rk)
-    call update_multiplier(joints, operator, field%scale/reference(1, :), field%contact, new)
+    call update_multiplier(joints, operator, field%shared_scale/reference(1, :), field%contact, new)
     call gather_gaps(operator, new, field%gap)
     call linearise(joints, operator, old, reference, field, new)
   end subroutine augment_contact
@@ -248,7 +253,8 @@ contains
   end subroutine measure_residual
 
   !> The correction of the jumps that is still asked for, over their increment; decides convergence.
-  !> Where contact takes the jumps away, the springs' lengths are still a measure.
+  !> Where contact takes the jumps away, the springs' lengths are still a measure. An out-of-balance
+  !> of round-off asks for nothing, whatever it would move in a direction that nothing resists.
   pure subroutine measure_correction(field, reference, correction, tolerance, outcome)
     type(joint_field), intent(in) :: field
     real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
@@ -261,6 +267,6 @@ contains
                     norm2(spring - field%start_spring), smallest_increment*norm2(spring), &
                     tiny(1.0_rk))
     outcome%correction = norm2(correction)/increment
-    outcome%has_converged = outcome%correction <= tolerance
+    outcome%has_converged = outcome%correction <= tolerance .or. outcome%residual <= nothing_left
   end subroutine measure_correction
 end module joint_iteration

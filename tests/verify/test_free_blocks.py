@@ -186,10 +186,12 @@ def test_a_stone_between_upright_abutments_falls(keyway, different) -> None:
 
 
 def test_a_stone_that_nothing_drives(keyway) -> None:
-    """Held up by its taper, free along y: the deck is warned; where the iteration is lost, why."""
-    run = keyway(arch_stone(20.0, 0.0, static(STONE_WEIGHT), False), code=1)
+    """Held up by its taper, free along y: the deck is warned, and the stone stands all the same."""
+    run = keyway(arch_stone(20.0, 0.0, static(STONE_WEIGHT), False))
     assert "the block with element 1 of set STONE is free to move along y" in run.stderr
-    assert "no load drives it and nothing holds it" in message(run)
+    for joint in run.json["joints"].values():
+        assert joint["pressure"]["anywhere"]["value"] > 0.0
+    assert run.json["steps"][0]["energy"]["error"] < 1e-9  # round-off of the sums over the points
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.6])
