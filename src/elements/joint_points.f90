@@ -6,7 +6,7 @@
 !> of the master face (their weights add up to -1). Integrated at the nodes a point belongs to one
 !> node of the slave face, the first of its list: the other end is a node (JOINT8) or a mortar
 !> projection of the master face (surfaces of different meshes). It sees no other slave node but
-!> those beside it that follow others by a tie.
+!> those beside it that follow others of the face by a tie.
 module joint_points
   use kinds, only: rk
   use joint_law, only: traction_law

@@ -28,14 +28,14 @@ module coupling_joint
 contains
 
   !> One point for each node of the slave face that has cover, and plane. Nodes that both faces
-  !> share have none; they hold the faces together. Nodes that follow others by a tie have none
-  !> either, for their jumps are no freedom of the joint: the points beside them see them too. Name
-  !> and law of the joint are the caller's.
+  !> share have none; they hold the faces together. Nodes that follow others of the face by a
+  !> tie have none either, for their jumps are those of the others: the points beside them see them
+  !> too. Name and law of the joint are the caller's.
   subroutine lay_node_points(x, slave, master, segments, is_tied, is_measured, built, is_bare)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(facet_set), intent(in) :: slave, master
     type(segment_set), intent(in) :: segments
-    logical, intent(in) :: is_tied(:) !< (nodes) follows others by a tie
+    logical, intent(in) :: is_tied(:) !< (nodes) follows others of the slave face by a tie
     logical, intent(in) :: is_measured !< the distance as meshed counts, else the faces touch
     type(joint), intent(inout) :: built
     logical, allocatable, intent(out) :: is_bare(:) !< (slave facets) too little covered

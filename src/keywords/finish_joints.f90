@@ -163,7 +163,7 @@ contains
       call find_segments(mesh%x, slave, master, segments, cover, &
                          merge(farthest_gap, farthest_seam, request%is_measured))
       if (request%is_nodal) then
-        call lay_node_points(mesh%x, slave, master, segments, followers(model), &
+        call lay_node_points(mesh%x, slave, master, segments, followers(model, slave), &
                              request%is_measured, new, is_bare)
         call leave_bare(mesh%x, slave, is_bare, cover)
       else
@@ -184,14 +184,25 @@ contains
     call check_claims(number, slave, cover, model, taken, faults)
   end subroutine build_from_surfaces
 
-  !> Nodes that follow others by a tie.
-  pure function followers(model) result(is_tied)
+  !> Nodes that follow others of a face by a tie.
+  pure function followers(model, face) result(is_tied)
     type(draft), intent(in) :: model
+    type(facet_set), intent(in) :: face
     logical, allocatable :: is_tied(:)
-    integer :: i
-    allocate (is_tied(model%scene%mesh%num_nodes), source=.false.)
+    logical, allocatable :: is_there(:)
+    integer :: i, k
+    allocate (is_tied(model%scene%mesh%num_nodes), is_there(model%scene%mesh%num_nodes), &
+              source=.false.)
+    do i = 1, size(face%node, 2)
+      is_there(face%node(:, i)) = .true.
+    end do
     do i = 1, size(model%scene%ties)
-      is_tied(model%scene%ties(i)%node) = .true.
+      associate (tie => model%scene%ties(i))
+        do k = 1, size(tie%node)
+          if (any(is_there(tie%master(tie%first(k):tie%first(k + 1) - 1)))) &
+            is_tied(tie%node(k)) = .true.
+        end do
+      end associate
     end do
   end function followers
 
