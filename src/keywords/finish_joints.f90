@@ -199,8 +199,8 @@ contains
     do i = 1, size(model%scene%ties)
       associate (tie => model%scene%ties(i))
         do k = 1, size(tie%node)
-          if (any(is_there(tie%master(tie%first(k):tie%first(k + 1) - 1)))) &
-            is_tied(tie%node(k)) = .true.
+          is_tied(tie%node(k)) = is_tied(tie%node(k)) .or. &
+                                 any(is_there(tie%master(tie%first(k):tie%first(k + 1) - 1)))
         end do
       end associate
     end do
