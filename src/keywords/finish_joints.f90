@@ -170,8 +170,8 @@ contains
         call lay_gauss_points(mesh%x, slave, master, segments, request%is_measured, new)
       end if
       if (new%num_points == 0 .and. segments%num_segments > 0) then
-        call place%fault_at(faults, 1, 1, 'the joint holds nothing: ties hold every node of '// &
-                            'the slave surface', 'the surfaces the other way round')
+        call place%fault_at(faults, 1, 1, 'the joint holds nothing: its surfaces have the '// &
+                            'same nodes', 'faces with nodes of their own')
       else if (new%num_points == 0) then
         call place%fault_at(faults, 1, 1, 'the two surfaces do not lie on each other', &
                             'faces that look at each other, less than '// &
