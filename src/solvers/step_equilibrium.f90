@@ -1,7 +1,7 @@
 !> Chooses how the balance of a step is solved, and says in the user's words what is not held.
 module step_equilibrium
-  use kinds, only: rk
-  use errors, only: error_type, raise
+  use kinds, only: rk, long
+  use errors, only: error_type, raise, system_failed
   use dam_mesh, only: mesh
   use problem_definition, only: problem
   use step_plan, only: step
@@ -13,6 +13,7 @@ module step_equilibrium
   use newton_full, only: full_equilibrium
   use step_system, only: dam_system
   use timer, only: ledger
+  use write_text, only: as_text
   implicit none
   private
   public :: hand_over_costs, make_equilibrium, prepare_equilibrium, add_moving_supports, check_bulk
@@ -21,6 +22,10 @@ module step_equilibrium
   !> moment three times 8*(3*points)^2 bytes); full Newton then factors in every iteration. It
   !> too takes the compliance, to find r, but does not keep it.
   integer, parameter :: most_condensed_points = 3000
+
+  !> Dense matrices of 8*(3*points)^2 bytes that stand at once: the compliance and two to find r
+  !> (friction_scale). The end of the factor comes on top, where jumps are unknowns of their own.
+  integer, parameter :: num_dense = 3
 
 contains
 
@@ -50,10 +55,33 @@ contains
       allocate (condensed_equilibrium :: balance)
     end if
     balance%controls = plan%controls
+    if (system%matrix%is_symmetric) call check_memory(system%operator%num_points, error)
+    if (allocated(error)) return
     call make_solver(symmetric_solver, balance%factor, error)
     if (allocated(error)) return
     call balance%factor%analyse(system%matrix, error)
   end subroutine make_equilibrium
+
+  !> Whether the system grants the memory of the dense matrices of the joints. It is asked for in
+  !> one piece and given back; what it refuses no solver would get.
+  subroutine check_memory(num_points, error)
+    integer, intent(in) :: num_points !< of all joints
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable, volatile :: room(:) ! volatile: else compilers leave it out
+    integer(long) :: most
+    integer :: status
+    most = num_dense*(3_long*num_points)**2
+    allocate (room(most), stat=status)
+    if (status == 0) then
+      if (most > 0) room(1) = 0.0_rk
+      deallocate (room)
+    else
+      call raise(error, 'no memory for '//as_text(num_points)//' points of joints: their dense '// &
+                 'matrices take some '//as_text(max(1, nint(8.0e-9_rk*most)))//' GB, in any '// &
+                 'step and with either JOINT SOLVER; mesh the joints coarser, or between '// &
+                 'surfaces let the coarser face be the slave', system_failed)
+    end if
+  end subroutine check_memory
 
   !> Factors K_eff; a singular matrix is told by node and direction.
   subroutine prepare_equilibrium(scene, system, values, weight, balance, error)

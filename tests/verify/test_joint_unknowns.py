@@ -3,8 +3,12 @@ and tied nodes, on an edge that two joints share, in a plane state. The iteratio
 alone and the one on all unknowns are different equations with one answer.
 """
 
+import subprocess
+
 import numpy as np
 import pytest
+from joint_decks import static
+from mesh_pairs import Pair, Side
 from tied_blocks import Blocks, node_set, state_of, ties
 
 ELASTIC = "*ELASTIC\n1e9, 0.2\n*DENSITY\n2000.\n"
@@ -91,3 +95,15 @@ def test_forces_on_supports(keyway, make):
     total = state_of(run, "ALL", "RF", 1).sum(axis=0)
     applied = {"cross": (0, 0, 0), "tied": (4e5, 0, 0), "plane": (0, 0, -1e5)}[make.__name__]
     assert np.abs(total + applied).max() < 1e-7 * 4e5
+
+
+def test_memory_that_cannot_be_had_is_told(program_path, tmp_path):
+    """Three dense matrices of 8 (3 * 3721)^2 bytes are 2.99 GB; the system grants 1.5 GB."""
+    pair = Pair(Side((60, 60, 1)), Side((12, 12, 1)))
+    joint = "*JOINT LAW, NAME=L, KN=1e12\n*JOINT, NAME=J, LAW=L\nLOWER, UPPER\n"
+    step = static("*BOUNDARY\nFAR, 1, 3\n*DSLOAD\nTOP, P, 1e5\n")
+    (tmp_path / "large.inp").write_text(pair.deck(joint + step))
+    command = f"ulimit -v 1500000; exec '{program_path}' large.inp"
+    run = subprocess.run(["sh", "-c", command], capture_output=True, text=True, cwd=tmp_path)
+    assert run.returncode == 3
+    assert "3721 points of joints: their dense matrices take some 3 GB" in run.stderr
