@@ -128,8 +128,10 @@ contains
                    'the slave side, or Gauss points; at the nodes the traction of a stiff '// &
                    'joint does not oscillate. Between surfaces each node of the slave stands '// &
                    'on a mortar projection of the master; what has no partner is told. The '// &
-                   'finer side is the better slave, as a rule; where the face itself bends '// &
-                   'between very unequal meshes, tractions are smoother with the coarser one. '// &
+                   'finer side is the better slave, as a rule: it sees more of a traction '// &
+                   'that varies. Take the coarser one where the face itself bends between '// &
+                   'meshes 1:2 and more apart (smoother tractions), or where time counts: the '// &
+                   'joint then has fewer points. '// &
                    'The normal points from the master to the slave.'
     spec%example = '*JOINT, NAME=J1, LAW=CONTRACTION, ELSET=JOINT1'//nl// &
                    '*JOINT, NAME=J2, LAW=CONTRACTION'//nl//'LEFT_OF_2, RIGHT_OF_2'
@@ -144,7 +146,8 @@ contains
                     'meshed, but for the GAP of the law, or their distance as meshed counts '// &
                     'as well', default='NONE', choices='NONE | MEASURED')])
     allocate (spec%columns, source=[ &
-              field('slave', kind_word, 'slave surface', is_required=.true.), &
+              field('slave', kind_word, 'slave surface, as a rule the finer one', &
+                    is_required=.true.), &
               field('master', kind_word, 'master surface', is_required=.true.)])
   end subroutine describe_joint
 

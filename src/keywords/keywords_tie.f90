@@ -20,8 +20,11 @@ contains
     spec%place = 'model'
    spec%meaning = 'Ties surfaces whose meshes may differ, in all directions. Without STIFFNESS '// &
                    'the nodes of the slave surface follow the master surface exactly, as mean '// &
-                   'values over the true overlap of the facets (a dual mortar method); let the '// &
-                   'finer mesh be the slave. Where a slave node is held by *BOUNDARY in any '// &
+                   'values over the true overlap of the facets (a dual mortar method). The '// &
+                   'finer side is the better slave, as a rule, and the cheaper one in a tie; '// &
+                   'where the face itself bends between meshes 1:2 and more apart, tractions '// &
+                   'are smoother with the coarser one. '// &
+                   'Where a slave node is held by *BOUNDARY in any '// &
                    'step, or follows others by an earlier tie, it follows nothing here in that '// &
                    'direction. With STIFFNESS, springs between the faces hold them together. '// &
                    'Parts of the slave surface without partner stay free.'
@@ -35,7 +38,7 @@ contains
                     'the analysis, so that where the faces lie apart (curved ones) a rotation '// &
                     'leaves no stress', default='NO', choices='YES | NO')])
     allocate (spec%columns, source=[ &
-              field('slave', kind_word, 'slave surface, better the finer one', &
+              field('slave', kind_word, 'slave surface, as a rule the finer one', &
                     is_required=.true.), &
               field('master', kind_word, 'master surface', is_required=.true.)])
   end subroutine describe_tie
