@@ -150,7 +150,8 @@ contains
       if (worst == 0) worst = f
     end do
     if (num_idle == 0) return
-   call place%warn(faults, as_text(num_idle)//' of '//as_text(size(corner, 2))//' slave facets '// &
+    call place%warn(faults, &
+                    as_text(num_idle)//' of '//as_text(size(corner, 2))//' slave facets '// &
                     'pass on nothing: supports of some step or earlier ties hold all their '// &
                     'corners, the first at node '// &
                     as_text(model%scene%mesh%node_id(corner(1, worst))), &
@@ -165,6 +166,7 @@ contains
     real(rk), allocatable :: given(:, :), taken(:, :)
     logical, allocatable :: is_given(:, :)
     type(error_type), allocatable :: error
+    character(:), allocatable :: kind, values
     integer :: i, worst(2)
     allocate (given(3, model%scene%mesh%num_nodes), source=0.0_rk)
     allocate (is_given(3, model%scene%mesh%num_nodes), source=.false.)
@@ -185,10 +187,10 @@ contains
     worst = maxloc(abs(taken - given), mask=is_given)
     if (abs(taken(worst(1), worst(2)) - given(worst(1), worst(2))) &
         <= equal_values*maxval(abs(given))) return
-    call model%cards(model%ties(1)%spot%card)%warn(faults, 'node '// &
-                    as_text(model%scene%mesh%node_id(worst(2)))//' follows others; its initial '// &
-                             trim(merge('velocity    ', 'displacement', is_velocity))//' along '// &
-                 'xyz' (worst(1):worst(1))//' is '//as_text(taken(worst(1), worst(2)))//', not '// &
-                                                   as_text(given(worst(1), worst(2)))//' as given')
+    kind = trim(merge('velocity    ', 'displacement', is_velocity))
+    values = as_text(taken(worst(1), worst(2)))//', not '//as_text(given(worst(1), worst(2)))
+    call model%cards(model%ties(1)%spot%card)%warn( &
+      faults, 'node '//as_text(model%scene%mesh%node_id(worst(2)))//' follows others; its '// &
+      'initial '//kind//' along '//'xyz' (worst(1):worst(1))//' is '//values//' as given')
   end subroutine check_initial_values
 end module finish_ties

@@ -18,16 +18,16 @@ contains
     spec%name = 'TIE'
     spec%family = 'joint'
     spec%place = 'model'
-   spec%meaning = 'Ties surfaces whose meshes may differ, in all directions. Without STIFFNESS '// &
-                   'the nodes of the slave surface follow the master surface exactly, as mean '// &
-                   'values over the true overlap of the facets (a dual mortar method). The '// &
-                   'finer side is the better slave, as a rule, and the cheaper one in a tie; '// &
-                   'where the face itself bends between meshes 1:2 and more apart, tractions '// &
-                   'are smoother with the coarser one. '// &
-                   'Where a slave node is held by *BOUNDARY in any '// &
-                   'step, or follows others by an earlier tie, it follows nothing here in that '// &
-                   'direction. With STIFFNESS, springs between the faces hold them together. '// &
-                   'Parts of the slave surface without partner stay free.'
+    spec%meaning = 'Ties surfaces whose meshes may differ, in all directions. Without '// &
+                   'STIFFNESS the nodes of the slave surface follow the master surface '// &
+                   'exactly, as mean values over the true overlap of the facets (a dual '// &
+                   'mortar method). The finer side is the better slave, as a rule, and the '// &
+                   'cheaper one in a tie; where the face itself bends between meshes 1:2 and '// &
+                   'more apart, tractions are smoother with the coarser one. Where a slave '// &
+                   'node is held by *BOUNDARY in any step, or follows others by an earlier '// &
+                   'tie, it follows nothing here in that direction. With STIFFNESS, springs '// &
+                   'between the faces hold them together. Parts of the slave surface without '// &
+                   'partner stay free.'
     spec%example = '*TIE, NAME=BLOCK1_TO_ROCK'//new_line('a')//'BLOCK1_BASE, ROCK_TOP'
     spec%fewest_lines = 1
     allocate (spec%parameters, source=[ &

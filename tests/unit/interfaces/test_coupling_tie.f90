@@ -76,7 +76,8 @@ contains
     end do
     call follow_ties(ties, u, error)
     call check(log, allocated(error) .eqv. .false., what//': no circle')
-   call check_close(log, maxval(abs(u - exact)), 0.0_rk, 10.0_rk*round_off, what//': linear fields')
+    call check_close(log, maxval(abs(u - exact)), 0.0_rk, 10.0_rk*round_off, &
+                     what//': linear fields')
   end subroutine check_linear
 
   subroutine all_nodes_follow()

@@ -251,7 +251,8 @@ contains
                'a jump, a node with a support, and what a tied node follows')
     call check(log, all(numbers%node(numbers%num_free - 10:numbers%num_free) == &
                         [2, 2, 5, 5, 5, 6, 6, 6, 3, 3, 3]), 'in this order')
-   call check_text(log, numbers%describe(numbers%num_free - 10, [11, 12, 13, 14, 15, 16, 17, 18]), &
+    call check_text(log, &
+                    numbers%describe(numbers%num_free - 10, [11, 12, 13, 14, 15, 16, 17, 18]), &
                     'node 12, direction 2', 'a last unknown that is no jump')
   end subroutine last_unknowns
 end program test_jump_links
