@@ -12,6 +12,7 @@ module coupling_joint
   use mortar_projection, only: project
   use mortar_table, only: mortar_rows
   use segment_quadrature, only: integrate_segment, segment_points
+  use surface_facets, only: mark_corners
   use surface_segments, only: facet_set, segment_set
   implicit none
   private
@@ -43,7 +44,7 @@ contains
     logical :: is_shared(size(x, 2)), is_beside(size(x, 2))
     integer :: p
     is_shared = shared_nodes(size(x, 2), slave, master)
-    is_beside = face_nodes(size(x, 2), slave) .and. is_tied .and. .not. is_shared
+    is_beside = mark_corners(size(x, 2), slave) .and. is_tied .and. .not. is_shared
     call project(x, slave, master, segments, is_shared .or. is_beside, rows)
     built%is_nodal = .true.
     call open_points(rows%num_rows, rows%num_rows + size(rows%master), built)
@@ -199,24 +200,12 @@ contains
     built%reach = built%reach(:num_points)
   end subroutine close_points
 
-  !> Nodes of a face.
-  pure function face_nodes(num_nodes, face) result(is_there)
-    integer, intent(in) :: num_nodes
-    type(facet_set), intent(in) :: face
-    logical :: is_there(num_nodes)
-    integer :: f
-    is_there = .false.
-    do f = 1, size(face%node, 2)
-      is_there(face%node(:, f)) = .true.
-    end do
-  end function face_nodes
-
   !> Nodes that belong to both faces.
   pure function shared_nodes(num_nodes, slave, master) result(is_shared)
     integer, intent(in) :: num_nodes
     type(facet_set), intent(in) :: slave, master
     logical :: is_shared(num_nodes)
-    is_shared = face_nodes(num_nodes, slave) .and. face_nodes(num_nodes, master)
+    is_shared = mark_corners(num_nodes, slave) .and. mark_corners(num_nodes, master)
   end function shared_nodes
 
   !> What results draw: the polygons of the segments, with the slave facets' shape functions.

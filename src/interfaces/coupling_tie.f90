@@ -10,6 +10,7 @@ module coupling_tie
   use mortar_projection, only: project
   use mortar_table, only: mortar_rows
   use node_ties, only: node_tie
+  use surface_facets, only: mark_corners
   use surface_segments, only: facet_set, segment_set
   implicit none
   private
@@ -75,17 +76,10 @@ contains
     logical, intent(out) :: is_bound(:) !< (nodes)
     integer, allocatable :: row(:, :)
     logical, allocatable :: is_slave(:), is_reached(:)
-    integer :: f
-    allocate (is_slave(size(is_fixed)), is_reached(size(is_fixed)), source=.false.)
     call list_followers(direction, earlier, size(is_fixed), row)
-    do f = 1, size(slave%node, 2)
-      is_slave(slave%node(:, f)) = .true.
-    end do
+    is_slave = mark_corners(size(is_fixed), slave)
     is_bound = is_slave .and. (is_fixed .or. row(1, :) > 0)
-    do f = 1, size(master%node, 2)
-      is_reached(master%node(:, f)) = .true.
-    end do
-    is_reached = is_reached .or. is_bound
+    is_reached = mark_corners(size(is_fixed), master) .or. is_bound
     call flood(earlier, row, is_reached)
     is_bound = is_slave .and. is_reached
   end subroutine find_bound

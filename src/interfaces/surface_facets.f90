@@ -6,7 +6,7 @@ module surface_facets
   use surface_segments, only: facet_set
   implicit none
   private
-  public :: list_surface_facets, list_interface_facets
+  public :: list_surface_facets, list_interface_facets, mark_corners
 
 contains
 
@@ -40,4 +40,16 @@ contains
     end do
     allocate (facets%element(size(elements)), source=0)
   end subroutine list_interface_facets
+
+  !> Which nodes are corners of these facets.
+  pure function mark_corners(num_nodes, facets) result(is_corner)
+    integer, intent(in) :: num_nodes !< of the mesh
+    type(facet_set), intent(in) :: facets
+    logical :: is_corner(num_nodes)
+    integer :: f
+    is_corner = .false.
+    do f = 1, size(facets%node, 2)
+      is_corner(facets%node(:, f)) = .true.
+    end do
+  end function mark_corners
 end module surface_facets

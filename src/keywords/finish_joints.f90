@@ -16,7 +16,7 @@ module finish_joints
   use named_things, only: longest_name
   use nearest_words, only: nearest_word
   use surface_claims, only: claim_facets, claims, open_claims
-  use surface_facets, only: list_surface_facets
+  use surface_facets, only: list_surface_facets, mark_corners
   use surface_segments, only: facet_set, segment_set, surface_cover
   use tell_cover, only: keep_cover
   use write_text, only: as_text
@@ -191,11 +191,8 @@ contains
     logical, allocatable :: is_tied(:)
     logical, allocatable :: is_there(:)
     integer :: i, k
-    allocate (is_tied(model%scene%mesh%num_nodes), is_there(model%scene%mesh%num_nodes), &
-              source=.false.)
-    do i = 1, size(face%node, 2)
-      is_there(face%node(:, i)) = .true.
-    end do
+    allocate (is_tied(model%scene%mesh%num_nodes), source=.false.)
+    is_there = mark_corners(model%scene%mesh%num_nodes, face)
     do i = 1, size(model%scene%ties)
       associate (tie => model%scene%ties(i))
         do k = 1, size(tie%node)
