@@ -1,7 +1,7 @@
 """Checks the layers of the sources.
 
-A module uses its own layer and earlier ones; no two modules use each other; a file bears the name
-of its module; the lists sources.cmake name every file and no other.
+A module uses its own room (folder) and lower ones; no two modules use each other; a file bears the
+name of its module; the lists sources.cmake name every file and no other.
 
 usage: check_layers.py [ROOT]
 """
@@ -15,10 +15,52 @@ from pathlib import Path
 
 from fortran_source import parent_name, sources_under, unit_name, uses
 
-LAYERS = (
-    *("base", "deck", "model", "materials", "joints", "elements", "interfaces", "loads"),
-    *("assembly", "solvers", "results", "keywords", "app"),
+# The rooms of src (folders of sources), lowest first.
+ROOMS = (
+    "base",
+    "base/text",
+    "base/math",
+    "base/files",
+    "base/report",
+    "equations",
+    "deck",
+    "model/mesh",
+    "model/constraints",
+    "model/steps",
+    "materials/law",
+    "materials/concrete",
+    "materials/umat",
+    "materials/at_a_point",
+    "joints/law",
+    "elements",
+    "joints/points",
+    "interfaces/facets",
+    "interfaces/mortar",
+    "interfaces/couplings",
+    "loads",
+    "assembly",
+    "joints/iteration",
+    "analysis/state",
+    "analysis/system",
+    "diagnosis",
+    "analysis/solids",
+    "analysis/steps",
+    "results/quantities",
+    "results/record",
+    "results/summary",
+    "results/writers",
+    "results",
+    "keywords/draft",
+    "keywords/mesh",
+    "keywords/materials",
+    "keywords/joints",
+    "keywords/steps",
+    "keywords/loads",
+    "keywords",
+    "app",
 )
+# The folders right under src; each has one list of sources.
+FOLDERS = tuple(dict.fromkeys(room.split("/")[0] for room in ROOMS))
 # Modules of the compiler and of the libraries.
 FOREIGN = {"iso_fortran_env", "iso_c_binding", "omp_lib", "hdf5", "h5lt", "ieee_arithmetic"}
 # CMake fills these in (cmake/BuildInfo.cmake).
@@ -27,10 +69,10 @@ TEMPLATES = "*.f90.in"
 
 @dataclass(frozen=True)
 class Source:
-    """A file of a layer and what it says of itself."""
+    """A file, its room, and the modules that it defines and uses."""
 
     path: Path
-    layer: str
+    room: str
     unit: str
     parent: str | None
     uses: tuple[tuple[int, str], ...]
@@ -42,39 +84,39 @@ def read_sources(root: Path) -> tuple[list[Source], list[str]]:
     folder = root / "src"
     for path in sources_under(folder) + sorted(folder.rglob(TEMPLATES)):
         place = path.relative_to(root)
-        layer = path.relative_to(folder).parts[0]
-        if layer not in LAYERS:
-            faults.append(f"{place}: '{layer}' is no layer")
+        room = path.parent.relative_to(folder).as_posix()
+        if room not in ROOMS:
+            faults.append(f"{place}: '{room}' is no room; add it to ROOMS of check_layers.py")
             continue
         text = path.read_text(encoding="utf-8")
         unit = unit_name(text) or ""
         stem = path.name.split(".")[0]
-        if unit != stem and not (layer == "app" and stem == "main"):
+        if unit != stem and not (room == "app" and stem == "main"):
             faults.append(f"{place}: holds '{unit}'; file and module bear the same name")
-        found.append(Source(place, layer, unit, parent_name(text), tuple(uses(text))))
+        found.append(Source(place, room, unit, parent_name(text), tuple(uses(text))))
     return found, faults
 
 
 def check_directions(sources: list[Source]) -> list[str]:
-    """Uses of later layers and of modules that do not exist."""
-    layer_of = {s.unit: s.layer for s in sources}
+    """Uses of higher rooms and of modules that do not exist."""
+    room_of = {s.unit: s.room for s in sources}
     faults = []
     for source in sources:
         for line, name in source.uses:
             if name in FOREIGN:
                 continue
-            if name not in layer_of:
+            if name not in room_of:
                 faults.append(f"{source.path}:{line}: there is no module '{name}'")
-            elif LAYERS.index(layer_of[name]) > LAYERS.index(source.layer):
+            elif ROOMS.index(room_of[name]) > ROOMS.index(source.room):
                 faults.append(
-                    f"{source.path}:{line}: layer '{source.layer}' uses '{name}' of the later "
-                    f"layer '{layer_of[name]}'"
+                    f"{source.path}:{line}: room '{source.room}' uses '{name}' of the higher "
+                    f"room '{room_of[name]}'"
                 )
     return faults
 
 
 def check_cycles(sources: list[Source]) -> list[str]:
-    """Modules that reach themselves; a submodule counts as a part of its module."""
+    """Modules that use themselves; a submodule counts as a part of its module."""
     part_of = {s.unit: s.parent or s.unit for s in sources}
     graph: dict[str, set[str]] = {}
     for source in sources:
@@ -101,10 +143,10 @@ def check_cycles(sources: list[Source]) -> list[str]:
 def check_lists(root: Path) -> list[str]:
     """Differences between the lists sources.cmake and the files."""
     faults = []
-    for layer in LAYERS:
-        list_file = root / "src" / layer / "sources.cmake"
+    for folder in FOLDERS:
+        list_file = root / "src" / folder / "sources.cmake"
         if not list_file.is_file():
-            faults.append(f"src/{layer}: has no sources.cmake")
+            faults.append(f"src/{folder}: has no sources.cmake")
             continue
         text = re.sub(r"#.*", "", list_file.read_text(encoding="utf-8"))
         listed = re.findall(r"[\w./-]+\.(?:f90|c)\b", text)
@@ -113,7 +155,7 @@ def check_lists(root: Path) -> list[str]:
             for p in list_file.parent.rglob("*")
             if p.suffix in {".f90", ".c"}
         }
-        place = f"src/{layer}/sources.cmake"
+        place = f"src/{folder}/sources.cmake"
         faults += [f"{place}: '{n}' is listed and not there" for n in sorted({*listed} - present)]
         faults += [f"{place}: '{n}' is not listed" for n in sorted(present - {*listed})]
         faults += [f"{place}: '{n}' twice" for n in sorted({*listed}) if listed.count(n) > 1]

@@ -1,9 +1,9 @@
 set(sources
-  cli.f90
-  model_summary.f90
-  user_routines.f90
   check_deck.f90
+  cli.f90
+  main.f90
+  model_summary.f90
   run_analysis.f90
   run_material.f90
-  main.f90
+  user_routines.f90
 )

@@ -1,22 +1,12 @@
 set(sources
-  inelastic_blocks.f90
-  problem_definition.f90
-  rigid_blocks.f90
-  block_motion.f90
-  held_together.f90
-  analysis_state.f90
-  increment_listener.f90
-  matrix_pattern.f90
-  pattern_builder.f90
-  constraint_elimination.f90
-  joint_stiffness.f90
-  damping_rayleigh.f90
-  element_blocks.f90
-  scatter_matrix.f90
-  coupling_stiffness.f90
   assemble_elements.f90
   assemble_forces.f90
-  inelastic_forces.f90
-  inelastic_stiffness.f90
-  inelastic_energy.f90
+  constraint_elimination.f90
+  coupling_stiffness.f90
+  damping_rayleigh.f90
+  element_blocks.f90
+  inelastic_blocks.f90
+  pattern_builder.f90
+  problem_definition.f90
+  scatter_matrix.f90
 )

@@ -1,17 +1,31 @@
 set(sources
-  kinds.f90
   errors.f90
-  parse_text.f90
-  write_text.f90
-  number_ranges.f90
-  nearest_words.f90
-  diagnostics.f90
-  diagnostic_text.f90
-  timer.f90
-  raw_files.f90
-  logging.f90
-  small_matrix.f90
-  dense_factor.f90
-  symmetric_modes.f90
-  tensor6.f90
+  kinds.f90
+  files/csv_files.f90
+  files/earlier_files.f90
+  files/file_system.f90
+  files/hdf5_files.f90
+  files/hdf5_tables.f90
+  files/json_writer.f90
+  files/pvd_files.f90
+  files/raw_files.f90
+  files/vtk_order.f90
+  files/vtu_files.f90
+  files/whole_files.f90
+  math/anderson_mixing.f90
+  math/dense_factor.f90
+  math/small_matrix.f90
+  math/sorted_lists.f90
+  math/symmetric_modes.f90
+  math/tensor6.f90
+  report/diagnostic_text.f90
+  report/diagnostics.f90
+  report/logging.f90
+  report/timer.f90
+  text/nearest_words.f90
+  text/number_ranges.f90
+  text/parse_text.f90
+  text/sha256.f90
+  text/text_buffers.f90
+  text/write_text.f90
 )

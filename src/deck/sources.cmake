@@ -1,13 +1,13 @@
 set(sources
-  keyword_spec.f90
-  field_text.f90
-  deck_file.f90
-  deck_words.f90
-  deck_source.f90
-  card_lines.f90
-  deck_card.f90
-  deck_lexer.f90
   card_check.f90
+  card_lines.f90
   card_reader.f90
+  deck_card.f90
+  deck_file.f90
+  deck_lexer.f90
+  deck_source.f90
+  deck_words.f90
+  field_text.f90
   keyword_help.f90
+  keyword_spec.f90
 )

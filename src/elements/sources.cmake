@@ -1,18 +1,14 @@
 set(sources
-  gauss_rules.f90
-  shape_quad4.f90
-  shape_hex8.f90
+  element_catalogue.f90
+  element_depth.f90
   element_formulation.f90
   element_hex8.f90
   element_hex8_bbar.f90
   element_hex8_incompatible.f90
   element_hex8_reduced.f90
-  element_catalogue.f90
-  element_widths.f90
-  element_depth.f90
   element_matrices.f90
-  joint_axes.f90
-  joint_points.f90
-  joint8_cells.f90
-  element_joint8.f90
+  element_widths.f90
+  gauss_rules.f90
+  shape_hex8.f90
+  shape_quad4.f90
 )

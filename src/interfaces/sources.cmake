@@ -1,18 +1,16 @@
 set(sources
-  surface_segments.f90
-  surface_facets.f90
-  facet_plane.f90
-  facet_clip.f90
-  facet_search.f90
-  facet_segments.f90
-  segment_quadrature.f90
-  mortar_facet.f90
-  mortar_table.f90
-  mortar_balance.f90
-  mortar_projection.f90
-  coupling_joint.f90
-  coupling_tie.f90
-  surface_coupling.f90
-  joint_rim.f90
-  water_paths.f90
+  couplings/coupling_joint.f90
+  couplings/coupling_tie.f90
+  couplings/surface_coupling.f90
+  facets/facet_clip.f90
+  facets/facet_plane.f90
+  facets/facet_search.f90
+  facets/facet_segments.f90
+  facets/segment_quadrature.f90
+  facets/surface_facets.f90
+  facets/surface_segments.f90
+  mortar/mortar_balance.f90
+  mortar/mortar_facet.f90
+  mortar/mortar_projection.f90
+  mortar/mortar_table.f90
 )

@@ -1,7 +1,24 @@
 set(sources
-  joint_law.f90
-  slip_dissipation.f90
-  joint_constants.f90
-  joint_contraction.f90
-  joint_catalogue.f90
+  iteration/condensation.f90
+  iteration/contact_augmentation.f90
+  iteration/equilibrium.f90
+  iteration/equilibrium_linear.f90
+  iteration/joint_compliance.f90
+  iteration/joint_forces.f90
+  iteration/joint_iteration.f90
+  iteration/joint_operator.f90
+  iteration/joint_stiffness.f90
+  iteration/jump_block.f90
+  iteration/newton_condensed.f90
+  iteration/newton_full.f90
+  law/joint_catalogue.f90
+  law/joint_constants.f90
+  law/joint_contraction.f90
+  law/joint_law.f90
+  law/slip_dissipation.f90
+  points/element_joint8.f90
+  points/joint8_cells.f90
+  points/joint_axes.f90
+  points/joint_points.f90
+  points/slip_reach.f90
 )

@@ -1,11 +1,13 @@
 set(sources
   applied_load.f90
-  wetted_facet.f90
-  load_point.f90
+  joint_rim.f90
+  load_base_motion.f90
+  load_catalogue.f90
   load_gravity.f90
+  load_point.f90
   load_pressure.f90
   load_reservoir.f90
-  load_base_motion.f90
   load_uplift.f90
-  load_catalogue.f90
+  water_paths.f90
+  wetted_facet.f90
 )

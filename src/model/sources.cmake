@@ -1,20 +1,19 @@
 set(sources
-  dam_mesh.f90
-  mesh_sets.f90
-  mesh_faces.f90
-  amplitudes.f90
-  step_plan.f90
-  material_tests.f90
-  dof_numbering.f90
-  node_ties.f90
-  link_graph.f90
-  link_order.f90
-  jump_links.f90
-  tie_motion.f90
-  id_map.f90
-  sorted_lists.f90
-  set_lists.f90
-  dof_tables.f90
-  load_books.f90
-  body_parts.f90
+  constraints/dof_numbering.f90
+  constraints/jump_links.f90
+  constraints/link_graph.f90
+  constraints/link_order.f90
+  constraints/node_ties.f90
+  constraints/tie_motion.f90
+  mesh/body_parts.f90
+  mesh/dam_mesh.f90
+  mesh/id_map.f90
+  mesh/mesh_faces.f90
+  mesh/mesh_sets.f90
+  mesh/set_lists.f90
+  steps/amplitudes.f90
+  steps/dof_tables.f90
+  steps/load_books.f90
+  steps/material_tests.f90
+  steps/step_plan.f90
 )

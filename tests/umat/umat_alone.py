@@ -12,7 +12,7 @@ import numpy as np
 from harness import ROOT
 
 SOURCE = ROOT / "src"
-INTERFACE = "materials/umat_damage_plasticity.f90"
+INTERFACE = "materials/umat/umat_damage_plasticity.f90"
 FLAGS = ["-std=f2008", "-O1", "-Wall", "-Werror", "-Wno-unused-dummy-argument", "-fcheck=all"]
 NUM_STATE = 17
 
@@ -20,7 +20,7 @@ NUM_STATE = 17
 def compile_alone(folder: Path) -> ctypes.CDLL:
     """Nothing else is linked, and nothing may be missing."""
     header = (SOURCE / INTERFACE).read_text().split("\nmodule ")[0]
-    parts = re.findall(r"\b[a-z]+/\w+\.f90", header.split("Needs")[1].split("and this file")[0])
+    parts = re.findall(r"\b[a-z]+/[\w/]+\.f90", header.split("Needs")[1].split("and this file")[0])
     sources = [SOURCE / part for part in [*parts, INTERFACE]]
     library = folder / "alone.so"
     command = [

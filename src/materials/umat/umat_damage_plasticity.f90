@@ -2,12 +2,14 @@
 !> own material behind the interface of user subroutines.
 !>
 !> Needs, in this order, and nothing else of Keyway:
-!>   base/kinds.f90 base/write_text.f90 base/small_matrix.f90 base/tensor6.f90
-!>   materials/damage_constants.f90 materials/damage_curves.f90 materials/damage_checks.f90
-!>   materials/damage_model.f90 materials/damage_yield.f90 materials/crack_band.f90
-!>   materials/damage_return.f90 materials/damage_increment.f90 materials/damage_tangent.f90
-!>   materials/damage_energy.f90 materials/damage_point.f90 materials/damage_history.f90
-!>   materials/umat_concrete.f90
+!>   base/kinds.f90 base/text/write_text.f90 base/math/small_matrix.f90 base/math/tensor6.f90
+!>   materials/concrete/damage_constants.f90 materials/concrete/damage_curves.f90
+!>   materials/concrete/damage_checks.f90 materials/concrete/damage_model.f90
+!>   materials/concrete/damage_yield.f90 materials/concrete/crack_band.f90
+!>   materials/concrete/damage_return.f90 materials/concrete/damage_increment.f90
+!>   materials/concrete/damage_tangent.f90 materials/concrete/damage_energy.f90
+!>   materials/concrete/damage_point.f90 materials/concrete/damage_history.f90
+!>   materials/umat/umat_concrete.f90
 !> and this file. Free form, Fortran 2008; `tools/make_umat` writes all of it into one file.
 !>
 !> Constants, PROPS, in consistent units (docs/concrete_umat.md has an example):

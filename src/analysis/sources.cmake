@@ -1,0 +1,28 @@
+set(sources
+  solids/inelastic_energy.f90
+  solids/inelastic_forces.f90
+  solids/inelastic_stiffness.f90
+  solids/solid_iteration.f90
+  solids/solid_tangent.f90
+  solids/tangent_choice.f90
+  state/analysis_state.f90
+  state/increment_listener.f90
+  state/motion_state.f90
+  steps/eigen_modes.f90
+  steps/energy_account.f90
+  steps/hht_increment.f90
+  steps/hht_scheme.f90
+  steps/initial_acceleration.f90
+  steps/initial_state.f90
+  steps/run_steps.f90
+  steps/step_control.f90
+  steps/step_report.f90
+  steps/time_frequency.f90
+  steps/time_hht.f90
+  steps/time_static.f90
+  steps/user_increments.f90
+  system/joint_water.f90
+  system/step_equilibrium.f90
+  system/step_loads.f90
+  system/step_system.f90
+)

@@ -1,0 +1,14 @@
+set(sources
+  arpack.f90
+  blas_bridge.c
+  blas_threads.f90
+  cholmod_bridge.c
+  linear_solver.f90
+  matrix_condition.f90
+  matrix_pattern.f90
+  metis_bridge.c
+  nested_dissection.f90
+  solver_catalogue.f90
+  solver_cholmod.f90
+  solver_umfpack.f90
+)
