@@ -1,0 +1,224 @@
+"""Everything that a run has written, as arrays under names that two runs share."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from keyway_tools.comparison import distances
+from keyway_tools.results_folder import read_json, read_table
+
+# Files of a run that hold no results: its log, and what the caller has caught of its output.
+NO_RESULTS = (".log", ".out")
+# Entries of the summary that depend on the machine and the hour, or are prose.
+SUMMARY_IGNORED = (
+    "program.*",
+    "deck",
+    "deck.*",
+    "ledger",
+    "ledger.*",
+    "*.wall_s",
+    "ignored_input.*.file",
+    "message",
+    "*.message",
+    "warnings.*",
+)
+ENERGIES = {
+    *("external", "kinetic", "strain", "damping", "friction", "fracture", "crushing"),
+    *("numerical", "work", "stored"),
+}
+# Numbers that are relative already: their differences count as they are.
+RATIOS = ("error", "residual", "largest_residual", "largest_energy_error")
+# Shapes of modes: /steps/0001/modes/shape (modes, nodes, 3) and MODE_01 (nodes, 3).
+MODES = re.compile(r"modes/shape|\bMODE_\d+$")
+
+
+@dataclass(frozen=True)
+class Values:
+    """An array, and the group of arrays in its file whose largest value is the measure."""
+
+    data: np.ndarray
+    group: str
+
+
+@dataclass(frozen=True)
+class Difference:
+    """The largest relative difference of two arrays; infinite where one is missing."""
+
+    place: str
+    size: float
+    text: str
+
+
+def group_of(name: str) -> str:
+    """Components of a vector or tensor share a measure, and so do energies."""
+    last = name.rsplit(".", 1)[-1]
+    if last in ENERGIES:
+        return name.removesuffix(last) + "energies"
+    if re.fullmatch(r"SDV\d+", last):
+        return name
+    return re.sub(r"(?<=[A-Za-z])\d+$", "", name)
+
+
+def values_of_csv(path: Path) -> Iterator[tuple[str, Values]]:
+    for name, column in read_table(path).items():
+        yield name, Values(column, group_of(name))
+
+
+def values_of_json(path: Path) -> Iterator[tuple[str, Values]]:
+    """Numbers and words of a summary; a list of numbers has one measure."""
+    for name, leaf in read_json(path).items():
+        if not any(fnmatchcase(name, pattern) for pattern in SUMMARY_IGNORED):
+            is_number = isinstance(leaf, int | float) and not isinstance(leaf, bool)
+            data = np.asarray(leaf, dtype=float if is_number else object)
+            yield name, Values(data, re.sub(r"\.\d+$", "", group_of(name)))
+
+
+def values_of_hdf5(path: Path) -> Iterator[tuple[str, Values]]:
+    """Datasets, column by column where columns have names, and attributes."""
+    found: list[tuple[str, Values]] = []
+
+    def keep(name: str, item: Any) -> None:
+        attributes = {key: as_array(value) for key, value in item.attrs.items()}
+        words = [str(attributes.pop(key, "")) for key in ("columns", "components")]
+        columns = [column for text in words for column in text.split(",") if column]
+        found.extend((f"{name}@{k}", Values(v, f"{name}@{k}")) for k, v in attributes.items())
+        if not isinstance(item, h5py.Dataset):
+            return
+        data = as_array(item[()])
+        if columns and data.ndim == 2 and data.shape[1] == len(columns):
+            for k, column in enumerate(columns):
+                full = f"{name}.{column}"
+                found.append((full, Values(data[:, k], group_of(full))))
+        else:
+            found.append((name, Values(data, name)))
+
+    with h5py.File(path, "r") as file:
+        file.visititems(keep)
+    yield from found
+
+
+def as_array(value: Any) -> np.ndarray:
+    """Numbers as they are, texts without the blanks that fill them."""
+    data = np.asarray(value)
+    if data.dtype.kind not in "OSU":
+        return data
+    words = [w.decode() if isinstance(w, bytes) else str(w) for w in data.ravel().tolist()]
+    return np.array([w.strip() for w in words], dtype=object).reshape(data.shape)
+
+
+def values_of_vtu(path: Path) -> Iterator[tuple[str, Values]]:
+    import pyvista  # takes a second to load
+
+    grid = pyvista.read(path)
+    yield "points", Values(np.asarray(grid.points), "points")
+    yield "cells", Values(np.asarray(grid.cells), "cells")
+    yield "cell types", Values(np.asarray(grid.celltypes), "cell types")
+    fields = (("point", grid.point_data), ("cell", grid.cell_data), ("field", grid.field_data))
+    for kind, data in fields:
+        for name in data:
+            yield f"{kind} {name}", Values(as_array(data[name]), f"{kind} {name}")
+
+
+def values_of_pvd(path: Path) -> Iterator[tuple[str, Values]]:
+    text = path.read_text(encoding="utf-8")
+    times = np.array([float(t) for t in re.findall(r'timestep="([^"]*)"', text)])
+    yield "times", Values(times, "times")
+    yield "files", Values(np.array(re.findall(r'file="([^"]*)"', text), dtype=object), "files")
+
+
+READERS = {
+    ".csv": values_of_csv,
+    ".json": values_of_json,
+    ".h5": values_of_hdf5,
+    ".vtu": values_of_vtu,
+    ".pvd": values_of_pvd,
+}
+
+
+def files_of_results(folder: Path) -> set[str]:
+    """Paths of the results in a folder, relative to it."""
+    return {
+        str(path.relative_to(folder))
+        for path in folder.rglob("*")
+        if path.is_file() and not path.name.startswith(".") and path.suffix not in NO_RESULTS
+    }
+
+
+def compare_written(before: Path, after: Path) -> Iterator[Difference]:
+    """A difference for each array of two folders, the sizes 0 included."""
+    files = files_of_results(before), files_of_results(after)
+    for name in sorted(files[0] | files[1]):
+        if name not in files[1] or name not in files[0]:
+            yield lacking(name, name in files[0])
+        elif read := READERS.get(Path(name).suffix):
+            sides = dict(read(before / name)), dict(read(after / name))
+            yield from compare_maps(name, *sides)
+        elif (before / name).read_bytes() != (after / name).read_bytes():
+            yield Difference(name, np.inf, "other content")
+
+
+def lacking(place: str, is_before: bool) -> Difference:
+    return Difference(place, np.inf, f"only {'before' if is_before else 'after'}")
+
+
+def compare_maps(
+    file: str, before: dict[str, Values], after: dict[str, Values]
+) -> Iterator[Difference]:
+    measures: dict[str, float] = {}
+    for values in [*before.values(), *after.values()]:
+        measures[values.group] = max(measures.get(values.group, 0.0), largest(values.data))
+    for name in [*before, *(n for n in after if n not in before)]:
+        place = f"{file}: {name}"
+        if name not in before or name not in after:
+            yield lacking(place, name in before)
+        else:
+            measure = 1.0 if name.rsplit(".", 1)[-1] in RATIOS else measures[before[name].group]
+            a, b = before[name].data, after[name].data
+            if MODES.search(name) and a.shape == b.shape:
+                b = with_signs_of(a, b)
+            yield Difference(place, *compare_arrays(a, b, measure))
+
+
+def with_signs_of(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """The modes b, each with the sign that brings it nearer to a: a mode has none of its own."""
+    if a.ndim < 3:
+        return b if np.vdot(a, b) >= 0 else -b
+    return np.array([with_signs_of(one, other) for one, other in zip(a, b, strict=True)])
+
+
+def largest(data: np.ndarray) -> float:
+    if data.dtype == object or not data.size:
+        return 0.0
+    size = np.abs(data, dtype=float)
+    return float(np.max(size, where=np.isfinite(size), initial=0.0))
+
+
+def compare_arrays(a: np.ndarray, b: np.ndarray, measure: float) -> tuple[float, str]:
+    """The largest difference over the measure, and where it is."""
+    if a.shape != b.shape:
+        return np.inf, f"shape {a.shape} before, {b.shape} after"
+    if object in (a.dtype, b.dtype):
+        other = np.asarray(a.astype(str) != b.astype(str))
+        if not other.any():
+            return 0.0, ""
+        place = first_index(other)
+        return np.inf, f"{a[place]!r} before, {b[place]!r} after"
+    gaps = np.asarray(distances(a.astype(float), b.astype(float)))
+    if not gaps.any():
+        return 0.0, ""
+    place = first_index(gaps == gaps.max())
+    size = float(gaps[place] / measure) if measure > 0 else np.inf
+    row = f" at {', '.join(map(str, place))}" if place else ""
+    return size, f"{a[place]:.9g} before, {b[place]:.9g} after{row}; largest {measure:.3g}"
+
+
+def first_index(mask: np.ndarray) -> tuple[int, ...]:
+    return tuple(int(i) for i in np.unravel_index(int(np.argmax(mask)), mask.shape))
