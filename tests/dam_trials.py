@@ -94,7 +94,7 @@ def mesh_of(trial_mesh: tuple[int, bool, bool, ArchShape, BlockOptions | None]):
 def deck_of(trial: Trial) -> tuple[str, dict[str, str]]:
     """Text of the deck and of the files beside it."""
     mesh = mesh_of(trial.mesh_key)
-    types = {name: trial.options.element_type for name in mesh.brick_sets}
+    types = dict.fromkeys(mesh.brick_sets, trial.options.element_type)
     files = {"mesh.inp": mesh_deck(mesh, types, "")}
     for axis, is_active in enumerate(trial.components):
         values = trial.size * motion_of(axis) if is_active else np.zeros(2)

@@ -1,11 +1,12 @@
-"""Checks sizes and leftovers of the sources.
+"""Checks sizes of files, folders and procedures, and leftovers, where no linter does.
 
 usage: check_sizes.py [ROOT]
+
+Python has ruff for all but the length of files (pyproject.toml).
 """
 
 from __future__ import annotations
 
-import ast
 import re
 import sys
 from collections.abc import Iterator
@@ -14,6 +15,7 @@ from pathlib import Path
 from fortran_source import bare, procedures, sources_under
 
 MAX_FILE = 400
+MAX_FOLDER = 15
 MAX_PROCEDURE = 60
 MAX_KERNEL = 100
 MAX_ARGUMENTS = 8
@@ -31,12 +33,17 @@ LEFTOVERS = re.compile(r"\b(?:" + "|".join(MARKS) + r")\b|^(?:<{7}|>{7}|={7})(?:
 
 
 def check_lengths(place: str, text: str) -> list[str]:
-    """Files that are too long, and what was left in them."""
-    lines = text.splitlines()
+    """Files that are too long."""
+    count = len(text.splitlines())
+    if count > MAX_FILE and place not in TABLES:
+        return [f"{place}: {count} lines, at most {MAX_FILE}"]
+    return []
+
+
+def check_leftovers(place: str, text: str) -> list[str]:
+    """Marks of unfinished work, tabs, and blanks at the end of lines."""
     faults = []
-    if len(lines) > MAX_FILE and place not in TABLES:
-        faults.append(f"{place}: {len(lines)} lines, at most {MAX_FILE}")
-    for number, line in enumerate(lines, 1):
+    for number, line in enumerate(text.splitlines(), 1):
         if found := LEFTOVERS.search(line):
             faults.append(f"{place}:{number}: leftover '{found[0].strip()}'")
         if line != line.rstrip():
@@ -65,20 +72,15 @@ def check_fortran(place: str, text: str) -> list[str]:
     return faults
 
 
-def check_python(place: str, text: str) -> list[str]:
-    """Functions that are too long or take too much."""
-    faults = []
-    for node in ast.walk(ast.parse(text)):
-        if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-            continue
-        where = f"{place}:{node.lineno}: {node.name}"
-        length = (node.end_lineno or node.lineno) - node.lineno + 1
-        if length > MAX_PROCEDURE:
-            faults.append(f"{where} has {length} lines, at most {MAX_PROCEDURE}")
-        count = len(node.args.posonlyargs) + len(node.args.args) + len(node.args.kwonlyargs)
-        if count > MAX_ARGUMENTS:
-            faults.append(f"{where} has {count} arguments, at most {MAX_ARGUMENTS}")
-    return faults
+def check_folders(root: Path) -> list[str]:
+    """Folders below src that hold too many files."""
+    folders = sorted(p for p in (root / "src").rglob("*") if p.is_dir())
+    counts = {folder: sum(p.is_file() for p in folder.iterdir()) for folder in folders}
+    return [
+        f"{folder.relative_to(root)}: {count} files, at most {MAX_FOLDER}"
+        for folder, count in counts.items()
+        if count > MAX_FOLDER
+    ]
 
 
 def files(root: Path) -> Iterator[Path]:
@@ -92,15 +94,15 @@ def files(root: Path) -> Iterator[Path]:
 
 def check(root: Path) -> list[str]:
     """Every fault found under ROOT."""
-    faults = []
+    faults = check_folders(root)
     for path in files(root):
         place = str(path.relative_to(root))
         text = path.read_text(encoding="utf-8")
         faults += check_lengths(place, text)
+        if path.suffix != ".py":
+            faults += check_leftovers(place, text)
         if path.suffix == ".f90":
             faults += check_fortran(place, text)
-        elif path.suffix == ".py":
-            faults += check_python(place, text)
     return faults
 
 

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""Write the deck of a parametric double-curvature arch dam in a V-shaped valley.
+r"""Write the deck of a parametric double-curvature arch dam in a V-shaped valley.
 
 The deck is NAME.inp with its mesh in NAME_mesh.inp. Without options: a dam of 135.5 m with two
 contraction joints. Example:
 
-    tools/make_dam.py -o my_dam/dam.inp --height 200 --crest-arc 500 --joints 4 \\
+    tools/make_dam.py -o my_dam/dam.inp --height 200 --crest-arc 500 --joints 4 \
         --motion acc_x.txt acc_y.txt acc_z.txt
 
 Blocks between joints may have meshes of their own, here the middle one 3:2:
 
-    tools/make_dam.py -o dam.inp --arc 16 --levels 7 --bottom 2 --thick 2 --joints 2 \\
+    tools/make_dam.py -o dam.inp --arc 16 --levels 7 --bottom 2 --thick 2 --joints 2 \
         --refine 2 --fine 2 --fine-refine 3 --fine-thick 3
 """
 
@@ -28,6 +28,7 @@ from keyway_tools.arch_lattice import PartMesh
 from keyway_tools.arch_rock import RockOptions
 from keyway_tools.arch_shape import ArchShape
 from keyway_tools.deck_text import mesh_deck
+from keyway_tools.mesh_data import BrickMesh
 from keyway_tools.mesh_quality import find_faults, report
 from keyway_tools.surface_fit import fit_report
 
@@ -247,7 +248,7 @@ def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
 def main(arguments: list[str] | None = None) -> int:
     """Write the deck and its mesh; print the report."""
     chosen = read_options(arguments)
-    names = [name for name in ArchShape.__dataclass_fields__]
+    names = list(ArchShape.__dataclass_fields__)
     try:
         shape = ArchShape(**{name: getattr(chosen, name) for name in names})
         mesh_options, options = mesh_options_of(chosen), deck_options_of(chosen)
@@ -263,14 +264,28 @@ def main(arguments: list[str] | None = None) -> int:
     if faults:
         print("make_dam: the mesh is not sound:\n  " + "\n  ".join(faults), file=sys.stderr)
         return 1
+    heading = header(mesh, shape, mesh_options, options.title, tuple(chosen.note), blocks)
+    mesh_file = write_deck(chosen, mesh, heading, options)
+    show(chosen, mesh, mesh_file)
+    return 0
+
+
+def write_deck(
+    chosen: argparse.Namespace, mesh: BrickMesh, heading: str, options: DeckOptions
+) -> Path:
+    """Write the deck and its mesh, and return the file of the mesh."""
     chosen.output.parent.mkdir(parents=True, exist_ok=True)
     mesh_file = chosen.output.with_name(chosen.output.stem + "_mesh.inp")
-    types = {name: options.element_type for name in mesh.brick_sets}
+    types = dict.fromkeys(mesh.brick_sets, options.element_type)
     mesh_file.write_text(
         mesh_deck(mesh, types, f"Mesh of {chosen.output.name}, made by tools/make_dam.py")
     )
-    heading = header(mesh, shape, mesh_options, options.title, tuple(chosen.note), blocks)
     chosen.output.write_text(arch_dam_deck(mesh, heading, mesh_file.name, options))
+    return mesh_file
+
+
+def show(chosen: argparse.Namespace, mesh: BrickMesh, mesh_file: Path) -> None:
+    """Print the report on the mesh, and draw the mesh where a picture is asked for."""
     free = 3 * (len(mesh.x) - len(mesh.node_sets["FIXED"]))
     print(report(mesh))
     if mesh.surface_joints or mesh.ties:
@@ -283,7 +298,6 @@ def main(arguments: list[str] | None = None) -> int:
         from keyway_tools.picture_mesh import picture_mesh  # VTK takes its time to load
 
         print("wrote", picture_mesh(mesh, mesh_file.with_suffix(".png")))
-    return 0
 
 
 if __name__ == "__main__":

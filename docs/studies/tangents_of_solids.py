@@ -209,7 +209,7 @@ def run(keyway: Path, deck: Path, folder: Path) -> tuple[dict, int]:
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     record = json.loads((folder / f"{deck.stem}.json").read_text())
     parts = {part["name"]: part for part in record["ledger"]["parts"]}
-    with open(folder / f"{deck.stem}_energy.csv") as file:
+    with (folder / f"{deck.stem}_energy.csv").open() as file:
         energy = list(csv.DictReader(file))[-1]
     steps = record["steps"]
 

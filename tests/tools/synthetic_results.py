@@ -106,8 +106,8 @@ def _write_steps(file: h5py.File, mesh: BrickMesh) -> None:
         envelopes["OPENING"] = opening
     step = file.create_group("steps/0001")
     step.attrs["name"], step.attrs["procedure"] = "EARTHQUAKE", "DYNAMIC"
-    for name, values in envelopes.items():
-        name = ENVELOPE_NAMES[name]
+    for field, values in envelopes.items():
+        name = ENVELOPE_NAMES[field]
         step[f"envelopes/{name}"] = values
         step[f"envelopes/{name}_TIME"] = np.full(len(z), 4.2)
     for name in ("DAMAGET", "DAMAGEC"):

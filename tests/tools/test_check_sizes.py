@@ -93,10 +93,16 @@ def test_listed_kernel_may_be_longer(tmp_path, monkeypatch):
     assert faults_of(tmp_path, text) == []
 
 
-def test_python_is_measured(tmp_path):
-    text = "def long(a, b, c, d, e, f, g, h, *, i):\n" + "    a = 1\n" * 60
-    faults = faults_of(tmp_path, text, "tools/x.py")
-    assert faults == [
-        "tools/x.py:1: long has 61 lines, at most 60",
-        "tools/x.py:1: long has 9 arguments, at most 8",
-    ]
+def test_files_of_a_folder_are_counted(tmp_path):
+    folder = tmp_path / "src" / "base" / "text"
+    folder.mkdir(parents=True)
+    for number in range(15):
+        (folder / f"file_{number}.f90").write_text("! nothing\n")
+    assert check_sizes.check(tmp_path) == []
+    (folder / "sources.cmake").write_text("")
+    assert check_sizes.check(tmp_path) == ["src/base/text: 16 files, at most 15"]
+
+
+def test_python_files_are_measured(tmp_path):
+    faults = faults_of(tmp_path, "a = 1\n" * 401, "tools/x.py")
+    assert faults == ["tools/x.py: 401 lines, at most 400"]

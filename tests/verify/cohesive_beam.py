@@ -11,8 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sparse
 from keyway_tools.deck_petersson import DEPTH, NOTCH, POISSON, SPAN, STRENGTH, THICKNESS, YOUNG
+from scipy import sparse
 from scipy.sparse.linalg import splu
 
 CONTACT = 1e15  # stiffness before the crack and when it closes [Pa/m]; 3 nm at the strength
@@ -107,8 +107,11 @@ def cohesive_beam(law: Law, deflection: float, num: int = 40, steps: int = 200) 
     for down in -deflection * np.arange(1, steps + 1) / steps:
         for _ in range(50):
             traction, slope = tractions(law, 2.0 * u, widest)
-            left = u - by_force[place] @ (area * (2.0 * CONTACT * u - traction))
-            left -= by_load[place] * down
+            left = (
+                u
+                - by_force[place] @ (area * (2.0 * CONTACT * u - traction))
+                - by_load[place] * down
+            )
             change = (area * 2.0 * (CONTACT - slope)) * by_force[place]
             correction = np.linalg.solve(np.eye(num + 1) - change, left)
             u = u - correction

@@ -234,7 +234,7 @@ class Pair:
 
     def deck(self, cards: str) -> str:
         """Mesh, one material for both blocks, then other cards."""
-        types = {name: self.element for name in self.mesh.brick_sets}
+        types = dict.fromkeys(self.mesh.brick_sets, self.element)
         sections = "".join(
             f"*SOLID SECTION, ELSET={name}, MATERIAL=M\n" for name in self.mesh.brick_sets
         )

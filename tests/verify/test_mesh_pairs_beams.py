@@ -37,14 +37,13 @@ def beam(solution, n: int, ratio: tuple[int, int]) -> Pair:
         Side((4 * n * r, n * r // 2, n * r // 2) if lies else (n * r, n * r // 2, 2 * n * r))
         for r in ratio
     )
-    pair = Pair(
+    return Pair(
         lower,
         upper,
         size=(4.0, 1.0) if lies else (1.0, 1.0),
         heights=(0.5, 0.5) if lies else (2.0, 2.0),
         poisson=0.3 if solution is bending else 0.0,
     )
-    return pair
 
 
 def solve(keyway, solution, n: int, ratio: tuple[int, int], way: str, slave: str) -> Answer:

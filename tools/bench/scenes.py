@@ -104,7 +104,7 @@ def write_deck(
         num_modes=num_modes,
         picture_frequency=10**6,
     )
-    types = {part: element_type for part in mesh.brick_sets}
+    types = dict.fromkeys(mesh.brick_sets, element_type)
     (folder / f"{name}_mesh.inp").write_text(mesh_deck(mesh, types, "Mesh of bench"))
     lines = arch_dam_deck(mesh, "bench", f"{name}_mesh.inp", options).splitlines(keepends=True)
     if not has_envelopes:

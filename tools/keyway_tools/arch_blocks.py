@@ -99,9 +99,10 @@ class Assembly:
         """Final number of every node before the replacement; unused ones are dropped."""
         target = np.arange(self.num_nodes)
         for old, new in self.replaced.items():
-            while new in self.replaced:
-                new = self.replaced[new]
-            target[old] = new
+            last = new
+            while last in self.replaced:
+                last = self.replaced[last]
+            target[old] = last
         kept = np.unique(target)
         number = np.full(self.num_nodes, -1)
         number[kept] = np.arange(len(kept))

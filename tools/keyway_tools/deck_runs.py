@@ -111,7 +111,7 @@ class DeckRunner:
     def _execute(self, deck: Path, record: Record) -> None:
         command = [str(self.program), "-o", record.folder, *self.options, str(deck)]
         start = time.monotonic()
-        with open(Path(record.folder) / "batch.out", "wb") as output:
+        with (Path(record.folder) / "batch.out").open("wb") as output:
             child = subprocess.Popen(
                 command, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT,
                 start_new_session=True,

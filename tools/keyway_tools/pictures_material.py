@@ -57,7 +57,7 @@ def read_points(path: Path) -> tuple[str, np.ndarray, np.ndarray]:
     '#' is a remark (the first names the points), a line without numbers a heading.
     """
     label, points = "", []
-    with open(path, newline="", encoding="utf-8-sig") as file:
+    with path.open(newline="", encoding="utf-8-sig") as file:
         for row in csv.reader(file):
             if row and row[0].lstrip().startswith("#"):
                 label = label or ",".join(row).lstrip("# ").strip()

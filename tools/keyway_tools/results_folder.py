@@ -74,7 +74,7 @@ def is_summary(path: Path) -> bool:
 
 def read_table(path: Path | str) -> Table:
     """Columns of a CSV file with one header line: numbers where all are, else texts."""
-    with open(path, newline="", encoding="utf-8-sig") as file:
+    with Path(path).open(newline="", encoding="utf-8-sig") as file:
         rows = [row for row in csv.reader(file) if row]
     if not rows:
         raise ValueError(f"{path}: empty, expected a header line")
