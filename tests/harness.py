@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from keyway_tools.results_folder import ResultsFolder, Table
+from keyway_tools.result_files import Table
+from keyway_tools.results import Results
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -31,8 +32,8 @@ class Run:
     stderr: str
 
     @cached_property
-    def results(self) -> ResultsFolder:
-        return ResultsFolder(self.folder, self.job)
+    def results(self) -> Results:
+        return Results(self.folder, self.job)
 
     @property
     def json(self) -> dict[str, Any]:

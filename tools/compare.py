@@ -22,7 +22,7 @@ else:
 
 from keyway_tools import comparison
 from keyway_tools.comparison import Report, Rules, Tolerance
-from keyway_tools.results_folder import ResultsFolder
+from keyway_tools.results import Results
 
 EPILOG = """tolerance file (TOML):
   relative = 1e-6          # of every column
@@ -89,12 +89,12 @@ def compare(a: Path, b: Path, rules: Rules, job: str | None = None, table: str =
     if b.is_dir():
         if not a.is_dir():
             raise ValueError("B is a folder and A is not")
-        return comparison.compare_folders(ResultsFolder(a, job), ResultsFolder(b, job), rules)
+        return comparison.compare_folders(Results(a, job), Results(b, job), rules)
     if b.suffix.lower() not in comparison.READERS:
         raise ValueError(f"'{b.name}': expected a reference in CSV, JSON or HDF5")
     if a.is_dir():
         rules.fewer_columns = True
-        return comparison.compare_with_reference(ResultsFolder(a, job), b, rules, table)
+        return comparison.compare_with_reference(Results(a, job), b, rules, table)
     if a.suffix.lower() != b.suffix.lower():
         raise ValueError(f"'{a.name}' and '{b.name}' are of two kinds")
     report = Report()

@@ -30,7 +30,7 @@ from keyway_tools.pictures_curves import (
 )
 from keyway_tools.pictures_joints import plot_joint_areas
 from keyway_tools.pictures_material import COMPONENTS, plot_material, read_curve
-from keyway_tools.results_reader import Results, find_jobs
+from keyway_tools.results import Results, find_jobs
 
 
 def draw_job(results: Results, folder: Path) -> Iterator[Path | None]:

@@ -15,7 +15,7 @@ from dam_trials import Trial, mesh_of, run_trial
 from harness import Program, Run
 from keyway_tools.arch_blocks import BlockOptions
 from keyway_tools.mesh_data import BrickMesh
-from keyway_tools.results_reader import Results
+from keyway_tools.results import Results
 
 JOINS = {"surfaces": "surfaces", "chain": "elements"}  # the chain's joints are of JOINT8
 

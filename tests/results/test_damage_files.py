@@ -10,7 +10,7 @@ import meshio
 import numpy as np
 import pytest
 import pyvista
-from keyway_tools.results_folder import ResultsFolder
+from keyway_tools.results import Results
 
 JOB = "cracked dam"
 # Numbers are printed with 13 significant digits.
@@ -30,15 +30,15 @@ def folder(program_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Path
 
 
 @pytest.fixture(scope="module")
-def results(folder: Path) -> ResultsFolder:
-    return ResultsFolder(folder, JOB)
+def results(folder: Path) -> Results:
+    return Results(folder, JOB)
 
 
 def read_grid(folder: Path, name: str) -> pyvista.UnstructuredGrid:
     return pyvista.read(folder / f"{JOB}_vtk" / f"{JOB}_{name}.vtu")
 
 
-def test_columns_of_points(folder: Path, results: ResultsFolder):
+def test_columns_of_points(folder: Path, results: Results):
     head = (folder / f"{JOB}_el_BODY.csv").read_text().splitlines()[0].split(",")
     assert head[11:] == [
         *(f"PE{c}" for c in ("11", "22", "33", "12", "13", "23")),
@@ -123,7 +123,7 @@ def test_points_in_hdf5(folder: Path):
         assert now[2]["SDV"].attrs["components"].decode().startswith("SDV1,SDV2,")
 
 
-def test_damage_in_the_summary(results: ResultsFolder):
+def test_damage_in_the_summary(results: Results):
     damage = results.summary["damage"]
     assert damage["DAMAGET"] == {
         "value": 0.95, "time": 1.5, "x": CENTRE, "element": 20, "point": 1,
@@ -141,7 +141,7 @@ def test_damage_in_the_summary(results: ResultsFolder):
     }  # fmt: skip
 
 
-def test_damage_envelope_by_face(results: ResultsFolder):
+def test_damage_envelope_by_face(results: Results):
     found = results.find("envelopes.DAMAGET")
     assert set(found) == {"anywhere", "upstream", "downstream"}
     assert found["anywhere"] == {"value": 0.95, "time": 1.5, "x": CENTRE}
@@ -149,7 +149,7 @@ def test_damage_envelope_by_face(results: ResultsFolder):
     assert results.find("envelopes.DAMAGEC")["anywhere"]["value"] == 0.25
 
 
-def test_growth_of_damage(folder: Path, results: ResultsFolder):
+def test_growth_of_damage(folder: Path, results: Results):
     table = results.table("damage")
     assert list(table["increment"]) == [1, 2, 3]
     assert table["DAMAGET"] == pytest.approx([0, 0.8, 0.95], rel=PRINTED)
@@ -162,5 +162,5 @@ def test_growth_of_damage(folder: Path, results: ResultsFolder):
             assert file["history/damage"][:, column] == pytest.approx(table[name], rel=PRINTED)
 
 
-def test_material_is_an_effect(results: ResultsFolder):
+def test_material_is_an_effect(results: Results):
     assert {"name": "CONCRETE", "kind": "inelastic"} in results.summary["effects"]

@@ -19,7 +19,7 @@ from harness import Program, Run
 from keyway_tools.box_mesh import box_mesh
 from keyway_tools.deck_text import mesh_deck
 from keyway_tools.mesh_data import BrickMesh
-from keyway_tools.results_reader import Results
+from keyway_tools.results import Results
 
 LENGTHS = np.array([4.0, 6.0, 12.0])  # of each column [m]
 YOUNG, KN = 20e9, 1e12  # nu = 0

@@ -11,7 +11,7 @@ import meshio
 import numpy as np
 import pytest
 import pyvista
-from keyway_tools.results_folder import ResultsFolder
+from keyway_tools.results import Results
 
 JOB = "hand driven"
 YOUNG = 20e9  # nu = 0
@@ -32,8 +32,8 @@ def folder(program_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Path
 
 
 @pytest.fixture(scope="module")
-def results(folder: Path) -> ResultsFolder:
-    return ResultsFolder(folder, JOB)
+def results(folder: Path) -> Results:
+    return Results(folder, JOB)
 
 
 def read_grid(folder: Path, name: str) -> pyvista.UnstructuredGrid:
@@ -63,7 +63,7 @@ def test_headers_are_those_of_the_contract(folder: Path):
     }
 
 
-def test_node_rows_follow_frequency_and_last_increment(results: ResultsFolder):
+def test_node_rows_follow_frequency_and_last_increment(results: Results):
     table = results.table("node_TOP")
     keys = list(zip(table["step"], table["increment"], table["node"], strict=True))
     assert keys == [
@@ -76,7 +76,7 @@ def test_node_rows_follow_frequency_and_last_increment(results: ResultsFolder):
     assert table["V1"][-1] == pytest.approx(5e-3, rel=PRINTED)
 
 
-def test_element_rows_hold_stresses_at_all_points(results: ResultsFolder):
+def test_element_rows_hold_stresses_at_all_points(results: Results):
     table = results.table("el_TWO_BLOCKS")
     assert list(table["element"]) == ([10] * 8 + [20]) * 2
     assert list(table["point"]) == [*range(1, 9), 1] * 2
@@ -88,7 +88,7 @@ def test_element_rows_hold_stresses_at_all_points(results: ResultsFolder):
     assert table["SP3"][0] == pytest.approx(-2e7)
 
 
-def test_joint_rows_near_a_node_and_then_all(results: ResultsFolder):
+def test_joint_rows_near_a_node_and_then_all(results: Results):
     table = results.table("joint_MIDDLE")
     assert list(table["point"]) == [4, 4] + [1, 2, 3, 4] * 3
     # Jump and gap: 1e-3 (t z - 1) + 1e-4 at z = 3.
@@ -186,7 +186,7 @@ def test_hdf5_layout(folder: Path):
         assert file["steps/0002/envelopes/S3_MIN"].shape == (22,)
 
 
-def test_summary(results: ResultsFolder):
+def test_summary(results: Results):
     summary = results.summary
     assert summary["status"] == "finished"
     assert summary["deck"] == {
@@ -210,7 +210,7 @@ def test_summary(results: ResultsFolder):
     assert {part["name"] for part in summary["ledger"]["parts"]} >= {"write CSV", "write VTK"}
 
 
-def test_extremes_have_place_and_time(results: ResultsFolder):
+def test_extremes_have_place_and_time(results: Results):
     joint = results.find("joints.MIDDLE")
     make = {name: joint[name] for name in ("kind", "integration", "points", "area")}
     assert make == {"kind": "elements", "integration": "nodes", "points": 4, "area": 3.0}

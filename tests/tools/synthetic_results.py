@@ -8,7 +8,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 from keyway_tools.mesh_data import BrickMesh
-from keyway_tools.results_reader import ENVELOPE_NAMES
+from keyway_tools.results import ENVELOPE_NAMES
 
 ENERGIES = (
     "step,increment,time,external,kinetic,strain,damping,friction,fracture,crushing,numerical,error"

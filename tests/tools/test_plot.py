@@ -7,7 +7,7 @@ import pytest
 from keyway_tools.arch_dam import DamOptions, build_arch_dam
 from keyway_tools.arch_shape import ArchShape
 from keyway_tools.box_mesh import box_mesh, stretched
-from keyway_tools.results_reader import Results, find_jobs
+from keyway_tools.results import Results, find_jobs
 from synthetic_results import write_results
 
 KINDS = {

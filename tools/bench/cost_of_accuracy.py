@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-import h5py
 import numpy as np
-from keyway_tools.results_folder import ResultsFolder
+from keyway_tools.results import Results
 from measured_run import Program
 from scenes import refined_dam, write_deck
 
@@ -53,7 +52,7 @@ def add_frequency(deck: Path) -> None:
     deck.write_text(deck.read_text() + "*STEP, NAME=MODES\n*FREQUENCY\n1\n*END STEP\n")
 
 
-def statics(results: ResultsFolder) -> dict[str, float]:
+def statics(results: Results) -> dict[str, float]:
     return {
         "crest displacement": crest_displacement(results)[-1],
         "max S1": results.find("envelopes.S1.anywhere.value"),
@@ -62,15 +61,14 @@ def statics(results: ResultsFolder) -> dict[str, float]:
     }
 
 
-def crest_stress(results: ResultsFolder) -> float:
+def crest_stress(results: Results) -> float:
     """The arch stress (S3) of the static step at the crest of the crown [Pa]."""
-    with h5py.File(results.path(".h5")) as file:
-        node = np.searchsorted(file["mesh/node_id"][:], file["sets/nodes/CROWN_CREST"][0])
-        increments = file["steps/0001/increments"]
-        return float(increments[sorted(increments)[-1]]["SP"][node, 2])
+    node = results.node_position[int(results.file["sets/nodes/CROWN_CREST"][0])]
+    increments = results.file["steps/0001/increments"]
+    return float(increments[sorted(increments)[-1]]["SP"][node, 2])
 
 
-def crest_displacement(results: ResultsFolder) -> np.ndarray:
+def crest_displacement(results: Results) -> np.ndarray:
     """Along the valley, at the crest of the crown, of every row of the table [m]."""
     table = results.table("node_CROWN_CREST")
     return table["U2"][table["node"] == table["node"][0]]
@@ -88,7 +86,7 @@ def measure_increments(program: Program, folder: Path) -> list[Row]:
     return with_errors(rows)
 
 
-def dynamics(results: ResultsFolder) -> dict[str, float]:
+def dynamics(results: Results) -> dict[str, float]:
     return {
         "crest displacement": float(np.abs(crest_displacement(results)).max()),
         "max S1": results.find("envelopes.S1.anywhere.value"),

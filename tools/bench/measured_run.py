@@ -9,7 +9,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from keyway_tools.results_folder import ResultsFolder
+from keyway_tools.results import Results
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Run:
 
     wall: float  # [s]
     processor: float  # of all threads, system included [s]
-    results: ResultsFolder
+    results: Results
 
     def cost(self, pattern: str) -> tuple[float, int]:
         """Wall seconds and calls of the ledger's parts whose whole name fits."""
@@ -47,7 +47,7 @@ class Program:
     def run(self, deck: Path) -> Run:
         out = deck.parent / f"results_{deck.stem}"
         wall, processor = self._time("-j", str(self.threads), "-q", "-o", str(out), str(deck))
-        return Run(wall, processor, ResultsFolder(out, deck.stem))
+        return Run(wall, processor, Results(out, deck.stem))
 
     def check(self, deck: Path) -> float:
         """Processor seconds of reading and verifying a deck."""

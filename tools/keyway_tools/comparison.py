@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from keyway_tools.results_folder import ResultsFolder, Table, read_hdf5, read_json, read_table
+from keyway_tools.result_files import Table, read_hdf5, read_json, read_table
+from keyway_tools.results import Results
 
 # Columns that name a row; two tables are matched by those that both have.
 KEYS = ("step", "increment", "node", "element", "point")
@@ -239,7 +240,7 @@ def compare_files(report: Report, a: Path, b: Path, rules: Rules, place: str = "
     compare(report, place or b.name, read(a), read(b), rules)
 
 
-def compare_folders(a: ResultsFolder, b: ResultsFolder, rules: Rules) -> Report:
+def compare_folders(a: Results, b: Results, rules: Rules) -> Report:
     """Summary, tables and HDF5 file of two runs; the VTK files repeat what those hold."""
     report = Report()
     ignored = [(pattern, Tolerance(ignore=True)) for pattern in SUMMARY_IGNORED]
@@ -259,7 +260,7 @@ def compare_folders(a: ResultsFolder, b: ResultsFolder, rules: Rules) -> Report:
     return report
 
 
-def compare_with_reference(a: ResultsFolder, b: Path, rules: Rules, table: str) -> Report:
+def compare_with_reference(a: Results, b: Path, rules: Rules, table: str) -> Report:
     """The run's file of the reference's kind; of several tables, the one named."""
     report = Report()
     if b.suffix.lower() == ".csv":
@@ -270,7 +271,7 @@ def compare_with_reference(a: ResultsFolder, b: Path, rules: Rules, table: str) 
     return report
 
 
-def choose_table(a: ResultsFolder, reference: Path) -> str:
+def choose_table(a: Results, reference: Path) -> str:
     """The table that the name of the reference file ends in, or the only one."""
     tables = a.tables()
     named = [t for t in tables if reference.stem == t or reference.stem.endswith(f"_{t}")]

@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from keyway_tools.results_folder import ResultsFolder
+from keyway_tools.results import Results
 
 RECORD = ".batch.json"
 EXTREMES = ("S1", "S3", "OPENING", "DAMAGET")
@@ -178,7 +178,7 @@ def version_of(program: Path) -> str:
 def read_summary(deck: Path, record: Record) -> None:
     """Takes extremes and message from the summary, where the run came so far as to write one."""
     try:
-        results = ResultsFolder(record.folder, deck.stem)
+        results = Results(record.folder, deck.stem)
         summary: dict[str, Any] = results.summary
     except (OSError, ValueError):
         if record.status == "finished":

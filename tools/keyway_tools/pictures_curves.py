@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from .picture_style import COLOURS, GREY, new_figure, save_figure
-from .results_reader import Results, read_csv
+from .results import Results
 
 MOST_CURVES = 6
 
@@ -19,9 +19,8 @@ def _curves_by(values: dict[str, np.ndarray], key: str) -> dict[int, np.ndarray]
 
 def plot_openings(results: Results, path: Path) -> Path | None:
     """Opening of the points of every *JOINT PRINT in time, one panel a joint."""
-    stem = f"{results.job}_joint_"
-    files = sorted(results.folder.glob(f"{stem}*.csv"))
-    tables = {file.stem.removeprefix(stem): read_csv(file) for file in files}
+    names = [name for name in results.tables() if name.startswith("joint_")]
+    tables = {name.removeprefix("joint_"): results.table(name) for name in names}
     tables = {name: table for name, table in tables.items() if len(table.get("time", ()))}
     if not tables:
         return None
@@ -50,14 +49,14 @@ def _opening_panel(axis, name: str, table: dict[str, np.ndarray]) -> None:
 
 def plot_nodes(results: Results, path: Path) -> Path | None:
     """Displacements of every *NODE PRINT in time, one panel a direction."""
-    stem = f"{results.job}_node_"
     curves = []
-    for file in sorted(results.folder.glob(f"{stem}*.csv")):
-        table = read_csv(file)
+    nodes = [name for name in results.tables() if name.startswith("node_")]
+    for name in nodes:
+        table, title = results.table(name), name.removeprefix("node_")
         if "U1" not in table or len(np.unique(table["time"])) < 3:
             continue
         for node, rows in list(_curves_by(table, "node").items())[:MOST_CURVES]:
-            curves.append((f"{file.stem.removeprefix(stem)}, node {node}", table, rows))
+            curves.append((f"{title}, node {node}", table, rows))
     if not curves:
         return None
     figure, axes = new_figure(3, width=10.0, row_height=1.9, sharex=True)
@@ -77,7 +76,7 @@ def plot_nodes(results: Results, path: Path) -> Path | None:
 
 def plot_energy(results: Results, path: Path) -> Path | None:
     """Energies in time and the imbalance between them."""
-    table = results.table("history/energy")
+    table = results.history("energy")
     if len(table.get("time", ())) < 3:
         return None
     largest = max(np.abs(table[name]).max() for name in ("external", "kinetic", "strain"))
@@ -102,7 +101,7 @@ def plot_energy(results: Results, path: Path) -> Path | None:
 
 def plot_damage_growth(results: Results, path: Path) -> Path | None:
     """Damaged volumes, and the energy that cracks and crushing took, in time."""
-    table = results.table("history/damage")
+    table = results.history("damage")
     if len(table.get("time", ())) < 3 or table["inelastic_volume"].max() <= 0.0:
         return None
     figure, axes = new_figure(2, width=10.0, row_height=2.6, sharex=True)

@@ -11,7 +11,7 @@ import numpy as np
 
 from .pictures_faces import FIELDS, Faces, compose, nice_limits
 from .render_dam import render, solid_grid
-from .results_reader import Step
+from .results import Step
 
 VISIBLE = 0.05  # elements of less mean damage are not drawn
 

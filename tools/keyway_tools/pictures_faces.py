@@ -13,7 +13,7 @@ from matplotlib.ticker import MaxNLocator
 
 from .picture_style import GREY, new_figure, plt, save_figure
 from .render_dam import View, render, solid_grid
-from .results_reader import Results, Step
+from .results import Results, Step
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from matplotlib.tri import Triangulation
 
 from .joint_faces import JointFaces
 from .picture_style import new_figure, save_figure
-from .results_reader import Results, Step
+from .results import Results, Step
 
 
 def plot_joint_areas(results: Results, step: Step, path: Path) -> Path | None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from .picture_style import COLOURS, GREY, new_figure, save_figure
-from .results_folder import Table, read_table
+from .result_files import Table, read_table
 
 COMPONENTS = ("11", "22", "33", "12", "13", "23")
 PER_MILLE, MEGA = 1e3, 1e-6

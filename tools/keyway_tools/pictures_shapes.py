@@ -19,7 +19,7 @@ def _telling_state(faces: Faces) -> tuple[str, float] | None:
     opening = np.zeros(len(saved))
     times = np.array([time for _, time in saved])
     for name in faces.results.joint_names():
-        table = faces.results.table(f"history/joints/{name}")
+        table = faces.results.history(f"joints/{name}")
         if len(table.get("time", ())):
             opening = np.maximum(opening, np.interp(times, table["time"], table["opening"]))
     if opening.max() > 0.0:

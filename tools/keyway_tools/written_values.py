@@ -7,13 +7,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Any
 
-import h5py
 import numpy as np
 
 from keyway_tools.comparison import distances
-from keyway_tools.results_folder import read_json, read_table
+from keyway_tools.result_files import as_array, hdf5_items, read_json, read_table
 
 # Files of a run that hold no results: its log, and what the caller has caught of its output.
 NO_RESULTS = (".log", ".out")
@@ -83,35 +81,19 @@ def values_of_json(path: Path) -> Iterator[tuple[str, Values]]:
 
 def values_of_hdf5(path: Path) -> Iterator[tuple[str, Values]]:
     """Datasets, column by column where columns have names, and attributes."""
-    found: list[tuple[str, Values]] = []
-
-    def keep(name: str, item: Any) -> None:
-        attributes = {key: as_array(value) for key, value in item.attrs.items()}
+    for name, data, attributes in hdf5_items(path):
         words = [str(attributes.pop(key, "")) for key in ("columns", "components")]
         columns = [column for text in words for column in text.split(",") if column]
-        found.extend((f"{name}@{k}", Values(v, f"{name}@{k}")) for k, v in attributes.items())
-        if not isinstance(item, h5py.Dataset):
-            return
-        data = as_array(item[()])
+        for key, value in attributes.items():
+            yield f"{name}@{key}", Values(value, f"{name}@{key}")
+        if data is None:
+            continue
         if columns and data.ndim == 2 and data.shape[1] == len(columns):
             for k, column in enumerate(columns):
                 full = f"{name}.{column}"
-                found.append((full, Values(data[:, k], group_of(full))))
+                yield full, Values(data[:, k], group_of(full))
         else:
-            found.append((name, Values(data, name)))
-
-    with h5py.File(path, "r") as file:
-        file.visititems(keep)
-    yield from found
-
-
-def as_array(value: Any) -> np.ndarray:
-    """Numbers as they are, texts without the blanks that fill them."""
-    data = np.asarray(value)
-    if data.dtype.kind not in "OSU":
-        return data
-    words = [w.decode() if isinstance(w, bytes) else str(w) for w in data.ravel().tolist()]
-    return np.array([w.strip() for w in words], dtype=object).reshape(data.shape)
+            yield name, Values(data, name)
 
 
 def values_of_vtu(path: Path) -> Iterator[tuple[str, Values]]:

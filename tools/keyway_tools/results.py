@@ -1,17 +1,18 @@
-"""Reading what a run leaves in its folder: job.json, job.h5, the CSV histories."""
+"""What a run leaves in its folder: the summary, the tables and the fields of a job."""
 
 from __future__ import annotations
 
-import csv
 import json
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
 
 from .joint_faces import JointFaces, read_joint_faces
+from .result_files import Table, as_array, read_table
 
 # Fields of *ENVELOPE and the names of their extremes in job.h5.
 ENVELOPE_NAMES = {
@@ -26,23 +27,18 @@ _SOLIDS = ("C3D8", "C3D8B", "C3D8I", "C3D8R")
 
 
 def find_jobs(folder: Path) -> list[str]:
-    """Names of the jobs whose results lie in a folder."""
+    """Names of the jobs whose fields (job.h5) lie in a folder."""
     return sorted(path.stem for path in folder.glob("*.h5") if not path.stem.endswith(".ckpt"))
 
 
-def read_csv(path: Path) -> dict[str, np.ndarray]:
-    """Columns of a CSV file by their names; words stay words."""
-    with path.open() as file:
-        names, *rows = csv.reader(file)
-    columns = list(zip(*rows, strict=True)) if rows else [()] * len(names)
-    return {name: _as_numbers(column) for name, column in zip(names, columns, strict=True)}
-
-
-def _as_numbers(words: tuple[str, ...]) -> np.ndarray:
+def is_summary(path: Path) -> bool:
+    """Whether a JSON file is the summary of an analysis (one of material tests holds 'tests')."""
     try:
-        return np.array(words, dtype=float)
-    except ValueError:
-        return np.array(words)
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return False
+    has_keys = isinstance(content, dict) and {"program", "status"} <= content.keys()
+    return has_keys and "tests" not in content
 
 
 @dataclass
@@ -57,13 +53,55 @@ class Step:
 
 
 class Results:
-    """One job's results. Arrays are read when they are asked for."""
+    """The results of one job in a folder, each read when it is asked for."""
 
-    def __init__(self, folder: Path, job: str):
-        self.folder, self.job = Path(folder), job
-        self.file = h5py.File(self.folder / f"{job}.h5", "r")
-        summary = self.folder / f"{job}.json"
-        self.summary = json.loads(summary.read_text()) if summary.exists() else {}
+    def __init__(self, folder: Path | str, job: str | None = None):
+        self.folder = Path(folder)
+        if not self.folder.is_dir():
+            raise FileNotFoundError(f"there is no folder '{self.folder}'")
+        self.job = job or self._find_job()
+
+    def _find_job(self) -> str:
+        jobs = [p.stem for p in sorted(self.folder.glob("*.json")) if is_summary(p)]
+        if len(jobs) == 1:
+            return jobs[0]
+        if not jobs:
+            raise FileNotFoundError(f"no results of Keyway in '{self.folder}'")
+        raise ValueError(f"several jobs in '{self.folder}': {', '.join(jobs)}; name one of them")
+
+    def path(self, ending: str) -> Path:
+        """File of the job, as in path('.json') or path('_node_TIP.csv')."""
+        return self.folder / f"{self.job}{ending}"
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """The summary JOB.json."""
+        return json.loads(self.path(".json").read_text(encoding="utf-8"))
+
+    def tables(self) -> list[str]:
+        """Names of the tables, as in ['node_TIP', 'joint_J1']."""
+        start = f"{self.job}_"
+        return sorted(p.stem.removeprefix(start) for p in self.folder.glob("*.csv") if
+                      p.name.startswith(start))  # fmt: skip
+
+    def table(self, name: str) -> Table:
+        """Columns of the table JOB_NAME.csv."""
+        return read_table(self.path(f"_{name}.csv"))
+
+    def find(self, path: str) -> Any:
+        """Value in the summary, as in find('steps.0.frequencies.2.hz')."""
+        value: Any = self.summary
+        for key in path.split("."):
+            try:
+                value = value[int(key)] if isinstance(value, list) else value[key]
+            except (KeyError, IndexError, ValueError, TypeError):
+                raise KeyError(f"{self.path('.json').name} has no '{path}' (at '{key}')") from None
+        return value
+
+    @cached_property
+    def file(self) -> h5py.File:
+        """The fields, job.h5."""
+        return h5py.File(self.path(".h5"), "r")
 
     @cached_property
     def x(self) -> np.ndarray:
@@ -88,10 +126,7 @@ class Results:
     @cached_property
     def element_types(self) -> np.ndarray:
         """Type of each element as text."""
-        words = self.file["mesh/element_type"][:]
-        return np.array(
-            [w.decode().strip() if isinstance(w, bytes) else str(w).strip() for w in words]
-        )
+        return as_array(self.file["mesh/element_type"][:]).astype(str)
 
     @cached_property
     def connectivity(self) -> np.ndarray:
@@ -176,8 +211,9 @@ class Results:
                 return step["modes/hz"][:], step["modes/shape"][:]
         return None
 
-    def table(self, path: str) -> dict[str, np.ndarray]:
-        """A history by the names of its columns; empty when it is not there."""
+    def history(self, name: str) -> Table:
+        """A history of job.h5 by the names of its columns; empty when it is not there."""
+        path = f"history/{name}"
         if path not in self.file:
             return {}
         data = self.file[path]
@@ -193,6 +229,5 @@ class Results:
         return read_joint_faces(self.file[f"joints/{name}"], self.node_position, self)
 
 
-def _text(word) -> str:
-    word = np.ravel(word)[0] if isinstance(word, np.ndarray) else word
-    return word.decode().strip() if isinstance(word, bytes) else str(word).strip()
+def _text(word: Any) -> str:
+    return str(as_array(word).ravel()[0])

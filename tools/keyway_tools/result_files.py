@@ -1,0 +1,80 @@
+"""The kinds of files that a run writes, read as arrays under names."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+Table = dict[str, np.ndarray]
+
+
+def read_table(path: Path | str) -> Table:
+    """Columns of a CSV file with one header line: numbers where all are, else texts."""
+    with Path(path).open(newline="", encoding="utf-8-sig") as file:
+        rows = [row for row in csv.reader(file) if row]
+    if not rows:
+        raise ValueError(f"{path}: empty, expected a header line")
+    header = [name.strip() for name in rows[0]]
+    for number, row in enumerate(rows[1:], 2):
+        if len(row) != len(header):
+            raise ValueError(f"{path}:{number}: {len(row)} values, expected {len(header)}")
+    columns = zip(*rows[1:], strict=True) if len(rows) > 1 else [()] * len(header)
+    return {name: as_numbers(column) for name, column in zip(header, columns, strict=True)}
+
+
+def as_numbers(column: tuple[str, ...]) -> np.ndarray:
+    """The column as numbers if every field is one or empty (NaN), else as texts."""
+    try:
+        return np.array([float(field) if field.strip() else math.nan for field in column])
+    except ValueError:
+        return np.array([field.strip() for field in column], dtype=object)
+
+
+def read_json(path: Path | str) -> dict[str, Any]:
+    """Leaves of a JSON file under their paths, as in 'steps.0.energy.error'."""
+    content = json.loads(Path(path).read_text(encoding="utf-8"))
+    return dict(leaves(content, ""))
+
+
+def leaves(value: Any, path: str) -> Iterator[tuple[str, Any]]:
+    """Pairs (path, leaf); an empty list or object is a leaf, so that it is not lost."""
+    if isinstance(value, dict | list) and value:
+        items = value.items() if isinstance(value, dict) else enumerate(value)
+        for key, inner in items:
+            yield from leaves(inner, f"{path}.{key}" if path else str(key))
+    else:
+        yield path, value
+
+
+def read_hdf5(path: Path | str) -> Table:
+    """All datasets of an HDF5 file under their paths."""
+    return {name: data for name, data, _ in hdf5_items(path) if data is not None}
+
+
+def hdf5_items(path: Path | str) -> list[tuple[str, np.ndarray | None, Table]]:
+    """Path, data and attributes of every dataset; groups have no data."""
+    found = []
+
+    def keep(name: str, item: Any) -> None:
+        data = as_array(item[()]) if isinstance(item, h5py.Dataset) else None
+        found.append((name, data, {key: as_array(value) for key, value in item.attrs.items()}))
+
+    with h5py.File(path, "r") as file:
+        file.visititems(keep)
+    return found
+
+
+def as_array(value: Any) -> np.ndarray:
+    """Numbers as they are, texts without the blanks that fill them."""
+    data = np.asarray(value)
+    if data.dtype.kind not in "OSU":
+        return data
+    words = [w.decode() if isinstance(w, bytes) else str(w) for w in data.ravel().tolist()]
+    return np.array([w.strip() for w in words], dtype=object).reshape(data.shape)
