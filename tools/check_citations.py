@@ -1,0 +1,209 @@
+"""Checks that every citation leads somewhere.
+
+Pages are cited by name, with a section or, in brackets, an equation: `theory.md, 8` and
+`theory.md, (8.1)`. The numbered notes on the paper are `paper_notes.md, 8`. `Eq. 9` and
+`Eqs. 14-25` are equations of the paper. Links in Markdown lead to files and headings that exist.
+Of Fortran sources the comments are read.
+
+usage: check_citations.py [ROOT]
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+EQUATIONS_OF_THE_PAPER = 25
+READ = {".md", ".py", ".f90", ".for", ".inp", ".toml", ".cmake", ".sh", ".txt", ""}
+LARGEST = 300_000  # bytes; meshes and records are larger and cite nothing
+# Texts of the program: they are those of its sources.
+GENERATED = {"docs/keywords.md"}
+
+NUMBER = r"\d+(?:\.\d+)*[a-z]?"
+ITEM = rf"\(?{NUMBER}\)?(?:-\(?{NUMBER}\)?)?"
+PAGE = re.compile(r"(?<![\w{*<])([\w./-]*\w\.md)\b(?!\()")
+CITED = re.compile(rf"\b([\w-]+\.md)\)?,\s((?:{ITEM})(?:(?:,| and)\s{ITEM}(?![\w.]*\s?[%a-zA-Z]))*)")
+EQUATION = re.compile(r"\bEqs?\.\s(\d+)(?:(?:-|\sand\s)(\d+))?")
+OLD = (
+    (re.compile(r"\bNOTES\s\d"), "paper_notes.md, 8"),
+    (re.compile(r"\bEqs?\s\d"), "Eq. 9 or Eqs. 14-25"),
+    (re.compile(r"\btheory,?\s\(?\d"), "theory.md, 8 or theory.md, (8.1)"),
+    (re.compile(r"\.md,?\ssections?\s\d"), "theory.md, 8"),
+    (re.compile(r"\b(?:DECK|VALIDATION|STYLE|NOTES|UMAT|CLOSURE|ARCHITECTURE|HOUSE)\.md\b"), "docs/"),
+)
+LINK = re.compile(r"!?\[[^\]\n]*\]\(([^)\s]+)\)")
+# What stands at the start of a line of a comment.
+MARKS = re.compile(r"^\s*(?:!>|!<|!|#:?|\*\*|//)?\s*")
+
+
+@dataclass
+class Page:
+    """A page of the documentation and what can be cited of it."""
+
+    path: Path
+    sections: set[str] = field(default_factory=set)
+    equations: set[str] = field(default_factory=set)
+    anchors: set[str] = field(default_factory=set)
+
+
+def anchor_of(heading: str) -> str:
+    """The anchor GitHub gives to a heading."""
+    text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading).strip().lower()
+    return re.sub(r"[^\w\- ]", "", text).replace(" ", "-")
+
+
+def without_code(text: str) -> str:
+    """Markdown without its blocks of code; their lines stay, empty."""
+    text = re.sub(r"^```.*?^```", lambda m: "\n" * m[0].count("\n"), text, flags=re.M | re.S)
+    return re.sub(r"^ {4}(?! *[-*+] ).*$", "", text, flags=re.M)
+
+
+def read_page(path: Path) -> Page:
+    """The headings, numbered notes and equations of a page."""
+    text = without_code(path.read_text(encoding="utf-8"))
+    page, seen = Page(path), {}
+    for heading in re.findall(r"^#+ +(.*)$", text, flags=re.M):
+        name = anchor_of(heading)
+        page.anchors.add(name if name not in seen else f"{name}-{seen[name]}")
+        seen[name] = seen.get(name, 0) + 1
+        if found := re.match(rf"({NUMBER})\.? ", heading):
+            page.sections.add(found[1])
+    page.sections |= set(re.findall(r"^(\d+)\. ", text, flags=re.M))
+    page.equations = set(re.findall(rf"\\tag\{{({NUMBER})\}}", text))
+    page.anchors |= set(re.findall(r"<a (?:id|name)=\"([^\"]+)\"", text))
+    return page
+
+
+def tracked_files(root: Path) -> list[Path]:
+    """Files of the repository that may cite something."""
+    listed = subprocess.run(
+        ["git", "ls-files", "--cached", "--others", "--exclude-standard"],
+        cwd=root,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if listed.returncode == 0:
+        paths = [root / name for name in listed.stdout.splitlines()]
+    else:
+        paths = [p for p in root.rglob("*") if not any(x.startswith(".") for x in p.parts)]
+    return sorted(
+        p for p in paths if p.is_file() and p.suffix in READ and p.stat().st_size <= LARGEST
+    )
+
+
+def comment_of(line: str) -> str:
+    """The comment of a line of Fortran."""
+    quote = ""
+    for place, letter in enumerate(line):
+        if quote:
+            quote = "" if letter == quote else quote
+        elif letter in "'\"":
+            quote = letter
+        elif letter == "!":
+            return line[place:]
+    return ""
+
+
+def prose(path: Path) -> tuple[str, list[int]]:
+    """The text without marks of comments, its lines joined by blanks, and where each line begins."""
+    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    if path.suffix == ".f90":
+        lines = [comment_of(line) for line in lines]
+    if path.suffix != ".md":
+        lines = [MARKS.sub("", line) for line in lines]
+    lines = [line.strip() for line in lines]
+    starts, place = [], 0
+    for line in lines:
+        starts.append(place)
+        place += len(line) + 1
+    return " ".join(lines), starts
+
+
+def line_of(starts: list[int], place: int) -> int:
+    return sum(1 for start in starts if start <= place)
+
+
+def numbers_in(cited: str) -> list[tuple[str, bool]]:
+    """Numbers of '7.1-7.2' or '(11.13), 12', and whether each is an equation."""
+    return [(n.strip("()"), n[0] == "(") for n in re.findall(rf"\(?{NUMBER}\)?", cited)]
+
+
+def check_prose(path: Path, root: Path, pages: dict[str, Page]) -> list[str]:
+    """Faults of the citations in one file."""
+    text, starts = prose(path)
+    place = path.relative_to(root)
+    faults = []
+
+    def report(at: int, fault: str) -> None:
+        faults.append(f"{place}:{line_of(starts, at)}: {fault}")
+
+    for pattern, better in OLD:
+        for found in pattern.finditer(text):
+            report(found.start(), f"'{found[0]}': citations are spelt {better}")
+    for found in EQUATION.finditer(text):
+        if any(int(n) > EQUATIONS_OF_THE_PAPER for n in found.groups() if n):
+            report(found.start(), f"'{found[0]}': the paper has no such equation")
+    for found in PAGE.finditer(text):
+        name = found[1]
+        near = (path.parent / name, root / name, root / "docs" / name)
+        if Path(name).name not in pages and not any(p.exists() for p in near):
+            report(found.start(), f"there is no page '{name}'")
+    for found in CITED.finditer(text):
+        page = pages.get(found[1])
+        for number, is_equation in numbers_in(found[2]) if page else ():
+            if number not in (page.equations if is_equation else page.sections):
+                kind = "equation" if is_equation else "section"
+                report(found.start(), f"{found[1]} has no {kind} {number}")
+    return faults
+
+
+def check_links(path: Path, root: Path, pages: dict[Path, Page]) -> list[str]:
+    """Faults of the relative links of a page."""
+    faults = []
+    text = without_code(path.read_text(encoding="utf-8"))
+    for found in LINK.finditer(text):
+        target, _, anchor = found[1].partition("#")
+        if re.match(r"[a-z]+:", target):
+            continue
+        line = text.count("\n", 0, found.start()) + 1
+        goal = (path.parent / target).resolve() if target else path.resolve()
+        if not goal.exists():
+            faults.append(f"{path.relative_to(root)}:{line}: the link '{found[1]}' leads nowhere")
+        elif anchor and goal in pages and anchor not in pages[goal].anchors:
+            faults.append(f"{path.relative_to(root)}:{line}: no heading '#{anchor}' in {goal.name}")
+    return faults
+
+
+def check(root: Path) -> list[str]:
+    """Every fault found under ROOT."""
+    root = root.resolve()
+    files = tracked_files(root)
+    markdown = [read_page(p) for p in files if p.suffix == ".md"]
+    of_path = {page.path.resolve(): page for page in markdown}
+    # Of two pages of one name that of docs/ itself is meant.
+    named = {page.path.name: page for page in sorted(markdown, key=lambda p: -len(p.path.parts))}
+    own = {Path(__file__).resolve(), root / "tests" / "tools" / "test_check_citations.py"}
+    faults = []
+    for path in files:
+        if path.resolve() in own or str(path.relative_to(root)) in GENERATED:
+            continue
+        faults += check_prose(path, root, named)
+    for page in markdown:
+        faults += check_links(page.path, root, of_path)
+    return faults
+
+
+def main(arguments: list[str]) -> int:
+    root = Path(arguments[0]) if arguments else Path(__file__).resolve().parent.parent
+    faults = check(root)
+    for fault in faults:
+        print(fault)
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
