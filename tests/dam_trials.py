@@ -31,7 +31,7 @@ from keyway_tools.ground_motion import MotionOptions, fit_motion  # noqa: E402
 
 STRONG = 2.5  # length of the motion [s]
 MOTION_DT = 0.01  # [s]
-PEAKS = (0.269 * 9.81, 0.269 * 9.81, 2.0 / 3.0 * 0.269 * 9.81)  # NOTES 14 [m/s2]
+PEAKS = (0.269 * 9.81, 0.269 * 9.81, 2.0 / 3.0 * 0.269 * 9.81)  # paper_notes.md, 14 [m/s2]
 UNDAMPED = (0.0, 2.0, 10.0)
 FULL_MATRIX = tuple(product((1.0, 2.0), (1e10, 1e11, 1e12, 1e13), (0.01, 0.005, 0.002)))
 

@@ -115,7 +115,7 @@ def test_echo_shows_defaults(program_path: Path, tmp_path: Path) -> None:
 
 
 def test_joint_stiffness_from_the_slave_side(program_path: Path) -> None:
-    """NOTES 3: k_n = E / 0.02 m, k_t = k_n / (2 (1 + nu)); here E 22e9, nu 0.167."""
+    """paper_notes.md, 3: k_n = E / 0.02 m, k_t = k_n / (2 (1 + nu)); here E 22e9, nu 0.167."""
     deck = Path(__file__).parent.parent / "input" / "xingbiling_matching"
     done = run(program_path, deck, "--check", "xingbiling_matching.inp")
     assert done.returncode == 0, done.stderr

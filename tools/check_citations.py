@@ -3,37 +3,42 @@
 Pages are cited by name, with a section or, in brackets, an equation: `theory.md, 8` and
 `theory.md, (8.1)`. The numbered notes on the paper are `paper_notes.md, 8`. `Eq. 9` and
 `Eqs. 14-25` are equations of the paper. Links in Markdown lead to files and headings that exist.
-Of Fortran sources the comments are read.
+Of sources and decks only comments and docstrings are read: texts of the program are not citations.
 
 usage: check_citations.py [ROOT]
 """
 
 from __future__ import annotations
 
+import io
 import re
 import subprocess
 import sys
+import tokenize
 from dataclasses import dataclass, field
 from pathlib import Path
 
 EQUATIONS_OF_THE_PAPER = 25
 READ = {".md", ".py", ".f90", ".for", ".inp", ".toml", ".cmake", ".sh", ".txt", ""}
 LARGEST = 300_000  # bytes; meshes and records are larger and cite nothing
-# Texts of the program: they are those of its sources.
-GENERATED = {"docs/keywords.md"}
+# Texts of the program, and what programs of the repository write.
+TEXTS = re.compile(r"docs/keywords\.md|tests/errors/[^/]+/expected\.txt")
+WRITTEN = {"tables.md"}
 
 NUMBER = r"\d+(?:\.\d+)*[a-z]?"
 ITEM = rf"\(?{NUMBER}\)?(?:-\(?{NUMBER}\)?)?"
 PAGE = re.compile(r"(?<![\w{*<])([\w./-]*\w\.md)\b(?!\()")
-CITED = re.compile(rf"\b([\w-]+\.md)\)?,\s((?:{ITEM})(?:(?:,| and)\s{ITEM}(?![\w.]*\s?[%a-zA-Z]))*)")
+MORE = rf"(?:,| and)\s{ITEM}(?![\w.]*\s?[%a-zA-Z])"
+CITED = re.compile(rf"\b([\w-]+\.md)\)?,\s({ITEM}(?:{MORE})*)")
 EQUATION = re.compile(r"\bEqs?\.\s(\d+)(?:(?:-|\sand\s)(\d+))?")
 OLD = (
     (re.compile(r"\bNOTES\s\d"), "paper_notes.md, 8"),
     (re.compile(r"\bEqs?\s\d"), "Eq. 9 or Eqs. 14-25"),
-    (re.compile(r"\btheory,?\s\(?\d"), "theory.md, 8 or theory.md, (8.1)"),
+    (re.compile(r"\btheory,?\s\(?\d+(?:\.\d+[a-z]?)?\b(?![-e])"), "theory.md, 8 or (8.1)"),
     (re.compile(r"\.md,?\ssections?\s\d"), "theory.md, 8"),
-    (re.compile(r"\b(?:DECK|VALIDATION|STYLE|NOTES|UMAT|CLOSURE|ARCHITECTURE|HOUSE)\.md\b"), "docs/"),
 )
+# An equation of the page itself.
+OWN = re.compile(r"\((\d{1,2}\.\d{1,2}(?:\.\d)?[a-z]?)\)")
 LINK = re.compile(r"!?\[[^\]\n]*\]\(([^)\s]+)\)")
 # What stands at the start of a line of a comment.
 MARKS = re.compile(r"^\s*(?:!>|!<|!|#:?|\*\*|//)?\s*")
@@ -95,6 +100,20 @@ def tracked_files(root: Path) -> list[Path]:
     )
 
 
+def comments_of_python(text: str) -> list[str]:
+    """The lines of a Python source, of which only comments and docstrings are left."""
+    lines = [""] * (text.count("\n") + 1)
+    before = tokenize.NEWLINE
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        begins = before in {tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT}
+        if token.type == tokenize.COMMENT or (token.type == tokenize.STRING and begins):
+            for number, line in enumerate(token.string.split("\n"), token.start[0] - 1):
+                lines[number] = line.strip('"')
+        if token.type not in {tokenize.COMMENT, tokenize.NL}:
+            before = token.type
+    return lines
+
+
 def comment_of(line: str) -> str:
     """The comment of a line of Fortran."""
     quote = ""
@@ -109,10 +128,15 @@ def comment_of(line: str) -> str:
 
 
 def prose(path: Path) -> tuple[str, list[int]]:
-    """The text without marks of comments, its lines joined by blanks, and where each line begins."""
-    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    """Text without marks of comments, lines joined by blanks, and where each line begins."""
+    text = path.read_text(encoding="utf-8", errors="replace")
+    lines = text.splitlines()
     if path.suffix == ".f90":
         lines = [comment_of(line) for line in lines]
+    elif path.suffix == ".py":
+        lines = comments_of_python(text)
+    elif path.suffix == ".inp":
+        lines = [line if line.startswith("**") else "" for line in lines]
     if path.suffix != ".md":
         lines = [MARKS.sub("", line) for line in lines]
     lines = [line.strip() for line in lines]
@@ -125,6 +149,10 @@ def prose(path: Path) -> tuple[str, list[int]]:
 
 def line_of(starts: list[int], place: int) -> int:
     return sum(1 for start in starts if start <= place)
+
+
+def line_of_text(text: str, place: int) -> int:
+    return text.count("\n", 0, place) + 1
 
 
 def numbers_in(cited: str) -> list[tuple[str, bool]]:
@@ -150,7 +178,8 @@ def check_prose(path: Path, root: Path, pages: dict[str, Page]) -> list[str]:
     for found in PAGE.finditer(text):
         name = found[1]
         near = (path.parent / name, root / name, root / "docs" / name)
-        if Path(name).name not in pages and not any(p.exists() for p in near):
+        is_known = Path(name).name in WRITTEN | pages.keys()
+        if not is_known and not any(p.exists() for p in near):
             report(found.start(), f"there is no page '{name}'")
     for found in CITED.finditer(text):
         page = pages.get(found[1])
@@ -159,6 +188,19 @@ def check_prose(path: Path, root: Path, pages: dict[str, Page]) -> list[str]:
                 kind = "equation" if is_equation else "section"
                 report(found.start(), f"{found[1]} has no {kind} {number}")
     return faults
+
+
+def check_own_equations(page: Page, root: Path, known: set[str]) -> list[str]:
+    """Numbers in brackets, on a page with equations, that no equation has."""
+    if not page.equations:
+        return []
+    text = without_code(page.path.read_text(encoding="utf-8"))
+    text = re.sub(r"^\|.*$", "", text, flags=re.M)
+    return [
+        f"{page.path.relative_to(root)}:{line_of_text(text, found.start())}: no equation {found[0]}"
+        for found in OWN.finditer(text)
+        if found[1] not in known
+    ]
 
 
 def check_links(path: Path, root: Path, pages: dict[Path, Page]) -> list[str]:
@@ -189,11 +231,13 @@ def check(root: Path) -> list[str]:
     own = {Path(__file__).resolve(), root / "tests" / "tools" / "test_check_citations.py"}
     faults = []
     for path in files:
-        if path.resolve() in own or str(path.relative_to(root)) in GENERATED:
+        if path.resolve() in own or TEXTS.fullmatch(path.relative_to(root).as_posix()):
             continue
         faults += check_prose(path, root, named)
+    equations = set().union(*(page.equations for page in markdown))
     for page in markdown:
         faults += check_links(page.path, root, of_path)
+        faults += check_own_equations(page, root, equations)
     return faults
 
 

@@ -13,13 +13,14 @@ from keyway_tools.small_decks import SMALL_DECKS
 
 INPUT = Path(__file__).resolve().parents[1] / "input"
 DAM_NOTES = (
-    "Source: the dam of section 4.1 of Xu, Chen, Li and Yue (2014) as NOTES 14 gives it: sizes, "
+    "Source: the dam of section 4.1 of Xu, Chen, Li and Yue (2014) (paper_notes.md, 14): sizes, "
     "water 105 m deep, concrete 22 GPa, 0.167, 2400 kg/m3, rock 20 GPa, 0.24, q_on = 0, friction "
-    "0.6, 0.269 g. Neither its geometry nor its record is published beyond this (NOTES 16)",
+    "0.6, 0.269 g. Neither its geometry nor its record is published beyond this "
+    "(paper_notes.md, 16)",
     "Motion (assumed): x and y 0.269 g, z 2/3 of it, 10 s; fitted to the spectrum of NB 35047-2015 "
     "for arch dams, T_g = 0.2 s, seed 3; see motion.json",
     "Damping (assumed): 5 % at 2 and 10 Hz, Rayleigh on the elastic stiffness",
-    "Joint stiffness (NOTES 3): k_n = E / 2 cm = 1.1e12 Pa/m, k_t = k_n / (2 (1 + nu))",
+    "Joint stiffness (paper_notes.md, 3): k_n = E / 2 cm = 1.1e12 Pa/m, k_t = k_n / (2 (1 + nu))",
 )
 DAM_MESH = "--arc 34 --levels 14 --bottom 6 --thick 3 --joints 2"
 ROCK_MESH = " --rock-upstream 5 --rock-downstream 5 --rock-deep 6"

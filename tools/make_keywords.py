@@ -22,11 +22,12 @@ FIELD_WIDTH = 21  # where the text of a parameter begins in keyway --keywords
 INTRODUCTION = """\
 # Keywords
 
-All keywords of a deck: what each of them takes, with kinds, ranges, units and defaults. [deck.md](deck.md) has the
-rules that hold for all of them. `keyway --keywords NAME` prints the same text for one keyword.
+All keywords of a deck: what each of them takes, with kinds, ranges, units and defaults.
+[deck.md](deck.md) has the rules that hold for all of them. `keyway --keywords NAME` prints the same
+text for one keyword.
 
-This page is generated. After a change of a keyword run `python tools/make_keywords.py`; a test compares the page
-with the program.
+This page is generated. After a change of a keyword run `python tools/make_keywords.py`; a test
+compares the page with the program.
 """
 
 

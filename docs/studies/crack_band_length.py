@@ -5,7 +5,7 @@
 A slab is torn in two along y. What the concrete dissipates by cracking over G_f times the area
 of the crack should be 1, whatever the bricks are. The rules for the width l, with which the
 opening of a crack becomes a strain:
-  edges       l = sqrt(sum (g_i . n)^2), what the program does (theory 11.11)
+  edges       l = sqrt(sum (g_i . n)^2), as in the program (theory.md, (11.11))
   cube root   l = cube root of the volume
   projection  l = sum |g_i . n|, the height of the element over the crack
 g_i are the edges of the brick, n is the normal of the crack, here y. The program knows the first
@@ -31,7 +31,7 @@ import numpy as np
 YOUNG, POISSON, STRENGTH, ENERGY = 25e9, 0.2, 2.0e6, 2000.0
 SIDE = 0.2
 OPENING = 2.0 * ENERGY / STRENGTH  # w_u of linear softening
-RESIDUAL = 1e-3  # share of the strength that stays (theory 11.4)
+RESIDUAL = 1e-3  # share of the strength that stays (theory.md, 11.4)
 RULES = ("edges", "cube root", "projection")
 
 

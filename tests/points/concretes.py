@@ -31,7 +31,7 @@ class Material:
     poisson: float = 0.167
     dilation: float = 32.5  # [deg]
     offset: float = 0.01
-    biaxial_ratio: float = 1.125  # alpha 0.10, NOTES 9
+    biaxial_ratio: float = 1.125  # alpha 0.10, paper_notes.md, 9
     meridian_ratio: float = 2.0 / 3.0  # gamma 3
     viscosity: float = 0.0  # [s]
     recovery: str = "LEE-FENVES"
@@ -68,7 +68,7 @@ class Material:
         )
 
 
-JINPING = Material()  # the paper's: Table 1, constant compression strength (NOTES 12)
+JINPING = Material()  # the paper's: Table 1, constant compression strength (paper_notes.md, 12)
 
 # Crushing that hardens, softens and damages, of round numbers of our own: a concrete with every
 # part of the law at work.

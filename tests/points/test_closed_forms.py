@@ -70,7 +70,7 @@ def test_energy_of_table_1(keyway):
 @pytest.mark.parametrize("tension_recovery", [0.0, 0.5, 1.0])
 @pytest.mark.parametrize("compression_recovery", [0.0, 0.5, 1.0])
 def test_recovery_of_stiffness(keyway, compression_recovery, tension_recovery, recovery):
-    """Slopes of a cracked, a closed, and a crushed and pulled point: Eqs 15-16.
+    """Slopes of a cracked, a closed, and a crushed and pulled point: Eqs. 15-16.
 
     Each slope is taken over a leg with no yield on it, between two stresses of one sign.
     """

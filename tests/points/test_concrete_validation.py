@@ -101,7 +101,7 @@ def test_kupfer(curves):
     assert half == pytest.approx(published.KUPFER_HALF[:, 1].max() * 1e6, rel=0.05)
     ratio, strength = biaxial_envelope(curves).T
     assert strength == pytest.approx(published.kupfer_gerstle(ratio), rel=0.06)
-    # Plane stress in Eq 19, no damage of one sign by the other: alpha = 0.16/1.32. Peaks lie
+    # Plane stress in Eq. 19, no damage of one sign by the other: alpha = 0.16/1.32. Peaks lie
     # between increments of 1e-5: 1e-4.
     alpha = 0.16 / 1.32
     closed = (1.0 - alpha) / (np.sqrt(1.0 - ratio + ratio**2) - alpha * (1.0 + ratio))

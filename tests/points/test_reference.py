@@ -29,7 +29,7 @@ def stress_at_yield(law, direction) -> np.ndarray:
 
 
 def test_plastic_strains_of_table_1():
-    """NOTES 11 prints them to 1e-8."""
+    """paper_notes.md, 11 prints them to 1e-8."""
     printed = [0.0, 0.15578, 0.28843, 0.41757, 0.67392, 0.93020, 1.18263, 1.48298]
     assert JINPING.tension_curve.plastic * 1e3 == pytest.approx(printed, abs=5.1e-6)
 
@@ -104,7 +104,7 @@ def test_recovery_of_stiffness(tension_recovery, compression_recovery, by_sign):
 
 @pytest.mark.parametrize("ratio", [1.05, 1.125, 1.16, 1.2])
 def test_biaxial_strength(ratio):
-    """First yield under equal compressions is f_b0: alpha of NOTES 9, 1e-12 is round-off."""
+    """First yield under equal compressions is f_b0 (paper_notes.md, 9); 1e-12 is round-off."""
     law = Material(biaxial_ratio=ratio).law()
     stress = stress_at_yield(law, [-1, -1, 0, 0, 0, 0])
     assert -stress[0] == pytest.approx(exact.biaxial_strength(law), rel=1e-12)

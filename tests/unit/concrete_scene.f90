@@ -8,7 +8,7 @@ module concrete_scene
 
 contains
 
-  !> Table 1 of Xu, Chen, Li & Yue (2014), their constants, 30 MPa in compression (NOTES 9-12).
+  !> Table 1 and constants of the paper, 30 MPa in compression (paper_notes.md, 9-12).
   pure function table_one() result(concrete)
     type(concrete_constants) :: concrete
     concrete%young = 25.0e9_rk

@@ -39,7 +39,7 @@ class Concrete:
     tension_type: str = "STRAIN"
     tension: Rows = tuple((row[0], row[1]) for row in TABLE_1.tolist())
     damage: Rows = ()  # of tension, against the same abscissa
-    compression: Rows = ((30e6, 0.0),)  # constant, as NOTES 12
+    compression: Rows = ((30e6, 0.0),)  # constant, as paper_notes.md, 12
     crushing: Rows = ()  # damage in compression
     w_t: float = 0.0
     w_c: float = 1.0

@@ -76,7 +76,7 @@ def test_damage_keeps_the_energy(keyway, num_rest, damage):
 @pytest.mark.parametrize("num_rest", [1, 5, 20])
 def test_sides_that_are_held(keyway, num_rest):
     """The paper's dilation (32.5 deg): the cracked element wants to shrink sideways, the sound ones
-    hold it, and it is torn in all directions at once. There Eq 19 has the strength
+    hold it, and it is torn in all directions at once. There Eq. 19 has the strength
 
         (1 - alpha) c / ((c / t) (1 - alpha) - 1 + 2 alpha) = 1.079 t      (30 MPa, 2.48 MPa)
 

@@ -1,4 +1,4 @@
-"""One element in tension: Table 1 of the paper; the stiffness of cracks that close (Eqs 15-16)."""
+"""One element in tension: Table 1 of the paper; the stiffness of cracks that close (Eqs. 15-16)."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from concrete_decks import TABLE_1, Bar, force_of, paper_concrete, pull
 
-YOUNG = 25e9  # [Pa], NOTES 11
+YOUNG = 25e9  # [Pa], paper_notes.md, 11
 ELEMENTS = ("C3D8", "C3D8B", "C3D8I", "C3D8R")
 SIDE = 1.0  # [m]
 
 
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_table_1(keyway, element):
-    """The rows of Table 1 come back: sigma at eps = eps_ck + sigma / E_0 (NOTES 11).
+    """The rows of Table 1 come back: sigma at eps = eps_ck + sigma / E_0 (paper_notes.md, 11).
 
     The curve is exact at the rows, where an increment ends; what is left is the iteration (1e-6 of
     the forces). The issue of the project asks for 0.2 %.
@@ -40,7 +40,7 @@ def slope(displacement, force, first, last) -> float:
 @pytest.mark.parametrize("recovery", ["LEE-FENVES", "SIGN"])
 @pytest.mark.parametrize("w_c", [0.0, 0.5, 1.0])
 def test_cracks_close(keyway, recovery, w_c):
-    """Unloading from a crack has (1 - d_t) E_0; compression (1 - (1 - w_c) d_t) E_0 (Eqs 15-16).
+    """Unloading from a crack has (1 - d_t) E_0; compression (1 - (1 - w_c) d_t) E_0 (Eqs. 15-16).
 
     d_t from Table 1 at the strain of its fourth row. In uniaxial stress both weights r switch at
     zero stress; the slopes are those of straight lines, exact to the iteration.
@@ -63,7 +63,7 @@ def test_cracks_close(keyway, recovery, w_c):
 
 @pytest.mark.parametrize("w_t", [0.0, 0.5, 1.0])
 def test_tension_after_crushing(keyway, w_t):
-    """Renewed tension after crushing has (1 - d_t)(1 - (1 - w_t) d_c) E_0 (Eqs 15-16, NOTES 7).
+    """Tension after crushing has (1 - d_t)(1 - (1 - w_t) d_c) E_0 (Eqs. 15-16; paper_notes.md, 7).
 
     Crushed to an inelastic strain of 1e-3 where d_c = 0.4 and the strength is 30 MPa; then unloaded
     and pulled, below its tensile strength, so that d_t = 0.

@@ -1,8 +1,8 @@
 """A brick that is torn takes G_f times its area, along its long side and across it.
 
-Exact but for the strength that stays, a thousandth of f_t (theory 11.4): after the opening w the
-energy is G_f (1 - 1e-6) + 1e-3 f_t (w - w_u). The cube root of the volume as the width of the band
-would give 1/2.9 and 1.7 times as much in a brick of 1 x 1 x 5.
+Exact but for the strength that stays, a thousandth of f_t (theory.md, 11.4): after the opening w
+the energy is G_f (1 - 1e-6) + 1e-3 f_t (w - w_u). The cube root of the volume as the width of the
+band would give 1/2.9 and 1.7 times as much in a brick of 1 x 1 x 5.
 """
 
 import numpy as np
@@ -75,7 +75,7 @@ def test_strength_of_a_brick_that_is_too_long(keyway):
 
 @pytest.mark.parametrize("energy", [100.0, 150.0, 200.0, 300.0])
 def test_longest_brick(keyway, energy):
-    """2 E G_f / f_t^2, VALIDATION.md: 0.813, 1.219, 1.626, 2.439 m."""
+    """2 E G_f / f_t^2, verification.md: 0.813, 1.219, 1.626, 2.439 m."""
     longest = 2.0 * YOUNG * energy / STRENGTH**2
     fits = torn_brick(np.array([0.5, 0.5, 0.999 * longest]), 2, energy=energy)
     keyway(fits, "--check")

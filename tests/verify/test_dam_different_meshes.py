@@ -174,7 +174,7 @@ def test_shaken_dam_lies_between_matching_meshes(runs, mesh, fine):
 
 
 def test_chain_gives_way_as_its_penalty_does(runs):
-    """Eq 8 with k = 22e9 Pa/m: the dam moves as with joints of 1 / (1/k_n + 1/k), k_t alike.
+    """Eq. 8 with k = 22e9 Pa/m: the dam moves as with joints of 1 / (1/k_n + 1/k), k_t alike.
 
     Such a joint is integrated at Gauss points, as the penalty is: with two elements through the
     thickness springs at nodes are half as stiff again in bending. Bonded, so that all is linear;

@@ -7,7 +7,7 @@ import pytest
 from dam_trials import ArchShape, DeckOptions, Trial, measure, run_trial
 
 MOST_ITERATIONS = 15
-# NOTES 15, without the outlets: 306.5 m, six joints, water to 300 m
+# paper_notes.md, 15, without the outlets: 306.5 m, six joints, water to 300 m
 JINPING = ArchShape(
     height=306.5, crest_arc=563.77, crest_thickness=18.5, base_thickness=66.0, bottom_width=60.0
 )
@@ -32,7 +32,7 @@ VARIANTS = {
     "strength 1 MPa": law(tensile_strength=1.0e6),
     "no friction": law(friction=0.0),
     "friction 1": law(friction=1.0),
-    # no equilibrium where cohesion pushes a point open that closes without it (theory.md, 2.10)
+    # no equilibrium where cohesion pushes a point open that closes without it (theory.md, (2.10))
     "cohesion 0.1 MPa": law(cohesion=1.0e5),
     "cohesion 1 MPa": law(cohesion=1.0e6),
     "gap 1 mm": edited("COHESION=0", "COHESION=0, GAP=0.001"),

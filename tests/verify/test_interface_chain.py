@@ -1,4 +1,4 @@
-"""The paper's chain on blocks whose meshes differ: fine block, springs of *INTERFACE (Eq 8), quads
+"""The paper's chain on blocks whose meshes differ: fine block, springs of *INTERFACE (Eq. 8), quads
 with nodes of their own, JOINT8, coarse block."""
 
 from __future__ import annotations

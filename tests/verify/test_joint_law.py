@@ -1,4 +1,4 @@
-"""The joint law in decks: tensile strength (Eq 9), gap, friction and cohesion, one cube each."""
+"""The joint law in decks: tensile strength (Eq. 9), gap, friction and cohesion, one cube each."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def first_point(run) -> dict[str, np.ndarray]:
 
 @pytest.mark.parametrize("integration", ["NODES", "GAUSS"])
 def test_strength_is_lost_for_good(keyway, integration):
-    """Eq 9 with NOTES 4: linear to q_on, zero for good when open, k_n v when closed again.
+    """Eq. 9; paper_notes.md, 4: linear to q_on, zero for good when open, k_n v when closed again.
 
     The cube (E/L = 2 k_n) shares its top's displacement u with the joint while that carries:
     traction = u / (1/k_n + L/E). Numbers to round-off.

@@ -1,6 +1,6 @@
 """keyway --material on concrete: the decks of input/material, and what a calibration relies on.
 
-The references are the tables that the decks hold and closed forms of Eqs 15-19.
+The references are the tables that the decks hold and closed forms of Eqs. 15-19.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ def test_table_1_comes_back(curves):
     assert table["E11"][rows] == pytest.approx(TABLE[:, 0] / YOUNG + TABLE[:, 1], rel=1e-12)
     assert table["S11"][rows] == pytest.approx(TABLE[:, 0], rel=1e-6)
     assert table["DAMAGET"][rows] == pytest.approx(TABLE[:, 2], abs=1e-6)
-    # NOTES 11
+    # paper_notes.md, 11
     plastic = TABLE[:, 1] - TABLE[:, 2] / (1 - TABLE[:, 2]) * TABLE[:, 0] / YOUNG
     assert table["PE11"][rows] == pytest.approx(plastic, abs=1e-9)
     # the area of the table between rows is that of straight lines in plastic strain, not in strain
@@ -100,7 +100,7 @@ def test_unloading_has_the_damaged_stiffness(curves):
     [("OPEN", 0.0, 1.0), ("CLOSED", 0.0, 0.0), ("HEALED", 1.0, 1.0)],
 )
 def test_recovery_of_stiffness(curves, name, tension_recovery, compression_recovery):
-    """Slopes just past zero stress, Eqs 15-16 with r = 1 in tension and 0 in compression."""
+    """Slopes just past zero stress, Eqs. 15-16 with r = 1 in tension and 0 in compression."""
     table = curves("cyclic_uniaxial")[0][name]
     rows = ends_of_legs(table)
     stress, strain = table["S11"], table["E11"]
@@ -134,7 +134,7 @@ def test_strength_under_two_stresses(curves):
 
 
 def test_strength_under_confinement(curves):
-    """Eq 19 on the compressive meridian with alpha 0.1212, gamma 3: s = f_c + 4.828 p."""
+    """Eq. 19 on the compressive meridian with alpha 0.1212, gamma 3: s = f_c + 4.828 p."""
     tables, _ = curves("triaxial")
     alpha = 0.16 / 1.32
     gain = (1 + 2 * alpha + 3) / (1 - alpha)

@@ -98,7 +98,7 @@ def test_stress_crosses_points_of_segments(keyway, way, mesh):
 @pytest.mark.parametrize("coarse", ["LOWER", "UPPER"])
 @pytest.mark.parametrize("mesh", ["3:7", "by lot"])
 def test_the_chain_of_the_paper_gives_way_by_t_over_k(keyway, mesh, coarse):
-    """Eq 8 and JOINT8 in a row: the jump is t / k of the coupling and t / k of the joint."""
+    """Eq. 8 and JOINT8 in a row: the jump is t / k of the coupling and t / k of the joint."""
     pair = Pair(*MESHES[mesh])
     fine = "UPPER" if coarse == "LOWER" else "LOWER"
     quads = pair.add_chain(coarse)

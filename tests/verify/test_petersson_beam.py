@@ -81,8 +81,8 @@ def test_cohesive_crack(keyway, name, mesh):
     """The whole curve within 3 % of the largest load of a cohesive crack with the same softening.
 
     With ten times the strength in compression: a crack whose sides are held by sound concrete is
-    torn in all directions at once, where Eq 19 has more strength than in one, here by 10 % with 33
-    MPa and by 1 % with 330 MPa (theory 11.2). A crack band of bricks of 1 cm, a tenth of the
+    torn in all directions at once, where Eq. 19 has more strength than in one, here by 10 % with 33
+    MPa and by 1 % with 330 MPa (theory.md, 11.2). A crack band of bricks of 1 cm, a tenth of the
     ligament, stands for a line.
     """
     beam = beam_curve(keyway, name, mesh, "C3D8I", 10.0 * COMPRESSION)

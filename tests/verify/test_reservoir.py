@@ -2,7 +2,7 @@
 
 The base moves with a(t) so slowly that the dam goes with it: what holds the base is then the mass
 of everything that moves, times a. Taking the run without water away leaves the water's mass.
-Westergaard (NOTES 17): 7/8 rho sqrt(H y) per area, so 7/12 rho H^2 per metre of a vertical face:
+Westergaard (paper_notes.md, 17): 7/8 rho sqrt(H y) per area, so 7/12 rho H^2 per metre of width:
 4.9105e6 kg at H = 91.75 m, and 7/8 rho H = 8.028e4 kg/m2 at the bed.
 """
 

@@ -10,7 +10,7 @@ from .mesh_data import BrickMesh
 
 @dataclass(frozen=True)
 class DeckOptions:
-    """Everything of the deck but the mesh; SI units. Defaults: NOTES 3, 5, 14."""
+    """Everything of the deck but the mesh; SI units. Defaults: paper_notes.md, 3, 5, 14."""
 
     title: str = "Arch dam with contraction joints"
     element_type: str = "C3D8"
@@ -22,7 +22,7 @@ class DeckOptions:
     tensile_strength: float = 0.0  # q_on [Pa]
     friction: float = 0.6
     cohesion: float = 0.0  # [Pa]
-    # of *INTERFACE [Pa/m]: the E of concrete as a number (NOTES 1)
+    # of *INTERFACE [Pa/m]: the E of concrete as a number (paper_notes.md, 1)
     interface_stiffness: float = 22.0e9
     has_joint_law: bool = True  # False: the run without joints (joints bonded by a high strength)
     water_depth: float | None = 105.0  # over the foot of the crown [m]; None: empty

@@ -81,7 +81,7 @@ def _block_lines(mesh: BrickMesh, options: DamOptions, blocks: BlockOptions) -> 
         above = f"above {blocks.fine_above:g} of the height " if blocks.fine_above else ""
         shift = f", levels shifted by up to {own.shift:g} element" if own.shift else ""
         text += f"; {names} (from the left end) {above}{own.refine} and {own.thick}{shift}"
-    lines = paragraph("Blocks", f"{text}. Cells are trilinear, so all meshes fill one body")
+    lines = paragraph("Blocks", f"{text}. Cells are trilinear, so all meshes fill the same volume")
     if mesh.surface_joints:
         lines += paragraph(
             "Different meshes",
@@ -91,7 +91,8 @@ def _block_lines(mesh: BrickMesh, options: DamOptions, blocks: BlockOptions) -> 
     if mesh.interfaces:
         lines += paragraph(
             "Different meshes",
-            "the paper's chain: fine face, *INTERFACE (Eq 8, E of concrete as a number, NOTES 1), "
+            "the paper's chain: fine face, *INTERFACE (Eq. 8; E of concrete as a number: "
+            "paper_notes.md, 1), "
             "IFACE4 quads with nodes of their own on the coarse face, JOINT8, coarse face",
         )
     if mesh.ties:

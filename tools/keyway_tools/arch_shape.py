@@ -17,7 +17,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class ArchShape:
-    """Lengths in metres; defaults are the 135.5 m dam of NOTES 14 with assumed curvatures."""
+    """Lengths in metres; defaults: the dam of paper_notes.md, 14 with assumed curvatures."""
 
     height: float = 135.5
     crest_arc: float = 444.86  # along the upstream edge of the crest

@@ -55,10 +55,10 @@ Assumes: section of monolith_frequencies.inp, 1 m thick, plane stress; rigid bas
   crack's curve, compression as for Koyna in the literature (13 MPa, 24.1 MPa). A smaller G_f would
   snap back in bricks of up to 4.5 m: 2 E G_f / f_t^2 = 4.65 m. Damping 3 %. Motion (made up): three
   sines of 2.1, 3.1 and 5.3 Hz, the second near the first mode of the full dam, peak 2 m/s2.
-Expect: a crack from the heel along the base and cracks through the neck, each one brick wide, sound
+Expect: a crack from the heel along the base and cracks through the neck, one brick wide, intact
   concrete elsewhere; compression nowhere above 13 MPa, so that what job.json counts as crushing is
   shear over closed cracks; an energy error below 1e-3. Source: where Koyna cracked in 1967, and
-  the balance of energy. Which row of bricks a crack takes hangs on small things (*CONTROLS, mesh).
+  the balance of energy. The row of bricks that a crack takes is sensitive to *CONTROLS and mesh.
 """
 CARDS = """
 *MATERIAL, NAME=CONCRETE

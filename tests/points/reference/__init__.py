@@ -1,4 +1,4 @@
-"""An independent reference of plastic-damage concrete (paper, Eqs 14-25; NOTES 7-13).
+"""An independent reference of plastic-damage concrete (paper, Eqs. 14-25; paper_notes.md, 7-13).
 
 It shares nothing with the program: no return map, but the rate equations themselves, integrated by
 an adaptive scheme of scipy with error control (LSODA); six stress components and numerical

@@ -41,20 +41,20 @@ def uniaxial_energy(law: Concrete, curve: Curve, plastic: float) -> tuple[float,
 
 
 def stiffness_after(law: Concrete, tensile: float, compressive: float, share: float) -> float:
-    """Slope of a uniaxial test [Pa] under tension (share 1) or compression (share 0), Eqs 15-16."""
+    """Slope of a uniaxial test [Pa] in tension (share 1) or compression (share 0), Eqs. 15-16."""
     by_compression = 1.0 - (1.0 - law.tension_recovery * share) * compressive
     by_tension = 1.0 - (1.0 - law.compression_recovery * (1.0 - share)) * tensile
     return by_compression * by_tension * law.young
 
 
 def beta(law: Concrete, tensile_strain: float = 0.0) -> float:
-    """Eq 23 after a tensile plastic strain, uncrushed."""
+    """Eq. 23 after a tensile plastic strain, uncrushed."""
     ratio = law.compression.effective(0.0) / law.tension.effective(tensile_strain)
     return ratio * (1.0 - law.alpha) - (1.0 + law.alpha)
 
 
 def biaxial_strength(law: Concrete) -> float:
-    """First yield under two equal compressions [Pa]: q = f, p = 2f/3 in Eq 19."""
+    """First yield under two equal compressions [Pa]: q = f, p = 2f/3 in Eq. 19."""
     return law.biaxial_ratio * law.compression.effective(0.0)
 
 
@@ -77,7 +77,7 @@ def meridian_strengths(law: Concrete, pressure: float) -> tuple[float, float]:
 def hydrostatic_tension(law: Concrete, plastic: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Strain in each direction and stress [Pa] at tensile plastic strains, all directions pulled.
 
-    At the apex q = 0 and the flow is the same in all directions; Eq 19 is (3 alpha + beta) s =
+    At the apex q = 0 and the flow is the same in all directions; Eq. 19 is (3 alpha + beta) s =
     (1 - alpha) sigma_c.
     """
     compressive = law.compression.effective(0.0)

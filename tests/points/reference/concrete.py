@@ -1,4 +1,4 @@
-"""Plastic-damage concrete: constants, yield function, flow and damage (Eqs 14-25)."""
+"""Plastic-damage concrete: constants, yield function, flow and damage (Eqs. 14-25)."""
 
 from __future__ import annotations
 
@@ -34,24 +34,24 @@ def largest_principal(stress: np.ndarray) -> tuple[float, np.ndarray]:
 
 
 def weight(values: np.ndarray) -> np.ndarray:
-    """The share of tension of Lee and Fenves, sum<s>/sum|s| (NOTES 8); zero without stress."""
+    """Share of tension of Lee and Fenves, sum<s>/sum|s| (paper_notes.md, 8); 0 without stress."""
     whole = np.sum(np.abs(values), axis=-1)
     share = np.sum(np.maximum(values, 0.0), axis=-1)
     return share / np.where(whole > 0.0, whole, 1.0)
 
 
 def pressure(stress: np.ndarray) -> np.ndarray:
-    """Eq 20 [Pa]."""
+    """Eq. 20 [Pa]."""
     return stress @ (-UNIT / 3.0)
 
 
 def deviator(stress: np.ndarray) -> np.ndarray:
-    """Eq 22 [Pa]."""
+    """Eq. 22 [Pa]."""
     return stress + pressure(stress)[..., None] * UNIT
 
 
 def mises(stress: np.ndarray) -> np.ndarray:
-    """Eq 21 [Pa]."""
+    """Eq. 21 [Pa]."""
     return np.sqrt(1.5 * deviator(stress) ** 2 @ SHEARS)
 
 
@@ -63,33 +63,33 @@ class Concrete:
     poisson: float
     tension: Curve
     compression: Curve
-    dilation: float = 32.5  # psi of Eq 25 [deg]
-    offset: float = 0.1  # xi of Eq 25
+    dilation: float = 32.5  # psi of Eq. 25 [deg]
+    offset: float = 0.1  # xi of Eq. 25
     biaxial_ratio: float = 1.125  # f_b0/f_c0
     meridian_ratio: float = 2.0 / 3.0  # K_c
     tension_recovery: float = 0.0  # w_t
     compression_recovery: float = 1.0  # w_c
-    recovers_by_sign: bool = False  # Eq 17, else the weight of Lee and Fenves
+    recovers_by_sign: bool = False  # Eq. 17, else the weight of Lee and Fenves
 
     @property
     def alpha(self) -> float:
-        """Of Eq 19, from first yield under equal biaxial compression."""
+        """Of Eq. 19, from first yield under equal biaxial compression."""
         return (self.biaxial_ratio - 1.0) / (2.0 * self.biaxial_ratio - 1.0)
 
     @property
     def gamma(self) -> float:
-        """Of Eq 19, NOTES 9."""
+        """Of Eq. 19, paper_notes.md, 9."""
         return 3.0 * (1.0 - self.meridian_ratio) / (2.0 * self.meridian_ratio - 1.0)
 
     @cached_property
     def stiffness(self) -> np.ndarray:
-        """D_0 of Eq 14 (6, 6) [Pa]."""
+        """D_0 of Eq. 14 (6, 6) [Pa]."""
         shear = self.young / (2.0 * (1.0 + self.poisson))
         lame = 2.0 * shear * self.poisson / (1.0 - 2.0 * self.poisson)
         return lame * np.outer(UNIT, UNIT) + shear * np.diag(2.0 / SHEARS)
 
     def yield_value(self, stress, largest, strengths) -> np.ndarray:
-        """F of Eqs 19 and 23 [Pa] under effective stresses whose largest principal one is given.
+        """F of Eqs. 19 and 23 [Pa] under effective stresses whose largest principal one is given.
 
         `strengths` are the effective ones, tensile and compressive, in the last index.
         """
@@ -116,26 +116,27 @@ class Concrete:
         return float(self.yield_value(stress, largest, self.strengths(plastic)))
 
     def flow(self, stress: np.ndarray) -> np.ndarray:
-        """Gradient of the potential of Eqs 24-25 (6), a strain with engineering shears."""
+        """Gradient of the potential of Eqs. 24-25 (6), a strain with engineering shears."""
         slope = np.tan(np.radians(self.dilation))
-        round_off = self.offset * self.tension.strength[0] * slope  # NOTES 10: the tensile peak
+        # The strength is the tensile peak (paper_notes.md, 10).
+        round_off = self.offset * self.tension.strength[0] * slope
         steepness = np.hypot(round_off, mises(stress))
         return 1.5 * SHEARS * deviator(stress) / steepness + slope / 3.0 * UNIT
 
     def growth(self, stress: np.ndarray, flow: np.ndarray) -> np.ndarray:
-        """Growth of the tensile and the compressive plastic strain with the multiplier, NOTES 8."""
+        """Growth of both plastic strains with the multiplier, tension first (paper_notes.md, 8)."""
         values = principal(flow / SHEARS)
         share = weight(principal(stress))
         return np.array([share * max(0.0, values[-1]), -(1.0 - share) * min(0.0, values[0])])
 
     def share(self, stress: np.ndarray) -> np.ndarray:
-        """r of Eqs 16-18, for the recovery of stiffness."""
+        """r of Eqs. 16-18, for the recovery of stiffness."""
         if self.recovers_by_sign:
             return np.where(np.sum(stress[..., :3], axis=-1) > 0.0, 1.0, 0.0)
         return weight(principal(stress))
 
     def loss(self, share, tensile, compressive):
-        """d of Eqs 15-16, from the share r and the damages of tension and compression."""
+        """d of Eqs. 15-16, from the share r and the damages of tension and compression."""
         active_compressive = 1.0 - self.tension_recovery * share
         active_tensile = 1.0 - self.compression_recovery * (1.0 - share)
         return 1.0 - (1.0 - active_compressive * compressive) * (1.0 - active_tensile * tensile)

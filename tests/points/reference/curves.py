@@ -1,4 +1,4 @@
-"""Strength and damage of one sign against plastic strain (NOTES 11)."""
+"""Strength and damage of one sign against plastic strain (paper_notes.md, 11)."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Curve:
         )
 
     def effective(self, plastic: float) -> float:
-        """Strength of the material between the cracks [Pa], NOTES 9."""
+        """Strength of the material between the cracks [Pa], paper_notes.md, 9."""
         strength, damage = self.at(plastic)
         return strength / (1.0 - damage)
 
@@ -45,7 +45,7 @@ def curve_of_tables(young: float, strengths, damages=((0.0, 0.0),), length: floa
 
     `length` divides the abscissas of tables given against an opening. The rows of both tables
     become rows of the curve; inelastic strain eps - sigma/E becomes plastic strain by taking off
-    what the damage adds to the elastic strain, d/(1-d) sigma/E (NOTES 11).
+    what the damage adds to the elastic strain, d/(1-d) sigma/E (paper_notes.md, 11).
     """
     strengths, damages = np.array(strengths, dtype=float), np.array(damages, dtype=float)
     inelastic = np.union1d(strengths[:, 1], damages[:, 1]) / length

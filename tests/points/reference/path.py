@@ -63,7 +63,7 @@ class Point:
         return self._latest[1]
 
     def stress(self, state: np.ndarray) -> np.ndarray:
-        """Nominal stress, Eq 14 [Pa]."""
+        """Nominal stress, Eq. 14 [Pa]."""
         rates = self.rates(state)
         return (1.0 - rates.damage) * rates.stress
 

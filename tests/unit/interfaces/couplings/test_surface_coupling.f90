@@ -1,4 +1,4 @@
-!> Springs between two faces: their energy for motions whose distance is known (Eq 8).
+!> Springs between two faces: their energy for motions whose distance is known (Eq. 8).
 program test_surface_coupling
   use kinds, only: rk
   use surface_coupling, only: build_coupling, coupling

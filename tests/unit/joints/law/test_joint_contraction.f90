@@ -300,7 +300,7 @@ contains
     f = multiplier - (0.1e6_rk - 0.6_rk*kn*jump(1))*z/norm2(z)
   end function equation
 
-  !> NOTES 3: 22 GPa over 2 cm.
+  !> paper_notes.md, 3: 22 GPa over 2 cm.
   subroutine defaults_follow_the_solid(log)
     type(test_log), intent(inout) :: log
     type(law_constants) :: constants

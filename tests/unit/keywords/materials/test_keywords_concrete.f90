@@ -71,7 +71,7 @@ contains
     call check(log, index(echo, '36.31, 0.1, 1.16, 0.6666666666666667, 0') > 0, 'echo')
   end subroutine makes_the_law
 
-  !> VALIDATION.md: E 25 GPa, f_t 2.48 MPa, G_f 100 / 150 / 200 / 300 N/m admit elements of
+  !> Longest elements (verification.md): E 25 GPa, f_t 2.48 MPa, G_f 100 / 150 / 200 / 300 N/m admit
   !> 0.813 / 1.219 / 1.626 / 2.439 m; half a millimetre more and less is on either side.
   subroutine longest_elements(log)
     type(test_log), intent(inout) :: log

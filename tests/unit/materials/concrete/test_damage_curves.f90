@@ -22,7 +22,7 @@ program test_damage_curves
 
 contains
 
-  !> Plastic strains of Table 1 as NOTES 11 has them, to its five decimals; strength at the rows.
+  !> Plastic strains of Table 1 to the five decimals of paper_notes.md, 11; strength at the rows.
   subroutine rows_of_table_one()
     real(rk), parameter :: plastic(8) = 1.0e-3_rk*[0.0_rk, 0.15578_rk, 0.28843_rk, 0.41757_rk, &
                                                    0.67392_rk, 0.93020_rk, 1.18263_rk, 1.48298_rk]
@@ -136,7 +136,7 @@ contains
     end do
   end subroutine energy_with_damage
 
-  !> Snap-back lengths of VALIDATION.md; in a band of four times that length half the strength with
+  !> Snap-back lengths (verification.md); in a band of four times that length half the strength with
   !> the same energy.
   subroutine lowered_strength()
     type(concrete_constants) :: concrete
@@ -149,7 +149,7 @@ contains
     concrete%stiffening = 'GFI'
     concrete%tension = reshape([2.48e6_rk, 200.0_rk], [2, 1])
     call make_tension_curve(concrete, curve)
-    ! 2 E G_f/f_t^2, printed with four digits in VALIDATION.md.
+    ! 2 E G_f/f_t^2, printed with four digits in verification.md.
     call check_close(log, curve%longest, 1.626_rk, 0.5e-3_rk, 'snap-back length')
     call place_knots(curve, 4.0_rk*curve%longest, knots, factor)
     call check_close(log, factor, 0.5_rk, roundoff, 'half the strength')

@@ -124,7 +124,7 @@ contains
     end do
   end subroutine rows_of_table_one
 
-  !> Slopes in unloading, in compression after cracking and in tension after crushing (Eqs 15-16):
+  !> Slopes in unloading, in compression after cracking and in tension after crushing (Eqs. 15-16):
   !> differences of two elastic states, exact.
   subroutine recovery(w_t, w_c)
     real(rk), intent(in) :: w_t, w_c
@@ -175,7 +175,7 @@ contains
     call check_close(log, body%state%stress(2, 1), -1.125_rk*30.0e6_rk, 1.0_rk, 'both ways')
   end subroutine biaxial_strength
 
-  !> q over p on both meridians, Eq 19 with s_1 < 0: s_1 = -p + q/3 in triaxial compression (two
+  !> q over p on both meridians, Eq. 19 with s_1 < 0: s_1 = -p + q/3 in triaxial compression (two
   !> equal larger values), -p + 2 q/3 in triaxial extension.
   subroutine triaxial_strength()
     type(specimen) :: body
@@ -195,7 +195,7 @@ contains
   end subroutine triaxial_strength
 
   !> Hydrostatic tension of concrete that does not soften: (1 - alpha) c/(3 alpha + beta), beta by
-  !> Eq 23; all that is more is plastic strain, equal in all directions, and stays so in large
+  !> Eq. 23; all that is more is plastic strain, equal in all directions, and stays so in large
   !> increments and with a touch of shear.
   subroutine apex()
     type(concrete_constants) :: concrete
@@ -337,7 +337,7 @@ contains
     call check(log, allocated(error), 'tables at fault')
   end subroutine what_it_tells
 
-  !> Cracked, then pressed in one go: with w_c = 1 the switch of Eq 17 gives back E_0 at once;
+  !> Cracked, then pressed in one go: with w_c = 1 the switch of Eq. 17 gives back E_0 at once;
   !> held, it leaves (1 - d_t) of the same effective stress for this increment. A sound point does
   !> not hold it.
   subroutine held_switch()
