@@ -151,7 +151,8 @@ def section(keyword: Keyword) -> str:
                 "\n".join(wrapped(f"`{name}`: {escaped(text)}", "- ", "  ") for name, text in rows)
             )
     if keyword.example:
-        parts.append("\n".join(f"    {line}" for line in keyword.example))
+        # A fence: below a list an indented block would be a part of the last item.
+        parts.append("\n".join(["```", *keyword.example, "```"]))
     return "\n\n".join(parts) + "\n"
 
 
