@@ -1,5 +1,5 @@
-!> Adds the springs between faces of different meshes to K (Eq 8, 13.4), so that its products and
-!> the strain energy hold them.
+!> Adds the springs between faces of different meshes to K (Eq. 8; different_meshes.md, 13.4), so
+!> that its products and the strain energy hold them.
 module coupling_stiffness
   use kinds, only: rk
   use dof_numbering, only: numbering

@@ -1,7 +1,7 @@
 !> Whether joints could balance given forces on rigid blocks at all: forces of joints that press, do
 !> not pull beyond what strength is left, and rub within mu p + c, whatever their stiffness.
 !>
-!> Of all such forces those are sought that leave least of the loads (theory: different_meshes.md,
+!> Of all such forces those are sought that leave least of the loads (different_meshes.md,
 !> 13.7): the nearest point of a convex set, by projections with Nesterov's acceleration. With the
 !> rows of the joints made orthonormal every step is as long as it may be. Where something is left
 !> no equilibrium exists, for none of the admissible forces has one (safe theorem of limit

@@ -2,7 +2,7 @@
 !>
 !> Elements, ties and couplings hold a block together; joints and supports hold it in its place. Its
 !> six motions are v + w x (x - centre); as unknowns they are v and reach*w, reach the distance of
-!> its farthest node, so that all six are lengths (theory: different_meshes.md, 13.7).
+!> its farthest node, so that all six are lengths (different_meshes.md, 13.7).
 module rigid_blocks
   use body_parts, only: root_of, unite
   use joint_points, only: joint

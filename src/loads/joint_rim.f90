@@ -1,7 +1,7 @@
 !> The rim of a joint's face: the edge where a reservoir reaches it, and the edge opposite.
 !>
 !> Upstream are the outer edges of the face that lie in the reservoir's surface, downstream those
-!> that look away from the nearest of them (theory: different_meshes.md, 13.6). The sides between
+!> that look away from the nearest of them (different_meshes.md, 13.6). The sides between
 !> them are neither: the crest and the foot of a contraction joint, the ends of a base.
 module joint_rim
   use kinds, only: rk

@@ -1,10 +1,11 @@
 !> *RESERVOIR: hydrostatic pressure on the wetted part of a surface, and the water that moves with
 !> it.
 !>
-!> Added mass by Westergaard (NOTES 17): 7/8 rho sqrt(H y) per area, y the depth of the point and H
-!> that of the reservoir; integrated with the shape functions over the wetted area, so that the
-!> total over a vertical face of any mesh is 7/12 rho H**2 a metre. A node moves it along its
-!> normal, the mean of its wetted facets weighted by area: m n n^T, or only the diagonal of that.
+!> Added mass by Westergaard (paper_notes.md, 17): 7/8 rho sqrt(H y) per area, y the depth of the
+!> point and H that of the reservoir; integrated with the shape functions over the wetted area, so
+!> that the total over a vertical face of any mesh is 7/12 rho H**2 a metre. A node moves it along
+!> its normal, the mean of its wetted facets weighted by area: m n n^T, or only the diagonal of
+!> that.
 module load_reservoir
   use applied_load, only: load
   use dam_mesh, only: mesh
@@ -16,7 +17,7 @@ module load_reservoir
   private
   public :: reservoir_load, wetted_area
 
-  real(rk), parameter :: westergaard = 7.0_rk/8.0_rk !< NOTES 17
+  real(rk), parameter :: westergaard = 7.0_rk/8.0_rk !< paper_notes.md, 17
 
   type, extends(load) :: reservoir_load
     type(surface) :: faces !< upstream face; its dry part does not count

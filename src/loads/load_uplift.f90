@@ -1,6 +1,6 @@
 !> *JOINT LAW, UPLIFT: the pressure of a reservoir's water in a joint. It pushes both faces apart.
 !>
-!> Source: theory (different_meshes.md, 13.6). LINEAR: the head of the reservoir at each point times
+!> Source: different_meshes.md, 13.6. LINEAR: the head of the reservoir at each point times
 !> the share s = b/(a + b), a and b its distances to the upstream and the downstream edge, whether
 !> the joint is open or not; a reservoir downstream gives 1 - s of its own head. OPEN: the full head
 !> where the joint is open as far as the upstream edge; the solver says where that is.

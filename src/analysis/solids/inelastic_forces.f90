@@ -1,5 +1,5 @@
 !> The forces of solids whose stress is more than a constant stiffness times strain. Beside K u of
-!> the elastic solid they are what its points have released (theory.md, 12.1):
+!> the elastic solid they are what its points have released (theory.md, (12.1)):
 !>
 !>   f = K u - released,   released = T^T sum w B^T (D eps - sigma)
 !>

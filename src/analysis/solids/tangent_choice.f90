@@ -49,7 +49,7 @@ contains
   end function choose_tangents
 
   !> A law jumps: there may be no equilibrium, a point goes to and fro for ever. Where nothing else
-  !> converges the switches keep for the increment what they were (theory 12).
+  !> converges the switches keep for the increment what they were (theory.md, 12).
   pure logical function has_switches(scene)
     type(problem), intent(in) :: scene
     integer :: i

@@ -1,4 +1,4 @@
-!> One increment of HHT in the unknown x = u1 - u^ (theory.md, 7.1-7.2):
+!> One increment of HHT in the unknown x = u1 - u^ (theory.md, (7.1)-(7.2)):
 !>
 !>   K_eff x + w B^T (area t1) = (1 + alpha)(f1 - C v^ - K u^) - alpha (f0 - C v0 - K u0) - w0 J0
 !>   K_eff = M/(beta dt^2) + (1 + alpha) (gamma/(beta dt) C + K)

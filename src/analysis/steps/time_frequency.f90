@@ -1,4 +1,4 @@
-!> A frequency step: modes of the model with closed joints (theory.md, section 9).
+!> A frequency step: modes of the model with closed joints (theory.md, 9).
 module time_frequency
   use errors, only: error_type
   use problem_definition, only: problem

@@ -2,8 +2,9 @@
 !>
 !> At the nodes of the slave face (default) the relative displacement is the mortar projection of
 !> mortar_projection: the law works at one point a node and plane, as in a joint of JOINT8 elements,
-!> and its tractions do not oscillate (13.2). At Gauss points the law works where the segments have
-!> theirs, a penalty that does. The normal points out of the master's solid, from master to slave.
+!> and its tractions do not oscillate (different_meshes.md, 13.2). At Gauss points the law works
+!> where the segments have theirs, a penalty that does. The normal points out of the master's solid,
+!> from master to slave.
 module coupling_joint
   use joint_axes, only: local_axes
   use joint_points, only: joint, joint_cells

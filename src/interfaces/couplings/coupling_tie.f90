@@ -1,5 +1,6 @@
 !> The exact tie of two faces whose meshes differ: a mortar constraint with dual multipliers,
-!> condensed (13.3). Each node of the slave face that bears a multiplier follows the master face,
+!> condensed (different_meshes.md, 13.3). Each node of the slave face that bears a multiplier
+!> follows the master face,
 !>   u(a) = sum_m w_m u(m),   w the weights of mortar_projection.
 !>
 !> A slave node bears none in a direction in which it is held by a support in any step, follows

@@ -1,8 +1,8 @@
-!> Springs between two faces of different meshes: Eqs 1-8 on the segments of the faces.
+!> Springs between two faces of different meshes: Eqs. 1-8 on the segments of the faces.
 !>
-!> At a point of a segment the faces differ by delta u = N u (Eqs 1-5: N_s of the slave facet's four
-!> nodes, -N_m of the master facet's). Springs of `stiffness` per area resist it in x, y and z alike
-!> (Eq 6), which gives each segment the matrix (Eq 8, 13.4)
+!> At a point of a segment the faces differ by delta u = N u (Eqs. 1-5: N_s of the slave facet's
+!> four nodes, -N_m of the master facet's). Springs of `stiffness` per area resist it in x, y and z
+!> alike (Eq. 6), which gives each segment the matrix (Eq. 8; different_meshes.md, 13.4)
 !>   K = k int N^T N dA.
 module surface_coupling
   use facet_segments, only: find_segments

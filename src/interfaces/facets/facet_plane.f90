@@ -1,7 +1,8 @@
 !> The mean plane of a facet, facets projected on it, and where a point of the plane lies in them.
 !>
 !> The projection is linear, so that a bilinear facet stays a bilinear facet: its shape functions at
-!> a point of the plane are those of the point of the facet above or below (13.1).
+!> a point of the plane are those of the point of the facet above or below
+!> (different_meshes.md, 13.1).
 module facet_plane
   use kinds, only: rk
   use mesh_faces, only: face_vector
@@ -161,7 +162,8 @@ contains
     stretch = abs(along(1, 1)*along(2, 2) - along(1, 2)*along(2, 1))
   end function stretch_at
 
-  !> Area vector of the facet itself per area of its plane: n / (n . n0), n its normal (13.1).
+  !> Area vector of the facet itself per area of its plane: n / (n . n0), n its normal
+  !> (different_meshes.md, 13.1).
   pure function area_element(on, flat, x, xi) result(vector)
     type(plane), intent(in) :: on !< of this facet
     type(flat_facet), intent(in) :: flat

@@ -1,5 +1,5 @@
 !> Finds the segments of two faces: box-tree search, projection on the slave facets' mean planes and
-!> clipping (13.1).
+!> clipping (different_meshes.md, 13.1).
 module facet_segments
   use facet_clip, only: clip_polygon, most_corners
   use facet_plane, only: facet_pair, find_plane, natural_at, plane, plane_area, project_facet, &

@@ -1,4 +1,4 @@
-!> Integrals over one segment: int f dA = sum_q area(q) f(q) (13.1).
+!> Integrals over one segment: int f dA = sum_q area(q) f(q) (different_meshes.md, 13.1).
 !>
 !> The polygon is cut into triangles, each with a collapsed product of Gauss's rules (Duffy 1982;
 !> n x n points are exact to degree 2 n - 2). In parallelograms and triangles all shape functions

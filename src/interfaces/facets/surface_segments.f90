@@ -1,5 +1,5 @@
 !> Where two faces of different meshes lie on each other, in segments: pieces of a slave facet under
-!> one master facet (13.1).
+!> one master facet (different_meshes.md, 13.1).
 !>
 !> A segment is a convex polygon in the mean plane of its slave facet. Only the polygons are kept;
 !> `segment_quadrature` lays points into one segment when they are wanted.

@@ -1,5 +1,5 @@
 !> Lets a constant stress pass through a curved face: a small change of the weights of a mortar
-!> projection (13.2).
+!> projection (different_meshes.md, 13.2).
 !>
 !> The stress s puts s c_a on node a of the slave face, c_a = int N_a n dA, and s c_m on node m of
 !> the master face. The rows hand on sum_a w_am s c_a. On a plane face that is s c_m; on a curved

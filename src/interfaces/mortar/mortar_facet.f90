@@ -2,8 +2,8 @@
 !>
 !> With M_ab = int N_a N_b and D_a = int N_a over the part of the facet that the other face covers,
 !> the dual functions phi = D M^-1 N satisfy int phi_a N_b = delta_ab D_a and sum_a phi_a = 1
-!> (13.2; Wohlmuth 2000, Popp et al. 2010). Over the covered part alone they keep both where the
-!> facet is covered in part only (Cichosz & Bischoff 2011).
+!> (different_meshes.md, 13.2; Wohlmuth 2000, Popp et al. 2010). Over the covered part alone they
+!> keep both where the facet is covered in part only (Cichosz & Bischoff 2011).
 module mortar_facet
   use facet_segments, only: facet_area
   use kinds, only: rk

@@ -1,4 +1,5 @@
-!> The mortar projection of one face onto the nodes of another whose mesh differs (13.2).
+!> The mortar projection of one face onto the nodes of another whose mesh differs
+!> (different_meshes.md, 13.2).
 !>
 !> Row a says where node a of the slave face stands on the master face: its relative displacement
 !> is

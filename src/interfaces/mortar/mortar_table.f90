@@ -1,4 +1,4 @@
-!> The rows of a mortar projection (13.2).
+!> The rows of a mortar projection (different_meshes.md, 13.2).
 module mortar_table
   use kinds, only: rk
   implicit none

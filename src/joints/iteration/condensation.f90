@@ -1,4 +1,4 @@
-!> The balance condensed on the joints (theory.md, section 8): K_0 = K_eff with all joints closed is
+!> The balance condensed on the joints (theory.md, 8): K_0 = K_eff with all joints closed is
 !> factored once for an increment size, and Newton runs on the jumps alone.
 module condensation
   use kinds, only: rk

@@ -1,4 +1,5 @@
-!> Contact without penetration: the augmented Lagrangian of the normal law (theory 13.5).
+!> Contact without penetration: the augmented Lagrangian of the normal law
+!> (different_meshes.md, 13.5).
 !>
 !> A point in contact carries t = min(0, lambda + k_n (v + g)). The multiplier lambda = k_n*shift is
 !> kept in the history of the joint. When the balance has been found, lambda <- t, and it is sought

@@ -1,6 +1,6 @@
 !> The balance of forces of an implicit step, static or dynamic:
 !>
-!>   K_eff x + weight*B^T (area t(v)) = rhs,   v = offset + B x      (theory.md, section 8)
+!>   K_eff x + weight*B^T (area t(v)) = rhs,   v = offset + B x      (theory.md, 8)
 !>
 !> for the free unknowns x. Three ways solve it: linear (without joints), condensed and full Newton.
 module equilibrium
@@ -35,7 +35,7 @@ module equilibrium
     integer :: pass_start = 0 !< iterations before the present pass
     real(rk) :: penetration = 0.0_rk !< largest of points in contact, over what is allowed
     logical :: gives_up = .false. !< the penetration does not come down
-    logical :: has_held_switches = .false. !< of laws whose stress jumps (theory 12)
+    logical :: has_held_switches = .false. !< of laws whose stress jumps (theory.md, 12)
     real(rk) :: residual = 0.0_rk !< out-of-balance over the reference force
     real(rk) :: correction = 0.0_rk !< that the out-of-balance still asks for, over the increment
     integer :: worst_point = 0 !< of the joints, where the out-of-balance is largest

@@ -1,5 +1,5 @@
 !> Newton's iteration on the jumps alone, through the compliance G = B K_0^-1 B^T of the structure
-!> with closed joints (theory.md, 8.1).
+!> with closed joints (theory.md, (8.1)).
 !>
 !> With D = weight*area*(k_ref - tangent) a correction d of the jumps answers to
 !>   d = r + G D d,   r = what the balance gives with the closed joint's stiffness.

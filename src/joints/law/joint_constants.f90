@@ -13,7 +13,7 @@ module joint_constants
     real(rk) :: strength = 0.0_rk !< q_on [Pa]
     real(rk) :: friction = 0.0_rk !< mu
     real(rk) :: cohesion = 0.0_rk !< c of the closed joint [Pa]
-    real(rk) :: thickness = 0.02_rk !< for the default of k_n [m]; NOTES 3
+    real(rk) :: thickness = 0.02_rk !< for the default of k_n [m]; paper_notes.md, 3
     real(rk) :: gap = 0.0_rk !< initial gap [m]
     real(rk) :: penetration = 0.0_rk !< allowed to points in contact [m]; 0: by their stiffness
   contains
@@ -30,16 +30,17 @@ contains
     needs_solid = min(self%normal_stiffness, self%tangent_stiffness) <= 0.0_rk
   end function needs_solid
 
-  !> Whether k_n is only to lead the iteration to contact without penetration (13.5): it is then the
-  !> stiffness of a layer of elements. A bonded joint works with k_n itself.
+  !> Whether k_n is only to lead the iteration to contact without penetration
+  !> (different_meshes.md, 13.5): it is then the stiffness of a layer of elements. A bonded joint
+  !> works with k_n itself.
   pure logical function asks_for_layer(self)
     class(law_constants), intent(in) :: self
     asks_for_layer = self%penetration > 0.0_rk .and. self%normal_stiffness <= 0.0_rk &
                      .and. self%strength <= 0.0_rk
   end function asks_for_layer
 
-  !> k_n = E/thickness and k_t = k_n/(2 (1 + nu)) where the deck gave none (NOTES 3). k_t stands for
-  !> the joint itself also where k_n does not (13.5).
+  !> k_n = E/thickness and k_t = k_n/(2 (1 + nu)) where the deck gave none (paper_notes.md, 3). k_t
+  !> stands for the joint itself also where k_n does not (different_meshes.md, 13.5).
   pure subroutine complete_stiffness(self, young, poisson)
     class(law_constants), intent(inout) :: self
     real(rk), intent(in) :: young !< of the solid on the slave side [Pa]

@@ -1,9 +1,9 @@
 !> A contraction joint: tensile strength lost for good, unilateral contact, Coulomb friction.
 !>
-!> Source: Eqs 9-13 with NOTES 3-6. Bonded, the joint is linear in all directions until the normal
-!> opening exceeds strength/k_n. Broken, it carries k_n times the closing and no tension; tangential
-!> traction sticks elastically with k_t up to mu p + c and slips there. While the joint is open its
-!> slip follows the motion, so that traction starts from zero when it closes again.
+!> Source: Eqs. 9-13 with paper_notes.md, 3-6. Bonded, the joint is linear in all directions until
+!> the normal opening exceeds strength/k_n. Broken, it carries k_n times the closing and no tension;
+!> tangential traction sticks elastically with k_t up to mu p + c and slips there. While the joint
+!> is open its slip follows the motion, so that traction starts from zero when it closes again.
 !>
 !> Friction in Newton's iteration: the status is decided on z = lambda + r (v_t - s - lambda/k_t),
 !> lambda the tangential traction of the last iterate. Where |z| > mu p + c, one Newton step on
@@ -75,7 +75,7 @@ contains
   end subroutine limits
 
   !> Elastic energy of the springs at the tractions of the state. A contact that is shifted keeps
-  !> 1/2 q_n times what it penetrates (13.5).
+  !> 1/2 q_n times what it penetrates (different_meshes.md, 13.5).
   pure subroutine stored_energy(self, state, energy)
     class(contraction_law), intent(in) :: self
     type(joint_state), intent(in) :: state

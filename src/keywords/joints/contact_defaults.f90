@@ -1,4 +1,5 @@
-!> KN of a joint law that asks for contact without penetration and names none (13.5).
+!> KN of a joint law that asks for contact without penetration and names none
+!> (different_meshes.md, 13.5).
 module contact_defaults
   use element_depth, only: depth_behind
   use joint_constants, only: law_constants

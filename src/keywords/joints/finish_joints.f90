@@ -236,8 +236,8 @@ contains
     call move_alloc(longer, model%scene%joints)
   end subroutine append_joint
 
-  !> KN and KT that the deck does not give, from the solids on the slave side (NOTES 3); where
-  !> interface quads stand there, from those on the master side.
+  !> KN and KT that the deck does not give, from the solids on the slave side (paper_notes.md, 3);
+  !> where interface quads stand there, from those on the master side.
   subroutine complete_law(place, solids, behind, corners, model, law, faults)
     type(card), intent(in) :: place !< of the joint
     integer, intent(in) :: solids(:) !< of the slave side, positions

@@ -24,8 +24,8 @@ module finish_ties
   real(rk), parameter :: equal_values = 1.0e-9_rk
 
   !> Nodes that follow more others in the mean are told: measured, ten times as fine a master makes
-  !> the factor a hundred times as dear (13.3). A finer slave follows 4 to 9, a slave coarser by
-  !> 3 follows 49.
+  !> the factor a hundred times as dear (different_meshes.md, 13.3). A finer slave follows 4 to 9, a
+  !> slave coarser by 3 follows 49.
   integer, parameter :: most_followed = 50
 
 contains

@@ -40,7 +40,7 @@ contains
       as_text(usual_strain)//' for concrete: f_t and E in one unit')
   end subroutine warn_of_units
 
-  !> On the tensile meridian of Eq 19 (s_1 = 2/3 q - p) q (1 + 2/3 gamma) = (3 alpha + gamma) p +
+  !> On the tensile meridian of Eq. 19 (s_1 = 2/3 q - p) q (1 + 2/3 gamma) = (3 alpha + gamma) p +
   !> (1 - alpha) c: where its slope is less than tan psi, q - p tan psi and with it the work of flow
   !> are negative from some pressure on.
   subroutine warn_of_dilation(given, model, faults)

@@ -1,4 +1,4 @@
-!> Elements of concrete that are longer than a crack band may be, theory (11.12).
+!> Elements of concrete that are longer than a crack band may be, theory.md, (11.12).
 module concrete_widths
   use damage_checks, only: find_longest_band, stiffening_table, table_fault
   use diagnostics, only: diagnostic_list

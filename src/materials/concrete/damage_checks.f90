@@ -168,7 +168,7 @@ contains
                    stiffening_table, 'TYPE='//wanted, faults)
   end subroutine check_types
 
-  !> beta of Eq 23 must not be negative when concrete first yields.
+  !> beta of Eq. 23 must not be negative when concrete first yields.
   subroutine check_compression_strength(constants, faults)
     type(concrete_constants), intent(in) :: constants
     type(table_fault), allocatable, intent(inout) :: faults(:)
@@ -181,7 +181,8 @@ contains
                    'at least '//as_text(smallest)//', where beta of Eq 23 is 0', faults)
   end subroutine check_compression_strength
 
-  !> The plastic strain must not decrease from knot to knot (NOTES 11); abscissae are strains.
+  !> The plastic strain must not decrease from knot to knot (paper_notes.md, 11); abscissae are
+  !> strains.
   subroutine check_plastic_strain(curve, strength_keyword, strength, damage_keyword, damage, faults)
     type(strength_curve), intent(in) :: curve
     character(*), intent(in) :: strength_keyword, damage_keyword

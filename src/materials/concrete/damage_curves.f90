@@ -1,11 +1,11 @@
 !> Strength and damage of concrete over plastic strain, in tension and in compression.
 !>
 !> The deck gives them over inelastic strain, or over the opening w of a crack. The knots are the
-!> rows of both tables together; knot i sits at the plastic strain (NOTES 11)
+!> rows of both tables together; knot i sits at the plastic strain (paper_notes.md, 11)
 !>     w_i/l - c_i,  c_i = d_i/(1 - d_i) sigma_i/E,
 !> l the width of the crack band, 1 for tables over strain. Between knots the nominal strength and
 !> the damage are linear in plastic strain, past the last both stay as they are. The effective
-!> strength is the quotient sigma/(1 - d) (NOTES 9).
+!> strength is the quotient sigma/(1 - d) (paper_notes.md, 9).
 !>
 !> Linear in plastic strain is not linear in the opening where there is damage: c bends, and the
 !> energy of a crack would depend on l. Curves over openings have knots between the rows therefore,
@@ -18,7 +18,7 @@ module damage_curves
   public :: strength_curve, curve_value, make_tension_curve, make_compression_curve
   public :: place_knots, value_of_curve, smallest_strength
 
-  !> Share of the first strength below which no curve falls: with a strength of zero beta of Eq 23
+  !> Share of the first strength below which no curve falls: with a strength of zero beta of Eq. 23
   !> has no value and the yield surface no inside. A crack dissipates that much more energy, at most
   !> a thousandth of f_t times its opening.
   real(rk), parameter :: smallest_strength = 1.0e-3_rk
@@ -177,7 +177,8 @@ contains
   end function value_of_table
 
   !> Widest crack band of a curve over openings [m]: in a wider one the strain w/l + sigma/E would
-  !> turn back from one row to the next (snap-back), or the plastic strain decrease (NOTES 11).
+  !> turn back from one row to the next (snap-back), or the plastic strain decrease
+  !> (paper_notes.md, 11).
   !> Linear softening without damage: 2 E G_f/f_t^2. Of the rows alone: knots between them do not
   !> go beyond the next row.
   pure subroutine limit_band(curve, young)

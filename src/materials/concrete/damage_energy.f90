@@ -1,4 +1,4 @@
-!> What a point of plastic-damage concrete dissipates in an increment (theory 11.19).
+!> What a point of plastic-damage concrete dissipates in an increment (theory.md, (11.19)).
 module damage_energy
   use damage_curves, only: curve_value, value_of_curve
   use damage_increment, only: plastic_state

@@ -10,15 +10,15 @@ module damage_model
 
   real(rk), parameter :: degree = acos(-1.0_rk)/180.0_rk
 
-  !> Constants of Eqs 14-25; theory 11.
+  !> Constants of Eqs. 14-25; theory.md, 11.
   type :: concrete_model
     real(rk) :: young = 0.0_rk, poisson = 0.0_rk !< E_0 [Pa], nu
     real(rk) :: shear = 0.0_rk, bulk = 0.0_rk !< mu, K [Pa]
-    real(rk) :: alpha = 0.0_rk, gamma = 0.0_rk !< of Eq 19
-    real(rk) :: tan_dilation = 0.0_rk !< tan psi of Eq 25
-    real(rk) :: rounding = 0.0_rk !< a of Eq 25 [Pa]; see rounding_of
-    real(rk) :: tension_recovery = 0.0_rk, compression_recovery = 1.0_rk !< w_t, w_c of Eq 16
-    logical :: recovers_by_sign = .false. !< r of Eq 17
+    real(rk) :: alpha = 0.0_rk, gamma = 0.0_rk !< of Eq. 19
+    real(rk) :: tan_dilation = 0.0_rk !< tan psi of Eq. 25
+    real(rk) :: rounding = 0.0_rk !< a of Eq. 25 [Pa]; see rounding_of
+    real(rk) :: tension_recovery = 0.0_rk, compression_recovery = 1.0_rk !< w_t, w_c of Eq. 16
+    logical :: recovers_by_sign = .false. !< r of Eq. 17
     real(rk) :: viscosity = 0.0_rk !< [s]
     logical :: by_opening = .false. !< the curve in tension needs the width of the crack band
     type(strength_curve) :: tension, compression
@@ -29,7 +29,7 @@ module damage_model
   type :: placed_curves
     real(rk) :: width = -1.0_rk !< of the band [m]; negative: not placed yet
     real(rk) :: factor = 1.0_rk !< on the strength in tension, below 1 in a band that is too wide
-    real(rk) :: rounding = 0.0_rk !< a of Eq 25 with that strength [Pa]
+    real(rk) :: rounding = 0.0_rk !< a of Eq. 25 with that strength [Pa]
     real(rk), allocatable :: tension(:), compression(:)
   end type placed_curves
 
@@ -91,13 +91,13 @@ contains
     end do
   end subroutine stiffness_of
 
-  !> a of Eq 25, xi sigma_10 tan psi, but no larger than what the work of flow,
+  !> a of Eq. 25, xi sigma_10 tan psi, but no larger than what the work of flow,
   !> q^2/sqrt(a^2 + q^2) - p tan psi, admits without turning negative where the curves end: flow at
   !> an apex rounded wider than the surface would give energy back. That is less only where an
   !> effective strength falls below a third of xi sigma_10 or so, and then it matters little: a
   !> shapes the flow near the hydrostatic axis alone.
   !>
-  !> With a principal tension under pressure q >= 3/2 p, and q >= (1 + alpha) t by Eq 19, or
+  !> With a principal tension under pressure q >= 3/2 p, and q >= (1 + alpha) t by Eq. 19, or
   !> (1 - alpha) c where beta is kept at zero. Without a principal tension q exceeds p tan psi by
   !> (1 - alpha) c/(1 + 2/3 gamma) at least (see largest_safe_dilation).
   pure real(rk) function rounding_of(model, offset) result(rounding)
@@ -116,7 +116,7 @@ contains
   end function rounding_of
 
   !> Largest tan psi for which flow never gives energy back: the slope q/p of the yield surface
-  !> under high pressure where it is flattest, on the tensile meridian (s_1 = -p + 2 q/3 in Eq 19),
+  !> under high pressure where it is flattest, on the tensile meridian (s_1 = -p + 2 q/3 in Eq. 19),
   !> and 3/2, the least q/p of states with a principal tension. The work of flow is
   !> q^2/sqrt(a^2 + q^2) - p tan psi, not negative with this and the a of rounding_of.
   pure real(rk) function largest_safe_dilation(biaxial_ratio, meridian_ratio) result(tangent)

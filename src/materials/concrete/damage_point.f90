@@ -29,7 +29,7 @@ module damage_point
     !> The symmetric (1 - d) D instead of the consistent tangent. It also stands in where that does
     !> not exist: see has_regular_flow.
     logical :: is_secant = .false.
-    logical :: holds_switch = .false. !< r of Eq 17 stays as it was at the start of the increment
+    logical :: holds_switch = .false. !< r of Eq. 17 stays as it was at the start of the increment
   end type point_motion
 
   !> What it answers.
@@ -89,8 +89,8 @@ contains
     end if
   end subroutine update_point
 
-  !> Plastic strain and damage that lag behind (Duvaut and Lions; theory 11.17), by the implicit
-  !> rule. The weight of recovery does not lag: cracks close at once.
+  !> Plastic strain and damage that lag behind (Duvaut and Lions; theory.md, (11.17)), by the
+  !> implicit rule. The weight of recovery does not lag: cracks close at once.
   pure subroutine relax(model, motion, old, new, finish)
     type(concrete_model), intent(in) :: model
     type(point_motion), intent(in) :: motion
@@ -104,8 +104,8 @@ contains
     call principal_axes(finish%stress, finish%principal, finish%axes)
   end subroutine relax
 
-  !> r of the stiffness, Eq 17 or NOTES 8, and d. A switch that is held is that of the start, unless
-  !> the point was sound then.
+  !> r of the stiffness, Eq. 17 or paper_notes.md, 8, and d. A switch that is held is that of the
+  !> start, unless the point was sound then.
   pure subroutine recover(model, motion, old, damage, finish)
     type(concrete_model), intent(in) :: model
     type(point_motion), intent(in) :: motion
@@ -126,7 +126,7 @@ contains
     finish%d = total_damage(model, damage(1), damage(2), finish%share)
   end subroutine recover
 
-  !> d stress/d strain = (1 - d) ds/d strain - s (dd/d strain)^T, theory (11.16).
+  !> d stress/d strain = (1 - d) ds/d strain - s (dd/d strain)^T, theory.md, (11.16).
   pure subroutine differentiate_stress(model, backbone, finish, tangent)
     type(concrete_model), intent(in) :: model
     type(increment_result), intent(in) :: backbone

@@ -1,7 +1,7 @@
-!> Return map of plastic-damage concrete: one scalar equation for the multiplier x of Eq 24.
+!> Return map of plastic-damage concrete: one scalar equation for the multiplier x of Eq. 24.
 !>
-!> The flow of Eq 25 is coaxial and its deviator parallel to S, so with x given everything at the
-!> end of the increment follows from the trial state (theory 11.13): q from
+!> The flow of Eq. 25 is coaxial and its deviator parallel to S, so with x given everything at the
+!> end of the increment follows from the trial state (theory.md, (11.13)): q from
 !>     q (1 + 3 mu x/sqrt(a^2 + q^2)) = q_tr,
 !> S = S_tr q/q_tr, p = p_tr + K tan(psi) x, the weight r, both measures of plastic strain, both
 !> strengths. F(x) = 0 is what is left. F(0) > 0, and F < 0 for large x whenever tan(psi) > 0 and

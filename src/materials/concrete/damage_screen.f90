@@ -26,7 +26,7 @@ contains
     lame = model%bulk - 2.0_rk/3.0_rk*model%shear
     shear = model%shear
     limit = (1.0_rk - model%alpha)*model%compression%strength(1)
-    ! beta of Eq 23, which the checks of the tables keep from being negative.
+    ! beta of Eq. 23, which the checks of the tables keep from being negative.
     slope = limit/(factor*model%tension%strength(1)) - (1.0_rk + model%alpha)
     !$omp simd private(volume, p, s1, s2, s3, square, third, q, largest, excess)
     do i = 1, size(strain, 2)

@@ -1,5 +1,5 @@
-!> Consistent tangent of plastic-damage concrete (theory 11.7): derivative of the stress at the end
-!> of an increment by the strain there.
+!> Consistent tangent of plastic-damage concrete (theory.md, 11.7): derivative of the stress at the
+!> end of an increment by the strain there.
 !>
 !> The return map at constant multiplier x is differentiated in closed form, x itself by F(x) = 0.
 !> Principal values enter through their directions alone, S being parallel to its trial value, so

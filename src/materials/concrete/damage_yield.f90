@@ -7,14 +7,14 @@ module damage_yield
   private
   public :: yield_value, yield_at, tension_share, total_damage, damage_gradient
 
-  !> F of Eq 19 and its derivatives.
+  !> F of Eq. 19 and its derivatives.
   type :: yield_value
     real(rk) :: value = 0.0_rk !< F [Pa]
     real(rk) :: by_q = 0.0_rk, by_p = 0.0_rk, by_largest = 0.0_rk !< dF/dq, dF/dp, dF/ds_1
     real(rk) :: by_tension = 0.0_rk, by_compression = 0.0_rk !< by the effective strengths
   end type yield_value
 
-  !> d of Eq 15 and its derivatives.
+  !> d of Eq. 15 and its derivatives.
   type :: damage_gradient
     real(rk) :: value = 0.0_rk
     real(rk) :: by_tension = 0.0_rk, by_compression = 0.0_rk, by_share = 0.0_rk !< d_t, d_c, r
@@ -22,12 +22,12 @@ module damage_yield
 
 contains
 
-  !> F of Eqs 19-23. beta stays at zero where Eq 23 gives less: concrete that is crushed so far that
-  !> its strength c in compression falls below (1 + alpha)/(1 - alpha) t keeps less than t in
+  !> F of Eqs. 19-23. beta stays at zero where Eq. 23 gives less: concrete that is crushed so far
+  !> that its strength c in compression falls below (1 + alpha)/(1 - alpha) t keeps less than t in
   !> tension. With a negative beta the surface would be open towards tension.
   pure elemental function yield_at(model, q, p, largest, tension, compression) result(f)
     type(concrete_model), intent(in) :: model
-    real(rk), intent(in) :: q, p, largest !< Eqs 20-21 and s_1 [Pa]
+    real(rk), intent(in) :: q, p, largest !< Eqs. 20-21 and s_1 [Pa]
     real(rk), intent(in) :: tension, compression !< effective strengths t, c [Pa]
     type(yield_value) :: f
     real(rk) :: beta, scale, ratio
@@ -49,7 +49,7 @@ contains
     f%value = f%value + f%by_largest*largest
   end function yield_at
 
-  !> r, how much of a state is tension, sum <s_i>/sum |s_i| (NOTES 8), and dr/ds_i.
+  !> r, how much of a state is tension, sum <s_i>/sum |s_i| (paper_notes.md, 8), and dr/ds_i.
   pure subroutine tension_share(s, share, gradient)
     real(rk), intent(in) :: s(3)
     real(rk), intent(out) :: share, gradient(3)
@@ -66,7 +66,7 @@ contains
     end do
   end subroutine tension_share
 
-  !> d of Eqs 15-16.
+  !> d of Eqs. 15-16.
   pure elemental function total_damage(model, tension, compression, share) result(d)
     type(concrete_model), intent(in) :: model
     real(rk), intent(in) :: tension, compression !< d_t, d_c

@@ -1,4 +1,4 @@
-!> Plastic-damage concrete (paper, section 3; theory 11) as a material of the deck; its internal
+!> Plastic-damage concrete (paper, section 3; theory.md, 11) as a material of the deck; its internal
 !> variables are those of damage_history.
 !>
 module material_damage_plasticity

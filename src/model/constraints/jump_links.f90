@@ -1,5 +1,6 @@
 !> Dependent nodes: those of ties, u_s = sum_m w_m u_m, and those across points of joints, whose
-!> jumps d are unknowns in their place, u_s = sum_m w_m u_m + R^T d (theory.md, 3; 13.3).
+!> jumps d are unknowns in their place, u_s = sum_m w_m u_m + R^T d (theory.md, 3;
+!> different_meshes.md, 13.3).
 !>
 !> A node follows others once at most, and not where a support holds any of its directions. Ties
 !> come first, then points that see several nodes of the master face, whose slave node follows them;

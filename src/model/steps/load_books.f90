@@ -1,4 +1,4 @@
-!> Which loads are at work, carried from step to step (OP=MOD and OP=NEW of DECK.md).
+!> Which loads are at work, carried from step to step (OP=MOD and OP=NEW of deck.md).
 !>
 !> A load is known by its family and target (what it acts on, and how). Given again in a later step
 !> with the same pattern it only changes its factor; with another pattern the old one fades to
