@@ -208,13 +208,22 @@ def run(keyway: Path, deck: Path, folder: Path) -> tuple[dict, int]:
     subprocess.run([keyway, "-q", "-j", "1", "-o", folder, deck], check=False)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     record = json.loads((folder / f"{deck.stem}.json").read_text())
-    parts = {part["name"]: part for part in record["ledger"]["parts"]}
+    parts = record["ledger"]["parts"]
     with (folder / f"{deck.stem}_energy.csv").open() as file:
         energy = list(csv.DictReader(file))[-1]
     steps = record["steps"]
 
-    def seconds(*names):
-        return sum(parts.get(name, {"wall_s": 0.0})["wall_s"] for name in names)
+    def seconds(*works):
+        return sum(part["wall_s"] for part in parts if named(part, works))
+
+    def calls(work):
+        return max((part["calls"] for part in parts if named(part, (work,))), default=0)
+
+    def named(part, works):
+        """Work on joints and solids goes by the kind of effect, other work by its name."""
+        if part["kind"] in ("inelastic", "joint"):
+            return f"{part['kind']} {part['work']}" in works
+        return part["name"] in works
 
     return {
         "status": record["status"],
@@ -222,11 +231,14 @@ def run(keyway: Path, deck: Path, folder: Path) -> tuple[dict, int]:
         "increments": sum(step["increments"] for step in steps),
         "iterations": sum(step["iterations"] for step in steps),
         "cuts": sum(step["cutbacks"] for step in steps),
-        "factors": parts["factorise"]["calls"],
-        "laws": parts.get("laws", {"calls": 0})["calls"],
-        "s factor": seconds("factorise", "stiffness"),
-        "s solve": seconds("solve", "eliminate", "substitute", "joints", "compliance"),
-        "s laws": seconds("laws"),
+        "factors": calls("factor structure"),
+        "laws": calls("inelastic update"),
+        "s factor": seconds("factor structure", "inelastic assemble"),
+        "s solve": seconds(
+            *(f"solve{half} structure" for half in ("", " forward", " backward")),
+            *("joint iterate", "joint condense"),
+        ),
+        "s laws": seconds("inelastic update"),
         "s cpu": after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime,
         "fracture J": float(energy["fracture"]),
         "error": max(step["energy"]["error"] for step in steps),

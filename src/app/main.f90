@@ -10,6 +10,7 @@ program keyway
   use kinds, only: rk
   use problem_definition, only: problem
   use run_analysis, only: run_problem
+  use run_ledger, only: ledger
   use run_material, only: run_tests
   use timer, only: wall_clock
   use umat_loader, only: keep_library
@@ -29,10 +30,13 @@ program keyway
   type(problem), allocatable :: scene
   type(diagnostic_list) :: remarks
   character(:), allocatable :: echo
+  type(ledger) :: costs
   logical :: is_answered
   real(rk) :: started_at
 
   started_at = wall_clock()
+  call costs%open(started_at)
+  call costs%start('start', 'program', 'run')
   call parse_command_line(options, error)
   call end_on(error)
   call print_answer(options, is_answered, error)
@@ -44,14 +48,17 @@ program keyway
     stop
   end if
   call restart_with_fast_libraries()
+  call costs%stop()
+  call costs%start('read', 'deck', 'deck')
   call load_deck(options, scene, remarks, echo, error)
+  call costs%stop()
   call end_on(error)
   if (options%is_check) then
     call report_model(options, scene, echo)
   else if (options%is_material) then
     call run_tests(scene, options, echo, started_at, error)
   else
-    call run_problem(scene, options, remarks, echo, started_at, error)
+    call run_problem(scene, options, remarks, echo, costs, started_at, error)
   end if
   call end_on(error)
 

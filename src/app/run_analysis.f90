@@ -5,12 +5,15 @@ module run_analysis
   use errors, only: error_type, raise, system_failed
   use diagnostics, only: diagnostic_list
   use file_system, only: base_name, make_folder
+  use ledger_text, only: text_of_ledger
+  use run_ledger, only: ledger
   use timer, only: peak_memory, wall_clock
   use write_text, only: as_text
   use problem_definition, only: problem
   use analysis_state, only: state
   use initial_state, only: start_analysis
   use run_steps, only: run_all_steps
+  use shared_costs, only: share_costs
   use result_files, only: result_folder
   use cli, only: command_line
   use user_routines, only: end_user_routines
@@ -21,11 +24,12 @@ module run_analysis
 contains
 
   !> Runs a problem as the command line says. An error leaves readable results behind.
-  subroutine run_problem(scene, given, remarks, echo, started_at, error)
+  subroutine run_problem(scene, given, remarks, echo, costs, started_at, error)
     type(problem), intent(in) :: scene
     type(command_line), intent(in) :: given
     type(diagnostic_list), intent(in) :: remarks !< warnings of the deck
     character(*), intent(in) :: echo !< the deck with its defaults, for the log
+    type(ledger), intent(in) :: costs !< open since the start of the program
     real(rk), intent(in) :: started_at !< by the wall clock [s]
     type(error_type), allocatable, intent(out) :: error
     type(result_folder) :: results
@@ -38,21 +42,26 @@ contains
                           given%folder//'/'//base_name(scene%deck_file)//'.log')
     if (allocated(error)) return
     call results%log%note(echo)
-    call results%costs%add_time('read deck', 'deck', wall_clock() - started_at, 1)
-    call results%costs%add_memory('read deck', 'deck', peak_memory()) ! with the program itself
-    call results%open(scene, given%folder, remarks, started_at, error)
+    results%costs = costs
+    call share_costs(scene, costs)
+    call results%open(scene, given%folder, remarks, error)
     if (allocated(error)) return
+    call costs%start('assemble', 'initial state', 'solver')
     call start_analysis(scene, now, error)
+    call costs%stop()
     if (.not. allocated(error)) call run_all_steps(scene, now, results, error)
     call end_user_routines(scene, now%total_time, results%log, failure)
     if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
+    call costs%stop_all()
     if (allocated(error)) then
       call results%log%note(error%message)
       call results%finish(scene, now, 'stopped', error%message, failure)
+      call results%log%note(text_of_ledger(costs))
     else
       call results%finish(scene, now, 'finished', '', failure)
       call results%log%say('finished in '//as_text(wall_clock() - started_at)//' s, '// &
                            as_text(peak_memory())//' MB')
+      call results%log%say(text_of_ledger(costs))
     end if
     call results%log%close()
     if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)

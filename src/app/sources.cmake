@@ -5,5 +5,6 @@ set(sources
   model_summary.f90
   run_analysis.f90
   run_material.f90
+  shared_costs.f90
   user_routines.f90
 )

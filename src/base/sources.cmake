@@ -20,7 +20,9 @@ set(sources
   math/tensor6.f90
   report/diagnostic_text.f90
   report/diagnostics.f90
+  report/ledger_text.f90
   report/logging.f90
+  report/run_ledger.f90
   report/timer.f90
   text/nearest_words.f90
   text/number_ranges.f90

@@ -59,17 +59,15 @@ module result_files
 
 contains
 
-  !> Opens all files. `remarks` are the warnings of the deck; `started_at` is when the run began.
-  subroutine open_results(self, scene, folder, remarks, started_at, error)
+  !> Opens all files. `remarks` are the warnings of the deck.
+  subroutine open_results(self, scene, folder, remarks, error)
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: scene
     character(*), intent(in) :: folder !< made when it is not there
     type(diagnostic_list), intent(in) :: remarks
-    real(rk), intent(in) :: started_at !< by the wall clock [s]
     type(error_type), allocatable, intent(out) :: error
-    call self%costs%start('open results', 'output')
+    call self%costs%start('open', 'results', 'output')
     self%summary%remarks = remarks
-    self%summary%started_at = started_at
     self%summary%message = ''
     self%summary%deck_digest = digest_of_file(scene%deck_file)
     allocate (self%summary%steps(0))
@@ -79,7 +77,7 @@ contains
     if (.not. allocated(error)) call remove_earlier_files(self%stem)
     if (.not. allocated(error)) call self%open_writers(scene, folder, error)
     self%is_open = .not. allocated(error)
-    call self%costs%stop('open results')
+    call self%costs%stop()
     if (self%is_open) call self%summarise(scene, error)
   end subroutine open_results
 
@@ -108,11 +106,11 @@ contains
     type(state), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
     if (now%step /= self%record%step) call self%enter_step(scene, now%step)
-    call self%costs%start('envelopes', 'output')
+    call self%costs%start('recover', 'envelopes', 'output')
     call self%record%note(scene, now)
     self%has_unwritten_envelopes = size(self%record%active) > 0
     call self%summary%note(now)
-    call self%costs%stop('envelopes')
+    call self%costs%stop()
     call self%write_increment(scene, now, error)
     if (allocated(error)) return
     if (now%is_last_of_step) call self%write_envelopes(scene, error)
@@ -130,7 +128,7 @@ contains
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
-    call self%costs%start('write CSV', 'output')
+    call self%costs%start('write', 'CSV', 'output')
     call self%energies%write_increment(scene, now, self%record, error)
     if (.not. allocated(error)) then
       call self%damages%write_increment(scene, now, self%record, error)
@@ -138,19 +136,19 @@ contains
     if (.not. allocated(error)) then
       call self%histories%write_increment(scene, now, self%record, error)
     end if
-    call self%costs%stop('write CSV')
+    call self%costs%stop()
     if (allocated(error)) return
-    call self%costs%start('write HDF5', 'output')
+    call self%costs%start('write', 'HDF5', 'output')
     call self%data%write_increment(scene, now, self%record, error)
-    call self%costs%stop('write HDF5')
+    call self%costs%stop()
     if (allocated(error)) return
-    call self%costs%start('write VTK', 'output')
+    call self%costs%start('write', 'VTK', 'output')
     call self%pictures%write_increment(scene, now, self%record, error)
-    call self%costs%stop('write VTK')
+    call self%costs%stop()
     if (allocated(error) .or. size(scene%joints) == 0) return
-    call self%costs%start('draw joints', 'output')
+    call self%costs%start('write', 'VTK of joints', 'output')
     call self%surfaces%write_increment(scene, now, self%record, error)
-    call self%costs%stop('draw joints')
+    call self%costs%stop()
   end subroutine write_increment
 
   !> The run stops within a step: what was not due at its last increment is written now.
@@ -180,9 +178,13 @@ contains
       call self%log%say('step '//as_text(step)//'  mode '//as_text(i)//'  '// &
                         as_text(modes(i)%hz)//' Hz')
     end do
+    call self%costs%start('write', 'HDF5', 'output')
     call self%data%write_modes(scene, step, modes, self%record, error)
+    call self%costs%stop()
     if (allocated(error)) return
+    call self%costs%start('write', 'VTK', 'output')
     call self%pictures%write_modes(scene, step, modes, self%record, error)
+    call self%costs%stop()
     if (.not. allocated(error)) call self%summarise(scene, error)
   end subroutine modes_found
 
@@ -202,9 +204,13 @@ contains
     type(error_type), allocatable, intent(out) :: error
     if (.not. self%has_unwritten_envelopes) return
     self%has_unwritten_envelopes = .false.
+    call self%costs%start('write', 'HDF5', 'output')
     call self%data%write_envelopes(self%record, error)
+    call self%costs%stop()
     if (allocated(error)) return
+    call self%costs%start('write', 'VTK', 'output')
     call self%pictures%write_envelopes(scene, self%record, error)
+    call self%costs%stop()
   end subroutine write_envelopes
 
   !> The run has ended. Everything that can still be written is; the first failure is reported.
@@ -257,7 +263,9 @@ contains
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: scene
     type(error_type), allocatable, intent(out) :: error
+    call self%costs%start('write', 'JSON', 'output')
     call write_summary(self%stem//'.json', scene, self%summary, self%record, self%costs, error)
+    call self%costs%stop()
     self%summarised_at = wall_clock()
   end subroutine summarise
 

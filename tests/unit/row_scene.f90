@@ -6,6 +6,7 @@ module row_scene
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
   use increment_listener, only: listener
+  use run_ledger, only: ledger_part
   use amplitudes, only: amplitude
   use applied_load, only: load_slot
   use material_elastic, only: elastic_law
@@ -225,14 +226,17 @@ contains
     if (.false.) allocate (error)
   end subroutine modes_found
 
-  !> Calls of a part of the ledger.
+  !> Calls of a part of the ledger; the ledger must have been opened before the run.
   integer function calls_of(results, name)
     type(recorder), intent(in) :: results
-    character(*), intent(in) :: name
+    character(*), intent(in) :: name !< 'factor structure'
+    type(ledger_part), allocatable :: parts(:)
+    real(rk) :: wall_time
     integer :: i
     calls_of = 0
-    do i = 1, size(results%costs%parts)
-      if (results%costs%parts(i)%name == name) calls_of = results%costs%parts(i)%num_calls
+    call results%costs%read_parts(parts, wall_time)
+    do i = 1, size(parts)
+      if (parts(i)%name() == name) calls_of = parts(i)%num_calls
     end do
   end function calls_of
 end module row_scene

@@ -16,8 +16,8 @@ READING_LIMIT = 2.0  # [s] for 150 000 nodes and elements
 
 # Parts of the ledger that come once in a step, not in its increments.
 ONCE = (
-    "read deck|open results|assemble|analyse|factorise|compliance|initial acceleration|"
-    "close results"
+    "start program|read deck|open results|assemble .*|analyse structure|factor structure|"
+    "condense .*|solve initial acceleration"
 )
 
 
@@ -38,7 +38,7 @@ class Figure:
 
 def measure_static(program: Program, folder: Path, size: int) -> list[Figure]:
     run = program.run(write_deck(folder, f"static_{size}", dam_of_size(size)))
-    work, _ = run.cost("analyse|factorise|solve")
+    work, _ = run.cost("(analyse|factor|solve) structure")
     scene = f"arch dam, {run.unknowns} unknowns"
     told = f"{run.wall:.2f} s over {work:.2f} s for analyse + factor + solve"
     memory = run.results.find("ledger.peak_memory_mb")
@@ -58,7 +58,7 @@ def measure_dynamic(program: Program, folder: Path, size: int, count: int) -> li
         run = program.run(deck)
         what = "linear increment" + (" with envelopes" if has_envelopes else "") + " / solve"
         limit = None if has_envelopes else STEP_LIMIT
-        figures.append(ratio_of_increment(run, "solve", what, limit))
+        figures.append(ratio_of_increment(run, "solve structure", what, limit))
     return figures
 
 
@@ -68,7 +68,7 @@ def measure_jointed(program: Program, folder: Path, size: int, count: int) -> Fi
     deck = write_deck(folder, f"jointed_{size}", mesh, count * INCREMENT, has_envelopes=False)
     run = program.run(deck)
     what = "increment with two joints / solve"
-    return ratio_of_increment(run, "solve|eliminate|substitute", what, None)
+    return ratio_of_increment(run, "solve( forward| backward)? structure", what, None)
 
 
 def measure_sound(program: Program, folder: Path, size: int, count: int) -> Figure:
@@ -76,7 +76,7 @@ def measure_sound(program: Program, folder: Path, size: int, count: int) -> Figu
     mesh = dam_of_size(size)
     deck = write_deck(folder, f"sound_{size}", mesh, count * INCREMENT, has_envelopes=False)
     run = program.run(make_concrete(deck))
-    laws, calls = run.cost("laws")
+    laws, calls = run.cost("update .*")
     once, _ = run.cost(ONCE)
     whole = run.results.find("ledger.wall_s") - once
     told = f"{len(mesh.brick_sets['DAM'])} elements, laws {laws / calls * 1e3:.1f} ms a call"

@@ -228,10 +228,10 @@ contains
       now%is_lost = .not. inner%has_converged
       if (allocated(error) .or. now%is_lost) return
       call system%numbers%expand(task%start + task%x, u)
-      call self%solver%costs%start('laws', 'material')
+      call self%solver%costs%start('update', 'inelastic solids', 'inelastic')
       call update_points(scene, u, self%time, before%points, after%points, self%answers)
       call sum_released(scene, system%numbers, self%answers, after%released)
-      call self%solver%costs%stop('laws')
+      call self%solver%costs%stop()
       call find_failure(scene, self%answers, outcome%size_ratio, outcome%failure)
       now%is_lost = allocated(outcome%failure)
       call self%matrix%multiply_lost(system%matrix, task%x, product)

@@ -49,7 +49,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: tangent(:)
     self%is_elastic = .false.
-    call solver%costs%start('stiffness', 'material')
+    call solver%costs%start('assemble', 'inelastic solids', 'inelastic')
     if (allocated(self%lost)) deallocate (self%lost)
     if (self%is_symmetric) then
       allocate (self%lost(size(values)))
@@ -63,7 +63,7 @@ contains
       call spread_values(system%matrix, values, self%full_matrix, tangent)
       tangent = tangent - weight*self%lost
     end if
-    call solver%costs%stop('stiffness')
+    call solver%costs%stop()
     if (self%is_symmetric) then
       call solver%prepare(system%matrix, tangent, solver%weight, scene%joints, system%operator, &
                           error)

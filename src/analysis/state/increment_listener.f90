@@ -2,7 +2,7 @@
 module increment_listener
   use errors, only: error_type
   use logging, only: run_log
-  use timer, only: ledger
+  use run_ledger, only: ledger
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
   implicit none
@@ -12,7 +12,7 @@ module increment_listener
   !> Solvers also write what people should know to its log, and their time to its ledger.
   type, abstract :: listener
     type(run_log) :: log
-    type(ledger) :: costs
+    type(ledger) :: costs !< books nothing until it is opened
   contains
     procedure(increment_done), deferred :: increment_done
     procedure(modes_found), deferred :: modes_found

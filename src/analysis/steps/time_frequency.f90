@@ -7,7 +7,7 @@ module time_frequency
   use increment_listener, only: listener
   use solver_catalogue, only: make_solver, symmetric_solver
   use equilibrium_linear, only: linear_equilibrium
-  use step_equilibrium, only: prepare_equilibrium, hand_over_costs
+  use step_equilibrium, only: prepare_equilibrium
   use step_system, only: dam_system, build_structure, add_couplings, build_inertia
   use joint_forces, only: reference_stiffness
   use joint_iteration, only: closed_tangent
@@ -30,26 +30,26 @@ contains
     type(linear_equilibrium) :: balance
     type(vibration_mode), allocatable :: modes(:)
     real(rk), allocatable :: reference(:, :)
-    call results%costs%start('assemble', 'solver')
+    call results%costs%start('assemble', 'structure', 'solver')
     call build_structure(scene, plan, system, error)
     if (.not. allocated(error)) call build_inertia(scene, plan, system, error)
     if (allocated(error)) return
     call reference_stiffness(scene%joints, system%operator, reference)
     call system%operator%add_stiffness(closed_tangent(reference), system%matrix, system%stiffness)
-    call results%costs%stop('assemble')
+    call results%costs%stop()
     call add_couplings(scene, system, results%costs)
-    call results%costs%start('analyse', 'solver')
+    call results%costs%start('analyse', 'structure', 'solver')
     call make_solver(symmetric_solver, balance%factor, error)
     if (.not. allocated(error)) call balance%factor%analyse(system%matrix, error)
-    call results%costs%stop('analyse')
+    call results%costs%stop()
     if (allocated(error)) return
-    call results%costs%start('modes', 'solver')
+    balance%costs = results%costs
+    call results%costs%start('solve', 'modes', 'solver')
     call prepare_equilibrium(scene, system, system%stiffness, 1.0_rk, balance, error)
     if (allocated(error)) return
     call find_modes(system%matrix, system%numbers, system%stiffness, system%mass, balance%factor, &
                     plan%num_modes, modes, error)
-    call results%costs%stop('modes')
-    call hand_over_costs(balance, 'modes', results%costs)
+    call results%costs%stop()
     if (allocated(error)) return
     now%num_unknowns = system%matrix%num_free
     now%is_last_of_step = .true.

@@ -11,7 +11,7 @@ module time_hht
   use joint_forces, only: gather_tractions
   use joint_water, only: lead_water, show_water
   use equilibrium, only: balance_outcome
-  use step_equilibrium, only: make_equilibrium, prepare_equilibrium, hand_over_costs
+  use step_equilibrium, only: make_equilibrium, prepare_equilibrium
   use step_system, only: dam_system, build_structure, add_couplings, build_inertia, &
                          build_damping, build_loads
   use step_loads, only: step_time, external_force, prescribed_values
@@ -40,34 +40,34 @@ contains
     type(dam_system) :: system
     type(motion) :: moving
     type(stepper) :: tool
-    call results%costs%start('assemble', 'solver')
+    call results%costs%start('assemble', 'structure', 'solver')
     call build_structure(scene, plan, system, error)
     if (.not. allocated(error)) call build_inertia(scene, plan, system, error)
     if (.not. allocated(error)) call build_damping(scene, plan, system, error)
     if (allocated(error)) return
     call build_loads(scene, plan, now%u, system)
-    call results%costs%stop('assemble')
+    call results%costs%stop()
     call add_couplings(scene, system, results%costs)
     now%num_unknowns = system%matrix%num_free
     call start_motion(system%numbers, scene%joints, now, moving)
     allocate (moving%stiffness(system%matrix%num_total))
     call diagonal(system%matrix, system%stiffness, moving%stiffness)
     call tool%solids%open(scene, system, choose_tangents(scene, plan), moving)
-    call results%costs%start('initial acceleration', 'solver')
+    call results%costs%start('solve', 'initial acceleration', 'solver')
     call start_dynamic(scene, plan, system, now%total_time, moving, error)
-    call results%costs%stop('initial acceleration')
+    call results%costs%stop()
     if (allocated(error)) return
     call open_account(scene, moving, now%total_time <= 0.0_rk, now%energy)
     call show_motion(system%numbers, moving, now)
     call results%increment_done(scene, now, error)
     if (allocated(error)) return
-    call results%costs%start('analyse', 'solver')
+    call results%costs%start('analyse', 'structure', 'solver')
     call make_equilibrium(plan, system, all(tool%solids%choices%is_symmetric()), &
                           tool%solids%solver, error)
-    call results%costs%stop('analyse')
+    call results%costs%stop()
     if (allocated(error)) return
+    tool%solids%solver%costs = results%costs
     call walk(scene, plan, system, tool, moving, now, results, error)
-    call hand_over_costs(tool%solids%solver, 'forces', results%costs)
   end subroutine run_dynamic
 
   !> Forces at the start of the step and the acceleration that balances them. Supports that follow
@@ -155,10 +155,10 @@ contains
       call prepare_size(scene, plan, system, dt, results, tool, error)
       if (allocated(error)) return
       call tool%solids%open_increment(now, dt)
-      call results%costs%start('forces', 'solver')
+      call results%costs%start('iterate', 'structure', 'solver')
       call lead_water(scene, system%operator, moving%joints, system%groups, has_changed)
       call take_increment(scene, system, tool, when, moving, trial, outcome, error)
-      call results%costs%stop('forces')
+      call results%costs%stop('iterate structure')
       if (allocated(error)) return
       if (.not. outcome%has_converged) then
         call control%cut(dt, outcome%size_ratio, gives_up)
@@ -166,10 +166,10 @@ contains
         if (gives_up) return
         cycle
       end if
-      call results%costs%start('energy', 'solver')
+      call results%costs%start('recover', 'energy', 'solver')
       call add_dynamic_work(tool%scheme, scene, system%matrix%num_free, moving, trial, &
                             now%energy)
-      call results%costs%stop('energy')
+      call results%costs%stop()
       call swap(moving, trial)
       call show_motion(system%numbers, moving, now)
       call show_water(scene, plan%loads, system%groups, when, now%joints, results%costs)
@@ -194,10 +194,10 @@ contains
     call effective_values(system, tool%scheme, tool%solids%values)
     tool%solids%weight = 1.0_rk + plan%alpha
     tool%solids%matrix%is_elastic = .true.
-    call results%costs%start('forces', 'solver')
+    call results%costs%start('iterate', 'structure', 'solver')
     call prepare_equilibrium(scene, system, tool%solids%values, tool%scheme%joint_weight, &
                              tool%solids%solver, error)
-    call results%costs%stop('forces')
+    call results%costs%stop()
   end subroutine prepare_size
 
   !> Accepts the trial, without a copy.

@@ -14,7 +14,7 @@ module time_static
   use increment_listener, only: listener
   use equilibrium, only: force_balance, balance_outcome
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium, add_moving_supports, &
-                              check_bulk, hand_over_costs
+                              check_bulk
   use step_system, only: dam_system, build_structure, add_couplings, build_loads
   use step_loads, only: step_time, external_force, prescribed_values
   use step_control, only: increment_control, start_control
@@ -47,20 +47,21 @@ contains
     type(motion) :: moving
     type(solid_solver) :: solids
     type(tangent), allocatable :: choices(:)
-    call results%costs%start('assemble', 'solver')
+    call results%costs%start('assemble', 'structure', 'solver')
     call build_structure(scene, plan, system, error)
     if (allocated(error)) return
     call build_loads(scene, plan, now%u, system)
-    call results%costs%stop('assemble')
+    call results%costs%stop()
     call add_couplings(scene, system, results%costs)
-    call results%costs%start('analyse', 'solver')
+    call results%costs%start('analyse', 'structure', 'solver')
     choices = choose_tangents(scene, plan)
     call make_equilibrium(plan, system, all(choices%is_symmetric()), solids%solver, error)
-    call results%costs%stop('analyse')
+    call results%costs%stop()
     if (allocated(error)) return
-    call results%costs%start('forces', 'solver')
+    solids%solver%costs = results%costs
+    call results%costs%start('iterate', 'structure', 'solver')
     call prepare_equilibrium(scene, system, system%stiffness, 1.0_rk, solids%solver, error)
-    call results%costs%stop('forces')
+    call results%costs%stop()
     if (allocated(error)) return
     now%num_unknowns = system%matrix%num_free
     now%joint_condition = max(now%joint_condition, solids%solver%condition)
@@ -74,7 +75,6 @@ contains
     call start_forces(scene, plan, system, now, moving)
     call open_account(scene, moving, now%total_time <= 0.0_rk, now%energy)
     call walk(scene, plan, system, solids, moving, now, results, error)
-    call hand_over_costs(solids%solver, 'forces', results%costs)
   end subroutine run_static
 
   !> Forces at the start of the step, and what they lack to a balance: initial conditions may leave
@@ -118,10 +118,10 @@ contains
       call when%advance(now%step_time, size_of_increment)
       call begin_user_increment(scene, now, size_of_increment, error)
       if (allocated(error)) return
-      call results%costs%start('forces', 'solver')
+      call results%costs%start('iterate', 'structure', 'solver')
       call solids%open_increment(now, size_of_increment)
       call settle_water(scene, system, solids, when, moving, trial, outcome, error)
-      call results%costs%stop('forces')
+      call results%costs%stop('iterate structure')
       if (allocated(error)) return
       if (.not. outcome%has_converged) then
         call control%cut(size_of_increment, outcome%size_ratio, gives_up)
@@ -133,7 +133,9 @@ contains
         if (gives_up) return
         cycle
       end if
+      call results%costs%start('recover', 'energy', 'solver')
       call add_static_work(scene, system%matrix%num_free, moving, trial, now%energy)
+      call results%costs%stop()
       moving = trial
       call show_motion(system%numbers, moving, now)
       call show_water(scene, plan%loads, system%groups, when, now%joints, results%costs)

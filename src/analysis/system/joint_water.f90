@@ -12,7 +12,7 @@ module joint_water
   use problem_definition, only: problem
   use step_loads, only: load_group, step_time, factor_at
   use step_plan, only: step_load
-  use timer, only: ledger
+  use run_ledger, only: ledger
   implicit none
   private
   public :: lead_water, show_water
@@ -76,7 +76,7 @@ contains
     do i = 1, size(loads)
       select type (water => scene%loads(loads(i)%load)%item)
       type is (uplift_load)
-        call costs%start('water in joints', 'load')
+        call costs%start('recover', water%name, water%kind)
         factor = factor_at(loads(i)%start_factor, loads(i)%end_factor, loads(i)%amplitude, &
                            scene%amplitudes, when)
         associate (now => states(water%seam))
@@ -88,7 +88,7 @@ contains
             now%water = now%water + factor*groups(g)%pressure
           end if
         end associate
-        call costs%stop('water in joints')
+        call costs%stop()
       end select
     end do
   end subroutine show_water

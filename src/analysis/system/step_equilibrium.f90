@@ -12,11 +12,10 @@ module step_equilibrium
   use condensation, only: condensed_equilibrium
   use newton_full, only: full_equilibrium
   use step_system, only: dam_system
-  use timer, only: ledger
   use write_text, only: as_text
   implicit none
   private
-  public :: hand_over_costs, make_equilibrium, prepare_equilibrium, add_moving_supports, check_bulk
+  public :: make_equilibrium, prepare_equilibrium, add_moving_supports, check_bulk
 
   !> Above so many points of joints the dense compliance takes too much memory (some 2 GB, for a
   !> moment three times 8*(3*points)^2 bytes); full Newton then factors in every iteration. It
@@ -103,27 +102,6 @@ contains
       call move_alloc(cause, error)
     end if
   end subroutine prepare_equilibrium
-
-  !> Moves the costs of the equation solver to the ledger of the run, out of the part `within` that
-  !> was measured around them.
-  subroutine hand_over_costs(balance, within, costs)
-    class(equilibrium_solver), intent(inout) :: balance
-    character(*), intent(in) :: within !< part of the run's ledger
-    type(ledger), intent(inout) :: costs
-    integer :: i
-    if (.not. allocated(balance%costs%parts)) return
-    do i = 1, size(balance%costs%parts)
-      associate (part => balance%costs%parts(i))
-        call costs%add_time(part%name, part%kind, part%wall_time, part%num_calls)
-        call costs%add_time(within, 'solver', -part%wall_time, 0)
-        call costs%add_memory(part%name, part%kind, part%memory)
-        call costs%add_memory(within, 'solver', -part%memory)
-        part%memory = 0.0_rk
-        part%wall_time = 0.0_rk
-        part%num_calls = 0
-      end associate
-    end do
-  end subroutine hand_over_costs
 
   !> Takes what moving supports ask of the free unknowns from the right-hand side.
   subroutine add_moving_supports(system, values, x, rhs)

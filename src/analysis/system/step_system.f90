@@ -14,7 +14,7 @@ module step_system
   use damping_rayleigh, only: rayleigh_coefficients
   use joint_operator, only: jump_operator, build_jump_operator
   use step_loads, only: load_group, support, gather_loads, gather_supports
-  use timer, only: ledger
+  use run_ledger, only: ledger
   implicit none
   private
   public :: dam_system, build_structure, add_couplings, build_inertia, build_damping, build_loads
@@ -57,10 +57,10 @@ contains
     type(ledger), intent(inout) :: costs !< gets a part for each of them
     integer :: i
     do i = 1, size(scene%couplings)
-      call costs%start(scene%couplings(i)%name, 'coupling')
+      call costs%start('assemble', scene%couplings(i)%name, 'coupling')
       call add_coupling_stiffness(system%numbers, scene%couplings(i), system%matrix, &
                                   system%stiffness)
-      call costs%stop(scene%couplings(i)%name)
+      call costs%stop()
     end do
   end subroutine add_couplings
 

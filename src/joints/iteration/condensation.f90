@@ -49,16 +49,16 @@ contains
     call reference_stiffness(joints, operator, self%condensed%reference)
     allocate (closed, source=values)
     call operator%add_stiffness(weight*closed_tangent(self%condensed%reference), matrix, closed)
-    call self%costs%start('factorise', 'solver')
+    call self%costs%start('factor', 'structure', 'solver')
     call self%factor%factorise(matrix, closed, error)
     self%num_factorisations = self%num_factorisations + 1
-    call self%costs%stop('factorise')
+    call self%costs%stop()
     if (allocated(error)) return
     if (.not. self%condition > 0.0_rk) then
       call estimate_condition(matrix, closed, self%factor, self%condition, error)
       if (allocated(error)) return
     end if
-    call self%costs%start('compliance', 'joint')
+    call self%costs%start('condense', 'joints', 'joint')
     call take_jump_factor(self%factor, operator, matrix%num_free, matrix%num_last, self%jumps)
     if (self%jumps%is_there) then
       call use_many_threads(levels)
@@ -67,12 +67,15 @@ contains
     else
       call find_compliance(self%factor, operator, matrix%num_free, self%condensed%compliance, error)
     end if
-    if (allocated(error)) return
+    if (allocated(error)) then
+      call self%costs%stop()
+      return
+    end if
     call use_many_threads(levels)
     call friction_scale(self%condensed%compliance, operator, self%condensed%reference, weight, &
                         self%condensed%scale)
     call use_one_thread(levels)
-    call self%costs%stop('compliance')
+    call self%costs%stop()
   end subroutine prepare
 
   !> Solves, and once more from the jumps found where they have drifted from the balance.
@@ -139,9 +142,9 @@ contains
       if (allocated(error)) return
       call operator%jumps(x, field%response)
       field%response = field%response + balance%offset
-      call self%costs%start('joints', 'joint')
+      call self%costs%start('iterate', 'joints', 'joint')
       call iterate(self%condensed, self%controls, joints, operator, old, field, new, outcome)
-      call self%costs%stop('joints')
+      call self%costs%stop()
       if (.not. outcome%has_converged) return
       excess = relief(reference, field%jump, balance%offset, field%iterate)
     end associate
@@ -163,11 +166,11 @@ contains
     x = 0.0_rk
     call self%operator%add_forces(self%weight*excess, x)
     half = rhs + x(:size(rhs))
-    call self%costs%start('eliminate', 'solver')
+    call self%costs%start('solve forward', 'structure', 'solver')
     call self%factor%eliminate(half, error)
     x = 0.0_rk
     call self%jumps%show(half, x)
-    call self%costs%stop('eliminate')
+    call self%costs%stop()
   end subroutine begin_solve
 
   !> All unknowns, with what has changed since the guess.
@@ -181,12 +184,12 @@ contains
     if (self%jumps%is_there) then
       correction = 0.0_rk
       call self%operator%add_forces(self%weight*change, correction)
-      call self%costs%start('substitute', 'solver')
+      call self%costs%start('solve backward', 'structure', 'solver')
       call self%jumps%add_forces(correction, half)
       call self%factor%substitute(half, error)
       x = 0.0_rk
       x(:size(half)) = half
-      call self%costs%stop('substitute')
+      call self%costs%stop()
     else if (any(abs(change) > 0.0_rk)) then
       no_load = 0.0_rk
       call respond(self, no_load, change, self%operator, correction, error)
@@ -206,9 +209,9 @@ contains
     x = 0.0_rk
     call operator%add_forces(self%weight*excess, x)
     b = reshape(rhs + x(:size(rhs)), [size(rhs), 1])
-    call self%costs%start('solve', 'solver')
+    call self%costs%start('solve', 'structure', 'solver')
     call self%factor%solve(b, error)
-    call self%costs%stop('solve')
+    call self%costs%stop()
     x = 0.0_rk
     x(:size(rhs)) = b(:, 1)
   end subroutine respond

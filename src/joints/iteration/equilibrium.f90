@@ -11,7 +11,7 @@ module equilibrium
   use joint_points, only: joint
   use joint_operator, only: jump_operator
   use linear_solver, only: equation_solver
-  use timer, only: ledger
+  use run_ledger, only: ledger
   use step_plan, only: step_controls
   implicit none
   private
@@ -55,7 +55,7 @@ module equilibrium
     integer :: num_factorisations = 0
     !> Of the first matrix with all joints closed (matrix_condition); 0 without joints
     real(rk) :: condition = 0.0_rk
-    type(ledger) :: costs !< handed over to that of the run by the step
+    type(ledger) :: costs !< a copy: it books in the ledger of the run
   contains
     procedure(prepare), deferred :: prepare
     procedure(solve), deferred :: solve

@@ -35,18 +35,20 @@ contains
     self%weight = weight
     if (size(joints) == 0) self%operator = operator
     self%is_unsymmetric = .not. matrix%is_symmetric
-    call self%costs%start('factorise', 'solver')
+    if (self%is_unsymmetric .and. .not. allocated(self%unsymmetric_factor)) then
+      call self%costs%start('analyse', 'structure', 'solver')
+      call make_solver(unsymmetric_solver, self%unsymmetric_factor, error)
+      if (.not. allocated(error)) call self%unsymmetric_factor%analyse(matrix, error)
+      call self%costs%stop()
+      if (allocated(error)) return
+    end if
+    call self%costs%start('factor', 'structure', 'solver')
     if (.not. self%is_unsymmetric) then
       call self%factor%factorise(matrix, values, error)
     else
-      if (.not. allocated(self%unsymmetric_factor)) then
-        call make_solver(unsymmetric_solver, self%unsymmetric_factor, error)
-        if (.not. allocated(error)) call self%unsymmetric_factor%analyse(matrix, error)
-        if (allocated(error)) return
-      end if
       call self%unsymmetric_factor%factorise(matrix, values, error)
     end if
-    call self%costs%stop('factorise')
+    call self%costs%stop()
     self%num_factorisations = self%num_factorisations + 1
   end subroutine prepare
 
@@ -62,13 +64,13 @@ contains
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: b(:, :)
     b = reshape(balance%rhs, [size(balance%rhs), 1])
-    call self%costs%start('solve', 'solver')
+    call self%costs%start('solve', 'structure', 'solver')
     if (self%is_unsymmetric) then
       call self%unsymmetric_factor%solve(b, error)
     else
       call self%factor%solve(b, error)
     end if
-    call self%costs%stop('solve')
+    call self%costs%stop()
     x = 0.0_rk
     x(:size(b, 1)) = b(:, 1)
     if (size(joints) > 0) new = old

@@ -124,16 +124,19 @@ contains
                             any(abs(tangent(:, :, p) - transpose(tangent(:, :, p))) > 0.0_rk)
     end do
     self%num_factorisations = self%num_factorisations + 1
-    call self%costs%start('factorise', 'solver')
+    call self%costs%start('factor', 'structure', 'solver')
     if (.not. self%is_unsymmetric) then
       allocate (values, source=self%values)
       call operator%add_stiffness(self%weight*tangent, self%matrix, values)
       call self%factor%factorise(self%matrix, values, error)
-      call self%costs%stop('factorise')
+      call self%costs%stop()
       return
     end if
     if (.not. allocated(self%unsymmetric_factor)) call start_unsymmetric(self, error)
-    if (allocated(error)) return
+    if (allocated(error)) then
+      call self%costs%stop()
+      return
+    end if
     allocate (values(size(self%full_matrix%row)))
     if (self%matrix%is_symmetric) then
       call spread_values(self%matrix, self%values, self%full_matrix, values)
@@ -142,21 +145,22 @@ contains
     end if
     call operator%add_stiffness(self%weight*tangent, self%full_matrix, values)
     call self%unsymmetric_factor%factorise(self%full_matrix, values, error)
-    call self%costs%stop('factorise')
+    call self%costs%stop()
   end subroutine factorise_tangent
 
   !> Makes the pattern of both triangles and its solver.
   subroutine start_unsymmetric(self, error)
     class(full_equilibrium), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: error
+    call self%costs%start('analyse', 'structure', 'solver')
     if (self%matrix%is_symmetric) then
       call full_pattern(self%matrix, self%full_matrix)
     else
       self%full_matrix = self%matrix
     end if
     call make_solver(unsymmetric_solver, self%unsymmetric_factor, error)
-    if (allocated(error)) return
-    call self%unsymmetric_factor%analyse(self%full_matrix, error)
+    if (.not. allocated(error)) call self%unsymmetric_factor%analyse(self%full_matrix, error)
+    call self%costs%stop()
   end subroutine start_unsymmetric
 
   !> x and B x for the right-hand side rhs + weight*B^T area*traction, by the last factor.
@@ -172,13 +176,13 @@ contains
     x = 0.0_rk
     call operator%add_forces(self%weight*traction, x)
     b = reshape(rhs + x(:size(rhs)), [size(rhs), 1])
-    call self%costs%start('solve', 'solver')
+    call self%costs%start('solve', 'structure', 'solver')
     if (self%is_unsymmetric) then
       call self%unsymmetric_factor%solve(b, error)
     else
       call self%factor%solve(b, error)
     end if
-    call self%costs%stop('solve')
+    call self%costs%stop()
     x = 0.0_rk
     x(:size(rhs)) = b(:, 1)
     call operator%jumps(x, answer)

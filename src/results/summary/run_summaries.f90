@@ -27,7 +27,6 @@ module run_summaries
     character(:), allocatable :: deck_digest
     type(diagnostic_list) :: remarks !< warnings and ignored input of the deck
     integer :: num_unknowns = 0
-    real(rk) :: started_at = 0.0_rk !< by the wall clock [s]
     type(step_summary), allocatable :: steps(:)
   contains
     procedure :: begin_step

@@ -5,7 +5,8 @@ module summary_json
   use build_info, only: program_version, compiler, libraries
   use diagnostics, only: severity_ignored
   use diagnostic_text, only: headline
-  use timer, only: ledger, wall_clock, peak_memory
+  use run_ledger, only: ledger, ledger_part
+  use timer, only: peak_memory
   use problem_definition, only: problem
   use run_records, only: run_record
   use run_summaries, only: run_summary, step_summary
@@ -47,7 +48,7 @@ contains
     call put_damage(json, record%damage)
     call put_umat(json, scene%umat)
     call put_accuracy(json, scene, summary, record)
-    call put_costs(json, costs, wall_clock() - summary%started_at)
+    call put_costs(json, costs)
     call put_files(json, record)
     call json%close_object()
     call write_whole_file(path, json%contents(), error)
@@ -276,26 +277,28 @@ contains
   end subroutine put_contact
 
   !> The ledger of time and memory.
-  subroutine put_costs(json, costs, seconds)
+  subroutine put_costs(json, costs)
     type(json_text), intent(inout) :: json
     type(ledger), intent(in) :: costs
-    real(rk), intent(in) :: seconds !< since the start of the run
+    type(ledger_part), allocatable :: parts(:)
+    real(rk) :: wall_time
     integer :: i
+    call costs%read_parts(parts, wall_time)
     call json%open_object('ledger')
-    call json%put_real(seconds, 'wall_s')
+    call json%put_real(wall_time, 'wall_s')
     call json%put_real(peak_memory(), 'peak_memory_mb')
     call json%open_array('parts')
-    if (allocated(costs%parts)) then
-      do i = 1, size(costs%parts)
-        call json%open_object()
-        call json%put_text(costs%parts(i)%name, 'name')
-        call json%put_text(costs%parts(i)%kind, 'kind')
-        call json%put_real(costs%parts(i)%wall_time, 'wall_s')
-        call json%put_real(costs%parts(i)%memory, 'memory_mb')
-        call json%put_integer(costs%parts(i)%num_calls, 'calls')
-        call json%close_object()
-      end do
-    end if
+    do i = 1, size(parts)
+      call json%open_object()
+      call json%put_text(parts(i)%name(), 'name')
+      call json%put_text(parts(i)%kind, 'kind')
+      call json%put_text(parts(i)%work, 'work')
+      call json%put_text(parts(i)%effect, 'effect')
+      call json%put_real(parts(i)%wall_time, 'wall_s')
+      call json%put_real(parts(i)%memory, 'memory_mb')
+      call json%put_integer(parts(i)%num_calls, 'calls')
+      call json%close_object()
+    end do
     call json%close_array()
     call json%close_object()
   end subroutine put_costs

@@ -5,7 +5,6 @@ program test_damage_files
   use kinds, only: rk
   use errors, only: error_type
   use diagnostics, only: diagnostic_list
-  use timer, only: wall_clock
   use mesh_sets, only: named_set, surface
   use step_plan, only: step, print_request, field_request
   use material_law, only: start_points
@@ -32,8 +31,9 @@ program test_damage_files
   folder = 'damage of the unit test'
   if (command_argument_count() > 0) call get_command_argument(1, folder)
   call make_scene()
+  call results%costs%open()
   call results%log%open(.true., error)
-  call results%open(scene, trim(folder), remarks, wall_clock(), error)
+  call results%open(scene, trim(folder), remarks, error)
   call check_success(error, 'results open')
   do increment = 1, num_increments
     call set_state(increment)

@@ -5,7 +5,6 @@ program test_result_files
   use kinds, only: rk
   use errors, only: error_type
   use diagnostics, only: diagnostic_list, place, severity_ignored, severity_warning
-  use timer, only: wall_clock
   use mesh_sets, only: named_set, surface
   use step_plan, only: step, print_request, field_request
   use material_elastic, only: elastic_law
@@ -151,8 +150,9 @@ contains
     integer :: i
     call remarks%add(severity_ignored, place(deck, 7, 1, 9, 'PREPRINT', ''), 'no effect here')
     call remarks%add(severity_warning, place(deck, 8, 1, 9, 'NODE', ''), 'odd "name"')
+    call results%costs%open()
     call results%log%open(.true., error)
-    call results%open(scene, trim(folder), remarks, wall_clock(), error)
+    call results%open(scene, trim(folder), remarks, error)
     call check_success(error, 'results open')
     do i = 1, 2
       call announce(results, scene, 1, i, 0.5_rk*i, i == 2)

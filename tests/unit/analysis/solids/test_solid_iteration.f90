@@ -78,6 +78,7 @@ contains
     type(state), intent(out) :: now
     type(test_log), intent(inout) :: log
     type(error_type), allocatable :: error
+    call results%costs%open()
     call start_analysis(scene, now, error)
     call run_all_steps(scene, now, results, error)
     if (allocated(error)) print '(a)', error%message
@@ -201,8 +202,9 @@ contains
     call put_law(damage_law(elastic=elastic_law(young=young)), [1, 2, 3, 4, 5], scene)
     call run(scene, results, now, log)
     call check(log, results%most_iterations == 1, 'one iteration')
-    call check(log, calls_of(results, 'factorise') == 1, 'one factor')
-    call check(log, calls_of(results, 'laws') == 10, 'laws are called once an increment')
+    call check(log, calls_of(results, 'factor structure') == 1, 'one factor')
+    call check(log, calls_of(results, 'update inelastic solids') == 10, &
+               'laws are called once an increment')
   end subroutine elastic_bar_costs_nothing
 
   !> A law that cannot go on ends the run where it was, with its own words.
@@ -215,6 +217,7 @@ contains
     call make_bar(1, 1.0e-3_rk, 0.1_rk, 'CONSISTENT', scene)
     scene%steps(1)%is_direct = .false.
     call put_law(damage_law(elastic=elastic_law(young=young), largest_strain=5.0e-4_rk), [1], scene)
+    call results%costs%open()
     call start_analysis(scene, now, error)
     call run_all_steps(scene, now, results, error)
     call check(log, allocated(error), 'an error')
@@ -238,7 +241,8 @@ contains
     call put_law(damage_law(elastic=elastic_law(young=young), largest_change=2.0e-5_rk), [1], scene)
     call run(scene, results, now, log)
     call check(log, now%cutbacks > 0, 'increments are cut')
-    call check(log, calls_of(results, 'laws') == results%num_increments + now%cutbacks, &
+    call check(log, calls_of(results, 'update inelastic solids') &
+               == results%num_increments + now%cutbacks, &
                'one call for each increment, taken or cut')
   end subroutine law_wants_less
 

@@ -46,6 +46,7 @@ contains
     associate (last => size(scene%steps(1)%fixities))
       scene%steps(1)%fixities(last - 3:)%value = 1.0e-3_rk
     end associate
+    call results%costs%open()
     call start_analysis(scene, now, error)
     call run_all_steps(scene, now, results, error)
     call check(log,.not. allocated(error), 'runs')
@@ -54,7 +55,7 @@ contains
     call check_close(log, now%energy%external, 1.0e3_rk, 1.0e-6_rk, 'work of the moving support')
     call check_close(log, now%energy%strain, 1.0e3_rk, 1.0e-6_rk, 'strain energy')
     call check(log, results%num_increments == 4, 'four increments')
-    call check(log, calls_of(results, 'factorise') == 1, 'factored once')
+    call check(log, calls_of(results, 'factor structure') == 1, 'factored once')
   end subroutine bar_is_pulled
 
   !> A block on a joint: the joint carries its weight.

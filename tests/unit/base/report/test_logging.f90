@@ -1,17 +1,14 @@
-!> The log file holds every line; the ledger adds up.
+!> The log file holds every line.
 program test_logging
   use errors, only: error_type, system_failed
-  use kinds, only: rk
   use logging, only: run_log
-  use testing, only: check, check_close, check_text, test_log
-  use timer, only: ledger, peak_memory, wall_clock
+  use testing, only: check, check_text, test_log
   implicit none
   type(test_log) :: log
   log%suite = 'logging'
   call log_file()
   call unwritable_log()
   call full_disk()
-  call parts_of_a_run()
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
 
@@ -61,27 +58,4 @@ contains
     call check(log, journal%has_failed, 'a lost line is known')
     call journal%close()
   end subroutine full_disk
-
-  !> Time, calls and memory by part.
-  subroutine parts_of_a_run()
-    type(ledger) :: book
-    real(rk) :: began
-    integer :: i
-    began = wall_clock()
-    do i = 1, 3
-      call book%start('factorise', 'solver')
-      call book%stop('factorise')
-    end do
-    call book%stop('factorise')
-    call book%stop('never started')
-    call book%add_time('read', 'deck', 2.0_rk, 5)
-    call book%add_memory('factorise', 'solver', 44.0_rk)
-    call check(log, size(book%parts) == 2, 'two parts')
-    call check(log, book%parts(1)%num_calls == 3, 'calls')
-    call check(log, book%parts(1)%memory >= 44.0_rk, 'memory')
-    call check(log, book%parts(1)%wall_time >= 0.0_rk .and. &
-               book%parts(1)%wall_time <= wall_clock() - began, 'time')
-    call check_close(log, book%parts(2)%wall_time, 2.0_rk, 0.0_rk, 'time measured elsewhere')
-    call check(log, peak_memory() > 0.1_rk, 'peak memory')
-  end subroutine parts_of_a_run
 end program test_logging

@@ -31,9 +31,11 @@ contains
     logical, intent(in) :: is_held !< the first joint's nodes, in one direction
     type(recorder) :: condensed, full
     type(state) :: state_condensed, state_full
+    call condensed%costs%open()
     call shake_arch('CONDENSED', is_held, condensed, state_condensed)
     call shake_arch('FULL', is_held, full, state_full)
-    call check(log, calls_of(condensed, 'eliminate') > 0 .and. calls_of(condensed, 'solve') == 0, &
+    call check(log, calls_of(condensed, 'solve forward structure') > 0 .and. &
+               calls_of(condensed, 'solve structure') == 0, &
                'one solve an increment')
     ! Jumps that are differences of displacements have fewer digits, and an iteration may be judged
     ! otherwise.

@@ -1,0 +1,55 @@
+!> Effects whose work is done for all of them at once: the ledger divides it by number of points.
+module shared_costs
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use run_ledger, only: ledger
+  implicit none
+  private
+  public :: share_costs
+
+contains
+
+  !> Divides the work on all joints among the joints, and that on all inelastic solids among their
+  !> materials.
+  subroutine share_costs(scene, costs)
+    type(problem), intent(in) :: scene
+    type(ledger), intent(in) :: costs
+    real(rk) :: num_points(size(scene%materials))
+    integer :: b, i, width
+    width = maxval([(len(scene%joints(i)%name), i=1, size(scene%joints)), &
+                    (len(scene%materials(i)%name), i=1, size(scene%materials)), 1])
+    num_points = 0.0_rk
+    if (allocated(scene%inelastic)) then
+      do b = 1, size(scene%inelastic)
+        associate (solids => scene%inelastic(b))
+          num_points(solids%material) = num_points(solids%material) &
+                                        + real(size(solids%weight), rk)
+        end associate
+      end do
+    end if
+    call costs%share('joints', 'joint', joint_names(), real(scene%joints%num_points, rk))
+    call costs%share('inelastic solids', 'inelastic', &
+                     pack(material_names(), num_points > 0.0_rk), &
+                     pack(num_points, num_points > 0.0_rk))
+
+  contains
+
+    !> Names of the joints.
+    function joint_names() result(names)
+      character(width) :: names(size(scene%joints))
+      integer :: j
+      do j = 1, size(names)
+        names(j) = scene%joints(j)%name
+      end do
+    end function joint_names
+
+    !> Names of the materials.
+    function material_names() result(names)
+      character(width) :: names(size(scene%materials))
+      integer :: m
+      do m = 1, size(names)
+        names(m) = scene%materials(m)%name
+      end do
+    end function material_names
+  end subroutine share_costs
+end module shared_costs
