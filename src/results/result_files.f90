@@ -115,8 +115,10 @@ contains
     if (allocated(error)) return
     if (now%is_last_of_step) call self%write_envelopes(scene, error)
     if (allocated(error)) return
+    call self%costs%start('write', 'log', 'output')
     if (now%increment > 0 .or. starts_analysis(now)) call self%log%progress(line_of(now))
     call self%say_warnings()
+    call self%costs%stop()
     if (wall_clock() - self%summarised_at > seconds_between_summaries) then
       call self%summarise(scene, error)
     end if
@@ -193,8 +195,10 @@ contains
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: scene
     integer, intent(in) :: step
+    call self%costs%start('open', 'results', 'output')
     call self%record%begin_step(scene, step)
     call self%summary%begin_step(scene, step)
+    call self%costs%stop()
   end subroutine enter_step
 
   !> The envelopes of the step, once.
@@ -229,14 +233,19 @@ contains
     if (status == 'stopped') call self%write_last(scene, now, error)
     call self%write_envelopes(scene, failure)
     call keep_first(error, failure)
+    call self%costs%start('write', 'CSV', 'output')
     call self%histories%finish(failure)
     call keep_first(error, failure)
     call self%energies%finish(failure)
     call keep_first(error, failure)
     call self%damages%finish(failure)
     call keep_first(error, failure)
+    call self%costs%stop()
+    call self%costs%start('write', 'HDF5', 'output')
+    call self%data%write_costs(self%costs)
     call self%data%finish(failure)
     call keep_first(error, failure)
+    call self%costs%stop()
     call self%say_warnings()
     call self%summarise(scene, failure)
     call keep_first(error, failure)

@@ -21,6 +21,7 @@ set(sources
   summary/run_summaries.f90
   summary/summary_json.f90
   summary/umat_json.f90
+  writers/hdf5_ledger.f90
   writers/hdf5_model.f90
   writers/hdf5_points.f90
   writers/history_rows.f90

@@ -45,7 +45,9 @@ contains
     if (.not. allocated(error)) call build_inertia(scene, plan, system, error)
     if (.not. allocated(error)) call build_damping(scene, plan, system, error)
     if (allocated(error)) return
+    call results%costs%start('assemble', 'loads', 'load')
     call build_loads(scene, plan, now%u, system)
+    call results%costs%stop()
     call results%costs%stop()
     call add_couplings(scene, system, results%costs)
     now%num_unknowns = system%matrix%num_free
@@ -57,7 +59,9 @@ contains
     call start_dynamic(scene, plan, system, now%total_time, moving, error)
     call results%costs%stop()
     if (allocated(error)) return
+    call results%costs%start('recover', 'energy', 'solver')
     call open_account(scene, moving, now%total_time <= 0.0_rk, now%energy)
+    call results%costs%stop()
     call show_motion(system%numbers, moving, now)
     call results%increment_done(scene, now, error)
     if (allocated(error)) return
@@ -156,7 +160,9 @@ contains
       if (allocated(error)) return
       call tool%solids%open_increment(now, dt)
       call results%costs%start('iterate', 'structure', 'solver')
+      call results%costs%start('update', 'uplift', 'load')
       call lead_water(scene, system%operator, moving%joints, system%groups, has_changed)
+      call results%costs%stop()
       call take_increment(scene, system, tool, when, moving, trial, outcome, error)
       call results%costs%stop('iterate structure')
       if (allocated(error)) return

@@ -50,7 +50,9 @@ contains
     call results%costs%start('assemble', 'structure', 'solver')
     call build_structure(scene, plan, system, error)
     if (allocated(error)) return
+    call results%costs%start('assemble', 'loads', 'load')
     call build_loads(scene, plan, now%u, system)
+    call results%costs%stop()
     call results%costs%stop()
     call add_couplings(scene, system, results%costs)
     call results%costs%start('analyse', 'structure', 'solver')
@@ -73,7 +75,9 @@ contains
     call solids%open(scene, system, choices, moving)
     if (size(moving%points) > 0) solids%values = system%stiffness
     call start_forces(scene, plan, system, now, moving)
+    call results%costs%start('recover', 'energy', 'solver')
     call open_account(scene, moving, now%total_time <= 0.0_rk, now%energy)
+    call results%costs%stop()
     call walk(scene, plan, system, solids, moving, now, results, error)
   end subroutine run_static
 
@@ -157,11 +161,15 @@ contains
     type(error_type), allocatable, intent(out) :: error
     logical :: has_changed
     integer :: pass
+    call solids%solver%costs%start('update', 'uplift', 'load')
     call lead_water(scene, system%operator, before%joints, system%groups, has_changed)
+    call solids%solver%costs%stop()
     do pass = 1, most_passes
       call take_increment(scene, system, solids, when, before, after, outcome, error)
       if (allocated(error) .or. .not. outcome%has_converged) return
+      call solids%solver%costs%start('update', 'uplift', 'load')
       call lead_water(scene, system%operator, after%joints, system%groups, has_changed)
+      call solids%solver%costs%stop()
       if (.not. has_changed) return
     end do
     outcome%has_converged = .false.

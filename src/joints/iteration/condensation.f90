@@ -55,7 +55,9 @@ contains
     call self%costs%stop()
     if (allocated(error)) return
     if (.not. self%condition > 0.0_rk) then
+      call self%costs%start('solve', 'condition number', 'solver')
       call estimate_condition(matrix, closed, self%factor, self%condition, error)
+      call self%costs%stop()
       if (allocated(error)) return
     end if
     call self%costs%start('condense', 'joints', 'joint')

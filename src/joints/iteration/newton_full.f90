@@ -57,12 +57,17 @@ contains
     if (.not. self%condition > 0.0_rk) then
       allocate (closed, source=values)
       call operator%add_stiffness(weight*closed_tangent(self%reference), matrix, closed)
+      call self%costs%start('solve', 'condition number', 'solver')
       call estimate_condition(matrix, closed, self%factor, self%condition, error)
+      call self%costs%stop()
       if (allocated(error)) return
     end if
+    call self%costs%start('condense', 'joints', 'joint')
     call find_compliance(self%factor, operator, matrix%num_free, compliance, error)
-    if (allocated(error)) return
-    call friction_scale(compliance, operator, self%reference, weight, self%scale)
+    if (.not. allocated(error)) then
+      call friction_scale(compliance, operator, self%reference, weight, self%scale)
+    end if
+    call self%costs%stop()
   end subroutine prepare
 
   !> Iterates on all unknowns.

@@ -2,6 +2,7 @@
 module write_hdf5
   use kinds, only: rk
   use errors, only: error_type, raise, system_failed
+  use run_ledger, only: ledger
   use timer, only: wall_clock
   use build_info, only: program_version
   use problem_definition, only: problem
@@ -14,6 +15,7 @@ module write_hdf5
   use envelopes, only: name_of_field
   use hdf5_files, only: hdf5_file
   use hdf5_tables, only: growing_table
+  use hdf5_ledger, only: write_ledger
   use hdf5_model, only: write_model
   use hdf5_points, only: write_points, add_points
   use file_system, only: link_name, file_name
@@ -36,6 +38,7 @@ module write_hdf5
     procedure :: write_increment => write_data
     procedure :: write_modes => write_mode_data
     procedure :: write_envelopes => write_envelope_data
+    procedure :: write_costs
     procedure :: finish => close_data
     procedure, private :: enter_step
     procedure, private :: add_history
@@ -227,6 +230,13 @@ contains
     end do
     call self%bring_out(error)
   end subroutine write_envelope_data
+
+  !> The ledger of the run, at its end.
+  subroutine write_costs(self, costs)
+    class(hdf5_results), intent(inout) :: self
+    type(ledger), intent(in) :: costs
+    if (self%file%id /= 0) call write_ledger(self%file, costs)
+  end subroutine write_costs
 
   !> Closes the file.
   subroutine close_data(self, error)
