@@ -3,6 +3,7 @@ set(sources
   blas_bridge.c
   blas_threads.f90
   cholmod_bridge.c
+  global_vectors.f90
   linear_solver.f90
   matrix_condition.f90
   matrix_pattern.f90

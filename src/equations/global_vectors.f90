@@ -1,0 +1,95 @@
+!> Operations that need all entries of a global vector: products, norms, sums, A x.
+!>
+!> A global vector has one entry for each unknown, or three for each point of the joints. All code
+!> above this floor takes its scalar products, norms, extremes and matrix products from here, so a
+!> distributed back end replaces this module and no other: each process adds its own entries, and
+!> an exchange between processes completes the result. Sums and multiples of vectors need no
+!> exchange; they stay array expressions of the caller. The functions are not pure, because an
+!> exchange is not.
+module global_vectors
+  use kinds, only: rk
+  use matrix_pattern, only: pattern, multiply_local => multiply, diagonal_local => diagonal
+  implicit none
+  private
+  public :: dot, norm, distance, length, total, largest, multiply, diagonal
+
+  !> Euclidean norm by `norm2`, which scales and can neither overflow nor underflow.
+  interface norm
+    module procedure norm_of_vector, norm_of_field
+  end interface norm
+
+  !> Norm of a difference, by `norm2`.
+  interface distance
+    module procedure distance_of_vectors, distance_of_fields
+  end interface distance
+
+contains
+
+  !> Scalar product x . y. A distributed back end counts entries on the border of two parts once.
+  real(rk) function dot(x, y)
+    real(rk), intent(in) :: x(:), y(:) !< of one size
+    dot = dot_product(x, y)
+  end function dot
+
+  !> sqrt(x . x). A distributed back end reduces scales and sums of all parts.
+  real(rk) function norm_of_vector(x) result(norm)
+    real(rk), intent(in) :: x(:)
+    norm = norm2(x)
+  end function norm_of_vector
+
+  !> The same of a field.
+  real(rk) function norm_of_field(x) result(norm)
+    real(rk), intent(in) :: x(:, :) !< (components, nodes or points)
+    norm = norm2(x)
+  end function norm_of_field
+
+  !> sqrt((x - y) . (x - y)), without an array for the difference.
+  real(rk) function distance_of_vectors(x, y) result(distance)
+    real(rk), intent(in) :: x(:), y(:) !< of one size
+    distance = norm2(x - y)
+  end function distance_of_vectors
+
+  !> The same of fields.
+  real(rk) function distance_of_fields(x, y) result(distance)
+    real(rk), intent(in) :: x(:, :), y(:, :) !< (components, nodes or points)
+    distance = norm2(x - y)
+  end function distance_of_fields
+
+  !> sqrt(x . x) by one sum of squares: quicker than `norm`; overflows above 1e154. The two differ
+  !> by round-off.
+  real(rk) function length(x)
+    real(rk), intent(in) :: x(:)
+    length = sqrt(dot_product(x, x))
+  end function length
+
+  !> Sum of all entries. A distributed back end counts entries on the border of two parts once.
+  real(rk) function total(x)
+    real(rk), intent(in) :: x(:)
+    total = sum(x)
+  end function total
+
+  !> The largest entry; of an empty vector -huge. A distributed back end takes the largest of all
+  !> parts.
+  real(rk) function largest(x)
+    real(rk), intent(in) :: x(:)
+    largest = maxval(x)
+  end function largest
+
+  !> y = A x over all unknowns, prescribed ones included. A distributed back end fetches the entries
+  !> of x that its columns need, and adds the entries of y on borders.
+  subroutine multiply(matrix, values, x, y)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: values(:) !< of A
+    real(rk), intent(in) :: x(:) !< (num_total)
+    real(rk), intent(out) :: y(:) !< (num_total)
+    call multiply_local(matrix, values, x, y)
+  end subroutine multiply
+
+  !> The diagonal of A. A distributed back end adds its entries on borders.
+  subroutine diagonal(matrix, values, d)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: values(:) !< of A
+    real(rk), intent(out) :: d(:) !< (num_total)
+    call diagonal_local(matrix, values, d)
+  end subroutine diagonal
+end module global_vectors
