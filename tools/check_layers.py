@@ -44,6 +44,7 @@ ROOMS = (
     "analysis/system",
     "diagnosis",
     "analysis/solids",
+    "analysis/integrators",
     "analysis/steps",
     "results/quantities",
     "results/record",

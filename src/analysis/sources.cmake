@@ -1,4 +1,15 @@
 set(sources
+  integrators/eigen_modes.f90
+  integrators/energy_account.f90
+  integrators/frequency_integrator.f90
+  integrators/hht_increment.f90
+  integrators/hht_integrator.f90
+  integrators/hht_scheme.f90
+  integrators/initial_acceleration.f90
+  integrators/integrator_catalogue.f90
+  integrators/integrator_type.f90
+  integrators/static_increment.f90
+  integrators/static_integrator.f90
   solids/inelastic_energy.f90
   solids/inelastic_forces.f90
   solids/inelastic_stiffness.f90
@@ -7,19 +18,11 @@ set(sources
   solids/tangent_choice.f90
   state/analysis_state.f90
   state/increment_listener.f90
-  state/motion_state.f90
-  steps/eigen_modes.f90
-  steps/energy_account.f90
-  steps/hht_increment.f90
-  steps/hht_scheme.f90
-  steps/initial_acceleration.f90
+  state/state_transfer.f90
+  state/step_control.f90
   steps/initial_state.f90
-  steps/run_steps.f90
-  steps/step_control.f90
+  steps/step_loop.f90
   steps/step_report.f90
-  steps/time_frequency.f90
-  steps/time_hht.f90
-  steps/time_static.f90
   steps/user_increments.f90
   system/joint_water.f90
   system/step_equilibrium.f90

@@ -256,8 +256,8 @@ contains
   pure function procedure_of(now) result(text)
     type(step), intent(in) :: now
     character(:), allocatable :: text
-    text = now%procedure
-    if (now%procedure == 'FREQUENCY') then
+    text = trim(now%procedure%name)
+    if (now%procedure%finds_modes) then
       text = row(text, as_text(now%num_modes)//' modes')
       return
     end if
@@ -265,7 +265,7 @@ contains
                as_text(now%first_increment)//' s ('//as_text(now%smallest_increment)//' to '// &
                as_text(now%largest_increment)//')')
     if (now%is_direct) text = text//', fixed'
-    if (now%procedure == 'DYNAMIC') text = text//', ALPHA '//as_text(now%alpha)
+    if (now%procedure%has_inertia) text = text//', ALPHA '//as_text(now%alpha)
     text = text//nl//row('controls', 'RESIDUAL '//as_text(now%controls%residual_tolerance)// &
                          ', INCREMENT '//as_text(now%controls%increment_tolerance)// &
                          ', ITERATIONS '//as_text(now%controls%max_iterations)// &

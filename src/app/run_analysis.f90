@@ -12,7 +12,7 @@ module run_analysis
   use problem_definition, only: problem
   use analysis_state, only: state
   use initial_state, only: start_analysis
-  use run_steps, only: run_all_steps
+  use step_loop, only: run_all_steps
   use shared_costs, only: share_costs
   use result_files, only: result_folder
   use cli, only: command_line
@@ -33,7 +33,7 @@ contains
     real(rk), intent(in) :: started_at !< by the wall clock [s]
     type(error_type), allocatable, intent(out) :: error
     type(result_folder) :: results
-    type(state) :: now
+    type(state), allocatable :: now
     type(error_type), allocatable :: failure
     if (given%num_threads > 0) call omp_set_num_threads(given%num_threads)
     call make_folder(given%folder, error)

@@ -10,7 +10,7 @@ module free_blocks
   use joint_capacity, only: best_forces, find_best_forces, point_limits
   use joint_law, only: joint_state, state_open
   use kinds, only: rk
-  use motion_state, only: compress
+  use state_transfer, only: restrict
   use problem_definition, only: problem
   use rigid_blocks, only: add_supports, block_set, find_blocks, jump_rows
   use step_loads, only: external_force, step_time
@@ -164,7 +164,7 @@ contains
         motion = 0.0_rk
         motion(k) = 1.0_rk
         call move_block(scene, task%blocks, b, motion, u)
-        call compress(system%numbers, scene%joints, u, q)
+        call restrict(system%numbers, scene%joints, u, q)
         on_blocks(6*(b - 1) + k) = dot_product(force, q)
       end do
     end do

@@ -39,7 +39,7 @@ contains
     end do
     do i = 1, size(model%scene%steps)
       associate (step => model%scene%steps(i))
-        if (step%procedure /= 'STATIC') cycle
+        if (.not. step%procedure%is_static()) cycle
         matrix = by_joints
         call add_supports(blocks, model%scene%mesh%x, step%fixities%node, step%fixities%dof, &
                           matrix)

@@ -96,7 +96,7 @@ contains
     integer :: i
     if (any(model%scene%materials%density > 0.0_rk)) return
     do i = 1, size(model%scene%steps)
-      if (model%scene%steps(i)%procedure == 'STATIC') cycle
+      if (model%scene%steps(i)%procedure%is_static()) cycle
       call model%cards(model%procedure_card(i))%fault( &
         faults, 'no material has a mass', '*DENSITY in a *MATERIAL')
       return
@@ -146,8 +146,8 @@ contains
     integer :: i
     if (.not. any(model%scene%initial_values%is_velocity)) return
     do i = 1, size(model%scene%steps)
-      if (model%scene%steps(i)%procedure == 'DYNAMIC') return
-      if (model%scene%steps(i)%procedure /= 'STATIC') cycle
+      if (model%scene%steps(i)%procedure%has_inertia) return
+      if (.not. model%scene%steps(i)%procedure%is_static()) cycle
       call model%cards(model%procedure_card(i))%warn( &
         faults, 'the initial velocities (*INITIAL CONDITIONS) end here: a static step is at rest')
       return
@@ -167,7 +167,7 @@ contains
     num_before = faults%num_errors
     do i = 1, size(model%scene%steps)
       associate (step => model%scene%steps(i), place => model%cards(model%procedure_card(i)))
-        if (step%procedure == 'DYNAMIC') cycle
+        if (step%procedure%has_inertia) cycle
         if (size(step%fixities) == 0) then
           call place%fault(faults, 'the model has no supports in this step', '*BOUNDARY')
         else

@@ -1,6 +1,7 @@
 !> A row of boxes along x that share their faces, on joints that rest on fixed ground; and a
 !> listener that remembers what a run did.
 module row_scene
+  use integrator_catalogue, only: procedure_named
   use kinds, only: rk
   use errors, only: error_type
   use problem_definition, only: problem
@@ -144,7 +145,7 @@ contains
     type(step_load) :: rule
     integer :: i
     plan%name = 'Step'
-    plan%procedure = procedure_name
+    plan%procedure = procedure_named(procedure_name)
     plan%first_increment = increment
     plan%duration = duration
     allocate (plan%loads(0), plan%fixities(0))
@@ -207,8 +208,8 @@ contains
     if (size(scene%joints) > 0) pressure = -now%joints(1)%traction(1, 1)
     self%time = [self%time, now%total_time]
     self%u = [self%u, now%u(self%watched_dof, self%watched_node)]
-    self%v = [self%v, now%v(self%watched_dof, self%watched_node)]
-    self%a = [self%a, now%a(self%watched_dof, self%watched_node)]
+    if (allocated(now%v)) self%v = [self%v, now%v(self%watched_dof, self%watched_node)]
+    if (allocated(now%a)) self%a = [self%a, now%a(self%watched_dof, self%watched_node)]
     self%friction = [self%friction, now%energy%friction]
     self%pressure = [self%pressure, pressure]
     self%total = [self%total, now%energy%kinetic + now%energy%strain]

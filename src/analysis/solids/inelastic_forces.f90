@@ -17,7 +17,7 @@ module inelastic_forces
   use material_points, only: point_state, time_increment, update_report, no_tangent
   implicit none
   private
-  public :: block_answer, open_answers, update_points, recall_points, sum_released, find_failure
+  public :: block_answer, open_answers, update_points, recall_points, sum_excess, find_failure
   public :: has_many_elements
 
   !> Solids that one thread is done with before the others have woken up.
@@ -27,7 +27,7 @@ module inelastic_forces
   type :: block_answer
     real(rk), allocatable :: force(:, :) !< (24, elements) sum w B^T (D eps - sigma) [N]
     real(rk), allocatable :: tangent(:, :, :) !< (6, 6, points) [Pa], or (6, 6, 0)
-    logical, allocatable :: has_released(:) !< (elements) with a point that is not elastic
+    logical, allocatable :: has_excess(:) !< (elements) with a point that is not elastic
     type(update_report) :: report
   end type block_answer
 
@@ -41,7 +41,7 @@ contains
     allocate (answers(size(blocks)))
     do i = 1, size(blocks)
       allocate (answers(i)%force(24, size(blocks(i)%elements)), &
-                answers(i)%has_released(size(blocks(i)%elements)), answers(i)%tangent(6, 6, 0))
+                answers(i)%has_excess(size(blocks(i)%elements)), answers(i)%tangent(6, 6, 0))
     end do
   end subroutine open_answers
 
@@ -73,7 +73,7 @@ contains
     integer :: i, num_elements
     num_elements = 0
     do i = 1, size(answers)
-      num_elements = num_elements + size(answers(i)%has_released)
+      num_elements = num_elements + size(answers(i)%has_excess)
     end do
     has_many_elements = num_elements > few_elements
   end function has_many_elements
@@ -168,12 +168,12 @@ contains
     real(rk) :: excess(6)
     integer :: e, q, p, i
     do e = 1, size(part%elements)
-      answer%has_released(e) = .false.
+      answer%has_excess(e) = .false.
       answer%force(:, e) = 0.0_rk
       do q = 1, part%points_of_element
         p = (e - 1)*part%points_of_element + q
         if (new%is_elastic(p)) cycle
-        answer%has_released(e) = .true.
+        answer%has_excess(e) = .true.
         excess = part%weight(q, e)*(matmul(d, new%strain(:, p)) - new%stress(:, p))
         do i = 1, 24
           answer%force(i, e) = answer%force(i, e) + sum(part%b(:, i, q, e)*excess)
@@ -183,25 +183,25 @@ contains
   end subroutine sum_block
 
   !> The answers of all blocks in the unknowns of a step.
-  subroutine sum_released(scene, numbers, answers, released)
+  subroutine sum_excess(scene, numbers, answers, excess)
     type(problem), intent(in) :: scene
     type(numbering), intent(in) :: numbers
     type(block_answer), intent(in) :: answers(:)
-    real(rk), intent(out) :: released(:) !< (num_total) [N]
+    real(rk), intent(out) :: excess(:) !< (num_total) [N]
     real(rk) :: nodal(3, scene%mesh%num_nodes)
     integer :: i, e, a, node
     nodal = 0.0_rk
     do i = 1, size(answers)
-      do e = 1, size(answers(i)%has_released)
-        if (.not. answers(i)%has_released(e)) cycle
+      do e = 1, size(answers(i)%has_excess)
+        if (.not. answers(i)%has_excess(e)) cycle
         do a = 1, 8
           node = scene%mesh%nodes(a, scene%inelastic(i)%elements(e))
           nodal(:, node) = nodal(:, node) + answers(i)%force(3*a - 2:3*a, e)
         end do
       end do
     end do
-    call numbers%reduce(nodal, released)
-  end subroutine sum_released
+    call numbers%reduce(nodal, excess)
+  end subroutine sum_excess
 
   !> Whether a law asks for a smaller increment: how much smaller, and why, with element and point.
   subroutine find_failure(scene, answers, size_ratio, why)

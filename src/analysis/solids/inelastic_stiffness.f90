@@ -29,7 +29,7 @@ contains
     values = 0.0_rk
     largest = 0
     do i = 1, size(answers)
-      largest = max(largest, size(answers(i)%has_released))
+      largest = max(largest, size(answers(i)%has_excess))
     end do
     allocate (ke(24, 24, largest, batch))
     do first = 1, size(answers), batch
@@ -41,8 +41,8 @@ contains
       end do
       !$omp end parallel do
       do i = first, last
-        do e = 1, size(answers(i)%has_released)
-          if (.not. answers(i)%has_released(e)) cycle
+        do e = 1, size(answers(i)%has_excess)
+          if (.not. answers(i)%has_excess(e)) cycle
           call scatter_nodes(numbers, scene%mesh%nodes(:, scene%inelastic(i)%elements(e)), &
                              ke(:, :, e, i - first + 1), matrix, values)
         end do
@@ -60,7 +60,7 @@ contains
     integer :: e, q
     call scene%materials(part%material)%law%elastic_stiffness(d)
     do e = 1, size(part%elements)
-      if (.not. answer%has_released(e)) cycle
+      if (.not. answer%has_excess(e)) cycle
       ke(:, :, e) = 0.0_rk
       do q = 1, part%points_of_element
         lost = part%weight(q, e)*(d - answer%tangent(:, :, (e - 1)*part%points_of_element + q))

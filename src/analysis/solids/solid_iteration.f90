@@ -1,25 +1,25 @@
 !> The balance of an increment with inelastic solids (theory.md, 12):
 !>
-!>   K_eff x + joints(x) = rhs + w released(start + x)
+!>   K_eff x + joints(x) = rhs + w s(start + x)
 !>
-!> for the free unknowns x. With a matrix A of what the points have lost, or none, each iteration
-!> solves (K_eff - w A) x + joints = rhs + w s exactly, joints included, and asks the laws for
-!> s' = released - A x. What is out of balance is w (s' - s). Newton's method takes A and s anew
-!> from each iterate; with a fixed A the iteration on s is accelerated. Without inelastic solids
-!> there is one solve and nothing else.
+!> for the free unknowns x. The initial-stress force s is what K u overestimates of the internal
+!> force of the solids, s = K u - sum B^T sigma. With a matrix A of the stiffness that the points
+!> have lost, or none, each iteration solves (K_eff - w A) x + joints = rhs + w s exactly, joints
+!> included, and then evaluates the laws for s' = s(start + x) - A x. The residual is w (s' - s).
+!> Newton's method takes A and s anew from each iterate; with a fixed A the iteration on s is
+!> accelerated. Without inelastic solids one solve is all.
 module solid_iteration
   use kinds, only: rk
   use errors, only: error_type, analysis_failed
   use problem_definition, only: problem
-  use analysis_state, only: state
-  use matrix_pattern, only: multiply
+  use analysis_state, only: state, motion
+  use global_vectors, only: multiply, norm
   use material_points, only: time_increment
   use inelastic_forces, only: block_answer, open_answers, update_points, recall_points, &
-                              sum_released, find_failure
+                              sum_excess, find_failure
   use joint_forces, only: gather_jumps
   use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
   use step_system, only: dam_system
-  use motion_state, only: motion
   use anderson_mixing, only: mixer
   use solid_tangent, only: tangent_matrix
   use tangent_choice, only: tangent
@@ -27,40 +27,42 @@ module solid_iteration
   private
   public :: increment_task, solid_solver
 
-  !> What an increment asks for.
+  !> The problem of one increment.
   type :: increment_task
-    type(force_balance) :: balance !< without what the solids release at its end
+    type(force_balance) :: balance !< without the initial-stress force
     real(rk), allocatable :: start(:) !< (num_total) u at x = 0, supports in place [m]
     real(rk), allocatable :: x(:) !< (num_total) the answer; zero on prescribed unknowns [m]
     real(rk) :: reference = 0.0_rk !< largest force known beforehand [N]
-    logical :: counts_reactions = .false. !< they too are what the balance is measured by
+    logical :: counts_reactions = .false. !< reactions enter the reference force
   end type increment_task
 
   !> Solves increments.
   type :: solid_solver
     class(equilibrium_solver), allocatable :: solver !< with a linear bulk
-    real(rk), allocatable :: values(:) !< of K_eff, joints apart
+    real(rk), allocatable :: values(:) !< of K_eff, without joints
     real(rk) :: weight = 1.0_rk !< of the forces of the solids
     type(tangent), allocatable :: choices(:) !< to try, one after the other
     type(tangent) :: chosen !< of them
     type(time_increment) :: time
     type(tangent_matrix) :: matrix
     type(block_answer), allocatable :: answers(:) !< (blocks)
+    real(rk), allocatable :: excess(:) !< (num_total) initial-stress force of the last iterate [N]
     type(mixer) :: mixer
   contains
     procedure :: open => open_solids
-    procedure :: open_increment, solve, effort
+    procedure :: open_increment, solve, effort, set_internal
+    procedure :: has_inelastic
     procedure, private :: iterate, start_iteration, try, measure, advance, linearise
   end type solid_solver
 
   !> Where the iteration is.
   type :: iterate_state
-    type(increment_task) :: task !< with the forces that the solids release put in
-    real(rk), allocatable :: rhs(:) !< without them
+    type(increment_task) :: task !< with the initial-stress force in its right-hand side
+    real(rk), allocatable :: rhs(:) !< without it
     real(rk), allocatable :: guess(:), answer(:) !< (free unknowns) s and s' [N]
-    real(rk), allocatable :: unbalance(:) !< s' - s of the last point of linearisation [N]
+    real(rk), allocatable :: unbalance(:) !< s' - s at the last point of linearisation [N]
     real(rk), allocatable :: base(:) !< s' there [N]
-    real(rk) :: share = 1.0_rk !< of that out-of-balance that is asked to go
+    real(rk) :: share = 1.0_rk !< fraction of the Newton step that is taken
     real(rk) :: force = huge(1.0_rk), last_force = huge(1.0_rk) !< norms of w (s' - s) [N]
     real(rk) :: base_force = huge(1.0_rk) !< the same at the last point of linearisation [N]
     integer :: tries = 0 !< with the present matrix
@@ -68,38 +70,54 @@ module solid_iteration
     logical :: is_lost = .false. !< the tangent is singular
   end type iterate_state
 
-  !> With a matrix that is kept an iteration costs a solve and no factor: so many times more of them
-  !> are allowed.
+  !> An iteration that keeps its matrix needs no factorisation: so many times more are allowed.
   integer, parameter :: cheap_iterations = 5
-  !> An increment of the displacements below this part of them is measured against them.
+  !> An increment below this fraction of the displacements is measured against the displacements.
   real(rk), parameter :: smallest_increment = 1.0e-3_rk
-  !> Out of balance by this part is round-off, whatever correction it asks for.
+  !> A residual below this fraction of the reference force is round-off, whatever its correction.
   real(rk), parameter :: roundoff = 1.0e-12_rk
-  !> A matrix is taken anew when its patient iterations have not brought the out-of-balance down to
-  !> this part.
+  !> A matrix is renewed when its iterations have not reduced the residual to this fraction.
   real(rk), parameter :: sufficient_decrease = 0.1_rk
-  !> A step of Newton's that leaves the balance so much worse is halved.
+  !> A Newton step that increases the residual by more than this factor is halved.
   real(rk), parameter :: largest_growth = 1.0_rk
   real(rk), parameter :: smallest_share = 0.1_rk !< of a step
 
 contains
 
-  !> Makes ready for a step: what the solids have released so far, in its unknowns.
-  subroutine open_solids(self, scene, system, choices, moving)
+  !> Prepares for a step: the internal forces of the state that it starts from.
+  subroutine open_solids(self, model, system, choices, now)
     class(solid_solver), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     type(tangent), intent(in) :: choices(:)
-    type(motion), intent(inout) :: moving
+    type(state), intent(inout) :: now
     self%choices = choices
     self%chosen = choices(1)
-    if (size(moving%points) == 0) return
-    call open_answers(scene%inelastic, self%answers)
-    call recall_points(scene, moving%points, self%answers)
-    call sum_released(scene, system%numbers, self%answers, moving%released)
+    call multiply(system%matrix, system%stiffness, now%motion%q, now%motion%elastic)
+    if (size(now%points) > 0) then
+      allocate (self%excess(system%matrix%num_total))
+      call open_answers(model%inelastic, self%answers)
+      call recall_points(model, now%points, self%answers)
+      call sum_excess(model, system%numbers, self%answers, self%excess)
+    end if
+    call self%set_internal(now%motion)
   end subroutine open_solids
 
-  !> Tells where in time the laws are.
+  !> Whether any solid is inelastic.
+  pure logical function has_inelastic(self)
+    class(solid_solver), intent(in) :: self
+    has_inelastic = allocated(self%answers)
+  end function has_inelastic
+
+  !> The internal force sum of B^T sigma from K q, after the laws were evaluated at q.
+  pure subroutine set_internal(self, moving)
+    class(solid_solver), intent(in) :: self
+    type(motion), intent(inout) :: moving
+    moving%internal = moving%elastic
+    if (allocated(self%excess)) moving%internal = moving%internal - self%excess
+  end subroutine set_internal
+
+  !> Sets the time of the laws.
   subroutine open_increment(self, now, increment)
     class(solid_solver), intent(inout) :: self
     type(state), intent(in) :: now !< at the start of the increment
@@ -116,24 +134,24 @@ contains
     class(solid_solver), intent(in) :: self
     integer, intent(in) :: iterations
     effort = iterations
-    if (self%chosen%patience == 0 .or. .not. allocated(self%answers)) return
+    if (self%chosen%patience == 0 .or. .not. self%has_inelastic()) return
     effort = (iterations + cheap_iterations - 1)/cheap_iterations
   end function effort
 
-  !> Solves the balance for `task%x`; joints and points come with it in `after`. No convergence is
-  !> no error. A law that wants a smaller increment is not asked again with another tangent.
-  subroutine solve(self, scene, system, task, before, after, outcome, error)
+  !> Solves the balance for `task%x`, with joints and points in `after`. No convergence is no error.
+  !> When a law requests a smaller increment no other tangent is tried.
+  subroutine solve(self, model, system, task, before, after, outcome, error)
     class(solid_solver), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     type(increment_task), intent(inout) :: task
-    type(motion), intent(in) :: before
-    type(motion), intent(inout) :: after
+    type(state), intent(in) :: before
+    type(state), intent(inout) :: after
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
     integer :: i
-    if (size(before%points) == 0) then
-      call self%solver%solve(task%balance, scene%joints, before%joints, after%joints, task%x, &
+    if (.not. self%has_inelastic()) then
+      call self%solver%solve(task%balance, model%joints, before%joints, after%joints, task%x, &
                              outcome, error)
       return
     end if
@@ -141,11 +159,11 @@ contains
       self%chosen = self%choices(i)
       self%time%tangent = self%chosen%kind
       self%time%holds_switches = self%chosen%holds_switches
-      call self%iterate(scene, system, task, before, after, outcome, error)
+      call self%iterate(model, system, task, before, after, outcome, error)
       outcome%has_held_switches = self%chosen%holds_switches
       if (allocated(error) .or. outcome%has_converged) return
       if (.not. self%matrix%is_elastic) then
-        call self%matrix%factorise_elastic(scene, system, self%values, self%solver, error)
+        call self%matrix%factorise_elastic(model, system, self%values, self%solver, error)
         if (allocated(error)) return
       end if
       if (outcome%size_ratio < 1.0_rk) return
@@ -153,13 +171,13 @@ contains
   end subroutine solve
 
   !> Iterates until the laws agree with the balance.
-  subroutine iterate(self, scene, system, task, before, after, outcome, error)
+  subroutine iterate(self, model, system, task, before, after, outcome, error)
     class(solid_solver), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     type(increment_task), intent(inout) :: task
-    type(motion), intent(in) :: before
-    type(motion), intent(inout) :: after
+    type(state), intent(in) :: before
+    type(state), intent(inout) :: after
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
     type(iterate_state) :: now
@@ -170,46 +188,47 @@ contains
     allocate (outcome%history(0))
     call self%start_iteration(system, before, now)
     do while (outcome%iterations < most_iterations)
-      call self%try(scene, system, now, before, after, outcome, error)
+      call self%try(model, system, now, before, after, outcome, error)
       if (allocated(error) .or. now%is_lost) return
       call self%measure(system, before, after, now, outcome)
       if (outcome%has_converged) exit
-      call self%advance(scene, system, after, now, error)
+      call self%advance(model, system, after, now, error)
       if (allocated(error) .or. now%is_lost) return
     end do
     task%x = now%task%x
   end subroutine iterate
 
-  !> The first guess: the last matrix goes on to hold.
+  !> The first guess: the last matrix still holds.
   subroutine start_iteration(self, system, before, now)
     class(solid_solver), intent(inout) :: self
     type(dam_system), intent(in) :: system
-    type(motion), intent(in) :: before
+    type(state), intent(in) :: before
     type(iterate_state), intent(inout) :: now
-    real(rk) :: product(size(before%q))
+    real(rk) :: product(size(before%motion%q))
     integer :: n
     n = system%matrix%num_free
     call self%mixer%forget()
     now%rhs = now%task%balance%rhs
     now%task%x = 0.0_rk
-    call self%matrix%multiply_lost(system%matrix, now%task%start - before%q, product)
-    now%guess = before%released(:n) + product(:n)
-    now%force = norm2(now%rhs + self%weight*now%guess)
-    now%moved = norm2(now%task%start - before%q)
+    call self%matrix%multiply_lost(system%matrix, now%task%start - before%motion%q, product)
+    now%guess = before%motion%elastic(:n) - before%motion%internal(:n) + product(:n)
+    now%force = norm(now%rhs + self%weight*now%guess)
+    now%moved = norm(now%task%start - before%motion%q)
   end subroutine start_iteration
 
-  !> Solves with the guess and asks the laws; `now%is_lost` where this iterate leads nowhere.
-  subroutine try(self, scene, system, now, before, after, outcome, error)
+  !> Solves with the guess and evaluates the laws; `now%is_lost` where the iteration cannot go on.
+  subroutine try(self, model, system, now, before, after, outcome, error)
     class(solid_solver), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     type(iterate_state), intent(inout) :: now
-    type(motion), intent(in) :: before
-    type(motion), intent(inout) :: after
+    type(state), intent(in) :: before
+    type(state), intent(inout) :: after
     type(balance_outcome), intent(inout) :: outcome
     type(error_type), allocatable, intent(out) :: error
     type(balance_outcome) :: inner
-    real(rk) :: u(3, scene%mesh%num_nodes), product(size(before%q)), last_x(size(before%q))
+    real(rk), dimension(system%matrix%num_total) :: product, last_x
+    real(rk) :: u(3, model%mesh%num_nodes)
     associate (task => now%task)
       last_x = task%x
       task%balance%rhs = now%rhs + self%weight*now%guess
@@ -217,7 +236,7 @@ contains
         task%balance%starts_bonded = .false.
         call gather_jumps(system%operator, after%joints, task%balance%guess)
       end if
-      call self%solver%solve(task%balance, scene%joints, before%joints, after%joints, task%x, &
+      call self%solver%solve(task%balance, model%joints, before%joints, after%joints, task%x, &
                              inner, error)
       outcome%iterations = max(outcome%iterations + 1, inner%own_iterations())
       outcome%augmentations = outcome%augmentations + inner%augmentations
@@ -229,38 +248,38 @@ contains
       if (allocated(error) .or. now%is_lost) return
       call system%numbers%expand(task%start + task%x, u)
       call self%solver%costs%start('update', 'inelastic solids', 'inelastic')
-      call update_points(scene, u, self%time, before%points, after%points, self%answers)
-      call sum_released(scene, system%numbers, self%answers, after%released)
+      call update_points(model, u, self%time, before%points, after%points, self%answers)
+      call sum_excess(model, system%numbers, self%answers, self%excess)
       call self%solver%costs%stop()
-      call find_failure(scene, self%answers, outcome%size_ratio, outcome%failure)
+      call find_failure(model, self%answers, outcome%size_ratio, outcome%failure)
       now%is_lost = allocated(outcome%failure)
       call self%matrix%multiply_lost(system%matrix, task%x, product)
-      now%answer = after%released(:size(now%guess)) - product(:size(now%guess))
-      now%moved = norm2(task%x - last_x)
+      now%answer = self%excess(:size(now%guess)) - product(:size(now%guess))
+      now%moved = norm(task%x - last_x)
     end associate
   end subroutine try
 
-  !> What is out of balance, and the correction that it still asks for, as the last one did.
+  !> The residual, and an estimate of the correction that remains, from the last correction.
   subroutine measure(self, system, before, after, now, outcome)
     class(solid_solver), intent(in) :: self
     type(dam_system), intent(in) :: system
-    type(motion), intent(in) :: before, after
+    type(state), intent(in) :: before, after
     type(iterate_state), intent(inout) :: now
     type(balance_outcome), intent(inout) :: outcome
-    real(rk) :: reference, increment, q(size(before%q)), product(size(before%q))
+    real(rk) :: reference, increment, q(size(before%motion%q)), product(size(before%motion%q))
     now%last_force = now%force
-    now%force = self%weight*norm2(now%answer - now%guess)
+    now%force = self%weight*norm(now%answer - now%guess)
     q = now%task%start + now%task%x
     reference = now%task%reference
     if (now%task%counts_reactions) then
       call multiply(system%matrix, system%stiffness, q, product)
-      reference = max(reference, norm2(product - after%released))
+      reference = max(reference, norm(product - self%excess))
     end if
     outcome%residual = now%force/max(reference, tiny(1.0_rk))
     outcome%history = [outcome%history, outcome%residual]
     outcome%worst_point = 0
     outcome%worst_unknown = maxloc(abs(now%answer - now%guess), 1)
-    increment = max(norm2(q - before%q), smallest_increment*norm2(q), tiny(1.0_rk))
+    increment = max(norm(q - before%motion%q), smallest_increment*norm(q), tiny(1.0_rk))
     outcome%correction = now%moved/increment*min(1.0_rk, now%force/max(now%last_force, &
                                                                        tiny(1.0_rk)))
     associate (controls => self%solver%controls)
@@ -271,11 +290,11 @@ contains
   end subroutine measure
 
   !> The next guess.
-  subroutine advance(self, scene, system, after, now, error)
+  subroutine advance(self, model, system, after, now, error)
     class(solid_solver), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
-    type(motion), intent(in) :: after
+    type(state), intent(in) :: after
     type(iterate_state), intent(inout) :: now
     type(error_type), allocatable, intent(out) :: error
     now%tries = now%tries + 1
@@ -286,32 +305,32 @@ contains
       now%share = 0.5_rk*now%share
       now%guess = now%base - (1.0_rk - now%share)*now%unbalance
     else
-      call self%linearise(scene, system, after, now, error)
+      call self%linearise(model, system, after, now, error)
     end if
   end subroutine advance
 
-  !> A matrix that does not bring the balance nearer is taken anew.
+  !> Whether the matrix reduces the residual too slowly.
   pure logical function is_slow(now, patience)
     type(iterate_state), intent(in) :: now
     integer, intent(in) :: patience
     is_slow = now%tries > patience .and. now%force > sufficient_decrease*now%base_force
   end function is_slow
 
-  !> A step of Newton's that has made the balance worse is taken back, a part at a time.
+  !> Whether a Newton step has increased the residual, so that it is halved.
   pure logical function goes_astray(now)
     type(iterate_state), intent(in) :: now
     goes_astray = now%force > largest_growth*now%base_force .and. now%share > smallest_share
   end function goes_astray
 
   !> Takes the tangent at the present iterate.
-  subroutine linearise(self, scene, system, after, now, error)
+  subroutine linearise(self, model, system, after, now, error)
     class(solid_solver), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
-    type(motion), intent(in) :: after
+    type(state), intent(in) :: after
     type(iterate_state), intent(inout) :: now
     type(error_type), allocatable, intent(out) :: error
-    real(rk) :: product(size(after%q))
+    real(rk) :: product(size(after%motion%q))
     integer :: n
     n = size(now%guess)
     now%unbalance = now%answer - now%guess
@@ -320,7 +339,7 @@ contains
     now%tries = 0
     call self%mixer%forget()
     self%matrix%is_symmetric = self%chosen%is_symmetric()
-    call self%matrix%factorise(scene, system, self%answers, self%values, self%weight, self%solver, &
+    call self%matrix%factorise(model, system, self%answers, self%values, self%weight, self%solver, &
                                error)
     if (allocated(error)) then
       now%is_lost = error%exit_code == analysis_failed
@@ -328,7 +347,7 @@ contains
       return
     end if
     call self%matrix%multiply_lost(system%matrix, now%task%x, product)
-    now%base = after%released(:n) - product(:n)
+    now%base = self%excess(:n) - product(:n)
     now%guess = now%base
   end subroutine linearise
 end module solid_iteration

@@ -1,44 +1,69 @@
-!> The state of an analysis at one time. Two of them exist, converged and trial: accepting an
-!> increment is one swap, cutting it back is one copy.
+!> The state of an analysis: everything that changes in time.
+!>
+!> An analysis holds two states, converged and trial. An increment fills the trial state. Accepting
+!> the increment swaps the two; a cut leaves the converged state as it is.
 module analysis_state
   use kinds, only: rk
   use joint_law, only: joint_state
   use material_points, only: point_state
+  use step_control, only: increment_control
   implicit none
   private
-  public :: state, energy_balance, vibration_mode
+  public :: state, increment_status, motion, energy_balance, vibration_mode
 
   !> Energies since the start of the analysis [J]. `error` is the imbalance over `largest`, the
-  !> largest of them so far: a body that has come to rest holds nothing to compare with.
+  !> largest energy so far: a dam that has come to rest holds nothing to compare with.
   type :: energy_balance
     real(rk) :: external = 0.0_rk, kinetic = 0.0_rk, strain = 0.0_rk, damping = 0.0_rk
     real(rk) :: friction = 0.0_rk
     real(rk) :: fracture = 0.0_rk !< dissipated by cracking and crushing, in joints and solids
-    real(rk) :: crushing = 0.0_rk !< of it by crushing
-    real(rk) :: numerical = 0.0_rk !< taken by the time stepping, from its own formula
-    real(rk) :: initial = 0.0_rk !< kinetic and strain energy that the analysis began with
+    real(rk) :: crushing = 0.0_rk !< the part of `fracture` that is crushing
+    real(rk) :: numerical = 0.0_rk !< taken by the time integration, from its own formula
+    real(rk) :: initial = 0.0_rk !< kinetic and strain energy at the start of the analysis
     real(rk) :: error = 0.0_rk, largest = 0.0_rk
   end type energy_balance
 
-  type :: state
+  !> Where the analysis is, how the last increment went, and the size of the next one.
+  type :: increment_status
     integer :: step = 0, increment = 0, iterations = 0
     integer :: augmentations = 0 !< of contact without penetration, in this increment
     integer :: cutbacks = 0 !< in this step so far
     integer :: num_unknowns = 0 !< free unknowns of the step's system
-    logical :: has_held_switches = .false. !< in this increment, of laws whose stress jumps
+    logical :: has_held_switches = .false. !< in this increment, of laws with discontinuous stress
     logical :: is_last_of_step = .false.
-    logical :: is_stop = .false. !< told once more, because the run stops here before its end
+    logical :: is_stop = .false. !< the run stops at this increment, before the end of its step
     real(rk) :: step_time = 0.0_rk, total_time = 0.0_rk, increment_size = 0.0_rk !< [s]
-    !> Of the scaled matrix with all joints closed, 1-norm; 0 without joints
+    !> Condition of the scaled matrix with all joints closed, in the 1-norm; 0 without joints
     real(rk) :: joint_condition = 0.0_rk
-    real(rk) :: residual = 0.0_rk !< out-of-balance over the reference force
-    real(rk) :: largest_force = 0.0_rk !< of the balance so far; kept where solids are inelastic [N]
-    real(rk), allocatable :: u(:, :) !< displacement, relative to the base [m]; (3, nodes)
-    real(rk), allocatable :: v(:, :), a(:, :) !< (3, nodes) [m/s], [m/s2]
-    real(rk), allocatable :: reaction(:, :) !< (3, nodes), zero where nothing is fixed [N]
-    type(joint_state), allocatable :: joints(:) !< one for each joint of the problem
-    type(point_state), allocatable :: points(:) !< one for each inelastic block of the problem
+    real(rk) :: residual = 0.0_rk !< norm of the residual over the reference force
+    real(rk) :: largest_force = 0.0_rk !< reference force of the last increment [N]
     type(energy_balance) :: energy
+    type(increment_control) :: control
+  end type increment_status
+
+  !> Motion and forces in the unknowns of a step. The integrator allocates what it needs.
+  type :: motion
+    real(rk), allocatable :: q(:) !< (num_total) unknowns [m]
+    real(rk), allocatable :: v(:), a(:) !< (num_total) their rates [m/s], [m/s2]
+    real(rk), allocatable :: external(:) !< (num_total) f, forces of the loads [N]
+    real(rk), allocatable :: elastic(:) !< (num_total) K q, undamaged elements [N]
+    real(rk), allocatable :: internal(:) !< (num_total) sum of B^T sigma over the elements [N]
+    real(rk), allocatable :: contact(:) !< (num_total) B^T (area t), the joints by their laws [N]
+    real(rk), allocatable :: balanced(:) !< (num_total) M a as the balance of forces gives it [N]
+    real(rk), allocatable :: elastic_rate(:), elastic_jerk(:) !< K v [N/s], K a [N/s2]
+    real(rk), allocatable :: viscous(:), viscous_rate(:) !< C v [N], C a [N/s]
+    real(rk), allocatable :: momentum(:), inertia(:) !< M v [N s], M a [N]
+    real(rk), allocatable :: carried(:, :) !< (3, points) t* of the implicit joint impulse [Pa]
+    real(rk), allocatable :: jump_rate(:, :) !< (3, points) in the last increment [m/s]
+  end type motion
+
+  type, extends(increment_status) :: state
+    real(rk), allocatable :: u(:, :) !< (3, nodes) displacement relative to the base [m]
+    real(rk), allocatable :: v(:, :), a(:, :) !< (3, nodes) [m/s], [m/s2]; dynamic steps only
+    real(rk), allocatable :: reaction(:, :) !< (3, nodes) zero where nothing is fixed [N]
+    type(motion) :: motion !< the same in the unknowns of the step, with the forces
+    type(joint_state), allocatable :: joints(:) !< (joints of the problem)
+    type(point_state), allocatable :: points(:) !< (inelastic blocks of the problem)
   end type state
 
   type :: vibration_mode

@@ -21,10 +21,11 @@ contains
   !> masters, joints and inelastic solids the displacements given.
   subroutine start_analysis(scene, now, error)
     type(problem), intent(in) :: scene
-    type(state), intent(out) :: now
+    type(state), allocatable, intent(out) :: now
     type(error_type), allocatable, intent(out) :: error
     integer :: i, n
     n = scene%mesh%num_nodes
+    allocate (now)
     allocate (now%u(3, n), now%v(3, n), now%a(3, n), now%reaction(3, n), source=0.0_rk)
     call start_joints(scene%joints, now%joints)
     call start_histories(scene, now)

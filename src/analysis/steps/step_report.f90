@@ -1,4 +1,4 @@
-!> What a step says at the end of an increment, and when it cannot go on.
+!> What a step reports at the end of an increment, and when it cannot go on.
 module step_report
   use kinds, only: rk
   use errors, only: error_type, raise
@@ -7,23 +7,21 @@ module step_report
   use analysis_state, only: state
   use increment_listener, only: listener
   use equilibrium, only: balance_outcome
-  use step_control, only: increment_control
   use step_loads, only: step_time
   use step_system, only: dam_system
   use slip_reach, only: check_reach
   use user_increments, only: end_user_increment
   implicit none
   private
-  public :: close_increment, give_up
+  public :: close_increment, report_failure
 
 contains
 
-  !> Counts an increment that has converged, and tells the listener of it.
-  subroutine close_increment(scene, plan, when, control, outcome, now, results, error)
-    type(problem), intent(in) :: scene
+  !> Counts an increment that has converged and reports it to the listener.
+  subroutine close_increment(model, plan, when, outcome, now, results, error)
+    type(problem), intent(in) :: model
     type(step), intent(in) :: plan
     type(step_time), intent(in) :: when !< the end of the increment
-    type(increment_control), intent(in) :: control
     type(balance_outcome), intent(in) :: outcome
     type(state), intent(inout) :: now
     class(listener), intent(inout) :: results
@@ -31,18 +29,18 @@ contains
     now%increment = now%increment + 1
     now%iterations = outcome%iterations
     now%augmentations = outcome%augmentations
-    now%cutbacks = control%cutbacks
+    now%cutbacks = now%control%cutbacks
     now%residual = outcome%residual
     now%has_held_switches = outcome%has_held_switches
     now%increment_size = when%increment
     now%step_time = when%now
     now%total_time = when%start + when%now
     now%is_last_of_step = now%step_time >= plan%duration
-    call results%increment_done(scene, now, error)
+    call results%increment_done(model, now, error)
     if (allocated(error)) return
-    call end_user_increment(scene, now, results, error)
+    call end_user_increment(model, now, results, error)
     if (allocated(error)) return
-    call check_reach(scene%joints, now%joints, now%total_time, error)
+    call check_reach(model%joints, now%joints, now%total_time, error)
     if (allocated(error) .or. now%is_last_of_step) return
     if (now%increment >= plan%max_increments) then
       call raise(error, "step '"//plan%name//"' has used its "//count_text(plan%max_increments)// &
@@ -51,43 +49,42 @@ contains
   end subroutine close_increment
 
   !> An error that names what did not converge, and where.
-  subroutine give_up(scene, system, outcome, control, now, error)
-    type(problem), intent(in) :: scene
+  subroutine report_failure(model, system, outcome, now, error)
+    type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     type(balance_outcome), intent(in) :: outcome
-    type(increment_control), intent(in) :: control
     type(state), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
     character(240) :: text
     integer :: p, j
     if (allocated(outcome%failure)) then
-      call raise(error, failure_text(outcome, control, now))
+      call raise(error, failure_text(outcome, now))
       return
     end if
     if (outcome%gives_up) then
       write (text, '(a,g0.3,a,i0,a,es8.1,a,es12.5)') 'contact penetrates ', outcome%penetration, &
         ' times as far as *JOINT LAW, PENETRATION allows after ', outcome%augmentations, &
-        ' augmentations (a larger KN needs fewer) with an increment of ', control%last_size, &
+        ' augmentations (a larger KN needs fewer) with an increment of ', now%control%last_size, &
         ', last equilibrium at time ', now%total_time
     else
       write (text, '(a,es9.2,a,i0,a,es8.1,a,es12.5)') 'no equilibrium: out of balance by ', &
         outcome%residual, ' after ', outcome%iterations, ' iterations with an increment of ', &
-        control%last_size, ', last equilibrium at time ', now%total_time
+        now%control%last_size, ', last equilibrium at time ', now%total_time
     end if
     p = outcome%worst_point
     if (p == 0) then
-      call raise(error, trim(text)//worst_node(scene, system, outcome, now%step))
+      call raise(error, trim(text)//worst_node(model, system, outcome, now%step))
       return
     end if
     j = count(system%operator%first_point <= p)
     p = p - system%operator%first_point(j) + 1
-    call raise(error, trim(text)//'; worst in joint '//scene%joints(j)%name//' at '// &
-               place_text(scene%joints(j)%x(:, p)))
-  end subroutine give_up
+    call raise(error, trim(text)//'; worst in joint '//model%joints(j)%name//' at '// &
+               place_text(model%joints(j)%x(:, p)))
+  end subroutine report_failure
 
   !> Where inelastic solids are farthest from balance: '; worst at node 12 at (0., 1., 3.)'.
-  pure function worst_node(scene, system, outcome, step) result(text)
-    type(problem), intent(in) :: scene
+  pure function worst_node(model, system, outcome, step) result(text)
+    type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     type(balance_outcome), intent(in) :: outcome
     integer, intent(in) :: step
@@ -96,22 +93,21 @@ contains
     text = ''
     if (outcome%worst_unknown == 0) return
     node = system%numbers%node(outcome%worst_unknown)
-    text = '; worst at node '//count_text(scene%mesh%node_id(node))//' at '// &
-           place_text(scene%mesh%x(:, node))
-    if (scene%steps(step)%procedure /= 'STATIC') return
+    text = '; worst at node '//count_text(model%mesh%node_id(node))//' at '// &
+           place_text(model%mesh%x(:, node))
+    if (.not. model%steps(step)%procedure%is_static()) return
     text = text//' (past its largest load a structure that cracks can follow a displacement, '// &
            'not a force; where it does, smaller increments or *CONTROLS, TANGENT=CONSISTENT)'
   end function worst_node
 
   !> A material, or water in a joint, that no increment is small enough for.
-  pure function failure_text(outcome, control, now) result(text)
+  pure function failure_text(outcome, now) result(text)
     type(balance_outcome), intent(in) :: outcome
-    type(increment_control), intent(in) :: control
     type(state), intent(in) :: now
     character(:), allocatable :: text
     character(120) :: place
     write (place, '(a,i0,a,es8.1,a,es12.5)') ' (increment ', now%increment + 1, ' of ', &
-      control%last_size, ' s, last equilibrium at time ', now%total_time
+      now%control%last_size, ' s, last equilibrium at time ', now%total_time
     text = outcome%failure//trim(place)//')'
   end function failure_text
 

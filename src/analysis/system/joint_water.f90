@@ -15,12 +15,12 @@ module joint_water
   use run_ledger, only: ledger
   implicit none
   private
-  public :: lead_water, show_water
+  public :: update_uplift, record_uplift
 
 contains
 
   !> Lets the water into what is open in `states`; tells whether that has changed the forces.
-  subroutine lead_water(scene, operator, states, groups, has_changed)
+  subroutine update_uplift(scene, operator, states, groups, has_changed)
     type(problem), intent(in) :: scene
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: states(:)
@@ -46,7 +46,7 @@ contains
         call move_alloc(pressure, groups(g)%pressure)
       end select
     end do
-  end subroutine lead_water
+  end subroutine update_uplift
 
   !> Forces B^T (area p) on the opening of the points of one joint.
   subroutine push_faces(operator, seam, pressure, force)
@@ -61,7 +61,7 @@ contains
   end subroutine push_faces
 
   !> The pressure of the water at the points of the joints that have any, for the results.
-  subroutine show_water(scene, loads, groups, when, states, costs)
+  subroutine record_uplift(scene, loads, groups, when, states, costs)
     type(problem), intent(in) :: scene
     type(step_load), intent(in) :: loads(:) !< of the step
     type(load_group), intent(in) :: groups(:)
@@ -91,5 +91,5 @@ contains
         call costs%stop()
       end select
     end do
-  end subroutine show_water
+  end subroutine record_uplift
 end module joint_water

@@ -6,7 +6,7 @@ module step_system
   use step_plan, only: step
   use dof_numbering, only: numbering
   use constraint_elimination, only: number_step
-  use matrix_pattern, only: pattern, drop_zeros
+  use matrix_pattern, only: pattern, drop_zeros, diagonal
   use pattern_builder, only: cell_list, list_cells, build_pattern
   use assemble_elements, only: assemble_stiffness, assemble_mass, assemble_damping, add_nodal_mass
   use assemble_forces, only: sum_added_mass
@@ -23,6 +23,7 @@ module step_system
     type(numbering) :: numbers
     type(pattern) :: matrix
     real(rk), allocatable :: stiffness(:) !< values of K, without joints [N/m]
+    real(rk), allocatable :: diagonal(:) !< (num_total) of K [N/m]
     real(rk), allocatable :: mass(:) !< values of M, added mass included; size 0 in a static step
     type(pattern) :: mass_pattern !< of the entries of M that are not zero, for products
     real(rk), allocatable :: mass_entries(:) !< their values [kg]
@@ -62,6 +63,8 @@ contains
                                   system%stiffness)
       call costs%stop()
     end do
+    allocate (system%diagonal(system%matrix%num_total))
+    call diagonal(system%matrix, system%stiffness, system%diagonal)
   end subroutine add_couplings
 
   !> Mass of the solids and of the water that moves with them.

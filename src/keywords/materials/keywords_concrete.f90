@@ -40,19 +40,19 @@ contains
     spec%most_lines = 1
     spec%no_further = no_dependencies
     allocate (spec%parameters, source=[ &
-              field('RECOVERY', kind_choice, 'how much of a state is tension (r of Eq 17): the '// &
+              field('RECOVERY', kind_choice, 'share of tension in a state (r of Eq. 17): the '// &
                     'weight of Lee and Fenves, or the switch of the paper, which jumps', &
                     default='LEE-FENVES', choices='LEE-FENVES | SIGN')])
     allocate (spec%columns, source=[ &
-              field('dilation', kind_real, 'angle of dilation psi (Eq 25); from atan 3/2 on a '// &
+              field('dilation', kind_real, 'angle of dilation psi (Eq. 25); from atan 3/2 on a '// &
                     'crack would open sideways as well', 'deg', is_required=.true., &
                     lowest=0.0_rk, highest=largest_dilation, excludes_lowest=.true., &
                     excludes_highest=.true.), &
-              field('offset', kind_real, 'of the flow potential (eccentricity, xi of Eq 25): '// &
+              field('offset', kind_real, 'of the flow potential (eccentricity, xi of Eq. 25): '// &
                     'rounds its apex', default='0.1', lowest=0.0_rk, excludes_lowest=.true.), &
               field('fb0/fc0', kind_real, 'strength in equal biaxial over uniaxial compression '// &
-                    '(alpha of Eq 19)', default='1.16', lowest=1.0_rk), &
-              field('Kc', kind_real, 'tensile over compressive meridian (gamma of Eq 19)', &
+                    '(alpha of Eq. 19)', default='1.16', lowest=1.0_rk), &
+              field('Kc', kind_real, 'tensile over compressive meridian (gamma of Eq. 19)', &
                     default='0.6666666666666667', lowest=0.5_rk, highest=1.0_rk, &
                     excludes_lowest=.true.), &
               field('viscosity', kind_real, 'relaxation time of Duvaut and Lions', 's', '0', &

@@ -119,7 +119,7 @@ contains
     spec%example = '*CONCRETE COMPRESSION DAMAGE, TENSION RECOVERY=0'//nl//'0., 0.'//nl// &
                    '0.25, 1.0e-3'//nl//'0.8, 5.0e-3'
     allocate (spec%parameters, source=[ &
-              field('TENSION RECOVERY', kind_real, 'w_t of Eq 16: share of the crushed '// &
+              field('TENSION RECOVERY', kind_real, 'w_t of Eq. 16: share of the crushed '// &
                     'stiffness that comes back in tension', default='0', lowest=0.0_rk, &
                     highest=1.0_rk)])
     call describe_table(spec, damage_column('d_c'), &
@@ -150,7 +150,7 @@ contains
     spec%name = 'CONCRETE TENSION DAMAGE'
     spec%meaning = 'Loss of stiffness in uniaxial tension against cracking strain, or against '// &
                    'the opening of the crack, which the length of the element turns into '// &
-                   'strain as in *CONCRETE TENSION STIFFENING (Eq 15); constant past the last '// &
+                   'strain as in *CONCRETE TENSION STIFFENING (Eq. 15); constant past the last '// &
                    'row. Without it cracking leaves the stiffness. The plastic strain, '// &
                    'cracking strain - d/(1 - d) sigma/E, must not decrease '// &
                    'from row to row (NOTES 11).'
@@ -159,7 +159,7 @@ contains
     allocate (spec%parameters, source=[ &
               field('TYPE', kind_choice, 'what the table is against', &
                     default='STRAIN', choices='STRAIN | DISPLACEMENT'), &
-              field('COMPRESSION RECOVERY', kind_real, 'w_c of Eq 16: share of the cracked '// &
+              field('COMPRESSION RECOVERY', kind_real, 'w_c of Eq. 16: share of the cracked '// &
                     'stiffness that comes back in compression', default='1', lowest=0.0_rk, &
                     highest=1.0_rk)])
     call describe_table(spec, damage_column('d_t'), &

@@ -19,7 +19,6 @@ contains
     integer :: num
     num = size(model%scene%steps)
     new%name = 'STEP-'//as_text(num + 1)
-    new%procedure = ''
     model%current_procedure = model%current
     allocate (new%prints(0), new%outputs(0), new%envelope(0))
     if (num > 0) then
@@ -51,7 +50,7 @@ contains
     call collect_point_forces(model)
     call collect_fixities(model)
     model%now%loads = [model%now%loads, model%loads_at_work%loads_of_step()]
-    is_perturbation = model%now%procedure == 'FREQUENCY'
+    is_perturbation = model%now%procedure%finds_modes
     end_time = model%total_time + model%now%duration
     associate (histories => model%scene%amplitudes, duration => model%now%duration)
       call model%loads_at_work%end_step(histories, duration, end_time, is_perturbation)

@@ -3,6 +3,7 @@ module keywords_step
   use deck_card, only: card
   use diagnostics, only: diagnostic_list, place
   use finish_step, only: close_step, open_step
+  use integrator_catalogue, only: list_procedures, procedure_named
   use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, kind_real, kind_word
   use kinds, only: rk
   use model_draft, only: draft
@@ -66,8 +67,8 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    if (len(model%now%procedure) == 0) then
-      call this%fault(faults, 'the step does nothing', '*STATIC, *DYNAMIC or *FREQUENCY in it')
+    if (model%now%procedure%name == '') then
+      call this%fault(faults, 'the step does nothing', list_procedures()//' in it')
     end if
     call check_base_motion(model, faults)
     call close_step(model)
@@ -78,12 +79,12 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer :: i
-    if (model%now%procedure == 'DYNAMIC' .or. model%now%procedure == '') return
+    if (model%now%procedure%has_inertia .or. model%now%procedure%name == '') return
     do i = model%step_origin%card, model%current
       if (.not. allocated(model%cards(i)%spec%name)) cycle
       if (model%cards(i)%spec%name /= 'BASE MOTION') cycle
-      call model%cards(i)%fault(faults, 'has no effect in a step *'//model%now%procedure, &
-                                'a step *DYNAMIC')
+      call model%cards(i)%fault(faults, 'has no effect in a step *'// &
+                                trim(model%now%procedure%name), 'a step *DYNAMIC')
     end do
   end subroutine check_base_motion
 
@@ -193,11 +194,12 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(place) :: spot
-    if (len(model%now%procedure) > 0) then
-      call this%fault(faults, 'the step has a procedure already: *'//model%now%procedure, &
+    if (model%now%procedure%name /= '') then
+      call this%fault(faults, &
+                      'the step has a procedure already: *'//trim(model%now%procedure%name), &
                       'one procedure in a step')
     end if
-    model%now%procedure = procedure
+    model%now%procedure = procedure_named(procedure)
     spot = this%place()
     model%now%line = spot%line
     model%current_procedure = model%current

@@ -178,7 +178,7 @@ contains
     if (constants%compression(1, 1) >= smallest*(1.0_rk - rounding)) return
     call add_fault(hardening_table, 1, 1, 'found '//as_text(constants%compression(1, 1))// &
                    ' beside the strength in tension '//as_text(constants%tension(1, 1)), &
-                   'at least '//as_text(smallest)//', where beta of Eq 23 is 0', faults)
+                   'at least '//as_text(smallest)//', where beta of Eq. 23 is 0', faults)
   end subroutine check_compression_strength
 
   !> The plastic strain must not decrease from knot to knot (paper_notes.md, 11); abscissae are

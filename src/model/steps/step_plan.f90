@@ -5,7 +5,7 @@ module step_plan
   implicit none
   private
   public :: step, step_load, step_fixity, print_request, field_request, step_controls
-  public :: initial_value
+  public :: initial_value, step_procedure
 
   !> A load at work in a step. Its factor goes from `start_factor` (end of the step before) to
   !> `end_factor` over a static step, and is `end_factor` at once in a dynamic one; with an
@@ -61,9 +61,19 @@ module step_plan
     real(rk) :: value = 0.0_rk
   end type initial_value
 
+  !> What a step does; integrator_catalogue lists them.
+  type :: step_procedure
+    character(16) :: name = '' !< its keyword: 'STATIC', ..; '' until the deck names one
+    character(16) :: scheme = '' !< of the time integration
+    logical :: has_inertia = .false. !< velocities take part; loads without amplitude act at once
+    logical :: finds_modes = .false. !< takes no time
+  contains
+    procedure :: is_static
+  end type step_procedure
+
   type :: step
     character(:), allocatable :: name
-    character(:), allocatable :: procedure !< 'STATIC', 'DYNAMIC' or 'FREQUENCY'
+    type(step_procedure) :: procedure
     integer :: line = 0 !< of the procedure's card, for messages
     real(rk) :: first_increment = 1.0_rk, duration = 1.0_rk !< [s]
     real(rk) :: smallest_increment = 0.0_rk, largest_increment = huge(1.0_rk) !< [s]
@@ -80,4 +90,11 @@ module step_plan
     character(8), allocatable :: envelope(:) !< fields of *ENVELOPE
     type(step_controls) :: controls
   end type step
+contains
+
+  !> Whether loads ramp over the step and nothing has inertia.
+  elemental logical function is_static(self)
+    class(step_procedure), intent(in) :: self
+    is_static = .not. (self%has_inertia .or. self%finds_modes) .and. self%name /= ''
+  end function is_static
 end module step_plan

@@ -53,9 +53,9 @@ contains
     case ('RF')
       is_available = allocated(now%reaction)
     case ('V')
-      is_available = allocated(now%v) .and. scene%steps(now%step)%procedure == 'DYNAMIC'
+      is_available = allocated(now%v)
     case ('A')
-      is_available = allocated(now%a) .and. scene%steps(now%step)%procedure == 'DYNAMIC'
+      is_available = allocated(now%a)
     case ('OPENING')
       is_available = size(scene%joints) > 0
     case ('PE', 'DAMAGET', 'DAMAGEC', 'SDV')

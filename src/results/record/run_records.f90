@@ -107,7 +107,7 @@ contains
     type(state), intent(in) :: now
     integer :: j, i
     call self%stresses%forget()
-    if (scene%steps(now%step)%procedure == 'DYNAMIC') call self%watch_stepping(now)
+    if (scene%steps(now%step)%procedure%has_inertia) call self%watch_stepping(now)
     if (self%damage%is_present) call self%watch_release(scene, now)
     if (now%has_held_switches) then
       call self%warn_once('step '//scene%steps(now%step)%name//': where the jump of '// &
@@ -144,7 +144,7 @@ contains
     released = min(self%last_strain - now%energy%strain, now%energy%fracture - self%last_fracture)
     self%last_strain = now%energy%strain
     self%last_fracture = now%energy%fracture
-    if (scene%steps(now%step)%procedure /= 'STATIC') return
+    if (.not. scene%steps(now%step)%procedure%is_static()) return
     if (released <= largest_release*now%energy%largest) return
     call self%warn_once('a static increment has given much of the stored energy to cracks at '// &
                         'once: the structure has jumped from one equilibrium to another; take '// &

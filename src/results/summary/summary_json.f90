@@ -177,7 +177,7 @@ contains
       associate (part => summary%steps(i), plan => scene%steps(summary%steps(i)%step))
         call json%open_object()
         call json%put_text(plan%name, 'name')
-        call json%put_text(lower(plan%procedure), 'procedure')
+        call json%put_text(lower(trim(plan%procedure%name)), 'procedure')
         call json%put_real(part%time, 'time')
         call json%put_integer(part%increments, 'increments')
         call json%put_integer(part%iterations, 'iterations')

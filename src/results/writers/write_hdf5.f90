@@ -256,7 +256,8 @@ contains
     self%step = step
     call self%file%make_group(step_group(step))
     call self%file%set(step_group(step), 'name', scene%steps(step)%name)
-    call self%file%set(step_group(step), 'procedure', scene%steps(step)%procedure)
+    call self%file%set(step_group(step), 'procedure', &
+                       trim(scene%steps(step)%procedure%name))
     call self%file%make_group(step_group(step)//'/increments')
   end subroutine enter_step
 

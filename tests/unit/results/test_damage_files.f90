@@ -2,6 +2,7 @@
 !> one point and a wedge of concrete on elastic rock; damage is set, not computed. The files are
 !> read by tests/results/test_damage_files.py.
 program test_damage_files
+  use integrator_catalogue, only: procedure_named
   use kinds, only: rk
   use errors, only: error_type
   use diagnostics, only: diagnostic_list
@@ -97,7 +98,7 @@ contains
   subroutine make_step()
     type(step) :: plan
     plan%name = 'cracking'
-    plan%procedure = 'STATIC'
+    plan%procedure = procedure_named('STATIC')
     allocate (plan%fixities(0), plan%loads(0))
     plan%prints = [print_request('ELEMENT', 'BODY', [1, 2, 3, 4], [integer ::], &
                                  ['S       ', 'PE      ', 'DAMAGET ', 'SDV     '], 1)]

@@ -2,6 +2,7 @@
 !> concrete on rock without mass, a uniform strain that grows with time. The files are read by
 !> tests/results/test_result_files.py; here only what Fortran can see is checked.
 program test_result_files
+  use integrator_catalogue, only: procedure_named
   use kinds, only: rk
   use errors, only: error_type
   use diagnostics, only: diagnostic_list, place, severity_ignored, severity_warning
@@ -119,7 +120,7 @@ contains
     elements = print_request('ELEMENT', 'TWO/BLOCKS', [1, 2], [integer ::], ['S ', 'SP'], 1)
     points = print_request('JOINT', 'MIDDLE', [1], [15], ['OPENING'], 1)
     plan%name = 'dead weight'
-    plan%procedure = 'STATIC'
+    plan%procedure = procedure_named('STATIC')
     allocate (plan%fixities(0), plan%loads(0))
     plan%prints = [nodes, elements, points]
     plan%outputs = [field_request(['U ', 'V ', 'S '], 1), field_request(['SP', 'PE'], 1)]
@@ -129,13 +130,13 @@ contains
     nodes = print_request('NODE', 'TOP', [14, 20], [integer ::], ['V'], 2)
     points%near_nodes = [integer ::]
     plan%name = 'earthquake'
-    plan%procedure = 'DYNAMIC'
+    plan%procedure = procedure_named('DYNAMIC')
     plan%prints = [nodes, points]
     plan%outputs = [field_request(['U      ', 'V      ', 'RF     ', 'E      ', 'OPENING'], 2)]
     plan%envelope = ['S1      ', 'S3      ', 'U       ', 'OPENING ']
     scene%steps(2) = plan
     scene%steps(3)%name = 'shapes'
-    scene%steps(3)%procedure = 'FREQUENCY'
+    scene%steps(3)%procedure = procedure_named('FREQUENCY')
     allocate (scene%steps(3)%fixities(0))
   end subroutine make_steps
 

@@ -12,7 +12,7 @@ program test_inelastic_forces
   use material_elastic, only: elastic_law
   use material_points, only: point_state, time_increment, secant_tangent, consistent_tangent
   use inelastic_forces, only: block_answer, open_answers, update_points, recall_points, &
-                              sum_released, find_failure
+                              sum_excess, find_failure
   use inelastic_stiffness, only: lost_stiffness
   use inelastic_energy, only: solid_work, sum_solid_work
   use step_plan, only: step_fixity
@@ -82,7 +82,7 @@ contains
     real(rk) :: u(3, scene%mesh%num_nodes)
     call numbers%expand(q, u)
     call update_points(scene, u, time_increment(tangent=tangent), old, new, answers)
-    call sum_released(scene, numbers, answers, released)
+    call sum_excess(scene, numbers, answers, released)
   end subroutine release
 
   subroutine elastic_points_release_nothing(log)
@@ -151,7 +151,7 @@ contains
     call release(field(3.0e-4_rk), secant_tangent, released)
     call open_answers(scene%inelastic, others)
     call recall_points(scene, new, others)
-    call sum_released(scene, numbers, others, recalled)
+    call sum_excess(scene, numbers, others, recalled)
     call check(log, all(abs(released - recalled) <= 0.0_rk), 'released forces are recalled')
     call sum_solid_work(scene, new, total)
     ! Linear elastic-damage: stored - 1/2 eps D eps = -1/2 u . released.

@@ -7,14 +7,14 @@ program test_solid_iteration
   use problem_definition, only: problem
   use analysis_state, only: state
   use initial_state, only: start_analysis
-  use run_steps, only: run_all_steps
+  use step_loop, only: run_all_steps
   use joint_contraction, only: contraction_law
   use material_elastic, only: elastic_law
   use row_scene, only: make_row, put_at_wall, shake_base, new_step, fix, kick, recorder, &
                        calls_of
   use softening_law, only: damage_law, put_law
   use equilibrium, only: balance_outcome
-  use motion_state, only: motion, start_motion
+  use state_transfer, only: start_motion
   use solid_iteration, only: solid_solver, increment_task
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium, add_moving_supports
   use step_loads, only: step_time, prescribed_values
@@ -75,7 +75,7 @@ contains
   subroutine run(scene, results, now, log)
     type(problem), intent(in) :: scene
     type(recorder), intent(inout) :: results
-    type(state), intent(out) :: now
+    type(state), allocatable, intent(out) :: now
     type(test_log), intent(inout) :: log
     type(error_type), allocatable :: error
     call results%costs%open()
@@ -93,7 +93,7 @@ contains
     type(test_log), intent(inout) :: log
     type(problem) :: scene
     type(recorder) :: results
-    type(state) :: now
+    type(state), allocatable :: now
     real(rk) :: stress, strain, work
     call make_bar(1, 1.0e-3_rk, 0.01_rk, tangent, scene)
     call put_law(damage_law(elastic=elastic_law(young=young)), [1], scene)
@@ -117,7 +117,7 @@ contains
     type(test_log), intent(inout) :: log
     type(problem) :: scene
     type(recorder) :: results
-    type(state) :: now
+    type(state), allocatable :: now
     real(rk) :: e
     integer :: k
     call make_bar(5, 1.0e-3_rk, 0.05_rk, tangent, scene)
@@ -139,7 +139,7 @@ contains
     type(test_log), intent(inout) :: log
     type(problem) :: scene
     type(recorder) :: results
-    type(state) :: now
+    type(state), allocatable :: now
     real(rk), save :: reference = 0.0_rk
     call make_bar(6, 0.0_rk, 1.0_rk, tangent, scene)
     call shake(scene)
@@ -172,7 +172,7 @@ contains
     type(test_log), intent(inout) :: log
     type(problem) :: scene
     type(recorder) :: results
-    type(state) :: now
+    type(state), allocatable :: now
     real(rk), save :: reference = 0.0_rk
     integer :: k
     call make_row([(real(k, rk), k=0, 4)], 0.5_rk, 0.5_rk, spread(young, 1, 4), &
@@ -197,7 +197,7 @@ contains
     type(test_log), intent(inout) :: log
     type(problem) :: scene
     type(recorder) :: results
-    type(state) :: now
+    type(state), allocatable :: now
     call make_bar(5, 4.0e-4_rk, 0.1_rk, 'CONSISTENT', scene)
     call put_law(damage_law(elastic=elastic_law(young=young)), [1, 2, 3, 4, 5], scene)
     call run(scene, results, now, log)
@@ -212,7 +212,7 @@ contains
     type(test_log), intent(inout) :: log
     type(problem) :: scene
     type(recorder) :: results
-    type(state) :: now
+    type(state), allocatable :: now
     type(error_type), allocatable :: error
     call make_bar(1, 1.0e-3_rk, 0.1_rk, 'CONSISTENT', scene)
     scene%steps(1)%is_direct = .false.
@@ -235,7 +235,7 @@ contains
     type(test_log), intent(inout) :: log
     type(problem) :: scene
     type(recorder) :: results
-    type(state) :: now
+    type(state), allocatable :: now
     call make_bar(1, 0.8e-4_rk, 1.0_rk, 'AUTO', scene)
     scene%steps(1)%is_direct = .false.
     call put_law(damage_law(elastic=elastic_law(young=young), largest_change=2.0e-5_rk), [1], scene)
@@ -252,7 +252,7 @@ contains
     type(test_log), intent(inout) :: log
     type(problem) :: scene
     type(recorder) :: results
-    type(state) :: now
+    type(state), allocatable :: now
     call make_bar(1, 0.0_rk, 1.0_rk, 'AUTO', scene)
     scene%steps = scene%steps(:0)
     call new_step('DYNAMIC', 1.0e-6_rk, 1.0e-5_rk, scene)
@@ -294,7 +294,7 @@ contains
     type(test_log), intent(inout) :: log
     type(problem) :: scene
     type(recorder) :: results
-    type(state) :: now
+    type(state), allocatable :: now
     call make_bar(5, 1.0e-3_rk, 0.05_rk, 'AUTO', scene)
     call put_law(damage_law(elastic=elastic_law(young=young)), [1, 2, 4, 5], scene)
     call put_law(damage_law(elastic=elastic_law(young=young), threshold=0.9e-4_rk), [3], scene)
@@ -309,25 +309,24 @@ contains
     type(dam_system) :: system
     type(solid_solver) :: solids
     type(increment_task) :: task
-    type(motion) :: before, after
-    type(state) :: now
+    type(state), allocatable :: now, after
     type(error_type), allocatable :: error
     call start_analysis(scene, now, error)
     call build_structure(scene, scene%steps(1), system, error)
     call build_loads(scene, scene%steps(1), now%u, system)
     call make_equilibrium(scene%steps(1), system, .false., solids%solver, error)
     call prepare_equilibrium(scene, system, system%stiffness, 1.0_rk, solids%solver, error)
-    call start_motion(system%numbers, scene%joints, now, before)
-    call solids%open(scene, system, choose_tangents(scene, scene%steps(1)), before)
+    call start_motion(system%numbers, scene%joints, now, has_inertia=.false.)
+    call solids%open(scene, system, choose_tangents(scene, scene%steps(1)), now)
     call solids%open_increment(now, 1.0_rk)
     solids%values = system%stiffness
-    after = before
-    task%start = before%q
+    after = now
+    task%start = now%motion%q
     call prescribed_values(system%supports, scene%amplitudes, step_time(now=1.0_rk), task%start)
-    allocate (task%x(size(before%q)), task%balance%rhs(system%matrix%num_free))
+    allocate (task%x(size(task%start)), task%balance%rhs(system%matrix%num_free))
     task%balance%rhs = 0.0_rk
     call add_moving_supports(system, system%stiffness, task%start, task%balance%rhs)
     task%counts_reactions = .true.
-    call solids%solve(scene, system, task, before, after, outcome, error)
+    call solids%solve(scene, system, task, now, after, outcome, error)
   end subroutine solve_increment
 end program test_solid_iteration

@@ -7,7 +7,7 @@ program test_condensation
   use analysis_state, only: state
   use amplitudes, only: amplitude
   use initial_state, only: start_analysis
-  use run_steps, only: run_all_steps
+  use step_loop, only: run_all_steps
   use joint_law, only: state_open, state_slip
   use joint_contraction, only: contraction_law
   use step_plan, only: step_fixity
@@ -30,7 +30,7 @@ contains
   subroutine compare(is_held)
     logical, intent(in) :: is_held !< the first joint's nodes, in one direction
     type(recorder) :: condensed, full
-    type(state) :: state_condensed, state_full
+    type(state), allocatable :: state_condensed, state_full
     call condensed%costs%open()
     call shake_arch('CONDENSED', is_held, condensed, state_condensed)
     call shake_arch('FULL', is_held, full, state_full)
@@ -56,7 +56,7 @@ contains
     character(*), intent(in) :: joint_solver
     logical, intent(in) :: is_held
     type(recorder), intent(inout) :: results
-    type(state), intent(out) :: now
+    type(state), allocatable, intent(out) :: now
     type(problem) :: scene
     type(step_fixity), allocatable :: fixities(:)
     type(error_type), allocatable :: error

@@ -8,7 +8,7 @@ program test_contact_augmentation
   use amplitudes, only: amplitude
   use contact_augmentation, only: contact_multiplier, start_multiplier
   use initial_state, only: start_analysis
-  use run_steps, only: run_all_steps
+  use step_loop, only: run_all_steps
   use joint_law, only: joint_state, state_open, state_slip, state_stick
   use joint_contraction, only: contraction_law
   use step_plan, only: step_fixity
@@ -36,7 +36,7 @@ contains
   subroutine box_does_not_sink(log)
     type(test_log), intent(inout) :: log
     real(rk), parameter :: pressure = 2.0_rk*density*gravity
-    type(state) :: now
+    type(state), allocatable :: now
     type(recorder) :: results
     call stand(log, 0.0_rk, now, results)
     call check_close(log, now%u(3, 1), -pressure/kn, 1.0e-9_rk, 'sinks by its weight')
@@ -52,7 +52,7 @@ contains
   subroutine stand(log, penetration, now, results)
     type(test_log), intent(inout) :: log
     real(rk), intent(in) :: penetration !< [m]
-    type(state), intent(out) :: now
+    type(state), allocatable, intent(out) :: now
     type(recorder), intent(out) :: results
     type(problem) :: scene
     type(error_type), allocatable :: error
@@ -81,7 +81,7 @@ contains
     type(test_log), intent(inout) :: log
     real(rk), parameter :: allowed = 1.0e-7_rk
     type(recorder) :: condensed, full
-    type(state) :: one, other
+    type(state), allocatable :: one, other
     integer :: j
     call shake_arch('CONDENSED', allowed, condensed, one)
     call shake_arch('FULL', allowed, full, other)
@@ -105,7 +105,7 @@ contains
     character(*), intent(in) :: joint_solver
     real(rk), intent(in) :: allowed !< penetration [m]
     type(recorder), intent(inout) :: results
-    type(state), intent(out) :: now
+    type(state), allocatable, intent(out) :: now
     type(problem) :: scene
     type(step_fixity), allocatable :: fixities(:)
     type(error_type), allocatable :: error
@@ -166,7 +166,7 @@ contains
     type(test_log), intent(inout) :: log
     real(rk), parameter :: reach = 0.02_rk, pull = 4.0_rk
     type(problem) :: scene
-    type(state) :: now
+    type(state), allocatable :: now
     type(recorder) :: results
     type(error_type), allocatable :: error
     type(amplitude) :: steady

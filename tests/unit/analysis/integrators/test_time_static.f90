@@ -6,7 +6,7 @@ program test_time_static
   use analysis_state, only: state
   use step_plan, only: step
   use initial_state, only: start_analysis
-  use run_steps, only: run_all_steps
+  use step_loop, only: run_all_steps
   use step_control, only: increment_control, start_control
   use joint_contraction, only: contraction_law
   use row_scene, only: make_row, put_on_ground, add_gravity, new_step, fix, recorder, calls_of
@@ -32,7 +32,7 @@ contains
     type(test_log), intent(inout) :: log
     type(problem) :: scene
     type(recorder) :: results
-    type(state) :: now
+    type(state), allocatable :: now
     type(error_type), allocatable :: error
     integer :: i
     call make_row([0.0_rk, 1.0_rk, 3.0_rk], 1.0_rk, 2.0_rk, [3.0e9_rk, 3.0e9_rk], &
@@ -63,7 +63,7 @@ contains
     type(test_log), intent(inout) :: log
     type(problem) :: scene
     type(recorder) :: results
-    type(state) :: now
+    type(state), allocatable :: now
     type(error_type), allocatable :: error
     call make_block(10.0_rk, scene)
     call start_analysis(scene, now, error)
@@ -79,7 +79,7 @@ contains
     type(test_log), intent(inout) :: log
     type(problem) :: scene
     type(recorder) :: results
-    type(state) :: now
+    type(state), allocatable :: now
     type(error_type), allocatable :: error
     call make_block(-10.0_rk, scene)
     call start_analysis(scene, now, error)
@@ -105,7 +105,7 @@ contains
     type(test_log), intent(inout) :: log
     type(problem) :: scene
     type(recorder) :: results
-    type(state) :: now
+    type(state), allocatable :: now
     type(error_type), allocatable :: error
     call make_row([0.0_rk, 1.0_rk], 1.0_rk, 1.0_rk, [1.0e9_rk], [2400.0_rk], scene)
     call add_gravity(10.0_rk, scene)
@@ -158,7 +158,7 @@ contains
     type(test_log), intent(inout) :: log
     type(problem) :: scene
     type(recorder) :: results
-    type(state) :: now
+    type(state), allocatable :: now
     type(error_type), allocatable :: error
     integer :: i
     call make_row([0.0_rk, 1.0_rk], 1.0_rk, 1.0_rk, [3.0e9_rk], [2400.0_rk], scene)

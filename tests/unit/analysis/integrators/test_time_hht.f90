@@ -6,7 +6,7 @@ program test_time_hht
   use analysis_state, only: state
   use amplitudes, only: amplitude
   use initial_state, only: start_analysis
-  use run_steps, only: run_all_steps
+  use step_loop, only: run_all_steps
   use joint_contraction, only: contraction_law
   use row_scene, only: make_row, put_on_ground, put_at_wall, add_gravity, shake_base, new_step, &
                        fix, kick, recorder, calls_of
@@ -35,7 +35,7 @@ contains
     type(problem), intent(in) :: scene
     type(recorder), intent(inout) :: results
     type(test_log), intent(inout) :: log
-    type(state) :: now
+    type(state), allocatable :: now
     type(error_type), allocatable :: error
     call start_analysis(scene, now, error)
     call run_all_steps(scene, now, results, error)

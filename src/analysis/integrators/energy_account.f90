@@ -1,0 +1,192 @@
+!> The energy balance of an increment (theory.md, 7.3).
+!>
+!> External work and damping are the work of the mean of their forces at the two ends of the
+!> increment; kinetic and stored energies are those of the end. `numerical` is what the formula of
+!> the stepping says that it takes: the damping of the time stepping, and the work of joints and
+!> inelastic solids along the increment beyond what they store and dissipate. What then is missing,
+!> `error`, shows a solution that does not satisfy the equations.
+module energy_account
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use inelastic_energy, only: solid_work, sum_solid_work
+  use joint_forces, only: joint_work, sum_joint_work
+  use analysis_state, only: energy_balance, motion, state
+  use step_system, only: dam_system
+  use hht_scheme, only: hht
+  implicit none
+  private
+  public :: open_account, add_static_work, add_dynamic_work
+
+  !> Floor of the largest energy, as a fraction of the sum of K_ii q_i^2: the energy that the last
+  !> digits of the motion make is no imbalance.
+  real(rk), parameter :: idle_share = 1.0e-11_rk
+
+contains
+
+  !> Kinetic and strain energy at the start of a step. At the start of the analysis they are the
+  !> initial energy, with what initial displacements have dissipated.
+  subroutine open_account(model, diagonal, now, is_first)
+    type(problem), intent(in) :: model
+    real(rk), intent(in) :: diagonal(:) !< (num_total) of K [N/m]
+    type(state), intent(inout) :: now
+    logical, intent(in) :: is_first !< step of the analysis
+    real(rk) :: kinetic_before
+    associate (energy => now%energy)
+      kinetic_before = energy%kinetic
+      call set_stored(model, diagonal, now)
+      if (is_first) then
+        energy%initial = energy%kinetic + energy%strain + energy%friction + energy%fracture
+      else ! a step that does not take over the velocities loses their energy
+        energy%numerical = energy%numerical + kinetic_before - energy%kinetic
+      end if
+      call find_error(energy)
+    end associate
+  end subroutine open_account
+
+  !> Adds the work of a static increment. Forces that had no balance at the start of the step do
+  !> work that is stored nowhere.
+  subroutine add_static_work(model, system, before, after)
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    type(state), intent(in) :: before
+    type(state), intent(inout) :: after
+    real(rk), allocatable :: du(:)
+    associate (old => before%motion, new => after%motion, n => system%matrix%num_free)
+      du = new%q - old%q
+      call add_external(du, n, old, new, after%energy)
+      after%energy%numerical = after%energy%numerical + work(du, old%contact, new%contact) &
+                               + work(du(:n), old%balanced, new%balanced) &
+                               + inelastic_work(du, old, new) &
+                               - change_of_stores(model, before, after)
+    end associate
+    call set_stored(model, system%diagonal, after)
+  end subroutine add_static_work
+
+  !> Adds the work of a dynamic increment.
+  subroutine add_dynamic_work(scheme, model, system, before, after)
+    type(hht), intent(in) :: scheme
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    type(state), intent(in) :: before
+    type(state), intent(inout) :: after
+    real(rk), allocatable :: du(:)
+    real(rk) :: taken
+    associate (old => before%motion, new => after%motion, n => system%matrix%num_free)
+      du = new%q - old%q
+      call add_external(du, n, old, new, after%energy)
+      after%energy%damping = after%energy%damping + work(du, old%viscous, new%viscous)
+      taken = work(du(:n), old%external(:n), new%external(:n)) &
+              - work(du(:n), old%viscous(:n), new%viscous(:n)) &
+              - work(du(:n), old%elastic(:n), new%elastic(:n)) &
+              - work(du(:n), old%balanced(:n), new%balanced(:n)) &
+              + work(du(n + 1:), old%contact(n + 1:), new%contact(n + 1:)) &
+              + inelastic_work(du(n + 1:), old, new, n) &
+              - change_of_stores(model, before, after) - newmark_excess(scheme, du, old, new)
+    end associate
+    after%energy%numerical = after%energy%numerical + taken
+    call set_stored(model, system%diagonal, after)
+  end subroutine add_dynamic_work
+
+  !> Work of the loads, and of the supports that move.
+  subroutine add_external(du, num_free, old, new, energy)
+    real(rk), intent(in) :: du(:)
+    integer, intent(in) :: num_free
+    type(motion), intent(in) :: old, new
+    type(energy_balance), intent(inout) :: energy
+    associate (n => num_free)
+      energy%external = energy%external + work(du, old%external, new%external) &
+                        + work(du(n + 1:), old%internal(n + 1:), new%internal(n + 1:)) &
+                        + work(du(n + 1:), old%contact(n + 1:), new%contact(n + 1:)) &
+                        - work(du(n + 1:), old%external(n + 1:), new%external(n + 1:))
+      if (.not. allocated(new%inertia)) return
+      energy%external = energy%external &
+                        + work(du(n + 1:), old%inertia(n + 1:), new%inertia(n + 1:)) &
+                        + work(du(n + 1:), old%viscous(n + 1:), new%viscous(n + 1:))
+    end associate
+  end subroutine add_external
+
+  !> Work of the internal forces beyond that of K q.
+  pure real(rk) function inelastic_work(du, old, new, skipped) result(taken)
+    real(rk), intent(in) :: du(:)
+    type(motion), intent(in) :: old, new
+    integer, intent(in), optional :: skipped !< unknowns before the first of `du`
+    integer :: first
+    first = 1
+    if (present(skipped)) first = skipped + 1
+    taken = work(du, old%internal(first:) - old%elastic(first:), &
+                 new%internal(first:) - new%elastic(first:))
+  end function inelastic_work
+
+  !> Change of the kinetic energy beyond du . M a_mean (7.4).
+  pure real(rk) function newmark_excess(scheme, du, old, new) result(excess)
+    type(hht), intent(in) :: scheme
+    real(rk), intent(in) :: du(:)
+    type(motion), intent(in) :: old, new
+    real(rk) :: du_dma, da_ma, da_dma
+    du_dma = dot_product(du, new%inertia - old%inertia)
+    da_ma = work(new%a - old%a, old%inertia, new%inertia)
+    da_dma = dot_product(new%a - old%a, new%inertia - old%inertia)
+    associate (g => scheme%gamma - 0.5_rk, b => scheme%beta - 0.5_rk*scheme%gamma)
+      excess = g*du_dma - b*scheme%dt**2*(da_ma + g*da_dma)
+    end associate
+  end function newmark_excess
+
+  !> du . (f0 + f1)/2.
+  pure real(rk) function work(du, f0, f1)
+    real(rk), intent(in) :: du(:), f0(:), f1(:)
+    integer :: i
+    work = 0.0_rk
+    do i = 1, size(du)
+      work = work + du(i)*(f0(i) + f1(i))
+    end do
+    work = 0.5_rk*work
+  end function work
+
+  !> Change of what joints store and dissipate, and of what inelastic solids store beyond 1/2 q K q
+  !> and dissipate.
+  real(rk) function change_of_stores(model, before, after) result(change)
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: before, after
+    type(joint_work) :: old_joints, new_joints
+    type(solid_work) :: old_solids, new_solids
+    call sum_joint_work(model%joints, before%joints, old_joints)
+    call sum_joint_work(model%joints, after%joints, new_joints)
+    call sum_solid_work(model, before%points, old_solids)
+    call sum_solid_work(model, after%points, new_solids)
+    change = new_joints%stored - old_joints%stored + new_joints%friction - old_joints%friction &
+             + new_joints%fracture - old_joints%fracture &
+             + (new_solids%stored - old_solids%stored + new_solids%fracture - old_solids%fracture)
+  end function change_of_stores
+
+  !> Energies of the state itself.
+  subroutine set_stored(model, diagonal, now)
+    type(problem), intent(in) :: model
+    real(rk), intent(in) :: diagonal(:) !< (num_total) of K [N/m]
+    type(state), intent(inout) :: now
+    type(joint_work) :: joints
+    type(solid_work) :: solids
+    call sum_joint_work(model%joints, now%joints, joints)
+    call sum_solid_work(model, now%points, solids)
+    associate (own => now%motion, energy => now%energy)
+      energy%kinetic = 0.0_rk
+      if (allocated(own%momentum)) energy%kinetic = 0.5_rk*dot_product(own%v, own%momentum)
+      energy%strain = 0.5_rk*dot_product(own%q, own%elastic) + joints%stored + solids%stored
+      energy%friction = joints%friction
+      energy%fracture = joints%fracture + solids%fracture
+      energy%crushing = solids%crushing
+      energy%largest = max(energy%largest, idle_share*sum(diagonal*own%q**2))
+      call find_error(energy)
+    end associate
+  end subroutine set_stored
+
+  !> The imbalance over the largest energy so far.
+  pure subroutine find_error(energy)
+    type(energy_balance), intent(inout) :: energy
+    real(rk) :: imbalance
+    imbalance = energy%external + energy%initial - energy%kinetic - energy%strain - energy%damping &
+                - energy%friction - energy%fracture - energy%numerical
+    energy%largest = max(energy%largest, abs(energy%external), energy%kinetic, energy%strain, &
+                         abs(energy%damping), energy%friction, energy%fracture, energy%initial)
+    energy%error = abs(imbalance)/max(energy%largest, tiny(1.0_rk))
+  end subroutine find_error
+end module energy_account

@@ -1,0 +1,119 @@
+!> The integrators, the only list of them: the procedure of the deck, the scheme, what such a step
+!> does and who makes it. Keywords, help and the step loop read this list.
+module integrator_catalogue
+  use step_plan, only: step_procedure
+  use integrator_type, only: integrator
+  use static_integrator, only: static_method
+  use hht_integrator, only: hht_method
+  use frequency_integrator, only: frequency_method
+  implicit none
+  private
+  public :: procedure_named, list_schemes, list_procedures, make_integrator
+
+  abstract interface
+    !> Makes an integrator that has no step yet.
+    subroutine maker(method)
+      import :: integrator
+      implicit none
+      class(integrator), allocatable, intent(out) :: method
+    end subroutine maker
+  end interface
+
+  !> One line of the list.
+  type :: entry
+    type(step_procedure) :: procedure
+    procedure(maker), pointer, nopass :: make => null()
+  end type entry
+
+contains
+
+  !> The list. The first scheme of a procedure is its default.
+  function all_integrators() result(list)
+    type(entry), allocatable :: list(:)
+    list = [ &
+           entry(step_procedure('STATIC', 'NEWTON'), make_static), &
+           entry(step_procedure('DYNAMIC', 'HHT', has_inertia=.true.), make_hht), &
+           entry(step_procedure('FREQUENCY', 'ARPACK', finds_modes=.true.), make_frequency)]
+  end function all_integrators
+
+  !> The procedure of a keyword, with its default scheme or a given one. Its name is empty where the
+  !> list has none.
+  function procedure_named(name, scheme) result(found)
+    character(*), intent(in) :: name !< keyword without its star
+    character(*), intent(in), optional :: scheme
+    type(step_procedure) :: found
+    type(entry), allocatable :: list(:)
+    integer :: i
+    list = all_integrators()
+    do i = 1, size(list)
+      if (list(i)%procedure%name /= name) cycle
+      if (present(scheme)) then
+        if (list(i)%procedure%scheme /= scheme) cycle
+      end if
+      found = list(i)%procedure
+      return
+    end do
+  end function procedure_named
+
+  !> The schemes of a procedure, as choices of a keyword: 'HHT,..'.
+  function list_schemes(name) result(text)
+    character(*), intent(in) :: name
+    character(:), allocatable :: text
+    type(entry), allocatable :: list(:)
+    integer :: i
+    list = all_integrators()
+    text = ''
+    do i = 1, size(list)
+      if (list(i)%procedure%name /= name) cycle
+      if (len(text) > 0) text = text//','
+      text = text//trim(list(i)%procedure%scheme)
+    end do
+  end function list_schemes
+
+  !> All procedures, for messages: '*STATIC, *DYNAMIC or *FREQUENCY'.
+  function list_procedures() result(text)
+    character(:), allocatable :: text
+    type(entry), allocatable :: list(:)
+    character(:), allocatable :: names(:)
+    integer :: i, num
+    list = all_integrators()
+    allocate (character(len(list(1)%procedure%name)) :: names(0))
+    do i = 1, size(list)
+      if (.not. any(names == list(i)%procedure%name)) names = [names, list(i)%procedure%name]
+    end do
+    num = size(names)
+    text = '*'//trim(names(1))
+    do i = 2, num
+      if (i < num) text = text//', *'//trim(names(i))
+      if (i == num) text = text//' or *'//trim(names(i))
+    end do
+  end function list_procedures
+
+  !> The integrator of a step.
+  subroutine make_integrator(procedure, method)
+    type(step_procedure), intent(in) :: procedure
+    class(integrator), allocatable, intent(out) :: method
+    type(entry), allocatable :: list(:)
+    integer :: i
+    list = all_integrators()
+    do i = 1, size(list)
+      if (list(i)%procedure%name /= procedure%name) cycle
+      if (list(i)%procedure%scheme == procedure%scheme) call list(i)%make(method)
+    end do
+  end subroutine make_integrator
+
+  subroutine make_static(method)
+    class(integrator), allocatable, intent(out) :: method
+    allocate (static_method :: method)
+  end subroutine make_static
+
+  subroutine make_hht(method)
+    class(integrator), allocatable, intent(out) :: method
+    allocate (hht_method :: method)
+  end subroutine make_hht
+
+  subroutine make_frequency(method)
+    class(integrator), allocatable, intent(out) :: method
+    allocate (frequency_method :: method)
+  end subroutine make_frequency
+end module integrator_catalogue

@@ -1,0 +1,93 @@
+!> The contract of time integrators: how a step is opened, advanced by one increment and closed.
+!>
+!> The step loop owns the two states, the sizes of increments, cuts and reports. An integrator owns
+!> the equations of the step and fills the trial state. A new integrator is one file and one line of
+!> integrator_catalogue.
+module integrator_type
+  use kinds, only: rk
+  use errors, only: error_type
+  use problem_definition, only: problem
+  use step_plan, only: step
+  use analysis_state, only: state
+  use increment_listener, only: listener
+  use equilibrium, only: balance_outcome
+  use step_loads, only: step_time
+  use step_system, only: dam_system
+  use solid_iteration, only: solid_solver
+  implicit none
+  private
+  public :: integrator
+
+  type, abstract :: integrator
+    type(dam_system) :: system !< matrices, loads and supports of the step
+    type(solid_solver) :: solids !< solves an increment, joints and inelastic solids included
+  contains
+    procedure(open_step), deferred :: open_step
+    procedure :: start_increment => no_preparation
+    procedure(advance), deferred :: advance
+    procedure :: explain_failure => no_explanation
+    procedure :: close_step => no_end
+  end type integrator
+
+  abstract interface
+    !> Builds and factors the equations of a step, and the forces of the state that it starts from.
+    subroutine open_step(self, model, plan, now, results, error)
+      import :: integrator, problem, step, state, listener, error_type
+      implicit none
+      class(integrator), intent(inout) :: self
+      type(problem), intent(in) :: model
+      type(step), intent(in) :: plan
+      type(state), intent(inout) :: now !< at the start of the step
+      class(listener), intent(inout) :: results
+      type(error_type), allocatable, intent(out) :: error
+    end subroutine open_step
+
+    !> Goes from `before` to `after` in one increment, energies included. An iteration that does
+    !> not converge is no error; `after` is of no use then.
+    subroutine advance(self, model, when, before, after, results, outcome, error)
+      import :: integrator, problem, step_time, state, listener, balance_outcome, error_type
+      implicit none
+      class(integrator), intent(inout) :: self
+      type(problem), intent(in) :: model
+      type(step_time), intent(in) :: when !< the end of the increment
+      type(state), intent(in) :: before
+      type(state), intent(inout) :: after !< comes with the status of `before`
+      class(listener), intent(inout) :: results
+      type(balance_outcome), intent(out) :: outcome
+      type(error_type), allocatable, intent(out) :: error
+    end subroutine advance
+  end interface
+
+contains
+
+  !> Prepares for an increment of this size.
+  subroutine no_preparation(self, model, plan, size, results, error)
+    class(integrator), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    real(rk), intent(in) :: size !< [s]
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+  end subroutine no_preparation
+
+  !> Adds to the message of an increment that cannot be made smaller.
+  subroutine no_explanation(self, model, plan, when, before, after, error)
+    class(integrator), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(step_time), intent(in) :: when !< of the increment that failed
+    type(state), intent(in) :: before !< last equilibrium
+    type(state), intent(in) :: after !< where the iteration has ended
+    type(error_type), allocatable, intent(inout) :: error
+  end subroutine no_explanation
+
+  !> Ends a step whose increments are done.
+  subroutine no_end(self, model, plan, now, results, error)
+    class(integrator), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(state), intent(inout) :: now
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+  end subroutine no_end
+end module integrator_type

@@ -1,0 +1,122 @@
+!> One static increment:
+!>
+!>   K x + B^T (area t) = f1 - K q0 + s
+!>
+!> for the increment x of the unknowns, with the initial-stress force s of inelastic solids
+!> (theory.md, 12).
+module static_increment
+  use kinds, only: rk
+  use errors, only: error_type
+  use global_vectors, only: multiply, norm
+  use problem_definition, only: problem
+  use joint_forces, only: gather_jumps, gather_tractions
+  use analysis_state, only: state
+  use state_transfer, only: sum_contact
+  use equilibrium, only: force_balance, balance_outcome
+  use step_equilibrium, only: add_moving_supports, check_bulk
+  use step_system, only: dam_system
+  use step_loads, only: step_time, external_force, prescribed_values
+  use solid_iteration, only: solid_solver, increment_task
+  implicit none
+  private
+  public :: take_static_increment
+
+  !> Floor of the reference force, as a fraction of norm(diag(K) q).
+  real(rk), parameter :: idle_share = 1.0e-6_rk
+
+contains
+
+  !> Goes from `before` to `after`. Without convergence `after` is of no use.
+  subroutine take_static_increment(model, system, solids, when, before, after, outcome, error)
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    type(solid_solver), intent(inout) :: solids
+    type(step_time), intent(in) :: when
+    type(state), intent(in) :: before
+    type(state), intent(inout) :: after
+    type(balance_outcome), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: error
+    type(increment_task) :: task
+    call pose_task(model, system, solids, when, before, after, task)
+    call solids%solve(model, system, task, before, after, outcome, error)
+    if (allocated(error) .or. .not. outcome%has_converged) return
+    associate (old => before%motion, new => after%motion, n => system%matrix%num_free)
+      new%q = new%q + task%x
+      call multiply(system%matrix, system%stiffness, new%q, new%elastic)
+      call solids%set_internal(new)
+      call sum_contact(system%operator, after)
+      new%balanced = 0.0_rk
+      after%largest_force = reference_force(system%diagonal, solids, before, after)
+      call check_bulk(new%external(:n) - new%internal(:n) - new%contact(:n), &
+                      after%largest_force, solids%solver%controls%residual_tolerance, outcome)
+    end associate
+  end subroutine take_static_increment
+
+  !> The problem of the increment: loads and supports at its end.
+  subroutine pose_task(model, system, solids, when, before, after, task)
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    type(solid_solver), intent(in) :: solids
+    type(step_time), intent(in) :: when
+    type(state), intent(in) :: before
+    type(state), intent(inout) :: after
+    type(increment_task), intent(out) :: task
+    real(rk), allocatable :: moved(:)
+    associate (old => before%motion, new => after%motion, n => system%matrix%num_free)
+      call external_force(system%groups, model%amplitudes, when, new%external)
+      new%q = old%q
+      call prescribed_values(system%supports, model%amplitudes, when, new%q)
+      moved = new%q - old%q
+      task%balance%rhs = new%external(:n) - old%elastic(:n)
+      call add_moving_supports(system, system%stiffness, moved, task%balance%rhs)
+      task%balance%reference = norm(task%balance%rhs)
+      call set_jumps(system, before, new%q, task%balance)
+      task%start = new%q
+      task%counts_reactions = .true.
+      if (solids%has_inelastic()) task%reference = known_force(system%diagonal, before, after)
+      allocate (task%x(size(moved)))
+    end associate
+  end subroutine pose_task
+
+  !> The largest of the forces before and after, reactions included. A dam that carries nothing
+  !> (its load went back to zero, or it moves with its supports) is measured by the forces that the
+  !> last digits of its motion make. For cracking solids the largest force so far is kept.
+  real(rk) function reference_force(diagonal, solids, before, after) result(force)
+    real(rk), intent(in) :: diagonal(:) !< (num_total) of K [N/m]
+    type(solid_solver), intent(in) :: solids
+    type(state), intent(in) :: before, after
+    associate (old => before%motion, new => after%motion)
+      force = max(norm(old%external), norm(new%external), norm(old%internal), &
+                  norm(new%internal), norm(old%contact), norm(new%contact), &
+                  idle_share*norm(diagonal*old%q), idle_share*norm(diagonal*new%q))
+    end associate
+    if (solids%has_inelastic()) force = max(force, before%largest_force)
+  end function reference_force
+
+  !> The part of the reference force that is known before the increment is solved.
+  real(rk) function known_force(diagonal, before, after) result(force)
+    real(rk), intent(in) :: diagonal(:) !< (num_total) of K [N/m]
+    type(state), intent(in) :: before, after
+    associate (old => before%motion, new => after%motion)
+      force = max(before%largest_force, norm(new%external), norm(old%external), &
+                  norm(old%internal), norm(old%contact), idle_share*norm(diagonal*old%q))
+    end associate
+  end function known_force
+
+  !> Jumps before the free unknowns move, and the first guess: the converged jumps. A joint that has
+  !> carried nothing yet starts bonded.
+  subroutine set_jumps(system, before, q, balance)
+    type(dam_system), intent(in) :: system
+    type(state), intent(in) :: before
+    real(rk), intent(in) :: q(:) !< supports at the end of the increment
+    type(force_balance), intent(inout) :: balance
+    real(rk), allocatable :: traction(:, :)
+    associate (n => system%operator%num_points)
+      allocate (balance%offset(3, n), balance%guess(3, n), traction(3, n))
+    end associate
+    call system%operator%jumps(q, balance%offset)
+    call gather_jumps(system%operator, before%joints, balance%guess)
+    call gather_tractions(system%operator, before%joints, traction)
+    balance%starts_bonded = .not. any(abs(traction) > 0.0_rk)
+  end subroutine set_jumps
+end module static_increment

@@ -1,0 +1,155 @@
+!> Static steps. Loads and supports follow their rule of time; increments are as large as the joints
+!> and the solids allow. A model of elastic solids without joints is factored once and not iterated.
+module static_integrator
+  use kinds, only: rk
+  use errors, only: error_type
+  use problem_definition, only: problem
+  use step_plan, only: step
+  use free_blocks, only: name_free_block
+  use joint_law, only: joint_state
+  use joint_water, only: update_uplift
+  use analysis_state, only: state
+  use state_transfer, only: start_motion, sum_contact
+  use increment_listener, only: listener
+  use equilibrium, only: balance_outcome
+  use step_equilibrium, only: make_equilibrium, prepare_equilibrium
+  use step_system, only: build_structure, add_couplings, build_loads
+  use step_loads, only: step_time, external_force
+  use tangent_choice, only: tangent, choose_tangents
+  use energy_account, only: open_account, add_static_work
+  use integrator_type, only: integrator
+  use static_increment, only: take_static_increment
+  implicit none
+  private
+  public :: static_method
+
+  type, extends(integrator) :: static_method
+  contains
+    procedure :: open_step
+    procedure :: advance
+    procedure :: explain_failure
+  end type static_method
+
+  !> Most repetitions of an increment until uplift and joint opening agree.
+  integer, parameter :: most_passes = 50
+
+contains
+
+  subroutine open_step(self, model, plan, now, results, error)
+    class(static_method), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(state), intent(inout) :: now
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    type(tangent), allocatable :: choices(:)
+    call results%costs%start('assemble', 'structure', 'solver')
+    call build_structure(model, plan, self%system, error)
+    if (allocated(error)) return
+    call results%costs%start('assemble', 'loads', 'load')
+    call build_loads(model, plan, now%u, self%system)
+    call results%costs%stop()
+    call results%costs%stop()
+    call add_couplings(model, self%system, results%costs)
+    call results%costs%start('analyse', 'structure', 'solver')
+    choices = choose_tangents(model, plan)
+    call make_equilibrium(plan, self%system, all(choices%is_symmetric()), self%solids%solver, error)
+    call results%costs%stop()
+    if (allocated(error)) return
+    self%solids%solver%costs = results%costs
+    call results%costs%start('iterate', 'structure', 'solver')
+    call prepare_equilibrium(model, self%system, self%system%stiffness, 1.0_rk, &
+                             self%solids%solver, error)
+    call results%costs%stop()
+    if (allocated(error)) return
+    now%num_unknowns = self%system%matrix%num_free
+    now%joint_condition = max(now%joint_condition, self%solids%solver%condition)
+    call start_motion(self%system%numbers, model%joints, now, has_inertia=.false.)
+    call self%solids%open(model, self%system, choices, now)
+    if (self%solids%has_inelastic()) self%solids%values = self%system%stiffness
+    call start_forces(self, model, plan, now)
+    call results%costs%start('recover', 'energy', 'solver')
+    call open_account(model, self%system%diagonal, now, now%total_time <= 0.0_rk)
+    call results%costs%stop()
+  end subroutine open_step
+
+  !> Forces at the start of the step and their residual: initial conditions may leave one, and so
+  !> does the motion of a dynamic step before.
+  subroutine start_forces(self, model, plan, now)
+    type(static_method), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(state), intent(inout) :: now
+    logical :: has_changed
+    associate (own => now%motion)
+      call update_uplift(model, self%system%operator, now%joints, self%system%groups, has_changed)
+      call external_force(self%system%groups, model%amplitudes, &
+                          step_time(start=now%total_time, duration=plan%duration), own%external)
+      call sum_contact(self%system%operator, now)
+      own%balanced = own%external - own%internal - own%contact
+    end associate
+  end subroutine start_forces
+
+  !> One increment with the water where the joints are open at its end.
+  subroutine advance(self, model, when, before, after, results, outcome, error)
+    class(static_method), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(step_time), intent(in) :: when
+    type(state), intent(in) :: before
+    type(state), intent(inout) :: after
+    class(listener), intent(inout) :: results
+    type(balance_outcome), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: error
+    call results%costs%start('iterate', 'structure', 'solver')
+    call settle_water(self, model, when, before, after, outcome, error)
+    call results%costs%stop('iterate structure')
+    if (allocated(error) .or. .not. outcome%has_converged) return
+    call results%costs%start('recover', 'energy', 'solver')
+    call add_static_work(model, self%system, before, after)
+    call results%costs%stop()
+  end subroutine advance
+
+  !> Repeats the increment until the joints that it leaves open are those with water.
+  subroutine settle_water(self, model, when, before, after, outcome, error)
+    class(static_method), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(step_time), intent(in) :: when
+    type(state), intent(in) :: before
+    type(state), intent(inout) :: after
+    type(balance_outcome), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: error
+    logical :: has_changed
+    integer :: pass
+    associate (system => self%system)
+      call lead_water(before%joints)
+      do pass = 1, most_passes
+        call take_static_increment(model, system, self%solids, when, before, after, outcome, error)
+        if (allocated(error) .or. .not. outcome%has_converged) return
+        call lead_water(after%joints)
+        if (.not. has_changed) return
+      end do
+    end associate
+    outcome%has_converged = .false.
+    outcome%failure = 'water and opening of joints (*JOINT LAW, PROFILE=OPEN) do not '// &
+                      'settle: points open and close by turns'
+  contains
+    !> Water where the joints are open in these states.
+    subroutine lead_water(states)
+      type(joint_state), intent(in) :: states(:)
+      call self%solids%solver%costs%start('update', 'uplift', 'load')
+      call update_uplift(model, self%system%operator, states, self%system%groups, has_changed)
+      call self%solids%solver%costs%stop()
+    end subroutine lead_water
+  end subroutine settle_water
+
+  !> Names the block that the joints cannot hold.
+  subroutine explain_failure(self, model, plan, when, before, after, error)
+    class(static_method), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(step_time), intent(in) :: when
+    type(state), intent(in) :: before, after
+    type(error_type), allocatable, intent(inout) :: error
+    call name_free_block(model, plan, self%system, before%joints, after%joints, when, error)
+  end subroutine explain_failure
+end module static_integrator

@@ -1,0 +1,126 @@
+!> Between the nodes of a model and the unknowns of a step.
+module state_transfer
+  use kinds, only: rk
+  use joint_law, only: joint_state
+  use joint_points, only: joint, apart
+  use dof_numbering, only: numbering
+  use analysis_state, only: state, motion
+  use joint_operator, only: jump_operator
+  use joint_forces, only: gather_tractions
+  implicit none
+  private
+  public :: start_motion, store_motion, restrict, sum_contact
+
+contains
+
+  !> The motion of the nodes in the unknowns of a step. Forces are zero.
+  subroutine start_motion(numbers, joints, now, has_inertia)
+    type(numbering), intent(in) :: numbers
+    type(joint), intent(in) :: joints(:)
+    type(state), intent(inout) :: now
+    logical, intent(in) :: has_inertia !< velocities, accelerations and their forces take part
+    type(motion) :: fresh
+    integer :: n
+    n = numbers%num_total
+    allocate (fresh%q(n))
+    call restrict(numbers, joints, now%u, fresh%q)
+    call set_exact_jumps(numbers, joints, now%joints, fresh%q)
+    allocate (fresh%external(n), fresh%elastic(n), fresh%internal(n), fresh%contact(n), &
+              fresh%balanced(n), source=0.0_rk)
+    if (has_inertia) call start_rates(numbers, joints, now, fresh)
+    now%motion = fresh
+    if (has_inertia) return
+    if (allocated(now%v)) deallocate (now%v)
+    if (allocated(now%a)) deallocate (now%a)
+  end subroutine start_motion
+
+  !> Velocities and accelerations; zero after a static step.
+  subroutine start_rates(numbers, joints, now, fresh)
+    type(numbering), intent(in) :: numbers
+    type(joint), intent(in) :: joints(:)
+    type(state), intent(inout) :: now
+    type(motion), intent(inout) :: fresh
+    integer :: n, num_points
+    n = numbers%num_total
+    num_points = sum(joints%num_points)
+    if (.not. allocated(now%v)) allocate (now%v(3, size(now%u, 2)), source=0.0_rk)
+    if (.not. allocated(now%a)) allocate (now%a(3, size(now%u, 2)), source=0.0_rk)
+    allocate (fresh%v(n), fresh%a(n))
+    call restrict(numbers, joints, now%v, fresh%v)
+    call restrict(numbers, joints, now%a, fresh%a)
+    allocate (fresh%elastic_rate(n), fresh%elastic_jerk(n), fresh%viscous(n), &
+              fresh%viscous_rate(n), fresh%momentum(n), fresh%inertia(n), source=0.0_rk)
+    allocate (fresh%carried(3, num_points), fresh%jump_rate(3, num_points), source=0.0_rk)
+  end subroutine start_rates
+
+  !> The unknowns of a nodal field: q with T q = u.
+  subroutine restrict(numbers, joints, u, q)
+    type(numbering), intent(in) :: numbers
+    type(joint), intent(in) :: joints(:)
+    real(rk), intent(in) :: u(:, :) !< (3, nodes)
+    real(rk), intent(out) :: q(:) !< (num_total)
+    integer :: k, j, p, pair, first
+    do k = 1, numbers%num_total
+      q(k) = u(numbers%direction(k), numbers%node(k))
+    end do
+    pair = 0
+    do j = 1, size(joints)
+      if (.not. joints(j)%is_nodal) cycle
+      do p = 1, joints(j)%num_points
+        pair = pair + 1
+        first = numbers%first_jump(pair)
+        if (first == 0) cycle
+        q(first:first + 2) = matmul(joints(j)%rotation(:, :, p), apart(joints(j), p, u))
+      end do
+    end do
+  end subroutine restrict
+
+  !> Jumps from the states of the joints: the difference of two nodes loses digits.
+  subroutine set_exact_jumps(numbers, joints, states, q)
+    type(numbering), intent(in) :: numbers
+    type(joint), intent(in) :: joints(:)
+    type(joint_state), intent(in) :: states(:)
+    real(rk), intent(inout) :: q(:) !< (num_total) [m]
+    integer :: j, p, pair, first
+    pair = 0
+    do j = 1, size(joints)
+      if (.not. joints(j)%is_nodal) cycle
+      do p = 1, joints(j)%num_points
+        pair = pair + 1
+        first = numbers%first_jump(pair)
+        if (first > 0) q(first:first + 2) = states(j)%jump(:, p)
+      end do
+    end do
+  end subroutine set_exact_jumps
+
+  !> The forces of the joints by their laws, B^T (area t).
+  subroutine sum_contact(operator, now)
+    type(jump_operator), intent(in) :: operator
+    type(state), intent(inout) :: now
+    real(rk) :: traction(3, operator%num_points)
+    now%motion%contact = 0.0_rk
+    if (operator%num_points == 0) return
+    call gather_tractions(operator, now%joints, traction)
+    call operator%add_forces(traction, now%motion%contact)
+  end subroutine sum_contact
+
+  !> Writes the motion back to the nodes. Reactions are the residual of prescribed unknowns.
+  subroutine store_motion(numbers, now)
+    type(numbering), intent(in) :: numbers
+    type(state), intent(inout) :: now
+    real(rk) :: inertia
+    integer :: k
+    associate (own => now%motion)
+      call numbers%expand(own%q, now%u)
+      if (allocated(own%v)) call numbers%expand(own%v, now%v)
+      if (allocated(own%a)) call numbers%expand(own%a, now%a)
+      now%reaction = 0.0_rk
+      inertia = 0.0_rk
+      do k = numbers%num_free + 1, numbers%num_total
+        if (allocated(own%inertia)) inertia = own%inertia(k) + own%viscous(k)
+        now%reaction(numbers%direction(k), numbers%node(k)) = &
+          inertia + own%internal(k) + own%contact(k) - own%external(k)
+      end do
+    end associate
+  end subroutine store_motion
+end module state_transfer

@@ -1,0 +1,155 @@
+!> Runs the steps of a problem one after the other. All procedures share this loop: it chooses sizes
+!> of increments, cuts, accepts and reports; the integrator of the step fills the trial state.
+module step_loop
+  use kinds, only: rk
+  use errors, only: error_type
+  use problem_definition, only: problem
+  use step_plan, only: step
+  use analysis_state, only: state
+  use state_transfer, only: store_motion
+  use step_control, only: start_control
+  use increment_listener, only: listener
+  use equilibrium, only: balance_outcome
+  use step_loads, only: step_time
+  use joint_water, only: record_uplift
+  use integrator_type, only: integrator
+  use integrator_catalogue, only: make_integrator
+  use step_report, only: close_increment, report_failure
+  use user_increments, only: begin_user_increment
+  implicit none
+  private
+  public :: run_all_steps
+
+  !> The increment under way.
+  type :: attempt
+    type(state), allocatable :: trial
+    type(step_time) :: when !< its end
+    type(balance_outcome) :: outcome
+  end type attempt
+
+contains
+
+  !> Runs all steps. On an error `now` is the last state that converged; the listener has it.
+  subroutine run_all_steps(model, now, results, error)
+    type(problem), intent(in) :: model
+    type(state), allocatable, intent(inout) :: now !< as `start_analysis` makes it
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    class(integrator), allocatable :: method
+    integer :: i
+    do i = 1, size(model%steps)
+      call enter_step(i, now)
+      call make_integrator(model%steps(i)%procedure, method)
+      call method%open_step(model, model%steps(i), now, results, error)
+      if (allocated(error)) return
+      call run_increments(model, model%steps(i), method, now, results, error)
+      if (allocated(error)) return
+      call method%close_step(model, model%steps(i), now, results, error)
+      if (allocated(error)) return
+    end do
+  end subroutine run_all_steps
+
+  !> Sets the counters of a step to its start.
+  subroutine enter_step(number, now)
+    integer, intent(in) :: number
+    type(state), intent(inout) :: now
+    now%step = number
+    now%increment = 0
+    now%iterations = 0
+    now%cutbacks = 0
+    now%step_time = 0.0_rk
+    now%increment_size = 0.0_rk
+    now%residual = 0.0_rk
+    now%is_last_of_step = .false.
+  end subroutine enter_step
+
+  !> Increments from the start of a step to its end.
+  subroutine run_increments(model, plan, method, now, results, error)
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    class(integrator), intent(inout) :: method
+    type(state), allocatable, intent(inout) :: now !< converged
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    type(attempt) :: next
+    if (plan%procedure%finds_modes) return
+    next%when = step_time(is_dynamic=plan%procedure%has_inertia, start=now%total_time, &
+                          duration=plan%duration)
+    call start_control(plan, plan%procedure%has_inertia, now%control)
+    next%trial = now
+    do while (now%step_time < plan%duration)
+      call try_increment(model, plan, method, now, next, results, error)
+      if (allocated(error)) return
+      if (next%outcome%has_converged) then
+        call accept(model, plan, method, now, next, results, error)
+      else
+        call cut(model, plan, method, now, next, error)
+      end if
+      if (allocated(error)) return
+    end do
+  end subroutine run_increments
+
+  !> One attempt at the next increment.
+  subroutine try_increment(model, plan, method, now, next, results, error)
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    class(integrator), intent(inout) :: method
+    type(state), intent(in) :: now
+    type(attempt), intent(inout) :: next
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: size
+    size = now%control%next_size(now%step_time)
+    call next%when%advance(now%step_time, size)
+    call begin_user_increment(model, now, size, error)
+    if (allocated(error)) return
+    call method%start_increment(model, plan, size, results, error)
+    if (allocated(error)) return
+    call method%solids%open_increment(now, size)
+    next%trial%increment_status = now%increment_status
+    call method%advance(model, next%when, now, next%trial, results, next%outcome, error)
+  end subroutine try_increment
+
+  !> The trial becomes the converged state.
+  subroutine accept(model, plan, method, now, next, results, error)
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    class(integrator), intent(in) :: method
+    type(state), allocatable, intent(inout) :: now
+    type(attempt), intent(inout) :: next
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    associate (trial => next%trial, groups => method%system%groups)
+      call store_motion(method%system%numbers, trial)
+      call record_uplift(model, plan%loads, groups, next%when, trial%joints, results%costs)
+      call trial%control%accept(method%solids%effort(next%outcome%own_iterations()))
+    end associate
+    call swap(now, next%trial)
+    call close_increment(model, plan, next%when, next%outcome, now, results, error)
+  end subroutine accept
+
+  !> A smaller increment, or the end of the run.
+  subroutine cut(model, plan, method, now, next, error)
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    class(integrator), intent(in) :: method
+    type(state), intent(inout) :: now
+    type(attempt), intent(in) :: next
+    type(error_type), allocatable, intent(out) :: error
+    logical :: gives_up
+    call now%control%cut(next%when%increment, next%outcome%size_ratio, gives_up)
+    if (.not. gives_up) return
+    call report_failure(model, method%system, next%outcome, now, error)
+    if (allocated(next%outcome%failure)) return
+    call method%explain_failure(model, plan, next%when, now, next%trial, error)
+  end subroutine cut
+
+  !> Swaps two states without a copy.
+  subroutine swap(now, trial)
+    type(state), allocatable, intent(inout) :: now, trial
+    type(state), allocatable :: other
+    call move_alloc(now, other)
+    call move_alloc(trial, now)
+    call move_alloc(other, trial)
+  end subroutine swap
+end module step_loop
