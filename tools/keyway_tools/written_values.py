@@ -80,8 +80,10 @@ def values_of_json(path: Path) -> Iterator[tuple[str, Values]]:
 
 
 def values_of_hdf5(path: Path) -> Iterator[tuple[str, Values]]:
-    """Datasets, column by column where columns have names, and attributes."""
+    """Datasets, column by column where columns have names, and attributes; not the ledger."""
     for name, data, attributes in hdf5_items(path):
+        if name.split("/")[0] == "ledger":
+            continue
         words = [str(attributes.pop(key, "")) for key in ("columns", "components")]
         columns = [column for text in words for column in text.split(",") if column]
         for key, value in attributes.items():
