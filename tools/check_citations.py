@@ -15,6 +15,7 @@ import re
 import subprocess
 import sys
 import tokenize
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -164,30 +165,41 @@ def check_prose(path: Path, root: Path, pages: dict[str, Page]) -> list[str]:
     """Faults of the citations in one file."""
     text, starts = prose(path)
     place = path.relative_to(root)
-    faults = []
+    found = [*wrong_spellings(text), *lost_pages(text, path, root, pages)]
+    found += wrong_numbers(text, pages)
+    return [f"{place}:{line_of(starts, at)}: {fault}" for at, fault in found]
 
-    def report(at: int, fault: str) -> None:
-        faults.append(f"{place}:{line_of(starts, at)}: {fault}")
 
+def wrong_spellings(text: str) -> Iterator[tuple[int, str]]:
+    """Citations in an old spelling, and equations that the paper has not."""
     for pattern, better in OLD:
         for found in pattern.finditer(text):
-            report(found.start(), f"'{found[0]}': citations are spelt {better}")
+            yield found.start(), f"'{found[0]}': citations are spelt {better}"
     for found in EQUATION.finditer(text):
         if any(int(n) > EQUATIONS_OF_THE_PAPER for n in found.groups() if n):
-            report(found.start(), f"'{found[0]}': the paper has no such equation")
+            yield found.start(), f"'{found[0]}': the paper has no such equation"
+
+
+def lost_pages(
+    text: str, path: Path, root: Path, pages: dict[str, Page]
+) -> Iterator[tuple[int, str]]:
+    """Pages that do not exist."""
     for found in PAGE.finditer(text):
         name = found[1]
         near = (path.parent / name, root / name, root / "docs" / name)
         is_known = Path(name).name in WRITTEN | pages.keys()
         if not is_known and not any(p.exists() for p in near):
-            report(found.start(), f"there is no page '{name}'")
+            yield found.start(), f"there is no page '{name}'"
+
+
+def wrong_numbers(text: str, pages: dict[str, Page]) -> Iterator[tuple[int, str]]:
+    """Sections and equations that a page has not."""
     for found in CITED.finditer(text):
         page = pages.get(found[1])
         for number, is_equation in numbers_in(found[2]) if page else ():
             if number not in (page.equations if is_equation else page.sections):
                 kind = "equation" if is_equation else "section"
-                report(found.start(), f"{found[1]} has no {kind} {number}")
-    return faults
+                yield found.start(), f"{found[1]} has no {kind} {number}"
 
 
 def check_own_equations(page: Page, root: Path, known: set[str]) -> list[str]:
