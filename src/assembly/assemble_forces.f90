@@ -4,7 +4,8 @@ module assemble_forces
   use problem_definition, only: problem
   use step_plan, only: step_load
   use dof_numbering, only: numbering
-  use matrix_pattern, only: pattern, multiply
+  use matrix_pattern, only: pattern
+  use global_vectors, only: multiply
   implicit none
   private
   public :: assemble_force, sum_added_mass, sum_base_acceleration, rigid_translation, inertia_force

@@ -12,7 +12,6 @@ set(sources
   files/vtk_order.f90
   files/vtu_files.f90
   files/whole_files.f90
-  math/anderson_mixing.f90
   math/dense_factor.f90
   math/small_matrix.f90
   math/sorted_lists.f90

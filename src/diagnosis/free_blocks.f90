@@ -7,6 +7,7 @@
 module free_blocks
   use block_motion, only: block_name, freedom_text, motion_text
   use errors, only: error_type
+  use global_vectors, only: dot
   use joint_capacity, only: best_forces, find_best_forces, point_limits
   use joint_law, only: joint_state, state_open
   use kinds, only: rk
@@ -165,7 +166,7 @@ contains
         motion(k) = 1.0_rk
         call move_block(scene, task%blocks, b, motion, u)
         call restrict(system%numbers, scene%joints, u, q)
-        on_blocks(6*(b - 1) + k) = dot_product(force, q)
+        on_blocks(6*(b - 1) + k) = dot(force, q)
       end do
     end do
     load = matmul(on_blocks, task%free)

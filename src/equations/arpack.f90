@@ -2,7 +2,8 @@
 module arpack
   use kinds, only: rk
   use errors, only: error_type, raise
-  use matrix_pattern, only: pattern, multiply
+  use matrix_pattern, only: pattern
+  use global_vectors, only: multiply
   use linear_solver, only: equation_solver
   implicit none
   private

@@ -11,7 +11,7 @@ module global_vectors
   use matrix_pattern, only: pattern, multiply_local => multiply, diagonal_local => diagonal
   implicit none
   private
-  public :: dot, norm, distance, length, total, largest, multiply, diagonal
+  public :: dot, norm, distance, length, total, largest_entry, multiply, diagonal
 
   !> Euclidean norm by `norm2`, which scales and can neither overflow nor underflow.
   interface norm
@@ -70,10 +70,10 @@ contains
 
   !> The largest entry; of an empty vector -huge. A distributed back end takes the largest of all
   !> parts.
-  real(rk) function largest(x)
+  real(rk) function largest_entry(x)
     real(rk), intent(in) :: x(:)
-    largest = maxval(x)
-  end function largest
+    largest_entry = maxval(x)
+  end function largest_entry
 
   !> y = A x over all unknowns, prescribed ones included. A distributed back end fetches the entries
   !> of x that its columns need, and adds the entries of y on borders.

@@ -1,4 +1,5 @@
 set(sources
+  anderson_mixing.f90
   arpack.f90
   blas_bridge.c
   blas_threads.f90

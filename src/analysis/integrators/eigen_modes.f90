@@ -6,7 +6,8 @@ module eigen_modes
   use kinds, only: rk
   use errors, only: error_type, raise
   use dof_numbering, only: numbering
-  use matrix_pattern, only: pattern, multiply, diagonal
+  use matrix_pattern, only: pattern
+  use global_vectors, only: norm, distance, multiply, diagonal
   use analysis_state, only: vibration_mode
   use assemble_forces, only: inertia_force
   use linear_solver, only: equation_solver
@@ -183,7 +184,7 @@ contains
       call multiply(matrix, mass, x, inertia)
       elastic(matrix%num_free + 1:) = 0.0_rk
       inertia(matrix%num_free + 1:) = 0.0_rk
-      if (norm2(elastic - lambda(k)*inertia) <= largest_residual*norm2(elastic)) cycle
+      if (distance(elastic, lambda(k)*inertia) <= largest_residual*norm(elastic)) cycle
       write (text, '(a,i0,a)') 'mode ', k, ' does not satisfy its equation'
       call raise(error, trim(text))
       return

@@ -8,7 +8,8 @@
 module initial_acceleration
   use kinds, only: rk
   use errors, only: error_type, raise
-  use matrix_pattern, only: pattern, multiply, diagonal
+  use matrix_pattern, only: pattern
+  use global_vectors, only: dot, norm, largest_entry, multiply, diagonal
   implicit none
   private
   public :: find_acceleration
@@ -53,7 +54,7 @@ contains
     z = scale*rest
     p = z
     allocate (product(size(r)))
-    size_of_rest = dot_product(rest, z)
+    size_of_rest = dot(rest, z)
     first_size = size_of_rest
     is_semidefinite = .false.
     do i = 1, most_products
@@ -61,14 +62,14 @@ contains
       if (is_solved) return
       call multiply(matrix, mass, p, product)
       product = merge(product, 0.0_rk, scale > 0.0_rk)
-      curvature = dot_product(p, product)
-      is_semidefinite = curvature <= massless*dot_product(p/max(scale, tiny(1.0_rk)), p)
+      curvature = dot(p, product)
+      is_semidefinite = curvature <= massless*dot(p/max(scale, tiny(1.0_rk)), p)
       if (is_semidefinite) return
       a = a + size_of_rest/curvature*p
       rest = rest - size_of_rest/curvature*product
       z = scale*rest
       last_size = size_of_rest
-      size_of_rest = dot_product(rest, z)
+      size_of_rest = dot(rest, z)
       p = z + size_of_rest/last_size*p
     end do
   end subroutine solve_definite
@@ -88,20 +89,20 @@ contains
     allocate (y(size(r)), gradient(size(r)), product(size(r)))
     y = 0.0_rk
     rest = s*r
-    smallest_slope = (tolerance*norm2(rest))**2
+    smallest_slope = (tolerance*norm(rest))**2
     call multiply_scaled(rest, gradient)
     p = gradient
-    slope = dot_product(gradient, gradient)
+    slope = dot(gradient, gradient)
     do i = 1, most_products
       is_solved = slope <= smallest_slope
       if (is_solved) exit
       call multiply_scaled(p, product)
-      step = slope/dot_product(product, product)
+      step = slope/dot(product, product)
       y = y + step*p
       rest = rest - step*product
       call multiply_scaled(rest, gradient)
       last_slope = slope
-      slope = dot_product(gradient, gradient)
+      slope = dot(gradient, gradient)
       p = gradient + slope/last_slope*p
     end do
     a = s*y
@@ -125,7 +126,7 @@ contains
     allocate (scale(matrix%num_total))
     call diagonal(matrix, mass, scale)
     scale(matrix%num_free + 1:) = 0.0_rk
-    largest = maxval(scale)
+    largest = largest_entry(scale)
     do i = 1, matrix%num_total
       if (scale(i) > massless*largest) then
         scale(i) = 1.0_rk/scale(i)
@@ -151,7 +152,7 @@ contains
     do k = 1, matrix%num_free
       total(node(k)) = total(node(k)) + own(k)
     end do
-    smallest = massless*maxval(total)
+    smallest = massless*largest_entry(total)
     scale = 0.0_rk
     do k = 1, matrix%num_free
       if (total(node(k)) > smallest) scale(k) = 1.0_rk/sqrt(total(node(k)))

@@ -4,7 +4,8 @@ module solid_tangent
   use kinds, only: rk
   use errors, only: error_type
   use problem_definition, only: problem
-  use matrix_pattern, only: pattern, full_pattern, spread_values, multiply
+  use matrix_pattern, only: pattern, full_pattern, spread_values
+  use global_vectors, only: multiply
   use inelastic_forces, only: block_answer
   use inelastic_stiffness, only: lost_stiffness
   use step_system, only: dam_system

@@ -5,7 +5,7 @@ module step_equilibrium
   use dam_mesh, only: mesh
   use problem_definition, only: problem
   use step_plan, only: step
-  use matrix_pattern, only: multiply
+  use global_vectors, only: norm, multiply
   use solver_catalogue, only: make_solver, symmetric_solver
   use equilibrium, only: equilibrium_solver, balance_outcome
   use equilibrium_linear, only: linear_equilibrium
@@ -124,7 +124,7 @@ contains
     real(rk), intent(in) :: tolerance
     type(balance_outcome), intent(inout) :: outcome
     real(rk) :: residual
-    residual = norm2(unbalance)/max(reference, tiny(1.0_rk))
+    residual = norm(unbalance)/max(reference, tiny(1.0_rk))
     outcome%residual = max(outcome%residual, residual)
     outcome%has_converged = residual <= tolerance
   end subroutine check_bulk

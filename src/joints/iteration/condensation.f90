@@ -4,6 +4,7 @@ module condensation
   use kinds, only: rk
   use errors, only: error_type
   use matrix_pattern, only: pattern
+  use global_vectors, only: norm
   use joint_law, only: joint_state
   use joint_points, only: joint
   use joint_operator, only: jump_operator
@@ -117,8 +118,8 @@ contains
     call gather_tractions(self%operator, new, traction)
     drift = self%condensed%reference*(drift + balance%offset - jump)
     associate (area => spread(self%operator%area, 1, 3))
-      force = max(norm2(area*traction), balance%reference)
-      has_drifted = norm2(area*drift) > allowed_drift*self%controls%residual_tolerance*force
+      force = max(norm(area*traction), balance%reference)
+      has_drifted = norm(area*drift) > allowed_drift*self%controls%residual_tolerance*force
     end associate
   end function has_drifted
 

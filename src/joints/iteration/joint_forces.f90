@@ -1,6 +1,7 @@
 !> The laws of all joints at once: tractions, tangents and energies of all points of the operator.
 module joint_forces
   use kinds, only: rk
+  use global_vectors, only: dot
   use joint_law, only: joint_state
   use joint_points, only: joint
   use joint_operator, only: jump_operator
@@ -148,9 +149,9 @@ contains
     do j = 1, size(joints)
       allocate (stored(joints(j)%num_points))
       call joints(j)%law%stored_energy(states(j), stored)
-      work%stored = work%stored + dot_product(joints(j)%area, stored)
-      work%friction = work%friction + dot_product(joints(j)%area, states(j)%friction_work)
-      work%fracture = work%fracture + dot_product(joints(j)%area, states(j)%fracture_work)
+      work%stored = work%stored + dot(joints(j)%area, stored)
+      work%friction = work%friction + dot(joints(j)%area, states(j)%friction_work)
+      work%fracture = work%fracture + dot(joints(j)%area, states(j)%fracture_work)
       deallocate (stored)
     end do
   end subroutine sum_joint_work

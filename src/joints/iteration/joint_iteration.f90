@@ -2,6 +2,7 @@
 !> a trial jump and the measure of what is still out of balance.
 module joint_iteration
   use kinds, only: rk
+  use global_vectors, only: norm, distance, total
   use joint_law, only: joint_state
   use joint_points, only: joint
   use joint_operator, only: jump_operator
@@ -73,7 +74,7 @@ contains
     field%start_spring = field%traction/reference
     call start_multiplier(joints, old, new, field%contact)
     call gather_gaps(operator, new, field%gap)
-    field%start_force = norm2(spread(operator%area, 1, 3)*field%traction)
+    field%start_force = norm(spread(operator%area, 1, 3)*field%traction)
     field%multiplier = field%traction(2:3, :)
     field%tangent = closed_tangent(reference)
     if (.not. balance%starts_bonded) then
@@ -240,22 +241,23 @@ contains
     type(joint_field), intent(in) :: field !< at the new jumps
     real(rk), intent(in) :: linear(:, :) !< (3, points) tractions of the linearised solution [Pa]
     type(balance_outcome), intent(inout) :: outcome
-    real(rk) :: unbalance(operator%num_points), force, own
+    real(rk), dimension(operator%num_points) :: unbalance, square
+    real(rk) :: force
     integer :: p
-    own = 0.0_rk
     do p = 1, operator%num_points
       unbalance(p) = operator%area(p)*norm2(field%traction(:, p) - linear(:, p))
-      own = own + sum((operator%area(p)*field%traction(:, p))**2)
+      square(p) = sum((operator%area(p)*field%traction(:, p))**2)
     end do
-    force = max(sqrt(own), field%start_force, smallest_share*field%bulk_force, tiny(1.0_rk))
-    outcome%residual = norm2(unbalance)/force
+    force = max(sqrt(total(square)), field%start_force, smallest_share*field%bulk_force, &
+                tiny(1.0_rk))
+    outcome%residual = norm(unbalance)/force
     outcome%worst_point = maxloc(unbalance, 1)
   end subroutine measure_residual
 
   !> The correction of the jumps that is still asked for, over their increment; decides convergence.
   !> Where contact takes the jumps away, the springs' lengths are still a measure. An out-of-balance
   !> of round-off asks for nothing, whatever it would move in a direction that nothing resists.
-  pure subroutine measure_correction(field, reference, correction, tolerance, outcome)
+  subroutine measure_correction(field, reference, correction, tolerance, outcome)
     type(joint_field), intent(in) :: field
     real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
     real(rk), intent(in) :: correction(:, :) !< (3, points) [m]
@@ -263,10 +265,10 @@ contains
     type(balance_outcome), intent(inout) :: outcome
     real(rk) :: increment, spring(3, size(correction, 2))
     spring = field%traction/reference
-    increment = max(norm2(field%jump - field%start_jump), smallest_increment*norm2(field%jump), &
-                    norm2(spring - field%start_spring), smallest_increment*norm2(spring), &
+    increment = max(distance(field%jump, field%start_jump), smallest_increment*norm(field%jump), &
+                    distance(spring, field%start_spring), smallest_increment*norm(spring), &
                     tiny(1.0_rk))
-    outcome%correction = norm2(correction)/increment
+    outcome%correction = norm(correction)/increment
     outcome%has_converged = outcome%correction <= tolerance .or. outcome%residual <= nothing_left
   end subroutine measure_correction
 end module joint_iteration

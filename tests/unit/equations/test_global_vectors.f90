@@ -3,7 +3,8 @@ program test_global_vectors
   use kinds, only: rk
   use testing, only: test_log, check, check_close
   use matrix_pattern, only: pattern
-  use global_vectors, only: dot, norm, distance, length, total, largest, multiply, diagonal
+  use global_vectors, only: dot, norm, distance, length, total, largest_entry, multiply, &
+                            diagonal
   implicit none
   ! Entries are small integers: their sums and products are exact.
   real(rk), parameter :: exact = 0.0_rk
@@ -22,7 +23,7 @@ contains
     call check_close(log, dot(x, [3.0_rk, 1.0_rk, 1.0_rk, -2.0_rk]), 1.0_rk, exact, 'x . y')
     call check_close(log, dot(none, none), 0.0_rk, exact, 'product of empty vectors')
     call check_close(log, total(x), 5.0_rk, exact, 'sum of entries')
-    call check_close(log, largest(x), 4.0_rk, exact, 'largest entry')
+    call check_close(log, largest_entry(x), 4.0_rk, exact, 'largest entry')
   end subroutine sums
 
   subroutine norms()

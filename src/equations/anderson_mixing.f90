@@ -2,6 +2,7 @@
 !> whose change g(s) - s is smallest. With a linear g it is GMRES on s = g(s).
 module anderson_mixing
   use kinds, only: rk
+  use global_vectors, only: dot
   use small_matrix, only: solve_dense
   implicit none
   private
@@ -76,11 +77,11 @@ contains
     if (self%num_pairs == 0) return
     do j = 1, self%num_pairs
       do i = 1, j
-        gram(i, j) = dot_product(self%df(:, i), self%df(:, j))
+        gram(i, j) = dot(self%df(:, i), self%df(:, j))
         gram(j, i) = gram(i, j)
       end do
       scale(j) = 1.0_rk/max(sqrt(gram(j, j)), tiny(1.0_rk))
-      right(j, 1) = scale(j)*dot_product(self%df(:, j), f)
+      right(j, 1) = scale(j)*dot(self%df(:, j), f)
     end do
     do j = 1, self%num_pairs
       gram(:, j) = gram(:, j)*scale*scale(j)
