@@ -3,6 +3,7 @@ module assemble_forces
   use kinds, only: rk
   use problem_definition, only: problem
   use step_plan, only: step_load
+  use node_dofs, only: zero_vectors
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
   use global_vectors, only: multiply
@@ -19,8 +20,8 @@ contains
     type(numbering), intent(in) :: numbers
     real(rk), intent(out) :: force(:) !< (num_total) [N]
     real(rk), allocatable :: nodal(:, :), density(:)
-    allocate (nodal(3, scene%mesh%num_nodes), density(scene%mesh%num_elements))
-    nodal = 0.0_rk
+    nodal = zero_vectors(scene%mesh%num_nodes)
+    allocate (density(scene%mesh%num_elements))
     density = 0.0_rk
     where (scene%mesh%material_of_element > 0)
       density = scene%materials(max(scene%mesh%material_of_element, 1))%density

@@ -6,6 +6,7 @@ module constraint_elimination
   use joint_points, only: joint
   use node_ties, only: node_tie
   use step_plan, only: step_fixity
+  use node_dofs, only: dof_map, displacement_dofs
   use dof_numbering, only: numbering, linear_links, number_unknowns
   use jump_links, only: nodal_points, link_nodes
   implicit none
@@ -29,8 +30,10 @@ contains
     logical, allocatable :: is_used(:), is_fixed(:, :)
     type(nodal_points) :: points
     type(linear_links) :: links
+    type(dof_map) :: dofs
     integer :: e, k
-    allocate (is_used(model%num_nodes), is_fixed(3, model%num_nodes))
+    dofs = displacement_dofs(model%num_nodes)
+    allocate (is_used(model%num_nodes), is_fixed(size(dofs%components), model%num_nodes))
     is_used = .false.
     do e = 1, model%num_elements
       if (model%material_of_element(e) == 0 .and. model%element_type(e) /= 'IFACE4') cycle
@@ -44,10 +47,10 @@ contains
     end do
     call list_points(joints, points)
     points%is_light = nodes_of_quads(model)
-    call link_nodes(points, ties, is_used, is_fixed, links, error)
+    call link_nodes(dofs, points, ties, is_used, is_fixed, links, error)
     if (allocated(error)) return
     call mark_last(joints, links%first_jump, is_used, links%is_last)
-    call number_unknowns(is_used, is_fixed, links, numbers, error)
+    call number_unknowns(dofs, is_used, is_fixed, links, numbers, error)
   end subroutine number_step
 
   !> Nodes of interface quadrilaterals, which have no mass.

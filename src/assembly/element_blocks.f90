@@ -79,7 +79,7 @@ contains
     integer :: a, k
     taken = 0_long
     do a = 1, size(nodes)
-      do k = numbers%row_start(3*nodes(a) - 2), numbers%row_start(3*nodes(a) + 1) - 1
+      do k = numbers%node_start(nodes(a)), numbers%node_start(nodes(a) + 1) - 1
         taken = ior(taken, used(numbers%unknown(k)))
       end do
     end do
@@ -92,7 +92,7 @@ contains
     integer(long), intent(inout) :: used(:)
     integer :: a, k
     do a = 1, size(nodes)
-      do k = numbers%row_start(3*nodes(a) - 2), numbers%row_start(3*nodes(a) + 1) - 1
+      do k = numbers%node_start(nodes(a)), numbers%node_start(nodes(a) + 1) - 1
         used(numbers%unknown(k)) = ibset(used(numbers%unknown(k)), bit)
       end do
     end do

@@ -146,7 +146,7 @@ contains
       integer, intent(in) :: nodes(:)
       integer :: n, k, g
       do n = 1, size(nodes)
-        do k = numbers%row_start(3*nodes(n) - 2), numbers%row_start(3*nodes(n) + 1) - 1
+        do k = numbers%node_start(nodes(n)), numbers%node_start(nodes(n) + 1) - 1
           g = group(numbers%unknown(k))
           if (last_cell(g) == c) cycle
           last_cell(g) = c

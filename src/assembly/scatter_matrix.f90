@@ -1,6 +1,7 @@
 !> Adds small matrices of physical dofs to the matrices of unknowns: values + T^T k T.
 module scatter_matrix
   use kinds, only: rk
+  use node_dofs, only: num_directions
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern, add_block
   use sorted_lists, only: sorted_unique, place_in
@@ -10,18 +11,16 @@ module scatter_matrix
 
 contains
 
-  !> Adds a symmetric matrix on the dofs of some nodes, ordered node by node.
+  !> Adds a symmetric matrix on the displacements of some nodes, ordered node by node.
   subroutine scatter_nodes(numbers, nodes, k, matrix, values)
     type(numbering), intent(in) :: numbers
     integer, intent(in) :: nodes(:)
-    real(rk), intent(in) :: k(:, :) !< (3*nodes, 3*nodes)
+    real(rk), intent(in) :: k(:, :) !< (directions*nodes, directions*nodes)
     type(pattern), intent(in) :: matrix
     real(rk), intent(inout) :: values(:)
-    integer :: dof(3*size(nodes)), unknown(3*size(nodes)), place(3*size(nodes)), a
+    integer, dimension(num_directions*size(nodes)) :: dof, unknown, place
     logical :: is_plain
-    do a = 1, size(nodes)
-      dof(3*a - 2:3*a) = 3*nodes(a) + [-2, -1, 0]
-    end do
+    dof = numbers%dofs%displacements_of(nodes)
     call find_plain(numbers, dof, unknown, place, is_plain)
     if (is_plain) then
       call add_block(matrix, unknown, k(place, place), values)

@@ -10,6 +10,7 @@ set(sources
   mesh/id_map.f90
   mesh/mesh_faces.f90
   mesh/mesh_sets.f90
+  mesh/node_dofs.f90
   mesh/set_lists.f90
   steps/amplitudes.f90
   steps/dof_tables.f90

@@ -2,6 +2,7 @@
 module spring_box
   use kinds, only: rk
   use errors, only: error_type
+  use node_dofs, only: displacement_dofs
   use dof_numbering, only: numbering, linear_links, number_unknowns
   use matrix_pattern, only: pattern, add_block
   use pattern_builder, only: cell_list, build_pattern
@@ -28,7 +29,7 @@ contains
     is_used = .true.
     is_fixed = .false.
     is_fixed(:, :side**2) = .true.
-    call number_unknowns(is_used, is_fixed, links, numbers, error)
+    call number_unknowns(displacement_dofs(side**3), is_used, is_fixed, links, numbers, error)
     if (allocated(error)) error stop 'spring_box: numbering'
     call build_pattern(numbers, cells, matrix)
     matrix%num_last = num_jumps
@@ -66,9 +67,7 @@ contains
     real(rk), intent(inout) :: values(:)
     integer :: unknown(24), sorted(24), k
     real(rk) :: block(24, 24)
-    do k = 1, 8
-      unknown(3*k - 2:3*k) = numbers%unknown(numbers%row_start(3*nodes(k) - 2) + [0, 1, 2])
-    end do
+    unknown = numbers%unknown(numbers%row_start(numbers%dofs%displacements_of(nodes)))
     do k = 1, 24
       sorted(count(unknown <= unknown(k))) = unknown(k)
     end do

@@ -146,16 +146,16 @@ contains
     type(numbering), intent(in) :: numbers
     real(rk), intent(in) :: u(:, :) !< (3, nodes) at the start of the step [m]
     type(support), allocatable, intent(out) :: supports(:)
-    integer :: k, dof, num_found
+    integer :: k, unknown, num_found
     allocate (supports(size(plan%fixities)))
     num_found = 0
     do k = 1, size(plan%fixities)
       associate (fixity => plan%fixities(k))
-        dof = 3*(fixity%node - 1) + fixity%dof
-        if (numbers%row_start(dof + 1) == numbers%row_start(dof)) cycle ! a node without elements
+        unknown = numbers%unknown_of(fixity%node, fixity%dof)
+        if (unknown == 0) cycle ! a node without elements
         num_found = num_found + 1
-        supports(num_found) = support(numbers%unknown(numbers%row_start(dof)), &
-                                      u(fixity%dof, fixity%node), fixity%value, fixity%amplitude)
+        supports(num_found) = support(unknown, u(fixity%dof, fixity%node), fixity%value, &
+                                      fixity%amplitude)
       end associate
     end do
     supports = supports(:num_found)

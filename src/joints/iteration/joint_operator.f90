@@ -96,7 +96,7 @@ contains
       real(rk), intent(in) :: factor
       integer :: k, dof
       if (.not. abs(factor) > 0.0_rk) return
-      dof = 3*(node - 1) + direction
+      dof = numbers%dofs%dof_of(node, direction)
       do k = numbers%row_start(dof), numbers%row_start(dof + 1) - 1
         call add_term(numbers%unknown(k), factor*numbers%coefficient(k))
       end do

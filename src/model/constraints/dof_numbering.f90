@@ -7,12 +7,13 @@
 module dof_numbering
   use kinds, only: rk
   use errors, only: error_type, raise
+  use node_dofs, only: dof_map
   implicit none
   private
   public :: numbering, linear_links, number_unknowns
 
-  !> Dependent dofs: dof(k) = sum of coefficient*term. A dof is 3*(node - 1) + direction. A term may
-  !> depend on others only if their link stands earlier in the list.
+  !> Dependent dofs: dof(k) = sum of coefficient*term, dofs as in `dof_map`. A term may depend on
+  !> others only if their link stands earlier in the list.
   type :: linear_links
     integer :: num_links = 0, num_terms = 0
     integer, allocatable :: dof(:) !< (links) the dependent dof
@@ -30,45 +31,48 @@ module dof_numbering
     integer :: num_free = 0, num_total = 0 !< unknowns: free; free and prescribed
     integer :: num_last = 0 !< of the free ones: all that joints work in, jumps included
     integer :: num_jumps = 0 !< the last of these
-    integer, allocatable :: row_start(:) !< (3*num_nodes + 1) rows of T: 3*(node - 1) + direction
+    type(dof_map) :: dofs !< rows of T
+    integer, allocatable :: row_start(:) !< (dofs + 1) first entry of each row of T
+    integer, allocatable :: node_start(:) !< (nodes + 1) first entry of the rows of each node
     integer, allocatable :: unknown(:) !< columns of T
     real(rk), allocatable :: coefficient(:) !< values of T
     integer, allocatable :: node(:) !< (num_total) node of each unknown
-    integer, allocatable :: direction(:) !< (num_total) 1..3: x, y, z; of a jump: n, s1, s2
+    integer, allocatable :: direction(:) !< (num_total) component of the node; of a jump: n, s1, s2
     integer, allocatable :: first_jump(:) !< (points) first unknown of a point's jump, 0 for none
   contains
-    procedure :: expand, add_expanded, reduce, add_reduced, describe
+    procedure :: expand, add_expanded, compress, reduce, add_reduced, unknown_of, describe
   end type numbering
 
 contains
 
   !> Numbers the unknowns of a mesh. Fails when a dof is both fixed and dependent.
-  subroutine number_unknowns(is_used, is_fixed, links, numbers, error)
+  subroutine number_unknowns(dofs, is_used, is_fixed, links, numbers, error)
+    type(dof_map), intent(in) :: dofs
     logical, intent(in) :: is_used(:) !< (nodes) belongs to an element
-    logical, intent(in) :: is_fixed(:, :) !< (3, nodes) prescribed
+    logical, intent(in) :: is_fixed(:, :) !< (components, nodes) prescribed
     type(linear_links), intent(in) :: links !< dependent dofs
     type(numbering), intent(out) :: numbers
     type(error_type), allocatable, intent(out) :: error
     integer, allocatable :: own(:), link(:)
-    call find_links(is_fixed, links, link, error)
+    numbers%dofs = dofs
+    call find_links(dofs, is_fixed, links, link, error)
     if (allocated(error)) return
     call number_own(is_used, is_fixed, link, links, numbers, own)
     call resolve_rows(links, own, link, numbers, error)
   end subroutine number_unknowns
 
   !> The link that gives each dof, 0 for none.
-  subroutine find_links(is_fixed, links, link, error)
+  subroutine find_links(dofs, is_fixed, links, link, error)
+    type(dof_map), intent(in) :: dofs
     logical, intent(in) :: is_fixed(:, :)
     type(linear_links), intent(in) :: links
-    integer, allocatable, intent(out) :: link(:) !< (3*nodes)
+    integer, allocatable, intent(out) :: link(:) !< (dofs)
     type(error_type), allocatable, intent(out) :: error
-    integer :: k, node, direction
-    allocate (link(size(is_fixed)))
+    integer :: k
+    allocate (link(dofs%num_dofs))
     link = 0
     do k = 1, links%num_links
-      node = (links%dof(k) + 2)/3
-      direction = links%dof(k) - 3*(node - 1)
-      if (is_fixed(direction, node)) then
+      if (is_fixed(dofs%component_of(links%dof(k)), dofs%node(links%dof(k)))) then
         call raise(error, 'a degree of freedom is both fixed and dependent on others')
         return
       end if
@@ -82,18 +86,22 @@ contains
     integer, intent(in) :: link(:)
     type(linear_links), intent(in) :: links
     type(numbering), intent(inout) :: numbers
-    integer, allocatable, intent(out) :: own(:) !< (3*nodes) unknown of each dof, 0 for none
-    logical, allocatable :: is_last(:, :)
+    integer, allocatable, intent(out) :: own(:) !< (dofs) unknown of each dof, 0 for none
+    logical, allocatable :: is_last(:), is_held(:)
     integer :: k, first, first_last
     allocate (own(size(link)), numbers%node(size(link) + links%num_jumps))
     allocate (numbers%direction(size(link) + links%num_jumps))
     own = 0
     numbers%num_nodes = size(is_used)
     numbers%num_jumps = links%num_jumps
-    call find_last(links, size(is_used), is_last)
-    call number_where(is_used,.not. (is_fixed .or. is_last), link, numbers, own)
+    call find_last(numbers%dofs, links, is_last)
+    allocate (is_held(size(link)))
+    do k = 1, size(link)
+      is_held(k) = is_fixed(numbers%dofs%component_of(k), numbers%dofs%node(k))
+    end do
+    call number_where(is_used,.not. (is_held .or. is_last), link, numbers, own)
     first_last = numbers%num_total
-    call number_where(is_used, is_last .and. .not. is_fixed, link, numbers, own)
+    call number_where(is_used, is_last .and. .not. is_held, link, numbers, own)
     first = numbers%num_total
     do k = 1, links%num_jumps
       numbers%node(first + k) = links%jump_node(k)
@@ -106,47 +114,42 @@ contains
     if (allocated(links%first_jump)) then
       numbers%first_jump = merge(links%first_jump + first, 0, links%first_jump > 0)
     end if
-    call number_where(is_used, is_fixed, link, numbers, own)
+    call number_where(is_used, is_held, link, numbers, own)
     numbers%node = numbers%node(:numbers%num_total)
     numbers%direction = numbers%direction(:numbers%num_total)
   end subroutine number_own
 
   !> The dofs that stand last: of nodes so marked, or what these follow.
-  pure subroutine find_last(links, num_nodes, is_last)
+  pure subroutine find_last(dofs, links, is_last)
+    type(dof_map), intent(in) :: dofs
     type(linear_links), intent(in) :: links
-    integer, intent(in) :: num_nodes
-    logical, allocatable, intent(out) :: is_last(:, :) !< (3, nodes)
+    logical, allocatable, intent(out) :: is_last(:) !< (dofs)
     integer :: k, t
-    allocate (is_last(3, num_nodes), source=.false.)
+    allocate (is_last(dofs%num_dofs), source=.false.)
     if (.not. allocated(links%is_last)) return
-    is_last = spread(links%is_last, 1, 3)
+    is_last = links%is_last(dofs%node)
     do k = links%num_links, 1, -1
-      if (.not. is_last(1 + mod(links%dof(k) - 1, 3), (links%dof(k) + 2)/3)) cycle
+      if (.not. is_last(links%dof(k))) cycle
       do t = links%first(k), links%first(k + 1) - 1
-        associate (term => links%term(t))
-          if (term > 0) is_last(1 + mod(term - 1, 3), (term + 2)/3) = .true.
-        end associate
+        if (links%term(t) > 0) is_last(links%term(t)) = .true.
       end do
     end do
   end subroutine find_last
 
   !> Numbers the independent dofs of used nodes where `wanted` holds, node by node.
   pure subroutine number_where(is_used, wanted, link, numbers, own)
-    logical, intent(in) :: is_used(:), wanted(:, :)
+    logical, intent(in) :: is_used(:)
+    logical, intent(in) :: wanted(:) !< (dofs)
     integer, intent(in) :: link(:)
     type(numbering), intent(inout) :: numbers
     integer, intent(inout) :: own(:)
-    integer :: node, i, dof
-    do node = 1, size(is_used)
-      if (.not. is_used(node)) cycle
-      do i = 1, 3
-        dof = 3*(node - 1) + i
-        if (.not. wanted(i, node) .or. link(dof) > 0) cycle
-        numbers%num_total = numbers%num_total + 1
-        numbers%node(numbers%num_total) = node
-        numbers%direction(numbers%num_total) = i
-        own(dof) = numbers%num_total
-      end do
+    integer :: dof
+    do dof = 1, size(wanted)
+      if (.not. (is_used(numbers%dofs%node(dof)) .and. wanted(dof)) .or. link(dof) > 0) cycle
+      numbers%num_total = numbers%num_total + 1
+      numbers%node(numbers%num_total) = numbers%dofs%node(dof)
+      numbers%direction(numbers%num_total) = numbers%dofs%component_of(dof)
+      own(dof) = numbers%num_total
     end do
   end subroutine number_where
 
@@ -169,6 +172,7 @@ contains
       if (link(dof) > 0) length = start(link(dof) + 1) - start(link(dof))
       numbers%row_start(dof + 1) = numbers%row_start(dof) + length
     end do
+    numbers%node_start = numbers%row_start(numbers%dofs%first)
     allocate (numbers%unknown(numbers%row_start(size(own) + 1) - 1))
     allocate (numbers%coefficient(size(numbers%unknown)))
     do dof = 1, size(own)
@@ -239,11 +243,12 @@ contains
     end subroutine add_term
   end subroutine resolve_links
 
-  !> u = T q.
+  !> u = T q. A field has the first components of each node: 3 rows hold the displacements, and one
+  !> row more holds what the fourth component is, zero at nodes without it.
   pure subroutine expand(self, q, u)
     class(numbering), intent(in) :: self
     real(rk), intent(in) :: q(:) !< (num_total)
-    real(rk), intent(out) :: u(:, :) !< (3, nodes)
+    real(rk), intent(out) :: u(:, :) !< (components, nodes)
     u = 0.0_rk
     call self%add_expanded(q, u)
   end subroutine expand
@@ -252,21 +257,37 @@ contains
   pure subroutine add_expanded(self, q, u)
     class(numbering), intent(in) :: self
     real(rk), intent(in) :: q(:) !< (num_total)
-    real(rk), intent(inout) :: u(:, :) !< (3, nodes)
-    integer :: node, i, k
+    real(rk), intent(inout) :: u(:, :) !< (components, nodes)
+    integer :: node, i, k, dof
     do node = 1, self%num_nodes
-      do i = 1, 3
-        do k = self%row_start(3*node - 3 + i), self%row_start(3*node - 2 + i) - 1
+      do i = 1, min(size(u, 1), self%dofs%first(node + 1) - self%dofs%first(node))
+        dof = self%dofs%first(node) + i - 1
+        do k = self%row_start(dof), self%row_start(dof + 1) - 1
           u(i, node) = u(i, node) + self%coefficient(k)*q(self%unknown(k))
         end do
       end do
     end do
   end subroutine add_expanded
 
+  !> The unknowns of a field, the inverse of `expand` but for jumps: those are not known to the
+  !> numbering and become zero.
+  pure subroutine compress(self, u, q)
+    class(numbering), intent(in) :: self
+    real(rk), intent(in) :: u(:, :) !< (components, nodes)
+    real(rk), intent(out) :: q(:) !< (num_total) zero where the field lacks the component
+    integer :: k
+    do k = 1, self%num_total
+      q(k) = 0.0_rk
+      if (.not. is_jump(self, k) .and. self%direction(k) <= size(u, 1)) then
+        q(k) = u(self%direction(k), self%node(k))
+      end if
+    end do
+  end subroutine compress
+
   !> r = T^T f.
   pure subroutine reduce(self, f, r)
     class(numbering), intent(in) :: self
-    real(rk), intent(in) :: f(:, :) !< (3, nodes)
+    real(rk), intent(in) :: f(:, :) !< (components, nodes)
     real(rk), intent(out) :: r(:) !< (num_total)
     r = 0.0_rk
     call self%add_reduced(f, r)
@@ -275,19 +296,40 @@ contains
   !> r = r + T^T f.
   pure subroutine add_reduced(self, f, r)
     class(numbering), intent(in) :: self
-    real(rk), intent(in) :: f(:, :) !< (3, nodes)
+    real(rk), intent(in) :: f(:, :) !< (components, nodes)
     real(rk), intent(inout) :: r(:) !< (num_total)
-    integer :: node, i, k
+    integer :: node, i, k, dof
     do node = 1, self%num_nodes
-      do i = 1, 3
-        do k = self%row_start(3*node - 3 + i), self%row_start(3*node - 2 + i) - 1
+      do i = 1, min(size(f, 1), self%dofs%first(node + 1) - self%dofs%first(node))
+        dof = self%dofs%first(node) + i - 1
+        do k = self%row_start(dof), self%row_start(dof + 1) - 1
           r(self%unknown(k)) = r(self%unknown(k)) + self%coefficient(k)*f(i, node)
         end do
       end do
     end do
   end subroutine add_reduced
 
-  !> An unknown in the user's words: 'node 12, direction 3' or 'joint slip 1 at node 12'.
+  !> The unknown that a component of a node is, 0 where it has none of its own: the node belongs to
+  !> no element or the component depends on others.
+  pure integer function unknown_of(self, node, component) result(unknown)
+    class(numbering), intent(in) :: self
+    integer, intent(in) :: node, component
+    integer :: first, next
+    first = self%row_start(self%dofs%dof_of(node, component))
+    next = self%row_start(self%dofs%dof_of(node, component) + 1)
+    unknown = 0
+    if (next /= first + 1) return
+    if (self%node(self%unknown(first)) == node .and. .not. is_jump(self, self%unknown(first)) &
+        .and. self%direction(self%unknown(first)) == component) unknown = self%unknown(first)
+  end function unknown_of
+
+  pure logical function is_jump(numbers, unknown)
+    type(numbering), intent(in) :: numbers
+    integer, intent(in) :: unknown
+    is_jump = unknown > numbers%num_free - numbers%num_jumps .and. unknown <= numbers%num_free
+  end function is_jump
+
+  !> An unknown in the user's words: 'node 12, displacement along z' or 'joint slip 1 at node 12'.
   pure function describe(self, unknown, node_id) result(text)
     class(numbering), intent(in) :: self
     integer, intent(in) :: unknown
@@ -295,13 +337,12 @@ contains
     character(:), allocatable :: text
     character(13), parameter :: jumps(3) = ['joint opening', 'joint slip 1 ', 'joint slip 2 ']
     character(40) :: numbers
-    if (unknown > self%num_free - self%num_jumps .and. unknown <= self%num_free) then
+    if (is_jump(self, unknown)) then
       write (numbers, '(a,i0)') ' at node ', node_id(self%node(unknown))
       text = trim(jumps(self%direction(unknown)))//trim(numbers)
     else
-      write (numbers, '(a,i0,a,i0)') 'node ', node_id(self%node(unknown)), ', direction ', &
-        self%direction(unknown)
-      text = trim(numbers)
+      write (numbers, '(a,i0,a)') 'node ', node_id(self%node(unknown)), ', '
+      text = trim(numbers)//' '//trim(self%dofs%components(self%direction(unknown))%name)
     end if
   end function describe
 end module dof_numbering

@@ -12,12 +12,15 @@ module jump_links
   use kinds, only: rk
   use errors, only: error_type
   use node_ties, only: node_tie
+  use node_dofs, only: dof_map, num_directions
   use dof_numbering, only: linear_links
   use link_graph, only: dependence
   use link_order, only: order_links
   implicit none
   private
   public :: nodal_points, link_nodes, pairs_of_nodes
+
+  integer, parameter :: num_jumps = 3 !< jump unknowns of a point: normal, slip 1, slip 2
 
   !> Points of joints that belong to one node of the slave face.
   type :: nodal_points
@@ -50,26 +53,27 @@ contains
 
   !> Chooses the points that get jump unknowns and writes the dependent dofs. Fails where ties
   !> depend on each other in a circle.
-  subroutine link_nodes(points, ties, is_used, is_fixed, links, error)
+  subroutine link_nodes(dofs, points, ties, is_used, is_fixed, links, error)
+    type(dof_map), intent(in) :: dofs
     type(nodal_points), intent(in) :: points
     type(node_tie), intent(in) :: ties(:)
     logical, intent(in) :: is_used(:) !< (nodes)
-    logical, intent(in) :: is_fixed(:, :) !< (3, nodes)
+    logical, intent(in) :: is_fixed(:, :) !< (components, nodes)
     type(linear_links), intent(out) :: links
     type(error_type), allocatable, intent(out) :: error
     type(dependence) :: graph
-    integer :: i
+    integer :: i, most_rows, most_masters
     call make_room(points, ties, links)
-    call graph%start(any(is_fixed, 1), size(points%slave) + sum([(size(ties(i)%node), i=1, &
-                                                                  size(ties))]), &
-                     size(points%master) + sum([(size(ties(i)%master), i=1, size(ties))]))
+    most_rows = size(points%slave) + sum([(size(ties(i)%node), i=1, size(ties))])
+    most_masters = size(points%master) + sum([(size(ties(i)%master), i=1, size(ties))])
+    call graph%start(any(is_fixed(:num_directions, :), 1), most_rows, most_masters)
     do i = 1, size(ties)
-      call link_tie(ties(i), graph, links)
+      call link_tie(dofs, ties(i), graph, links)
     end do
-    call link_wide_points(points, is_used, graph, links)
+    call link_wide_points(dofs, points, is_used, graph, links)
     call link_pairs(points, is_used, graph, links)
-    call walk_trees(points, graph, size(is_used), links)
-    call order_links(3*size(is_used), links, error)
+    call walk_trees(dofs, points, graph, links)
+    call order_links(dofs%num_dofs, links, error)
   end subroutine link_nodes
 
   !> Room for all links that can come.
@@ -78,15 +82,15 @@ contains
     type(node_tie), intent(in) :: ties(:)
     type(linear_links), intent(inout) :: links
     integer :: i, num_links, num_terms
-    num_links = 3*size(points%slave)
-    num_terms = 3*size(points%master) + 9*size(points%slave)
+    num_links = num_directions*size(points%slave)
+    num_terms = num_directions*(size(points%master) + num_jumps*size(points%slave))
     do i = 1, size(ties)
-      num_links = num_links + 3*size(ties(i)%node)
-      num_terms = num_terms + 3*size(ties(i)%master)
+      num_links = num_links + num_directions*size(ties(i)%node)
+      num_terms = num_terms + num_directions*size(ties(i)%master)
     end do
     allocate (links%dof(num_links), links%term(num_terms), links%coefficient(num_terms))
     allocate (links%first(num_links + 1), source=1)
-    allocate (links%jump_node(3*size(points%slave)))
+    allocate (links%jump_node(num_jumps*size(points%slave)))
     allocate (links%first_jump(size(points%slave)), source=0)
   end subroutine make_room
 
@@ -107,7 +111,8 @@ contains
   end subroutine add_link
 
   !> The nodes that follow by a tie, in the directions in which they do.
-  subroutine link_tie(tie, graph, links)
+  subroutine link_tie(dofs, tie, graph, links)
+    type(dof_map), intent(in) :: dofs
     type(node_tie), intent(in) :: tie
     type(dependence), intent(inout) :: graph
     type(linear_links), intent(inout) :: links
@@ -115,9 +120,9 @@ contains
     do k = 1, size(tie%node)
       associate (first => tie%first(k), last => tie%first(k + 1) - 1)
         call graph%add_row(tie%node(k), tie%master(first:last))
-        do i = 1, 3
+        do i = 1, num_directions
           if (.not. tie%is_tied(i, k)) cycle
-          call add_link(3*(tie%node(k) - 1) + i, 3*(tie%master(first:last) - 1) + i, &
+          call add_link(dofs%dof_of(tie%node(k), i), dofs%dof_of(tie%master(first:last), i), &
                         tie%weight(first:last), links)
         end do
       end associate
@@ -125,7 +130,8 @@ contains
   end subroutine link_tie
 
   !> Jumps of points that see several nodes of the master face.
-  subroutine link_wide_points(points, is_used, graph, links)
+  subroutine link_wide_points(dofs, points, is_used, graph, links)
+    type(dof_map), intent(in) :: dofs
     type(nodal_points), intent(in) :: points
     logical, intent(in) :: is_used(:)
     type(dependence), intent(inout) :: graph
@@ -139,9 +145,9 @@ contains
         call graph%follow(points%slave(p), masters, is_linked)
         if (.not. is_linked) cycle
         call add_jump(p, points%slave(p), links, jump)
-        do i = 1, 3
-          call add_link(3*(points%slave(p) - 1) + i, &
-                        [3*(masters - 1) + i, -jump, -jump - 1, -jump - 2], &
+        do i = 1, num_directions
+          call add_link(dofs%dof_of(points%slave(p), i), &
+                        [dofs%dof_of(masters, i), -jump, -jump - 1, -jump - 2], &
                         [points%weight(points%first(p):points%first(p + 1) - 1), &
                          points%rotation(:, i, p)/points%own(p)], links)
         end do
@@ -162,7 +168,7 @@ contains
     type(linear_links), intent(inout) :: links
     integer, intent(out) :: jump !< the first of the three
     jump = links%num_jumps + 1
-    links%num_jumps = links%num_jumps + 3
+    links%num_jumps = links%num_jumps + num_jumps
     links%first_jump(p) = jump
     links%jump_node(jump:jump + 2) = node
   end subroutine add_jump
@@ -187,14 +193,15 @@ contains
 
   !> Walks every tree of pairs from its root: a node that cannot follow, else one that is never a
   !> slave, else any; those without mass come last.
-  subroutine walk_trees(points, graph, num_nodes, links)
+  subroutine walk_trees(dofs, points, graph, links)
+    type(dof_map), intent(in) :: dofs
     type(nodal_points), intent(in) :: points
     type(dependence), intent(in) :: graph
-    integer, intent(in) :: num_nodes
     type(linear_links), intent(inout) :: links
     integer, allocatable :: first(:), edge(:), queue(:)
     logical, allocatable :: is_seen(:), is_slave(:), is_light(:)
-    integer :: rank, node, p
+    integer :: rank, node, p, num_nodes
+    num_nodes = size(dofs%first) - 1
     call list_edges(points, links%first_jump, num_nodes, first, edge)
     if (size(edge) == 0) return
     allocate (is_seen(num_nodes), is_slave(num_nodes), source=.false.)
@@ -231,7 +238,7 @@ contains
           is_seen(child) = .true.
           tail = tail + 1
           queue(tail) = child
-          call add_links(points, edge(k), child, queue(head), links)
+          call add_links(dofs, points, edge(k), child, queue(head), links)
         end do
       end do
     end subroutine walk_from
@@ -265,7 +272,8 @@ contains
   end subroutine list_edges
 
   !> The three links of a child node: u_child = u_parent +- R^T d.
-  pure subroutine add_links(points, p, child, parent, links)
+  pure subroutine add_links(dofs, points, p, child, parent, links)
+    type(dof_map), intent(in) :: dofs
     type(nodal_points), intent(in) :: points
     integer, intent(in) :: p !< the pair
     integer, intent(in) :: child, parent
@@ -274,8 +282,9 @@ contains
     integer :: i, jump
     sign = merge(1.0_rk, -1.0_rk, child == points%slave(p))
     jump = links%first_jump(p)
-    do i = 1, 3
-      call add_link(3*(child - 1) + i, [3*(parent - 1) + i, -jump, -jump - 1, -jump - 2], &
+    do i = 1, num_directions
+      call add_link(dofs%dof_of(child, i), &
+                    [dofs%dof_of(parent, i), -jump, -jump - 1, -jump - 2], &
                     [1.0_rk, sign*points%rotation(:, i, p)], links)
     end do
     links%jump_node(jump:jump + 2) = child

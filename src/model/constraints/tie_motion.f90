@@ -3,6 +3,7 @@ module tie_motion
   use kinds, only: rk
   use errors, only: error_type
   use node_ties, only: node_tie
+  use node_dofs, only: dof_map, displacement_dofs
   use dof_numbering, only: linear_links
   use jump_links, only: nodal_points, link_nodes, pairs_of_nodes
   implicit none
@@ -19,26 +20,28 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(nodal_points) :: none
     type(linear_links) :: links
+    type(dof_map) :: dofs
     logical, allocatable :: is_used(:), is_fixed(:, :)
     real(rk) :: rotation(3, 3, 0), total
     integer :: k, t
     if (size(ties) == 0) return
     allocate (is_used(size(field, 2)), source=.true.)
-    allocate (is_fixed(3, size(field, 2)), source=.false.)
+    allocate (is_fixed(size(field, 1), size(field, 2)), source=.false.)
+    dofs = displacement_dofs(size(field, 2))
     call pairs_of_nodes([integer ::], [integer ::], rotation, none)
-    call link_nodes(none, ties, is_used, is_fixed, links, error)
+    call link_nodes(dofs, none, ties, is_used, is_fixed, links, error)
     if (allocated(error)) return
     do k = 1, links%num_links
       total = 0.0_rk
       do t = links%first(k), links%first(k + 1) - 1
         total = total + links%coefficient(t)*value_at(links%term(t))
       end do
-      field(1 + mod(links%dof(k) - 1, 3), (links%dof(k) + 2)/3) = total
+      field(dofs%component_of(links%dof(k)), dofs%node(links%dof(k))) = total
     end do
   contains
     pure real(rk) function value_at(dof)
       integer, intent(in) :: dof
-      value_at = field(1 + mod(dof - 1, 3), (dof + 2)/3)
+      value_at = field(dofs%component_of(dof), dofs%node(dof))
     end function value_at
   end subroutine follow_ties
 end module tie_motion

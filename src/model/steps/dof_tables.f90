@@ -3,6 +3,7 @@
 !> A value stays until it is given anew (OP=MOD) or everything older is cleared (OP=NEW).
 module dof_tables
   use kinds, only: rk
+  use node_dofs, only: num_directions, zero_vectors
   use amplitudes, only: amplitude, amplitude_at
   implicit none
   private
@@ -29,9 +30,11 @@ contains
     class(dof_table), intent(inout) :: self
     integer, intent(in) :: num_nodes
     if (allocated(self%is_set)) return
-    allocate (self%is_set(3, num_nodes), self%is_new(3, num_nodes), source=.false.)
-    allocate (self%value(3, num_nodes), self%reached(3, num_nodes), source=0.0_rk)
-    allocate (self%history(3, num_nodes), source=0)
+    allocate (self%is_set(num_directions, num_nodes), source=.false.)
+    allocate (self%is_new(num_directions, num_nodes), source=.false.)
+    self%value = zero_vectors(num_nodes)
+    self%reached = zero_vectors(num_nodes)
+    allocate (self%history(num_directions, num_nodes), source=0)
   end subroutine prepare
 
   !> Sets a value; it replaces every earlier one.
@@ -88,7 +91,7 @@ contains
     self%is_new = .false.
     if (is_perturbation) return
     do node = 1, size(self%value, 2)
-      do dof = 1, 3
+      do dof = 1, num_directions
         self%reached(dof, node) = self%value(dof, node)
         if (self%history(dof, node) == 0) cycle
         associate (history => histories(self%history(dof, node)))

@@ -3,6 +3,7 @@ program test_matrix_pattern
   use kinds, only: rk
   use errors, only: error_type
   use testing, only: test_log, check, check_close
+  use node_dofs, only: displacement_dofs
   use dof_numbering, only: numbering, linear_links, number_unknowns
   use jump_links, only: nodal_points, link_nodes, pairs_of_nodes
   use node_ties, only: node_tie
@@ -38,8 +39,8 @@ contains
     is_fixed = .false.
     is_fixed(2, 1) = .true.
     call pairs_of_nodes([4], [3], reshape(r, [3, 3, 1]), points)
-    call link_nodes(points, ties, is_used, is_fixed, links, error)
-    call number_unknowns(is_used, is_fixed, links, numbers, error)
+    call link_nodes(displacement_dofs(6), points, ties, is_used, is_fixed, links, error)
+    call number_unknowns(displacement_dofs(6), is_used, is_fixed, links, numbers, error)
     cells%first = [1, 4, 7, 9, 13]
     cells%node = [1, 2, 3, 4, 5, 6, 3, 4, 1, 2, 5, 6]
     call build_pattern(numbers, cells, lower)

@@ -4,6 +4,7 @@ program test_jump_links
   use errors, only: error_type
   use testing, only: test_log, check, check_close, check_text
   use node_ties, only: node_tie
+  use node_dofs, only: displacement_dofs
   use dof_numbering, only: numbering, linear_links, number_unknowns
   use jump_links, only: nodal_points, link_nodes
   implicit none
@@ -70,9 +71,9 @@ contains
     logical :: is_used(n)
     integer :: k
     is_used = .true.
-    call link_nodes(points, ties, is_used, is_fixed, links, error)
+    call link_nodes(displacement_dofs(n), points, ties, is_used, is_fixed, links, error)
     call check(log, allocated(error) .eqv. .false., 'links')
-    call number_unknowns(is_used, is_fixed, links, numbers, error)
+    call number_unknowns(displacement_dofs(n), is_used, is_fixed, links, numbers, error)
     call check(log, allocated(error) .eqv. .false., 'numbers')
     q = [(sin(real(k, rk)), k=1, numbers%num_total)]
     call numbers%expand(q, u)
@@ -164,7 +165,7 @@ contains
     call no_points(points)
     ties(1) = tie_of(1, [2, 3], [0.5_rk, 0.5_rk])
     ties(2) = tie_of(3, [1, 4], [0.5_rk, 0.5_rk])
-    call link_nodes(points, ties, is_used, is_fixed, links, error)
+    call link_nodes(displacement_dofs(n), points, ties, is_used, is_fixed, links, error)
     call check_text(log, error%message, 'degrees of freedom depend on each other in a circle', &
                     'ties in a circle')
     call add_point(1, [2, 3], [0.5_rk, 0.5_rk], points)
@@ -243,16 +244,16 @@ contains
     call no_points(points)
     call add_point(3, [4, 5], [0.5_rk, 0.5_rk], points)
     ties(1) = tie_of(1, [5, 6], [0.5_rk, 0.5_rk])
-    call link_nodes(points, ties, is_used, is_fixed, links, error)
+    call link_nodes(displacement_dofs(n), points, ties, is_used, is_fixed, links, error)
     allocate (links%is_last(n), source=.false.)
     links%is_last([1, 2]) = .true.
-    call number_unknowns(is_used, is_fixed, links, numbers, error)
+    call number_unknowns(displacement_dofs(n), is_used, is_fixed, links, numbers, error)
     call check(log, numbers%num_jumps == 3 .and. numbers%num_last == 3 + 2 + 6, &
                'a jump, a node with a support, and what a tied node follows')
     call check(log, all(numbers%node(numbers%num_free - 10:numbers%num_free) == &
                         [2, 2, 5, 5, 5, 6, 6, 6, 3, 3, 3]), 'in this order')
     call check_text(log, &
                     numbers%describe(numbers%num_free - 10, [11, 12, 13, 14, 15, 16, 17, 18]), &
-                    'node 12, direction 2', 'a last unknown that is no jump')
+                    'node 12, displacement along y', 'a last unknown that is no jump')
   end subroutine last_unknowns
 end program test_jump_links
