@@ -10,7 +10,9 @@ module free_blocks
   use global_vectors, only: dot
   use joint_capacity, only: best_forces, find_best_forces, point_limits
   use joint_law, only: joint_state, state_open
+  use joint_rows, only: num_rows, row_of
   use kinds, only: rk
+  use node_dofs, only: zero_vectors
   use state_transfer, only: restrict
   use problem_definition, only: problem
   use rigid_blocks, only: add_supports, block_set, find_blocks, jump_rows
@@ -37,7 +39,7 @@ module free_blocks
   type :: block_task
     type(block_set) :: blocks
     real(rk), allocatable :: free(:, :) !< (6*blocks, motions) that supports leave, orthonormal
-    real(rk), allocatable :: rows(:, :) !< (motions, 3*points) jumps of the joints
+    real(rk), allocatable :: rows(:, :) !< (motions, rows) jumps of the joints
     type(point_limits), allocatable :: limits(:) !< (points)
   end type block_task
 
@@ -59,7 +61,7 @@ contains
     if (.not. allocated(error) .or. size(scene%joints) == 0) return
     call find_blocks(scene, task%blocks)
     if (task%blocks%num_blocks > most_blocks) return
-    if (6*task%blocks%num_blocks*3*system%operator%num_points > most_entries) return
+    if (6*task%blocks%num_blocks*num_rows(system%operator%num_points) > most_entries) return
     call open_task(scene, plan, states, task)
     if (size(task%rows, 1) == 0) return
     asked = when
@@ -95,7 +97,7 @@ contains
     allocate (matrix(n, n), source=0.0_rk)
     call add_supports(task%blocks, scene%mesh%x, plan%fixities%node, plan%fixities%dof, matrix)
     call null_space(matrix, task%free)
-    allocate (task%rows(size(task%free, 2), 3*sum(scene%joints%num_points)))
+    allocate (task%rows(size(task%free, 2), num_rows(sum(scene%joints%num_points))))
     allocate (task%limits(sum(scene%joints%num_points)))
     allocate (rows(6, task%blocks%num_blocks, 3))
     point = 0
@@ -113,7 +115,7 @@ contains
           end if
         end associate
         do i = 1, 3
-          task%rows(:, 3*(point - 1) + i) = matmul(reshape(rows(:, :, i), [n]), task%free)
+          task%rows(:, row_of(point, i)) = matmul(reshape(rows(:, :, i), [n]), task%free)
         end do
       end do
     end do
@@ -158,7 +160,8 @@ contains
     real(rk) :: motion(6)
     integer :: b, k
     allocate (force(system%numbers%num_total), q(system%numbers%num_total))
-    allocate (u(3, scene%mesh%num_nodes), on_blocks(6*task%blocks%num_blocks))
+    u = zero_vectors(scene%mesh%num_nodes)
+    allocate (on_blocks(6*task%blocks%num_blocks))
     call external_force(system%groups, scene%amplitudes, when, force)
     do b = 1, task%blocks%num_blocks
       do k = 1, 6
@@ -260,7 +263,7 @@ contains
         end if
       end associate
       do i = 1, num_held
-        associate (row => task%rows(:, 3*(p - 1) + i))
+        associate (row => task%rows(:, row_of(p, i)))
           matrix = matrix + spread(row, 2, size(row))*spread(row, 1, size(row))
         end associate
       end do

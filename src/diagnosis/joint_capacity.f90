@@ -8,6 +8,7 @@
 !> analysis); bonded points count with all that they may carry.
 module joint_capacity
   use kinds, only: rk
+  use joint_rows, only: num_axes, row_of
   use symmetric_modes, only: find_modes
   implicit none
   private
@@ -43,7 +44,7 @@ contains
 
   !> Balances `load` as far as the joints can: G t = load.
   subroutine find_best_forces(rows, limits, load, best)
-    real(rk), intent(in), contiguous :: rows(:, :) !< G (motions, 3*points)
+    real(rk), intent(in), contiguous :: rows(:, :) !< G (motions, rows)
     type(point_limits), intent(in) :: limits(:) !< (points)
     real(rk), intent(in) :: load(:) !< (motions)
     type(best_forces), intent(out) :: best
@@ -75,10 +76,10 @@ contains
 
   !> Least |white t - target| over admissible t; the rows of `white` are orthonormal.
   subroutine project(white, limits, target, t, left, has_settled)
-    real(rk), intent(in), contiguous :: white(:, :) !< (motions, 3*points)
+    real(rk), intent(in), contiguous :: white(:, :) !< (motions, rows)
     type(point_limits), intent(in) :: limits(:)
     real(rk), intent(in) :: target(:)
-    real(rk), allocatable, intent(out) :: t(:) !< (3*points) [N]
+    real(rk), allocatable, intent(out) :: t(:) !< (rows) [N]
     real(rk), allocatable, intent(out) :: left(:) !< target - white t
     logical, intent(out) :: has_settled
     real(rk), allocatable :: ahead(:), before(:)
@@ -110,11 +111,11 @@ contains
   !> The nearest admissible forces.
   pure subroutine admit(limits, t)
     type(point_limits), intent(in) :: limits(:)
-    real(rk), intent(inout) :: t(:) !< (3*points)
+    real(rk), intent(inout) :: t(:) !< (rows)
     real(rk) :: shear, pull
     integer :: p
     do p = 1, size(limits)
-      associate (now => limits(p), f => t(3*p - 2:3*p))
+      associate (now => limits(p), f => t(row_of(p, 1):row_of(p, num_axes)))
         if (now%is_bonded) then
           f(1) = min(f(1), now%tension)
           cycle

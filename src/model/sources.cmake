@@ -1,5 +1,6 @@
 set(sources
   constraints/dof_numbering.f90
+  constraints/joint_rows.f90
   constraints/jump_links.f90
   constraints/link_graph.f90
   constraints/link_order.f90

@@ -3,6 +3,7 @@
 module joint_compliance
   use kinds, only: rk
   use errors, only: error_type
+  use joint_rows, only: num_axes, num_rows, row_of
   use linear_solver, only: equation_solver
   use joint_operator, only: jump_operator
   use dense_factor, only: lu_factor, factorise_dense, solve_dense
@@ -25,11 +26,11 @@ contains
     class(equation_solver), intent(inout) :: factor !< of K_0
     type(jump_operator), intent(in) :: operator
     integer, intent(in) :: num_free
-    real(rk), allocatable, intent(out) :: compliance(:, :) !< (3*points, 3*points) [m/N]
+    real(rk), allocatable, intent(out) :: compliance(:, :) !< (rows, rows) [m/N]
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: b(:, :)
     integer :: m, first, last, row
-    m = 3*operator%num_points
+    m = num_rows(operator%num_points)
     allocate (compliance(m, m), b(num_free, min(block_size, m)))
     do first = 1, m, block_size
       last = min(first + block_size - 1, m)
@@ -61,7 +62,7 @@ contains
   pure subroutine apply_rows(operator, column, product)
     type(jump_operator), intent(in) :: operator
     real(rk), intent(in) :: column(:)
-    real(rk), intent(out) :: product(:) !< (3*points)
+    real(rk), intent(out) :: product(:) !< (rows)
     integer :: row, k
     do row = 1, size(product)
       product(row) = 0.0_rk
@@ -84,12 +85,12 @@ contains
     type(lu_factor) :: factor
     real(rk), allocatable :: matrix(:, :), alone(:, :)
     real(rk) :: joint_stiffness, flexibility, share
-    integer :: m, p, i, j, row
+    integer :: m, p, i, j, row, slip(2), other_slip(2)
     m = size(compliance, 1)
     allocate (matrix(m, m), scale(2, operator%num_points))
     do p = 1, operator%num_points
-      do i = 1, 3
-        row = 3*(p - 1) + i
+      do i = 1, num_axes
+        row = row_of(p, i)
         joint_stiffness = (1.0_rk - kept_stiffness)*weight*operator%area(p)*reference(i, p)
         matrix(:, row) = -joint_stiffness*compliance(:, row)
         matrix(row, row) = 1.0_rk + matrix(row, row)
@@ -100,10 +101,12 @@ contains
     call factorise_dense(matrix, factor)
     call solve_dense(factor, alone)
     do p = 1, operator%num_points
-      row = 3*(p - 1)
+      slip = row_of(p, [2, 3])
       flexibility = 0.0_rk
       do j = 1, operator%num_points
-        share = weight*operator%area(j)*(abs(alone(3*j - 1, row + 2)) + abs(alone(3*j, row + 3)))
+        other_slip = row_of(j, [2, 3])
+        share = weight*operator%area(j)*(abs(alone(other_slip(1), slip(1))) &
+                                         + abs(alone(other_slip(2), slip(2))))
         flexibility = flexibility + share
         if (j == p) scale(2, p) = scale_for(share, minval(reference(2:3, p)))
       end do

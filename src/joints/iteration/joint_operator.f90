@@ -3,6 +3,8 @@
 module joint_operator
   use kinds, only: rk
   use joint_points, only: joint
+  use node_dofs, only: num_directions
+  use joint_rows, only: num_axes, num_rows, row_of
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
   use joint_stiffness, only: add_joint_stiffness
@@ -15,7 +17,7 @@ module joint_operator
     integer :: num_points = 0
     integer, allocatable :: first_point(:) !< (joints + 1)
     real(rk), allocatable :: area(:) !< (points) [m2]
-    integer, allocatable :: row_start(:) !< (3*points + 1); row 3*(point - 1) + 1: opening
+    integer, allocatable :: row_start(:) !< (rows + 1) rows as in `joint_rows`
     integer, allocatable :: unknown(:) !< columns of B
     real(rk), allocatable :: coefficient(:) !< values of B
   contains
@@ -31,14 +33,15 @@ contains
     type(joint), intent(in) :: joints(:)
     type(jump_operator), intent(out) :: operator
     integer, allocatable :: place(:)
-    integer :: j, p, pair, point
+    integer :: j, p, pair, point, last_row
     allocate (operator%first_point(size(joints) + 1))
     operator%first_point(1) = 1
     do j = 1, size(joints)
       operator%first_point(j + 1) = operator%first_point(j) + joints(j)%num_points
     end do
     operator%num_points = operator%first_point(size(joints) + 1) - 1
-    allocate (operator%area(operator%num_points), operator%row_start(3*operator%num_points + 1))
+    last_row = num_rows(operator%num_points)
+    allocate (operator%area(operator%num_points), operator%row_start(last_row + 1))
     allocate (operator%unknown(9*operator%num_points), operator%coefficient(9*operator%num_points))
     allocate (place(numbers%num_total), source=0)
     operator%row_start = 1
@@ -52,7 +55,7 @@ contains
                       operator)
       end do
     end do
-    operator%unknown = operator%unknown(:operator%row_start(3*operator%num_points + 1) - 1)
+    operator%unknown = operator%unknown(:operator%row_start(last_row + 1) - 1)
     operator%coefficient = operator%coefficient(:size(operator%unknown))
   end subroutine build_jump_operator
 
@@ -65,18 +68,19 @@ contains
     integer, intent(in) :: point !< of the operator
     integer, intent(inout) :: place(:) !< (unknowns) work space, all zero
     type(jump_operator), intent(inout) :: operator
-    integer :: i, jump, next
+    integer :: i, jump, row, next
     jump = 0
     if (pair > 0) jump = numbers%first_jump(pair)
-    do i = 1, 3
-      next = operator%row_start(3*point - 3 + i)
+    do i = 1, num_axes
+      row = row_of(point, i)
+      next = operator%row_start(row)
       if (jump > 0) then
         call add_term(jump + i - 1, 1.0_rk)
       else
         call add_faces(seam%rotation(i, :, p))
       end if
-      operator%row_start(3*point - 2 + i) = next
-      place(operator%unknown(operator%row_start(3*point - 3 + i):next - 1)) = 0
+      operator%row_start(row + 1) = next
+      place(operator%unknown(operator%row_start(row):next - 1)) = 0
     end do
   contains
     !> Slave minus master along one local axis.
@@ -84,7 +88,7 @@ contains
       real(rk), intent(in) :: axis(3)
       integer :: k, direction
       do k = seam%first(p), seam%first(p + 1) - 1
-        do direction = 1, 3
+        do direction = 1, num_directions
           call add_dof(seam%node(k), direction, axis(direction)*seam%weight(k))
         end do
       end do
@@ -126,11 +130,13 @@ contains
     class(jump_operator), intent(in) :: self
     real(rk), intent(in) :: q(:) !< (num_total)
     real(rk), intent(out) :: v(:, :) !< (3, points) [m]
-    integer :: p, i, k
+    integer :: p, i, k, row
     v = 0.0_rk
+    row = 0
     do p = 1, self%num_points
-      do i = 1, 3
-        do k = self%row_start(3*p - 3 + i), self%row_start(3*p - 2 + i) - 1
+      do i = 1, num_axes
+        row = row + 1
+        do k = self%row_start(row), self%row_start(row + 1) - 1
           v(i, p) = v(i, p) + self%coefficient(k)*q(self%unknown(k))
         end do
       end do
@@ -142,10 +148,12 @@ contains
     class(jump_operator), intent(in) :: self
     real(rk), intent(in) :: traction(:, :) !< (3, points) [Pa]
     real(rk), intent(inout) :: f(:) !< (num_total) [N]
-    integer :: p, i, k
+    integer :: p, i, k, row
+    row = 0
     do p = 1, self%num_points
-      do i = 1, 3
-        do k = self%row_start(3*p - 3 + i), self%row_start(3*p - 2 + i) - 1
+      do i = 1, num_axes
+        row = row + 1
+        do k = self%row_start(row), self%row_start(row + 1) - 1
           f(self%unknown(k)) = f(self%unknown(k)) &
                                + self%coefficient(k)*self%area(p)*traction(i, p)
         end do

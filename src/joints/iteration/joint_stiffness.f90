@@ -1,6 +1,7 @@
 !> Adds the stiffness of joints, given the rows of their jump operator B (v = B q).
 module joint_stiffness
   use kinds, only: rk
+  use joint_rows, only: num_axes, row_of
   use matrix_pattern, only: pattern, add_block
   use sorted_lists, only: sorted_unique, place_in
   implicit none
@@ -11,7 +12,7 @@ contains
 
   !> Adds B^T (area D) B, point by point. In a symmetric matrix the symmetric part of D counts.
   subroutine add_joint_stiffness(row_start, unknown, coefficient, area, tangent, matrix, values)
-    integer, intent(in) :: row_start(:) !< (3*points + 1) rows of B; 3*(point - 1) + 1: opening
+    integer, intent(in) :: row_start(:) !< (rows + 1) of B
     integer, intent(in) :: unknown(:) !< columns of B
     real(rk), intent(in) :: coefficient(:) !< values of B
     real(rk), intent(in) :: area(:) !< (points) [m2]
@@ -21,13 +22,14 @@ contains
     integer, allocatable :: column(:)
     real(rk), allocatable :: b(:, :)
     real(rk) :: d(3, 3)
-    integer :: p, first, last
+    integer :: p, row, first, last
     do p = 1, size(area)
       d = tangent(:, :, p)
       if (matrix%is_symmetric) d = 0.5_rk*(d + transpose(d))
-      first = row_start(3*p - 2)
-      last = row_start(3*p + 1) - 1
-      call gather_rows(row_start(3*p - 2:3*p + 1) - first + 1, unknown(first:last), &
+      row = row_of(p, 1)
+      first = row_start(row)
+      last = row_start(row + num_axes) - 1
+      call gather_rows(row_start(row:row + num_axes) - first + 1, unknown(first:last), &
                        coefficient(first:last), column, b)
       call add_block(matrix, column, area(p)*matmul(transpose(b), matmul(d, b)), values)
     end do
@@ -35,15 +37,15 @@ contains
 
   !> The three rows of a point as a dense matrix on the unknowns that it touches.
   subroutine gather_rows(start, unknown, coefficient, column, b)
-    integer, intent(in) :: start(4) !< of each row in the lists that follow
+    integer, intent(in) :: start(num_axes + 1) !< of each row in the lists that follow
     integer, intent(in) :: unknown(:)
     real(rk), intent(in) :: coefficient(:)
     integer, allocatable, intent(out) :: column(:) !< the unknowns, ascending
     real(rk), allocatable, intent(out) :: b(:, :) !< (3, columns)
     integer :: i, k
     column = sorted_unique(unknown)
-    allocate (b(3, size(column)), source=0.0_rk)
-    do i = 1, 3
+    allocate (b(num_axes, size(column)), source=0.0_rk)
+    do i = 1, num_axes
       do k = start(i), start(i + 1) - 1
         associate (place => place_in(column, unknown(k)))
           b(i, place) = b(i, place) + coefficient(k)

@@ -4,6 +4,7 @@
 !> jumps fits between the two halves of one solve.
 module jump_block
   use kinds, only: rk
+  use joint_rows, only: num_rows
   use linear_solver, only: equation_solver
   use joint_operator, only: jump_operator
   use dense_factor, only: gram, solve_lower, solve_lower_transposed
@@ -37,12 +38,12 @@ contains
   subroutine compliance_of_jumps(jumps, operator, compliance)
     type(jump_factor), intent(in) :: jumps
     type(jump_operator), intent(in) :: operator
-    real(rk), allocatable, intent(out) :: compliance(:, :) !< (3*points, 3*points) [m/N]
+    real(rk), allocatable, intent(out) :: compliance(:, :) !< (rows, rows) [m/N]
     real(rk), allocatable :: z(:, :)
     integer :: place(jumps%num_free), i, k, row
     place = 0
     place(jumps%unknown) = [(i, i=1, size(jumps%unknown))]
-    allocate (z(size(jumps%unknown), 3*operator%num_points), source=0.0_rk)
+    allocate (z(size(jumps%unknown), num_rows(operator%num_points)), source=0.0_rk)
     do row = 1, size(z, 2)
       do k = operator%row_start(row), operator%row_start(row + 1) - 1
         if (operator%unknown(k) > jumps%num_free) cycle

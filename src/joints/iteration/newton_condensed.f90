@@ -7,6 +7,7 @@
 !> The iterates are those of full Newton.
 module newton_condensed
   use kinds, only: rk
+  use joint_rows, only: num_axes, row_of, point_of, axis_of
   use joint_law, only: joint_state
   use joint_points, only: joint
   use joint_operator, only: jump_operator
@@ -22,7 +23,7 @@ module newton_condensed
 
   type :: condensed_joints
     real(rk) :: weight = 1.0_rk !< of the joint forces in the balance
-    real(rk), allocatable :: compliance(:, :) !< G (3*points, 3*points) [m/N]
+    real(rk), allocatable :: compliance(:, :) !< G (rows, rows) [m/N]
     real(rk), allocatable :: reference(:, :) !< (3, points) k_ref [Pa/m]
     real(rk), allocatable :: scale(:, :) !< (2, points) r of the augmented friction [Pa/m]
   end type condensed_joints
@@ -78,12 +79,12 @@ contains
     function excess_jump(traction) result(answer)
       real(rk), intent(in) :: traction(:, :) !< (3, points) [Pa]
       real(rk) :: answer(3, size(traction, 2)) !< [m]
-      real(rk) :: flat(3*size(traction, 2)), force, negligible
+      real(rk) :: flat(size(traction)), force, negligible
       integer :: row, p, i
       flat = 0.0_rk
       do row = 1, size(flat)
-        p = (row + 2)/3
-        i = row - 3*(p - 1)
+        p = point_of(row)
+        i = axis_of(row)
         force = linear(i, p) - traction(i, p)
         negligible = roundoff*(abs(linear(i, p)) + abs(traction(i, p)))
         if (abs(force) <= negligible) cycle ! most points: their tangent is their law
@@ -100,27 +101,29 @@ contains
     real(rk), intent(in) :: tangent(:, :, :) !< (3, 3, points) [Pa/m]
     type(changed_tangent), intent(out) :: changed
     real(rk), allocatable :: matrix(:, :)
+    integer, allocatable :: point(:), axis(:)
     integer :: p, i, k, l, first, num_rows
-    allocate (changed%change(3, 3, size(area)), changed%row(3*size(area)))
+    allocate (changed%change(3, 3, size(area)), changed%row(size(self%compliance, 1)))
     num_rows = 0
     do p = 1, size(area)
       changed%change(:, :, p) = -tangent(:, :, p)
-      do i = 1, 3
+      do i = 1, num_axes
         changed%change(i, i, p) = changed%change(i, i, p) + self%reference(i, p)
         if (.not. any(abs(changed%change(i, :, p)) > 0.0_rk)) cycle
         num_rows = num_rows + 1
-        changed%row(num_rows) = 3*(p - 1) + i
+        changed%row(num_rows) = row_of(p, i)
       end do
       changed%change(:, :, p) = self%weight*area(p)*changed%change(:, :, p)
     end do
     changed%row = changed%row(:num_rows)
+    point = point_of(changed%row)
+    axis = axis_of(changed%row)
     allocate (matrix(num_rows, num_rows))
     do l = 1, num_rows
       do k = 1, num_rows
-        p = (changed%row(k) + 2)/3
-        first = 3*(p - 1)
-        matrix(k, l) = -dot_product(changed%change(changed%row(k) - first, :, p), &
-                                    self%compliance(first + 1:first + 3, changed%row(l)))
+        first = changed%row(k) - axis(k) + 1
+        matrix(k, l) = -dot_product(changed%change(axis(k), :, point(k)), &
+                                    self%compliance(first:first + num_axes - 1, changed%row(l)))
       end do
       matrix(l, l) = matrix(l, l) + 1.0_rk
     end do
@@ -137,8 +140,8 @@ contains
     real(rk) :: z(size(changed%row), 1)
     integer :: k, p
     do k = 1, size(changed%row)
-      p = (changed%row(k) + 2)/3
-      z(k, 1) = dot_product(changed%change(changed%row(k) - 3*(p - 1), :, p), response(:, p))
+      p = point_of(changed%row(k))
+      z(k, 1) = dot_product(changed%change(axis_of(changed%row(k)), :, p), response(:, p))
     end do
     call solve_dense(changed%factor, z)
     correction = response

@@ -8,6 +8,7 @@ module dof_numbering
   use kinds, only: rk
   use errors, only: error_type, raise
   use node_dofs, only: dof_map
+  use joint_rows, only: axis_of, jump_names
   implicit none
   private
   public :: numbering, linear_links, number_unknowns
@@ -105,7 +106,7 @@ contains
     first = numbers%num_total
     do k = 1, links%num_jumps
       numbers%node(first + k) = links%jump_node(k)
-      numbers%direction(first + k) = 1 + mod(k - 1, 3)
+      numbers%direction(first + k) = axis_of(k)
     end do
     numbers%num_total = first + links%num_jumps
     numbers%num_free = numbers%num_total
@@ -335,11 +336,10 @@ contains
     integer, intent(in) :: unknown
     integer, intent(in) :: node_id(:) !< (nodes) the user's numbers
     character(:), allocatable :: text
-    character(13), parameter :: jumps(3) = ['joint opening', 'joint slip 1 ', 'joint slip 2 ']
     character(40) :: numbers
     if (is_jump(self, unknown)) then
       write (numbers, '(a,i0)') ' at node ', node_id(self%node(unknown))
-      text = trim(jumps(self%direction(unknown)))//trim(numbers)
+      text = trim(jump_names(self%direction(unknown)))//trim(numbers)
     else
       write (numbers, '(a,i0,a)') 'node ', node_id(self%node(unknown)), ', '
       text = trim(numbers)//' '//trim(self%dofs%components(self%direction(unknown))%name)

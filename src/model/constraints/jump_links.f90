@@ -13,14 +13,13 @@ module jump_links
   use errors, only: error_type
   use node_ties, only: node_tie
   use node_dofs, only: dof_map, num_directions
+  use joint_rows, only: num_axes, num_rows
   use dof_numbering, only: linear_links
   use link_graph, only: dependence
   use link_order, only: order_links
   implicit none
   private
   public :: nodal_points, link_nodes, pairs_of_nodes
-
-  integer, parameter :: num_jumps = 3 !< jump unknowns of a point: normal, slip 1, slip 2
 
   !> Points of joints that belong to one node of the slave face.
   type :: nodal_points
@@ -83,14 +82,14 @@ contains
     type(linear_links), intent(inout) :: links
     integer :: i, num_links, num_terms
     num_links = num_directions*size(points%slave)
-    num_terms = num_directions*(size(points%master) + num_jumps*size(points%slave))
+    num_terms = num_directions*(size(points%master) + num_rows(size(points%slave)))
     do i = 1, size(ties)
       num_links = num_links + num_directions*size(ties(i)%node)
       num_terms = num_terms + num_directions*size(ties(i)%master)
     end do
     allocate (links%dof(num_links), links%term(num_terms), links%coefficient(num_terms))
     allocate (links%first(num_links + 1), source=1)
-    allocate (links%jump_node(num_jumps*size(points%slave)))
+    allocate (links%jump_node(num_rows(size(points%slave))))
     allocate (links%first_jump(size(points%slave)), source=0)
   end subroutine make_room
 
@@ -168,9 +167,9 @@ contains
     type(linear_links), intent(inout) :: links
     integer, intent(out) :: jump !< the first of the three
     jump = links%num_jumps + 1
-    links%num_jumps = links%num_jumps + num_jumps
+    links%num_jumps = links%num_jumps + num_axes
     links%first_jump(p) = jump
-    links%jump_node(jump:jump + 2) = node
+    links%jump_node(jump:jump + num_axes - 1) = node
   end subroutine add_jump
 
   !> Numbers the jumps of the pairs that join two trees, at most one of which is held.
@@ -287,6 +286,6 @@ contains
                     [dofs%dof_of(parent, i), -jump, -jump - 1, -jump - 2], &
                     [1.0_rk, sign*points%rotation(:, i, p)], links)
     end do
-    links%jump_node(jump:jump + 2) = child
+    links%jump_node(jump:jump + num_axes - 1) = child
   end subroutine add_links
 end module jump_links
