@@ -6,11 +6,13 @@ module assemble_elements
   use kinds, only: rk
   use errors, only: error_type, raise
   use problem_definition, only: problem
+  use node_dofs, only: num_directions
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
   use element_formulation, only: solid_element
   use element_catalogue, only: make_solid
   use element_matrices, only: stiffness_matrices, consistent_masses, nodal_volumes
+  use shape_hex8, only: hex8_dofs
   use element_blocks, only: block_list, list_blocks
   use scatter_matrix, only: scatter_nodes
   implicit none
@@ -129,7 +131,7 @@ contains
     real(rk) :: d(6, 6)
     integer :: status(size(elements)), e, material
     material = scene%mesh%material_of_element(elements(1))
-    allocate (x(3, 8, size(elements)), ke(24, 24, size(elements)))
+    allocate (x(3, 8, size(elements)), ke(hex8_dofs, hex8_dofs, size(elements)))
     do e = 1, size(elements)
       x(:, :, e) = scene%mesh%x(:, scene%mesh%nodes(:, elements(e)))
     end do
@@ -171,8 +173,10 @@ contains
       call consistent_masses(x, density, mass)
     end if
     do e = 1, size(x, 3)
-      do i = 1, 3
-        ke(i::3, i::3, e) = ke(i::3, i::3, e) + mass(:, :, e)
+      do i = 1, num_directions
+        associate (part => ke(i::num_directions, i::num_directions, e))
+          part = part + mass(:, :, e)
+        end associate
       end do
     end do
   end subroutine add_masses

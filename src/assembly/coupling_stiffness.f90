@@ -2,6 +2,7 @@
 !> that its products and the strain energy hold them.
 module coupling_stiffness
   use kinds, only: rk
+  use node_dofs, only: num_directions
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
   use scatter_matrix, only: scatter_nodes
@@ -9,6 +10,9 @@ module coupling_stiffness
   implicit none
   private
   public :: add_coupling_stiffness
+
+  integer, parameter :: num_nodes = 8 !< of two facets
+  integer, parameter :: num_dofs = num_directions*num_nodes
 
 contains
 
@@ -18,12 +22,12 @@ contains
     type(coupling), intent(in) :: springs
     type(pattern), intent(in) :: matrix
     real(rk), intent(inout) :: values(:) !< [N/m]
-    real(rk) :: k(24, 24)
+    real(rk) :: k(num_dofs, num_dofs)
     integer :: s, i
     k = 0.0_rk
     do s = 1, size(springs%node, 2)
-      do i = 1, 3
-        k(i::3, i::3) = springs%stiffness*springs%product(:, :, s)
+      do i = 1, num_directions
+        k(i::num_directions, i::num_directions) = springs%stiffness*springs%product(:, :, s)
       end do
       call scatter_nodes(numbers, springs%node(:, s), k, matrix, values)
     end do

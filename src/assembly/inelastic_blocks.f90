@@ -9,7 +9,7 @@ module inelastic_blocks
   use gauss_rules, only: hex_point
   use material_law, only: material
   use material_points, only: point_set
-  use shape_hex8, only: edges_at, shape_at
+  use shape_hex8, only: edges_at, hex8_dofs, shape_at
   implicit none
   private
   public :: inelastic_block, list_inelastic_blocks
@@ -78,7 +78,7 @@ contains
     do e = 1, size(elements)
       x(:, :, e) = body%x(:, body%nodes(:, elements(e)))
     end do
-    allocate (part%b(6, 24, part%points_of_element, size(elements)), &
+    allocate (part%b(6, hex8_dofs, part%points_of_element, size(elements)), &
               part%weight(part%points_of_element, size(elements)))
     call materials(part%material)%law%elastic_stiffness(d)
     call formulation%strain_operator(x, d, part%b, part%weight, status)

@@ -6,7 +6,7 @@ module element_hex8_bbar
   use kinds, only: rk
   use element_formulation, only: solid_element
   use element_hex8, only: hex8_gradients
-  use shape_hex8, only: mean_gradient, strain_rows
+  use shape_hex8, only: hex8_dofs, mean_gradient, strain_rows
   implicit none
   private
   public :: bbar_hexahedron
@@ -26,7 +26,7 @@ contains
     real(rk), contiguous, intent(out) :: b(:, :, :, :)
     real(rk), contiguous, intent(out) :: weight(:, :)
     integer, intent(out) :: status(:)
-    real(rk) :: gradient(3, 8, 8), mean(3, 8), volume, difference(24)
+    real(rk) :: gradient(3, 8, 8), mean(3, 8), volume, difference(hex8_dofs)
     integer :: e, q, i
     do e = 1, size(x, 3)
       call hex8_gradients(x(:, :, e), gradient, weight(:, e), status(e))
@@ -34,7 +34,7 @@ contains
       call mean_gradient(gradient, weight(:, e), mean, volume)
       do q = 1, self%num_points
         call strain_rows(gradient(:, :, q), b(:, :, q, e))
-        difference = reshape(mean - gradient(:, :, q), [24])/3.0_rk
+        difference = reshape(mean - gradient(:, :, q), [hex8_dofs])/3.0_rk
         do i = 1, 3
           b(i, :, q, e) = b(i, :, q, e) + difference
         end do

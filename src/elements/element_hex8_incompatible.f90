@@ -9,7 +9,7 @@ module element_hex8_incompatible
   use element_formulation, only: solid_element
   use element_hex8, only: hex8_gradients
   use gauss_rules, only: hex_point
-  use shape_hex8, only: derivative_at, invert3, strain_rows
+  use shape_hex8, only: derivative_at, hex8_dofs, invert3, strain_rows
   implicit none
   private
   public :: incompatible_hexahedron
@@ -29,7 +29,7 @@ contains
     real(rk), contiguous, intent(out) :: b(:, :, :, :)
     real(rk), contiguous, intent(out) :: weight(:, :)
     integer, intent(out) :: status(:)
-    real(rk) :: gradient(3, 8, 8), mode(6, 9, 8), amplitude(9, 24)
+    real(rk) :: gradient(3, 8, 8), mode(6, 9, 8), amplitude(9, hex8_dofs)
     integer :: e, q
     do e = 1, size(x, 3)
       call hex8_gradients(x(:, :, e), gradient, weight(:, e), status(e))
@@ -64,8 +64,8 @@ contains
 
   !> A = -K_ii**-1 K_iu.
   pure subroutine mode_amplitudes(mode, b, d, weight, amplitude)
-    real(rk), intent(in) :: mode(6, 9, 8), b(6, 24, 8), d(6, 6), weight(8)
-    real(rk), intent(out) :: amplitude(9, 24)
+    real(rk), intent(in) :: mode(6, 9, 8), b(6, hex8_dofs, 8), d(6, 6), weight(8)
+    real(rk), intent(out) :: amplitude(9, hex8_dofs)
     real(rk) :: k(9, 9), stress(9, 6)
     integer :: q
     k = 0.0_rk
@@ -80,7 +80,7 @@ contains
 
   !> Solves K X = B in place by Cholesky's factor; K is positive definite and overwritten.
   pure subroutine solve_positive(k, b)
-    real(rk), intent(inout) :: k(9, 9), b(9, 24)
+    real(rk), intent(inout) :: k(9, 9), b(9, hex8_dofs)
     integer :: i, j
     do j = 1, 9
       k(j, j) = sqrt(k(j, j) - sum(k(j, :j - 1)**2))

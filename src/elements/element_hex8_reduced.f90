@@ -7,8 +7,9 @@
 module element_hex8_reduced
   use kinds, only: rk
   use element_formulation, only: solid_element
+  use node_dofs, only: num_directions
   use element_hex8, only: hex8_gradients
-  use shape_hex8, only: corner, mean_gradient, strain_rows
+  use shape_hex8, only: corner, hex8_dofs, mean_gradient, strain_rows
   implicit none
   private
   public :: reduced_hexahedron
@@ -74,15 +75,17 @@ contains
   !> The same for one element.
   pure subroutine add_hourglass(x, base, modulus, ke)
     real(rk), intent(in) :: x(3, 8), base(8, 4), modulus
-    real(rk), intent(inout) :: ke(24, 24)
+    real(rk), intent(inout) :: ke(hex8_dofs, hex8_dofs)
     real(rk) :: mean(3, 8), volume, gamma(8, 4), block(8, 8)
     integer :: status, i
     call mean_operator(x, mean, volume, status)
     if (status /= 0) return
     gamma = base - matmul(transpose(mean), matmul(x, base))
     block = modulus*volume*sum(mean**2)*matmul(gamma, transpose(gamma))
-    do i = 1, 3
-      ke(i::3, i::3) = ke(i::3, i::3) + block
+    do i = 1, num_directions
+      associate (part => ke(i::num_directions, i::num_directions))
+        part = part + block
+      end associate
     end do
   end subroutine add_hourglass
 end module element_hex8_reduced

@@ -4,12 +4,10 @@
 module element_matrices
   use kinds, only: rk
   use element_formulation, only: solid_element
-  use shape_hex8, only: gradient_at, point_derivative, point_shape
+  use shape_hex8, only: gradient_at, hex8_dofs, point_derivative, point_shape
   implicit none
   private
   public :: stiffness_matrices, consistent_masses, nodal_volumes, strains_at_points, stress_forces
-
-  integer, parameter :: num_dofs = 24
 
   !> Elements whose operators are in the first-level cache at a time (tools/bench/bench_elements).
   integer, parameter :: chunk = 4
@@ -25,7 +23,7 @@ contains
     integer, intent(out) :: status(:) !< (elements) 0, or the worst corner when a Jacobian is <= 0
     real(rk), allocatable :: b(:, :, :, :), weight(:, :)
     integer :: e, i, n
-    allocate (b(6, num_dofs, element%num_points, chunk), weight(element%num_points, chunk))
+    allocate (b(6, hex8_dofs, element%num_points, chunk), weight(element%num_points, chunk))
     do e = 1, size(x, 3), chunk
       n = min(chunk, size(x, 3) - e + 1)
       call element%strain_operator(x(:, :, e:e + n - 1), d, b(:, :, :, :n), weight(:, :n), &
@@ -45,10 +43,10 @@ contains
   !> diagonal.
   pure subroutine integrate_stiffness(num_points, b, d, weight, k)
     integer, intent(in) :: num_points
-    real(rk), intent(in) :: b(6, num_dofs, num_points)
+    real(rk), intent(in) :: b(6, hex8_dofs, num_points)
     real(rk), intent(in) :: d(6, 6), weight(num_points)
-    real(rk), intent(out) :: k(num_dofs, num_dofs)
-    real(rk) :: bt(num_dofs, 6*num_points), wdb(num_dofs, 6*num_points)
+    real(rk), intent(out) :: k(hex8_dofs, hex8_dofs)
+    real(rk) :: bt(hex8_dofs, 6*num_points), wdb(hex8_dofs, 6*num_points)
     integer :: q, i, j, row
     do q = 1, num_points
       row = 6*(q - 1)
@@ -62,7 +60,7 @@ contains
       end do
     end do
     call multiply_columns(6*num_points, bt, wdb, k)
-    do j = 2, num_dofs
+    do j = 2, hex8_dofs
       k(:j - 1, j) = k(j, :j - 1)
     end do
   end subroutine integrate_stiffness
@@ -70,12 +68,12 @@ contains
   !> K = A C^T for a symmetric result: whole columns 1-8, then what lies below for the rest.
   pure subroutine multiply_columns(inner, a, c, k)
     integer, intent(in) :: inner
-    real(rk), intent(in) :: a(num_dofs, inner), c(num_dofs, inner)
-    real(rk), intent(out) :: k(num_dofs, num_dofs)
+    real(rk), intent(in) :: a(hex8_dofs, inner), c(hex8_dofs, inner)
+    real(rk), intent(out) :: k(hex8_dofs, hex8_dofs)
     integer, parameter :: group = 8
     real(rk) :: acc(group, 4)
     integer :: i, j, m, l
-    do i = 1, num_dofs, group
+    do i = 1, hex8_dofs, group
       do j = 1, i + group - 1, 4
         acc = 0.0_rk
         do m = 1, inner
@@ -138,7 +136,7 @@ contains
     do e = 1, size(b, 4)
       do q = 1, size(b, 3)
         strain(:, q, e) = 0.0_rk
-        do i = 1, num_dofs
+        do i = 1, hex8_dofs
           strain(:, q, e) = strain(:, q, e) + b(:, i, q, e)*u(i, e)
         end do
       end do
@@ -155,7 +153,7 @@ contains
     force = 0.0_rk
     do e = 1, size(b, 4)
       do q = 1, size(b, 3)
-        do i = 1, num_dofs
+        do i = 1, hex8_dofs
           force(i, e) = force(i, e) + weight(q, e)*sum(b(:, i, q, e)*stress(:, q, e))
         end do
       end do

@@ -1,12 +1,17 @@
 !> The trilinear 8-node hexahedron: shape functions, gradients, and whether its corners are sound.
 module shape_hex8
   use kinds, only: rk
+  use node_dofs, only: num_directions
   use gauss_rules, only: hex_point
   implicit none
   private
-  public :: corner, point_shape, point_derivative
+  public :: hex8_dofs, corner, point_shape, point_derivative
   public :: shape_at, derivative_at, edges_at, gradient_at, mean_gradient, strain_rows
   public :: corner_fault, corner_of_point, corners_from_points, invert3
+
+  integer, parameter :: num_corners = 8
+  !> Displacements of an element, node by node; its matrices know no other unknowns.
+  integer, parameter :: hex8_dofs = num_directions*num_corners
 
   !> Natural coordinates of the corners.
   real(rk), parameter :: corner(3, 8) = reshape(real([-1, -1, -1, 1, -1, -1, 1, 1, -1, &
@@ -129,11 +134,11 @@ contains
   !> Strain-displacement rows (order 11 22 33 12 13 23) of shape functions with these gradients.
   pure subroutine strain_rows(gradient, b)
     real(rk), contiguous, intent(in) :: gradient(:, :) !< (3, functions) [1/m]
-    real(rk), contiguous, intent(out) :: b(:, :) !< (6, 3*functions) [1/m]
+    real(rk), contiguous, intent(out) :: b(:, :) !< (6, directions*functions) [1/m]
     integer :: a, i
     b = 0.0_rk
     do a = 1, size(gradient, 2)
-      i = 3*a - 2
+      i = num_directions*(a - 1) + 1
       b(1, i) = gradient(1, a)
       b(4, i) = gradient(2, a)
       b(5, i) = gradient(3, a)

@@ -5,6 +5,7 @@
 module eigen_modes
   use kinds, only: rk
   use errors, only: error_type, raise
+  use node_dofs, only: num_directions, zero_vectors
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
   use global_vectors, only: norm, distance, multiply, diagonal
@@ -199,8 +200,8 @@ contains
     type(vibration_mode), allocatable, intent(out) :: modes(:)
     real(rk), allocatable :: force(:, :), q(:)
     integer :: k, i
-    allocate (modes(size(lambda)), force(matrix%num_total, 3), q(matrix%num_total))
-    do i = 1, 3
+    allocate (modes(size(lambda)), force(matrix%num_total, num_directions), q(matrix%num_total))
+    do i = 1, num_directions
       call inertia_force(numbers, matrix, mass, i, force(:, i))
     end do
     q = 0.0_rk
@@ -208,7 +209,7 @@ contains
       q(:matrix%num_free) = phi(:, k)
       modes(k)%hz = sqrt(lambda(k))/two_pi
       modes(k)%effective_mass = matmul(q, force)**2
-      allocate (modes(k)%shape(3, numbers%num_nodes))
+      modes(k)%shape = zero_vectors(numbers%num_nodes)
       call numbers%expand(q, modes(k)%shape)
     end do
   end subroutine describe_modes

@@ -1,6 +1,7 @@
 !> The state that an analysis begins with.
 module initial_state
   use kinds, only: rk
+  use node_dofs, only: zero_vectors
   use problem_definition, only: problem
   use joint_points, only: joint, apart
   use joint_law, only: joint_state
@@ -26,7 +27,10 @@ contains
     integer :: i, n
     n = scene%mesh%num_nodes
     allocate (now)
-    allocate (now%u(3, n), now%v(3, n), now%a(3, n), now%reaction(3, n), source=0.0_rk)
+    now%u = zero_vectors(n)
+    now%v = zero_vectors(n)
+    now%a = zero_vectors(n)
+    now%reaction = zero_vectors(n)
     call start_joints(scene%joints, now%joints)
     call start_histories(scene, now)
     if (.not. allocated(scene%initial_values)) return

@@ -8,6 +8,7 @@ module finish_ties
   use finish_interfaces, only: append_coupling
   use kinds, only: rk
   use model_draft, only: draft, tie_request
+  use node_dofs, only: num_directions, zero_vectors
   use node_ties, only: node_tie
   use surface_coupling, only: build_coupling, coupling
   use surface_facets, only: list_surface_facets
@@ -70,9 +71,9 @@ contains
     logical, allocatable, intent(out) :: is_always(:, :) !< (3, nodes) in all steps
     logical, allocatable :: is_now(:, :)
     integer :: s, k
-    allocate (is_fixed(3, model%scene%mesh%num_nodes), source=.false.)
-    allocate (is_always(3, model%scene%mesh%num_nodes), source=.true.)
-    allocate (is_now(3, model%scene%mesh%num_nodes))
+    allocate (is_fixed(num_directions, model%scene%mesh%num_nodes), source=.false.)
+    allocate (is_always(num_directions, model%scene%mesh%num_nodes), source=.true.)
+    allocate (is_now(num_directions, model%scene%mesh%num_nodes))
     do s = 1, size(model%scene%steps)
       is_now = .false.
       associate (fixities => model%scene%steps(s)%fixities)
@@ -168,8 +169,8 @@ contains
     type(error_type), allocatable :: error
     character(:), allocatable :: kind, values
     integer :: i, worst(2)
-    allocate (given(3, model%scene%mesh%num_nodes), source=0.0_rk)
-    allocate (is_given(3, model%scene%mesh%num_nodes), source=.false.)
+    given = zero_vectors(model%scene%mesh%num_nodes)
+    allocate (is_given(num_directions, model%scene%mesh%num_nodes), source=.false.)
     do i = 1, size(model%scene%initial_values)
       associate (item => model%scene%initial_values(i))
         if (item%is_velocity .neqv. is_velocity) cycle

@@ -3,6 +3,7 @@ module finish_step
   use kinds, only: rk
   use load_point, only: point_load
   use model_draft, only: draft, add_load
+  use node_dofs, only: num_directions
   use step_plan, only: field_request, print_request, step, step_fixity, step_load
   use write_text, only: as_text
   use applied_load, only: load
@@ -75,7 +76,7 @@ contains
     allocate (model%now%fixities(count(model%supports%is_set)))
     used = 0
     do node = 1, size(model%supports%is_set, 2)
-      do dof = 1, 3
+      do dof = 1, num_directions
         if (.not. model%supports%is_set(dof, node)) cycle
         used = used + 1
         model%now%fixities(used) = step_fixity(node, dof, model%supports%value(dof, node), &

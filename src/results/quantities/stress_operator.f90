@@ -2,7 +2,8 @@
 !> points and corners amounts to where all laws are elastic, at the price of one sparse product.
 module stress_operator
   use kinds, only: rk
-  use shape_hex8, only: corners_from_points
+  use node_dofs, only: num_directions
+  use shape_hex8, only: corners_from_points, hex8_dofs
   use problem_definition, only: problem
   use stress_recovery, only: recovery_plan, operators_of_block, max_points, few_nodes
   implicit none
@@ -85,7 +86,7 @@ contains
     real(rk), intent(in) :: b(:, :, :) !< (6, 24, points)
     real(rk), intent(in) :: to_corner(8, max_points)
     type(nodal_operator), intent(inout) :: operator
-    real(rk) :: at_corner(6, 24), share
+    real(rk) :: at_corner(6, hex8_dofs), share
     integer :: a, q, node, c, i, nodes(8)
     nodes = scene%mesh%nodes(:, plan%element_of_solid(solid))
     do a = 1, 8
@@ -105,7 +106,7 @@ contains
         i = operator%row_start(node) - 1 + &
             findloc(operator%column(operator%row_start(node):operator%row_start(node + 1) - 1), &
                     nodes(c), dim=1)
-        call add_entry(share*at_corner(:, 3*c - 2:3*c), i, operator)
+        call add_entry(share*at_corner(:, num_directions*(c - 1) + 1:num_directions*c), i, operator)
       end do
     end do
   end subroutine add_element

@@ -7,7 +7,9 @@ module stress_recovery
   use element_formulation, only: solid_element
   use element_catalogue, only: is_solid, make_solid
   use element_matrices, only: strains_at_points
+  use node_dofs, only: gather_vectors
   use problem_definition, only: problem
+  use shape_hex8, only: hex8_dofs
   use analysis_state, only: state
   implicit none
   private
@@ -211,9 +213,10 @@ contains
     n = size(part%solids)
     call operators_of_block(scene, plan, part, b, d)
     points = size(b, 3)
-    allocate (found(6, points, n), moved(24, n))
+    allocate (found(6, points, n), moved(hex8_dofs, n))
     do k = 1, n
-      moved(:, k) = reshape(u(:, scene%mesh%nodes(:, plan%element_of_solid(part%solids(k)))), [24])
+      moved(:, k) = &
+        gather_vectors(u, scene%mesh%nodes(:, plan%element_of_solid(part%solids(k))))
     end do
     call strains_at_points(b, moved, found)
     do k = 1, n
@@ -236,7 +239,7 @@ contains
     integer :: k, n, points
     n = size(part%solids)
     points = plan%formulations(part%formulation)%item%num_points
-    allocate (b(6, 24, points, n), weight(points, n), x(3, 8, n), status(n))
+    allocate (b(6, hex8_dofs, points, n), weight(points, n), x(3, 8, n), status(n))
     do k = 1, n
       x(:, :, k) = scene%mesh%x(:, scene%mesh%nodes(:, plan%element_of_solid(part%solids(k))))
     end do

@@ -2,6 +2,7 @@
 module run_summaries
   use kinds, only: rk
   use diagnostics, only: diagnostic_list
+  use node_dofs, only: num_directions
   use problem_definition, only: problem
   use analysis_state, only: state, energy_balance, vibration_mode
   implicit none
@@ -52,7 +53,7 @@ contains
   integer function count_unknowns(scene, step) result(count_free)
     type(problem), intent(in) :: scene
     integer, intent(in) :: step
-    logical :: is_free(3, scene%mesh%num_nodes)
+    logical :: is_free(num_directions, scene%mesh%num_nodes)
     integer :: e, a, i
     is_free = .false.
     do e = 1, scene%mesh%num_elements

@@ -5,6 +5,7 @@ module write_hdf5
   use run_ledger, only: ledger
   use timer, only: wall_clock
   use build_info, only: program_version
+  use node_dofs, only: num_directions
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
   use run_records, only: run_record
@@ -193,7 +194,8 @@ contains
     real(rk), allocatable :: mass(:, :), shapes(:, :, :)
     integer :: i
     call self%enter_step(scene, step)
-    allocate (mass(3, size(modes)), shapes(3, scene%mesh%num_nodes, size(modes)))
+    allocate (mass(num_directions, size(modes)))
+    allocate (shapes(num_directions, scene%mesh%num_nodes, size(modes)))
     do i = 1, size(modes)
       mass(:, i) = modes(i)%effective_mass
       shapes(:, :, i) = modes(i)%shape
