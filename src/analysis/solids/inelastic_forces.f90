@@ -8,11 +8,12 @@
 module inelastic_forces
   use kinds, only: rk
   use problem_definition, only: problem
+  use node_dofs, only: add_vectors, gather_vectors, zero_vectors
   use dof_numbering, only: numbering
   use inelastic_blocks, only: inelastic_block
   use element_matrices, only: strains_at_points
   use gauss_rules, only: hex_point
-  use shape_hex8, only: derivative_at, gradient_at
+  use shape_hex8, only: derivative_at, gradient_at, hex8_dofs
   use material_law, only: stress_law
   use material_points, only: point_state, time_increment, update_report, no_tangent
   implicit none
@@ -40,7 +41,7 @@ contains
     integer :: i
     allocate (answers(size(blocks)))
     do i = 1, size(blocks)
-      allocate (answers(i)%force(24, size(blocks(i)%elements)), &
+      allocate (answers(i)%force(hex8_dofs, size(blocks(i)%elements)), &
                 answers(i)%has_excess(size(blocks(i)%elements)), answers(i)%tangent(6, 6, 0))
     end do
   end subroutine open_answers
@@ -102,7 +103,7 @@ contains
     type(point_state), intent(in) :: old
     type(point_state), intent(inout) :: new
     type(block_answer), intent(inout) :: answer
-    real(rk) :: moved(24, size(part%elements)), d(6, 6)
+    real(rk) :: moved(hex8_dofs, size(part%elements)), d(6, 6)
     integer :: e, num_tangents
     num_tangents = merge(0, part%points%num_points, time%tangent == no_tangent)
     if (size(answer%tangent, 3) /= num_tangents) then
@@ -110,7 +111,7 @@ contains
       allocate (answer%tangent(6, 6, num_tangents))
     end if
     do e = 1, size(part%elements)
-      moved(:, e) = reshape(u(:, scene%mesh%nodes(:, part%elements(e))), [24])
+      moved(:, e) = gather_vectors(u, scene%mesh%nodes(:, part%elements(e)))
     end do
     associate (law => scene%materials(part%material)%law)
       call find_strains(part, moved, new%strain)
@@ -175,7 +176,7 @@ contains
         if (new%is_elastic(p)) cycle
         answer%has_excess(e) = .true.
         excess = part%weight(q, e)*(matmul(d, new%strain(:, p)) - new%stress(:, p))
-        do i = 1, 24
+        do i = 1, hex8_dofs
           answer%force(i, e) = answer%force(i, e) + sum(part%b(:, i, q, e)*excess)
         end do
       end do
@@ -188,16 +189,14 @@ contains
     type(numbering), intent(in) :: numbers
     type(block_answer), intent(in) :: answers(:)
     real(rk), intent(out) :: excess(:) !< (num_total) [N]
-    real(rk) :: nodal(3, scene%mesh%num_nodes)
-    integer :: i, e, a, node
-    nodal = 0.0_rk
+    real(rk), allocatable :: nodal(:, :)
+    integer :: i, e
+    nodal = zero_vectors(scene%mesh%num_nodes)
     do i = 1, size(answers)
       do e = 1, size(answers(i)%has_excess)
         if (.not. answers(i)%has_excess(e)) cycle
-        do a = 1, 8
-          node = scene%mesh%nodes(a, scene%inelastic(i)%elements(e))
-          nodal(:, node) = nodal(:, node) + answers(i)%force(3*a - 2:3*a, e)
-        end do
+        call add_vectors(answers(i)%force(:, e), &
+                         scene%mesh%nodes(:, scene%inelastic(i)%elements(e)), nodal)
       end do
     end do
     call numbers%reduce(nodal, excess)

@@ -3,6 +3,7 @@
 module inelastic_stiffness
   use kinds, only: rk
   use problem_definition, only: problem
+  use shape_hex8, only: hex8_dofs
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
   use inelastic_blocks, only: inelastic_block
@@ -31,7 +32,7 @@ contains
     do i = 1, size(answers)
       largest = max(largest, size(answers(i)%has_excess))
     end do
-    allocate (ke(24, 24, largest, batch))
+    allocate (ke(hex8_dofs, hex8_dofs, largest, batch))
     do first = 1, size(answers), batch
       last = min(first + batch - 1, size(answers))
       !$omp parallel do schedule(dynamic) default(none) shared(scene, answers, ke, first, last) &
@@ -72,12 +73,12 @@ contains
 
   !> k = k + B^T C B.
   pure subroutine add_point(c, b, k)
-    real(rk), intent(in) :: c(6, 6), b(6, 24)
-    real(rk), intent(inout) :: k(24, 24)
-    real(rk) :: bt(24, 6), cb(6)
+    real(rk), intent(in) :: c(6, 6), b(6, hex8_dofs)
+    real(rk), intent(inout) :: k(hex8_dofs, hex8_dofs)
+    real(rk) :: bt(hex8_dofs, 6), cb(6)
     integer :: i, j
     bt = transpose(b)
-    do j = 1, 24
+    do j = 1, hex8_dofs
       cb = c(:, 1)*b(1, j)
       do i = 2, 6
         cb = cb + c(:, i)*b(i, j)
