@@ -3,7 +3,7 @@ module assemble_forces
   use kinds, only: rk
   use problem_definition, only: problem
   use step_plan, only: step_load
-  use node_dofs, only: zero_vectors
+  use node_dofs, only: num_directions, zero_vectors
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
   use global_vectors, only: multiply
@@ -37,8 +37,7 @@ contains
     type(step_load), intent(in) :: loads(:)
     real(rk), allocatable, intent(out) :: blocks(:, :, :) !< (3, 3, nodes) [kg]
     integer :: k
-    allocate (blocks(3, 3, scene%mesh%num_nodes))
-    blocks = 0.0_rk
+    allocate (blocks(num_directions, num_directions, scene%mesh%num_nodes), source=0.0_rk)
     do k = 1, size(loads)
       if (abs(loads(k)%end_factor) <= 0.0_rk) cycle
       call scene%loads(loads(k)%load)%item%add_added_mass(scene%mesh, blocks)

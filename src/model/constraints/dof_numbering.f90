@@ -41,7 +41,8 @@ module dof_numbering
     integer, allocatable :: direction(:) !< (num_total) component of the node; of a jump: n, s1, s2
     integer, allocatable :: first_jump(:) !< (points) first unknown of a point's jump, 0 for none
   contains
-    procedure :: expand, add_expanded, compress, reduce, add_reduced, unknown_of, describe
+    procedure :: expand, add_expanded, expand_prescribed, compress
+    procedure :: reduce, add_reduced, unknown_of, describe
   end type numbering
 
 contains
@@ -269,6 +270,18 @@ contains
       end do
     end do
   end subroutine add_expanded
+
+  !> The entries of prescribed unknowns as a field, zero elsewhere: reactions from forces.
+  pure subroutine expand_prescribed(self, r, u)
+    class(numbering), intent(in) :: self
+    real(rk), intent(in) :: r(:) !< (num_total)
+    real(rk), intent(out) :: u(:, :) !< (components, nodes)
+    integer :: k
+    u = 0.0_rk
+    do k = self%num_free + 1, self%num_total
+      if (self%direction(k) <= size(u, 1)) u(self%direction(k), self%node(k)) = r(k)
+    end do
+  end subroutine expand_prescribed
 
   !> The unknowns of a field, the inverse of `expand` but for jumps: those are not known to the
   !> numbering and become zero.

@@ -145,6 +145,11 @@ contains
     call check_close(log, maxval(abs(r - q)), 0.0_rk, 0.0_rk, 'compressed as expanded')
     call numbers%expand(r, again)
     call check_close(log, maxval(abs(again - field)), 0.0_rk, 0.0_rk, 'expanded again')
+    call numbers%expand_prescribed(q, again)
+    call check_close(log, sum(abs(again)), abs(q(16)) + abs(q(17)), 0.0_rk, 'two entries')
+    call check_close(log, again(pressure, 4), q(17), 0.0_rk, 'at the prescribed pressure')
+    call numbers%expand_prescribed(q, u)
+    call check_close(log, sum(abs(u)), abs(q(16)), 0.0_rk, 'a reaction without the pressure')
     f = reshape([(sin(real(k, rk)), k=1, size(f))], shape(f))
     call numbers%reduce(f, r)
     ! 20 products of numbers below 2.
