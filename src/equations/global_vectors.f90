@@ -11,7 +11,7 @@ module global_vectors
   use matrix_pattern, only: pattern, multiply_local => multiply, diagonal_local => diagonal
   implicit none
   private
-  public :: dot, norm, distance, length, total, largest_entry, multiply, diagonal
+  public :: dot, norm, distance, length, total, work, largest_entry, multiply, diagonal
 
   !> Euclidean norm by `norm2`, which scales and can neither overflow nor underflow.
   interface norm
@@ -54,6 +54,17 @@ contains
     real(rk), intent(in) :: x(:, :), y(:, :) !< (components, nodes or points)
     distance = norm2(x - y)
   end function distance_of_fields
+
+  !> du . (f0 + f1)/2: the work of the mean of two forces.
+  real(rk) function work(du, f0, f1)
+    real(rk), intent(in) :: du(:), f0(:), f1(:) !< of one size
+    integer :: i
+    work = 0.0_rk
+    do i = 1, size(du)
+      work = work + du(i)*(f0(i) + f1(i))
+    end do
+    work = 0.5_rk*work
+  end function work
 
   !> sqrt(x . x) by one sum of squares: quicker than `norm`; overflows above 1e154. The two differ
   !> by round-off.

@@ -7,6 +7,7 @@
 !> `error`, shows a solution that does not satisfy the equations.
 module energy_account
   use kinds, only: rk
+  use global_vectors, only: dot, total, work
   use problem_definition, only: problem
   use inelastic_energy, only: solid_work, sum_solid_work
   use joint_forces, only: joint_work, sum_joint_work
@@ -106,7 +107,7 @@ contains
   end subroutine add_external
 
   !> Work of the internal forces beyond that of K q.
-  pure real(rk) function inelastic_work(du, old, new, skipped) result(taken)
+  real(rk) function inelastic_work(du, old, new, skipped) result(taken)
     real(rk), intent(in) :: du(:)
     type(motion), intent(in) :: old, new
     integer, intent(in), optional :: skipped !< unknowns before the first of `du`
@@ -118,29 +119,18 @@ contains
   end function inelastic_work
 
   !> Change of the kinetic energy beyond du . M a_mean (7.4).
-  pure real(rk) function newmark_excess(scheme, du, old, new) result(excess)
+  real(rk) function newmark_excess(scheme, du, old, new) result(excess)
     type(hht), intent(in) :: scheme
     real(rk), intent(in) :: du(:)
     type(motion), intent(in) :: old, new
     real(rk) :: du_dma, da_ma, da_dma
-    du_dma = dot_product(du, new%inertia - old%inertia)
+    du_dma = dot(du, new%inertia - old%inertia)
     da_ma = work(new%a - old%a, old%inertia, new%inertia)
-    da_dma = dot_product(new%a - old%a, new%inertia - old%inertia)
+    da_dma = dot(new%a - old%a, new%inertia - old%inertia)
     associate (g => scheme%gamma - 0.5_rk, b => scheme%beta - 0.5_rk*scheme%gamma)
       excess = g*du_dma - b*scheme%dt**2*(da_ma + g*da_dma)
     end associate
   end function newmark_excess
-
-  !> du . (f0 + f1)/2.
-  pure real(rk) function work(du, f0, f1)
-    real(rk), intent(in) :: du(:), f0(:), f1(:)
-    integer :: i
-    work = 0.0_rk
-    do i = 1, size(du)
-      work = work + du(i)*(f0(i) + f1(i))
-    end do
-    work = 0.5_rk*work
-  end function work
 
   !> Change of what joints store and dissipate, and of what inelastic solids store beyond 1/2 q K q
   !> and dissipate.
@@ -169,12 +159,12 @@ contains
     call sum_solid_work(model, now%points, solids)
     associate (own => now%motion, energy => now%energy)
       energy%kinetic = 0.0_rk
-      if (allocated(own%momentum)) energy%kinetic = 0.5_rk*dot_product(own%v, own%momentum)
-      energy%strain = 0.5_rk*dot_product(own%q, own%elastic) + joints%stored + solids%stored
+      if (allocated(own%momentum)) energy%kinetic = 0.5_rk*dot(own%v, own%momentum)
+      energy%strain = 0.5_rk*dot(own%q, own%elastic) + joints%stored + solids%stored
       energy%friction = joints%friction
       energy%fracture = joints%fracture + solids%fracture
       energy%crushing = solids%crushing
-      energy%largest = max(energy%largest, idle_share*sum(diagonal*own%q**2))
+      energy%largest = max(energy%largest, idle_share*total(diagonal*own%q**2))
       call find_error(energy)
     end associate
   end subroutine set_stored

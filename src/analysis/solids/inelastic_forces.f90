@@ -1,7 +1,7 @@
 !> The forces of solids whose stress is more than a constant stiffness times strain. Beside K u of
-!> the elastic solid they are what its points have released (theory.md, (12.1)):
+!> the elastic solid they are its initial-stress force, the excess (theory.md, (12.1)):
 !>
-!>   f = K u - released,   released = T^T sum w B^T (D eps - sigma)
+!>   f = K u - excess,   excess = T^T sum w B^T (D eps - sigma)
 !>
 !> summed over the points that are not elastic. Threads take blocks of elements; the sums are made
 !> in the order of the blocks, so that they do not depend on the number of threads.

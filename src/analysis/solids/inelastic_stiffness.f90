@@ -51,7 +51,7 @@ contains
     end do
   end subroutine lost_stiffness
 
-  !> The matrices of the elements of a block that have released something.
+  !> The matrices of the elements of a block with an initial-stress force.
   subroutine integrate_block(scene, part, answer, ke)
     type(problem), intent(in) :: scene
     type(inelastic_block), intent(in) :: part

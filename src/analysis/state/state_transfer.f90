@@ -59,10 +59,8 @@ contains
     type(joint), intent(in) :: joints(:)
     real(rk), intent(in) :: u(:, :) !< (3, nodes)
     real(rk), intent(out) :: q(:) !< (num_total)
-    integer :: k, j, p, pair, first
-    do k = 1, numbers%num_total
-      q(k) = u(numbers%direction(k), numbers%node(k))
-    end do
+    integer :: j, p, pair, first
+    call numbers%compress(u, q)
     pair = 0
     do j = 1, size(joints)
       if (.not. joints(j)%is_nodal) cycle
@@ -108,19 +106,17 @@ contains
   subroutine store_motion(numbers, now)
     type(numbering), intent(in) :: numbers
     type(state), intent(inout) :: now
-    real(rk) :: inertia
-    integer :: k
+    real(rk), allocatable :: residual(:)
     associate (own => now%motion)
       call numbers%expand(own%q, now%u)
       if (allocated(own%v)) call numbers%expand(own%v, now%v)
       if (allocated(own%a)) call numbers%expand(own%a, now%a)
-      now%reaction = 0.0_rk
-      inertia = 0.0_rk
-      do k = numbers%num_free + 1, numbers%num_total
-        if (allocated(own%inertia)) inertia = own%inertia(k) + own%viscous(k)
-        now%reaction(numbers%direction(k), numbers%node(k)) = &
-          inertia + own%internal(k) + own%contact(k) - own%external(k)
-      end do
+      if (allocated(own%inertia)) then
+        residual = own%inertia + own%viscous + own%internal + own%contact - own%external
+      else
+        residual = own%internal + own%contact - own%external
+      end if
+      call numbers%expand_prescribed(residual, now%reaction)
     end associate
   end subroutine store_motion
 end module state_transfer

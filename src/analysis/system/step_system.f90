@@ -6,7 +6,8 @@ module step_system
   use step_plan, only: step
   use dof_numbering, only: numbering
   use constraint_elimination, only: number_step
-  use matrix_pattern, only: pattern, drop_zeros, diagonal
+  use global_vectors, only: diagonal
+  use matrix_pattern, only: pattern, drop_zeros
   use pattern_builder, only: cell_list, list_cells, build_pattern
   use assemble_elements, only: assemble_stiffness, assemble_mass, assemble_damping, add_nodal_mass
   use assemble_forces, only: sum_added_mass

@@ -33,7 +33,7 @@ program test_inelastic_forces
   call make_scene()
   call elastic_points_release_nothing(log)
   call tangent_follows_differences(log)
-  call secant_gives_released_force(log)
+  call secant_gives_excess_force(log)
   call threads_do_not_matter(log)
   call states_are_recalled(log)
   call failure_names_the_point(log)
@@ -75,57 +75,57 @@ contains
   end function field
 
   !> What the points release at q, from the state `old`.
-  subroutine release(q, tangent, released)
+  subroutine find_excess(q, tangent, excess)
     real(rk), intent(in) :: q(:)
     integer, intent(in) :: tangent
-    real(rk), intent(out) :: released(:)
+    real(rk), intent(out) :: excess(:)
     real(rk) :: u(3, scene%mesh%num_nodes)
     call numbers%expand(q, u)
     call update_points(scene, u, time_increment(tangent=tangent), old, new, answers)
-    call sum_excess(scene, numbers, answers, released)
-  end subroutine release
+    call sum_excess(scene, numbers, answers, excess)
+  end subroutine find_excess
 
   subroutine elastic_points_release_nothing(log)
     type(test_log), intent(inout) :: log
-    real(rk) :: released(numbers%num_total), values(size(matrix%row))
-    call release(field(1.0e-5_rk), consistent_tangent, released)
+    real(rk) :: excess(numbers%num_total), values(size(matrix%row))
+    call find_excess(field(1.0e-5_rk), consistent_tangent, excess)
     call lost_stiffness(scene, numbers, answers, matrix, values)
     call check(log, size(scene%inelastic) == 3, 'three blocks')
-    call check(log, all(abs(released) <= 0.0_rk), 'no force')
+    call check(log, all(abs(excess) <= 0.0_rk), 'no force')
     call check(log, all(abs(values) <= 0.0_rk), 'no stiffness lost')
   end subroutine elastic_points_release_nothing
 
   !> A h = (R(q + h) - R(q - h))/2 but for h^2 and round-off.
   subroutine tangent_follows_differences(log)
     type(test_log), intent(inout) :: log
-    real(rk), dimension(numbers%num_total) :: q, h, released, above, below, product
+    real(rk), dimension(numbers%num_total) :: q, h, excess, above, below, product
     real(rk) :: values(size(full%row))
     integer :: i
     q = field(3.0e-4_rk)
     h = 1.0e-9_rk*[(sin(5.0_rk*i), i=1, size(h))]
-    call release(q + h, consistent_tangent, above)
-    call release(q - h, consistent_tangent, below)
-    call release(q, consistent_tangent, released)
+    call find_excess(q + h, consistent_tangent, above)
+    call find_excess(q - h, consistent_tangent, below)
+    call find_excess(q, consistent_tangent, excess)
     call lost_stiffness(scene, numbers, answers, full, values)
     call multiply(full, values, h, product)
-    call check(log, norm2(released) > 1.0e6_rk, 'there is something to test')
+    call check(log, norm2(excess) > 1.0e6_rk, 'there is something to test')
     ! Round-off of a difference of forces of 1e7 N over 1e2 N: 1e-16*1e5; kinks none with this q.
     call check_close(log, norm2(product - 0.5_rk*(above - below))/norm2(product), 0.0_rk, &
                      1.0e-8_rk, 'consistent tangent')
   end subroutine tangent_follows_differences
 
-  !> Without plastic strain the secant stiffness lost gives the force that is released.
-  subroutine secant_gives_released_force(log)
+  !> Without plastic strain the secant stiffness lost gives the excess force.
+  subroutine secant_gives_excess_force(log)
     type(test_log), intent(inout) :: log
-    real(rk), dimension(numbers%num_total) :: q, released, product
+    real(rk), dimension(numbers%num_total) :: q, excess, product
     real(rk) :: values(size(matrix%row))
     q = field(3.0e-4_rk)
-    call release(q, secant_tangent, released)
+    call find_excess(q, secant_tangent, excess)
     call lost_stiffness(scene, numbers, answers, matrix, values)
     call multiply(matrix, values, q, product)
-    call check_close(log, norm2(product - released)/norm2(released), 0.0_rk, 1.0e-12_rk, &
+    call check_close(log, norm2(product - excess)/norm2(excess), 0.0_rk, 1.0e-12_rk, &
                      'secant stiffness times displacement')
-  end subroutine secant_gives_released_force
+  end subroutine secant_gives_excess_force
 
   !> The same digits with one thread and with two.
   subroutine threads_do_not_matter(log)
@@ -133,10 +133,10 @@ contains
     real(rk) :: one(numbers%num_total), two(numbers%num_total)
     real(rk) :: first(size(full%row)), second(size(full%row))
     call omp_set_num_threads(1)
-    call release(field(3.0e-4_rk), consistent_tangent, one)
+    call find_excess(field(3.0e-4_rk), consistent_tangent, one)
     call lost_stiffness(scene, numbers, answers, full, first)
     call omp_set_num_threads(2)
-    call release(field(3.0e-4_rk), consistent_tangent, two)
+    call find_excess(field(3.0e-4_rk), consistent_tangent, two)
     call lost_stiffness(scene, numbers, answers, full, second)
     call check(log, all(abs(one - two) <= 0.0_rk), 'forces do not depend on the threads')
     call check(log, all(abs(first - second) <= 0.0_rk), 'nor does the stiffness')
@@ -147,15 +147,15 @@ contains
     type(test_log), intent(inout) :: log
     type(block_answer), allocatable :: others(:)
     type(solid_work) :: total
-    real(rk), dimension(numbers%num_total) :: released, recalled
-    call release(field(3.0e-4_rk), secant_tangent, released)
+    real(rk), dimension(numbers%num_total) :: excess, recalled
+    call find_excess(field(3.0e-4_rk), secant_tangent, excess)
     call open_answers(scene%inelastic, others)
     call recall_points(scene, new, others)
     call sum_excess(scene, numbers, others, recalled)
-    call check(log, all(abs(released - recalled) <= 0.0_rk), 'released forces are recalled')
+    call check(log, all(abs(excess - recalled) <= 0.0_rk), 'excess forces are recalled')
     call sum_solid_work(scene, new, total)
-    ! Linear elastic-damage: stored - 1/2 eps D eps = -1/2 u . released.
-    call check_close(log, total%stored, -0.5_rk*dot_product(field(3.0e-4_rk), released), &
+    ! Linear elastic-damage: stored - 1/2 eps D eps = -1/2 u . excess.
+    call check_close(log, total%stored, -0.5_rk*dot_product(field(3.0e-4_rk), excess), &
                      1.0e-12_rk*abs(total%stored), 'stored energy')
     call check(log, total%fracture > 0.0_rk .and. total%crushing <= 0.0_rk, 'dissipated')
   end subroutine states_are_recalled
@@ -163,12 +163,12 @@ contains
   subroutine failure_names_the_point(log)
     type(test_log), intent(inout) :: log
     character(:), allocatable :: why
-    real(rk) :: size_ratio, released(numbers%num_total)
+    real(rk) :: size_ratio, excess(numbers%num_total)
     call find_failure(scene, answers, size_ratio, why)
     call check(log,.not. allocated(why), 'no failure')
     call put_law(damage_law(elastic=elastic_law(young=3.0e10_rk), largest_strain=2.0e-4_rk), [1], &
                  scene)
-    call release(field(3.0e-4_rk), secant_tangent, released)
+    call find_excess(field(3.0e-4_rk), secant_tangent, excess)
     call find_failure(scene, answers, size_ratio, why)
     call check(log, allocated(why), 'a failure')
     if (.not. allocated(why)) return
