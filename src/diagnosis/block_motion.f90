@@ -3,7 +3,7 @@ module block_motion
   use kinds, only: rk
   use problem_definition, only: problem
   use rigid_blocks, only: block_set
-  use shape_quad4, only: cross
+  use small_matrix, only: cross_product
   use sorted_lists, only: contains_position
   use symmetric_modes, only: find_modes
   use write_text, only: as_text
@@ -91,7 +91,7 @@ contains
     case (1)
       text = 'move along '//direction_text(ways(:, 1), .false.)
     case (2)
-      held = cross(ways(:, 1), ways(:, 2))
+      held = cross_product(ways(:, 1), ways(:, 2))
       if (maxval(abs(held)) < 1.0_rk - negligible**2) then
         text = 'move in all directions across '//direction_text(held, .false.)
         return
@@ -131,7 +131,7 @@ contains
     logical, intent(in) :: has_sense
     character(:), allocatable :: text
     real(rk) :: place(3), unit
-    place = blocks%centre(:, b) + cross(w, v)/max(dot_product(w, w), tiny(1.0_rk))
+    place = blocks%centre(:, b) + cross_product(w, v)/max(dot_product(w, w), tiny(1.0_rk))
     unit = 10.0_rk**(floor(log10(max(maxval(abs(place)), blocks%reach(b)))) - 3)
     text = 'the axis '//direction_text(w, has_sense)//' through '//place_text(place, unit)
   end function axis_text

@@ -8,7 +8,7 @@ module rigid_blocks
   use joint_points, only: joint
   use kinds, only: rk
   use problem_definition, only: problem
-  use shape_quad4, only: cross
+  use small_matrix, only: cross_product
   implicit none
   private
   public :: block_set, find_blocks, add_node_motion, jump_rows, add_supports
@@ -149,7 +149,7 @@ contains
     if (b == 0) return
     row(1:3, b) = row(1:3, b) + direction
     row(4:6, b) = row(4:6, b) &
-                  + cross(x(:, node) - blocks%centre(:, b), direction)/blocks%reach(b)
+                  + cross_product(x(:, node) - blocks%centre(:, b), direction)/blocks%reach(b)
   end subroutine add_node_motion
 
   !> The jumps of a point of a joint, in its axes, when the blocks move.

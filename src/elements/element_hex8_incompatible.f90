@@ -9,7 +9,8 @@ module element_hex8_incompatible
   use element_formulation, only: solid_element
   use element_hex8, only: hex8_gradients
   use gauss_rules, only: hex_point
-  use shape_hex8, only: derivative_at, hex8_dofs, invert3, strain_rows
+  use shape_hex8, only: derivative_at, hex8_dofs, strain_rows
+  use small_matrix, only: invert3
   implicit none
   private
   public :: incompatible_hexahedron

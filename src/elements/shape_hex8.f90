@@ -3,11 +3,12 @@ module shape_hex8
   use kinds, only: rk
   use node_dofs, only: num_directions
   use gauss_rules, only: hex_point
+  use small_matrix, only: determinant3, invert3
   implicit none
   private
   public :: hex8_dofs, corner, point_shape, point_derivative
   public :: shape_at, derivative_at, edges_at, gradient_at, mean_gradient, strain_rows
-  public :: corner_fault, corner_of_point, corners_from_points, invert3
+  public :: corner_fault, corner_of_point, corners_from_points
 
   integer, parameter :: num_corners = 8
   !> Displacements of an element, node by node; its matrices know no other unknowns.
@@ -97,25 +98,6 @@ contains
     end do
   end subroutine gradient_at
 
-  !> Inverse and determinant; the inverse is zero where the determinant is.
-  pure subroutine invert3(matrix, inverse, determinant)
-    real(rk), intent(in) :: matrix(3, 3)
-    real(rk), intent(out) :: inverse(3, 3)
-    real(rk), intent(out) :: determinant
-    real(rk) :: m(3, 3), scale
-    m = matrix
-    inverse(:, 1) = [m(2, 2)*m(3, 3) - m(2, 3)*m(3, 2), m(2, 3)*m(3, 1) - m(2, 1)*m(3, 3), &
-                     m(2, 1)*m(3, 2) - m(2, 2)*m(3, 1)]
-    inverse(:, 2) = [m(1, 3)*m(3, 2) - m(1, 2)*m(3, 3), m(1, 1)*m(3, 3) - m(1, 3)*m(3, 1), &
-                     m(1, 2)*m(3, 1) - m(1, 1)*m(3, 2)]
-    inverse(:, 3) = [m(1, 2)*m(2, 3) - m(1, 3)*m(2, 2), m(1, 3)*m(2, 1) - m(1, 1)*m(2, 3), &
-                     m(1, 1)*m(2, 2) - m(1, 2)*m(2, 1)]
-    determinant = sum(m(1, :)*inverse(:, 1))
-    scale = 0.0_rk
-    if (abs(determinant) > tiny(scale)) scale = 1.0_rk/determinant
-    inverse = inverse*scale
-  end subroutine invert3
-
   !> Gradients averaged over the volume (exact), and the volume.
   pure subroutine mean_gradient(gradient, weight, mean, volume)
     real(rk), intent(in) :: gradient(3, 8, 8) !< at the 2 x 2 x 2 points [1/m]
@@ -158,7 +140,7 @@ contains
   !> edges (wedges made by repeated nodes) have no Jacobian and are passed over.
   pure integer function corner_fault(x) result(fault)
     real(rk), intent(in) :: x(3, 8) !< [m]
-    real(rk) :: edge(3, 3), inverse(3, 3), jacobian, lowest, lengths
+    real(rk) :: edge(3, 3), jacobian, lowest, lengths
     integer :: a, i
     fault = 0
     lowest = flat_corner
@@ -168,7 +150,7 @@ contains
       end do
       lengths = norm2(edge(:, 1))*norm2(edge(:, 2))*norm2(edge(:, 3))
       if (lengths <= 0.0_rk) cycle
-      call invert3(edge, inverse, jacobian)
+      jacobian = determinant3(edge)
       if (jacobian/lengths >= lowest) cycle
       lowest = jacobian/lengths
       fault = a

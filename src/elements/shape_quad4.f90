@@ -2,9 +2,10 @@
 module shape_quad4
   use kinds, only: rk
   use gauss_rules, only: quad_point
+  use small_matrix, only: cross_product
   implicit none
   private
-  public :: facet_shape, facet_derivative, facet_point, cross
+  public :: facet_shape, facet_derivative, facet_point
 
   !> Natural coordinates of the corners.
   real(rk), parameter :: corner(2, 4) = reshape(real([-1, -1, 1, -1, 1, 1, -1, 1], rk), [2, 4])
@@ -43,13 +44,6 @@ contains
     real(rk) :: area(3)
     real(rk) :: along(3, 2)
     along = matmul(x, facet_derivative(xi))
-    area = cross(along(:, 1), along(:, 2))
+    area = cross_product(along(:, 1), along(:, 2))
   end function facet_area_vector
-
-  !> Vector product.
-  pure function cross(a, b) result(c)
-    real(rk), intent(in) :: a(3), b(3)
-    real(rk) :: c(3)
-    c = [a(2)*b(3) - a(3)*b(2), a(3)*b(1) - a(1)*b(3), a(1)*b(2) - a(2)*b(1)]
-  end function cross
 end module shape_quad4

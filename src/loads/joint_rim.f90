@@ -6,7 +6,7 @@
 module joint_rim
   use kinds, only: rk
   use mesh_faces, only: face_vector
-  use shape_quad4, only: cross
+  use small_matrix, only: cross_product
   implicit none
   private
   public :: face_rim, find_rim, distance_to_edges, area_of_facets
@@ -100,7 +100,7 @@ contains
     do e = 1, size(facets, 2)
       associate (a => x(:, edges%node(1, e)), b => x(:, edges%node(2, e)))
         edges%middle(:, e) = 0.5_rk*(a + b)
-        way = cross(b - a, face_vector(x(:, facets(:, e))))
+        way = cross_product(b - a, face_vector(x(:, facets(:, e))))
       end associate
       edges%outward(:, e) = way/max(norm2(way), tiny(1.0_rk))
     end do

@@ -7,7 +7,8 @@
 module wetted_facet
   use gauss_rules, only: line2_point, line2_weight, line5_point, line5_weight
   use kinds, only: rk
-  use shape_quad4, only: cross, facet_derivative, facet_point, facet_shape
+  use shape_quad4, only: facet_derivative, facet_point, facet_shape
+  use small_matrix, only: cross_product, solve2
   implicit none
   private
   public :: wet_facet, water_body, wet_the_facet
@@ -107,7 +108,7 @@ contains
     type(wet_facet), intent(inout) :: wet
     real(rk) :: depth(3), area(3), share, cut(3)
     integer :: low, high, middle
-    area = cross(corner(:, 2) - corner(:, 1), corner(:, 3) - corner(:, 1))
+    area = cross_product(corner(:, 2) - corner(:, 1), corner(:, 3) - corner(:, 1))
     if (norm2(area) <= tiny(share)) return
     depth = water%level - corner(water%up, :)
     low = minloc(depth, 1)
@@ -159,7 +160,7 @@ contains
   pure function shape_in_facet(x, place) result(n)
     real(rk), intent(in) :: x(3, 4), place(3)
     real(rk) :: n(4)
-    real(rk) :: xi(2), along(3, 2), miss(3), g(2, 2), r(2), step(2)
+    real(rk) :: xi(2), along(3, 2), miss(3), step(2)
     integer :: a, iteration
     do a = 1, 4
       if (norm2(x(:, a) - x(:, mod(a, 4) + 1)) <= 0.0_rk) then
@@ -171,10 +172,7 @@ contains
     do iteration = 1, 30
       along = matmul(x, facet_derivative(xi))
       miss = place - matmul(x, facet_shape(xi))
-      g = matmul(transpose(along), along)
-      r = matmul(miss, along)
-      step = [g(2, 2)*r(1) - g(1, 2)*r(2), g(1, 1)*r(2) - g(2, 1)*r(1)] &
-             /(g(1, 1)*g(2, 2) - g(1, 2)*g(2, 1))
+      step = solve2(matmul(transpose(along), along), matmul(miss, along))
       xi = xi + step
       if (maxval(abs(step)) <= 1.0e-14_rk) exit
     end do
@@ -190,10 +188,10 @@ contains
     integer :: p, q
     p = mod(double + 1, 4) + 1
     q = mod(double + 2, 4) + 1
-    area = cross(x(:, p) - x(:, double), x(:, q) - x(:, double))
+    area = cross_product(x(:, p) - x(:, double), x(:, q) - x(:, double))
     n = 0.0_rk
-    n(p) = dot_product(cross(x(:, q) - place, x(:, double) - place), area)/sum(area**2)
-    n(q) = dot_product(cross(x(:, double) - place, x(:, p) - place), area)/sum(area**2)
+    n(p) = dot_product(cross_product(x(:, q) - place, x(:, double) - place), area)/sum(area**2)
+    n(q) = dot_product(cross_product(x(:, double) - place, x(:, p) - place), area)/sum(area**2)
     n(double) = 1.0_rk - n(p) - n(q)
   end function shape_in_triangle
 end module wetted_facet

@@ -3,7 +3,7 @@ module dense_factor
   use kinds, only: rk
   implicit none
   private
-  public :: lu_factor, factorise_dense, solve_dense, solve_lower, solve_lower_transposed
+  public :: lu_factor, factorise_dense, solve_factored, solve_lower, solve_lower_transposed
   public :: gram
 
   !> P A = L U.
@@ -81,14 +81,14 @@ contains
   end subroutine factorise_dense
 
   !> Solves for each column of `b`, in place.
-  subroutine solve_dense(factor, b)
+  subroutine solve_factored(factor, b)
     type(lu_factor), intent(in) :: factor
     real(rk), intent(inout), contiguous :: b(:, :) !< (rows, right-hand sides)
     integer :: n, info
     n = size(factor%values, 1)
     if (n == 0) return
     call dgetrs('N', n, size(b, 2), factor%values, n, factor%pivot, b, n, info)
-  end subroutine solve_dense
+  end subroutine solve_factored
 
   !> Replaces `b` by L^-1 b.
   subroutine solve_lower(lower, b)

@@ -1,32 +1,40 @@
-!> Small dense matrices: 3 x 3 in closed form, and Gauss elimination.
+!> Small dense matrices: 2 x 2 and 3 x 3 in closed form, and Gauss elimination.
 module small_matrix
   use kinds, only: rk
   implicit none
   private
-  public :: determinant3, invert3, cross_product, outer_product, solve_dense
+  public :: cross_product, determinant3, invert3, outer_product, solve2, solve_dense
 
 contains
 
   !> Determinant of a 3 x 3 matrix.
   pure real(rk) function determinant3(a) result(determinant)
     real(rk), intent(in) :: a(3, 3)
-    determinant = dot_product(a(:, 1), cross_product(a(:, 2), a(:, 3)))
+    determinant = dot_product(a(1, :), cross_product(a(2, :), a(3, :)))
   end function determinant3
 
-  !> Inverse of a 3 x 3 matrix with its determinant; zero where the determinant is zero.
+  !> Inverse and determinant of a 3 x 3 matrix; the inverse is zero where the determinant is zero.
   pure subroutine invert3(a, inverse, determinant)
     real(rk), intent(in) :: a(3, 3)
     real(rk), intent(out) :: inverse(3, 3), determinant
-    inverse(1, :) = cross_product(a(:, 2), a(:, 3))
-    inverse(2, :) = cross_product(a(:, 3), a(:, 1))
-    inverse(3, :) = cross_product(a(:, 1), a(:, 2))
-    determinant = dot_product(a(:, 1), inverse(1, :))
-    if (abs(determinant) > 0.0_rk) then
-      inverse = inverse/determinant
-    else
-      inverse = 0.0_rk
-    end if
+    real(rk) :: row(3, 3), scale
+    row = transpose(a)
+    inverse(:, 1) = cross_product(row(:, 2), row(:, 3))
+    inverse(:, 2) = cross_product(row(:, 3), row(:, 1))
+    inverse(:, 3) = cross_product(row(:, 1), row(:, 2))
+    determinant = dot_product(row(:, 1), inverse(:, 1))
+    scale = 0.0_rk
+    if (abs(determinant) > tiny(scale)) scale = 1.0_rk/determinant
+    inverse = inverse*scale
   end subroutine invert3
+
+  !> Solves A x = b for two unknowns by Cramer's rule; A must not be singular.
+  pure function solve2(a, b) result(x)
+    real(rk), intent(in) :: a(2, 2), b(2)
+    real(rk) :: x(2)
+    x = [a(2, 2)*b(1) - a(1, 2)*b(2), a(1, 1)*b(2) - a(2, 1)*b(1)] &
+        /(a(1, 1)*a(2, 2) - a(1, 2)*a(2, 1))
+  end function solve2
 
   !> a x b
   pure function cross_product(a, b) result(product)

@@ -6,7 +6,8 @@
 module facet_plane
   use kinds, only: rk
   use mesh_faces, only: face_vector
-  use shape_quad4, only: cross, facet_derivative, facet_shape
+  use shape_quad4, only: facet_derivative, facet_shape
+  use small_matrix, only: cross_product, solve2
   implicit none
   private
   public :: plane, flat_facet, find_plane, project_facet, shape_at, natural_at, plane_area
@@ -52,7 +53,7 @@ contains
     along = x(:, 3) - x(:, 1)
     along = along - dot_product(along, found%normal)*found%normal
     found%axis(:, 1) = along/norm2(along)
-    found%axis(:, 2) = cross(found%normal, found%axis(:, 1))
+    found%axis(:, 2) = cross_product(found%normal, found%axis(:, 1))
   end subroutine find_plane
 
   !> Projects a facet along the plane's normal.
@@ -126,13 +127,6 @@ contains
     end do
   end function natural_at
 
-  pure function solve2(a, b) result(x)
-    real(rk), intent(in) :: a(2, 2), b(2)
-    real(rk) :: x(2)
-    x = [a(2, 2)*b(1) - a(1, 2)*b(2), a(1, 1)*b(2) - a(2, 1)*b(1)] &
-        /(a(1, 1)*a(2, 2) - a(1, 2)*a(2, 1))
-  end function solve2
-
   !> Shape functions of the facet's four corners at natural coordinates.
   pure function shape_at(flat, xi) result(n)
     type(flat_facet), intent(in) :: flat
@@ -174,7 +168,7 @@ contains
     vector = on%normal
     if (flat%num_corners < 4) return
     along = matmul(x, facet_derivative(xi))
-    vector = cross(along(:, 1), along(:, 2))
+    vector = cross_product(along(:, 1), along(:, 2))
     vector = vector/dot_product(vector, on%normal)
   end function area_element
 end module facet_plane

@@ -6,7 +6,7 @@ module joint_compliance
   use joint_rows, only: num_axes, num_rows, row_of
   use linear_solver, only: equation_solver
   use joint_operator, only: jump_operator
-  use dense_factor, only: lu_factor, factorise_dense, solve_dense
+  use dense_factor, only: lu_factor, factorise_dense, solve_factored
   implicit none
   private
   public :: find_compliance, friction_scale
@@ -99,7 +99,7 @@ contains
     alone = transpose(compliance)
     matrix = transpose(matrix)
     call factorise_dense(matrix, factor)
-    call solve_dense(factor, alone)
+    call solve_factored(factor, alone)
     do p = 1, operator%num_points
       slip = row_of(p, [2, 3])
       flexibility = 0.0_rk

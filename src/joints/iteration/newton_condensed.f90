@@ -14,7 +14,7 @@ module newton_condensed
   use joint_forces, only: joint_field, linear_tractions
   use joint_iteration, only: measure_residual, measure_correction, take_step, &
                              linearise_next, augment_contact
-  use dense_factor, only: lu_factor, factorise_dense, solve_dense
+  use dense_factor, only: lu_factor, factorise_dense, solve_factored
   use equilibrium, only: balance_outcome
   use step_plan, only: step_controls
   implicit none
@@ -143,7 +143,7 @@ contains
       p = point_of(changed%row(k))
       z(k, 1) = dot_product(changed%change(axis_of(changed%row(k)), :, p), response(:, p))
     end do
-    call solve_dense(changed%factor, z)
+    call solve_factored(changed%factor, z)
     correction = response
     flat(1:size(correction)) => correction
     do k = 1, size(changed%row)

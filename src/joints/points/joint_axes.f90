@@ -1,7 +1,7 @@
 !> Local axes of a point of a joint, and which normals belong to one plane.
 module joint_axes
   use kinds, only: rk
-  use shape_quad4, only: cross
+  use small_matrix, only: cross_product
   implicit none
   private
   public :: local_axes, share_a_plane
@@ -26,7 +26,7 @@ contains
     s = s/norm2(s)
     rotation(1, :) = n
     rotation(2, :) = s
-    rotation(3, :) = cross(n, s)
+    rotation(3, :) = cross_product(n, s)
   end function local_axes
 
   !> Whether two normals, of any length, are at most 30 degrees apart.

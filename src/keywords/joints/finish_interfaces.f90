@@ -5,7 +5,7 @@ module finish_interfaces
   use kinds, only: rk
   use mesh_faces, only: face_vector
   use model_draft, only: draft
-  use shape_quad4, only: cross
+  use small_matrix, only: cross_product
   use surface_coupling, only: build_coupling, coupling
   use surface_facets, only: list_interface_facets, list_surface_facets
   use surface_segments, only: facet_set, surface_cover
@@ -85,7 +85,7 @@ contains
     do a = 1, 4
       to_next = x(:, mod(a, 4) + 1) - x(:, a)
       to_last = x(:, mod(a + 2, 4) + 1) - x(:, a)
-      if (dot_product(cross(to_next, to_last), vector) < -round_off*sum(vector**2)) then
+      if (dot_product(cross_product(to_next, to_last), vector) < -round_off*sum(vector**2)) then
         bends_inward = .true.
       end if
     end do

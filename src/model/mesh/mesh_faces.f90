@@ -7,6 +7,7 @@ module mesh_faces
   use kinds, only: rk
   use dam_mesh, only: mesh
   use mesh_sets, only: surface
+  use small_matrix, only: cross_product
   implicit none
   private
   public :: face_corner, face_nodes, face_vector, face_centre, count_corners
@@ -40,10 +41,7 @@ contains
   pure function face_vector(x) result(vector)
     real(rk), intent(in) :: x(3, 4) !< corners [m]
     real(rk) :: vector(3)
-    real(rk) :: p(3), q(3)
-    p = x(:, 3) - x(:, 1)
-    q = x(:, 4) - x(:, 2)
-    vector = 0.5_rk*[p(2)*q(3) - p(3)*q(2), p(3)*q(1) - p(1)*q(3), p(1)*q(2) - p(2)*q(1)]
+    vector = 0.5_rk*cross_product(x(:, 3) - x(:, 1), x(:, 4) - x(:, 2))
   end function face_vector
 
   !> Mean of the different corners [m].

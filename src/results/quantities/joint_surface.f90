@@ -10,7 +10,7 @@ module joint_surface
   use joint_points, only: joint, joint_cells
   use problem_definition, only: problem
   use analysis_state, only: state
-  use shape_quad4, only: cross
+  use small_matrix, only: cross_product
   implicit none
   private
   public :: drawn_joints, find_drawn_joints, values_on_corners, nodes_to_corners, &
@@ -156,7 +156,7 @@ contains
       do i = cells%first(c) + 1, cells%first(c + 1) - 1
         old = new
         new = at_corner(x, cells, cells%corner(i)) - start
-        normal = normal + cross(old, new)
+        normal = normal + cross_product(old, new)
       end do
     end associate
   end function normal_of_cell

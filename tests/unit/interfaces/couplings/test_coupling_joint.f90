@@ -8,7 +8,7 @@ program test_coupling_joint
   use facet_segments, only: find_segments
   use joint_points, only: joint
   use kinds, only: rk
-  use shape_quad4, only: cross
+  use small_matrix, only: cross_product
   use testing, only: check, check_close, test_log
   implicit none
 
@@ -253,8 +253,8 @@ contains
         end do
         do i = 3, n
           area = area + 0.5_rk*dot_product(built%rotation(1, :, 1), &
-                                           cross(corner(:, i - 1) - corner(:, 1), &
-                                                 corner(:, i) - corner(:, 1)))
+                                           cross_product(corner(:, i - 1) - corner(:, 1), &
+                                                         corner(:, i) - corner(:, 1)))
         end do
       end do
     end associate

@@ -3,7 +3,8 @@ program test_mortar_balance
   use face_pairs, only: field_error, lay_bent, join, two_faces
   use gauss_rules, only: line5_point, line5_weight
   use kinds, only: rk
-  use shape_quad4, only: cross, facet_derivative, facet_shape
+  use shape_quad4, only: facet_derivative, facet_shape
+  use small_matrix, only: cross_product
   use surface_segments, only: facet_set
   use testing, only: check_close, test_log
   implicit none
@@ -93,7 +94,7 @@ contains
           n = 4.0_rk*line5_weight(i)*line5_weight(j)*facet_shape(xi)
           do c = 1, 4
             force(:, facets%node(c, f)) = force(:, facets%node(c, f)) &
-                                          + n(c)*cross(along(:, 1), along(:, 2))
+                                          + n(c)*cross_product(along(:, 1), along(:, 2))
           end do
         end do
       end do

@@ -7,7 +7,8 @@ program test_mortar_projection
   use kinds, only: rk
   use mortar_projection, only: project
   use mortar_table, only: mortar_rows
-  use shape_quad4, only: cross, facet_derivative, facet_shape
+  use shape_quad4, only: facet_derivative, facet_shape
+  use small_matrix, only: cross_product
   use surface_segments, only: facet_set
   use testing, only: check, check_close, test_log
   implicit none
@@ -43,7 +44,7 @@ contains
         do j = 1, 5
           xi = 2.0_rk*[line5_point(i), line5_point(j)] - 1.0_rk
           along = matmul(x(:, facets%node(:, f)), facet_derivative(xi))
-          da = 4.0_rk*line5_weight(i)*line5_weight(j)*norm2(cross(along(:, 1), along(:, 2)))
+          da = 4.0_rk*line5_weight(i)*line5_weight(j)*norm2(cross_product(along(:, 1), along(:, 2)))
           area(facets%node(:, f)) = area(facets%node(:, f)) + da*facet_shape(xi)
         end do
       end do

@@ -1,7 +1,7 @@
 !> The scale of the friction iteration for points that slide together and alone, from a structure
 !> whose compliance is given.
 program test_joint_compliance
-  use dense_factor, only: factorise_dense, lu_factor, solve_dense
+  use dense_factor, only: factorise_dense, lu_factor, solve_factored
   use joint_compliance, only: friction_scale
   use joint_operator, only: jump_operator
   use kinds, only: rk
@@ -67,7 +67,7 @@ contains
     end do
     closed = structure
     call factorise_dense(matrix, factor)
-    call solve_dense(factor, closed)
+    call solve_factored(factor, closed)
     operator%num_points = 2
     operator%area = [area, area]
     reference = stiffness
