@@ -38,6 +38,5 @@ contains
     real(rk), contiguous, intent(in) :: x(:, :, :) !< (3, 8, elements) [m]
     real(rk), intent(in) :: d(6, 6) !< elastic stiffness [Pa]
     real(rk), contiguous, intent(inout) :: ke(:, :, :) !< (24, 24, elements) [N/m]
-    if (.false.) ke(1, 1, 1) = ke(1, 1, 1) + x(1, 1, 1)*d(1, 1)*self%num_points
   end subroutine add_stabilisation
 end module element_formulation

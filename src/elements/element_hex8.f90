@@ -31,7 +31,6 @@ contains
         call strain_rows(gradient(:, :, q), b(:, :, q, e))
       end do
     end do
-    if (.false.) weight(1, 1) = d(1, 1)
   end subroutine strain_operator
 
   !> Gradients and volumes at the 2 x 2 x 2 points of one element.

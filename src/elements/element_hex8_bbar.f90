@@ -40,6 +40,5 @@ contains
         end do
       end do
     end do
-    if (.false.) weight(1, 1) = d(1, 1)
   end subroutine strain_operator
 end module element_hex8_bbar

@@ -38,7 +38,6 @@ contains
       call mean_operator(x(:, :, e), mean, weight(self%num_points, e), status(e))
       call strain_rows(mean, b(:, :, self%num_points, e))
     end do
-    if (.false.) weight(1, 1) = d(1, 1)
   end subroutine strain_operator
 
   !> Mean gradient and volume of one element.

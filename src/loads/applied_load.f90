@@ -31,7 +31,6 @@ contains
     type(mesh), intent(in) :: model
     real(rk), intent(in) :: density(:) !< (elements) [kg/m3]
     real(rk), intent(inout) :: force(:, :) !< (3, nodes) [N]
-    if (.false.) force(1, 1) = force(1, 1) + density(1)*model%num_nodes*len(self%name)
   end subroutine add_force
 
   !> Adds the mass of the water that moves with a node (3 x 3 blocks, nodes are not coupled).
@@ -39,13 +38,11 @@ contains
     class(load), intent(in) :: self
     type(mesh), intent(in) :: model
     real(rk), intent(inout) :: blocks(:, :, :) !< (3, 3, nodes) [kg]
-    if (.false.) blocks(1, 1, 1) = blocks(1, 1, 1)*model%num_nodes*len(self%name)
   end subroutine add_added_mass
 
   !> Adds the acceleration of the base at factor 1; the inertia force is -M r of it.
   pure subroutine add_base_acceleration(self, acceleration)
     class(load), intent(in) :: self
     real(rk), intent(inout) :: acceleration(3) !< [m/s2]
-    if (.false.) acceleration(1) = acceleration(1)*len(self%name)
   end subroutine add_base_acceleration
 end module applied_load

@@ -26,6 +26,5 @@ contains
     do i = 1, size(self%nodes)
       force(:, self%nodes(i)) = force(:, self%nodes(i)) + self%force(:, i)
     end do
-    if (.false.) force(1, 1) = density(1)*model%num_nodes
   end subroutine add_force
 end module load_point

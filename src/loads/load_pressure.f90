@@ -37,7 +37,6 @@ contains
         force(:, nodes(a)) = force(:, nodes(a)) + share(:, a)
       end do
     end do
-    if (.false.) force(1, 1) = density(1)
   end subroutine add_force
 
   !> Forces on the corners of one face [N].

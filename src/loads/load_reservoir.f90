@@ -50,7 +50,6 @@ contains
         force(:, nodes(a)) = force(:, nodes(a)) - self%density*self%gravity*wet%head(:, a)
       end do
     end do
-    if (.false.) force(1, 1) = density(1)
   end subroutine add_force
 
   !> Blocks m n n^T or their diagonal at the wetted nodes.

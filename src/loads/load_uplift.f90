@@ -106,7 +106,6 @@ contains
     do k = 1, size(self%node)
       force(:, self%node(k)) = force(:, self%node(k)) + self%force(:, k)
     end do
-    if (.false.) force(1, 1) = density(1)*model%num_nodes
   end subroutine add_force
 
   !> The pressure in a joint that is open here and there, at factor 1.

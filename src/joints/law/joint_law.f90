@@ -100,7 +100,6 @@ contains
     friction = 0.0_rk
     cohesion = 0.0_rk
     strength = 0.0_rk
-    if (.false.) friction = self%gap
   end subroutine no_limits
 
   !> Room for the history of the points of one joint, all zero but the gap.

@@ -39,14 +39,12 @@ contains
     type(vibration_mode), intent(in) :: modes(:)
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
-    if (.false.) call self%write_modes(scene, step, modes, record, error)
   end subroutine write_modes
 
   !> The analysis has ended, well or not: everything must be on the disk.
   subroutine finish(self, error)
     class(writer), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: error
-    if (.false.) call self%finish(error)
   end subroutine finish
 
   !> Is this increment one of a request? Every `frequency`-th, and the last of a step; where a run

@@ -43,7 +43,6 @@ contains
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
-    if (.false.) call record%begin_step(scene, now%step)
     if (.not. (self%is_open .and. is_due(now, 1))) return
     call self%file%add_row(now%step, now%increment, [now%total_time, damage_row(record%damage)])
     call self%file%save(error)

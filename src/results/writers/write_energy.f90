@@ -42,7 +42,6 @@ contains
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     real(rk) :: row(10)
-    if (.false.) call record%begin_step(scene, now%step)
     if (.not. is_due(now, 1)) return
     associate (e => now%energy, time => now%total_time)
       row = [time, e%external, e%kinetic, e%strain, e%damping, e%friction, e%fracture, &
