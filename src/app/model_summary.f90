@@ -6,6 +6,7 @@ module model_summary
   use mesh_sets, only: named_set
   use problem_definition, only: problem
   use step_plan, only: step, step_load
+  use text_buffers, only: text_buffer
   use write_text, only: as_text
   implicit none
   private
@@ -64,23 +65,26 @@ contains
     character(*), intent(in) :: title, things
     type(named_set), intent(in) :: sets(:)
     character(:), allocatable :: text
+    type(text_buffer) :: lines
     integer :: i
-    text = ''
-    if (size(sets) > 0) text = nl//title
+    if (size(sets) > 0) call lines%add(nl//title)
     do i = 1, size(sets)
-      text = text//nl//row(sets(i)%name, as_text(size(sets(i)%members))//' '//things)
+      call lines%add(nl//row(sets(i)%name, as_text(size(sets(i)%members))//' '//things))
     end do
+    text = lines%contents()
   end function sets_of
 
   pure function surfaces_of(scene) result(text)
     type(problem), intent(in) :: scene
     character(:), allocatable :: text
+    type(text_buffer) :: lines
     integer :: i
-    text = ''
-    if (size(scene%surfaces) > 0) text = nl//'Surfaces'
+    if (size(scene%surfaces) > 0) call lines%add(nl//'Surfaces')
     do i = 1, size(scene%surfaces)
-      text = text//nl//row(scene%surfaces(i)%name, as_text(size(scene%surfaces(i)%face))//' faces')
+      call lines%add(nl//row(scene%surfaces(i)%name, as_text(size(scene%surfaces(i)%face))// &
+                             ' faces'))
     end do
+    text = lines%contents()
   end function surfaces_of
 
   pure function materials_of(scene) result(text)
@@ -216,29 +220,31 @@ contains
   pure function loads_of(scene) result(text)
     type(problem), intent(in) :: scene
     character(:), allocatable :: text
+    type(text_buffer) :: lines
     integer :: i
-    text = ''
-    if (size(scene%loads) > 0) text = nl//'Loads'
+    if (size(scene%loads) > 0) call lines%add(nl//'Loads')
     do i = 1, size(scene%loads)
-      text = text//nl//row(as_text(i), scene%loads(i)%item%name)
+      call lines%add(nl//row(as_text(i), scene%loads(i)%item%name))
     end do
+    text = lines%contents()
   end function loads_of
 
   pure function steps_of(scene) result(text)
     type(problem), intent(in) :: scene
     character(:), allocatable :: text
+    type(text_buffer) :: lines
     integer :: i, j
-    text = ''
     do i = 1, size(scene%steps)
       associate (now => scene%steps(i))
-        text = text//nl//'Step '//as_text(i)//' '//now%name//nl//procedure_of(now)//nl// &
-               row('supports', as_text(size(now%fixities))//' degrees of freedom')
+        call lines%add(nl//'Step '//as_text(i)//' '//now%name//nl//procedure_of(now)//nl// &
+                       row('supports', as_text(size(now%fixities))//' degrees of freedom'))
         do j = 1, size(now%loads)
-          text = text//nl//work_of(scene, now%loads(j))
+          call lines%add(nl//work_of(scene, now%loads(j)))
         end do
-        text = text//requests_of(now)
+        call lines%add(requests_of(now))
       end associate
     end do
+    text = lines%contents()
   end function steps_of
 
   !> A load at work in a step.

@@ -1,5 +1,6 @@
 set(sources
   errors.f90
+  growing_lists.f90
   kinds.f90
   files/csv_files.f90
   files/earlier_files.f90
@@ -28,5 +29,6 @@ set(sources
   text/parse_text.f90
   text/sha256.f90
   text/text_buffers.f90
+  text/text_table.f90
   text/write_text.f90
 )

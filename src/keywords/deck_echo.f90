@@ -5,6 +5,7 @@ module deck_echo
   use keyword_spec, only: field, kind_flag, kind_integer, kind_real, kind_word
   use kinds, only: rk
   use parse_text, only: parse_real
+  use text_buffers, only: text_buffer
   use write_text, only: as_text
   implicit none
   private
@@ -20,19 +21,20 @@ contains
   function echo_of_cards(cards) result(text)
     type(card), intent(in) :: cards(:)
     character(:), allocatable :: text !< lines with new_line between them
+    type(text_buffer) :: lines
     integer :: i, line
-    text = ''
     do i = 1, size(cards)
-      if (i > 1) text = text//nl
-      text = text//head_of_card(cards(i))
+      if (i > 1) call lines%add(nl)
+      call lines%add(head_of_card(cards(i)))
       if (cards(i)%num_lines > most_lines) then
-        text = text//nl//'** '//as_text(cards(i)%num_lines)//' data lines'
+        call lines%add(nl//'** '//as_text(cards(i)%num_lines)//' data lines')
         cycle
       end if
       do line = 1, cards(i)%num_lines
-        text = text//nl//data_line(cards(i), line)
+        call lines%add(nl//data_line(cards(i), line))
       end do
     end do
+    text = lines%contents()
   end function echo_of_cards
 
   !> The keyword line with every parameter that is given or has a default.

@@ -44,6 +44,7 @@ contains
     if (present(umat)) model%scene%umat => umat
     call match_cards(list, model, keyword_of_card, faults)
     call handle_cards(list, keyword_of_card, model, faults)
+    model%scene%steps = model%scene%steps(:model%num_steps)
     if (model%runs_tests) then
       call complete_tests(model, faults)
     else
@@ -67,13 +68,15 @@ contains
   subroutine open_draft(path, model)
     character(*), intent(in) :: path
     type(draft), intent(inout) :: model
+    integer :: i
     allocate (model%scene)
     associate (scene => model%scene)
       scene%deck_file = path
       scene%heading = ''
       allocate (scene%surfaces(0), scene%amplitudes(0), scene%materials(0), scene%joints(0))
       allocate (scene%ties(0), scene%couplings(0), scene%covers(0))
-      allocate (scene%loads(0), scene%initial_values(0), scene%steps(0), scene%tests(0))
+      allocate (scene%loads(0), scene%initial_values(0), scene%tests(0))
+      allocate (scene%steps(count([(model%cards(i)%keyword == 'STEP', i=1, size(model%cards))])))
     end associate
     allocate (model%surface_origin(0), model%material_origin(0), model%test_origin(0))
     allocate (model%sections(0), model%laws(0), model%joints(0), model%concretes(0))

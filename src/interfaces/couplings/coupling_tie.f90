@@ -106,9 +106,9 @@ contains
     logical, intent(inout) :: is_reached(:) !< (nodes)
     integer, allocatable :: stack(:)
     integer :: top, node, k
-    stack = pack([(node, node=1, size(is_reached))], is_reached)
-    top = size(stack)
-    stack = [stack, spread(0, 1, size(is_reached) - top)]
+    top = count(is_reached)
+    allocate (stack(size(is_reached)))
+    stack(:top) = pack([(node, node=1, size(is_reached))], is_reached)
     do while (top > 0)
       node = stack(top)
       top = top - 1

@@ -4,6 +4,7 @@
 !> that building takes O(n log n) however the facets are ordered. The tree is complete: node i has
 !> the children 2 i and 2 i + 1.
 module facet_search
+  use growing_lists, only: append, make_room
   use kinds, only: rk
   implicit none
   private
@@ -123,7 +124,7 @@ contains
     integer, allocatable, intent(inout) :: found(:) !< (at least num); grows
     integer :: stack(64), depth, i, k
     num = 0
-    if (.not. allocated(found)) allocate (found(64))
+    call make_room(found, num, 0)
     depth = 1
     stack(1) = 1
     do while (depth > 0)
@@ -138,9 +139,7 @@ contains
       do k = tree%first(i), tree%last(i)
         if (any(tree%box_low(:, tree%order(k)) > high)) cycle
         if (any(tree%box_high(:, tree%order(k)) < low)) cycle
-        if (num == size(found)) found = [found, found]
-        num = num + 1
-        found(num) = tree%order(k)
+        call append(found, num, tree%order(k))
       end do
     end do
   end subroutine find_boxes

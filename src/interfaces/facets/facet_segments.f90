@@ -5,6 +5,7 @@ module facet_segments
   use facet_plane, only: facet_pair, find_plane, natural_at, plane, plane_area, project_facet, &
                          shape_at
   use facet_search, only: box_tree, build_tree, find_boxes
+  use growing_lists, only: make_room
   use kinds, only: rk
   use mesh_faces, only: face_vector
   use shape_quad4, only: facet_point
@@ -217,9 +218,13 @@ contains
       return
     end if
     call note_gaps(gap(:num), place(:, :num), cover)
-    call make_room(segments, num)
+    last = segments%first_vertex(segments%num_segments + 1) + num
+    call make_room(segments%slave, segments%num_segments, 1)
+    call make_room(segments%master, segments%num_segments, 1)
+    call make_room(segments%first_vertex, segments%num_segments + 1, 1)
+    call make_room(segments%vertex, last - num - 1, num)
+    call make_room(segments%vertex_shape, last - num - 1, num)
     segments%num_segments = segments%num_segments + 1
-    last = segments%first_vertex(segments%num_segments) + num
     segments%first_vertex(segments%num_segments + 1) = last
     segments%vertex(:, last - num:last - 1) = polygon
     segments%vertex_shape(:, last - num:last - 1) = shape(:, :num)
@@ -249,32 +254,6 @@ contains
     allocate (segments%first_vertex(2*num_facets + 1), source=1)
     allocate (segments%vertex(2, 8*num_facets), segments%vertex_shape(4, 8*num_facets))
   end subroutine open_segments
-
-  !> Doubles the lists where one more segment needs it.
-  pure subroutine make_room(segments, num_vertices)
-    type(segment_set), intent(inout) :: segments
-    integer, intent(in) :: num_vertices !< of the next segment
-    integer :: used
-    if (segments%num_segments == size(segments%slave)) then
-      segments%slave = [segments%slave, segments%slave]
-      segments%master = [segments%master, segments%master]
-      segments%first_vertex = [segments%first_vertex, segments%first_vertex]
-    end if
-    used = segments%first_vertex(segments%num_segments + 1) - 1
-    if (used + num_vertices <= size(segments%vertex, 2)) return
-    call lengthen(segments%vertex, used)
-    call lengthen(segments%vertex_shape, used)
-  end subroutine make_room
-
-  !> Makes a table twice as long, with room for a polygon at least.
-  pure subroutine lengthen(table, used)
-    real(rk), allocatable, intent(inout) :: table(:, :)
-    integer, intent(in) :: used !< columns
-    real(rk), allocatable :: longer(:, :)
-    allocate (longer(size(table, 1), 2*used + most_corners))
-    longer(:, :used) = table(:, :used)
-    call move_alloc(longer, table)
-  end subroutine lengthen
 
   !> Cuts the lists to what is used.
   pure subroutine close_segments(segments)

@@ -110,6 +110,7 @@ module model_draft
     ! The step being read.
     type(step) :: now
     type(origin) :: step_origin
+    integer :: num_steps = 0 !< closed so far; scene%steps has room for all
     integer, allocatable :: procedure_card(:) !< card of the procedure of each step
     integer :: current_procedure = 0 !< card of the procedure of the step being read
     real(rk) :: total_time = 0.0_rk !< at the start of the step [s]

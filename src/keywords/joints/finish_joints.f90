@@ -36,21 +36,22 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(claims) :: taken
     type(law_constants) :: law
-    type(joint) :: new
+    type(joint), allocatable :: joints(:)
     integer :: i
     logical :: is_fit
     call check_joint_elements(model, faults)
     call open_claims(model%scene%mesh%num_nodes, count_slave_faces(model), taken)
+    allocate (joints(size(model%joints)))
     do i = 1, size(model%joints)
       call find_law(i, model, faults, law, is_fit)
       if (.not. is_fit .or. faults%has_errors()) cycle
       if (model%joints(i)%slave == 0) then
-        call build_from_elements(i, model, law, faults, new)
+        call build_from_elements(i, model, law, faults, joints(i))
       else
-        call build_from_surfaces(i, model, law, taken, faults, new)
+        call build_from_surfaces(i, model, law, taken, faults, joints(i))
       end if
-      if (.not. faults%has_errors()) call append_joint(model, new)
     end do
+    if (.not. faults%has_errors()) call move_alloc(joints, model%scene%joints)
   end subroutine complete_joints
 
   !> Every JOINT8 element belongs to a joint.
@@ -222,19 +223,6 @@ contains
                           first=model%cards(model%joints(earlier)%spot%card)%place())
     end associate
   end subroutine check_claims
-
-  subroutine append_joint(model, new)
-    type(draft), intent(inout) :: model
-    type(joint), intent(in) :: new
-    type(joint), allocatable :: longer(:)
-    integer :: i
-    allocate (longer(size(model%scene%joints) + 1))
-    do i = 1, size(model%scene%joints)
-      longer(i) = model%scene%joints(i)
-    end do
-    longer(size(longer)) = new
-    call move_alloc(longer, model%scene%joints)
-  end subroutine append_joint
 
   !> KN and KT that the deck does not give, from the solids on the slave side (paper_notes.md, 3);
   !> where interface quads stand there, from those on the master side.

@@ -89,9 +89,8 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    type(material_test), allocatable :: longer(:)
     type(material_test) :: new
-    integer :: i, num
+    integer :: i
     new%name = this%word('NAME')
     new%kind = this%word('TYPE')
     new%length = this%real('LENGTH')
@@ -99,8 +98,7 @@ contains
     new%driven = 1
     if (new%kind == 'SHEAR') new%driven = 4
     if (new%kind == 'GENERAL') new%driven = 0
-    num = size(model%scene%tests)
-    do i = 1, num
+    do i = 1, size(model%scene%tests)
       if (safe_name(model%scene%tests(i)%name) /= safe_name(new%name)) cycle ! one file each
       call this%fault_parameter(faults, 'NAME', "test '"//this%text('NAME')// &
                                 "' is defined twice", 'a name that is used once', &
@@ -109,10 +107,7 @@ contains
     call find_material(this, model, faults, new%material)
     call check_parameters(this, faults)
     call read_legs(this, faults, new%legs)
-    allocate (longer(num + 1))
-    longer(:num) = model%scene%tests
-    longer(num + 1) = new
-    call move_alloc(longer, model%scene%tests)
+    model%scene%tests = [model%scene%tests, new]
     model%test_origin = [model%test_origin, model%here(0)]
     if (model%runs_tests) return
     call this%ignore(faults, 'has no effect in an analysis; keyway --material runs it')

@@ -3,6 +3,7 @@ module keywords_sets
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
+  use growing_lists, only: append, make_room
   use id_map, only: position_table
   use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, kind_reference, &
                           kind_word
@@ -81,8 +82,8 @@ contains
     integer, allocatable :: some(:)
     integer :: line, i, used, num_before
     num_before = faults%num_errors
-    allocate (members(64))
     used = 0
+    call make_room(members, used, 0)
     do line = 1, this%num_lines
       if (this%has('GENERATE')) then
         if (kind == 'node') call generate(this, line, kind, model%node_position, faults, some)
@@ -102,21 +103,6 @@ contains
       call this%fault(faults, 'the set is empty', 'at least one '//kind)
     end if
   end subroutine collect_members
-
-  !> Adds to a list that grows by doubling.
-  pure subroutine append(list, used, more)
-    integer, allocatable, intent(inout) :: list(:)
-    integer, intent(inout) :: used !< entries in use
-    integer, intent(in) :: more(:)
-    integer, allocatable :: longer(:)
-    if (used + size(more) > size(list)) then
-      allocate (longer(2*(used + size(more))))
-      longer(:used) = list(:used)
-      call move_alloc(longer, list)
-    end if
-    list(used + 1:used + size(more)) = more
-    used = used + size(more)
-  end subroutine append
 
   !> first, last, step of GENERATE.
   subroutine generate(this, line, kind, table, faults, members)
@@ -188,9 +174,10 @@ contains
       return
     end if
     new%name = this%word('NAME')
-    allocate (new%element(64), new%face(64))
     allocate (seen(model%scene%mesh%num_elements), source=0)
     used = 0
+    call make_room(new%element, used, 0)
+    call make_room(new%face, used, 0)
     do line = 1, this%num_lines
       call elements_at(this, line, 1, model, faults, members)
       face = index('S1S2S3S4S5S6', this%word_at(line, 2))/2 + 1

@@ -18,7 +18,7 @@ contains
     type(draft), intent(inout) :: model
     type(step) :: new
     integer :: num
-    num = size(model%scene%steps)
+    num = model%num_steps
     new%name = 'STEP-'//as_text(num + 1)
     model%current_procedure = model%current
     allocate (new%prints(0), new%outputs(0), new%envelope(0))
@@ -44,10 +44,8 @@ contains
   !> Writes down all loads and supports at work and advances the books.
   subroutine close_step(model)
     type(draft), intent(inout) :: model
-    type(step), allocatable :: longer(:)
     logical :: is_perturbation
     real(rk) :: end_time
-    integer :: num, i
     call collect_point_forces(model)
     call collect_fixities(model)
     model%now%loads = [model%now%loads, model%loads_at_work%loads_of_step()]
@@ -59,13 +57,8 @@ contains
       call model%point_forces%end_step(histories, duration, end_time, is_perturbation)
     end associate
     model%total_time = end_time
-    num = size(model%scene%steps)
-    allocate (longer(num + 1))
-    do i = 1, num
-      longer(i) = model%scene%steps(i)
-    end do
-    longer(num + 1) = model%now
-    call move_alloc(longer, model%scene%steps)
+    model%num_steps = model%num_steps + 1
+    model%scene%steps(model%num_steps) = model%now
     model%procedure_card = [model%procedure_card, model%current_procedure]
     model%is_in_step = .false.
   end subroutine close_step
@@ -126,7 +119,7 @@ contains
     forces%force = force(:, forces%nodes)
     allocate (item, source=forces)
     call add_load(model, item, 'point forces', 'CLOAD', &
-                  'step '//as_text(size(model%scene%steps) + 1))
+                  'step '//as_text(model%num_steps + 1))
     model%now%loads = [model%now%loads, &
                        step_load(model%num_loads, start_factor, end_factor, history)]
   end subroutine add_forces

@@ -2,6 +2,7 @@
 module history_file
   use, intrinsic :: iso_fortran_env, only: iostat_end
   use diagnostics, only: diagnostic_list, place, severity_error
+  use growing_lists, only: make_room
   use kinds, only: rk
   use parse_text, only: parse_integer, parse_real, upper_case
   implicit none
@@ -84,7 +85,8 @@ contains
       if (first == last) return
       last = scan(line(first:), separators) + first - 2
       if (last < first) last = len(line)
-      if (used == size(numbers%values)) call make_room(numbers)
+      call make_room(numbers%values, used, 1)
+      call make_room(numbers%line, used, 1)
       call parse_real(line(first:last), numbers%values(used + 1), is_number)
       if (.not. is_number) then
         call faults%add(severity_error, spot_in_file(numbers%path, number, first, last, line, &
@@ -112,14 +114,6 @@ contains
     spot%keyword = named_at%keyword
     spot%source = line
   end function spot_in_file
-
-  pure subroutine make_room(numbers)
-    type(number_file), intent(inout) :: numbers
-    real(rk) :: no_values(size(numbers%values))
-    no_values = 0.0_rk
-    numbers%values = [numbers%values, no_values]
-    numbers%line = [numbers%line, 0*numbers%line]
-  end subroutine make_room
 
   !> Number of points and time step from the fourth line of a PEER file:
   !> 'NPTS= 1559, DT= .02000 SEC' or the older '1559 .0200 NPTS, DT'.

@@ -2,6 +2,7 @@
 module keywords_initial
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
+  use growing_lists, only: append, make_room
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real, kind_reference
   use model_draft, only: draft
   use named_things, only: nodes_at
@@ -40,17 +41,24 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(initial_value), allocatable :: new(:)
-    integer, allocatable :: nodes(:)
-    integer :: line
+    integer, allocatable :: nodes(:), line_of_node(:), all_nodes(:)
+    integer :: line, i, used, num_lines
+    used = 0
+    num_lines = 0
+    call make_room(all_nodes, used, this%num_lines)
+    call make_room(line_of_node, used, this%num_lines)
     do line = 1, this%num_lines
       call nodes_at(this, line, 1, model, faults, nodes)
-      allocate (new(size(nodes)))
-      new%is_velocity = this%word('TYPE') == 'VELOCITY'
-      new%node = nodes
-      new%dof = this%integer_at(line, 2)
-      new%value = this%real_at(line, 3)
-      model%scene%initial_values = [model%scene%initial_values, new]
-      deallocate (new)
+      call append(line_of_node, num_lines, spread(line, 1, size(nodes)))
+      call append(all_nodes, used, nodes)
     end do
+    allocate (new(used))
+    new%is_velocity = this%word('TYPE') == 'VELOCITY'
+    do i = 1, used
+      new(i)%node = all_nodes(i)
+      new(i)%dof = this%integer_at(line_of_node(i), 2)
+      new(i)%value = this%real_at(line_of_node(i), 3)
+    end do
+    model%scene%initial_values = [model%scene%initial_values, new]
   end subroutine read_initial_conditions
 end module keywords_initial

@@ -2,12 +2,14 @@
 module set_lists
   use mesh_sets, only: named_set
   use sorted_lists, only: sorted_unique
+  use text_table, only: text_numbers
   implicit none
   private
   public :: set_list
 
   type :: set_list
     integer :: num_sets = 0
+    type(text_numbers), private :: names !< a set's number is its position
     type(named_set), allocatable :: sets(:) !< the first `num_sets` are in use
   contains
     procedure :: find
@@ -21,13 +23,7 @@ contains
   pure integer function find(self, name) result(found)
     class(set_list), intent(in) :: self
     character(*), intent(in) :: name !< upper case
-    integer :: i
-    found = 0
-    do i = 1, self%num_sets
-      if (self%sets(i)%name /= name) cycle
-      found = i
-      return
-    end do
+    found = self%names%find(name)
   end function find
 
   !> Makes a set of some positions, or adds them to the set of that name.
@@ -36,8 +32,8 @@ contains
     character(*), intent(in) :: name !< upper case
     integer, intent(in) :: members(:) !< positions in any order
     integer :: i
-    i = self%find(name)
-    if (i > 0) then
+    call self%names%find_or_add(name, i)
+    if (i <= self%num_sets) then
       self%sets(i)%members = sorted_unique([self%sets(i)%members, members])
       return
     end if

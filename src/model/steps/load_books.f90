@@ -5,9 +5,11 @@
 !> nothing while the new one comes in, which is the straight line between the two. Given twice in
 !> one step, both act.
 module load_books
+  use growing_lists, only: make_room
   use kinds, only: rk
   use amplitudes, only: amplitude, amplitude_at
   use step_plan, only: step_load
+  use text_table, only: text_numbers
   implicit none
   private
   public :: load_book
@@ -15,7 +17,9 @@ module load_books
   !> One load at work.
   type :: load_at_work
     integer :: load = 0 !< position in the problem's list of loads
-    character(:), allocatable :: family, target, pattern
+    character(:), allocatable :: family, pattern
+    integer :: name = 0 !< number of family and target in the book
+    integer :: next = 0 !< entry with the same name, 0 for none
     real(rk) :: reached = 0.0_rk !< factor at the end of the step before
     real(rk) :: factor = 0.0_rk !< asked for now
     integer :: history = 0 !< amplitude, 0 for none
@@ -26,6 +30,9 @@ module load_books
   type :: load_book
     integer :: num_entries = 0
     type(load_at_work), allocatable :: entries(:) !< the first `num_entries` are in use
+    type(text_numbers), private :: names !< of family and target
+    integer, private :: num_names = 0
+    integer, allocatable, private :: first(:), last(:) !< (names) entries, 0 for none
   contains
     procedure :: take_over
     procedure :: enter
@@ -47,12 +54,15 @@ contains
     real(rk), intent(in) :: factor
     integer, intent(in) :: history !< amplitude, 0 for none
     integer, intent(out) :: load !< position in the problem's list, 0: none like it is at work
-    integer :: i
+    integer :: i, name
     load = 0
-    do i = 1, self%num_entries
+    name = self%names%find(name_of(family, target))
+    if (name == 0) return
+    i = self%first(name)
+    do while (i > 0)
       associate (old => self%entries(i))
+        i = old%next
         if (old%is_new .or. old%is_ending) cycle
-        if (old%target /= target .or. old%family /= family) cycle
         if (load == 0 .and. old%pattern == pattern) then
           load = old%load
           old%factor = factor
@@ -83,13 +93,42 @@ contains
     associate (new => self%entries(self%num_entries))
       new%load = load
       new%family = family
-      new%target = target
       new%pattern = pattern
+      call self%names%find_or_add(name_of(family, target), new%name)
       new%factor = factor
       new%history = history
       new%is_new = .true.
     end associate
+    call list_by_name(self, self%num_entries)
   end subroutine enter
+
+  !> One text for a family and a target.
+  pure function name_of(family, target) result(name)
+    character(*), intent(in) :: family, target
+    character(:), allocatable :: name
+    name = family//new_line('a')//target
+  end function name_of
+
+  !> Puts an entry behind those with its name.
+  pure subroutine list_by_name(self, entry)
+    type(load_book), intent(inout) :: self
+    integer, intent(in) :: entry
+    integer :: name
+    name = self%entries(entry)%name
+    self%entries(entry)%next = 0
+    if (name > self%num_names) then
+      call make_room(self%first, self%num_names, 1)
+      call make_room(self%last, self%num_names, 1)
+      self%num_names = name
+      self%first(name) = 0
+    end if
+    if (self%first(name) == 0) then
+      self%first(name) = entry
+    else
+      self%entries(self%last(name))%next = entry
+    end if
+    self%last(name) = entry
+  end subroutine list_by_name
 
   !> OP=NEW: what earlier steps have given of this family fades to nothing.
   pure subroutine clear_old(self, family)
@@ -148,10 +187,12 @@ contains
     self%entries%is_new = .false.
     if (is_perturbation) return
     used = 0
+    self%first(:self%num_names) = 0
     do i = 1, self%num_entries
       if (self%entries(i)%is_ending) cycle
       used = used + 1
       if (used < i) self%entries(used) = self%entries(i)
+      call list_by_name(self, used)
       call reach_end(self%entries(used), histories, step_time, total_time)
     end do
     self%num_entries = used
