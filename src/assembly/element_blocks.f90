@@ -7,6 +7,7 @@ module element_blocks
   use problem_definition, only: problem
   use element_catalogue, only: element_kinds, find_element_kind
   use dof_numbering, only: numbering
+  use row_tables, only: group_by_key, row_table
   implicit none
   private
   public :: block_list, list_blocks
@@ -31,6 +32,7 @@ contains
     type(numbering), intent(in) :: numbers
     type(block_list), intent(out) :: blocks
     integer, allocatable :: colour(:), key(:)
+    type(row_table) :: by_key
     integer :: e, num_keys
     call colour_elements(scene, numbers, colour)
     blocks%num_colours = maxval([0, colour])
@@ -44,7 +46,8 @@ contains
                + (find_element_kind(scene%mesh%element_type(e)) - 1)*size(scene%materials) &
                + scene%mesh%material_of_element(e)
     end do
-    call sort_by_key(key, blocks%num_colours*num_keys, blocks%element)
+    call group_by_key(key, blocks%num_colours*num_keys, by_key)
+    call move_alloc(by_key%item, blocks%element)
     call cut_blocks(colour, key, blocks)
   end subroutine list_blocks
 
@@ -97,29 +100,6 @@ contains
       end do
     end do
   end subroutine mark_around
-
-  !> The elements with a key, in ascending order of it; among equals the order of the deck.
-  pure subroutine sort_by_key(key, largest, element)
-    integer, intent(in) :: key(:) !< (elements) 0 to leave out
-    integer, intent(in) :: largest
-    integer, allocatable, intent(out) :: element(:)
-    integer, allocatable :: next(:)
-    integer :: e, k
-    allocate (next(0:largest + 1), element(count(key > 0)))
-    next = 0
-    do e = 1, size(key)
-      next(key(e) + 1) = next(key(e) + 1) + 1
-    end do
-    next(0:1) = 1
-    do k = 2, largest
-      next(k) = next(k - 1) + next(k)
-    end do
-    do e = 1, size(key)
-      if (key(e) == 0) cycle
-      element(next(key(e))) = e
-      next(key(e)) = next(key(e)) + 1
-    end do
-  end subroutine sort_by_key
 
   !> Cuts the sorted elements where the key changes and where a block is full.
   pure subroutine cut_blocks(colour, key, blocks)

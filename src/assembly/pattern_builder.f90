@@ -8,24 +8,14 @@ module pattern_builder
   use joint_points, only: joint
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
+  use row_tables, only: row_table, transpose_rows
   use sorted_lists, only: sorted_unique
   use surface_coupling, only: coupling
   implicit none
   private
-  public :: build_pattern, cell_list, list_cells
+  public :: build_pattern, list_cells
 
   integer, parameter :: longest_short = 64 !< neighbours; a node of a solid has 26
-
-  !> Lists of nodes, one after the other.
-  type :: cell_list
-    integer, allocatable :: first(:) !< (cells + 1)
-    integer, allocatable :: node(:)
-  end type cell_list
-
-  !> Rows of integers, one after the other.
-  type :: table
-    integer, allocatable :: first(:), item(:)
-  end type table
 
 contains
 
@@ -34,56 +24,35 @@ contains
     type(mesh), intent(in) :: model
     type(joint), intent(in) :: joints(:)
     type(coupling), intent(in) :: couplings(:)
-    type(cell_list), intent(out) :: cells
-    integer :: e, j, p, num_cells, num_items
-    logical, allocatable :: is_solid(:)
-    allocate (is_solid, source=model%material_of_element > 0)
-    num_cells = count(is_solid)
-    num_items = 8*num_cells
-    do j = 1, size(joints)
-      num_cells = num_cells + joints(j)%num_points
-      num_items = num_items + size(joints(j)%node)
-    end do
-    do j = 1, size(couplings)
-      num_cells = num_cells + size(couplings(j)%node, 2)
-      num_items = num_items + size(couplings(j)%node)
-    end do
-    allocate (cells%first(num_cells + 1), cells%node(num_items))
-    cells%first(1) = 1
-    num_cells = 0
+    type(row_table), intent(out) :: cells
+    integer :: e, j, p
     do e = 1, model%num_elements
-      if (is_solid(e)) call add_cell(pack(model%nodes(:, e), model%nodes(:, e) > 0))
+      if (model%material_of_element(e) == 0) cycle
+      call cells%append(pack(model%nodes(:, e), model%nodes(:, e) > 0))
     end do
     do j = 1, size(joints)
       do p = 1, joints(j)%num_points
-        call add_cell(joints(j)%node(joints(j)%first(p):joints(j)%first(p + 1) - 1))
+        call cells%append(joints(j)%node(joints(j)%first(p):joints(j)%first(p + 1) - 1))
       end do
     end do
     do j = 1, size(couplings)
       do p = 1, size(couplings(j)%node, 2)
-        call add_cell(couplings(j)%node(:, p))
+        call cells%append(couplings(j)%node(:, p))
       end do
     end do
-    cells%first = cells%first(:num_cells + 1)
-  contains
-    subroutine add_cell(nodes)
-      integer, intent(in) :: nodes(:)
-      num_cells = num_cells + 1
-      cells%first(num_cells + 1) = cells%first(num_cells) + size(nodes)
-      cells%node(cells%first(num_cells):cells%first(num_cells + 1) - 1) = nodes
-    end subroutine add_cell
+    call cells%finish()
   end subroutine list_cells
 
   !> The lower triangle of everything that the cells couple.
   subroutine build_pattern(numbers, cells, matrix)
     type(numbering), intent(in) :: numbers
-    type(cell_list), intent(in) :: cells
+    type(row_table), intent(in) :: cells
     type(pattern), intent(out) :: matrix
     integer, allocatable :: group(:), first_unknown(:)
-    type(table) :: groups_of_cell, cells_of_group, neighbours
+    type(row_table) :: groups_of_cell, cells_of_group, neighbours
     call group_unknowns(numbers, group, first_unknown)
     call list_groups(numbers, cells, group, size(first_unknown) - 1, groups_of_cell)
-    call transpose_table(groups_of_cell, size(first_unknown) - 1, cells_of_group)
+    call transpose_rows(groups_of_cell, size(first_unknown) - 1, cells_of_group)
     call list_neighbours(groups_of_cell, cells_of_group, neighbours)
     matrix%num_free = numbers%num_free
     matrix%num_total = numbers%num_total
@@ -124,9 +93,9 @@ contains
   !> The groups that each cell touches, each once, through T.
   subroutine list_groups(numbers, cells, group, num_groups, groups_of_cell)
     type(numbering), intent(in) :: numbers
-    type(cell_list), intent(in) :: cells
+    type(row_table), intent(in) :: cells
     integer, intent(in) :: group(:), num_groups
-    type(table), intent(out) :: groups_of_cell
+    type(row_table), intent(out) :: groups_of_cell
     integer, allocatable :: last_cell(:)
     integer :: c, pass, num_items
     allocate (groups_of_cell%first(size(cells%first)), last_cell(num_groups))
@@ -135,7 +104,7 @@ contains
       num_items = 0
       do c = 1, size(cells%first) - 1
         groups_of_cell%first(c) = num_items + 1
-        call add_groups(cells%node(cells%first(c):cells%first(c + 1) - 1))
+        call add_groups(cells%item(cells%first(c):cells%first(c + 1) - 1))
       end do
       groups_of_cell%first(size(cells%first)) = num_items + 1
       if (pass == 1) allocate (groups_of_cell%item(num_items))
@@ -157,35 +126,10 @@ contains
     end subroutine add_groups
   end subroutine list_groups
 
-  !> Which rows hold each item.
-  pure subroutine transpose_table(rows, num_columns, columns)
-    type(table), intent(in) :: rows
-    integer, intent(in) :: num_columns
-    type(table), intent(out) :: columns
-    integer :: i, k
-    integer, allocatable :: next(:)
-    allocate (columns%first(num_columns + 1), columns%item(size(rows%item)))
-    columns%first = 0
-    do k = 1, size(rows%item)
-      columns%first(rows%item(k) + 1) = columns%first(rows%item(k) + 1) + 1
-    end do
-    columns%first(1) = 1
-    do i = 1, num_columns
-      columns%first(i + 1) = columns%first(i) + columns%first(i + 1)
-    end do
-    allocate (next, source=columns%first)
-    do i = 1, size(rows%first) - 1
-      do k = rows%first(i), rows%first(i + 1) - 1
-        columns%item(next(rows%item(k))) = i
-        next(rows%item(k)) = next(rows%item(k)) + 1
-      end do
-    end do
-  end subroutine transpose_table
-
   !> The groups with higher numbers that share a cell with each group, ascending.
   subroutine list_neighbours(groups_of_cell, cells_of_group, neighbours)
-    type(table), intent(in) :: groups_of_cell, cells_of_group
-    type(table), intent(out) :: neighbours
+    type(row_table), intent(in) :: groups_of_cell, cells_of_group
+    type(row_table), intent(out) :: neighbours
     integer, allocatable :: last_group(:)
     integer :: g, pass, num_items
     allocate (neighbours%first(size(cells_of_group%first)), last_group(size(cells_of_group%first)))
@@ -239,7 +183,7 @@ contains
   !> Writes the pattern of unknowns from that of groups.
   subroutine expand_groups(first_unknown, neighbours, matrix)
     integer, intent(in) :: first_unknown(:)
-    type(table), intent(in) :: neighbours
+    type(row_table), intent(in) :: neighbours
     type(pattern), intent(inout) :: matrix
     integer :: g, j, k, i, pass, num_entries
     allocate (matrix%column_start(matrix%num_total + 1), matrix%free_entries(matrix%num_total))

@@ -14,6 +14,7 @@ set(sources
   files/vtu_files.f90
   files/whole_files.f90
   math/dense_factor.f90
+  math/row_tables.f90
   math/small_matrix.f90
   math/sorted_lists.f90
   math/symmetric_modes.f90

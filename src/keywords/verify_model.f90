@@ -1,6 +1,6 @@
 !> What must hold before anything is solved: sound elements, mass where it is needed, supports.
 module verify_model
-  use body_parts, only: find_bodies, free_motion, node_groups
+  use body_parts, only: find_bodies, free_motion
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use element_hex8, only: hex8_gradients
@@ -8,6 +8,7 @@ module verify_model
   use kinds, only: rk
   use load_gravity, only: gravity_load
   use model_draft, only: draft
+  use row_tables, only: row_table
   use shape_hex8, only: corner_fault
   use sorted_lists, only: contains_position
   use verify_blocks, only: verify_free_blocks
@@ -158,7 +159,7 @@ contains
   subroutine verify_supports(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    type(node_groups) :: groups
+    type(row_table) :: groups
     integer, allocatable :: body(:), example(:)
     integer :: i, b
     integer :: num_before

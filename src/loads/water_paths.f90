@@ -5,6 +5,7 @@
 module water_paths
   use joint_points, only: joint
   use kinds, only: rk
+  use row_tables, only: row_table, transpose_rows
   implicit none
   private
   public :: path_net, build_paths, find_wet
@@ -15,8 +16,7 @@ module water_paths
   real(rk), parameter :: nearest_share = 0.4_rk, much_nearer = 0.5_rk
 
   type :: path_net
-    integer, allocatable :: first(:) !< (groups + 1)
-    integer, allocatable :: point(:) !< points of each group
+    type(row_table) :: groups !< of points
     logical, allocatable :: is_inlet(:) !< (points) at the upstream edge
   end type path_net
 
@@ -29,69 +29,36 @@ contains
     integer, intent(in) :: facets(:, :) !< (4, facets) of the slave face
     real(rk), intent(in) :: distance(:) !< (points) to the upstream edge [m]
     type(path_net), intent(out) :: net
-    integer, allocatable :: first(:), point(:)
-    call list_points_of_nodes(num_nodes, seam, first, point)
+    type(row_table) :: points_of_node
+    integer :: f
+    call list_points_of_nodes(num_nodes, seam, points_of_node)
     if (seam%is_nodal) then
-      call group_by_facets(facets, first, point, net)
+      do f = 1, size(facets, 2)
+        associate (a => points_of_node%row(facets(1, f)), b => points_of_node%row(facets(2, f)), &
+                   c => points_of_node%row(facets(3, f)), d => points_of_node%row(facets(4, f)))
+          call net%groups%append([a, b, c, d])
+        end associate
+      end do
+      call net%groups%finish()
     else
-      net%first = first
-      net%point = point
+      net%groups = points_of_node
     end if
     call mark_inlets(distance, net)
   end subroutine build_paths
 
   !> Points by the slave nodes that they see.
-  subroutine list_points_of_nodes(num_nodes, seam, first, point)
+  subroutine list_points_of_nodes(num_nodes, seam, points_of_node)
     integer, intent(in) :: num_nodes
     type(joint), intent(in) :: seam
-    integer, allocatable, intent(out) :: first(:) !< (nodes + 1)
-    integer, allocatable, intent(out) :: point(:)
-    integer, allocatable :: next(:)
-    integer :: p, k, node
-    allocate (first(num_nodes + 1), source=0)
+    type(row_table), intent(out) :: points_of_node
+    type(row_table) :: nodes_of_point
+    integer :: p
     do p = 1, seam%num_points
-      do k = seam%first(p), seam%first_master(p) - 1
-        first(seam%node(k) + 1) = first(seam%node(k) + 1) + 1
-      end do
+      call nodes_of_point%append(seam%node(seam%first(p):seam%first_master(p) - 1))
     end do
-    first(1) = 1
-    do node = 1, num_nodes
-      first(node + 1) = first(node) + first(node + 1)
-    end do
-    allocate (next, source=first)
-    allocate (point(first(num_nodes + 1) - 1))
-    do p = 1, seam%num_points
-      do k = seam%first(p), seam%first_master(p) - 1
-        point(next(seam%node(k))) = p
-        next(seam%node(k)) = next(seam%node(k)) + 1
-      end do
-    end do
+    call nodes_of_point%finish()
+    call transpose_rows(nodes_of_point, num_nodes, points_of_node)
   end subroutine list_points_of_nodes
-
-  !> One group for each facet: the points at its nodes.
-  subroutine group_by_facets(facets, first, point, net)
-    integer, intent(in) :: facets(:, :) !< (4, facets)
-    integer, intent(in) :: first(:), point(:) !< points of each node
-    type(path_net), intent(inout) :: net
-    integer :: f, a, n, last
-    allocate (net%first(size(facets, 2) + 1))
-    net%first(1) = 1
-    do f = 1, size(facets, 2)
-      n = sum(first(facets(:, f) + 1) - first(facets(:, f)))
-      net%first(f + 1) = net%first(f) + n
-    end do
-    allocate (net%point(net%first(size(net%first)) - 1))
-    last = 0
-    do f = 1, size(facets, 2)
-      do a = 1, 4
-        associate (node => facets(a, f))
-          n = first(node + 1) - first(node)
-          net%point(last + 1:last + n) = point(first(node):first(node + 1) - 1)
-        end associate
-        last = last + n
-      end do
-    end do
-  end subroutine group_by_facets
 
   !> The points where water comes in.
   subroutine mark_inlets(distance, net)
@@ -101,8 +68,8 @@ contains
     integer :: g, k
     least = distance
     most = distance
-    do g = 1, size(net%first) - 1
-      associate (members => net%point(net%first(g):net%first(g + 1) - 1))
+    do g = 1, net%groups%num_rows()
+      associate (members => net%groups%row(g))
         do k = 1, size(members)
           least(members(k)) = min(least(members(k)), minval(distance(members)))
           most(members(k)) = max(most(members(k)), maxval(distance(members)))
@@ -123,8 +90,8 @@ contains
     is_spreading = any(is_wet)
     do while (is_spreading)
       is_spreading = .false.
-      do g = 1, size(net%first) - 1
-        associate (members => net%point(net%first(g):net%first(g + 1) - 1))
+      do g = 1, net%groups%num_rows()
+        associate (members => net%groups%row(g))
           if (.not. any(is_wet(members))) cycle
           do k = 1, size(members)
             if (is_wet(members(k)) .or. .not. is_open(members(k))) cycle

@@ -5,7 +5,8 @@ module spring_box
   use node_dofs, only: displacement_dofs
   use dof_numbering, only: numbering, linear_links, number_unknowns
   use matrix_pattern, only: pattern, add_block
-  use pattern_builder, only: cell_list, build_pattern
+  use pattern_builder, only: build_pattern
+  use row_tables, only: row_table
   implicit none
   private
   public :: make_box
@@ -21,7 +22,7 @@ contains
     integer, intent(in) :: num_jumps
     type(numbering) :: numbers
     type(linear_links) :: links
-    type(cell_list) :: cells
+    type(row_table) :: cells
     type(error_type), allocatable :: error
     logical :: is_used(side**3), is_fixed(3, side**3)
     integer :: c
@@ -36,23 +37,23 @@ contains
     allocate (values(size(matrix%row)))
     values = 0.0_rk
     do c = 1, size(cells%first) - 1
-      call add_springs(numbers, cells%node(cells%first(c):cells%first(c + 1) - 1), matrix, values)
+      call add_springs(numbers, cells%item(cells%first(c):cells%first(c + 1) - 1), matrix, values)
     end do
   end subroutine make_box
 
   subroutine list_box(cells)
-    type(cell_list), intent(out) :: cells
+    type(row_table), intent(out) :: cells
     integer, parameter :: num_cells = (side - 1)**3
     integer :: i, j, k, c, corner
-    allocate (cells%first(num_cells + 1), cells%node(8*num_cells))
+    allocate (cells%first(num_cells + 1), cells%item(8*num_cells))
     cells%first(:) = [(1 + 8*(c - 1), c=1, num_cells + 1)]
     c = 0
     do k = 0, side - 2
       do j = 0, side - 2
         do i = 0, side - 2
           corner = 1 + i + side*(j + side*k)
-          cells%node(8*c + 1:8*c + 4) = [corner, corner + 1, corner + side, corner + side + 1]
-          cells%node(8*c + 5:8*c + 8) = cells%node(8*c + 1:8*c + 4) + side**2
+          cells%item(8*c + 1:8*c + 4) = [corner, corner + 1, corner + side, corner + side + 1]
+          cells%item(8*c + 5:8*c + 8) = cells%item(8*c + 1:8*c + 4) + side**2
           c = c + 1
         end do
       end do

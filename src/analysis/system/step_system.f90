@@ -3,12 +3,13 @@ module step_system
   use kinds, only: rk
   use errors, only: error_type
   use problem_definition, only: problem
+  use row_tables, only: row_table
   use step_plan, only: step
   use dof_numbering, only: numbering
   use constraint_elimination, only: number_step
   use global_vectors, only: diagonal
   use matrix_pattern, only: pattern, drop_zeros
-  use pattern_builder, only: cell_list, list_cells, build_pattern
+  use pattern_builder, only: list_cells, build_pattern
   use assemble_elements, only: assemble_stiffness, assemble_mass, assemble_damping, add_nodal_mass
   use assemble_forces, only: sum_added_mass
   use coupling_stiffness, only: add_coupling_stiffness
@@ -42,7 +43,7 @@ contains
     type(step), intent(in) :: plan
     type(dam_system), intent(out) :: system
     type(error_type), allocatable, intent(out) :: error
-    type(cell_list) :: cells
+    type(row_table) :: cells
     call number_step(scene%mesh, scene%joints, scene%ties, plan%fixities, system%numbers, error)
     if (allocated(error)) return
     call list_cells(scene%mesh, scene%joints, scene%couplings, cells)

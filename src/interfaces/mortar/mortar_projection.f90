@@ -13,6 +13,7 @@ module mortar_projection
   use mortar_balance, only: balance_weights
   use mortar_facet, only: facet_extent, facet_part, integrate_facet, share_bound
   use mortar_table, only: mortar_rows
+  use row_tables, only: group_by_key, row_table
   use segment_quadrature, only: segment_points
   use surface_segments, only: facet_set, segment_set
   implicit none
@@ -54,62 +55,30 @@ contains
     type(gathering) :: gathered
     type(facet_part) :: part
     type(segment_points) :: points
-    integer, allocatable :: first(:), order(:), partners(:, :)
+    type(row_table) :: segments_of_facet
+    integer, allocatable :: own(:), partners(:, :)
     logical :: splits
     integer :: f
     splits = .true.
     if (present(merges_planes)) splits = .not. merges_planes
-    call sort_by_facet(segments, size(slave%node, 2), first, order)
+    call group_by_key(segments%slave(:segments%num_segments), size(slave%node, 2), &
+                      segments_of_facet)
     call open_rows(size(x, 2), size(slave%node, 2), segments%num_segments, rows, gathered)
     do f = 1, size(slave%node, 2)
-      if (first(f + 1) == first(f)) cycle
-      associate (own => order(first(f):first(f + 1) - 1))
-        call integrate_facet(x, slave, master, segments, own, points, part)
-        if (part%is_bare) cycle
-        rows%is_bare(f) = .false.
-        partners = master%node(:, segments%master(own))
-        call add_facet(part, partners, is_bound, splits, &
-                       smallest_extent(x, slave%node(:, f), partners), rows, gathered)
-      end associate
+      own = segments_of_facet%row(f)
+      if (size(own) == 0) cycle
+      call integrate_facet(x, slave, master, segments, own, points, part)
+      if (part%is_bare) cycle
+      rows%is_bare(f) = .false.
+      partners = master%node(:, segments%master(own))
+      call add_facet(part, partners, is_bound, splits, &
+                     smallest_extent(x, slave%node(:, f), partners), rows, gathered)
     end do
     call close_rows(gathered, rows)
     if (all(abs(rows%gap) <= touching*rows%reach)) then
       call balance_weights(x, gathered%target_force, maxval(abs(rows%gap)/rows%reach), rows)
     end if
   end subroutine project
-
-  !> The segments of each slave facet, as a list of lists.
-  pure subroutine sort_by_facet(segments, num_facets, first, order)
-    type(segment_set), intent(in) :: segments
-    integer, intent(in) :: num_facets
-    integer, allocatable, intent(out) :: first(:) !< (facets + 1)
-    integer, allocatable, intent(out) :: order(:) !< (segments)
-    call sort_by_key(segments%slave(:segments%num_segments), num_facets, first, order)
-  end subroutine sort_by_facet
-
-  !> Positions in a list by their key, in their order: a counting sort.
-  pure subroutine sort_by_key(key, num_keys, first, order)
-    integer, intent(in) :: key(:) !< 1 .. num_keys
-    integer, intent(in) :: num_keys
-    integer, allocatable, intent(out) :: first(:) !< (num_keys + 1)
-    integer, allocatable, intent(out) :: order(:)
-    integer, allocatable :: next(:)
-    integer :: i
-    allocate (first(num_keys + 1), source=0)
-    allocate (order(size(key)))
-    do i = 1, size(key)
-      first(key(i) + 1) = first(key(i) + 1) + 1
-    end do
-    first(1) = 1
-    do i = 1, num_keys
-      first(i + 1) = first(i) + first(i + 1)
-    end do
-    allocate (next, source=first)
-    do i = 1, size(key)
-      order(next(key(i))) = i
-      next(key(i)) = next(key(i)) + 1
-    end do
-  end subroutine sort_by_key
 
   !> Room for the most rows and terms that there can be.
   subroutine open_rows(num_nodes, num_facets, num_segments, rows, gathered)
@@ -220,7 +189,8 @@ contains
   subroutine close_rows(gathered, rows)
     type(gathering), intent(inout) :: gathered
     type(mortar_rows), intent(inout) :: rows
-    integer, allocatable :: first(:), order(:), at(:)
+    type(row_table) :: terms
+    integer, allocatable :: at(:)
     integer :: n, a, i, k, used, node
     n = rows%num_rows
     rows%node = rows%node(:n)
@@ -229,14 +199,14 @@ contains
     rows%reach = rows%reach(:n)
     rows%pressed = rows%normal(:, :n)
     rows%normal = rows%normal(:, :n)/spread(norm2(rows%normal(:, :n), dim=1), 1, 3)
-    call sort_by_key(gathered%row(:gathered%num_terms), n, first, order)
+    call group_by_key(gathered%row(:gathered%num_terms), n, terms)
     allocate (rows%first(n + 1), rows%master(gathered%num_terms), rows%weight(gathered%num_terms))
     allocate (at(size(gathered%newest)), source=0)
     used = 0
     rows%first(1) = 1
     do a = 1, n
-      do i = first(a), first(a + 1) - 1
-        node = gathered%node(order(i))
+      do i = terms%first(a), terms%first(a + 1) - 1
+        node = gathered%node(terms%item(i))
         k = at(node)
         if (k < rows%first(a)) then
           used = used + 1
@@ -245,7 +215,7 @@ contains
           rows%master(k) = node
           rows%weight(k) = 0.0_rk
         end if
-        rows%weight(k) = rows%weight(k) + gathered%value(order(i))/rows%area(a)
+        rows%weight(k) = rows%weight(k) + gathered%value(terms%item(i))/rows%area(a)
       end do
       at(rows%master(rows%first(a):used)) = 0
       call drop_round_off(rows%first(a), used, rows)

@@ -3,15 +3,10 @@
 module body_parts
   use dam_mesh, only: mesh
   use kinds, only: rk
+  use row_tables, only: row_table
   implicit none
   private
-  public :: find_bodies, free_motion, node_groups, unite, root_of
-
-  !> Nodes that something else than an element holds together: a tie, a joint between surfaces.
-  type :: node_groups
-    integer, allocatable :: first(:) !< (groups + 1)
-    integer, allocatable :: node(:)
-  end type node_groups
+  public :: find_bodies, free_motion, unite, root_of
 
   !> A pivot below this part of the largest one counts as zero; coordinates are scaled to one.
   real(rk), parameter :: rank_tolerance = 1.0e-10_rk
@@ -21,7 +16,7 @@ contains
   !> Numbers the bodies.
   pure subroutine find_bodies(model, groups, body, example)
     type(mesh), intent(in) :: model
-    type(node_groups), intent(in) :: groups
+    type(row_table), intent(in) :: groups !< nodes that joints, ties and springs hold together
     integer, allocatable, intent(out) :: body(:) !< of each node; 0 for a node without an element
     integer, allocatable, intent(out) :: example(:) !< first element of each body (position)
     integer, allocatable :: parent(:)
@@ -34,10 +29,10 @@ contains
         call unite(parent, model%nodes(1, e), node)
       end do
     end do
-    do g = 1, size(groups%first) - 1
+    do g = 1, groups%num_rows()
       root = 0
       do a = groups%first(g), groups%first(g + 1) - 1
-        node = groups%node(a)
+        node = groups%item(a)
         if (parent(node) == 0) cycle
         if (root == 0) root = node
         call unite(parent, root, node)

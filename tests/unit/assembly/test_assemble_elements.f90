@@ -4,13 +4,14 @@ program test_assemble_elements
   use omp_lib, only: omp_set_num_threads
   use kinds, only: rk
   use errors, only: error_type
+  use row_tables, only: row_table
   use testing, only: test_log, check, check_close, check_text
   use problem_definition, only: problem
   use step_plan, only: step_fixity
   use dof_numbering, only: numbering
   use constraint_elimination, only: number_step
   use matrix_pattern, only: pattern, multiply
-  use pattern_builder, only: cell_list, list_cells, build_pattern
+  use pattern_builder, only: list_cells, build_pattern
   use assemble_elements, only: assemble_stiffness, assemble_mass, assemble_damping, add_nodal_mass
   use assemble_forces, only: rigid_translation, inertia_force
   use damping_rayleigh, only: rayleigh_coefficients
@@ -35,7 +36,7 @@ contains
 
   subroutine prepare()
     type(step_fixity), allocatable :: fixities(:)
-    type(cell_list) :: cells
+    type(row_table) :: cells
     type(error_type), allocatable :: error
     call make_arch(2, 3, 4, 3, scene, fixities)
     call number_step(scene%mesh, scene%joints, scene%ties, fixities, numbers, error)
@@ -89,7 +90,7 @@ contains
     type(step_fixity), allocatable :: fixities(:)
     type(numbering) :: own
     type(pattern) :: own_matrix
-    type(cell_list) :: cells
+    type(row_table) :: cells
     type(error_type), allocatable :: error
     real(rk), allocatable :: values(:), q(:), y(:)
     call make_arch(2, 3, 4, 3, apart, fixities)

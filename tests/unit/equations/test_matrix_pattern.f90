@@ -2,6 +2,7 @@
 program test_matrix_pattern
   use kinds, only: rk
   use errors, only: error_type
+  use row_tables, only: row_table
   use testing, only: test_log, check, check_close
   use node_dofs, only: displacement_dofs
   use dof_numbering, only: numbering, linear_links, number_unknowns
@@ -9,7 +10,7 @@ program test_matrix_pattern
   use node_ties, only: node_tie
   use matrix_pattern, only: pattern, position_of, multiply, diagonal, full_pattern, &
                             spread_values, drop_zeros
-  use pattern_builder, only: cell_list, build_pattern
+  use pattern_builder, only: build_pattern
   use joint_stiffness, only: add_joint_stiffness
   implicit none
   type(test_log) :: log
@@ -30,7 +31,7 @@ contains
     type(linear_links) :: links
     type(nodal_points) :: points
     type(node_tie) :: ties(0)
-    type(cell_list) :: cells
+    type(row_table) :: cells
     type(error_type), allocatable :: error
     logical :: is_used(6), is_fixed(3, 6)
     real(rk) :: r(3, 3)
@@ -42,7 +43,7 @@ contains
     call link_nodes(displacement_dofs(6), points, ties, is_used, is_fixed, links, error)
     call number_unknowns(displacement_dofs(6), is_used, is_fixed, links, numbers, error)
     cells%first = [1, 4, 7, 9, 13]
-    cells%node = [1, 2, 3, 4, 5, 6, 3, 4, 1, 2, 5, 6]
+    cells%item = [1, 2, 3, 4, 5, 6, 3, 4, 1, 2, 5, 6]
     call build_pattern(numbers, cells, lower)
     call full_pattern(lower, full)
   end subroutine make_model

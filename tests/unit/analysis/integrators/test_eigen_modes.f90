@@ -2,6 +2,7 @@
 program test_eigen_modes
   use kinds, only: rk
   use errors, only: error_type
+  use row_tables, only: row_table
   use testing, only: test_log, check, check_close, check_text
   use problem_definition, only: problem
   use step_plan, only: step_fixity
@@ -9,7 +10,7 @@ program test_eigen_modes
   use dof_numbering, only: numbering
   use constraint_elimination, only: number_step
   use matrix_pattern, only: pattern, position_of
-  use pattern_builder, only: cell_list, list_cells, build_pattern
+  use pattern_builder, only: list_cells, build_pattern
   use assemble_elements, only: assemble_stiffness, assemble_mass, add_nodal_mass
   use solver_cholmod, only: cholmod_solver
   use eigen_modes, only: find_modes
@@ -33,7 +34,7 @@ contains
   !> The joints are held by springs of 1e11 N/m on each jump.
   subroutine prepare()
     type(step_fixity), allocatable :: fixities(:)
-    type(cell_list) :: cells
+    type(row_table) :: cells
     type(error_type), allocatable :: error
     integer :: j, k
     call make_arch(1, 3, 6, 2, scene, fixities)

@@ -7,7 +7,7 @@ program test_inelastic_forces
   use dof_numbering, only: numbering
   use constraint_elimination, only: number_step
   use matrix_pattern, only: pattern, full_pattern, multiply
-  use pattern_builder, only: cell_list, list_cells, build_pattern
+  use pattern_builder, only: list_cells, build_pattern
   use material_law, only: start_points
   use material_elastic, only: elastic_law
   use material_points, only: point_state, time_increment, secant_tangent, consistent_tangent
@@ -15,6 +15,7 @@ program test_inelastic_forces
                               sum_excess, find_failure
   use inelastic_stiffness, only: lost_stiffness
   use inelastic_energy, only: solid_work, sum_solid_work
+  use row_tables, only: row_table
   use step_plan, only: step_fixity
   use row_scene, only: make_row
   use softening_law, only: damage_law, put_law
@@ -44,7 +45,7 @@ contains
 
   !> A crooked row of 40 boxes of one soft material, three blocks.
   subroutine make_scene()
-    type(cell_list) :: cells
+    type(row_table) :: cells
     type(error_type), allocatable :: error
     integer :: i
     call make_row([(real(i, rk), i=0, num_boxes)], 1.0_rk, 1.0_rk, &
