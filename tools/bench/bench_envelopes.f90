@@ -4,6 +4,7 @@ program bench_envelopes
   use kinds, only: rk, long
   use errors, only: error_type
   use problem_definition, only: problem
+  use row_tables, only: row_table
   use step_plan, only: step, step_fixity
   use analysis_state, only: state
   use material_law, only: start_points
@@ -11,7 +12,7 @@ program bench_envelopes
   use dof_numbering, only: numbering
   use constraint_elimination, only: number_step
   use matrix_pattern, only: pattern
-  use pattern_builder, only: cell_list, list_cells, build_pattern
+  use pattern_builder, only: list_cells, build_pattern
   use assemble_elements, only: assemble_stiffness
   use blas_threads, only: restart_with_fast_libraries
   use solver_cholmod, only: cholmod_solver
@@ -46,7 +47,7 @@ contains
   !> Seconds of one solve with the stiffness of the whole.
   real(rk) function time_of_solve() result(seconds)
     type(numbering) :: numbers
-    type(cell_list) :: cells
+    type(row_table) :: cells
     type(pattern) :: matrix
     type(cholmod_solver) :: solver
     type(error_type), allocatable :: error

@@ -3,12 +3,13 @@ program bench_linear
   use kinds, only: rk, long
   use errors, only: error_type
   use problem_definition, only: problem
+  use row_tables, only: row_table
   use step_plan, only: step_fixity
   use analysis_state, only: vibration_mode
   use dof_numbering, only: numbering
   use constraint_elimination, only: number_step
   use matrix_pattern, only: pattern, multiply, position_of
-  use pattern_builder, only: cell_list, list_cells, build_pattern
+  use pattern_builder, only: list_cells, build_pattern
   use assemble_elements, only: assemble_stiffness, assemble_mass
   use blas_threads, only: restart_with_fast_libraries
   use nested_dissection, only: dissect
@@ -19,7 +20,7 @@ program bench_linear
   type(problem) :: scene
   type(step_fixity), allocatable :: fixities(:)
   type(numbering) :: numbers
-  type(cell_list) :: cells
+  type(row_table) :: cells
   type(pattern) :: matrix
   type(error_type), allocatable :: error
   type(vibration_mode), allocatable :: modes(:)

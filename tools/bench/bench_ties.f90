@@ -7,15 +7,16 @@ program bench_ties
   use dof_numbering, only: numbering
   use constraint_elimination, only: number_step
   use matrix_pattern, only: pattern
-  use pattern_builder, only: cell_list, list_cells, build_pattern
+  use pattern_builder, only: list_cells, build_pattern
   use joint_operator, only: jump_operator, build_jump_operator
   use assemble_elements, only: assemble_stiffness
   use read_deck, only: read_problem
+  use row_tables, only: row_table
   implicit none
   type(problem), allocatable :: scene
   type(diagnostic_list) :: faults
   type(numbering) :: numbers
-  type(cell_list) :: cells
+  type(row_table) :: cells
   type(pattern) :: matrix
   type(jump_operator) :: operator
   type(error_type), allocatable :: error

@@ -5,8 +5,8 @@ module row_tables
   private
   public :: row_table, group_by_key, transpose_rows
 
-  !> Row i is item(first(i):first(i + 1) - 1). It is built row by row (`append`, at the end `finish`),
-  !> by `group_by_key`, or written as a whole.
+  !> Row i is item(first(i):first(i + 1) - 1). A table is built row by row (`append`, at the end
+  !> `finish`), by `group_by_key`, or written as a whole.
   type :: row_table
     integer, allocatable :: first(:) !< (rows + 1)
     integer, allocatable :: item(:)
