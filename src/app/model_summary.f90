@@ -1,9 +1,9 @@
 !> What a model holds, in lines for people.
 module model_summary
+  use dam_mesh, only: named_set
   use joint_points, only: joint
   use kinds, only: rk
   use material_law, only: material
-  use mesh_sets, only: named_set
   use problem_definition, only: problem
   use step_plan, only: step, step_load
   use text_buffers, only: text_buffer

@@ -2,9 +2,8 @@
 module constraint_elimination
   use kinds, only: rk
   use errors, only: error_type
-  use dam_mesh, only: mesh
+  use dam_mesh, only: mesh, node_tie
   use joint_points, only: joint
-  use node_ties, only: node_tie
   use step_plan, only: step_fixity
   use node_dofs, only: dof_map, displacement_dofs
   use dof_numbering, only: numbering, linear_links, number_unknowns

@@ -1,13 +1,11 @@
 !> The problem: what the keywords fill and the solvers read. Effects are guests in its lists.
 module problem_definition
-  use dam_mesh, only: mesh
-  use mesh_sets, only: named_set, surface
+  use dam_mesh, only: mesh, named_set, node_tie, surface
   use amplitudes, only: amplitude
   use step_plan, only: step, initial_value
   use material_law, only: material
   use material_tests, only: material_test
   use joint_points, only: joint
-  use node_ties, only: node_tie
   use surface_coupling, only: coupling
   use surface_segments, only: named_cover
   use applied_load, only: load_slot

@@ -1,13 +1,12 @@
 set(sources
   element_catalogue.f90
-  element_depth.f90
   element_formulation.f90
   element_hex8.f90
   element_hex8_bbar.f90
   element_hex8_incompatible.f90
   element_hex8_reduced.f90
   element_matrices.f90
-  element_widths.f90
+  element_sizes.f90
   gauss_rules.f90
   shape_hex8.f90
   shape_quad4.f90

@@ -17,8 +17,6 @@ set(sources
   law/joint_law.f90
   law/slip_dissipation.f90
   points/element_joint8.f90
-  points/joint8_cells.f90
-  points/joint_axes.f90
   points/joint_points.f90
   points/slip_reach.f90
 )

@@ -1,7 +1,7 @@
 !> What can be said only when the whole deck is read: nothing is left open.
 module finish_model
   use applied_load, only: load_slot
-  use bare_elements, only: tell_bare
+  use cover_checks, only: report_bare
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use finish_concrete, only: complete_concretes
@@ -99,6 +99,7 @@ contains
     associate (mesh => model%scene%mesh)
       is_bare = is_solid(mesh%element_type) .and. mesh%section_of_element == 0
     end associate
-    call tell_bare(is_bare, 'no section', 'a *SOLID SECTION for each solid element', model, faults)
+    call report_bare(is_bare, 'no section', 'a *SOLID SECTION for each solid element', model, &
+                     faults)
   end subroutine check_solids
 end module finish_model

@@ -8,8 +8,8 @@ set(sources
   draft/keyword_handler.f90
   draft/model_draft.f90
   draft/named_things.f90
-  joints/bare_elements.f90
   joints/contact_defaults.f90
+  joints/cover_checks.f90
   joints/finish_interfaces.f90
   joints/finish_joints.f90
   joints/finish_ties.f90
@@ -17,8 +17,6 @@ set(sources
   joints/keywords_interface.f90
   joints/keywords_joint.f90
   joints/keywords_tie.f90
-  joints/surface_claims.f90
-  joints/tell_cover.f90
   loads/enter_load.f90
   loads/finish_uplift.f90
   loads/keywords_loads.f90

@@ -1,13 +1,13 @@
 !> The single list of loads: the keyword that brings each in, its word on the data line, its maker.
 module load_catalogue
   use applied_load, only: load
+  use dam_mesh, only: surface
   use load_base_motion, only: base_motion
   use load_gravity, only: gravity_load
   use load_point, only: point_load
   use load_pressure, only: pressure_load
   use load_reservoir, only: reservoir_load
   use load_uplift, only: uplift_load
-  use mesh_sets, only: surface
   implicit none
   private
   public :: load_kind, load_kinds, make_load, face_of_word, faces_of_elements

@@ -1,10 +1,9 @@
 !> *DLOAD P1..P6 and HP1..HP6, *DSLOAD P: pressure on faces of solids, uniform or hydrostatic.
 module load_pressure
   use applied_load, only: load
-  use dam_mesh, only: mesh
+  use dam_mesh, only: mesh, surface
   use kinds, only: rk
   use mesh_faces, only: face_nodes
-  use mesh_sets, only: surface
   use shape_quad4, only: facet_point
   use wetted_facet, only: water_body, wet_facet, wet_the_facet
   implicit none

@@ -8,10 +8,9 @@
 !> that.
 module load_reservoir
   use applied_load, only: load
-  use dam_mesh, only: mesh
+  use dam_mesh, only: mesh, surface
   use kinds, only: rk
   use mesh_faces, only: face_nodes
-  use mesh_sets, only: surface
   use wetted_facet, only: water_body, wet_facet, wet_the_facet
   implicit none
   private

@@ -4,13 +4,11 @@ set(sources
   constraints/jump_links.f90
   constraints/link_graph.f90
   constraints/link_order.f90
-  constraints/node_ties.f90
   constraints/tie_motion.f90
   mesh/body_parts.f90
   mesh/dam_mesh.f90
   mesh/id_map.f90
   mesh/mesh_faces.f90
-  mesh/mesh_sets.f90
   mesh/node_dofs.f90
   mesh/set_lists.f90
   steps/amplitudes.f90

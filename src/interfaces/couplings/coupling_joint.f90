@@ -6,8 +6,7 @@
 !> where the segments have theirs, a penalty that does. The normal points out of the master's solid,
 !> from master to slave.
 module coupling_joint
-  use joint_axes, only: local_axes
-  use joint_points, only: joint, joint_cells
+  use joint_points, only: joint, joint_cells, local_axes
   use kinds, only: rk
   use mortar_facet, only: facet_extent
   use mortar_projection, only: project

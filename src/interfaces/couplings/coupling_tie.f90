@@ -7,10 +7,10 @@
 !> others by an earlier tie, is a node of the master face too, or is followed, near or far, by the
 !> master face or by a node that bears none. Its dual function goes to its neighbours on each facet.
 module coupling_tie
+  use dam_mesh, only: node_tie
   use kinds, only: rk
   use mortar_projection, only: project
   use mortar_table, only: mortar_rows
-  use node_ties, only: node_tie
   use surface_facets, only: mark_corners
   use surface_segments, only: facet_set, segment_set
   implicit none

@@ -1,8 +1,7 @@
 !> Lists of facets: of surfaces of solids, and of interface quads.
 module surface_facets
-  use dam_mesh, only: mesh
+  use dam_mesh, only: mesh, surface
   use mesh_faces, only: count_corners, face_nodes
-  use mesh_sets, only: surface
   use surface_segments, only: facet_set
   implicit none
   private

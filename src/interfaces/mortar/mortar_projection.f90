@@ -8,7 +8,7 @@
 !> A_a = int N_a dA.
 !> The weights add up to 1 and a linear field is met exactly where the faces lie on each other.
 module mortar_projection
-  use joint_axes, only: share_a_plane
+  use joint_points, only: share_a_plane
   use kinds, only: rk
   use mortar_balance, only: balance_weights
   use mortar_facet, only: facet_extent, facet_part, integrate_facet, share_bound

@@ -9,9 +9,7 @@ module element_joint8
   use element_catalogue, only: is_solid
   use errors, only: error_type, raise
   use gauss_rules, only: quad_point
-  use joint_axes, only: local_axes, share_a_plane
-  use joint8_cells, only: draw_elements
-  use joint_points, only: joint, list_faces
+  use joint_points, only: draw_elements, joint, list_faces, local_axes, share_a_plane
   use kinds, only: rk
   use mesh_faces, only: face_nodes, face_table, face_vector, find_face, insert_face, open_table
   use shape_quad4, only: facet_point

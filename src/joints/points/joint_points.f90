@@ -8,11 +8,20 @@
 !> projection of the master face (surfaces of different meshes). It sees no other slave node but
 !> those beside it that follow others of the face by a tie.
 module joint_points
+  use dam_mesh, only: mesh
   use kinds, only: rk
   use joint_law, only: traction_law
+  use small_matrix, only: cross_product
   implicit none
   private
-  public :: joint, joint_cells, list_faces, apart
+  public :: joint, joint_cells, list_faces, apart, draw_elements, local_axes, share_a_plane
+
+  !> Facets that share a node make one point of it unless their normals differ by more than 30
+  !> degrees.
+  real(rk), parameter :: same_plane = 0.5_rk*sqrt(3.0_rk)
+
+  !> A normal this close to the vertical takes slip 1 along x.
+  real(rk), parameter :: vertical = 1.0e-6_rk
 
   !> What results draw of a joint: polygons on its face. A corner lies at, moves with and shows the
   !> values of sum weight * node, over nodes that points of the joint belong to.
@@ -79,4 +88,61 @@ contains
       apart = apart + seam%weight(k)*u(:, seam%node(k))
     end do
   end function apart
+
+  !> Fills the cells of a joint of JOINT8 elements: one for each element, one corner for each slave
+  !> node. A face with repeated nodes becomes a triangle.
+  pure subroutine draw_elements(model, elements, side, built)
+    type(mesh), intent(in) :: model
+    integer, intent(in) :: elements(:) !< positions of JOINT8 elements
+    integer, intent(in) :: side(:) !< 1: normal by nodes 5-6-7-8, -1: against it
+    type(joint), intent(inout) :: built
+    integer, allocatable :: corner_of_node(:), node_of_corner(:), first(:), corner(:)
+    integer :: ring(4), e, a, k, num_corners, last, node
+    allocate (corner_of_node(model%num_nodes), node_of_corner(4*size(elements)), source=0)
+    allocate (first(size(elements) + 1), corner(4*size(elements)), source=1)
+    num_corners = 0
+    last = 0
+    do e = 1, size(elements)
+      ring = model%nodes(5:8, elements(e))
+      if (side(e) < 0) ring = ring([1, 4, 3, 2])
+      do a = 1, 4
+        node = ring(a)
+        if (any(ring(:a - 1) == node)) cycle
+        if (corner_of_node(node) == 0) then
+          num_corners = num_corners + 1
+          corner_of_node(node) = num_corners
+          node_of_corner(num_corners) = node
+        end if
+        last = last + 1
+        corner(last) = corner_of_node(node)
+      end do
+      first(e + 1) = last + 1
+    end do
+    built%cells%element = elements
+    built%cells%first = first
+    built%cells%corner = corner(:last)
+    built%cells%first_node = [(k, k=1, num_corners + 1)]
+    built%cells%node = node_of_corner(:num_corners)
+    built%cells%weight = spread(1.0_rk, 1, num_corners)
+  end subroutine draw_elements
+
+  !> Rows: normal, slip 1 (horizontal; x when the normal is vertical), slip 2 = normal x slip 1.
+  pure function local_axes(direction) result(rotation)
+    real(rk), intent(in) :: direction(3) !< along the normal, of any length
+    real(rk) :: rotation(3, 3)
+    real(rk) :: n(3), s(3)
+    n = direction/norm2(direction)
+    s = [-n(2), n(1), 0.0_rk]
+    if (norm2(s) <= vertical) s = [1.0_rk, 0.0_rk, 0.0_rk] - n(1)*n
+    s = s/norm2(s)
+    rotation(1, :) = n
+    rotation(2, :) = s
+    rotation(3, :) = cross_product(n, s)
+  end function local_axes
+
+  !> Whether two normals, of any length, are at most 30 degrees apart.
+  pure logical function share_a_plane(one, other)
+    real(rk), intent(in) :: one(3), other(3)
+    share_a_plane = dot_product(one, other) >= same_plane*norm2(one)*norm2(other)
+  end function share_a_plane
 end module joint_points

@@ -1,7 +1,7 @@
 !> KN of a joint law that asks for contact without penetration and names none
 !> (different_meshes.md, 13.5).
 module contact_defaults
-  use element_depth, only: depth_behind
+  use element_sizes, only: depth_behind
   use joint_constants, only: law_constants
   use kinds, only: rk
   use problem_definition, only: problem

@@ -1,5 +1,6 @@
 !> Builds the couplings of *INTERFACE when the whole deck is read.
 module finish_interfaces
+  use cover_checks, only: keep_cover
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use kinds, only: rk
@@ -9,7 +10,6 @@ module finish_interfaces
   use surface_coupling, only: build_coupling, coupling
   use surface_facets, only: list_interface_facets, list_surface_facets
   use surface_segments, only: facet_set, surface_cover
-  use tell_cover, only: keep_cover
   use write_text, only: as_text
   implicit none
   private

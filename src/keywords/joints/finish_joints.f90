@@ -1,8 +1,8 @@
 !> Joints when the whole deck is read: laws are completed, points are laid.
 module finish_joints
-  use bare_elements, only: tell_bare
   use contact_defaults, only: take_layer_stiffness
   use coupling_joint, only: lay_gauss_points, lay_node_points
+  use cover_checks, only: claim_facets, claims, keep_cover, open_claims, report_bare
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use element_joint8, only: build_joint_points, find_attached_solids
@@ -15,10 +15,8 @@ module finish_joints
   use model_draft, only: draft
   use named_things, only: longest_name
   use nearest_words, only: nearest_word
-  use surface_claims, only: claim_facets, claims, open_claims
   use surface_facets, only: list_surface_facets, mark_corners
   use surface_segments, only: facet_set, segment_set, surface_cover
-  use tell_cover, only: keep_cover
   use write_text, only: as_text
   implicit none
   private
@@ -65,7 +63,7 @@ contains
       if (size(model%joints(i)%elements) + model%joints(i)%slave == 0) return ! its fault is told
     end do
     is_bare = model%scene%mesh%element_type == 'JOINT8' .and. model%joint_of_element == 0
-    call tell_bare(is_bare, 'no joint', 'a *JOINT for each JOINT8 element', model, faults)
+    call report_bare(is_bare, 'no joint', 'a *JOINT for each JOINT8 element', model, faults)
   end subroutine check_joint_elements
 
   !> Faces of the slave surfaces of all joints.

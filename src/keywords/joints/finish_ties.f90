@@ -1,6 +1,8 @@
 !> Builds the ties of a deck once all of it is read: the supports of all steps count.
 module finish_ties
   use coupling_tie, only: lay_tie
+  use cover_checks, only: keep_cover
+  use dam_mesh, only: node_tie
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use errors, only: error_type
@@ -9,11 +11,9 @@ module finish_ties
   use kinds, only: rk
   use model_draft, only: draft, tie_request
   use node_dofs, only: num_directions, zero_vectors
-  use node_ties, only: node_tie
   use surface_coupling, only: build_coupling, coupling
   use surface_facets, only: list_surface_facets
   use surface_segments, only: facet_set, segment_set, surface_cover
-  use tell_cover, only: keep_cover
   use tie_motion, only: follow_ties
   use write_text, only: as_text
   implicit none

@@ -5,12 +5,11 @@
 !> facets, opposite each other, that belong together to two of them, whichever is the slave and
 !> whatever their surfaces are called.
 module joined_twice
-  use dam_mesh, only: mesh
+  use dam_mesh, only: mesh, surface
   use diagnostics, only: diagnostic_list
   use facet_segments, only: find_segments
   use finish_joints, only: farthest_gap, farthest_seam
   use kinds, only: rk
-  use mesh_sets, only: surface
   use model_draft, only: draft, origin
   use surface_facets, only: list_surface_facets
   use surface_segments, only: facet_set, segment_set, surface_cover

@@ -2,6 +2,7 @@
 !> at work in the same steps and with the same factors.
 module finish_uplift
   use applied_load, only: load
+  use dam_mesh, only: surface
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use joint_rim, only: area_of_facets, face_rim, find_rim
@@ -10,7 +11,6 @@ module finish_uplift
   use load_reservoir, only: reservoir_load
   use load_uplift, only: fill_linear, fill_open, uplift_load
   use mesh_faces, only: face_nodes
-  use mesh_sets, only: surface
   use model_draft, only: add_load, draft, law_request
   use named_things, only: longest_name
   use nearest_words, only: nearest_word

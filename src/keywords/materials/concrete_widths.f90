@@ -3,7 +3,7 @@ module concrete_widths
   use damage_checks, only: find_longest_band, stiffening_table, table_fault
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
-  use element_widths, only: measure_widths
+  use element_sizes, only: measure_widths
   use kinds, only: rk
   use model_draft, only: concrete_request, draft
   use number_ranges, only: as_ranges

@@ -1,10 +1,10 @@
 !> *SOLID SECTION.
 module keywords_section
+  use dam_mesh, only: named_set
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_word
-  use mesh_sets, only: named_set
   use model_draft, only: draft, section_request
   use named_things, only: elements_of_set, longest_name
   use nearest_words, only: nearest_word

@@ -1,5 +1,6 @@
 !> *NSET, *ELSET, *SURFACE.
 module keywords_sets
+  use dam_mesh, only: surface
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
@@ -8,7 +9,6 @@ module keywords_sets
   use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, kind_reference, &
                           kind_word
   use mesh_faces, only: count_corners, face_nodes
-  use mesh_sets, only: surface
   use model_draft, only: draft, origin
   use named_things, only: elements_at, find_surface_name, nodes_at
   use write_text, only: as_text

@@ -9,9 +9,9 @@
 !> gets no jump, nor one with a node that is held, has no element or is on both sides: the joint
 !> then works in the unknowns that are there.
 module jump_links
+  use dam_mesh, only: node_tie
   use kinds, only: rk
   use errors, only: error_type
-  use node_ties, only: node_tie
   use node_dofs, only: dof_map, num_directions
   use joint_rows, only: num_axes, num_rows
   use dof_numbering, only: linear_links

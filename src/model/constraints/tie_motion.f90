@@ -1,8 +1,8 @@
 !> Fields at nodes that agree with the ties.
 module tie_motion
+  use dam_mesh, only: node_tie
   use kinds, only: rk
   use errors, only: error_type
-  use node_ties, only: node_tie
   use node_dofs, only: dof_map, displacement_dofs
   use dof_numbering, only: linear_links
   use jump_links, only: nodal_points, link_nodes, pairs_of_nodes

@@ -1,4 +1,5 @@
-!> Nodes and elements of the whole model, in the order of the deck, with the user's numbers.
+!> Nodes and elements of the whole model, in the order of the deck, with the user's numbers; sets
+!> and surfaces made of them, and nodes that follow others by ties.
 !>
 !> Everything inside Keyway speaks in positions (1..num_nodes, 1..num_elements); the user's ids
 !> appear only in messages and results.
@@ -6,7 +7,7 @@ module dam_mesh
   use kinds, only: rk
   implicit none
   private
-  public :: mesh
+  public :: mesh, named_set, surface, node_tie
 
   type :: mesh
     integer :: num_nodes = 0
@@ -19,4 +20,30 @@ module dam_mesh
     integer, allocatable :: material_of_element(:) !< position in the list of materials, 0 for none
     integer, allocatable :: section_of_element(:) !< number of its *SOLID SECTION, 0 for none
   end type mesh
+
+  !> A set of nodes or elements: positions in the mesh, ascending, each once.
+  type :: named_set
+    character(:), allocatable :: name !< upper case
+    integer, allocatable :: members(:)
+  end type named_set
+
+  !> A surface: faces S1..S6 of solid elements (CalculiX numbering, see mesh_faces).
+  type :: surface
+    character(:), allocatable :: name !< upper case
+    integer, allocatable :: element(:) !< element positions
+    integer, allocatable :: face(:) !< 1..6
+  end type surface
+
+  !> One *TIE with an exact constraint, as links of single nodes of its slave face:
+  !> u(node) = sum_k weight(k) u(master(k)), k = first(i) .. first(i + 1) - 1, in the directions
+  !> that are tied. A node may have several rows, in different directions: what follows there
+  !> differs where supports do.
+  type :: node_tie
+    character(:), allocatable :: name !< upper case
+    integer, allocatable :: node(:) !< (ties) the node that follows
+    logical, allocatable :: is_tied(:, :) !< (3, ties) the directions in which it does
+    integer, allocatable :: first(:) !< (ties + 1)
+    integer, allocatable :: master(:) !< nodes it follows, on either face
+    real(rk), allocatable :: weight(:) !< they add up to 1
+  end type node_tie
 end module dam_mesh

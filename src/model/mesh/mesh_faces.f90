@@ -5,8 +5,7 @@
 !> than three different nodes it is no face at all.
 module mesh_faces
   use kinds, only: rk
-  use dam_mesh, only: mesh
-  use mesh_sets, only: surface
+  use dam_mesh, only: mesh, surface
   use small_matrix, only: cross_product
   implicit none
   private

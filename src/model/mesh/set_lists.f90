@@ -1,6 +1,6 @@
 !> A growing list of named sets; what is added to a name that exists joins its members.
 module set_lists
-  use mesh_sets, only: named_set
+  use dam_mesh, only: named_set
   use sorted_lists, only: sorted_unique
   use text_table, only: text_numbers
   implicit none

@@ -2,8 +2,7 @@
 !> and interfaces. They are no free surface, although no element shares them.
 module covered_faces
   use kinds, only: rk
-  use dam_mesh, only: mesh
-  use mesh_sets, only: surface
+  use dam_mesh, only: mesh, surface
   use mesh_faces, only: face_nodes, face_vector, mark_covered
   use joint_points, only: joint
   use problem_definition, only: problem

@@ -5,8 +5,7 @@
 !> mass, where the rock has none; otherwise the sections that hold the reservoir's surface.
 module dam_faces
   use kinds, only: rk
-  use dam_mesh, only: mesh
-  use mesh_sets, only: surface
+  use dam_mesh, only: mesh, surface
   use mesh_faces, only: face_nodes, face_vector, face_centre, find_exterior
   use covered_faces, only: mark_joined
   use element_catalogue, only: is_solid

@@ -6,8 +6,7 @@
 !> that see it, by area and shape function. A corner that cells in two planes share is drawn twice.
 module joint_surface
   use kinds, only: rk
-  use joint_axes, only: share_a_plane
-  use joint_points, only: joint, joint_cells
+  use joint_points, only: joint, joint_cells, share_a_plane
   use problem_definition, only: problem
   use analysis_state, only: state
   use small_matrix, only: cross_product

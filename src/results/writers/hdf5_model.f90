@@ -1,7 +1,7 @@
 !> The model in job.h5: mesh, sets, surfaces, joints. Written once, at the start.
 module hdf5_model
+  use dam_mesh, only: named_set
   use problem_definition, only: problem
-  use mesh_sets, only: named_set
   use joint_points, only: joint, joint_cells
   use run_records, only: run_record
   use joint_readings, only: joint_record

@@ -1,5 +1,6 @@
 !> The pattern against a dense matrix: entries, product, diagonal, the full pattern, joints.
 program test_matrix_pattern
+  use dam_mesh, only: node_tie
   use kinds, only: rk
   use errors, only: error_type
   use row_tables, only: row_table
@@ -7,7 +8,6 @@ program test_matrix_pattern
   use node_dofs, only: displacement_dofs
   use dof_numbering, only: numbering, linear_links, number_unknowns
   use jump_links, only: nodal_points, link_nodes, pairs_of_nodes
-  use node_ties, only: node_tie
   use matrix_pattern, only: pattern, position_of, multiply, diagonal, full_pattern, &
                             spread_values, drop_zeros
   use pattern_builder, only: build_pattern

@@ -2,11 +2,11 @@
 !> one point and a wedge of concrete on elastic rock; damage is set, not computed. The files are
 !> read by tests/results/test_damage_files.py.
 program test_damage_files
+  use dam_mesh, only: named_set, surface
   use integrator_catalogue, only: procedure_named
   use kinds, only: rk
   use errors, only: error_type
   use diagnostics, only: diagnostic_list
-  use mesh_sets, only: named_set, surface
   use step_plan, only: step, print_request, field_request
   use material_law, only: start_points
   use material_elastic, only: elastic_law

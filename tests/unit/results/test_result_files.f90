@@ -2,16 +2,15 @@
 !> concrete on rock without mass, a uniform strain that grows with time. The files are read by
 !> tests/results/test_result_files.py; here only what Fortran can see is checked.
 program test_result_files
+  use dam_mesh, only: named_set, surface
   use integrator_catalogue, only: procedure_named
   use kinds, only: rk
   use errors, only: error_type
   use diagnostics, only: diagnostic_list, place, severity_ignored, severity_warning
-  use mesh_sets, only: named_set, surface
   use step_plan, only: step, print_request, field_request
   use material_elastic, only: elastic_law
   use joint_contraction, only: contraction_law
-  use joint8_cells, only: draw_elements
-  use joint_points, only: joint, list_faces
+  use joint_points, only: draw_elements, joint, list_faces
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
   use result_files, only: result_folder

@@ -1,10 +1,10 @@
 !> Which nodes of a slave face follow the master face, in which directions, and what they follow.
 program test_coupling_tie
   use coupling_tie, only: find_bound, lay_tie
+  use dam_mesh, only: node_tie
   use errors, only: error_type
   use facet_segments, only: find_segments
   use kinds, only: rk
-  use node_ties, only: node_tie
   use surface_segments, only: facet_set, segment_set, surface_cover
   use testing, only: check, check_close, test_log
   use tie_motion, only: follow_ties

@@ -1,13 +1,13 @@
 !> T of chains of joints, loops and supports; expand and reduce are transposed to each other; nodes
 !> with an unknown more.
 program test_dof_numbering
+  use dam_mesh, only: node_tie
   use kinds, only: rk
   use errors, only: error_type
   use testing, only: test_log, check, check_close, check_text
   use node_dofs, only: dof_map, displacement_dofs, displacements, dof_component, number_dofs
   use dof_numbering, only: numbering, linear_links, number_unknowns
   use jump_links, only: nodal_points, link_nodes, pairs_of_nodes
-  use node_ties, only: node_tie
   implicit none
   type(test_log) :: log
   log%suite = 'dof_numbering'

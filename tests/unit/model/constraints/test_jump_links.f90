@@ -1,9 +1,9 @@
 !> Nodes that follow several others: ties, points of joints on surfaces, chains and circles of both.
 program test_jump_links
+  use dam_mesh, only: node_tie
   use kinds, only: rk
   use errors, only: error_type
   use testing, only: test_log, check, check_close, check_text
-  use node_ties, only: node_tie
   use node_dofs, only: displacement_dofs
   use dof_numbering, only: numbering, linear_links, number_unknowns
   use jump_links, only: nodal_points, link_nodes

@@ -1,10 +1,9 @@
 !> Faces of elements: outward normals, the skin of bodies, degenerate faces, joints.
 program test_mesh_faces
   use kinds, only: rk
-  use dam_mesh, only: mesh
+  use dam_mesh, only: mesh, surface
   use mesh_faces, only: count_corners, face_centre, face_nodes, face_vector, find_exterior, &
                         mark_covered
-  use mesh_sets, only: surface
   use testing, only: check, check_close, test_log
   implicit none
   type(test_log) :: log

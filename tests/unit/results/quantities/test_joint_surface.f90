@@ -1,6 +1,7 @@
 !> Joints as the results see them: what is drawn on which corner, which points lie on a face of the
 !> dam, openings on nodes, faces that are no free surface. Scenes are made by hand.
 program test_joint_surface
+  use dam_mesh, only: node_tie, surface
   use kinds, only: rk
   use analysis_state, only: state
   use covered_faces, only: mark_joined
@@ -13,8 +14,6 @@ program test_joint_surface
   use joint_surface, only: drawn_joints, find_drawn_joints, values_on_corners, &
                            states_on_corners, nodes_to_corners, num_values
   use mesh_faces, only: find_exterior
-  use mesh_sets, only: surface
-  use node_ties, only: node_tie
   use problem_definition, only: problem
   use testing, only: test_log, check, check_close
   implicit none

@@ -1,7 +1,7 @@
 !> Widths that crack bands can have in elements of several shapes.
-program test_element_widths
+program test_element_sizes
   use dam_mesh, only: mesh
-  use element_widths, only: measure_widths
+  use element_sizes, only: measure_widths
   use gauss_rules, only: hex_point
   use kinds, only: rk
   use shape_hex8, only: corner
@@ -10,7 +10,7 @@ program test_element_widths
   real(rk), parameter :: roundoff = 1.0e-14_rk !< a few operations on numbers near 1
   type(test_log) :: log
 
-  log%suite = 'element_widths'
+  log%suite = 'element_sizes'
   call brick_and_taper(log)
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
@@ -51,4 +51,4 @@ contains
     square = a**2 + b**2 + c**2
     largest_of = sqrt(0.5_rk*(square + sqrt(square**2 - 4.0_rk*(a*c)**2)))
   end function largest_of
-end program test_element_widths
+end program test_element_sizes

@@ -1,17 +1,32 @@
-!> How wide the crack bands in solid elements can be.
-module element_widths
+!> Lengths of solid elements: the depth behind a face, and the widths of crack bands.
+module element_sizes
   use crack_band, only: extreme_widths
   use dam_mesh, only: mesh
   use element_catalogue, only: make_solid
   use element_formulation, only: solid_element
   use gauss_rules, only: hex_point
   use kinds, only: rk
+  use mesh_faces, only: face_vector
   use shape_hex8, only: edges_at
+  use small_matrix, only: determinant3
   implicit none
   private
-  public :: measure_widths
+  public :: depth_behind, measure_widths
 
 contains
+
+  !> Depth of a solid element behind one of its faces: volume over area [m]; exact for a
+  !> parallelepiped, huge for a face without area.
+  pure real(rk) function depth_behind(body, element, facet) result(depth)
+    type(mesh), intent(in) :: body
+    integer, intent(in) :: element !< position of the solid
+    integer, intent(in) :: facet(4) !< its nodes
+    real(rk) :: volume, area
+    volume = determinant3(edges_at(body%x(:, body%nodes(:, element)), [0.0_rk, 0.0_rk, 0.0_rk]))
+    area = norm2(face_vector(body%x(:, facet)))
+    depth = huge(1.0_rk)
+    if (area > 0.0_rk) depth = abs(volume)/area
+  end function depth_behind
 
   !> Smallest and largest width that a band can have at the integration points of solid elements,
   !> whatever the direction of the crack.
@@ -48,4 +63,4 @@ contains
     end if
     call make_solid(kind, formulation)
   end subroutine need_formulation
-end module element_widths
+end module element_sizes

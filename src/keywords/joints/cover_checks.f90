@@ -1,0 +1,146 @@
+!> Checks of what joints, ties and interfaces cover: elements that none of them takes, parts of
+!> faces without a partner, faces that two joints cover.
+module cover_checks
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use kinds, only: rk
+  use mesh_faces, only: face_table, find_face, insert_face, open_table
+  use model_draft, only: draft
+  use surface_segments, only: facet_set, named_cover, surface_cover
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: report_bare, keep_cover, claims, open_claims, claim_facets
+
+  !> Bare parts of a face up to this part of it are not reported: rims whose nodes are written with
+  !> five digits.
+  real(rk), parameter :: bare_part = 1.0e-4_rk
+
+  !> Gaps and overlaps up to this part of a mean facet's side are not reported: faces of different
+  !> meshes on one curved surface have them when a facet turns by 5 degrees.
+  real(rk), parameter :: gap_part = 0.01_rk
+
+  !> Coordinates and distances below this part of the largest coordinate are zero.
+  real(rk), parameter :: round_off = 1.0e-12_rk
+
+  !> What two joints may cover of one face together: more than the whole of it by this part means
+  !> that they lie on each other. Faces that fit but for the mesher's digits stay below.
+  real(rk), parameter :: most_cover = 1.01_rk
+
+  type :: claims
+    type(face_table) :: table
+    integer, allocatable :: owner(:) !< (faces) the first joint that took the face
+    real(rk), allocatable :: covered(:) !< (faces) part of it, by all joints
+  end type claims
+
+contains
+
+  !> Reports the first of the elements that lack something, and how many more there are.
+  subroutine report_bare(is_bare, lack, expected, model, faults)
+    logical, intent(in) :: is_bare(:) !< (elements)
+    character(*), intent(in) :: lack, expected
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: others
+    integer :: e
+    if (.not. any(is_bare)) return
+    e = findloc(is_bare, .true., dim=1)
+    others = ''
+    if (count(is_bare) > 1) others = ', as '//as_text(count(is_bare) - 1)//' more'
+    associate (spot => model%element_origin(e))
+      call model%cards(spot%card)%fault_at(faults, spot%line, 1, 'element '// &
+                                           as_text(model%scene%mesh%element_id(e))//' has '// &
+                                           lack//others, expected)
+    end associate
+  end subroutine report_bare
+
+  !> Stores how well two faces cover each other and reports faults at the card of the interface: an
+  !> error where they do not at all, warnings where a part has no partner or the faces lie apart.
+  subroutine keep_cover(place, name, kind, cover, gaps_count, model, faults)
+    type(card), intent(in) :: place
+    character(*), intent(in) :: name !< upper case
+    character(*), intent(in) :: kind !< 'JOINT', 'TIE' or 'INTERFACE'
+    type(surface_cover), intent(in) :: cover
+    logical, intent(in) :: gaps_count !< gaps between the faces as meshed are meant
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(named_cover) :: new
+    real(rk) :: side, bare, least
+    new%name = name
+    new%kind = kind
+    new%cover = cover
+    least = round_off*maxval(abs(model%scene%mesh%x))
+    if (cover%largest_gap <= least) new%cover%largest_gap = 0.0_rk
+    if (cover%largest_overlap <= least) new%cover%largest_overlap = 0.0_rk
+    model%scene%covers = [model%scene%covers, new]
+    if (cover%covered_area <= 0.0_rk) then
+      call place%fault(faults, 'no facet of one face lies opposite a facet of the other', &
+                       'faces that lie on each other and look against each other')
+      return
+    end if
+    bare = cover%slave_area - cover%covered_area
+    if (bare > bare_part*cover%slave_area) then
+      call place%warn(faults, as_text(bare)//' of the '//as_text(cover%slave_area)// &
+                      ' m2 of the slave face have no master facet opposite, most of it at '// &
+                      place_text(cover%bare_place))
+    end if
+    if (cover%excess_area > bare_part*cover%slave_area) then
+      call place%warn(faults, 'master facets lie upon each other: '// &
+                      as_text(cover%excess_area)//' of the '//as_text(cover%slave_area)// &
+                      ' m2 of the slave face count twice')
+    end if
+    side = sqrt(cover%slave_area/max(1, size(cover%bare)))
+    if (cover%largest_gap > gap_part*side .and. .not. gaps_count) then
+      call place%warn(faults, 'the faces lie up to '//as_text(cover%largest_gap)// &
+                      ' m apart, at '//place_text(cover%gap_place))
+    end if
+    if (cover%largest_overlap > gap_part*side) then
+      call place%warn(faults, 'the faces overlap by up to '//as_text(cover%largest_overlap)// &
+                      ' m, at '//place_text(cover%overlap_place))
+    end if
+  end subroutine keep_cover
+
+  !> '(1, 2, 3)', without round-off.
+  pure function place_text(x) result(text)
+    real(rk), intent(in) :: x(3) !< [m]
+    character(:), allocatable :: text
+    real(rk) :: y(3)
+    y = merge(x, 0.0_rk, abs(x) > round_off*maxval(abs(x)))
+    text = '('//as_text(y(1))//', '//as_text(y(2))//', '//as_text(y(3))//')'
+  end function place_text
+
+  !> No face is taken yet.
+  pure subroutine open_claims(num_nodes, capacity, taken)
+    integer, intent(in) :: num_nodes !< of the mesh
+    integer, intent(in) :: capacity !< most faces
+    type(claims), intent(out) :: taken
+    call open_table(num_nodes, capacity, taken%table)
+    allocate (taken%owner(capacity), source=0)
+    allocate (taken%covered(capacity), source=0.0_rk)
+  end subroutine open_claims
+
+  !> Adds the slave facets of a joint; returns the first one that another joint has covered.
+  pure subroutine claim_facets(taken, joint, slave, cover, facet, earlier)
+    type(claims), intent(inout) :: taken
+    integer, intent(in) :: joint
+    type(facet_set), intent(in) :: slave
+    type(surface_cover), intent(in) :: cover
+    integer, intent(out) :: facet !< taken before, 0 for none
+    integer, intent(out) :: earlier !< the joint that has it
+    integer :: f, number
+    facet = 0
+    earlier = 0
+    do f = 1, size(slave%element)
+      if (cover%bare(f) >= 1.0_rk) cycle
+      number = find_face(taken%table, slave%node(:, f))
+      if (number == 0) then
+        call insert_face(taken%table, slave%node(:, f), number)
+        taken%owner(number) = joint
+      end if
+      taken%covered(number) = taken%covered(number) + 1.0_rk - cover%bare(f)
+      if (facet > 0 .or. taken%covered(number) <= most_cover) cycle
+      facet = f
+      earlier = taken%owner(number)
+    end do
+  end subroutine claim_facets
+end module cover_checks
