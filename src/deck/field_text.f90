@@ -8,13 +8,17 @@ module field_text
   private
   public :: expected_in, kind_in_words, names_of_columns, text_or_nothing
 
+  integer, parameter :: longest_meaning = 80 !< letters, before the choices of a message
+
 contains
 
-  !> "Young's modulus, a number > 0 [Pa]".
+  !> "Young's modulus, a number > 0 [Pa]". A long meaning of a choice stays in the help: the choices
+  !> say what was expected.
   pure function expected_in(described) result(text)
     type(field), intent(in) :: described
     character(:), allocatable :: text
     text = text_or_nothing(described%meaning)
+    if (described%kind == kind_choice .and. len(text) > longest_meaning) text = ''
     if (len(text) > 0) text = text//', '
     text = text//kind_in_words(described)
     if (len(text_or_nothing(described%unit)) > 0) text = text//' ['//described%unit//']'

@@ -20,7 +20,8 @@ module keyword_catalogue
                                describe_material_damping, read_density, read_elastic, &
                                read_material, read_material_damping
   use keywords_material_test, only: describe_material_test, read_material_test
-  use keywords_nodes, only: describe_heading, describe_node, read_heading, read_nodes
+  use keywords_nodes, only: describe_heading, describe_include, describe_node, read_heading, &
+                            read_nodes
   use keywords_output, only: describe_el_file, describe_element_output, describe_envelope, &
                              describe_node_file, describe_node_output, describe_output, &
                              describe_preprint, read_envelope, read_fields, read_output
@@ -59,6 +60,7 @@ contains
   subroutine add_model_keywords(list)
     type(keyword_list), intent(inout) :: list
     call list%add(describe_heading, read_heading, pass_rest)
+    call list%add(describe_include)
     call list%add(describe_node, read_nodes, pass_nodes)
     call list%add(describe_element, read_elements, pass_elements)
     call list%add(describe_nset, read_nset, pass_rest)

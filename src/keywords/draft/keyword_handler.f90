@@ -16,7 +16,7 @@ module keyword_handler
   !> How a keyword is handled.
   type :: keyword_entry
     integer :: pass = pass_rest
-    procedure(card_handler), pointer, nopass :: handle => null() !< null: not available
+    procedure(card_handler), pointer, nopass :: handle => null() !< null: no card of it is handled
   end type keyword_entry
 
   !> All keywords; `specs(i)` and `entries(i)` belong together.
@@ -49,18 +49,18 @@ module keyword_handler
 
 contains
 
-  !> Adds a keyword to the list.
+  !> Adds a keyword to the list; without a handler where the reader of the text carries it out.
   subroutine add(self, describe, handle, pass)
     class(keyword_list), intent(inout) :: self
     procedure(spec_maker) :: describe
-    procedure(card_handler) :: handle
-    integer, intent(in) :: pass
+    procedure(card_handler), optional :: handle
+    integer, intent(in), optional :: pass
     type(keyword) :: spec
     call describe(spec)
     self%num_keywords = self%num_keywords + 1
     self%specs(self%num_keywords) = spec
-    self%entries(self%num_keywords)%pass = pass
-    self%entries(self%num_keywords)%handle => handle
+    if (present(pass)) self%entries(self%num_keywords)%pass = pass
+    if (present(handle)) self%entries(self%num_keywords)%handle => handle
   end subroutine add
 
   !> Gives back the unused end of the list.

@@ -84,7 +84,7 @@ contains
     spec%family = 'material'
     spec%place = 'material'
     spec%meaning = 'Number of state variables of a user material (NSTATV); results call them '// &
-                   'SDV1, SDV2, .. Lines that name them (number, name, text) may follow.'
+                   'SDV1, SDV2 and so on. Lines that name them (number, name, text) may follow.'
     spec%example = '*DEPVAR'//nl//'7'
     spec%fewest_lines = 1
     spec%checks_own_data = .true.

@@ -1,13 +1,13 @@
-!> *HEADING, *NODE.
+!> *HEADING, *NODE, and the page of *INCLUDE, which deck_source carries out.
 module keywords_nodes
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
-  use keyword_spec, only: keyword, field, kind_integer, kind_real, kind_word
+  use keyword_spec, only: keyword, field, kind_integer, kind_real, kind_text, kind_word
   use kinds, only: rk
   use model_draft, only: draft, origin
   implicit none
   private
-  public :: describe_heading, describe_node
+  public :: describe_heading, describe_include, describe_node
   public :: read_heading, read_nodes
   public :: make_room_for_nodes, fault_twice, positions
 
@@ -42,6 +42,20 @@ contains
     end do
     model%scene%heading = text
   end subroutine read_heading
+
+  subroutine describe_include(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'INCLUDE'
+    spec%family = 'mesh'
+    spec%place = 'anywhere'
+    spec%meaning = 'Reads another file in place of this line. Files may include others; a file '// &
+                   'that includes itself is an error.'
+    spec%example = '*INCLUDE, INPUT=mesh.inc'
+    spec%most_lines = 0
+    allocate (spec%parameters, source=[ &
+              field('INPUT', kind_text, 'the file; its path is relative to the file that names '// &
+                    'it', is_required=.true.)])
+  end subroutine describe_include
 
   subroutine describe_node(spec)
     type(keyword), intent(out) :: spec

@@ -153,7 +153,7 @@ contains
     spec%name = 'PREPRINT'
     spec%family = 'output'
     spec%place = 'anywhere'
-    spec%meaning = 'Chooses what Abaqus prints; has no effect here.'
+    spec%meaning = 'Chooses what Abaqus prints.'
     spec%example = '*PREPRINT, ECHO=NO'
     spec%status = without_effect
     allocate (spec%parameters, source=[ &
