@@ -33,6 +33,7 @@ ROOMS = (
     "materials/at_a_point",
     "joints/law",
     "elements",
+    "guests",
     "joints/points",
     "interfaces/facets",
     "interfaces/mortar",

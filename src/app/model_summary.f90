@@ -164,22 +164,19 @@ contains
     if (.not. item%is_nodal) text = text//' with Gauss points'
   end function make_of
 
-  !> Couplings of different meshes without a law: exact ties, springs.
-  pure function ties_of(scene) result(text)
+  !> Guests without a law: exact ties, springs.
+  function ties_of(scene) result(text)
     type(problem), intent(in) :: scene
     character(:), allocatable :: text
     integer :: i
     text = ''
-    if (size(scene%ties) + size(scene%couplings) > 0) text = nl//'Ties and interfaces'
+    if (size(scene%ties) + size(scene%guests) > 0) text = nl//'Ties and interfaces'
     do i = 1, size(scene%ties)
       text = text//nl//row(scene%ties(i)%name, 'TIE, exact: '// &
                            as_text(size(scene%ties(i)%node))//' nodes follow')
     end do
-    do i = 1, size(scene%couplings)
-      associate (now => scene%couplings(i))
-        text = text//nl//row(now%name, now%kind//' of springs, '//as_text(size(now%node, 2))// &
-                             ' segments, STIFFNESS '//as_text(now%stiffness)//' Pa/m')
-      end associate
+    do i = 1, size(scene%guests)
+      text = text//nl//row(scene%guests(i)%item%name, scene%guests(i)%item%describe())
     end do
   end function ties_of
 

@@ -17,7 +17,7 @@ module assemble_elements
   use scatter_matrix, only: scatter_nodes
   implicit none
   private
-  public :: assemble_stiffness, assemble_mass, assemble_damping, add_nodal_mass
+  public :: assemble_stiffness, assemble_mass, assemble_damping
 
 contains
 
@@ -59,20 +59,6 @@ contains
                       (scene%materials%alpha + alpha)*scene%materials%density, matrix, values, &
                       error)
   end subroutine assemble_damping
-
-  !> Adds masses of nodes (3 x 3 blocks), as of water that moves with them.
-  subroutine add_nodal_mass(numbers, blocks, matrix, values)
-    type(numbering), intent(in) :: numbers
-    real(rk), intent(in) :: blocks(:, :, :) !< (3, 3, nodes), symmetric [kg]
-    type(pattern), intent(in) :: matrix
-    real(rk), intent(inout) :: values(:)
-    integer :: node
-    do node = 1, size(blocks, 3)
-      if (maxval(abs(blocks(:, :, node))) > 0.0_rk) then
-        call scatter_nodes(numbers, [node], blocks(:, :, node), matrix, values)
-      end if
-    end do
-  end subroutine add_nodal_mass
 
   !> Sum of stiffness*K_e + density*M_e (M_e of unit density).
   subroutine sum_elements(scene, numbers, stiffness, density, matrix, values, error)

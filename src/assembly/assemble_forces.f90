@@ -9,7 +9,7 @@ module assemble_forces
   use global_vectors, only: multiply
   implicit none
   private
-  public :: assemble_force, sum_added_mass, sum_base_acceleration, rigid_translation, inertia_force
+  public :: assemble_force, sum_base_acceleration, rigid_translation, inertia_force
 
 contains
 
@@ -29,20 +29,6 @@ contains
     call scene%loads(load)%item%add_force(scene%mesh, density, nodal)
     call numbers%reduce(nodal, force)
   end subroutine assemble_force
-
-  !> The mass that the loads of a step add to the nodes; not scaled by their factors in time, but a
-  !> load that was removed adds nothing.
-  subroutine sum_added_mass(scene, loads, blocks)
-    type(problem), intent(in) :: scene
-    type(step_load), intent(in) :: loads(:)
-    real(rk), allocatable, intent(out) :: blocks(:, :, :) !< (3, 3, nodes) [kg]
-    integer :: k
-    allocate (blocks(num_directions, num_directions, scene%mesh%num_nodes), source=0.0_rk)
-    do k = 1, size(loads)
-      if (abs(loads(k)%end_factor) <= 0.0_rk) cycle
-      call scene%loads(loads(k)%load)%item%add_added_mass(scene%mesh, blocks)
-    end do
-  end subroutine sum_added_mass
 
   !> Acceleration of the base, the sum over the loads of a step.
   subroutine sum_base_acceleration(scene, loads, factors, acceleration)

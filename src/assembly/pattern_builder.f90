@@ -5,12 +5,12 @@
 !> jump), which keeps this fast.
 module pattern_builder
   use dam_mesh, only: mesh
-  use joint_points, only: joint
+  use guest_list, only: list_guest_cells
+  use guest_type, only: guest_reference
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
   use row_tables, only: row_table, transpose_rows
   use sorted_lists, only: sorted_unique
-  use surface_coupling, only: coupling
   implicit none
   private
   public :: build_pattern, list_cells
@@ -19,27 +19,17 @@ module pattern_builder
 
 contains
 
-  !> The cells of a model: its solid elements, the points of its joints, the segments of springs.
-  subroutine list_cells(model, joints, couplings, cells)
+  !> The cells of a model: its solid elements, and what its guests couple.
+  subroutine list_cells(model, guests, cells)
     type(mesh), intent(in) :: model
-    type(joint), intent(in) :: joints(:)
-    type(coupling), intent(in) :: couplings(:)
+    type(guest_reference), intent(in) :: guests(:)
     type(row_table), intent(out) :: cells
-    integer :: e, j, p
+    integer :: e
     do e = 1, model%num_elements
       if (model%material_of_element(e) == 0) cycle
       call cells%append(pack(model%nodes(:, e), model%nodes(:, e) > 0))
     end do
-    do j = 1, size(joints)
-      do p = 1, joints(j)%num_points
-        call cells%append(joints(j)%node(joints(j)%first(p):joints(j)%first(p + 1) - 1))
-      end do
-    end do
-    do j = 1, size(couplings)
-      do p = 1, size(couplings(j)%node, 2)
-        call cells%append(couplings(j)%node(:, p))
-      end do
-    end do
+    call list_guest_cells(guests, cells)
     call cells%finish()
   end subroutine list_cells
 

@@ -6,7 +6,7 @@ module problem_definition
   use material_law, only: material
   use material_tests, only: material_test
   use joint_points, only: joint
-  use surface_coupling, only: coupling
+  use guest_type, only: guest_slot
   use surface_segments, only: named_cover
   use applied_load, only: load_slot
   use inelastic_blocks, only: inelastic_block
@@ -28,7 +28,7 @@ module problem_definition
     logical :: has_lumped_mass = .false.
     type(joint), allocatable :: joints(:)
     type(node_tie), allocatable :: ties(:) !< exact ones
-    type(coupling), allocatable :: couplings(:) !< springs between faces of different meshes
+    type(guest_slot), allocatable :: guests(:) !< that act in every step, besides joints
     type(named_cover), allocatable :: covers(:) !< how faces of different meshes cover each other
     type(inelastic_block), allocatable :: inelastic(:) !< solids whose law is not linear
     type(load_slot), allocatable :: loads(:)

@@ -2,11 +2,10 @@ set(sources
   assemble_elements.f90
   assemble_forces.f90
   constraint_elimination.f90
-  coupling_stiffness.f90
   damping_rayleigh.f90
   element_blocks.f90
+  guest_list.f90
   inelastic_blocks.f90
   pattern_builder.f90
   problem_definition.f90
-  scatter_matrix.f90
 )

@@ -11,6 +11,7 @@ module free_blocks
   use joint_capacity, only: best_forces, find_best_forces, point_limits
   use joint_law, only: joint_state, state_open
   use joint_rows, only: num_rows, row_of
+  use guest_list, only: supports_of_step
   use kinds, only: rk
   use node_dofs, only: zero_vectors
   use state_transfer, only: restrict
@@ -92,10 +93,12 @@ contains
     type(joint_state), intent(in) :: states(:)
     type(block_task), intent(inout) :: task
     real(rk), allocatable :: matrix(:, :), rows(:, :, :)
+    integer, allocatable :: node(:), direction(:)
     integer :: j, p, i, n, point
     n = 6*task%blocks%num_blocks
     allocate (matrix(n, n), source=0.0_rk)
-    call add_supports(task%blocks, scene%mesh%x, plan%fixities%node, plan%fixities%dof, matrix)
+    call supports_of_step(scene, plan, node, direction)
+    call add_supports(task%blocks, scene%mesh%x, node, direction, matrix)
     call null_space(matrix, task%free)
     allocate (task%rows(size(task%free, 2), num_rows(sum(scene%joints%num_points))))
     allocate (task%limits(sum(scene%joints%num_points)))

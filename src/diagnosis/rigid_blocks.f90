@@ -8,6 +8,7 @@ module rigid_blocks
   use joint_points, only: joint
   use kinds, only: rk
   use problem_definition, only: problem
+  use row_tables, only: row_table
   use small_matrix, only: cross_product
   implicit none
   private
@@ -54,6 +55,7 @@ contains
   subroutine unite_bonds(scene, parent)
     type(problem), intent(in) :: scene
     integer, intent(inout) :: parent(:)
+    type(row_table) :: cells
     integer :: i, p, k
     do i = 1, size(scene%ties)
       associate (tie => scene%ties(i))
@@ -64,14 +66,14 @@ contains
         end do
       end associate
     end do
-    do i = 1, size(scene%couplings)
-      associate (bond => scene%couplings(i))
-        do p = 1, size(bond%node, 2)
-          do k = 1, size(bond%node, 1)
-            call unite_nodes(bond%node(1, p), bond%node(k, p))
-          end do
-        end do
-      end associate
+    do i = 1, size(scene%guests)
+      call scene%guests(i)%item%add_cells(cells)
+    end do
+    call cells%finish()
+    do i = 1, cells%num_rows()
+      do k = cells%first(i) + 1, cells%first(i + 1) - 1
+        call unite_nodes(cells%item(cells%first(i)), cells%item(k))
+      end do
     end do
   contains
     !> Puts two nodes into one block.

@@ -74,7 +74,7 @@ contains
       scene%deck_file = path
       scene%heading = ''
       allocate (scene%surfaces(0), scene%amplitudes(0), scene%materials(0), scene%joints(0))
-      allocate (scene%ties(0), scene%couplings(0), scene%covers(0))
+      allocate (scene%ties(0), scene%guests(0), scene%covers(0))
       allocate (scene%loads(0), scene%initial_values(0), scene%tests(0))
       allocate (scene%steps(count([(model%cards(i)%keyword == 'STEP', i=1, size(model%cards))])))
     end associate

@@ -7,6 +7,7 @@ module verify_blocks
   use block_motion, only: block_name, freedom_text
   use diagnostics, only: diagnostic_list
   use joint_points, only: joint
+  use guest_list, only: supports_of_step
   use kinds, only: rk
   use model_draft, only: draft
   use rigid_blocks, only: add_supports, block_set, find_blocks, jump_rows
@@ -28,6 +29,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(block_set) :: blocks
     real(rk), allocatable :: by_joints(:, :), matrix(:, :), ways(:, :)
+    integer, allocatable :: node(:), direction(:)
     integer :: i, n
     if (size(model%scene%joints) == 0) return
     call find_blocks(model%scene, blocks)
@@ -41,8 +43,8 @@ contains
       associate (step => model%scene%steps(i))
         if (.not. step%procedure%is_static()) cycle
         matrix = by_joints
-        call add_supports(blocks, model%scene%mesh%x, step%fixities%node, step%fixities%dof, &
-                          matrix)
+        call supports_of_step(model%scene, step, node, direction)
+        call add_supports(blocks, model%scene%mesh%x, node, direction, matrix)
         call null_space(matrix, ways)
         if (size(ways, 2) == 0) cycle
         call tell(model, i, blocks, ways, faults)

@@ -4,6 +4,7 @@ module verify_model
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use element_hex8, only: hex8_gradients
+  use guest_list, only: supports_of_step
   use held_together, only: list_groups
   use kinds, only: rk
   use load_gravity, only: gravity_load
@@ -157,10 +158,10 @@ contains
 
   !> In a static or frequency step every body is held against rigid motion.
   subroutine verify_supports(model, faults)
-    type(draft), intent(in) :: model
+    type(draft), intent(in), target :: model
     type(diagnostic_list), intent(inout) :: faults
     type(row_table) :: groups
-    integer, allocatable :: body(:), example(:)
+    integer, allocatable :: body(:), example(:), node(:), direction(:)
     integer :: i, b
     integer :: num_before
     call list_groups(model%scene, groups)
@@ -169,13 +170,13 @@ contains
     do i = 1, size(model%scene%steps)
       associate (step => model%scene%steps(i), place => model%cards(model%procedure_card(i)))
         if (step%procedure%has_inertia) cycle
-        if (size(step%fixities) == 0) then
+        call supports_of_step(model%scene, step, node, direction)
+        if (size(node) == 0) then
           call place%fault(faults, 'the model has no supports in this step', '*BOUNDARY')
         else
           do b = 1, size(example)
-            call verify_body(model, i, pack(step%fixities%node, body(step%fixities%node) == b), &
-                             pack(step%fixities%dof, body(step%fixities%node) == b), &
-                             example(b), faults)
+            call verify_body(model, i, pack(node, body(node) == b), &
+                             pack(direction, body(node) == b), example(b), faults)
           end do
         end if
       end associate

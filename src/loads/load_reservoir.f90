@@ -9,7 +9,11 @@
 module load_reservoir
   use applied_load, only: load
   use dam_mesh, only: mesh, surface
+  use dof_numbering, only: numbering
+  use guest_type, only: mass_matrix
   use kinds, only: rk
+  use matrix_pattern, only: pattern
+  use scatter_matrix, only: scatter_blocks
   use mesh_faces, only: face_nodes
   use wetted_facet, only: water_body, wet_facet, wet_the_facet
   implicit none
@@ -28,6 +32,8 @@ module load_reservoir
     logical :: is_diagonal = .true. !< m n_k**2 on each axis, else m n n^T
   contains
     procedure :: add_force
+    procedure :: has_matrix
+    procedure :: add_matrix
     procedure :: add_added_mass
   end type reservoir_load
 
@@ -51,11 +57,31 @@ contains
     end do
   end subroutine add_force
 
+  pure logical function has_matrix(self, kind)
+    class(reservoir_load), intent(in) :: self
+    integer, intent(in) :: kind
+    has_matrix = self%has_added_mass .and. kind == mass_matrix
+  end function has_matrix
+
+  !> The mass of the water that moves with the nodes. The nodes are not coupled.
+  subroutine add_matrix(self, kind, model, numbers, matrix, values)
+    class(reservoir_load), intent(in) :: self
+    integer, intent(in) :: kind
+    type(mesh), intent(in) :: model
+    type(numbering), intent(in) :: numbers
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(inout) :: values(:)
+    real(rk), allocatable :: blocks(:, :, :)
+    allocate (blocks(3, 3, model%num_nodes), source=0.0_rk)
+    call self%add_added_mass(model, blocks)
+    call scatter_blocks(numbers, blocks, matrix, values)
+  end subroutine add_matrix
+
   !> Blocks m n n^T or their diagonal at the wetted nodes.
   subroutine add_added_mass(self, model, blocks)
     class(reservoir_load), intent(in) :: self
     type(mesh), intent(in) :: model
-    real(rk), intent(inout) :: blocks(:, :, :)
+    real(rk), intent(inout) :: blocks(:, :, :) !< (3, 3, nodes) [kg]
     real(rk), allocatable :: normal(:, :), mass(:)
     real(rk) :: n(3)
     integer :: node, i, j

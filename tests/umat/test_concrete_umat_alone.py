@@ -151,7 +151,7 @@ FAULTS = [
     (with_constant(22, 0.0), "CONCRETE TENSION STIFFENING, row 2: .*more than"),
     (with_constant(37, 1.0), "CONCRETE TENSION DAMAGE, row 2: .*a damage below 1"),
     (with_constant(37, 0.99), "CONCRETE TENSION DAMAGE, row"),
-    (with_constant(51, 1e6), "CONCRETE COMPRESSION HARDENING, row 1: .*beta of Eq 23"),
+    (with_constant(51, 1e6), "CONCRETE COMPRESSION HARDENING, row 1: .*beta of Eq. 23"),
     (with_constant(12, 1.0), "CONCRETE TENSION DAMAGE, row 0: .*expected TYPE=STRAIN"),
 ]  # fmt: skip
 

@@ -22,7 +22,7 @@ contains
     call make_material(scene)
     call make_mesh(across, along, over, num_blocks, scene)
     allocate (scene%joints(num_blocks - 1), scene%loads(0))
-    allocate (scene%ties(0), scene%couplings(0))
+    allocate (scene%ties(0), scene%guests(0))
     do b = 1, num_blocks - 1
       call make_joint(across, along, over, b, num_blocks, scene, scene%joints(b))
     end do

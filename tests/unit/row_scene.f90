@@ -51,7 +51,7 @@ contains
                                               x(i), width, height, x(i), 0.0_rk, height], [3, 4])
     end do
     allocate (scene%materials(n), scene%joints(0), scene%loads(0), scene%amplitudes(0), &
-              scene%ties(0), scene%couplings(0), &
+              scene%ties(0), scene%guests(0), &
               scene%initial_values(0), scene%steps(0))
     do i = 1, n
       scene%mesh%nodes(:, i) = [4*i - 3, 4*i - 2, 4*i - 1, 4*i, 4*i + 1, 4*i + 2, 4*i + 3, 4*i + 4]

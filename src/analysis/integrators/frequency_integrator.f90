@@ -11,7 +11,7 @@ module frequency_integrator
   use solver_catalogue, only: make_solver, symmetric_solver
   use step_equilibrium, only: prepare_equilibrium
   use step_loads, only: step_time
-  use step_system, only: build_structure, add_couplings, build_inertia
+  use step_system, only: build_structure, build_inertia
   use joint_forces, only: reference_stiffness
   use joint_iteration, only: closed_tangent
   use eigen_modes, only: find_modes
@@ -38,16 +38,15 @@ contains
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: reference(:, :)
-    call results%costs%start('assemble', 'structure', 'solver')
-    call build_structure(model, plan, self%system, error)
-    if (.not. allocated(error)) call build_inertia(model, plan, self%system, error)
+    call build_structure(model, plan, self%system, results%costs, error)
+    if (.not. allocated(error)) then
+      call build_inertia(model, plan, self%system, results%costs, error)
+    end if
     if (allocated(error)) return
     associate (system => self%system)
       call reference_stiffness(model%joints, system%operator, reference)
       call system%operator%add_stiffness(closed_tangent(reference), system%matrix, system%stiffness)
     end associate
-    call results%costs%stop()
-    call add_couplings(model, self%system, results%costs)
     now%num_unknowns = self%system%matrix%num_free
   end subroutine open_step
 

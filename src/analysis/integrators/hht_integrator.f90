@@ -13,8 +13,8 @@ module hht_integrator
   use joint_water, only: update_uplift
   use equilibrium, only: balance_outcome
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium
-  use step_system, only: dam_system, build_structure, add_couplings, build_inertia, &
-                         build_damping, build_loads
+  use step_system, only: dam_system, build_structure, build_inertia, build_damping, &
+                         build_loads
   use step_loads, only: step_time, external_force, prescribed_values
   use initial_acceleration, only: find_acceleration
   use hht_scheme, only: hht, make_scheme
@@ -58,16 +58,15 @@ contains
     type(state), intent(inout) :: now
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
-    call results%costs%start('assemble', 'structure', 'solver')
-    call build_structure(model, plan, self%system, error)
-    if (.not. allocated(error)) call build_inertia(model, plan, self%system, error)
-    if (.not. allocated(error)) call build_damping(model, plan, self%system, error)
-    if (allocated(error)) return
+    associate (costs => results%costs)
+      call build_structure(model, plan, self%system, costs, error)
+      if (.not. allocated(error)) call build_inertia(model, plan, self%system, costs, error)
+      if (.not. allocated(error)) call build_damping(model, plan, self%system, costs, error)
+      if (allocated(error)) return
+    end associate
     call results%costs%start('assemble', 'loads', 'load')
     call build_loads(model, plan, now%u, self%system)
     call results%costs%stop()
-    call results%costs%stop()
-    call add_couplings(model, self%system, results%costs)
     now%num_unknowns = self%system%matrix%num_free
     call start_motion(self%system%numbers, model%joints, now, has_inertia=.true.)
     call self%solids%open(model, self%system, choose_tangents(model, plan), now)

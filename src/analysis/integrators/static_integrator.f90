@@ -13,7 +13,7 @@ module static_integrator
   use increment_listener, only: listener
   use equilibrium, only: balance_outcome
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium
-  use step_system, only: build_structure, add_couplings, build_loads
+  use step_system, only: build_structure, build_loads
   use step_loads, only: step_time, external_force
   use tangent_choice, only: tangent, choose_tangents
   use energy_account, only: open_account, add_static_work
@@ -43,14 +43,11 @@ contains
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
     type(tangent), allocatable :: choices(:)
-    call results%costs%start('assemble', 'structure', 'solver')
-    call build_structure(model, plan, self%system, error)
+    call build_structure(model, plan, self%system, results%costs, error)
     if (allocated(error)) return
     call results%costs%start('assemble', 'loads', 'load')
     call build_loads(model, plan, now%u, self%system)
     call results%costs%stop()
-    call results%costs%stop()
-    call add_couplings(model, self%system, results%costs)
     call results%costs%start('analyse', 'structure', 'solver')
     choices = choose_tangents(model, plan)
     call make_equilibrium(plan, self%system, all(choices%is_symmetric()), self%solids%solver, error)

@@ -10,16 +10,16 @@ module step_system
   use global_vectors, only: diagonal
   use matrix_pattern, only: pattern, drop_zeros
   use pattern_builder, only: list_cells, build_pattern
-  use assemble_elements, only: assemble_stiffness, assemble_mass, assemble_damping, add_nodal_mass
-  use assemble_forces, only: sum_added_mass
-  use coupling_stiffness, only: add_coupling_stiffness
+  use assemble_elements, only: assemble_stiffness, assemble_mass, assemble_damping
   use damping_rayleigh, only: rayleigh_coefficients
+  use guest_list, only: add_guest_matrices, any_has_matrix, guests_of_step
+  use guest_type, only: guest_reference, damping_matrix, mass_matrix, stiffness_matrix
   use joint_operator, only: jump_operator, build_jump_operator
   use step_loads, only: load_group, support, gather_loads, gather_supports
   use run_ledger, only: ledger
   implicit none
   private
-  public :: dam_system, build_structure, add_couplings, build_inertia, build_damping, build_loads
+  public :: dam_system, build_structure, build_inertia, build_damping, build_loads
 
   type :: dam_system
     type(numbering) :: numbers
@@ -37,75 +37,83 @@ module step_system
 
 contains
 
-  !> Numbering, pattern, stiffness of the solids and joints.
-  subroutine build_structure(scene, plan, system, error)
-    type(problem), intent(in) :: scene
+  !> Numbering, pattern, stiffness of solids and guests, joints.
+  subroutine build_structure(model, plan, system, costs, error)
+    type(problem), intent(in), target :: model
     type(step), intent(in) :: plan
     type(dam_system), intent(out) :: system
+    type(ledger), intent(in) :: costs
     type(error_type), allocatable, intent(out) :: error
+    type(guest_reference), allocatable :: guests(:)
     type(row_table) :: cells
-    call number_step(scene%mesh, scene%joints, scene%ties, plan%fixities, system%numbers, error)
+    call costs%start('assemble', 'structure', 'solver')
+    call guests_of_step(model, plan, guests)
+    call number_step(model%mesh, model%joints, model%ties, plan%fixities, system%numbers, error)
     if (allocated(error)) return
-    call list_cells(scene%mesh, scene%joints, scene%couplings, cells)
+    call list_cells(model%mesh, guests, cells)
     call build_pattern(system%numbers, cells, system%matrix)
-    call build_jump_operator(system%numbers, scene%joints, system%operator)
-    call assemble_stiffness(scene, system%numbers, system%matrix, system%stiffness, error)
-    allocate (system%mass(0), system%damping(0))
+    call build_jump_operator(system%numbers, model%joints, system%operator)
+    call assemble_stiffness(model, system%numbers, system%matrix, system%stiffness, error)
+    if (allocated(error)) return
+    call add_guest_matrices(guests, stiffness_matrix, model, system%numbers, system%matrix, &
+                            system%stiffness, costs)
+    allocate (system%mass(0), system%damping(0), system%diagonal(system%matrix%num_total))
+    call diagonal(system%matrix, system%stiffness, system%diagonal)
+    call costs%stop('assemble structure')
   end subroutine build_structure
 
-  !> Adds the springs between faces of different meshes to the stiffness.
-  subroutine add_couplings(scene, system, costs)
-    type(problem), intent(in) :: scene
-    type(dam_system), intent(inout) :: system
-    type(ledger), intent(inout) :: costs !< gets a part for each of them
-    integer :: i
-    do i = 1, size(scene%couplings)
-      call costs%start('assemble', scene%couplings(i)%name, 'coupling')
-      call add_coupling_stiffness(system%numbers, scene%couplings(i), system%matrix, &
-                                  system%stiffness)
-      call costs%stop()
-    end do
-    allocate (system%diagonal(system%matrix%num_total))
-    call diagonal(system%matrix, system%stiffness, system%diagonal)
-  end subroutine add_couplings
-
-  !> Mass of the solids and of the water that moves with them.
-  subroutine build_inertia(scene, plan, system, error)
-    type(problem), intent(in) :: scene
+  !> Mass of the solids and of what moves with them.
+  subroutine build_inertia(model, plan, system, costs, error)
+    type(problem), intent(in), target :: model
     type(step), intent(in) :: plan
     type(dam_system), intent(inout) :: system
+    type(ledger), intent(in) :: costs
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: blocks(:, :, :)
-    call assemble_mass(scene, system%numbers, system%matrix, system%mass, error)
+    type(guest_reference), allocatable :: guests(:)
+    call costs%start('assemble', 'mass', 'solver')
+    call guests_of_step(model, plan, guests)
+    call assemble_mass(model, system%numbers, system%matrix, system%mass, error)
     if (allocated(error)) return
-    call sum_added_mass(scene, plan%loads, blocks)
-    call add_nodal_mass(system%numbers, blocks, system%matrix, system%mass)
+    call add_guest_matrices(guests, mass_matrix, model, system%numbers, system%matrix, &
+                            system%mass, costs)
     call drop_zeros(system%matrix, system%mass, system%mass_pattern, system%mass_entries)
+    call costs%stop('assemble mass')
   end subroutine build_inertia
 
-  !> Rayleigh damping of materials and step, where there is any.
-  subroutine build_damping(scene, plan, system, error)
-    type(problem), intent(in) :: scene
+  !> Rayleigh damping of materials and step, and damping that guests bring, where there is any.
+  subroutine build_damping(model, plan, system, costs, error)
+    type(problem), intent(in), target :: model
     type(step), intent(in) :: plan
     type(dam_system), intent(inout) :: system
+    type(ledger), intent(in) :: costs
     type(error_type), allocatable, intent(out) :: error
+    type(guest_reference), allocatable :: guests(:)
     real(rk) :: alpha, beta
+    logical :: is_rayleigh
     alpha = 0.0_rk
     beta = 0.0_rk
     if (plan%damping_ratio > 0.0_rk) then
       call rayleigh_coefficients(plan%damping_ratio, plan%damping_f1, plan%damping_f2, alpha, beta)
     end if
-    if (alpha + beta + sum(abs(scene%materials%alpha) + abs(scene%materials%beta)) <= 0.0_rk) return
-    call assemble_damping(scene, system%numbers, alpha, beta, system%matrix, system%damping, error)
+    call guests_of_step(model, plan, guests)
+    is_rayleigh = alpha + beta + sum(abs(model%materials%alpha) + abs(model%materials%beta)) &
+                  > 0.0_rk
+    if (.not. (is_rayleigh .or. any_has_matrix(guests, damping_matrix))) return
+    call costs%start('assemble', 'damping', 'solver')
+    call assemble_damping(model, system%numbers, alpha, beta, system%matrix, system%damping, error)
+    if (allocated(error)) return
+    call add_guest_matrices(guests, damping_matrix, model, system%numbers, system%matrix, &
+                            system%damping, costs)
+    call costs%stop('assemble damping')
   end subroutine build_damping
 
   !> Load patterns and supports; after the mass, which base motion needs.
-  subroutine build_loads(scene, plan, u, system)
-    type(problem), intent(in) :: scene
+  subroutine build_loads(model, plan, u, system)
+    type(problem), intent(in) :: model
     type(step), intent(in) :: plan
     real(rk), intent(in) :: u(:, :) !< (3, nodes) at the start of the step [m]
     type(dam_system), intent(inout) :: system
-    call gather_loads(scene, plan, system%numbers, system%matrix, system%mass, system%groups)
+    call gather_loads(model, plan, system%numbers, system%matrix, system%mass, system%groups)
     call gather_supports(plan, system%numbers, u, system%supports)
   end subroutine build_loads
 end module step_system

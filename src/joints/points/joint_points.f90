@@ -9,8 +9,10 @@
 !> those beside it that follow others of the face by a tie.
 module joint_points
   use dam_mesh, only: mesh
+  use guest_type, only: guest
   use kinds, only: rk
   use joint_law, only: traction_law
+  use row_tables, only: row_table
   use small_matrix, only: cross_product
   implicit none
   private
@@ -34,8 +36,7 @@ module joint_points
     real(rk), allocatable :: weight(:) !< they add up to 1 at each corner
   end type joint_cells
 
-  type :: joint
-    character(:), allocatable :: name !< upper case
+  type, extends(guest) :: joint
     class(traction_law), allocatable :: law
     logical :: is_nodal = .true. !< each point belongs to a slave node, else to a place between them
     logical :: is_matching = .true. !< made of JOINT8 elements, else of two surfaces
@@ -50,9 +51,21 @@ module joint_points
     real(rk), allocatable :: clearance(:) !< (points) as meshed, beside the law's gap [m]
     real(rk), allocatable :: reach(:) !< (points) the slip that small sliding allows [m]
     type(joint_cells) :: cells
+  contains
+    procedure :: add_cells
   end type joint
 
 contains
+
+  !> The nodes of each point.
+  subroutine add_cells(self, cells)
+    class(joint), intent(in) :: self
+    type(row_table), intent(inout) :: cells
+    integer :: p
+    do p = 1, self%num_points
+      call cells%append(self%node(self%first(p):self%first(p + 1) - 1))
+    end do
+  end subroutine add_cells
 
   !> Gives a joint points that see as many nodes on the slave as on the master face, with the same
   !> weights: those of two faces that coincide.

@@ -7,6 +7,7 @@ module finish_interfaces
   use mesh_faces, only: face_vector
   use model_draft, only: draft
   use small_matrix, only: cross_product
+  use guest_type, only: guest_slot
   use surface_coupling, only: build_coupling, coupling
   use surface_facets, only: list_interface_facets, list_surface_facets
   use surface_segments, only: facet_set, surface_cover
@@ -148,27 +149,27 @@ contains
     if (size(facets%element) == 0) young = 0.0_rk
   end function softest
 
-  !> Adds springs to the problem.
+  !> Adds springs to the problem, without a copy of their tables.
   subroutine append_coupling(model, new)
     type(draft), intent(inout) :: model
     type(coupling), intent(inout) :: new !< moved
-    type(coupling), allocatable :: longer(:)
+    type(guest_slot), allocatable :: longer(:)
+    type(coupling), allocatable :: item
     integer :: i
-    allocate (longer(size(model%scene%couplings) + 1))
-    do i = 1, size(model%scene%couplings)
-      call move_coupling(model%scene%couplings(i), longer(i))
-    end do
-    call move_coupling(new, longer(size(longer)))
-    call move_alloc(longer, model%scene%couplings)
+    allocate (item)
+    item%keyword = new%keyword
+    item%name = new%name
+    item%kind = new%kind
+    item%stiffness = new%stiffness
+    call move_alloc(new%node, item%node)
+    call move_alloc(new%product, item%product)
+    associate (num => size(model%scene%guests))
+      allocate (longer(num + 1))
+      do i = 1, num
+        call move_alloc(model%scene%guests(i)%item, longer(i)%item)
+      end do
+      call move_alloc(item, longer(num + 1)%item)
+    end associate
+    call move_alloc(longer, model%scene%guests)
   end subroutine append_coupling
-
-  !> Moves springs without copying their tables.
-  subroutine move_coupling(from, to)
-    type(coupling), intent(inout) :: from, to
-    to%stiffness = from%stiffness
-    call move_alloc(from%name, to%name)
-    call move_alloc(from%kind, to%kind)
-    call move_alloc(from%node, to%node)
-    call move_alloc(from%product, to%product)
-  end subroutine move_coupling
 end module finish_interfaces

@@ -125,6 +125,7 @@ contains
         end associate
       end if
       new%name = request%name
+      new%kind = 'joint'
       call make_joint_law(law, new%law)
       if (.not. allocated(new%law)) return
       call build_joint_points(model%scene%mesh, request%elements, request%is_nodal, new, error)
@@ -157,6 +158,7 @@ contains
                           [slave%node, master%node], model, law, faults)
       end if
       new%name = request%name
+      new%kind = 'joint'
       call make_joint_law(law, new%law)
       if (.not. allocated(new%law)) return
       call find_segments(mesh%x, slave, master, segments, cover, &

@@ -4,8 +4,10 @@ module covered_faces
   use kinds, only: rk
   use dam_mesh, only: mesh, surface
   use mesh_faces, only: face_nodes, face_vector, mark_covered
+  use guest_type, only: guest
   use joint_points, only: joint
   use problem_definition, only: problem
+  use row_tables, only: row_table
   implicit none
   private
   public :: mark_joined
@@ -30,10 +32,8 @@ contains
     do i = 1, size(scene%ties)
       call mark_between(scene%mesh, skin, [scene%ties(i)%node, scene%ties(i)%master], is_covered)
     end do
-    do i = 1, size(scene%couplings)
-      associate (nodes => scene%couplings(i)%node)
-        call mark_between(scene%mesh, skin, reshape(nodes, [size(nodes)]), is_covered)
-      end associate
+    do i = 1, size(scene%guests)
+      call mark_between(scene%mesh, skin, coupled_nodes(scene%guests(i)%item), is_covered)
     end do
   end subroutine mark_joined
 
@@ -70,6 +70,20 @@ contains
       end do
     end do
   end subroutine add_normals
+
+  !> The nodes that a guest couples with others.
+  function coupled_nodes(item) result(nodes)
+    class(guest), intent(in) :: item
+    integer, allocatable :: nodes(:)
+    type(row_table) :: cells
+    integer :: i
+    call item%add_cells(cells)
+    call cells%finish()
+    allocate (nodes(0))
+    if (any(cells%first(2:) - cells%first(:cells%num_rows()) > 1)) then
+      nodes = [(cells%row(i), i=1, cells%num_rows())]
+    end if
+  end function coupled_nodes
 
   !> Faces whose nodes are all among those of a tie or an interface.
   subroutine mark_between(model, skin, nodes, is_covered)

@@ -7,6 +7,8 @@ module summary_json
   use diagnostic_text, only: headline
   use run_ledger, only: ledger, ledger_part
   use timer, only: peak_memory
+  use guest_list, only: guests_of_model
+  use guest_type, only: guest_reference
   use problem_definition, only: problem
   use run_records, only: run_record
   use run_summaries, only: run_summary, step_summary
@@ -87,23 +89,22 @@ contains
     call json%close_object()
   end subroutine put_model
 
-  !> The guests of the model: loads, joints, inelastic materials, damping.
+  !> The guests of the model: loads, joints, springs, ties, inelastic materials, damping.
   subroutine put_effects(json, scene)
     type(json_text), intent(inout) :: json
-    type(problem), intent(in) :: scene
+    type(problem), intent(in), target :: scene
+    type(guest_reference), allocatable :: guests(:)
     integer :: i
     call json%open_array('effects')
     do i = 1, size(scene%loads)
       call put_effect(scene%loads(i)%item%name, scene%loads(i)%item%kind)
     end do
-    do i = 1, size(scene%joints)
-      call put_effect(scene%joints(i)%name, 'joint')
+    call guests_of_model(scene, guests)
+    do i = 1, size(guests)
+      call put_effect(guests(i)%item%name, guests(i)%item%kind)
     end do
     do i = 1, size(scene%ties)
       call put_effect(scene%ties(i)%name, 'tie')
-    end do
-    do i = 1, size(scene%couplings)
-      call put_effect(scene%couplings(i)%name, 'coupling')
     end do
     do i = 1, size(scene%materials)
       if (is_inelastic(scene, i)) call put_effect(scene%materials(i)%name, 'inelastic')

@@ -11,14 +11,17 @@ program test_assemble_elements
   use dof_numbering, only: numbering
   use constraint_elimination, only: number_step
   use matrix_pattern, only: pattern, multiply
+  use guest_list, only: guests_of_model
+  use guest_type, only: guest_reference
   use pattern_builder, only: list_cells, build_pattern
-  use assemble_elements, only: assemble_stiffness, assemble_mass, assemble_damping, add_nodal_mass
+  use assemble_elements, only: assemble_stiffness, assemble_mass, assemble_damping
+  use scatter_matrix, only: scatter_blocks
   use assemble_forces, only: rigid_translation, inertia_force
   use damping_rayleigh, only: rayleigh_coefficients
   use arch_scene, only: make_arch
   implicit none
   type(test_log) :: log
-  type(problem) :: scene
+  type(problem), target :: scene
   type(numbering) :: numbers
   type(pattern) :: matrix
   real(rk), allocatable :: stiffness(:), mass(:)
@@ -36,13 +39,15 @@ contains
 
   subroutine prepare()
     type(step_fixity), allocatable :: fixities(:)
+    type(guest_reference), allocatable :: guests(:)
     type(row_table) :: cells
     type(error_type), allocatable :: error
     call make_arch(2, 3, 4, 3, scene, fixities)
     call number_step(scene%mesh, scene%joints, scene%ties, fixities, numbers, error)
     call check(log, allocated(error) .eqv. .false., 'numbering')
     call check(log, numbers%num_jumps == 2*3*12, 'a jump for every pair')
-    call list_cells(scene%mesh, scene%joints, scene%couplings, cells)
+    call guests_of_model(scene, guests)
+    call list_cells(scene%mesh, guests, cells)
     call build_pattern(numbers, cells, matrix)
   end subroutine prepare
 
@@ -95,7 +100,7 @@ contains
     real(rk), allocatable :: values(:), q(:), y(:)
     call make_arch(2, 3, 4, 3, apart, fixities)
     call number_step(apart%mesh, apart%joints(:0), apart%ties, fixities(:0), own, error)
-    call list_cells(apart%mesh, apart%joints(:0), apart%couplings, cells)
+    call list_cells(apart%mesh, [guest_reference ::], cells)
     call build_pattern(own, cells, own_matrix)
     call assemble_stiffness(apart, own, own_matrix, values, error)
     allocate (q(own%num_total), y(own%num_total))
@@ -123,7 +128,7 @@ contains
     blocks = 0.0_rk
     blocks(2, 2, 7) = 5.0e6_rk
     blocks(2, 2, 100) = 3.0e6_rk
-    call add_nodal_mass(numbers, blocks, matrix, lumped)
+    call scatter_blocks(numbers, blocks, matrix, lumped)
     call inertia_force(numbers, matrix, lumped, 2, force)
     call check_close(log, -dot_product(r, force), total(2) + 8.0e6_rk, 1.0e-9_rk*total(1), &
                      'added mass counts')

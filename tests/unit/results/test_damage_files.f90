@@ -75,7 +75,7 @@ contains
     law%num_state = 8
     law%is_nonlinear = .true.
     allocate (scene%materials(2), scene%joints(0), scene%loads(0), scene%amplitudes(0), &
-              scene%ties(0), scene%couplings(0), &
+              scene%ties(0), scene%guests(0), &
               scene%initial_values(0), scene%node_sets(0))
     scene%materials(1)%name = 'CONCRETE'
     scene%materials(1)%density = 2400.0_rk

@@ -92,7 +92,7 @@ contains
   subroutine make_joint(scene)
     type(problem), intent(inout) :: scene
     integer :: p
-    allocate (scene%joints(1), scene%ties(0), scene%couplings(0))
+    allocate (scene%joints(1), scene%ties(0), scene%guests(0))
     associate (item => scene%joints(1))
       item%name = 'MIDDLE'
       allocate (item%law, source=contraction_law(name='LAW', gap=1.0e-4_rk))

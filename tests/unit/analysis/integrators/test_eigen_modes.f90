@@ -10,14 +10,17 @@ program test_eigen_modes
   use dof_numbering, only: numbering
   use constraint_elimination, only: number_step
   use matrix_pattern, only: pattern, position_of
+  use guest_list, only: guests_of_model
+  use guest_type, only: guest_reference
   use pattern_builder, only: list_cells, build_pattern
-  use assemble_elements, only: assemble_stiffness, assemble_mass, add_nodal_mass
+  use assemble_elements, only: assemble_stiffness, assemble_mass
+  use scatter_matrix, only: scatter_blocks
   use solver_cholmod, only: cholmod_solver
   use eigen_modes, only: find_modes
   use arch_scene, only: make_arch
   implicit none
   type(test_log) :: log
-  type(problem) :: scene
+  type(problem), target :: scene
   type(numbering) :: numbers
   type(pattern) :: matrix
   type(cholmod_solver) :: solver
@@ -34,12 +37,14 @@ contains
   !> The joints are held by springs of 1e11 N/m on each jump.
   subroutine prepare()
     type(step_fixity), allocatable :: fixities(:)
+    type(guest_reference), allocatable :: guests(:)
     type(row_table) :: cells
     type(error_type), allocatable :: error
     integer :: j, k
     call make_arch(1, 3, 6, 2, scene, fixities)
     call number_step(scene%mesh, scene%joints, scene%ties, fixities, numbers, error)
-    call list_cells(scene%mesh, scene%joints, scene%couplings, cells)
+    call guests_of_model(scene, guests)
+    call list_cells(scene%mesh, guests, cells)
     call build_pattern(numbers, cells, matrix)
     call assemble_stiffness(scene, numbers, matrix, stiffness, error)
     call assemble_mass(scene, numbers, matrix, mass, error)
@@ -89,7 +94,7 @@ contains
     allocate (blocks(3, 3, node), unit(numbers%num_free, 1))
     blocks = 0.0_rk
     blocks(2, 2, 30) = 1.0e6_rk
-    call add_nodal_mass(numbers, blocks, matrix, mass)
+    call scatter_blocks(numbers, blocks, matrix, mass)
     call find_modes(matrix, numbers, stiffness, mass, solver, 1, modes, error)
     call check(log, allocated(error) .eqv. .false., 'a single mass')
     if (allocated(error)) return

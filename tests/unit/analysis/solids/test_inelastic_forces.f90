@@ -7,6 +7,8 @@ program test_inelastic_forces
   use dof_numbering, only: numbering
   use constraint_elimination, only: number_step
   use matrix_pattern, only: pattern, full_pattern, multiply
+  use guest_list, only: guests_of_model
+  use guest_type, only: guest_reference
   use pattern_builder, only: list_cells, build_pattern
   use material_law, only: start_points
   use material_elastic, only: elastic_law
@@ -23,7 +25,7 @@ program test_inelastic_forces
   implicit none
 
   type(test_log) :: log
-  type(problem) :: scene
+  type(problem), target :: scene
   type(numbering) :: numbers
   type(pattern) :: matrix, full
   type(point_state), allocatable :: old(:), new(:)
@@ -45,6 +47,7 @@ contains
 
   !> A crooked row of 40 boxes of one soft material, three blocks.
   subroutine make_scene()
+    type(guest_reference), allocatable :: guests(:)
     type(row_table) :: cells
     type(error_type), allocatable :: error
     integer :: i
@@ -56,7 +59,8 @@ contains
     call put_law(damage_law(elastic=elastic_law(young=3.0e10_rk, poisson=0.2_rk)), [1], scene)
     call number_step(scene%mesh, scene%joints, scene%ties, [step_fixity(node=1, dof=1)], numbers, &
                      error)
-    call list_cells(scene%mesh, scene%joints, scene%couplings, cells)
+    call guests_of_model(scene, guests)
+    call list_cells(scene%mesh, guests, cells)
     call build_pattern(numbers, cells, matrix)
     call full_pattern(matrix, full)
     allocate (old(size(scene%inelastic)))

@@ -18,6 +18,7 @@ program test_solid_iteration
   use solid_iteration, only: solid_solver, increment_task
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium, add_moving_supports
   use step_loads, only: step_time, prescribed_values
+  use run_ledger, only: ledger
   use step_system, only: dam_system, build_structure, build_loads
   use tangent_choice, only: choose_tangents
   use testing, only: test_log, check, check_close
@@ -310,9 +311,10 @@ contains
     type(solid_solver) :: solids
     type(increment_task) :: task
     type(state), allocatable :: now, after
+    type(ledger) :: costs
     type(error_type), allocatable :: error
     call start_analysis(scene, now, error)
-    call build_structure(scene, scene%steps(1), system, error)
+    call build_structure(scene, scene%steps(1), system, costs, error)
     call build_loads(scene, scene%steps(1), now%u, system)
     call make_equilibrium(scene%steps(1), system, .false., solids%solver, error)
     call prepare_equilibrium(scene, system, system%stiffness, 1.0_rk, solids%solver, error)

@@ -21,7 +21,7 @@ program test_surface_coupling
   u = 2.0_rk + 3.0_rk*x(1, :) - x(2, :)
   call turn(rotation_about([1.0_rk, 0.4_rk, -0.2_rk], 0.8_rk), [2.0_rk, 0.0_rk, 1.0_rk], x)
   call build_coupling(x, slave, master, 5.0_rk, 'I', 'INTERFACE', springs, cover)
-  call check(log, springs%name == 'I' .and. springs%kind == 'INTERFACE', 'its names')
+  call check(log, springs%name == 'I' .and. springs%keyword == 'INTERFACE', 'its names')
   call check_close(log, springs%stiffness, 5.0_rk, 0.0_rk, 'its stiffness')
   call check_close(log, energy(u), 0.0_rk, 1.0e-13_rk, 'one linear field on both faces: no force')
   u(n + 1:) = u(n + 1:) - 2.0_rk

@@ -47,7 +47,7 @@ contains
     scene%mesh%element_type = ['JOINT8  ', 'JOINT8  ']
     scene%mesh%node_id = [(100 + n, n=1, 12)]
     scene%mesh%element_id = [1, 2]
-    allocate (scene%joints(1), scene%ties(0), scene%couplings(0))
+    allocate (scene%joints(1), scene%ties(0), scene%guests(0))
     allocate (scene%joints(1)%law, source=contraction_law(name='LAW', gap=0.5_rk))
     call build_joint_points(scene%mesh, [1, 2], is_nodal, scene%joints(1), error)
     if (allocated(error)) error stop 'make_kink'
@@ -169,7 +169,7 @@ contains
     scene%mesh%element_type = ['C3D8', 'C3D8', 'C3D8', 'C3D8', 'C3D8']
     scene%mesh%node_id = [(i, i=1, 28)]
     scene%mesh%element_id = [(e, e=1, 5)]
-    allocate (scene%ties(0), scene%couplings(0), scene%joints(1))
+    allocate (scene%ties(0), scene%guests(0), scene%joints(1))
     allocate (scene%joints(1)%law, source=contraction_law(name='LAW', gap=0.5_rk))
     call lay_points(scene%joints(1))
     scene%joints(1)%x = scene%mesh%x(:, :8)
@@ -338,7 +338,7 @@ contains
                                  0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1], [3, 8]), rk)
     scene%mesh%nodes = reshape([1, 2, 3, 4, 5, 6, 7, 8], [8, 1])
     scene%mesh%element_type = ['C3D8']
-    allocate (scene%joints(1), scene%ties(0), scene%couplings(0))
+    allocate (scene%joints(1), scene%ties(0), scene%guests(0))
     associate (item => scene%joints(1))
       item%num_points = 12
       item%is_matching = .false.

@@ -41,7 +41,7 @@ contains
     law%is_nonlinear = .true.
     scene%materials(2)%law = law
     scene%mesh = arch%mesh
-    allocate (scene%joints(0), scene%loads(0), scene%ties(0), scene%couplings(0))
+    allocate (scene%joints(0), scene%loads(0), scene%ties(0), scene%guests(0))
     associate (m => scene%mesh)
       do e = 1, m%num_elements
         m%element_type(e) = kinds_of_solids(1 + mod(e, 4))

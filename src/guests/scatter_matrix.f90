@@ -7,7 +7,7 @@ module scatter_matrix
   use sorted_lists, only: sorted_unique, place_in
   implicit none
   private
-  public :: scatter_nodes
+  public :: scatter_nodes, scatter_blocks
 
 contains
 
@@ -28,6 +28,20 @@ contains
       call scatter_general(numbers, dof, k, matrix, values)
     end if
   end subroutine scatter_nodes
+
+  !> Adds a symmetric block for each node. The nodes are not coupled.
+  subroutine scatter_blocks(numbers, blocks, matrix, values)
+    type(numbering), intent(in) :: numbers
+    real(rk), intent(in) :: blocks(:, :, :) !< (directions, directions, nodes)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(inout) :: values(:)
+    integer :: node
+    do node = 1, size(blocks, 3)
+      if (maxval(abs(blocks(:, :, node))) > 0.0_rk) then
+        call scatter_nodes(numbers, [node], blocks(:, :, node), matrix, values)
+      end if
+    end do
+  end subroutine scatter_blocks
 
   !> The usual case: every dof is an unknown of its own, each once. Sorts them.
   pure subroutine find_plain(numbers, dof, unknown, place, is_plain)

@@ -1,0 +1,107 @@
+!> The guests of a model and of a step, in the order in which they are asked.
+module guest_list
+  use kinds, only: rk
+  use dof_numbering, only: numbering
+  use guest_type, only: guest, guest_reference
+  use matrix_pattern, only: pattern
+  use problem_definition, only: problem
+  use row_tables, only: row_table
+  use run_ledger, only: ledger
+  use step_plan, only: step
+  implicit none
+  private
+  public :: guests_of_model, guests_of_step, list_guest_cells, add_guest_matrices, any_has_matrix
+  public :: supports_of_step
+
+contains
+
+  !> Joints, and other guests that act in every step. The list points into `model`, which must be a
+  !> target where the list is used.
+  subroutine guests_of_model(model, list)
+    type(problem), intent(in), target :: model
+    type(guest_reference), allocatable, intent(out) :: list(:)
+    integer :: i, num_joints
+    num_joints = size(model%joints)
+    allocate (list(num_joints + size(model%guests)))
+    do i = 1, num_joints
+      list(i)%item => model%joints(i)
+    end do
+    do i = 1, size(model%guests)
+      list(num_joints + i)%item => model%guests(i)%item
+    end do
+  end subroutine guests_of_model
+
+  !> The same with the loads at work at the end of a step, each once.
+  subroutine guests_of_step(model, plan, list)
+    type(problem), intent(in), target :: model
+    type(step), intent(in) :: plan
+    type(guest_reference), allocatable, intent(out) :: list(:)
+    type(guest_reference), allocatable :: permanent(:)
+    integer, allocatable :: loads(:)
+    integer :: i
+    call guests_of_model(model, permanent)
+    loads = pack(plan%loads%load, abs(plan%loads%end_factor) > 0.0_rk)
+    allocate (list(size(permanent) + size(loads)))
+    list(:size(permanent)) = permanent
+    do i = 1, size(loads)
+      list(size(permanent) + i)%item => model%loads(loads(i))%item
+    end do
+  end subroutine guests_of_step
+
+  !> The cells of all guests: nodes that they couple with each other.
+  subroutine list_guest_cells(guests, cells)
+    type(guest_reference), intent(in) :: guests(:)
+    type(row_table), intent(inout) :: cells
+    integer :: i
+    do i = 1, size(guests)
+      call guests(i)%item%add_cells(cells)
+    end do
+  end subroutine list_guest_cells
+
+  !> Whether any guest adds to a matrix.
+  pure logical function any_has_matrix(guests, kind)
+    type(guest_reference), intent(in) :: guests(:)
+    integer, intent(in) :: kind !< of guest_type
+    integer :: i
+    any_has_matrix = .false.
+    do i = 1, size(guests)
+      any_has_matrix = any_has_matrix .or. guests(i)%item%has_matrix(kind)
+    end do
+  end function any_has_matrix
+
+  !> Adds what the guests bring to a matrix of the step, booked on each of them.
+  subroutine add_guest_matrices(guests, kind, model, numbers, matrix, values, costs)
+    type(guest_reference), intent(in) :: guests(:)
+    integer, intent(in) :: kind !< of guest_type
+    type(problem), intent(in) :: model
+    type(numbering), intent(in) :: numbers
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(inout) :: values(:)
+    type(ledger), intent(in) :: costs
+    integer :: i
+    do i = 1, size(guests)
+      associate (item => guests(i)%item)
+        if (.not. item%has_matrix(kind)) cycle
+        call costs%start('assemble', item%name, item%kind)
+        call item%add_matrix(kind, model%mesh, numbers, matrix, values)
+        call costs%stop()
+      end associate
+    end do
+  end subroutine add_guest_matrices
+
+  !> Displacements that *BOUNDARY or a guest hold in a step.
+  subroutine supports_of_step(model, plan, node, direction)
+    type(problem), intent(in), target :: model
+    type(step), intent(in) :: plan
+    integer, allocatable, intent(out) :: node(:) !< positions in the mesh
+    integer, allocatable, intent(out) :: direction(:) !< 1..3
+    type(guest_reference), allocatable :: guests(:)
+    integer :: i
+    node = plan%fixities%node
+    direction = plan%fixities%dof
+    call guests_of_model(model, guests)
+    do i = 1, size(guests)
+      call guests(i)%item%add_supports(node, direction)
+    end do
+  end subroutine supports_of_step
+end module guest_list
