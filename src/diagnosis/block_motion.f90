@@ -1,5 +1,6 @@
 !> The motion of a rigid block in words: 'move along x', 'turn about the axis y through (0, 0, 1)'.
 module block_motion
+  use errors, only: error_type
   use kinds, only: rk
   use problem_definition, only: problem
   use rigid_blocks, only: block_set
@@ -63,8 +64,11 @@ contains
     character(:), allocatable :: text
     real(rk), allocatable :: size_of_turn(:), mix(:, :), motion(:, :)
     character(:), allocatable :: turns
+    type(error_type), allocatable :: error
     integer :: k, num_moves
-    call find_modes(matmul(transpose(basis(4:6, :)), basis(4:6, :)), size_of_turn, mix)
+    text = 'move'
+    call find_modes(matmul(transpose(basis(4:6, :)), basis(4:6, :)), size_of_turn, mix, error)
+    if (allocated(error)) return
     motion = matmul(basis, mix)
     num_moves = count(sqrt(max(size_of_turn, 0.0_rk)) <= negligible)
     text = moves_text(motion(1:3, :num_moves))

@@ -55,6 +55,7 @@ contains
     type(joint_state), intent(in) :: last(:) !< where the iteration has ended
     type(step_time), intent(in) :: when !< of the increment that failed
     type(error_type), allocatable, intent(inout) :: error
+    type(error_type), allocatable :: failure
     type(block_task) :: task
     type(step_time) :: asked
     character(:), allocatable :: text
@@ -63,7 +64,8 @@ contains
     call find_blocks(scene, task%blocks)
     if (task%blocks%num_blocks > most_blocks) return
     if (6*task%blocks%num_blocks*num_rows(system%operator%num_points) > most_entries) return
-    call open_task(scene, plan, states, task)
+    call open_task(scene, plan, states, task, failure)
+    if (allocated(failure)) return ! the error is reported without the blocks
     if (size(task%rows, 1) == 0) return
     asked = when
     call judge(scene, system, task, asked, text, is_known)
@@ -87,11 +89,12 @@ contains
   end subroutine name_free_block
 
   !> Motions that supports leave, and what joints may do about them.
-  subroutine open_task(scene, plan, states, task)
+  subroutine open_task(scene, plan, states, task, error)
     type(problem), intent(in) :: scene
     type(step), intent(in) :: plan
     type(joint_state), intent(in) :: states(:)
     type(block_task), intent(inout) :: task
+    type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: matrix(:, :), rows(:, :, :)
     integer, allocatable :: node(:), direction(:)
     integer :: j, p, i, n, point
@@ -99,7 +102,8 @@ contains
     allocate (matrix(n, n), source=0.0_rk)
     call supports_of_step(scene, plan, node, direction)
     call add_supports(task%blocks, scene%mesh%x, node, direction, matrix)
-    call null_space(matrix, task%free)
+    call null_space(matrix, task%free, error)
+    if (allocated(error)) return
     allocate (task%rows(size(task%free, 2), num_rows(sum(scene%joints%num_points))))
     allocate (task%limits(sum(scene%joints%num_points)))
     allocate (rows(6, task%blocks%num_blocks, 3))
@@ -228,15 +232,25 @@ contains
     type(block_task), intent(in) :: task
     character(:), allocatable :: text
     real(rk), allocatable :: ways(:, :), shares(:), own(:, :), motion(:, :)
+    type(error_type), allocatable :: error
     integer :: b
     text = ''
-    call null_space(matmul(task%rows, transpose(task%rows)), ways)
+    call null_space(matmul(task%rows, transpose(task%rows)), ways, error)
+    if (allocated(error)) then
+      text = '; whether a block is free to move is not known: '//error%message
+      return
+    end if
     if (size(ways, 2) == 0) return
     ways = matmul(task%free, ways)
     shares = [(sum(ways(6*b - 5:6*b, :)**2), b=1, task%blocks%num_blocks)]
     b = maxloc(shares, 1)
     own = ways(6*b - 5:6*b, :)
-    call find_modes(matmul(own, transpose(own)), shares, motion)
+    call find_modes(matmul(own, transpose(own)), shares, motion, error)
+    if (allocated(error)) then
+      text = '; '//block_name(scene, task%blocks, b)//' is free to move: no load drives it and '// &
+             'nothing holds it'
+      return
+    end if
     motion = motion(:, findloc(shares > no_force, .true., 1):)
     text = '; '//block_name(scene, task%blocks, b)//' is free to '// &
            freedom_text(task%blocks, b, motion)//': no load drives it and nothing holds it; a '// &
@@ -251,6 +265,7 @@ contains
     real(rk) :: motion(size(load))
     real(rk), allocatable :: matrix(:, :), ways(:, :)
     real(rk) :: largest, shear
+    type(error_type), allocatable :: error
     integer :: p, i, num_held
     allocate (matrix(size(load), size(load)), source=0.0_rk)
     largest = maxval(abs(best%force))
@@ -271,7 +286,11 @@ contains
         end associate
       end do
     end do
-    call null_space(matrix, ways)
+    call null_space(matrix, ways, error)
+    if (allocated(error)) then
+      motion = best%mechanism
+      return
+    end if
     motion = matmul(ways, matmul(load, ways))
     if (norm2(motion) <= no_force*norm2(load)) motion = best%mechanism
   end function driven_motion

@@ -7,6 +7,7 @@
 !> no equilibrium exists, for none of the admissible forces has one (safe theorem of limit
 !> analysis); bonded points count with all that they may carry.
 module joint_capacity
+  use errors, only: error_type
   use kinds, only: rk
   use joint_rows, only: num_axes, row_of
   use symmetric_modes, only: find_modes
@@ -48,13 +49,18 @@ contains
     type(point_limits), intent(in) :: limits(:) !< (points)
     real(rk), intent(in) :: load(:) !< (motions)
     type(best_forces), intent(out) :: best
+    type(error_type), allocatable :: error
     real(rk), allocatable :: values(:), modes(:, :), white(:, :), target(:), left(:), t(:)
     integer :: first, k, n
     n = size(load)
-    call find_modes(matmul(rows, transpose(rows)), values, modes)
+    allocate (best%force(num_axes, size(limits)), best%mechanism(n), source=0.0_rk)
+    call find_modes(matmul(rows, transpose(rows)), values, modes, error)
+    if (allocated(error)) then
+      best%left = 1.0_rk ! and has not settled: nothing can be said
+      return
+    end if
     first = n + 1
     if (n > 0) first = n - count(values > rank_tolerance*max(values(n), tiny(1.0_rk))) + 1
-    allocate (best%force(3, size(limits)), source=0.0_rk)
     left = matmul(load, modes(:, :first - 1))
     if (norm2(left) > roundoff*norm2(load)) then
       best%mechanism = matmul(modes(:, :first - 1), left)

@@ -6,6 +6,7 @@
 module verify_blocks
   use block_motion, only: block_name, freedom_text
   use diagnostics, only: diagnostic_list
+  use errors, only: error_type
   use joint_points, only: joint
   use guest_list, only: supports_of_step
   use kinds, only: rk
@@ -20,6 +21,7 @@ module verify_blocks
   integer, parameter :: most_told = 5 !< blocks; the others are counted
   !> A block's share in the motions that are left, squared: less is round-off.
   real(rk), parameter :: no_share = 1.0e-6_rk
+  character(*), parameter :: no_check = 'whether joints leave blocks free is not known: '
 
 contains
 
@@ -28,6 +30,7 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(block_set) :: blocks
+    type(error_type), allocatable :: error
     real(rk), allocatable :: by_joints(:, :), matrix(:, :), ways(:, :)
     integer, allocatable :: node(:), direction(:)
     integer :: i, n
@@ -45,7 +48,11 @@ contains
         matrix = by_joints
         call supports_of_step(model%scene, step, node, direction)
         call add_supports(blocks, model%scene%mesh%x, node, direction, matrix)
-        call null_space(matrix, ways)
+        call null_space(matrix, ways, error)
+        if (allocated(error)) then
+          call model%cards(model%procedure_card(i))%warn(faults, no_check//error%message)
+          return
+        end if
         if (size(ways, 2) == 0) cycle
         call tell(model, i, blocks, ways, faults)
         return
@@ -84,13 +91,18 @@ contains
     type(block_set), intent(in) :: blocks
     real(rk), intent(in) :: ways(:, :) !< (6*blocks, motions) orthonormal
     type(diagnostic_list), intent(inout) :: faults
+    type(error_type), allocatable :: error
     real(rk), allocatable :: share(:), motion(:, :)
     integer :: b, num_told
     num_told = 0
     do b = 1, blocks%num_blocks
       associate (own => ways(6*b - 5:6*b, :))
-        call find_modes(matmul(own, transpose(own)), share, motion)
+        call find_modes(matmul(own, transpose(own)), share, motion, error)
       end associate
+      if (allocated(error)) then
+        call model%cards(model%procedure_card(number))%warn(faults, no_check//error%message)
+        return
+      end if
       if (share(6) <= no_share) cycle
       num_told = num_told + 1
       if (num_told > most_told) cycle

@@ -8,9 +8,9 @@ import h5py
 import pytest
 
 INPUT = Path(__file__).parents[2] / "input"
-# Numbers of job.json have 13 digits or more; the times of the runs stay below 1000 s.
 # Of the table at the end of the log, with single blanks.
 HEADING = "time [s] share memory [MB] calls part"
+# Numbers of job.json have 13 digits or more; the times of the runs stay below 1000 s.
 PRINTED = 1e-9
 # job.json is made between the reading of the parts and that of the peak memory [MB].
 MEMORY = 1.0

@@ -213,7 +213,6 @@ contains
     self%friction = [self%friction, now%energy%friction]
     self%pressure = [self%pressure, pressure]
     self%total = [self%total, now%energy%kinetic + now%energy%strain]
-    if (.false.) allocate (error)
   end subroutine increment_done
 
   !> Keeps the modes.
@@ -223,8 +222,7 @@ contains
     integer, intent(in) :: step
     type(vibration_mode), intent(in) :: modes(:)
     type(error_type), allocatable, intent(out) :: error
-    if (step > 0 .and. size(scene%steps) > 0) self%modes = modes
-    if (.false.) allocate (error)
+    self%modes = modes
   end subroutine modes_found
 
   !> Calls of a part of the ledger; the ledger must have been opened before the run.

@@ -1,5 +1,6 @@
 !> Eigenvalues and eigenvectors of a small symmetric matrix (LAPACK).
 module symmetric_modes
+  use errors, only: error_type, raise, system_failed
   use kinds, only: rk
   implicit none
   private
@@ -23,10 +24,11 @@ module symmetric_modes
 contains
 
   !> Eigenvalues in ascending order and orthonormal eigenvectors.
-  subroutine find_modes(matrix, values, vectors)
+  subroutine find_modes(matrix, values, vectors, error)
     real(rk), intent(in) :: matrix(:, :) !< symmetric
     real(rk), allocatable, intent(out) :: values(:)
     real(rk), allocatable, intent(out) :: vectors(:, :) !< by columns
+    type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: work(:)
     integer :: n, info
     n = size(matrix, 1)
@@ -34,16 +36,21 @@ contains
     allocate (values(n), work(max(1, 34*n)))
     info = 0
     if (n > 0) call dsyev('V', 'U', n, vectors, n, values, work, size(work), info)
-    if (info /= 0) error stop 'find_modes: no eigenvalues of a symmetric matrix'
+    if (info /= 0) then
+      call raise(error, 'LAPACK (dsyev) does not find the eigenvalues of a symmetric matrix', &
+                 system_failed)
+    end if
   end subroutine find_modes
 
   !> Orthonormal vectors that a positive semidefinite matrix takes to zero.
-  subroutine null_space(matrix, vectors)
+  subroutine null_space(matrix, vectors, error)
     real(rk), intent(in) :: matrix(:, :) !< symmetric
     real(rk), allocatable, intent(out) :: vectors(:, :) !< by columns
+    type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: values(:), all_vectors(:, :)
     integer :: n
-    call find_modes(matrix, values, all_vectors)
+    call find_modes(matrix, values, all_vectors, error)
+    if (allocated(error)) return
     n = 0
     if (size(values) > 0) n = count(values <= rank_tolerance*max(values(size(values)), &
                                                                  tiny(1.0_rk)))
