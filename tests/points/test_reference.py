@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from concretes import CRUSHING, JINPING, Material
 from reference import closed_forms as exact
+from reference import path
 from reference.concrete import principal
 from reference.path import Leg, Point, run
 from reference.viscous import lag, relax
@@ -19,6 +22,19 @@ GIVEN_STRESS = 1e-6
 
 def uniaxial(*ends: float) -> list[Leg]:
     return [Leg.of("ESSEEE", [end, 0.0, 0.0, 0.0, 0.0, 0.0]) for end in ends]
+
+
+def segment_slopes(curve, row: int, plastic: float) -> tuple[float, float]:
+    """Slopes of effective strength and damage of a straight segment, by its definition."""
+    width = curve.plastic[row + 1] - curve.plastic[row]
+    by_strength = (curve.strength[row + 1] - curve.strength[row]) / width
+    by_damage = (curve.damage[row + 1] - curve.damage[row]) / width
+    ahead = plastic - curve.plastic[row]
+    strength, whole = (
+        curve.strength[row] + by_strength * ahead,
+        1.0 - curve.damage[row] - by_damage * ahead,
+    )
+    return (by_strength * whole + strength * by_damage) / whole**2, by_damage
 
 
 def stress_at_yield(law, direction) -> np.ndarray:
@@ -62,6 +78,49 @@ def test_energy_of_a_uniaxial_test():
     work, lost = exact.uniaxial_energy(law, law.tension, law.tension.plastic[-1])
     assert history.work[-1] == pytest.approx(work, rel=INTEGRATION)
     assert history.dissipated[-1] == pytest.approx(lost, rel=INTEGRATION)
+
+
+def test_phases_end_at_rows_of_tables():
+    """Each phase ends where a row is attained, so that the next one has the slopes after the row.
+
+    The rows are those of Table 1; the plastic strain of an end is that of the row to round-off.
+    """
+    law = JINPING.law()
+    strain, _ = exact.uniaxial_rows(law, law.tension)
+    point, ends = Point(law), []
+    follow_phase = point._follow_phase
+
+    def recorded(*arguments):
+        part = follow_phase(*arguments)
+        ends.append(part.y[12, -1])
+        return part
+
+    point._follow_phase = recorded
+    point.follow(uniaxial(1.1 * strain[-1])[0], np.array([1.0]))
+    assert ends[1:-1] == pytest.approx(law.tension.plastic[1:], rel=1e-14)
+
+
+@pytest.mark.parametrize("limit", ["MOST_PHASES", "MOST_EVALUATIONS"])
+def test_integration_without_end_fails(limit, monkeypatch):
+    """With the limit of a leg below what the leg needs."""
+    monkeypatch.setattr(path, limit, 2)
+    with pytest.raises(ArithmeticError, match="more than 2"):
+        run(JINPING.law(), uniaxial(1e-3))
+
+
+def test_extended_segments():
+    """A segment is the curve between its rows; beyond, strength and 1 - d lose a tenth at most."""
+    curve = JINPING.tension_curve
+    for row, (begin, end) in enumerate(pairwise(curve.plastic)):
+        segment = curve.limited(row)
+        inside = 0.7 * begin + 0.3 * end
+        assert segment.at(inside) == pytest.approx(curve.at(inside), rel=1e-12)
+        assert segment.slopes(inside) == pytest.approx(curve.slopes(inside), rel=1e-12)
+        assert segment.slopes(end) == pytest.approx(segment_slopes(curve, row, end), rel=1e-12)
+        strength, damage = segment.at(10.0 * end)
+        assert strength >= 0.9 * (1.0 - 1e-12) * curve.strength[row + 1]
+        assert 1.0 - damage >= 0.9 * (1.0 - 1e-12) * (1.0 - curve.damage[row + 1])
+        assert segment.slopes(10.0 * end) == (0.0, 0.0)
 
 
 @pytest.mark.parametrize("by_sign", [False, True])

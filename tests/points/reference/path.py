@@ -1,9 +1,15 @@
-"""A point led along a path: legs of given strains and nominal stresses, any mixture of the two."""
+"""A point led along a path: legs of given strains and nominal stresses, any mixture of the two.
+
+The rates jump where flow begins or ends, and at each row of the tables. The integration stops there
+and starts again with the rates of the other side. No evaluation of the rates looks across the jump:
+a phase knows whether the point flows, and uses one segment of each table, extended. An integration
+that steps over a jump would depend on round-off: LSODA can then go to and fro for ever.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -13,6 +19,9 @@ from .rates import PULL, Rates, rates_of, strain_rate
 
 RELATIVE, ABSOLUTE = 1e-9, 1e-13  # tolerances of the integration; strains are 1e-5 to 1e-2
 NOISE = 1e-9  # of F over the strength, below which it is zero
+AT_ROW = 1e-12  # of the plastic strain of a row: round-off of the moment at which it is attained
+# Limits of a leg: the tests need at most 10 phases and 25 000 evaluations.
+MOST_PHASES, MOST_EVALUATIONS = 100, 80_000
 
 # The state: strain, plastic strain, tensile and compressive plastic strain, then per volume [J/m3]
 # work done and energy dissipated.
@@ -46,26 +55,59 @@ class History:
     dissipated: np.ndarray  # [J/m3]
 
 
+@dataclass
+class Effort:
+    """Phases and evaluations of a leg, with a limit: an integration fails where it does not end."""
+
+    phases: int = 0
+    evaluations: int = 0
+
+    def count_phase(self, time: float) -> None:
+        self.phases += 1
+        if self.phases > MOST_PHASES:
+            raise ArithmeticError(
+                f"flow starts and stops without end at {time:.9g} of the leg: "
+                f"more than {MOST_PHASES} phases"
+            )
+
+    def count_evaluation(self, time: float) -> None:
+        self.evaluations += 1
+        if self.evaluations > MOST_EVALUATIONS:
+            raise ArithmeticError(
+                f"the integration does not proceed at {time:.9g} of the leg: "
+                f"more than {MOST_EVALUATIONS} evaluations"
+            )
+
+
 class Point:
     """A point of concrete and its state."""
 
     def __init__(self, law: Concrete):
         self.law = law
         self.state = np.zeros(SIZE)
-        self._latest: tuple[bytes, Rates] | None = None
+        self._segments = [law.tension.segment_at(0.0), law.compression.segment_at(0.0)]
+        self._limit()
 
     def rates(self, state: np.ndarray) -> Rates:
-        """Rates at a state; the latest are kept, as one state is asked for several times."""
+        """Rates at a state, with the present segments of the tables.
+
+        The latest rates are kept: integration and events want those of the same state.
+        """
         key = state.tobytes()
         if self._latest is None or self._latest[0] != key:
-            found = rates_of(self.law, state[STRAIN] - state[PLASTIC], state[HISTORY])
+            found = rates_of(self._limited, state[STRAIN] - state[PLASTIC], state[HISTORY])
             self._latest = key, found
         return self._latest[1]
 
+    def loss(self, state: np.ndarray) -> float:
+        """d of Eqs. 15-16, of whole tables: d has no jump at their rows."""
+        effective = self.law.stiffness @ (state[STRAIN] - state[PLASTIC])
+        tensile, compressive = damages(self.law, state)
+        return float(self.law.loss(self.law.share(effective), tensile, compressive))
+
     def stress(self, state: np.ndarray) -> np.ndarray:
         """Nominal stress, Eq. 14 [Pa]."""
-        rates = self.rates(state)
-        return (1.0 - rates.damage) * rates.stress
+        return (1.0 - self.loss(state)) * (self.law.stiffness @ (state[STRAIN] - state[PLASTIC]))
 
     def follow(self, leg: Leg, moments: np.ndarray) -> np.ndarray:
         """States at moments of a leg (0 to 1); the point is left at the end of it."""
@@ -73,15 +115,40 @@ class Point:
         rate = leg.end - start
         found, now = [], 0.0
         flows = self._begins_to_flow(leg, rate)
+        effort = Effort()
         while now < 1.0:
-            part = self._follow_phase(leg, start, rate, now, flows)
+            part = self._follow_phase(leg, start, rate, now, flows, effort)
             inside = (moments >= now) & (moments < part.t[-1])
             if np.any(inside):
                 found.append(part.sol(moments[inside]).T)
-            now, flows = part.t[-1], not flows
-            self.state = part.y[:, -1]
+            if np.any(part.y[HISTORY, -1] < self.state[HISTORY] - ABSOLUTE):
+                raise ArithmeticError(f"plastic strain decreases before {part.t[-1]:.9g} of a leg")
+            now, self.state = part.t[-1], part.y[:, -1]
+            switch, *rows = (times.size > 0 for times in part.t_events)
+            flows = flows != switch
+            self._advance(rows)
         found.append(np.repeat(self.state[None, :], np.sum(moments >= 1.0), axis=0))
         return np.vstack(found)
+
+    def _advance(self, attained: Sequence[bool]) -> None:
+        """Goes to the next segments of tables whose row is attained; never to segments before."""
+        segments = [s + a for s, a in zip(self._segments, attained, strict=True)]
+        for sign, curve in enumerate((self.law.tension, self.law.compression)):
+            while self.state[HISTORY][sign] >= (1.0 - AT_ROW) * curve.end_of(segments[sign]):
+                segments[sign] += 1
+        if segments != self._segments:
+            self._segments = segments
+            self._limit()
+
+    def _limit(self) -> None:
+        """Limits the tables to their present segments."""
+        tension, compression = self._segments
+        self._limited = replace(
+            self.law,
+            tension=self.law.tension.limited(tension),
+            compression=self.law.compression.limited(compression),
+        )
+        self._latest: tuple[bytes, Rates] | None = None
 
     def _begins_to_flow(self, leg: Leg, rate: np.ndarray) -> bool:
         rates = self.rates(self.state)
@@ -90,8 +157,12 @@ class Point:
             return False
         return rates.multiplier(strain_rate(rates, True, leg.is_strain, rate)) > 0.0
 
-    def _follow_phase(self, leg: Leg, start, rate, now: float, flows: bool):
-        """From `now` to the end of the leg, or until the flow begins or rests."""
+    def _follow_phase(self, leg: Leg, start, rate, now: float, flows: bool, effort: Effort):
+        """From `now` to the end of the leg, the next row of a table, or where flow starts or stops.
+
+        The events of the result are: flow starts or stops, row of tension, row of compression.
+        """
+        effort.count_phase(now)
 
         def wanted(time, state, rates):
             stress = (1.0 - rates.damage) * rates.stress
@@ -99,6 +170,7 @@ class Point:
             return strain_rate(rates, flows, leg.is_strain, rate + PULL * behind)
 
         def change(time, state):
+            effort.count_evaluation(time)
             rates = self.rates(state)
             strain = wanted(time, state, rates)
             return state_rate(
@@ -108,13 +180,24 @@ class Point:
         first = self.rates(self.state).value
         strength = self.law.compression.effective(self.state[HISTORY][1])
 
+        tension, compression = self._segments
+        ends = self.law.tension.end_of(tension), self.law.compression.end_of(compression)
+
         def turns(time, state):
             rates = self.rates(state)
             if flows:
                 return rates.multiplier(wanted(time, state, rates))
             return rates.value - max(first, 0.0) - NOISE * strength
 
-        turns.terminal, turns.direction = True, -1.0 if flows else 1.0
+        def tensile_row(time, state):
+            return state[HISTORY][0] - ends[0]
+
+        def compressive_row(time, state):
+            return state[HISTORY][1] - ends[1]
+
+        turns.direction = -1.0 if flows else 1.0
+        tensile_row.direction = compressive_row.direction = 1.0
+        turns.terminal = tensile_row.terminal = compressive_row.terminal = True
         part = solve_ivp(
             change,
             (now, 1.0),
@@ -122,7 +205,7 @@ class Point:
             method="LSODA",  # flow is stiff near the apex, where its direction turns fast
             rtol=RELATIVE,
             atol=np.where(np.arange(SIZE) < ENERGY.start, ABSOLUTE, 1e-6),
-            events=turns,
+            events=(turns, tensile_row, compressive_row),
             dense_output=True,
             max_step=0.05,
         )
@@ -141,22 +224,23 @@ def state_rate(rates: Rates, strain: np.ndarray, multiplier: float) -> np.ndarra
     return np.concatenate([strain, rates.flow * multiplier, rates.growth * multiplier, energy])
 
 
+def damages(law: Concrete, state: np.ndarray) -> tuple[float, float]:
+    """Tensile and compressive damage, d_t and d_c."""
+    tensile, compressive = state[HISTORY]
+    return law.tension.at(tensile)[1], law.compression.at(compressive)[1]
+
+
 def run(law: Concrete, legs: Sequence[Leg], rows: int = 50) -> History:
     """Leads a virgin point along legs, with `rows` moments in each; the first row is the start."""
     point = Point(law)
     moments = np.arange(1, rows + 1) / rows
     states = np.vstack([point.state, *(point.follow(leg, moments) for leg in legs)])
-    damages = [
-        (law.tension.at(state[HISTORY][0])[1], law.compression.at(state[HISTORY][1])[1])
-        for state in states
-    ]
-    losses = [[point.rates(state).damage] for state in states]
     return History(
         strain=states[:, STRAIN],
         stress=np.array([point.stress(state) for state in states]),
         plastic=states[:, PLASTIC],
         hardening=states[:, HISTORY],
-        damage=np.hstack([np.array(damages), np.array(losses)]),
+        damage=np.array([[*damages(law, state), point.loss(state)] for state in states]),
         work=states[:, ENERGY][:, 0],
         dissipated=states[:, ENERGY][:, 1],
     )
