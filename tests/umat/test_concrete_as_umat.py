@@ -109,7 +109,6 @@ def test_is_the_law_of_the_program_in_a_structure(keyway, library):
         assert np.abs(found[name] - expected[name]).max() <= 1e-8 * scale, name
     assert np.abs(found["SDV9"] - expected["DAMAGET"]).max() <= 1e-8
     cracked = expected["DAMAGET"][expected["element"] == 2].max()
-    print(f"damage {cracked}, stress {scale}")
     assert cracked > 0.5
     steps = own.json["steps"][0], other.json["steps"][0]
     assert steps[0]["increments"] == steps[1]["increments"]

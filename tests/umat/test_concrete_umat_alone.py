@@ -123,7 +123,6 @@ def test_tangent(library, viscosity, recovery):
             flowing += int(np.any(answer.state[6:8] > point.last.state[6:8]))
             point.keep(strain)
     apart = np.sort(apart)
-    print(f"tangent, {flowing} flowing of {len(apart)}: {apart[-5:]}")
     assert flowing > len(apart) // 2
     assert apart[-2] < 1e-6
 

@@ -42,8 +42,6 @@ def measure(run) -> tuple[float, float, float]:
     step = run.json["steps"][-1]
     dissipated = step["energy"]["fracture"] / (FRACTURE * AREA)
     work = work_of(displacement, force) / (FRACTURE * AREA)
-    print(f"apart {apart:.4f}, work {work:.4f}, dissipated {dissipated:.4f}", end=", ")
-    print(f"{step['increments']} increments, {step['iterations']} iterations")
     return float(apart), work, dissipated
 
 
@@ -130,7 +128,5 @@ def test_bar_that_snaps_back(keyway):
     steps += dynamic(moving.format("ON"), 1e-5, 0.004).replace(", DIRECT", "")
     run = keyway(bar.deck(ramp + steps), name="in_motion")
     table = run.csv("energy")
-    _, force = force_of(run)
-    print(f"largest {force.max() / (STRENGTH * AREA):.4f}", run.json["steps"][-1]["energy"])
     assert table["fracture"][-1] == pytest.approx(FRACTURE * AREA, rel=0.02)
     assert table["error"].max() < 1e-3

@@ -24,7 +24,6 @@ def test_table_1(keyway, element):
     displacement, force = force_of(run)
     stress = np.interp(strain * SIDE, displacement, force) / SIDE**2
     apart = np.abs(stress / TABLE_1[:, 0] - 1.0).max()
-    print(element, f"rows of Table 1: {apart:.1e} apart")
     assert apart < 1e-4
     damage = run.csv("el_WEAK")
     last = damage["time"] == damage["time"].max()
@@ -56,7 +55,6 @@ def test_cracks_close(keyway, recovery, w_c):
     unloading = slope(displacement[down], force[down], closed + 1e-6, top - 1e-6)
     pressed = slice(2 * steps, None)
     pressing = slope(displacement[pressed], force[pressed], closed - 2e-4, closed - 1e-5)
-    print(recovery, w_c, unloading / YOUNG, pressing / YOUNG)
     assert unloading == pytest.approx((1.0 - d_t) * YOUNG, rel=1e-4)
     assert pressing == pytest.approx((1.0 - (1.0 - w_c) * d_t) * YOUNG, rel=1e-4)
 

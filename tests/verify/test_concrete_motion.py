@@ -26,12 +26,6 @@ def shaken_monolith(
     deck = small_deck("A trial.", monolith_mesh(6, 9, 5), element, cards)
     motion = "".join(f"{size * float(line)!r}\n" for line in monolith_motion().split())
     run = keyway(deck, *options, files={MOTION_FILE: motion}, name=name)
-    for step in run.json["steps"]:
-        print(
-            f"{step['increments']} increments, {step['iterations']} iterations, "
-            f"{step['cutbacks']} cut back",
-            end="; ",
-        )
     return run
 
 
@@ -43,8 +37,6 @@ def check_energies(run, given_back: float = 1e-12) -> dict[str, np.ndarray]:
     the stress has turned, which gives back a little: 1e-5 of all.
     """
     table = run.csv("energy")
-    print(", ".join(f"{name} {table[name][-1]:.3g}" for name in ("external", "fracture")), end=", ")
-    print(f"numerical {table['numerical'].min():.2g}, error {table['error'].max():.1e}")
     assert table["error"].max() < 1e-3
     for name in ("fracture", "crushing"):
         assert np.diff(table[name]).min() >= -given_back * table[name].max()
@@ -74,7 +66,6 @@ def test_threads_do_not_change_a_cracking_monolith(keyway):
     ]
     assert len(tables[0]["U1"]) == len(tables[1]["U1"])
     apart = np.abs(tables[0]["U1"] - tables[1]["U1"]).max() / np.abs(tables[0]["U1"]).max()
-    print(f"threads: {apart:.1e} apart")
     assert apart < 1e-9
 
 

@@ -18,6 +18,5 @@ def test_a_million_paths(program_path):
     if not program.exists():
         pytest.skip(f"{program} is not built")
     done = subprocess.run([program, str(PATHS)], capture_output=True, text=True, check=False)
-    print(done.stdout)
     assert done.returncode == 0, done.stdout
     assert sum(map(int, re.findall(r": (\d+) paths", done.stdout))) == PATHS

@@ -142,7 +142,6 @@ def test_bonded_dam_is_as_soft_as_its_mesh(runs, mesh, fine):
     """
     bonded = {"has_joint_law": False}
     low, value, high = (work(runs(m, **bonded)) for m in ("coarse", mesh, fine))
-    print(f"{mesh}: {(value - low) / (high - low):.4f} of the way from coarse to fine")
     assert low < high
     slack = 1e-3 * (high - low)
     assert low - slack < value < high + slack
@@ -166,10 +165,6 @@ def test_shaken_dam_lies_between_matching_meshes(runs, mesh, fine):
         ends = sorted((low[name], high[name]))
         outside = max(ends[0] - found, found - ends[1], 0.0) / max(map(abs, ends))
         gain = (ends[1] - ends[0]) / max(map(abs, ends))
-        print(
-            f"{mesh:12s} {name:20s} {low[name]:11.4e} {found:11.4e} "
-            f"{high[name]:11.4e} outside {outside:.2%} of gain {gain:.2%}"
-        )
         assert outside < (0.005 if "OPENING" in name else 0.01) + OF_GAIN * gain, name
 
 
@@ -192,7 +187,6 @@ def test_chain_gives_way_as_its_penalty_does(runs):
             **bonded,
         )
     )
-    print(f"crown: chain {chain:.6e}, as soft a joint {softer:.6e}, joint {joint:.6e} m")
     assert chain == pytest.approx(softer, rel=1e-3)
     assert abs(chain - joint) > 10.0 * abs(chain - softer)
 
@@ -213,7 +207,6 @@ def test_hard_motions_run_through(keyway, mesh, size, stiffness, dt):
     """As test_dam_robustness.py: no increment cut back, no energy that grows; no damping at all."""
     case = trial_of(size, stiffness, dt, is_coarse=True, duration=3.5, blocks=MESHES[mesh])
     result = measure(run_trial(keyway, case))
-    print(mesh, size, stiffness, dt, result.row)
     assert result.most_iterations <= MOST_ITERATIONS
     assert result.cutbacks == 0
     assert result.growth <= ROUNDOFF

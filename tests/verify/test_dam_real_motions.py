@@ -69,7 +69,6 @@ def test_record(keyway, record):
     text, files = shaken_dam(record, 0.01, trial)
     dt, components = RECORDS[record](record)
     result = measure(keyway(text, files=files), dt * (len(components[0]) - 1))
-    print(record, result.row)
     assert result.most_iterations <= MOST_ITERATIONS
     assert result.cutbacks == 0
     assert result.growth <= 1e-6

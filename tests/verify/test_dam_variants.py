@@ -60,7 +60,6 @@ QUICK = {"strength 1 MPa", "no friction", "gap 1 mm", "cohesion 0.1 MPa", "C3D8I
 def test_variant_runs(keyway, name):
     trial = dataclasses.replace(VARIANTS[name], duration=3.0)
     result = measure(run_trial(keyway, trial))
-    print(name, result.row)
     assert result.most_iterations <= MOST_ITERATIONS
     assert result.cutbacks == 0
     assert result.growth <= 1e-6
@@ -77,5 +76,4 @@ def test_threads_change_nothing_but_roundoff(keyway):
     for table, column in (("node_CROWN_CREST", "U2"), ("joint_JOINT1", "opening")):
         first, second = one.csv(table)[column], two.csv(table)[column]
         apart = np.abs(first - second).max() / np.abs(first).max()
-        print(table, column, apart)
         assert apart <= 1e-9

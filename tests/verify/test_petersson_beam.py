@@ -58,9 +58,6 @@ def beam_curve(
     load_point, load = force_of(run, "LOADED", 3)
     table = run.csv("node_TIP")
     tip = table["U3"][table["node"] == table["node"][0]]
-    step = run.json["steps"][0]
-    print(f"{step['increments']} increments, {step['iterations']} iterations", end=", ")
-    print(f"{step['cutbacks']} cut back", end=": ")
     return BeamCurve(-load_point, -tip, -load)
 
 
@@ -70,7 +67,6 @@ def test_published_points(keyway, mesh, element):
     """Both points within 5 % on two meshes, with Petersson's bilinear softening."""
     beam = beam_curve(keyway, "bilinear", mesh, element)
     found = [beam.at_tip(deflection) for deflection, _ in PUBLISHED]
-    print(f"{element}: largest {beam.load.max():.1f} N, " + ", ".join(f"{f:.1f} N" for f in found))
     for load, (_, expected) in zip(found, PUBLISHED, strict=True):
         assert load == pytest.approx(expected, rel=0.05)
 
@@ -89,7 +85,6 @@ def test_cohesive_crack(keyway, name, mesh):
     wanted = reference(name)
     apart = np.interp(beam.tip, wanted.tip, wanted.load) - beam.load
     worst = np.abs(apart).max() / wanted.load.max()
-    print(f"{name}: largest {beam.load.max():.1f}, {wanted.load.max():.1f} N; apart {worst:.4f}")
     assert worst < 0.03
 
 
@@ -119,10 +114,6 @@ def test_crack_opens_and_closes(keyway, recovery):
     first_place, first_load = force_of(once, "LOADED", 3)
     envelope = np.interp(-place, -first_place, -first_load)
     step = run.json["steps"][0]
-    print(
-        f"{step['increments']} increments, {step['iterations']} iterations, {step['cutbacks']} cut"
-    )
-    print(f"over the first curve by {np.max(-load - envelope):.1f} N", step["energy"])
     assert step["cutbacks"] <= 1
     assert step["energy"]["error"] < 1e-3
     assert np.max(-load - envelope) < 0.01 * np.max(-first_load)

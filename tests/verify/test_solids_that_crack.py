@@ -100,10 +100,8 @@ def test_newton_is_quadratic_in_a_notched_beam(keyway):
         residuals.append(float(re.search(r"out of balance by +(\S+)", run.stderr)[1]))
         if residuals[-1] < 1e-12:
             break
-    print("residuals of the iterations:", residuals)
     r = np.log([r for r in residuals if r > 1e-12][-3:])
     order = (r[2] - r[1]) / (r[1] - r[0])
-    print("order", order)
     assert order > 1.7
 
 
@@ -114,7 +112,6 @@ def test_a_beam_loaded_past_its_peak_says_where(keyway):
     )
     step = re.sub(r"\*BOUNDARY\n.*", "*CLOAD\nTOP, 3, -1e4", step)
     run = keyway(notched_beam() + step, code=1, name="overloaded")
-    print(run.stderr)
     assert re.search(r"no equilibrium: .*; worst at node \d+ at \(.*, .*, .*\)", run.stderr)
     assert "can follow a displacement, not a force" in run.stderr
     assert len(run.csv("node_TOP")["RF3"]) > 0
@@ -132,12 +129,10 @@ def test_tangents_agree_in_a_notched_beam(keyway):
     ]
     curves = [force_of(run) for run in runs]
     peak = curves[0].max()
-    print("peak", peak, "last", [curve[-1] for curve in curves])
     assert curves[0][-1] < 0.5 * peak
     for run, curve in zip(runs, curves, strict=True):
         assert np.abs(curve - curves[0]).max() <= 1e-6 * peak
         step = run.json["steps"][0]
-        print(step["iterations"], step["increments"], step["energy"])
         assert step["energy"]["error"] <= 1e-8
     energy = runs[0].json["steps"][0]["energy"]
     # Work of the top by the trapezoidal rule: all there is, as stored or dissipated.
@@ -205,7 +200,6 @@ def test_a_jointed_dam_cracks(keyway, law, allowed):
     moved = [np.stack([run.csv("node_ALL")[f"U{i}"] for i in (1, 2, 3)]) for run in runs]
     apart = np.abs(moved[0] - moved[1]).max() / np.abs(moved[0]).max()
     energies = [run.json["steps"][1]["energy"] for run in runs]
-    print("apart", apart, energies, [run.json["steps"][1]["iterations"] for run in runs])
     assert apart <= allowed
     for energy in energies:
         assert energy["fracture"] > 0.01 * energy["external"]

@@ -85,7 +85,6 @@ def test_modes_of_a_tied_beam(keyway, meshes):
         whole = beam(n, n)
         whole.share("A", "B")
         bounds.append(frequencies(run_beam(keyway, whole, "", name=f"whole{n}")))
-    print(meshes, found, *bounds)
     assert (found >= np.minimum(*bounds) * (1 - 1e-3)).all()
     assert (found <= np.maximum(*bounds) * (1 + 1e-3)).all()
 
@@ -266,6 +265,5 @@ def test_concrete_cracks_beside_a_tie(keyway, meshes):
     assert force.max() == pytest.approx(2.5e6 * 0.01, rel=0.02)
     assert force[-1] < 0.4 * force.max()
     expected = np.interp(times, whole_times, whole)
-    print(meshes, len(times), np.abs(force - expected).max() / whole.max())
     tolerance = SAME if meshes == "equal" else 1e-4
     assert np.abs(force - expected).max() < tolerance * whole.max()
