@@ -8,10 +8,40 @@ from pathlib import Path
 import pytest
 from harness import ROOT, Program
 
+LIMIT_OF_LONG_TESTS = 3600  # [s]
+NUMERICAL = {"decks", "points", "results", "verify"}  # folders
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--preset", default="release", help="build of the program (release)")
-    parser.addoption("--threads", type=int, default=2, help="threads of each run (2)")
+    parser.addoption("--threads", type=int, help="threads of each run (processors / workers)")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Marks numerical tests, and gives long tests a time limit; pyproject.toml has the usual one.
+
+    The hook runs before options such as -m choose from the tests.
+    """
+    for item in items:
+        if item.path.relative_to(ROOT / "tests").parts[0] in NUMERICAL:
+            item.add_marker(pytest.mark.numerical)
+        if item.get_closest_marker("full") and not item.get_closest_marker("timeout"):
+            item.add_marker(pytest.mark.timeout(LIMIT_OF_LONG_TESTS))
+
+
+def threads_of_a_run(config: pytest.Config) -> int:
+    """Two where one test runs at a time; parallel tests share the processors."""
+    workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+    alone = 2 if workers == 1 else max((os.cpu_count() or 1) // workers, 1)
+    return config.getoption("--threads") or alone
+
+
+def limit_of(request: pytest.FixtureRequest) -> float:
+    """Time limit of a run [s]: below that of its test, so that the run is named."""
+    marker = request.node.get_closest_marker("timeout")
+    limit = marker.args[0] if marker else float(request.config.getini("timeout"))
+    return 0.9 * limit
 
 
 @pytest.fixture(scope="session")
@@ -26,4 +56,4 @@ def program_path(request: pytest.FixtureRequest) -> Path:
 @pytest.fixture
 def keyway(program_path: Path, tmp_path: Path, request: pytest.FixtureRequest) -> Program:
     """Runs a deck and returns its results: keyway(deck, '--option', code=0).csv('node_TIP')."""
-    return Program(program_path, tmp_path, request.config.getoption("--threads"))
+    return Program(program_path, tmp_path, threads_of_a_run(request.config), limit_of(request))

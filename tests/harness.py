@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -48,10 +49,11 @@ class Run:
 class Program:
     """The program under test, with a folder for what it writes."""
 
-    def __init__(self, path: Path, folder: Path, threads: int):
+    def __init__(self, path: Path, folder: Path, threads: int, limit: float = 600.0):
         self.path = path
         self.folder = folder
         self.threads = threads
+        self.limit = limit  # time limit of a run [s]
 
     def __call__(
         self, deck: Path | str, *options: str, code: int = 0, name: str = "job", files=None
@@ -75,10 +77,28 @@ class Program:
 
     def call(self, *arguments: str) -> subprocess.CompletedProcess[str]:
         """The program with any arguments, in its folder."""
-        command = [str(self.path), *arguments]
         return subprocess.run(
-            command, capture_output=True, text=True, stdin=subprocess.DEVNULL, cwd=self.folder
+            [str(self.path), *arguments],
+            capture_output=True,
+            text=True,
+            stdin=subprocess.DEVNULL,
+            cwd=self.folder,
+            timeout=self.limit,
         )
+
+
+def blas_kernels(*command: Path | str) -> list[str]:
+    """Kernels that each OpenBLAS of a command reports, as HASWELL; none without an OpenBLAS."""
+    done = subprocess.run(
+        command,
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
+        env={**os.environ, "OPENBLAS_VERBOSE": "2"},
+    )
+    found = (line.partition("Core: ")[2] for line in done.stderr.splitlines())
+    return [name.upper() for name in found if name]
 
 
 @dataclass(frozen=True)
