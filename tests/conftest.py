@@ -10,6 +10,8 @@ from harness import ROOT, Program
 
 LIMIT_OF_LONG_TESTS = 3600  # [s]
 NUMERICAL = {"decks", "points", "results", "verify"}  # folders
+# Compares runs with each other, on one and two threads: one kind of kernels is enough.
+NOT_NUMERICAL = {"test_input_decks.py"}
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -24,7 +26,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     The hook runs before options such as -m choose from the tests.
     """
     for item in items:
-        if item.path.relative_to(ROOT / "tests").parts[0] in NUMERICAL:
+        folder = item.path.relative_to(ROOT / "tests").parts[0]
+        if folder in NUMERICAL and item.path.name not in NOT_NUMERICAL:
             item.add_marker(pytest.mark.numerical)
         if item.get_closest_marker("full") and not item.get_closest_marker("timeout"):
             item.add_marker(pytest.mark.timeout(LIMIT_OF_LONG_TESTS))
@@ -40,8 +43,8 @@ def threads_of_a_run(config: pytest.Config) -> int:
 def limit_of(request: pytest.FixtureRequest) -> float:
     """Time limit of a run [s]: below that of its test, so that the run is named."""
     marker = request.node.get_closest_marker("timeout")
-    limit = marker.args[0] if marker else float(request.config.getini("timeout"))
-    return 0.9 * limit
+    usual = request.config.getoption("timeout") or request.config.getini("timeout")
+    return 0.9 * float(marker.args[0] if marker else usual)
 
 
 @pytest.fixture(scope="session")
