@@ -25,8 +25,7 @@ def shaken_monolith(
         cards = cards.replace(old, new)
     deck = small_deck("A trial.", monolith_mesh(6, 9, 5), element, cards)
     motion = "".join(f"{size * float(line)!r}\n" for line in monolith_motion().split())
-    run = keyway(deck, *options, files={MOTION_FILE: motion}, name=name)
-    return run
+    return keyway(deck, *options, files={MOTION_FILE: motion}, name=name)
 
 
 def check_energies(run, given_back: float = 1e-12) -> dict[str, np.ndarray]:
