@@ -65,10 +65,11 @@ def test_tied_beam_of_equal_meshes_is_one_beam(keyway):
             one, two = (state_of(run, "ALL", field, step)[used] for run in runs)
             # Round-off in the accelerations is that of the highest modes.
             assert np.abs(one - two).max() <= tolerance * max(np.abs(two).max(), 1e-30)
-    # The nodes that follow move with those that they follow.
+    # The nodes that follow move with those that they follow: to a unit of the last of the 13 digits
+    # that are written, as weights of one and zero have round-off.
     slave, master = tied.side("B", "X0"), tied.side("A", "X1")
     u = state_of(runs[0], "ALL")
-    assert (u[slave] == u[master]).all()
+    assert np.abs(u[slave] - u[master]).max() <= 1e-12 * np.abs(u).max()
     assert runs[0].json["steps"][2]["energy"]["error"] < 1e-9
 
 
