@@ -1,22 +1,22 @@
 !> What the loads bring to the equations: reduced forces, added mass, acceleration of the base.
 module assemble_forces
   use kinds, only: rk
+  use guest_type, only: guest
   use problem_definition, only: problem
-  use step_plan, only: step_load
   use node_dofs, only: num_directions, zero_vectors
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
   use global_vectors, only: multiply
   implicit none
   private
-  public :: assemble_force, sum_base_acceleration, rigid_translation, inertia_force
+  public :: assemble_force, rigid_translation, inertia_force
 
 contains
 
-  !> T^T f of one load at factor 1.
-  subroutine assemble_force(scene, load, numbers, force)
+  !> T^T f of one guest at factor 1.
+  subroutine assemble_force(scene, item, numbers, force)
     type(problem), intent(in) :: scene
-    integer, intent(in) :: load !< position in the problem's list
+    class(guest), intent(in) :: item
     type(numbering), intent(in) :: numbers
     real(rk), intent(out) :: force(:) !< (num_total) [N]
     real(rk), allocatable :: nodal(:, :), density(:)
@@ -26,25 +26,9 @@ contains
     where (scene%mesh%material_of_element > 0)
       density = scene%materials(max(scene%mesh%material_of_element, 1))%density
     end where
-    call scene%loads(load)%item%add_force(scene%mesh, density, nodal)
+    call item%add_force(scene%mesh, density, nodal)
     call numbers%reduce(nodal, force)
   end subroutine assemble_force
-
-  !> Acceleration of the base, the sum over the loads of a step.
-  subroutine sum_base_acceleration(scene, loads, factors, acceleration)
-    type(problem), intent(in) :: scene
-    type(step_load), intent(in) :: loads(:)
-    real(rk), intent(in) :: factors(:) !< (loads) now
-    real(rk), intent(out) :: acceleration(3) !< [m/s2]
-    real(rk) :: pattern_of_load(3)
-    integer :: k
-    acceleration = 0.0_rk
-    do k = 1, size(loads)
-      pattern_of_load = 0.0_rk
-      call scene%loads(loads(k)%load)%item%add_base_acceleration(pattern_of_load)
-      acceleration = acceleration + factors(k)*pattern_of_load
-    end do
-  end subroutine sum_base_acceleration
 
   !> The unknowns when the whole model, supports included, moves by one in a direction: no jumps.
   pure subroutine rigid_translation(numbers, direction, r)

@@ -27,6 +27,7 @@ module guest_type
     procedure :: add_cells
     procedure :: has_matrix
     procedure :: add_matrix
+    procedure :: has_force
     procedure :: add_force
     procedure :: add_base_acceleration
     procedure :: add_supports
@@ -67,6 +68,12 @@ contains
     type(pattern), intent(in) :: matrix
     real(rk), intent(inout) :: values(:) !< of the pattern
   end subroutine add_matrix
+
+  !> Whether a guest that is no load has forces of its own; they act in every step at factor 1.
+  pure logical function has_force(self)
+    class(guest), intent(in) :: self
+    has_force = .false.
+  end function has_force
 
   !> Adds the nodal forces of the guest at factor 1.
   subroutine add_force(self, model, density, force)

@@ -1,7 +1,8 @@
-!> What every load can do beyond a guest. A load is a constant pattern; its factor in time belongs to
-!> the step.
+!> What every load can do beyond a guest. A load is a constant pattern; its factor in time belongs
+!> to the step.
 module applied_load
   use guest_type, only: guest
+  use kinds, only: rk
   implicit none
   private
   public :: load, load_slot
@@ -9,9 +10,22 @@ module applied_load
   type, abstract, extends(guest) :: load
     character(:), allocatable :: family !< its keyword, for OP=NEW: 'CLOAD', 'DLOAD', ...
     character(:), allocatable :: target !< identity for OP=MOD: same target, new magnitude
+    integer :: wet_joint = 0 !< position of the joint that has the water of this load, 0 for none
+    logical :: follows_opening = .false. !< its forces depend on which points are open
+  contains
+    procedure :: joint_pressure
   end type load
 
   type :: load_slot
     class(load), allocatable :: item
   end type load_slot
+contains
+
+  !> Pressure of the water at the points of `wet_joint`, at factor 1.
+  pure subroutine joint_pressure(self, is_open, pressure)
+    class(load), intent(in) :: self
+    logical, intent(in) :: is_open(:) !< (points)
+    real(rk), intent(out) :: pressure(:) !< (points) [Pa]
+    pressure = 0.0_rk
+  end subroutine joint_pressure
 end module applied_load

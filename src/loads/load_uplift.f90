@@ -14,17 +14,16 @@ module load_uplift
   use water_paths, only: build_paths, find_wet, path_net
   implicit none
   private
-  public :: uplift_load, fill_linear, fill_open, water_where_open
+  public :: uplift_load, fill_linear, fill_open
 
   type, extends(load) :: uplift_load
-    integer :: seam = 0 !< position of its joint in the problem
-    logical :: follows_opening = .false. !< profile OPEN: the forces are the solver's
     real(rk), allocatable :: pressure(:) !< (points) at factor 1, where there is water [Pa]
     integer, allocatable :: node(:) !< of the forces of a constant profile
     real(rk), allocatable :: force(:, :) !< (3, nodes) [N]
     type(path_net) :: paths !< of the water, profile OPEN
   contains
     procedure :: add_force
+    procedure :: joint_pressure
   end type uplift_load
 
 contains
@@ -108,13 +107,15 @@ contains
     end do
   end subroutine add_force
 
-  !> The pressure in a joint that is open here and there, at factor 1.
-  pure subroutine water_where_open(self, is_open, pressure)
-    type(uplift_load), intent(in) :: self
-    logical, intent(in) :: is_open(:) !< (points)
-    real(rk), intent(out) :: pressure(:) !< (points) [Pa]
+  !> The constant profile, or the full head where the joint is open as far as the upstream edge.
+  pure subroutine joint_pressure(self, is_open, pressure)
+    class(uplift_load), intent(in) :: self
+    logical, intent(in) :: is_open(:)
+    real(rk), intent(out) :: pressure(:)
     logical :: is_wet(size(is_open))
+    pressure = self%pressure
+    if (.not. self%follows_opening) return
     call find_wet(self%paths, is_open, is_wet)
     pressure = merge(self%pressure, 0.0_rk, is_wet)
-  end subroutine water_where_open
+  end subroutine joint_pressure
 end module load_uplift

@@ -64,9 +64,7 @@ contains
       if (.not. allocated(error)) call build_damping(model, plan, self%system, costs, error)
       if (allocated(error)) return
     end associate
-    call results%costs%start('assemble', 'loads', 'load')
-    call build_loads(model, plan, now%u, self%system)
-    call results%costs%stop()
+    call build_loads(model, plan, now%u, self%system, results%costs)
     now%num_unknowns = self%system%matrix%num_free
     call start_motion(self%system%numbers, model%joints, now, has_inertia=.true.)
     call self%solids%open(model, self%system, choose_tangents(model, plan), now)

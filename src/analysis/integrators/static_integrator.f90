@@ -45,9 +45,7 @@ contains
     type(tangent), allocatable :: choices(:)
     call build_structure(model, plan, self%system, results%costs, error)
     if (allocated(error)) return
-    call results%costs%start('assemble', 'loads', 'load')
-    call build_loads(model, plan, now%u, self%system)
-    call results%costs%stop()
+    call build_loads(model, plan, now%u, self%system, results%costs)
     call results%costs%start('analyse', 'structure', 'solver')
     choices = choose_tangents(model, plan)
     call make_equilibrium(plan, self%system, all(choices%is_symmetric()), self%solids%solver, error)

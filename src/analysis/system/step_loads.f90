@@ -8,8 +8,10 @@ module step_loads
   use problem_definition, only: problem
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
-  use load_uplift, only: uplift_load
-  use assemble_forces, only: assemble_force, sum_base_acceleration, inertia_force
+  use assemble_forces, only: assemble_force, inertia_force
+  use guest_list, only: guests_of_model
+  use guest_type, only: guest, guest_reference
+  use run_ledger, only: ledger
   implicit none
   private
   public :: load_group, support, step_time, gather_loads, gather_supports
@@ -54,52 +56,63 @@ contains
     if (self%duration - self%now < 1.0e-9_rk*increment) self%now = self%duration
   end subroutine advance
 
-  !> Sums the patterns of the loads of a step, base motion included, rule by rule.
-  subroutine gather_loads(scene, plan, numbers, matrix, mass, groups)
-    type(problem), intent(in) :: scene
+  !> Sums the patterns of the loads of a step, base motion included, rule by rule, and the forces of
+  !> guests that act in every step.
+  subroutine gather_loads(scene, plan, numbers, matrix, mass, groups, costs)
+    type(problem), intent(in), target :: scene
     type(step), intent(in) :: plan
     type(numbering), intent(in) :: numbers
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: mass(:) !< values; size 0 where inertia plays no part
     type(load_group), allocatable, intent(out) :: groups(:)
+    type(ledger), intent(in) :: costs
+    type(guest_reference), allocatable :: guests(:)
     real(rk) :: force(numbers%num_total)
     integer :: i, group
     allocate (groups(0))
     do i = 1, size(plan%loads)
-      if (follows_opening(scene, plan%loads(i)%load)) then
-        call open_group(plan%loads(i), numbers%num_total, groups, group)
-        groups(group)%uplift = plan%loads(i)%load
-        cycle
-      end if
-      call assemble_force(scene, plan%loads(i)%load, numbers, force)
-      if (size(mass) > 0) call add_base_motion(scene, plan%loads(i), numbers, matrix, mass, force)
-      call find_group(plan%loads(i), numbers%num_total, groups, group)
-      groups(group)%force = groups(group)%force + force
+      associate (item => scene%loads(plan%loads(i)%load)%item)
+        call costs%start('assemble', item%name, item%kind)
+        if (item%follows_opening) then
+          call open_group(plan%loads(i), numbers%num_total, groups, group)
+          groups(group)%uplift = plan%loads(i)%load
+        else
+          call assemble_force(scene, item, numbers, force)
+          if (size(mass) > 0) call add_base_motion(item, numbers, matrix, mass, force)
+          call add_to_group(plan%loads(i), force, groups)
+        end if
+        call costs%stop()
+      end associate
+    end do
+    call guests_of_model(scene, guests)
+    do i = 1, size(guests)
+      if (.not. guests(i)%item%has_force()) cycle
+      call assemble_force(scene, guests(i)%item, numbers, force)
+      call add_to_group(step_load(start_factor=1.0_rk), force, groups)
     end do
   end subroutine gather_loads
 
-  !> Whether the pattern of a load depends on what is open.
-  logical function follows_opening(scene, load)
-    type(problem), intent(in) :: scene
-    integer, intent(in) :: load
-    follows_opening = .false.
-    select type (water => scene%loads(load)%item)
-    type is (uplift_load)
-      follows_opening = water%follows_opening
-    end select
-  end function follows_opening
+  !> Adds a pattern to the group with its rule.
+  subroutine add_to_group(rule, force, groups)
+    type(step_load), intent(in) :: rule
+    real(rk), intent(in) :: force(:) !< (num_total) [N]
+    type(load_group), allocatable, intent(inout) :: groups(:)
+    integer :: group
+    call find_group(rule, size(force), groups, group)
+    groups(group)%force = groups(group)%force + force
+  end subroutine add_to_group
 
   !> -M r of the acceleration that a load gives to the base.
-  subroutine add_base_motion(scene, rule, numbers, matrix, mass, force)
-    type(problem), intent(in) :: scene
-    type(step_load), intent(in) :: rule
+  subroutine add_base_motion(item, numbers, matrix, mass, force)
+    class(guest), intent(in) :: item
     type(numbering), intent(in) :: numbers
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: mass(:)
     real(rk), intent(inout) :: force(:)
     real(rk) :: acceleration(3), inertia(size(force))
     integer :: direction
-    call sum_base_acceleration(scene, [rule], [1.0_rk], acceleration)
+    acceleration = 0.0_rk
+    call item%add_base_acceleration(acceleration)
     do direction = 1, 3
       if (.not. abs(acceleration(direction)) > 0.0_rk) cycle
       call inertia_force(numbers, matrix, mass, direction, inertia)

@@ -108,12 +108,15 @@ contains
   end subroutine build_damping
 
   !> Load patterns and supports; after the mass, which base motion needs.
-  subroutine build_loads(model, plan, u, system)
-    type(problem), intent(in) :: model
+  subroutine build_loads(model, plan, u, system, costs)
+    type(problem), intent(in), target :: model
     type(step), intent(in) :: plan
     real(rk), intent(in) :: u(:, :) !< (3, nodes) at the start of the step [m]
     type(dam_system), intent(inout) :: system
-    call gather_loads(model, plan, system%numbers, system%matrix, system%mass, system%groups)
+    type(ledger), intent(in) :: costs
+    call costs%start('assemble', 'loads', 'load')
+    call gather_loads(model, plan, system%numbers, system%matrix, system%mass, system%groups, costs)
     call gather_supports(plan, system%numbers, u, system%supports)
+    call costs%stop()
   end subroutine build_loads
 end module step_system

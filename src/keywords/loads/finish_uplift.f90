@@ -140,7 +140,7 @@ contains
                          "reservoir '"//request%uplift//"'", 'a downstream edge, or PROFILE=OPEN')
         return
       end if
-      water%seam = j
+      water%wet_joint = j
       water%kind = 'uplift'
       if (request%profile == 'OPEN') then
         call fill_open(model%scene%mesh, seam, rim, slave, lake, water)
@@ -228,8 +228,10 @@ contains
     type(step_load) :: rule
     integer :: s, i
     allocate (item, source=water)
-    call add_load(model, item, 'water of '//lake_name//' in joint '// &
-                  model%scene%joints(water%seam)%name//' ('//profile//')', 'JOINT LAW', lake_name)
+    associate (wet => model%scene%joints(water%wet_joint))
+      call add_load(model, item, 'water of '//lake_name//' in joint '//wet%name//' ('//profile// &
+                    ')', 'JOINT LAW', lake_name)
+    end associate
     do s = 1, size(model%scene%steps)
       associate (step => model%scene%steps(s))
         do i = 1, size(step%loads)

@@ -315,7 +315,7 @@ contains
     type(error_type), allocatable :: error
     call start_analysis(scene, now, error)
     call build_structure(scene, scene%steps(1), system, costs, error)
-    call build_loads(scene, scene%steps(1), now%u, system)
+    call build_loads(scene, scene%steps(1), now%u, system, costs)
     call make_equilibrium(scene%steps(1), system, .false., solids%solver, error)
     call prepare_equilibrium(scene, system, system%stiffness, 1.0_rk, solids%solver, error)
     call start_motion(system%numbers, scene%joints, now, has_inertia=.false.)
