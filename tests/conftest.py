@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -57,6 +58,13 @@ def program_path(request: pytest.FixtureRequest) -> Path:
 
 
 @pytest.fixture
-def keyway(program_path: Path, tmp_path: Path, request: pytest.FixtureRequest) -> Program:
+def make_program(tmp_path: Path, request: pytest.FixtureRequest) -> Callable[[Path], Program]:
+    """Programs at a path, with the folder of the test, its threads and its time limit."""
+    threads, limit = threads_of_a_run(request.config), limit_of(request)
+    return lambda path: Program(path, tmp_path, threads, limit)
+
+
+@pytest.fixture
+def keyway(program_path: Path, make_program: Callable[[Path], Program]) -> Program:
     """Runs a deck and returns its results: keyway(deck, '--option', code=0).csv('node_TIP')."""
-    return Program(program_path, tmp_path, threads_of_a_run(request.config), limit_of(request))
+    return make_program(program_path)

@@ -7,6 +7,7 @@ module model_draft
   use deck_card, only: card
   use dof_tables, only: dof_table
   use joint_constants, only: law_constants
+  use guest_type, only: guest, guest_slot
   use id_map, only: position_table
   use kinds, only: rk
   use material_user, only: user_constants
@@ -16,7 +17,7 @@ module model_draft
   use step_plan, only: step
   implicit none
   private
-  public :: draft, add_load, origin, section_request, law_request, joint_request
+  public :: draft, add_guest, add_load, origin, section_request, law_request, joint_request
   public :: concrete_request, user_request, tie_request, interface_request
 
   !> Where something stood: a card of the deck and one of its data lines (0: the keyword itself).
@@ -153,4 +154,20 @@ contains
     model%num_loads = model%num_loads + 1
     call move_alloc(item, model%scene%loads(model%num_loads)%item)
   end subroutine add_load
+
+  !> Adds a guest that acts in every step.
+  subroutine add_guest(model, item)
+    type(draft), intent(inout) :: model
+    class(guest), allocatable, intent(inout) :: item !< with name and kind; moved into the list
+    type(guest_slot), allocatable :: longer(:)
+    integer :: i
+    associate (num => size(model%scene%guests))
+      allocate (longer(num + 1))
+      do i = 1, num
+        call move_alloc(model%scene%guests(i)%item, longer(i)%item)
+      end do
+      call move_alloc(item, longer(num + 1)%item)
+    end associate
+    call move_alloc(longer, model%scene%guests)
+  end subroutine add_guest
 end module model_draft

@@ -5,9 +5,9 @@ module finish_interfaces
   use element_catalogue, only: is_solid
   use kinds, only: rk
   use mesh_faces, only: face_vector
-  use model_draft, only: draft
+  use model_draft, only: draft, add_guest
   use small_matrix, only: cross_product
-  use guest_type, only: guest_slot
+  use guest_type, only: guest
   use surface_coupling, only: build_coupling, coupling
   use surface_facets, only: list_interface_facets, list_surface_facets
   use surface_segments, only: facet_set, surface_cover
@@ -111,7 +111,7 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(facet_set) :: quads, faces
-    type(coupling) :: new
+    type(coupling), allocatable :: new
     type(surface_cover) :: cover
     real(rk) :: stiffness
     associate (request => model%interfaces(number), &
@@ -128,6 +128,7 @@ contains
           return
         end if
       end if
+      allocate (new)
       call build_coupling(model%scene%mesh%x, quads, faces, stiffness, request%name, 'INTERFACE', &
                           new, cover)
       cover%element = request%elements
@@ -149,27 +150,12 @@ contains
     if (size(facets%element) == 0) young = 0.0_rk
   end function softest
 
-  !> Adds springs to the problem, without a copy of their tables.
+  !> Adds springs to the guests of the problem.
   subroutine append_coupling(model, new)
     type(draft), intent(inout) :: model
-    type(coupling), intent(inout) :: new !< moved
-    type(guest_slot), allocatable :: longer(:)
-    type(coupling), allocatable :: item
-    integer :: i
-    allocate (item)
-    item%keyword = new%keyword
-    item%name = new%name
-    item%kind = new%kind
-    item%stiffness = new%stiffness
-    call move_alloc(new%node, item%node)
-    call move_alloc(new%product, item%product)
-    associate (num => size(model%scene%guests))
-      allocate (longer(num + 1))
-      do i = 1, num
-        call move_alloc(model%scene%guests(i)%item, longer(i)%item)
-      end do
-      call move_alloc(item, longer(num + 1)%item)
-    end associate
-    call move_alloc(longer, model%scene%guests)
+    type(coupling), allocatable, intent(inout) :: new !< moved
+    class(guest), allocatable :: item
+    call move_alloc(new, item)
+    call add_guest(model, item)
   end subroutine append_coupling
 end module finish_interfaces

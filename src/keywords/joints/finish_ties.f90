@@ -96,12 +96,13 @@ contains
     type(segment_set) :: segments
     type(surface_cover) :: cover
     type(node_tie) :: tie
-    type(coupling) :: springs
+    type(coupling), allocatable :: springs
     logical, allocatable :: is_idle(:, :)
     associate (scene => model%scene, place => model%cards(request%spot%card))
       call list_surface_facets(scene%mesh, scene%surfaces(request%slave), slave)
       call list_surface_facets(scene%mesh, scene%surfaces(request%master), master)
       if (request%stiffness > 0.0_rk) then
+        allocate (springs)
         call build_coupling(scene%mesh%x, slave, master, request%stiffness, request%name, 'TIE', &
                             springs, cover)
         call append_coupling(model, springs)
