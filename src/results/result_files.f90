@@ -283,9 +283,9 @@ contains
     type(state), intent(in) :: now
     character(:), allocatable :: line
     character(120) :: room
-    write (room, '(a,i0,a,i0,a,g0.6,a,i0,a,es8.1,a,es8.1)') 'step ', now%step, '  increment ', &
-      now%increment, '  time ', now%total_time, '  iterations ', now%iterations, '  residual ', &
-      now%residual, '  energy error ', now%energy%error
+    write (room, '(a,i0,a,i0,a,i0,a,es8.1,a,es8.1)') 'step ', now%step, '  increment ', &
+      now%increment, '  time '//as_text(now%total_time)//'  iterations ', now%iterations, &
+      '  residual ', now%residual, '  energy error ', now%energy%error
     line = trim(room)
   end function line_of
 end module result_files

@@ -11,6 +11,7 @@ module step_report
   use step_system, only: dam_system
   use slip_reach, only: check_reach
   use user_increments, only: end_user_increment
+  use write_text, only: as_text
   implicit none
   private
   public :: close_increment, report_failure
@@ -124,8 +125,6 @@ contains
   pure function place_text(x) result(text)
     real(rk), intent(in) :: x(3) !< [m]
     character(:), allocatable :: text
-    character(60) :: digits
-    write (digits, '(3(a,g0.6))') '(', x(1), ', ', x(2), ', ', x(3)
-    text = trim(digits)//')'
+    text = '('//as_text(x(1))//', '//as_text(x(2))//', '//as_text(x(3))//')'
   end function place_text
 end module step_report
