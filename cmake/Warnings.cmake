@@ -20,11 +20,10 @@ function(allow_unused_dummies_of_families target)
 endfunction()
 
 function(set_warnings target)
-  # A procedure that overrides another has the arguments of its contract, used or not.
   # gfortran calls its own temporaries of array results uninitialised; the check build finds true
   # cases by filling reals with signalling NaN.
   set(fortran -std=f2008 -fimplicit-none -Wall -Wextra -Wimplicit-interface
-              -Wno-unused-dummy-argument -Wno-uninitialized -Wno-maybe-uninitialized)
+              -Wno-uninitialized -Wno-maybe-uninitialized)
   set(c -Wall -Wextra)
   # Each release of GCC warns of something new; errors only where the project is kept free of them.
   if(KEYWAY_WERROR AND CMAKE_Fortran_COMPILER_VERSION MATCHES "^12\\.")

@@ -190,7 +190,7 @@ contains
     do while (outcome%iterations < most_iterations)
       call self%try(model, system, now, before, after, outcome, error)
       if (allocated(error) .or. now%is_lost) return
-      call self%measure(system, before, after, now, outcome)
+      call self%measure(system, before, now, outcome)
       if (outcome%has_converged) exit
       call self%advance(model, system, after, now, error)
       if (allocated(error) .or. now%is_lost) return
@@ -260,10 +260,10 @@ contains
   end subroutine try
 
   !> The residual, and an estimate of the correction that remains, from the last correction.
-  subroutine measure(self, system, before, after, now, outcome)
+  subroutine measure(self, system, before, now, outcome)
     class(solid_solver), intent(in) :: self
     type(dam_system), intent(in) :: system
-    type(state), intent(in) :: before, after
+    type(state), intent(in) :: before
     type(iterate_state), intent(inout) :: now
     type(balance_outcome), intent(inout) :: outcome
     real(rk) :: reference, increment, q(size(before%motion%q)), product(size(before%motion%q))
