@@ -15,6 +15,7 @@ set(sources
   law/joint_constants.f90
   law/joint_contraction.f90
   law/joint_law.f90
+  law/joint_opening.f90
   law/slip_dissipation.f90
   points/element_joint8.f90
   points/joint_points.f90

@@ -8,6 +8,7 @@
 module contact_augmentation
   use kinds, only: rk
   use joint_law, only: joint_state, state_slip, state_stick
+  use joint_opening, only: opening_of
   use joint_points, only: joint
   use joint_operator, only: jump_operator
   use anderson_mixing, only: mixer
@@ -47,7 +48,7 @@ contains
     real(rk) :: shift(size(now%gap)) !< [m]
     shift = 0.0_rk
     where (now%status == state_stick .or. now%status == state_slip)
-      shift = min(0.0_rk, now%jump(1, :) + now%gap + now%shift)
+      shift = min(0.0_rk, opening_of(now%jump(1, :), now%gap) + now%shift)
     end where
   end function wanted_shift
 

@@ -4,6 +4,7 @@ module joint_iteration
   use kinds, only: rk
   use global_vectors, only: norm, distance, total
   use joint_law, only: joint_state
+  use joint_opening, only: opening_of
   use joint_points, only: joint
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, evaluate_joints, gather_tractions, gather_jumps, gather_gaps
@@ -205,7 +206,7 @@ contains
     integer :: p
     is_nearer = .false.
     do p = 1, size(field%gap)
-      depth = -(field%jump(1, p) + field%gap(p))
+      depth = -opening_of(field%jump(1, p), field%gap(p))
       if (.not. field%was_open(p) .or. depth <= 0.0_rk) cycle
       field%jump(1, p) = -field%gap(p) - depth*min(1.0_rk, field%scale(p)/reference(1, p))
       is_nearer = .true.
