@@ -48,6 +48,7 @@ ROOMS = (
     "analysis/integrators",
     "analysis/steps",
     "results/quantities",
+    "results/fields",
     "results/record",
     "results/summary",
     "results/writers",

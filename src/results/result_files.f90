@@ -13,12 +13,7 @@ module result_files
   use run_records, only: run_record
   use run_summaries, only: run_summary
   use result_writer, only: starts_analysis
-  use write_history, only: history_files, open_histories
-  use write_energy, only: energy_file
-  use write_damage, only: damage_file
-  use write_vtk, only: vtk_series, open_vtk
-  use write_joint_vtk, only: joint_series, open_joint_vtk
-  use write_hdf5, only: hdf5_results, open_hdf5
+  use writer_catalogue, only: writer_item, list_writers
   use summary_json, only: write_summary
   use sha256, only: digest_of_file
   use earlier_files, only: remove_earlier_files
@@ -37,12 +32,7 @@ module result_files
     logical, private :: has_unwritten_envelopes = .false.
     real(rk), private :: summarised_at = 0.0_rk !< by the wall clock [s]
     integer, private :: num_warnings_said = 0
-    type(history_files), private :: histories
-    type(energy_file), private :: energies
-    type(damage_file), private :: damages
-    type(vtk_series), private :: pictures
-    type(joint_series), private :: surfaces
-    type(hdf5_results), private :: data
+    type(writer_item), allocatable, private :: writers(:)
   contains
     procedure :: open => open_results
     procedure :: increment_done
@@ -75,28 +65,23 @@ contains
     call self%record%open(scene)
     call make_folder(folder, error)
     if (.not. allocated(error)) call remove_earlier_files(self%stem)
-    if (.not. allocated(error)) call self%open_writers(scene, folder, error)
+    if (.not. allocated(error)) call self%open_writers(scene, error)
     self%is_open = .not. allocated(error)
     call self%costs%stop()
     if (self%is_open) call self%summarise(scene, error)
   end subroutine open_results
 
   !> One writer after the other.
-  subroutine open_writers(self, scene, folder, error)
+  subroutine open_writers(self, scene, error)
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: scene
-    character(*), intent(in) :: folder
     type(error_type), allocatable, intent(out) :: error
-    call open_histories(scene, self%stem, self%record, self%histories, error)
-    if (allocated(error)) return
-    call self%energies%open(self%stem, self%record, error)
-    if (allocated(error)) return
-    call self%damages%open(self%stem, self%record, error)
-    if (allocated(error)) return
-    call open_hdf5(scene, self%stem, self%record, self%data, error)
-    if (allocated(error)) return
-    call open_vtk(folder//'/', base_name(scene%deck_file), self%pictures)
-    call open_joint_vtk(folder//'/', base_name(scene%deck_file), self%surfaces)
+    integer :: w
+    call list_writers(self%writers)
+    do w = 1, size(self%writers)
+      call self%writers(w)%item%open(scene, self%stem, self%record, error)
+      if (allocated(error)) return
+    end do
   end subroutine open_writers
 
   !> An increment has converged: maxima, files, log.
@@ -130,27 +115,16 @@ contains
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
-    call self%costs%start('write', 'CSV', 'output')
-    call self%energies%write_increment(scene, now, self%record, error)
-    if (.not. allocated(error)) then
-      call self%damages%write_increment(scene, now, self%record, error)
-    end if
-    if (.not. allocated(error)) then
-      call self%histories%write_increment(scene, now, self%record, error)
-    end if
-    call self%costs%stop()
-    if (allocated(error)) return
-    call self%costs%start('write', 'HDF5', 'output')
-    call self%data%write_increment(scene, now, self%record, error)
-    call self%costs%stop()
-    if (allocated(error)) return
-    call self%costs%start('write', 'VTK', 'output')
-    call self%pictures%write_increment(scene, now, self%record, error)
-    call self%costs%stop()
-    if (allocated(error) .or. size(scene%joints) == 0) return
-    call self%costs%start('write', 'VTK of joints', 'output')
-    call self%surfaces%write_increment(scene, now, self%record, error)
-    call self%costs%stop()
+    integer :: w
+    do w = 1, size(self%writers)
+      associate (part => self%writers(w))
+        if (part%item%is_idle) cycle
+        call self%costs%start('write', part%label, 'output')
+        call part%item%write_increment(scene, now, self%record, error)
+        call self%costs%stop()
+      end associate
+      if (allocated(error)) return
+    end do
   end subroutine write_increment
 
   !> The run stops within a step: what was not due at its last increment is written now.
@@ -173,21 +147,21 @@ contains
     integer, intent(in) :: step
     type(vibration_mode), intent(in) :: modes(:)
     type(error_type), allocatable, intent(out) :: error
-    integer :: i
+    integer :: i, w
     call self%enter_step(scene, step)
     call self%summary%note_modes(modes)
     do i = 1, size(modes)
       call self%log%say('step '//as_text(step)//'  mode '//as_text(i)//'  '// &
                         as_text(modes(i)%hz)//' Hz')
     end do
-    call self%costs%start('write', 'HDF5', 'output')
-    call self%data%write_modes(scene, step, modes, self%record, error)
-    call self%costs%stop()
-    if (allocated(error)) return
-    call self%costs%start('write', 'VTK', 'output')
-    call self%pictures%write_modes(scene, step, modes, self%record, error)
-    call self%costs%stop()
-    if (.not. allocated(error)) call self%summarise(scene, error)
+    do w = 1, size(self%writers)
+      if (self%writers(w)%item%is_idle) cycle
+      call self%costs%start('write', self%writers(w)%label, 'output')
+      call self%writers(w)%item%write_modes(scene, step, modes, self%record, error)
+      call self%costs%stop()
+      if (allocated(error)) return
+    end do
+    call self%summarise(scene, error)
   end subroutine modes_found
 
   !> A step begins.
@@ -206,15 +180,16 @@ contains
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: scene
     type(error_type), allocatable, intent(out) :: error
+    integer :: w
     if (.not. self%has_unwritten_envelopes) return
     self%has_unwritten_envelopes = .false.
-    call self%costs%start('write', 'HDF5', 'output')
-    call self%data%write_envelopes(self%record, error)
-    call self%costs%stop()
-    if (allocated(error)) return
-    call self%costs%start('write', 'VTK', 'output')
-    call self%pictures%write_envelopes(scene, self%record, error)
-    call self%costs%stop()
+    do w = 1, size(self%writers)
+      if (self%writers(w)%item%is_idle) cycle
+      call self%costs%start('write', self%writers(w)%label, 'output')
+      call self%writers(w)%item%write_envelopes(scene, self%record, error)
+      call self%costs%stop()
+      if (allocated(error)) return
+    end do
   end subroutine write_envelopes
 
   !> The run has ended. Everything that can still be written is; the first failure is reported.
@@ -226,6 +201,7 @@ contains
     character(*), intent(in) :: message !< why it stopped; '' when it finished
     type(error_type), allocatable, intent(out) :: error
     type(error_type), allocatable :: failure
+    integer :: w
     if (.not. self%is_open) return
     self%is_open = .false.
     self%summary%status = status
@@ -233,19 +209,14 @@ contains
     if (status == 'stopped') call self%write_last(scene, now, error)
     call self%write_envelopes(scene, failure)
     call keep_first(error, failure)
-    call self%costs%start('write', 'CSV', 'output')
-    call self%histories%finish(failure)
-    call keep_first(error, failure)
-    call self%energies%finish(failure)
-    call keep_first(error, failure)
-    call self%damages%finish(failure)
-    call keep_first(error, failure)
-    call self%costs%stop()
-    call self%costs%start('write', 'HDF5', 'output')
-    call self%data%write_costs(self%costs)
-    call self%data%finish(failure)
-    call keep_first(error, failure)
-    call self%costs%stop()
+    do w = 1, size(self%writers)
+      if (self%writers(w)%item%is_idle) cycle
+      call self%costs%start('write', self%writers(w)%label, 'output')
+      call self%writers(w)%item%write_costs(self%costs)
+      call self%writers(w)%item%finish(failure)
+      call keep_first(error, failure)
+      call self%costs%stop()
+    end do
     call self%say_warnings()
     call self%summarise(scene, failure)
     call keep_first(error, failure)

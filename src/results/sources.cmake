@@ -1,8 +1,15 @@
 set(sources
   result_files.f90
+  fields/field_help.f90
+  fields/field_table.f90
+  fields/field_type.f90
+  fields/joint_fields.f90
+  fields/motion_fields.f90
+  fields/solid_fields.f90
   quantities/covered_faces.f90
   quantities/dam_faces.f90
   quantities/damage_readings.f90
+  quantities/energy_readings.f90
   quantities/envelopes.f90
   quantities/extremes.f90
   quantities/joint_readings.f90
@@ -21,6 +28,7 @@ set(sources
   summary/run_summaries.f90
   summary/summary_json.f90
   summary/umat_json.f90
+  writers/hdf5_fields.f90
   writers/hdf5_ledger.f90
   writers/hdf5_model.f90
   writers/hdf5_points.f90
@@ -32,4 +40,5 @@ set(sources
   writers/write_joint_vtk.f90
   writers/write_material.f90
   writers/write_vtk.f90
+  writers/writer_catalogue.f90
 )

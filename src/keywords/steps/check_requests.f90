@@ -2,7 +2,8 @@
 module check_requests
   use card_reader, only: field_reader
   use diagnostics, only: diagnostic_list
-  use law_fields, only: is_field_of_law, width_of_field
+  use field_table, only: find_field, list_fields
+  use field_type, only: at_joints, by_law, result_field
   use model_draft, only: draft
   implicit none
   private
@@ -19,29 +20,44 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(field_reader) :: reader
-    character(8), allocatable :: told(:)
-    character(8) :: word
-    integer :: i
-    allocate (told(0))
+    type(result_field), allocatable :: table(:)
+    character(:), allocatable :: reason
+    logical, allocatable :: is_reported(:)
+    integer :: i, f
+    call list_fields(table)
+    allocate (is_reported(size(table)), source=.false.)
     do i = 1, size(model%cards)
       associate (request => model%cards(i))
         if (.not. any(request%keyword == requests)) cycle
         reader = field_reader()
         do while (reader%advance(request))
-          word = request%word_at(reader%line, reader%field)
-          if (any(told == word)) cycle
-          if (word == 'OPENING' .and. request%keyword == 'ENVELOPE' &
-              .and. size(model%scene%joints) == 0) then
-            told = [character(8) :: told, word]
-            call request%warn(faults, 'the model has no joints; OPENING is not written')
-          end if
-          if (.not. is_field_of_law(word)) cycle
-          if (width_of_field(model%scene, trim(word)) > 0) cycle
-          told = [character(8) :: told, word]
-          call request%warn(faults, 'no material of the model has '//trim(word)// &
-                            '; it is not written')
+          f = find_field(table, request%word_at(reader%line, reader%field))
+          if (f == 0) cycle
+          if (is_reported(f)) cycle
+          reason = why_missing(model, table(f), request%keyword)
+          if (len(reason) == 0) cycle
+          is_reported(f) = .true.
+          call request%warn(faults, reason)
         end do
       end associate
     end do
   end subroutine warn_of_missing_fields
+
+  !> The warning; '' where the model has the field. *EL FILE may ask for openings of any model.
+  function why_missing(model, item, keyword) result(reason)
+    type(draft), intent(in) :: model
+    type(result_field), intent(in) :: item
+    character(*), intent(in) :: keyword
+    character(:), allocatable :: reason
+    reason = ''
+    if (item%place == at_joints .and. keyword == 'ENVELOPE') then
+      if (size(model%scene%joints) == 0) then
+        reason = 'the model has no joints; '//item%name//' is not written'
+      end if
+    else if (item%provider == by_law) then
+      if (item%width(model%scene) == 0) then
+        reason = 'no material of the model has '//item%name//'; it is not written'
+      end if
+    end if
+  end function why_missing
 end module check_requests

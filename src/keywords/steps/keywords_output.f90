@@ -3,11 +3,12 @@ module keywords_output
   use card_reader, only: field_reader
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
+  use field_table, only: choices_of, fields_in_words
   use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, without_effect
   use keywords_print, only: add_frequency, fields_of
   use kinds, only: rk
   use model_draft, only: draft
-  use step_plan, only: field_request
+  use step_plan, only: field_name_length, field_request
   implicit none
   private
   public :: describe_node_file, describe_el_file, describe_output, describe_node_output
@@ -15,8 +16,6 @@ module keywords_output
   public :: read_fields, read_output, read_envelope
 
   character, parameter :: nl = new_line('a')
-  character(*), parameter :: node_fields = 'U | V | A | RF | OPENING'
-  character(*), parameter :: element_fields = 'S | E | SP | OPENING | PE | DAMAGET | DAMAGEC | SDV'
   character(*), parameter :: series = ' Fields for the VTK series (job.pvd) and job.h5. Stays '// &
                              'for the next steps until one has its own.'
 
@@ -25,21 +24,19 @@ contains
   subroutine describe_node_file(spec)
     type(keyword), intent(out) :: spec
     spec%name = 'NODE FILE'
-    spec%meaning = 'U displacement, V velocity, A acceleration, RF reaction, OPENING of joints.'// &
-                   series
+    spec%meaning = 'Fields of nodes: '//fields_in_words('NODE FILE')//'.'//series
     spec%example = '*NODE FILE, FREQUENCY=10'//nl//'U, OPENING'
-    call add_frequency(spec, node_fields)
+    call add_frequency(spec, choices_of('NODE FILE'))
     spec%fewest_lines = 1
   end subroutine describe_node_file
 
   subroutine describe_el_file(spec)
     type(keyword), intent(out) :: spec
     spec%name = 'EL FILE'
-    spec%meaning = 'S stress, E strain, SP principal stresses, PE plastic strain, DAMAGET and '// &
-                   'DAMAGEC damage in tension and compression, SDV state variables of the '// &
-                   'material, averaged at nodes within a section.'//series
+    spec%meaning = 'Fields of elements: '//fields_in_words('EL FILE')//'; averaged at nodes '// &
+                   'within a section.'//series
     spec%example = '*EL FILE, FREQUENCY=10'//nl//'S, SP, DAMAGET'
-    call add_frequency(spec, element_fields)
+    call add_frequency(spec, choices_of('EL FILE'))
     spec%fewest_lines = 1
   end subroutine describe_el_file
 
@@ -106,15 +103,14 @@ contains
     spec%name = 'ENVELOPE'
     spec%family = 'output'
     spec%place = 'step'
-    spec%meaning = 'Keeps the extremes over the step: S1 largest tension, S3 largest '// &
-                   'compression, OPENING of joints, U displacement, DAMAGET and DAMAGEC damage '// &
-                   'in tension and compression; with place and time in job.json, as fields at '// &
-                   'the end of the step. Without data: S1, S3, OPENING.'
+    spec%meaning = 'Keeps the extremes over the step: '//fields_in_words('ENVELOPE')//'; with '// &
+                   'place and time in job.json, as fields at the end of the step. Without '// &
+                   'data: S1, S3, OPENING.'
     spec%example = '*ENVELOPE'//nl//'S1, S3, OPENING, DAMAGET'
     allocate (spec%parameters(0))
     allocate (spec%columns, source=[ &
               field('field', kind_choice, 'a field', &
-                    choices='S1 | S3 | OPENING | U | DAMAGET | DAMAGEC')])
+                    choices=choices_of('ENVELOPE'))])
     spec%repeats_columns = .true.
   end subroutine describe_envelope
 
@@ -123,8 +119,8 @@ contains
     type(card), intent(in) :: this
     type(diagnostic_list), intent(inout) :: faults
     type(field_reader) :: reader
-    character(8), allocatable :: seen(:)
-    character(8) :: word
+    character(field_name_length), allocatable :: seen(:)
+    character(field_name_length) :: word
     allocate (seen(0))
     do while (reader%advance(this))
       word = this%word_at(reader%line, reader%field)
@@ -132,7 +128,7 @@ contains
       if (any(seen == word)) then
         call this%warn(faults, trim(word)//' is named more than once; it is written once')
       else
-        seen = [character(8) :: seen, word]
+        seen = [character(field_name_length) :: seen, word]
       end if
     end do
   end subroutine warn_of_repeats
@@ -141,11 +137,11 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    character(8), allocatable :: fields(:)
+    character(field_name_length), allocatable :: fields(:)
     fields = fields_of(this, '')
     call warn_of_repeats(this, faults)
-    if (fields(1) == '') fields = [character(8) :: 'S1', 'S3', 'OPENING']
-    model%now%envelope = [character(8) :: model%now%envelope, fields]
+    if (fields(1) == '') fields = [character(field_name_length) :: 'S1', 'S3', 'OPENING']
+    model%now%envelope = [character(field_name_length) :: model%now%envelope, fields]
   end subroutine read_envelope
 
   subroutine describe_preprint(spec)

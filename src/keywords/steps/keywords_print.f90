@@ -3,12 +3,13 @@ module keywords_print
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
+  use field_table, only: choices_of, fields_in_words
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_word
   use kinds, only: rk
   use model_draft, only: draft
   use named_things, only: elements_of_set, longest_name, nodes_of_set
   use nearest_words, only: nearest_word
-  use step_plan, only: print_request
+  use step_plan, only: field_name_length, print_request
   implicit none
   private
   public :: describe_node_print, describe_el_print, describe_joint_print
@@ -43,30 +44,30 @@ contains
   pure function fields_of(this, default) result(fields)
     type(card), intent(in) :: this
     character(*), intent(in) :: default
-    character(8), allocatable :: fields(:)
-    character(8) :: new
+    character(field_name_length), allocatable :: fields(:)
+    character(field_name_length) :: new
     integer :: line, i
     allocate (fields(0))
     do line = 1, this%num_lines
       do i = 1, this%num_fields(line)
         if (this%is_empty_at(line, i)) cycle
         new = this%word_at(line, i)
-        if (.not. any(fields == new)) fields = [character(8) :: fields, new]
+        if (.not. any(fields == new)) fields = [character(field_name_length) :: fields, new]
       end do
     end do
-    if (size(fields) == 0) fields = [character(8) :: default]
+    if (size(fields) == 0) fields = [character(field_name_length) :: default]
   end function fields_of
 
   subroutine describe_node_print(spec)
     type(keyword), intent(out) :: spec
     spec%name = 'NODE PRINT'
-    spec%meaning = 'History of nodes in job_node_NSET.csv: U displacement, V velocity, '// &
-                   'A acceleration (relative to the base), RF reaction. The last increment of '// &
-                   'a step is always written. Stays for the next steps until one has its own.'
+    spec%meaning = 'History of nodes in job_node_NSET.csv: '//fields_in_words('NODE PRINT')// &
+                   '; all relative to the base. The last increment of a step is always '// &
+                   'written. Stays for the next steps until one has its own.'
     spec%example = '*NODE PRINT, NSET=CREST, FREQUENCY=2'//nl//'U, A'
     allocate (spec%parameters, source=[ &
               field('NSET', kind_word, 'the nodes', is_required=.true.)])
-    call add_frequency(spec, 'U | V | A | RF')
+    call add_frequency(spec, choices_of('NODE PRINT'))
   end subroutine describe_node_print
 
   subroutine read_node_print(this, model, faults)
@@ -85,13 +86,11 @@ contains
     type(keyword), intent(out) :: spec
     spec%name = 'EL PRINT'
     spec%meaning = 'History of elements at their integration points in job_el_ELSET.csv: '// &
-                   'S stress, E strain, SP principal stresses, PE plastic strain, DAMAGET and '// &
-                   'DAMAGEC damage in tension and compression, SDV state variables of the '// &
-                   'material.'
+                   fields_in_words('EL PRINT')//'.'
     spec%example = '*EL PRINT, ELSET=HEEL'//nl//'S'
     allocate (spec%parameters, source=[ &
               field('ELSET', kind_word, 'the elements', is_required=.true.)])
-    call add_frequency(spec, 'S | E | SP | PE | DAMAGET | DAMAGEC | SDV')
+    call add_frequency(spec, choices_of('EL PRINT'))
   end subroutine describe_el_print
 
   subroutine read_el_print(this, model, faults)
@@ -113,15 +112,15 @@ contains
   subroutine describe_joint_print(spec)
     type(keyword), intent(out) :: spec
     spec%name = 'JOINT PRINT'
-    spec%meaning = 'History of the points of a joint in job_joint_NAME.csv: opening, slip1, '// &
-                   'slip2 [m], tn, t1, t2 [Pa], state (0 open, 1 stick, 2 slip, 3 bonded). All '// &
+    spec%meaning = 'History of the points of a joint in job_joint_NAME.csv: '// &
+                   fields_in_words('JOINT PRINT')//' (0 open, 1 stick, 2 slip, 3 bonded). All '// &
                    'columns are always written, whatever fields are named. slip1 is '// &
                    'horizontal, slip2 up or down the joint.'
     spec%example = '*JOINT PRINT, JOINT=J1, NSET=CREST'
     allocate (spec%parameters, source=[ &
               field('JOINT', kind_word, 'name of the joint', is_required=.true.), &
               field('NSET', kind_word, 'only the points nearest to these nodes')])
-    call add_frequency(spec, 'OPENING | SLIP | TRACTION | STATE | SLIP1 | SLIP2 | TN | T1 | T2')
+    call add_frequency(spec, choices_of('JOINT PRINT'))
   end subroutine describe_joint_print
 
   subroutine read_joint_print(this, model, faults)

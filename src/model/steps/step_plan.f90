@@ -5,7 +5,9 @@ module step_plan
   implicit none
   private
   public :: step, step_load, step_fixity, print_request, field_request, step_controls
-  public :: initial_value, step_procedure
+  public :: initial_value, step_procedure, field_name_length
+
+  integer, parameter :: field_name_length = 8 !< of names of fields that a deck may give
 
   !> A load at work in a step. Its factor goes from `start_factor` (end of the step before) to
   !> `end_factor` over a static step, and is `end_factor` at once in a dynamic one; with an
@@ -32,13 +34,13 @@ module step_plan
     character(:), allocatable :: name !< of the set or joint, upper case; part of the file's name
     integer, allocatable :: members(:) !< positions of nodes, elements or joint
     integer, allocatable :: near_nodes(:) !< *JOINT PRINT, NSET: only the points nearest to them
-    character(8), allocatable :: fields(:) !< 'U', 'V', 'S', ...
+    character(field_name_length), allocatable :: fields(:) !< 'U', 'V', 'S', ...
     integer :: frequency = 1 !< every so many increments
   end type print_request
 
   !> *NODE FILE, *EL FILE, *NODE OUTPUT, *ELEMENT OUTPUT: fields of the VTK series and job.h5.
   type :: field_request
-    character(8), allocatable :: fields(:)
+    character(field_name_length), allocatable :: fields(:)
     integer :: frequency = 1
   end type field_request
 
@@ -87,7 +89,7 @@ module step_plan
     type(step_fixity), allocatable :: fixities(:) !< all supports, also those kept from before
     type(print_request), allocatable :: prints(:)
     type(field_request), allocatable :: outputs(:)
-    character(8), allocatable :: envelope(:) !< fields of *ENVELOPE
+    character(field_name_length), allocatable :: envelope(:) !< fields of *ENVELOPE
     type(step_controls) :: controls
   end type step
 contains

@@ -8,11 +8,11 @@ module damage_readings
   use problem_definition, only: problem
   use analysis_state, only: state
   use dam_faces, only: dam_skin
-  use extremes, only: extreme, extremes_by_face, note_values
+  use extremes, only: extreme
   use law_fields, only: width_of_field, field_of_block
   implicit none
   private
-  public :: damage_record, damage_extreme, open_damage_record, note_damage, note_damage_on_faces
+  public :: damage_record, damage_extreme, open_damage_record, note_damage
   public :: levels, damage_columns, damage_row
 
   !> Damage in tension from which on volumes and elements are counted. The largest of a table, often
@@ -160,25 +160,4 @@ contains
     row = [record%tension%at%value, record%compression%at%value, record%volume, &
            record%inelastic_volume, record%cracking, record%crushing]
   end function damage_row
-
-  !> For *ENVELOPE: the largest damage anywhere and on each face, with the place of the point.
-  subroutine note_damage_on_faces(scene, now, name, record, largest)
-    type(problem), intent(in) :: scene
-    type(state), intent(in) :: now
-    character(*), intent(in) :: name !< 'DAMAGET' or 'DAMAGEC'
-    type(damage_record), intent(in) :: record
-    type(extremes_by_face), intent(inout) :: largest
-    real(rk), allocatable :: damage(:, :)
-    integer :: i
-    do i = 1, size(scene%inelastic)
-      associate (part => scene%inelastic(i), faces => record%faces(i))
-        call field_of_block(scene, now, i, name, damage)
-        if (.not. allocated(damage)) then
-          allocate (damage(1, part%points%num_points), source=0.0_rk)
-        end if
-        call note_values(largest, damage(1, :), part%points%x, faces%is_upstream, &
-                         faces%is_downstream, now%total_time, wants_smallest=.false.)
-      end associate
-    end do
-  end subroutine note_damage_on_faces
 end module damage_readings

@@ -2,30 +2,34 @@
 module envelopes
   use kinds, only: rk
   use extremes, only: extremes_by_face
+  use step_plan, only: field_name_length
   implicit none
   private
   public :: envelope, open_envelope, note_envelope, note_means, name_of_field
 
-  !> One quantity: 'S1' (largest principal tension), 'S3' (largest compression, the most negative),
-  !> 'OPENING', 'U' (length of the displacement), 'DAMAGET' or 'DAMAGEC'.
+  !> One field; of a vector its length.
   type :: envelope
-    character(8) :: name = ''
+    character(field_name_length) :: name = ''
+    integer :: row = 0 !< of the table of fields
     logical :: wants_smallest = .false.
     logical :: is_empty = .true. !< nothing noted in this step
     real(rk), allocatable :: value(:), time(:) !< (nodes), of this step
-    real(rk), allocatable :: mean(:) !< (elements) largest mean over each, of damage alone
+    real(rk), allocatable :: mean(:) !< (elements) largest mean over each, of fields with means
     type(extremes_by_face) :: largest !< of all steps that asked for it
   end type envelope
 
 contains
 
   !> Starts a step; the extremes of earlier steps are kept.
-  subroutine open_envelope(item, name, num_nodes)
+  subroutine open_envelope(item, name, row, wants_smallest, num_nodes)
     type(envelope), intent(inout) :: item
     character(*), intent(in) :: name
+    integer, intent(in) :: row !< of the table of fields
+    logical, intent(in) :: wants_smallest
     integer, intent(in) :: num_nodes
     item%name = name
-    item%wants_smallest = name == 'S3'
+    item%row = row
+    item%wants_smallest = wants_smallest
     item%is_empty = .true.
     if (.not. allocated(item%value)) allocate (item%value(num_nodes), item%time(num_nodes))
     item%value = 0.0_rk

@@ -2,6 +2,7 @@
 module joint_readings
   use kinds, only: rk
   use joint_law, only: joint_state
+  use joint_opening, only: opening_of
   use joint_points, only: joint
   use problem_definition, only: problem
   use analysis_state, only: state
@@ -10,12 +11,16 @@ module joint_readings
   implicit none
   private
   public :: joint_record, open_joint_record, note_joint
-  public :: opening_at_points, opening_at_nodes
+  public :: opening_at_points, opening_at_nodes, reading_names
+
+  !> What `joint_record%largest_now` holds.
+  character(*), parameter :: reading_names = 'opening,slip,pressure'
 
   !> The maxima of one joint since the start, and which of its points lie on which face.
   type :: joint_record
     logical, allocatable :: is_upstream(:), is_downstream(:) !< (points)
     type(extremes_by_face) :: opening, slip, pressure
+    real(rk) :: largest_now(3) = 0.0_rk !< opening [m], slip [m] and pressure [Pa] of this increment
     real(rk) :: penetration = 0.0_rk !< largest [m]
     type(extremes_by_face) :: water !< nothing found where the joint has none
   end type joint_record
@@ -26,7 +31,7 @@ contains
   pure function opening_at_points(now) result(opening)
     type(joint_state), intent(in) :: now
     real(rk) :: opening(size(now%gap))
-    opening = now%jump(1, :) + now%gap
+    opening = opening_of(now%jump(1, :), now%gap)
   end function opening_at_points
 
   !> Signed opening on the nodes of all joints, on both sides; zero on other nodes [m]. A node takes
@@ -109,11 +114,17 @@ contains
     type(joint), intent(in) :: item
     type(joint_state), intent(in) :: now
     real(rk), intent(in) :: time !< total time [s]
-    call note(record%opening, max(0.0_rk, opening_at_points(now)))
-    record%penetration = max(record%penetration, -minval(opening_at_points(now)))
-    call note(record%slip, hypot(now%slip(1, :), now%slip(2, :)))
-    call note(record%pressure, max(0.0_rk, -now%traction(1, :)))
+    real(rk), dimension(size(now%gap)) :: opening, slip, pressure
+    opening = opening_at_points(now)
+    record%penetration = max(record%penetration, -minval(opening))
+    opening = max(0.0_rk, opening)
+    slip = hypot(now%slip(1, :), now%slip(2, :))
+    pressure = max(0.0_rk, -now%traction(1, :))
+    call note(record%opening, opening)
+    call note(record%slip, slip)
+    call note(record%pressure, pressure)
     if (allocated(now%water)) call note(record%water, now%water)
+    record%largest_now = max(0.0_rk, [maxval(opening), maxval(slip), maxval(pressure)])
 
   contains
 

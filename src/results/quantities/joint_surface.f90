@@ -8,16 +8,16 @@ module joint_surface
   use kinds, only: rk
   use joint_points, only: joint, joint_cells, share_a_plane
   use problem_definition, only: problem
-  use analysis_state, only: state
   use small_matrix, only: cross_product
   implicit none
   private
-  public :: drawn_joints, find_drawn_joints, values_on_corners, nodes_to_corners, &
-            states_on_corners, num_values
+  public :: drawn_joints, joint_values, find_drawn_joints, nodes_to_corners
+  public :: means_on_corners, heaviest_on_corners
 
-  !> Opening, slip 1 and 2, normal and two shear tractions, part of the reach that is used, pressure
-  !> of water.
-  integer, parameter :: num_values = 8
+  !> A quantity at the points of a joint.
+  type :: joint_values
+    real(rk), allocatable :: at(:, :) !< (components, points); unallocated where the joint has none
+  end type joint_values
 
   !> Weights this small, or that differ by so little, come from roundoff in the clipping of facets,
   !> whose coordinates are of order 1.
@@ -291,48 +291,40 @@ contains
     list_weights(ends(1):ends(2) - 1) = weights
   end subroutine append
 
-  !> Opening [m], slip [m], traction [Pa], used reach, water [Pa] on the corners; zero where there
-  !> is no point.
-  subroutine values_on_corners(scene, now, drawn, values)
-    type(problem), intent(in) :: scene
-    type(state), intent(in) :: now
+  !> A quantity of points on the corners, the mean by their shares; zero where there is no point.
+  pure subroutine means_on_corners(drawn, of_joints, means)
     type(drawn_joints), intent(in) :: drawn
-    real(rk), intent(out) :: values(:, :) !< (num_values, corners)
-    real(rk) :: used, water
-    integer :: c, i, p
-    values = 0.0_rk
+    type(joint_values), intent(in) :: of_joints(:)
+    real(rk), intent(out) :: means(:, :) !< (components, corners)
+    integer :: c, i
+    means = 0.0_rk
     do c = 1, drawn%num_corners
-      associate (seam => now%joints(drawn%joint_of(c)), mean => values(:, c), &
-                 reach => scene%joints(drawn%joint_of(c))%reach)
+      associate (values => of_joints(drawn%joint_of(c)))
+        if (.not. allocated(values%at)) cycle
         do i = drawn%first_point(c), drawn%first_point(c + 1) - 1
-          p = drawn%point(i)
-          used = 0.0_rk
-          if (reach(p) < huge(1.0_rk)) used = hypot(seam%jump(2, p), seam%jump(3, p))/reach(p)
-          water = 0.0_rk
-          if (allocated(seam%water)) water = seam%water(p)
-          mean = mean + drawn%share(i)*[seam%jump(1, p) + seam%gap(p), seam%slip(:, p), &
-                                        seam%traction(:, p), used, water]
+          means(:, c) = means(:, c) + drawn%share(i)*values%at(:, drawn%point(i))
         end do
       end associate
     end do
-  end subroutine values_on_corners
+  end subroutine means_on_corners
 
-  !> The state of the point that weighs most at each corner; -1 where there is none.
-  pure function states_on_corners(now, drawn) result(status)
-    type(state), intent(in) :: now
+  !> A whole number: that of the point which weighs most at each corner; -1 where there is none.
+  pure function heaviest_on_corners(drawn, of_joints) result(numbers)
     type(drawn_joints), intent(in) :: drawn
-    integer :: status(drawn%num_corners)
+    type(joint_values), intent(in) :: of_joints(:) !< of one component
+    integer :: numbers(drawn%num_corners)
     integer :: c, first, last
+    numbers = -1
     do c = 1, drawn%num_corners
-      status(c) = -1
       first = drawn%first_point(c)
       last = drawn%first_point(c + 1) - 1
       if (last < first) cycle
-      associate (most => drawn%point(first - 1 + maxloc(abs(drawn%share(first:last)), dim=1)))
-        status(c) = now%joints(drawn%joint_of(c))%status(most)
+      associate (most => drawn%point(first - 1 + maxloc(abs(drawn%share(first:last)), dim=1)), &
+                 values => of_joints(drawn%joint_of(c)))
+        if (allocated(values%at)) numbers(c) = nint(values%at(1, most))
       end associate
     end do
-  end function states_on_corners
+  end function heaviest_on_corners
 
   !> A quantity of the nodes (place, displacement) on the corners: that of the slave face.
   pure function nodes_to_corners(drawn, values) result(mean)

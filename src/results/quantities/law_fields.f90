@@ -1,5 +1,5 @@
-!> Fields that the laws of inelastic solids keep: PE, DAMAGET, DAMAGEC, SDV. Where a law has none of
-!> a field, and in elastic solids, the field is zero.
+!> Fields that the laws of inelastic solids keep (PE, DAMAGET, ...). Where a law does not have the
+!> field, and in elastic solids, the field is zero.
 module law_fields
   use kinds, only: rk
   use material_points, only: point_state
@@ -8,19 +8,10 @@ module law_fields
   use stress_recovery, only: recovery_plan, max_points
   implicit none
   private
-  public :: is_field_of_law, width_of_field, field_of_block, field_at_points, mean_of_elements
-  public :: find_inelastic_solids, nodes_of_solids
-
-  !> Whether a scene has them is told when its deck is read.
-  character(8), parameter :: names(4) = ['PE      ', 'DAMAGET ', 'DAMAGEC ', 'SDV     ']
+  public :: width_of_field, field_of_block, field_at_points, mean_of_elements
+  public :: find_inelastic_solids, nodes_of_solids, is_zero_while_elastic
 
 contains
-
-  !> Is a field one that laws may keep?
-  pure elemental logical function is_field_of_law(name)
-    character(*), intent(in) :: name
-    is_field_of_law = any(names == name)
-  end function is_field_of_law
 
   !> Components of a field: those of the law with most; 0 where no law of the scene has it.
   integer function width_of_field(scene, name) result(width)
@@ -45,15 +36,21 @@ contains
     end do
   end function width_of_field
 
+  !> State variables of a law are what the law makes of them, also while a point is elastic.
+  pure logical function is_zero_while_elastic(name)
+    character(*), intent(in) :: name
+    is_zero_while_elastic = name /= 'SDV'
+  end function is_zero_while_elastic
+
   !> A field at the points of an inelastic block; unallocated where it is zero: the law does not
-  !> have it, or no point has left elasticity (state variables of a law are what it makes of them).
+  !> have it, or no point has left elasticity.
   subroutine field_of_block(scene, now, block, name, values)
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
     integer, intent(in) :: block !< position in the problem's list
     character(*), intent(in) :: name
     real(rk), allocatable, intent(out) :: values(:, :) !< (components, points)
-    if (name /= 'SDV' .and. all(now%points(block)%is_elastic)) return
+    if (is_zero_while_elastic(name) .and. all(now%points(block)%is_elastic)) return
     associate (law => scene%materials(scene%inelastic(block)%material)%law)
       call law%read_field(name, now%points(block), values)
     end associate

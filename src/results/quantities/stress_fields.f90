@@ -7,7 +7,8 @@ module stress_fields
   use stress_recovery, only: recovery_plan, make_recovery_plan, recover_points, copy_solid, &
                              max_points, few_nodes
   use node_means, only: average_at_nodes, average_at
-  use law_fields, only: field_at_points, find_inelastic_solids, nodes_of_solids
+  use law_fields, only: field_at_points, find_inelastic_solids, nodes_of_solids, &
+                        is_zero_while_elastic
   use stress_operator, only: nodal_operator, make_nodal_operator, apply_operator
   implicit none
   private
@@ -171,10 +172,10 @@ contains
     call field_at_points(scene, self%plan, now, name, at_points)
     allocate (values(size(at_points, 1), scene%mesh%num_nodes), source=0.0_rk)
     allocate (is_bounded(self%plan%num_solids), source=.true.)
-    if (name == 'SDV') then
-      call average_at_nodes(self%plan, at_points, is_bounded, values)
-    else
+    if (is_zero_while_elastic(name)) then
       call average_at(self%plan, at_points, is_bounded, self%inelastic_nodes, values)
+    else
+      call average_at_nodes(self%plan, at_points, is_bounded, values)
     end if
   end subroutine field_on_nodes
 

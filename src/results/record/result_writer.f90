@@ -4,19 +4,35 @@ module result_writer
   use errors, only: error_type
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
+  use run_ledger, only: ledger
   use run_records, only: run_record
   implicit none
   private
   public :: writer, is_due, starts_analysis
 
   type, abstract :: writer
+    logical :: is_idle = .false. !< since it was opened: the model gives it nothing to write
   contains
+    procedure(open_writer), deferred :: open
     procedure(write_increment), deferred :: write_increment
     procedure :: write_modes
+    procedure :: write_envelopes
+    procedure :: write_costs
     procedure :: finish
   end type writer
 
   abstract interface
+    !> The run begins.
+    subroutine open_writer(self, scene, stem, record, error)
+      import :: writer, problem, run_record, error_type
+      implicit none
+      class(writer), intent(inout) :: self
+      type(problem), intent(in) :: scene
+      character(*), intent(in) :: stem !< folder and name of the job
+      type(run_record), intent(inout) :: record
+      type(error_type), allocatable, intent(out) :: error
+    end subroutine open_writer
+
     !> An increment has converged.
     subroutine write_increment(self, scene, now, record, error)
       import :: writer, problem, state, run_record, error_type
@@ -40,6 +56,20 @@ contains
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
   end subroutine write_modes
+
+  !> A step has ended, or the run stops in it: the envelopes of the step.
+  subroutine write_envelopes(self, scene, record, error)
+    class(writer), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(run_record), intent(inout) :: record
+    type(error_type), allocatable, intent(out) :: error
+  end subroutine write_envelopes
+
+  !> The analysis has ended, well or not: the ledger of the run, before `finish`.
+  subroutine write_costs(self, costs)
+    class(writer), intent(inout) :: self
+    type(ledger), intent(in) :: costs
+  end subroutine write_costs
 
   !> The analysis has ended, well or not: everything must be on the disk.
   subroutine finish(self, error)

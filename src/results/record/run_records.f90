@@ -7,11 +7,12 @@ module run_records
   use dam_faces, only: dam_skin, find_dam_faces
   use envelopes, only: envelope, open_envelope, note_envelope, note_means
   use extremes, only: note_values
-  use joint_readings, only: joint_record, open_joint_record, note_joint, opening_at_points, &
-                            opening_at_nodes
-  use damage_readings, only: damage_record, open_damage_record, note_damage, note_damage_on_faces
-  use law_fields, only: width_of_field, mean_of_elements
+  use joint_readings, only: joint_record, open_joint_record, note_joint
+  use damage_readings, only: damage_record, open_damage_record, note_damage
+  use law_fields, only: mean_of_elements
   use stress_fields, only: recovered_fields
+  use field_table, only: list_fields, find_field
+  use field_type, only: result_field, at_points, at_joints
   implicit none
   private
   public :: run_record, text_item
@@ -29,6 +30,7 @@ module run_records
   end type text_item
 
   type :: run_record
+    type(result_field), allocatable :: fields(:) !< the table of fields
     type(recovered_fields) :: stresses
     type(dam_skin) :: skin
     type(joint_record), allocatable :: joints(:)
@@ -47,7 +49,7 @@ module run_records
     procedure :: warn_once
     procedure :: list_file
     procedure, private :: watch_stepping, watch_release
-    procedure, private :: note_one
+    procedure, private :: note_one, note_nodes, note_points, note_joints
   end type run_record
 
 contains
@@ -57,6 +59,7 @@ contains
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: scene
     integer :: j
+    call list_fields(self%fields)
     call find_dam_faces(scene, self%skin)
     allocate (self%joints(size(scene%joints)), self%envelopes(0), self%active(0))
     allocate (self%warnings(0), self%files(0))
@@ -72,33 +75,24 @@ contains
     type(problem), intent(in) :: scene
     integer, intent(in) :: step
     type(envelope) :: fresh
-    integer :: i, k
+    integer :: i, k, f
     self%step = step
     self%most_taken = -huge(1.0_rk)
     self%active = [integer ::]
     if (.not. allocated(scene%steps(step)%envelope)) return
     do i = 1, size(scene%steps(step)%envelope)
       associate (name => scene%steps(step)%envelope(i))
-        if (has_envelope(scene, name)) then
-          k = findloc(self%envelopes%name, name, dim=1)
-          if (k == 0) self%envelopes = [self%envelopes, fresh]
-          if (k == 0) k = size(self%envelopes)
-          call open_envelope(self%envelopes(k), name, scene%mesh%num_nodes)
-          self%active = [self%active, k]
-        end if
+        f = find_field(self%fields, trim(name))
+        if (self%fields(f)%width(scene) == 0) cycle
+        k = findloc(self%envelopes%row, f, dim=1)
+        if (k == 0) self%envelopes = [self%envelopes, fresh]
+        if (k == 0) k = size(self%envelopes)
+        call open_envelope(self%envelopes(k), name, f, self%fields(f)%wants_smallest, &
+                           scene%mesh%num_nodes)
+        self%active = [self%active, k]
       end associate
     end do
   end subroutine begin_step
-
-  !> Is there such a quantity in this analysis?
-  logical function has_envelope(scene, name)
-    type(problem), intent(in) :: scene
-    character(*), intent(in) :: name
-    has_envelope = .true.
-    if (any(name == ['S1     ', 'S3     ', 'OPENING', 'U      '])) return
-    has_envelope = .false.
-    if (name == 'DAMAGET' .or. name == 'DAMAGEC') has_envelope = width_of_field(scene, name) > 0
-  end function has_envelope
 
   !> Takes note of an increment: maxima of joints always, envelopes where the step asks.
   subroutine note(self, scene, now)
@@ -151,58 +145,86 @@ contains
                         'smaller increments, or a *DYNAMIC step where it still jumps')
   end subroutine watch_release
 
-  !> One envelope.
+  !> One envelope, by the place where its field lives.
   subroutine note_one(self, scene, now, item)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
     type(envelope), intent(inout) :: item
-    real(rk), allocatable :: damage(:, :), mean(:)
+    real(rk), allocatable :: values(:, :), size_of(:)
+    call self%fields(item%row)%on_nodes(scene, now, self%stresses, values)
+    size_of = values(1, :)
+    if (size(values, 1) > 1) size_of = norm2(values, dim=1)
+    select case (self%fields(item%row)%place)
+    case (at_joints)
+      call self%note_joints(scene, now, max(0.0_rk, size_of), item)
+    case (at_points)
+      call self%note_points(scene, now, size_of, item)
+    case default
+      call self%note_nodes(scene, now, size_of, item)
+    end select
+  end subroutine note_one
+
+  !> A field on nodes: its extremes are those of the nodes of solids.
+  subroutine note_nodes(self, scene, now, values, item)
+    class(run_record), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    real(rk), intent(in) :: values(:) !< (nodes)
+    type(envelope), intent(inout) :: item
+    integer, allocatable :: solid_nodes(:)
+    integer :: n
+    call self%stresses%need_plan(scene)
+    associate (start => self%stresses%plan%node_start)
+      solid_nodes = pack([(n, n=1, size(values))], start(2:) > start(:size(start) - 1))
+    end associate
+    call note_envelope(item, values, now%total_time)
+    call note_values(item%largest, values(solid_nodes), scene%mesh%x(:, solid_nodes), &
+                     self%skin%is_upstream(solid_nodes), self%skin%is_downstream(solid_nodes), &
+                     now%total_time, item%wants_smallest)
+  end subroutine note_nodes
+
+  !> A field of joints: its extremes are those of their points; closed points count as 0.
+  subroutine note_joints(self, scene, now, on_nodes, item)
+    class(run_record), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    real(rk), intent(in) :: on_nodes(:) !< (nodes)
+    type(envelope), intent(inout) :: item
+    real(rk), allocatable :: values(:, :)
     integer :: j
-    select case (item%name)
-    case ('S1')
-      call self%stresses%need_principals(scene, now)
-      call note_nodes(self%stresses%node_principal(1, :))
-    case ('S3')
-      call self%stresses%need_principals(scene, now)
-      call note_nodes(self%stresses%node_principal(3, :))
-    case ('U')
-      call self%stresses%need_plan(scene)
-      call note_nodes(norm2(now%u, dim=1))
-    case ('OPENING')
-      call note_envelope(item, max(0.0_rk, opening_at_nodes(scene, now)), now%total_time)
-      do j = 1, size(scene%joints)
-        call note_values(item%largest, &
-                         max(0.0_rk, opening_at_points(now%joints(j))), &
-                         scene%joints(j)%x, self%joints(j)%is_upstream, &
-                         self%joints(j)%is_downstream, now%total_time, wants_smallest=.false.)
-      end do
-    case ('DAMAGET', 'DAMAGEC')
-      call self%stresses%field_on_nodes(scene, now, item%name, damage)
-      call note_envelope(item, damage(1, :), now%total_time)
+    call note_envelope(item, on_nodes, now%total_time)
+    do j = 1, size(scene%joints)
+      call self%fields(item%row)%of_joint(scene, now, j, values)
+      call note_values(item%largest, max(0.0_rk, values(1, :)), scene%joints(j)%x, &
+                       self%joints(j)%is_upstream, self%joints(j)%is_downstream, &
+                       now%total_time, item%wants_smallest)
+    end do
+  end subroutine note_joints
+
+  !> A field of inelastic solids: its extremes are those of their integration points.
+  subroutine note_points(self, scene, now, on_nodes, item)
+    class(run_record), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    real(rk), intent(in) :: on_nodes(:) !< (nodes)
+    type(envelope), intent(inout) :: item
+    real(rk), allocatable :: values(:, :), mean(:)
+    integer :: i
+    call note_envelope(item, on_nodes, now%total_time)
+    if (self%fields(item%row)%has_means) then
       call mean_of_elements(scene, now, item%name, mean)
       call note_means(item, mean)
-      call note_damage_on_faces(scene, now, item%name, self%damage, item%largest)
-    case default
-      error stop 'note_one: an envelope without a rule'
-    end select
-
-  contains
-
-    !> A quantity that lives on the nodes of solids.
-    subroutine note_nodes(values)
-      real(rk), intent(in) :: values(:)
-      integer, allocatable :: solid_nodes(:)
-      integer :: n
-      associate (start => self%stresses%plan%node_start)
-        solid_nodes = pack([(n, n=1, size(values))], start(2:) > start(:size(start) - 1))
+    end if
+    do i = 1, size(scene%inelastic)
+      associate (points => scene%inelastic(i)%points, faces => self%damage%faces(i))
+        call self%fields(item%row)%of_block(scene, now, i, values)
+        if (.not. allocated(values)) allocate (values(1, points%num_points), source=0.0_rk)
+        call note_values(item%largest, values(1, :), points%x, faces%is_upstream, &
+                         faces%is_downstream, now%total_time, item%wants_smallest)
       end associate
-      call note_envelope(item, values, now%total_time)
-      call note_values(item%largest, values(solid_nodes), scene%mesh%x(:, solid_nodes), &
-                       self%skin%is_upstream(solid_nodes), self%skin%is_downstream(solid_nodes), &
-                       now%total_time, item%wants_smallest)
-    end subroutine note_nodes
-  end subroutine note_one
+    end do
+  end subroutine note_points
 
   !> Keeps a warning, each text once.
   subroutine warn_once(self, text)

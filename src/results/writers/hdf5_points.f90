@@ -5,16 +5,12 @@ module hdf5_points
   use kinds, only: rk
   use problem_definition, only: problem
   use analysis_state, only: state
-  use law_fields, only: width_of_field
-  use requested_fields, only: components_of
+  use field_type, only: result_field
+  use hdf5_fields, only: put_field
   use hdf5_files, only: hdf5_file
   implicit none
   private
   public :: write_points, add_points
-
-  !> Fields that live at points.
-  character(8), parameter :: known(6) = ['S       ', 'E       ', 'PE      ', 'DAMAGET ', &
-                                         'DAMAGEC ', 'SDV     ']
 
 contains
 
@@ -64,28 +60,22 @@ contains
     type(hdf5_file), intent(inout) :: file
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
-    character(8), intent(in) :: fields(:)
+    type(result_field), intent(in) :: fields(:) !< that are due
     character(*), intent(in) :: group !< of the increment
     real(rk), allocatable :: values(:, :)
     integer, allocatable :: rows(:)
     integer :: i
     if (.not. allocated(scene%inelastic)) return
     if (size(scene%inelastic) == 0) return
-    if (.not. any([(any(known == fields(i)), i=1, size(fields))])) return
+    if (.not. any([(associated(fields(i)%of_block), i=1, size(fields))])) return
     call list_rows(now, rows)
     call file%make_group(group//'/points')
     call file%put(group//'/points/row', rows - 1)
     do i = 1, size(fields)
-      if (.not. any(known == fields(i))) cycle
+      if (.not. associated(fields(i)%of_block)) cycle
       call gather(scene, now, fields(i), size(rows), values)
-      associate (path => group//'/points/'//trim(fields(i)))
-        if (size(values, 1) == 1) then
-          call file%put(path, values(1, :))
-        else
-          call file%put(path, values)
-          call file%set(path, 'components', components_of(fields(i), size(values, 1)))
-        end if
-      end associate
+      call put_field(file, group//'/points/'//fields(i)%name, values, &
+                     fields(i)%components(size(values, 1)))
     end do
   end subroutine add_points
 
@@ -108,21 +98,19 @@ contains
   end subroutine list_rows
 
   !> A field at those points.
-  subroutine gather(scene, now, name, num_rows, values)
+  subroutine gather(scene, now, item, num_rows, values)
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
-    character(*), intent(in) :: name
+    type(result_field), intent(in) :: item
     integer, intent(in) :: num_rows
     real(rk), allocatable, intent(out) :: values(:, :) !< (components, rows)
     real(rk), allocatable :: of_block(:, :)
-    integer :: i, p, row, width
-    width = 6
-    if (name /= 'S' .and. name /= 'E') width = width_of_field(scene, name)
-    allocate (values(width, num_rows), source=0.0_rk)
+    integer :: i, p, row
+    allocate (values(item%width(scene), num_rows), source=0.0_rk)
     row = 0
     do i = 1, size(now%points)
       if (all(now%points(i)%is_elastic)) cycle
-      call read_block(scene, now, i, name, of_block)
+      call item%of_block(scene, now, i, of_block)
       do p = 1, size(now%points(i)%is_elastic)
         if (now%points(i)%is_elastic(p)) cycle
         row = row + 1
@@ -130,23 +118,4 @@ contains
       end do
     end do
   end subroutine gather
-
-  !> A field at all points of a block; unallocated where the law does not have it.
-  subroutine read_block(scene, now, block, name, values)
-    type(problem), intent(in) :: scene
-    type(state), intent(in) :: now
-    integer, intent(in) :: block !< position in the problem's list
-    character(*), intent(in) :: name
-    real(rk), allocatable, intent(out) :: values(:, :) !< (components, points)
-    select case (name)
-    case ('S')
-      values = now%points(block)%stress
-    case ('E')
-      values = now%points(block)%strain
-    case default
-      associate (law => scene%materials(scene%inelastic(block)%material)%law)
-        call law%read_field(name, now%points(block), values)
-      end associate
-    end select
-  end subroutine read_block
 end module hdf5_points

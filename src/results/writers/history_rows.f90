@@ -3,22 +3,24 @@ module history_rows
   use kinds, only: rk
   use problem_definition, only: problem
   use analysis_state, only: state
-  use tensor6, only: principal_values
-  use joint_readings, only: opening_at_points
-  use law_fields, only: width_of_field, field_at_points
-  use requested_fields, only: components_of
-  use stress_fields, only: recovered_fields
+  use field_type, only: result_field
+  use run_records, only: run_record
+  use json_writer, only: lower
   use text_buffers, only: text_buffer
-  use write_text, only: as_text
   implicit none
   private
-  public :: name_part, header_of, columns_of
+  public :: name_part, keyword_of, header_of
   public :: add_node_rows, add_element_rows, add_joint_rows
 
-  !> A field at the points of all solids.
+  !> A field at the points of some solids.
   type :: point_values
     real(rk), allocatable :: at(:, :, :) !< (components, max_points, solids)
   end type point_values
+
+  !> A field on all nodes, or at all points of a joint; unallocated where it is zero.
+  type :: list_values
+    real(rk), allocatable :: at(:, :) !< (components, places)
+  end type list_values
 
 contains
 
@@ -36,11 +38,20 @@ contains
     end select
   end function name_part
 
+  !> The keyword that asks for such a table.
+  pure function keyword_of(kind) result(text)
+    character(*), intent(in) :: kind
+    character(:), allocatable :: text
+    text = trim(kind)//' PRINT'
+    if (kind == 'ELEMENT') text = 'EL PRINT'
+  end function keyword_of
+
   !> The header line.
-  function header_of(scene, kind, fields) result(header)
+  function header_of(scene, table, kind, fields) result(header)
     type(problem), intent(in) :: scene
+    type(result_field), intent(in) :: table(:) !< all fields
     character(*), intent(in) :: kind !< 'NODE', 'ELEMENT' or 'JOINT'
-    character(*), intent(in) :: fields(:) !< in the order in which they were asked for
+    integer, intent(in) :: fields(:) !< rows of the table, in the order in which they were asked for
     character(:), allocatable :: header
     integer :: i
     select case (kind)
@@ -49,38 +60,17 @@ contains
     case ('ELEMENT')
       header = 'step,increment,time,element,point'
     case default
-      header = 'step,increment,time,point,x,y,z,opening,slip1,slip2,tn,t1,t2,state'
+      header = 'step,increment,time,point,x,y,z'
+      do i = 1, size(table)
+        if (.not. table(i)%may_stand_in('JOINT PRINT')) cycle
+        header = header//','//lower(table(i)%columns(table(i)%width(scene)))
+      end do
       return
     end select
     do i = 1, size(fields)
-      header = header//columns_of(scene, kind, fields(i))
+      header = header//','//table(fields(i))%columns(table(fields(i))%width(scene))
     end do
   end function header_of
-
-  !> The columns of a field, each with its comma in front; empty when there is no such field.
-  function columns_of(scene, kind, name) result(columns)
-    type(problem), intent(in) :: scene
-    character(*), intent(in) :: kind, name
-    character(:), allocatable :: columns
-    integer :: width, i
-    columns = ''
-    select case (kind//' '//name)
-    case ('NODE U', 'NODE V', 'NODE A', 'NODE RF', 'ELEMENT SP')
-      columns = ','//components_of(name, 3)
-    case ('ELEMENT S', 'ELEMENT E')
-      columns = ','//components_of(name, 6)
-    case ('ELEMENT PE', 'ELEMENT DAMAGET', 'ELEMENT DAMAGEC')
-      width = width_of_field(scene, name)
-      if (width == 1) columns = ','//trim(name)
-      if (width > 1) columns = ','//components_of(name, width)
-    case ('ELEMENT SDV')
-      do i = 1, width_of_field(scene, name)
-        columns = columns//',SDV'//as_text(i)
-      end do
-    case default
-      columns = ''
-    end select
-  end function columns_of
 
   !> Step, increment and total time.
   subroutine add_time(lines, now)
@@ -104,106 +94,98 @@ contains
     end do
   end subroutine add_reals
 
-  !> One row for each node.
-  subroutine add_node_rows(lines, scene, now, fields, nodes)
+  !> One row for each node; a field that the step does not have is zero.
+  subroutine add_node_rows(lines, scene, now, record, fields, nodes)
     type(text_buffer), intent(inout) :: lines
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
-    character(*), intent(in) :: fields(:)
+    type(run_record), intent(inout) :: record
+    integer, intent(in) :: fields(:) !< rows of the record's table
     integer, intent(in) :: nodes(:) !< positions
+    type(list_values) :: values(size(fields))
     integer :: k, i
+    do i = 1, size(fields)
+      associate (item => record%fields(fields(i)))
+        call item%on_nodes(scene, now, record%stresses, values(i)%at)
+        if (.not. allocated(values(i)%at)) then
+          allocate (values(i)%at(item%width(scene), scene%mesh%num_nodes), source=0.0_rk)
+        end if
+      end associate
+    end do
     do k = 1, size(nodes)
       call add_time(lines, now)
       call lines%add(',')
       call lines%add_integer(scene%mesh%node_id(nodes(k)))
       do i = 1, size(fields)
-        call add_reals(lines, node_value(now, fields(i), nodes(k)))
+        call add_reals(lines, values(i)%at(:, nodes(k)))
       end do
       call lines%add(new_line('a'))
     end do
   end subroutine add_node_rows
 
-  !> A vector of a node; velocities and accelerations are zero in a static step.
-  pure function node_value(now, name, node) result(value)
-    type(state), intent(in) :: now
-    character(*), intent(in) :: name
-    integer, intent(in) :: node
-    real(rk) :: value(3)
-    value = 0.0_rk
-    select case (name)
-    case ('U')
-      value = now%u(:, node)
-    case ('V')
-      if (allocated(now%v)) value = now%v(:, node)
-    case ('A')
-      if (allocated(now%a)) value = now%a(:, node)
-    case ('RF')
-      if (allocated(now%reaction)) value = now%reaction(:, node)
-    case default
-      value = 0.0_rk
-    end select
-  end function node_value
-
   !> One row for each integration point of each solid; other elements have none.
-  subroutine add_element_rows(lines, scene, now, stresses, fields, elements)
+  subroutine add_element_rows(lines, scene, now, record, fields, elements)
     type(text_buffer), intent(inout) :: lines
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
-    type(recovered_fields), intent(in) :: stresses !< with points
-    character(*), intent(in) :: fields(:)
+    type(run_record), intent(inout) :: record
+    integer, intent(in) :: fields(:) !< rows of the record's table
     integer, intent(in) :: elements(:) !< positions
-    type(point_values) :: of_laws(size(fields))
-    integer :: k, s, q, i
-    do i = 1, size(fields)
-      if (any(fields(i) == ['S ', 'E ', 'SP'])) cycle
-      call field_at_points(scene, stresses%plan, now, fields(i), of_laws(i)%at)
-    end do
-    do k = 1, size(elements)
-      s = stresses%plan%solid_of_element(elements(k))
-      if (s == 0) cycle
-      do q = 1, stresses%plan%num_points(s)
-        call add_time(lines, now)
-        call lines%add(',')
-        call lines%add_integer(scene%mesh%element_id(elements(k)))
-        call lines%add(',')
-        call lines%add_integer(q)
-        do i = 1, size(fields)
-          select case (fields(i))
-          case ('S')
-            call add_reals(lines, stresses%point_stress(:, q, s))
-          case ('E')
-            call add_reals(lines, stresses%point_strain(:, q, s))
-          case ('SP')
-            call add_reals(lines, principal_values(stresses%point_stress(:, q, s)))
-          case default
-            call add_reals(lines, of_laws(i)%at(:, q, s))
-          end select
-        end do
-        call lines%add(new_line('a'))
+    type(point_values) :: values(size(fields))
+    integer, allocatable :: chosen(:), solids(:)
+    integer :: k, q, i
+    call record%stresses%need_plan(scene)
+    associate (plan => record%stresses%plan)
+      chosen = pack(elements, plan%solid_of_element(elements) > 0)
+      solids = plan%solid_of_element(chosen)
+      do i = 1, size(fields)
+        call record%fields(fields(i))%of_solids(scene, now, record%stresses, solids, values(i)%at)
       end do
-    end do
+      do k = 1, size(chosen)
+        do q = 1, plan%num_points(solids(k))
+          call add_time(lines, now)
+          call lines%add(',')
+          call lines%add_integer(scene%mesh%element_id(chosen(k)))
+          call lines%add(',')
+          call lines%add_integer(q)
+          do i = 1, size(fields)
+            call add_reals(lines, values(i)%at(:, q, k))
+          end do
+          call lines%add(new_line('a'))
+        end do
+      end do
+    end associate
   end subroutine add_element_rows
 
-  !> One row for each chosen point of a joint.
-  subroutine add_joint_rows(lines, scene, now, joint, points)
+  !> One row for each chosen point of a joint, with all fields of joints that are printed.
+  subroutine add_joint_rows(lines, scene, now, record, joint, points)
     type(text_buffer), intent(inout) :: lines
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
+    type(run_record), intent(in) :: record
     integer, intent(in) :: joint !< position in the problem
     integer, intent(in) :: points(:)
-    real(rk) :: opening(scene%joints(joint)%num_points)
-    integer :: k, p
-    opening = opening_at_points(now%joints(joint))
+    type(list_values) :: values(size(record%fields))
+    integer :: k, p, i
+    do i = 1, size(record%fields)
+      if (.not. record%fields(i)%may_stand_in('JOINT PRINT')) cycle
+      call record%fields(i)%of_joint(scene, now, joint, values(i)%at)
+    end do
     do k = 1, size(points)
       p = points(k)
       call add_time(lines, now)
       call lines%add(',')
       call lines%add_integer(p)
       call add_reals(lines, scene%joints(joint)%x(:, p))
-      call add_reals(lines, [opening(p), now%joints(joint)%slip(:, p)])
-      call add_reals(lines, now%joints(joint)%traction(:, p))
-      call lines%add(',')
-      call lines%add_integer(now%joints(joint)%status(p))
+      do i = 1, size(values)
+        if (.not. allocated(values(i)%at)) cycle
+        if (record%fields(i)%is_integer) then
+          call lines%add(',')
+          call lines%add_integer(nint(values(i)%at(1, p)))
+        else
+          call add_reals(lines, values(i)%at(:, p))
+        end if
+      end do
       call lines%add(new_line('a'))
     end do
   end subroutine add_joint_rows

@@ -15,7 +15,6 @@ module write_damage
   type, extends(writer) :: damage_file
     private
     type(csv_file) :: file
-    logical :: is_open = .false.
   contains
     procedure :: open => open_damage
     procedure :: write_increment => write_row
@@ -24,16 +23,17 @@ module write_damage
 
 contains
 
-  !> Starts the file. `stem` is the folder and the job's name.
-  subroutine open_damage(self, stem, record, error)
+  !> Starts the file.
+  subroutine open_damage(self, scene, stem, record, error)
     class(damage_file), intent(inout) :: self
+    type(problem), intent(in) :: scene
     character(*), intent(in) :: stem
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
-    if (.not. record%damage%is_present) return
+    self%is_idle = .not. record%damage%is_present
+    if (self%is_idle) return
     call record%list_file(file_name(stem)//'_damage.csv')
     call self%file%open(stem//'_damage.csv', 'step,increment,time,'//damage_columns, error)
-    self%is_open = .not. allocated(error)
   end subroutine open_damage
 
   !> One row.
@@ -43,7 +43,7 @@ contains
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
-    if (.not. (self%is_open .and. is_due(now, 1))) return
+    if (self%is_idle .or. .not. is_due(now, 1)) return
     call self%file%add_row(now%step, now%increment, [now%total_time, damage_row(record%damage)])
     call self%file%save(error)
   end subroutine write_row
@@ -52,6 +52,6 @@ contains
   subroutine close_damage(self, error)
     class(damage_file), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: error
-    if (self%is_open) call self%file%close(error)
+    if (.not. self%is_idle) call self%file%close(error)
   end subroutine close_damage
 end module write_damage

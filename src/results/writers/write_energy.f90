@@ -1,9 +1,9 @@
 !> job_energy.csv: the energy balance of every increment.
 module write_energy
   use errors, only: error_type
-  use kinds, only: rk
   use problem_definition, only: problem
   use analysis_state, only: state
+  use energy_readings, only: energy_columns, energy_row
   use run_records, only: run_record
   use result_writer, only: writer, is_due
   use csv_files, only: csv_file
@@ -23,15 +23,15 @@ module write_energy
 
 contains
 
-  !> Starts the file. `stem` is the folder and the job's name.
-  subroutine open_energy(self, stem, record, error)
+  !> Starts the file.
+  subroutine open_energy(self, scene, stem, record, error)
     class(energy_file), intent(inout) :: self
+    type(problem), intent(in) :: scene
     character(*), intent(in) :: stem
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     call record%list_file(file_name(stem)//'_energy.csv')
-    call self%file%open(stem//'_energy.csv', 'step,increment,time,external,kinetic,strain,'// &
-                        'damping,friction,fracture,crushing,numerical,error', error)
+    call self%file%open(stem//'_energy.csv', 'step,increment,time,'//energy_columns, error)
   end subroutine open_energy
 
   !> One row.
@@ -41,13 +41,8 @@ contains
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
-    real(rk) :: row(10)
     if (.not. is_due(now, 1)) return
-    associate (e => now%energy, time => now%total_time)
-      row = [time, e%external, e%kinetic, e%strain, e%damping, e%friction, e%fracture, &
-             e%crushing, e%numerical, e%error]
-    end associate
-    call self%file%add_row(now%step, now%increment, row)
+    call self%file%add_row(now%step, now%increment, [now%total_time, energy_row(now%energy)])
     call self%file%save(error)
   end subroutine write_energies
 

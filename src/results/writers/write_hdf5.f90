@@ -10,19 +10,21 @@ module write_hdf5
   use analysis_state, only: state, vibration_mode
   use run_records, only: run_record
   use damage_readings, only: damage_columns, damage_row
-  use joint_readings, only: opening_at_points
+  use energy_readings, only: energy_columns, energy_row
+  use joint_readings, only: reading_names
   use result_writer, only: writer, is_due
-  use requested_fields, only: list_due_fields, field_on_nodes, components_of
+  use requested_fields, only: list_due_fields, asks_for_joints
   use envelopes, only: name_of_field
   use hdf5_files, only: hdf5_file
   use hdf5_tables, only: growing_table
   use hdf5_ledger, only: write_ledger
   use hdf5_model, only: write_model
+  use hdf5_fields, only: put_field, put_joints
   use hdf5_points, only: write_points, add_points
   use file_system, only: link_name, file_name
   implicit none
   private
-  public :: hdf5_results, open_hdf5
+  public :: hdf5_results
 
   integer, parameter :: layout_version = 1
   real(rk), parameter :: seconds_between_flushes = 2.0_rk
@@ -36,6 +38,7 @@ module write_hdf5
     type(growing_table) :: increments, energies, damages
     type(growing_table), allocatable :: joints(:)
   contains
+    procedure :: open => open_hdf5
     procedure :: write_increment => write_data
     procedure :: write_modes => write_mode_data
     procedure :: write_envelopes => write_envelope_data
@@ -49,18 +52,18 @@ module write_hdf5
 
 contains
 
-  !> Starts the file with the model. `stem` is the folder and the job's name.
-  subroutine open_hdf5(scene, stem, record, results, error)
+  !> Starts the file with the model.
+  subroutine open_hdf5(self, scene, stem, record, error)
+    class(hdf5_results), intent(inout) :: self
     type(problem), intent(in) :: scene
     character(*), intent(in) :: stem
     type(run_record), intent(inout) :: record
-    type(hdf5_results), intent(out) :: results
     type(error_type), allocatable, intent(out) :: error
     integer :: j
-    results%path = stem//'.h5'
-    call record%list_file(file_name(results%path))
-    associate (file => results%file)
-      call file%create(results%path)
+    self%path = stem//'.h5'
+    call record%list_file(file_name(self%path))
+    associate (file => self%file)
+      call file%create(self%path)
       call file%set('/', 'program', 'Keyway '//program_version)
       call file%set('/', 'deck', scene%deck_file)
       call file%set('/', 'layout', layout_version)
@@ -69,21 +72,19 @@ contains
       call file%make_group('/steps')
       call file%make_group('/history')
       call file%make_group('/history/joints')
-      call results%increments%start(file, '/history/increments', &
-                                    'step,increment,time,size,iterations,residual')
-      call results%energies%start(file, '/history/energy', 'step,increment,time,external,'// &
-                                  'kinetic,strain,damping,friction,fracture,crushing,'// &
-                                  'numerical,error')
+      call self%increments%start(file, '/history/increments', &
+                                 'step,increment,time,size,iterations,residual')
+      call self%energies%start(file, '/history/energy', 'step,increment,time,'//energy_columns)
       if (record%damage%is_present) then
-        call results%damages%start(file, '/history/damage', 'step,increment,time,'//damage_columns)
+        call self%damages%start(file, '/history/damage', 'step,increment,time,'//damage_columns)
       end if
-      allocate (results%joints(size(scene%joints)))
+      allocate (self%joints(size(scene%joints)))
       do j = 1, size(scene%joints)
-        call results%joints(j)%start(file, '/history/joints/'//link_name(scene%joints(j)%name), &
-                                     'step,increment,time,opening,slip,pressure')
+        call self%joints(j)%start(file, '/history/joints/'//link_name(scene%joints(j)%name), &
+                                  'step,increment,time,'//reading_names)
       end do
     end associate
-    call results%bring_out(error)
+    call self%bring_out(error)
   end subroutine open_hdf5
 
   !> Histories of every increment, and the fields that are due.
@@ -93,7 +94,7 @@ contains
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
-    character(8), allocatable :: fields(:)
+    integer, allocatable :: fields(:)
     logical :: waits_long
     call self%enter_step(scene, now%step)
     if (is_due(now, 1)) call self%add_history(scene, now, record)
@@ -109,26 +110,17 @@ contains
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
     type(run_record), intent(in) :: record
-    real(rk) :: time(3), slip, opening, pressure
+    real(rk) :: time(3)
     integer :: j
     time = [real(now%step, rk), real(now%increment, rk), now%total_time]
     call self%increments%add(self%file, [time, now%increment_size, real(now%iterations, rk), &
                                          now%residual])
-    associate (e => now%energy)
-      call self%energies%add(self%file, [time, e%external, e%kinetic, e%strain, e%damping, &
-                                         e%friction, e%fracture, e%crushing, e%numerical, &
-                                         e%error])
-    end associate
+    call self%energies%add(self%file, [time, energy_row(now%energy)])
     if (record%damage%is_present) then
       call self%damages%add(self%file, [time, damage_row(record%damage)])
     end if
     do j = 1, size(scene%joints)
-      associate (joint => now%joints(j))
-        opening = max(0.0_rk, maxval(opening_at_points(joint)))
-        slip = max(0.0_rk, maxval(hypot(joint%slip(1, :), joint%slip(2, :))))
-        pressure = max(0.0_rk, -minval(joint%traction(1, :)))
-        call self%joints(j)%add(self%file, [time, opening, slip, pressure])
-      end associate
+      call self%joints(j)%add(self%file, [time, record%joints(j)%largest_now])
     end do
   end subroutine add_history
 
@@ -138,7 +130,7 @@ contains
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
-    character(8), intent(in) :: fields(:)
+    integer, intent(in) :: fields(:) !< rows of the record's table
     character(:), allocatable :: group
     real(rk), allocatable :: values(:, :)
     integer :: i
@@ -149,39 +141,16 @@ contains
     call self%file%set(group, 'time', now%total_time)
     call self%file%set(group, 'step_time', now%step_time)
     do i = 1, size(fields)
-      call field_on_nodes(scene, now, record, fields(i), values)
-      associate (path => group//'/'//trim(fields(i)))
-        if (size(values, 1) == 1) then
-          call self%file%put(path, values(1, :))
-        else
-          call self%file%put(path, values)
-          call self%file%set(path, 'components', components_of(fields(i), size(values, 1)))
-        end if
+      associate (item => record%fields(fields(i)))
+        call item%on_nodes(scene, now, record%stresses, values)
+        call put_field(self%file, group//'/'//item%name, values, item%components(size(values, 1)))
       end associate
     end do
-    call add_points(self%file, scene, now, fields, group)
-    if (any(fields == 'OPENING')) call add_joints(self%file, scene, now, group//'/joints')
+    call add_points(self%file, scene, now, record%fields(fields), group)
+    if (asks_for_joints(record, fields)) then
+      call put_joints(self%file, scene, now, record%fields, group//'/joints')
+    end if
   end subroutine add_fields
-
-  !> All points of all joints.
-  subroutine add_joints(file, scene, now, group)
-    type(hdf5_file), intent(inout) :: file
-    type(problem), intent(in) :: scene
-    type(state), intent(in) :: now
-    character(*), intent(in) :: group
-    character(:), allocatable :: place
-    integer :: j
-    call file%make_group(group)
-    do j = 1, size(scene%joints)
-      place = group//'/'//link_name(scene%joints(j)%name)
-      call file%make_group(place)
-      call file%put(place//'/opening', opening_at_points(now%joints(j)))
-      call file%put(place//'/slip', now%joints(j)%slip)
-      call file%put(place//'/traction', now%joints(j)%traction)
-      call file%put(place//'/state', now%joints(j)%status)
-      if (allocated(now%joints(j)%water)) call file%put(place//'/water', now%joints(j)%water)
-    end do
-  end subroutine add_joints
 
   !> Frequencies, effective masses and shapes of a *FREQUENCY step.
   subroutine write_mode_data(self, scene, step, modes, record, error)
@@ -211,9 +180,10 @@ contains
   end subroutine write_mode_data
 
   !> The envelopes of the step that has ended.
-  subroutine write_envelope_data(self, record, error)
+  subroutine write_envelope_data(self, scene, record, error)
     class(hdf5_results), intent(inout) :: self
-    type(run_record), intent(in) :: record
+    type(problem), intent(in) :: scene
+    type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     character(:), allocatable :: group
     integer :: i

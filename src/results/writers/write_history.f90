@@ -7,20 +7,21 @@ module write_history
   use step_plan, only: print_request
   use run_records, only: run_record
   use result_writer, only: writer, is_due
-  use law_fields, only: is_field_of_law
-  use history_rows, only: name_part, header_of, columns_of, add_node_rows, add_element_rows, &
+  use requested_fields, only: is_of_law
+  use field_table, only: find_field
+  use history_rows, only: name_part, keyword_of, header_of, add_node_rows, add_element_rows, &
                           add_joint_rows
   use csv_files, only: csv_file
   use file_system, only: safe_name, file_name
   use write_text, only: as_text
   implicit none
   private
-  public :: history_files, open_histories
+  public :: history_files
 
   !> One file. Its columns are all fields that any step asks for.
   type, extends(csv_file) :: history_file
     character(:), allocatable :: kind, name
-    character(8), allocatable :: fields(:)
+    integer, allocatable :: fields(:) !< rows of the record's table
     integer :: joint = 0 !< position of the joint, 0 for other kinds
   end type history_file
 
@@ -28,31 +29,32 @@ module write_history
     private
     type(history_file), allocatable :: files(:)
   contains
+    procedure :: open => open_histories
     procedure :: write_increment => write_rows
     procedure :: finish => close_files
   end type history_files
 
 contains
 
-  !> Opens a file for each set and joint that a step prints. `stem`: folder and name of the job.
-  subroutine open_histories(scene, stem, record, histories, error)
+  !> Opens a file for each set and joint that a step prints.
+  subroutine open_histories(self, scene, stem, record, error)
+    class(history_files), intent(inout) :: self
     type(problem), intent(in) :: scene
     character(*), intent(in) :: stem
     type(run_record), intent(inout) :: record
-    type(history_files), intent(out) :: histories
     type(error_type), allocatable, intent(out) :: error
     integer :: s, r, f
-    allocate (histories%files(0))
+    allocate (self%files(0))
     do s = 1, size(scene%steps)
       if (.not. allocated(scene%steps(s)%prints)) cycle
       do r = 1, size(scene%steps(s)%prints)
-        call add_request(scene, scene%steps(s)%prints(r), record, histories%files)
+        call add_request(scene, scene%steps(s)%prints(r), record, self%files)
       end do
     end do
-    do f = 1, size(histories%files)
-      associate (file => histories%files(f))
-        call file%open(stem//'_'//name_part(file%kind)//'_'//own_name(histories%files, f)//'.csv', &
-                       header_of(scene, file%kind, file%fields), error)
+    do f = 1, size(self%files)
+      associate (file => self%files(f))
+        call file%open(stem//'_'//name_part(file%kind)//'_'//own_name(self%files, f)//'.csv', &
+                       header_of(scene, record%fields, file%kind, file%fields), error)
         if (allocated(error)) return
         call record%list_file(file_name(file%path))
       end associate
@@ -80,7 +82,7 @@ contains
     type(run_record), intent(inout) :: record
     type(history_file), allocatable, intent(inout) :: files(:)
     type(history_file), allocatable :: more(:)
-    integer :: f, i
+    integer :: f, i, k
     f = find_file(files, request)
     if (f == 0) then
       f = size(files) + 1
@@ -93,15 +95,28 @@ contains
       call move_alloc(more, files)
     end if
     do i = 1, size(request%fields)
-      if (any(files(f)%fields == request%fields(i))) cycle
-      if (columns_of(scene, request%kind, request%fields(i)) /= '') then
-        files(f)%fields = [character(8) :: files(f)%fields, request%fields(i)]
-      else if (request%kind /= 'JOINT' .and. .not. is_field_of_law(request%fields(i))) then
+      k = find_field(record%fields, trim(request%fields(i)))
+      if (any(files(f)%fields == k)) cycle
+      if (is_printed(scene, record, request%kind, k)) then
+        files(f)%fields = [files(f)%fields, k]
+      else if (request%kind /= 'JOINT' .and. .not. is_of_law(record, k)) then
         call record%warn_once(trim(request%fields(i))//' of '//request%name// &
                               ' is not printed: this analysis does not have it')
       end if
     end do
   end subroutine add_request
+
+  !> Does this model have the field for such a table?
+  logical function is_printed(scene, record, kind, f)
+    type(problem), intent(in) :: scene
+    type(run_record), intent(in) :: record
+    character(*), intent(in) :: kind !< 'NODE', 'ELEMENT' or 'JOINT'
+    integer, intent(in) :: f !< row of the record's table, 0: an unknown field
+    is_printed = .false.
+    if (f == 0) return
+    if (.not. record%fields(f)%may_stand_in(keyword_of(kind))) return
+    is_printed = record%fields(f)%width(scene) > 0
+  end function is_printed
 
   !> Position of the file of a request, 0 when there is none yet.
   pure integer function find_file(files, request) result(found)
@@ -129,12 +144,11 @@ contains
         if (size(chosen) == 0) cycle
         select case (file%kind)
         case ('NODE')
-          call add_node_rows(file%lines, scene, now, file%fields, chosen)
+          call add_node_rows(file%lines, scene, now, record, file%fields, chosen)
         case ('ELEMENT')
-          call record%stresses%need_points(scene, now)
-          call add_element_rows(file%lines, scene, now, record%stresses, file%fields, chosen)
+          call add_element_rows(file%lines, scene, now, record, file%fields, chosen)
         case default
-          call add_joint_rows(file%lines, scene, now, file%joint, chosen)
+          call add_joint_rows(file%lines, scene, now, record, file%joint, chosen)
         end select
         call file%save(error)
         if (allocated(error)) return

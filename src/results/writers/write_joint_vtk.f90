@@ -6,16 +6,18 @@ module write_joint_vtk
   use analysis_state, only: state
   use run_records, only: run_record
   use result_writer, only: writer
-  use requested_fields, only: list_due_fields
-  use joint_surface, only: drawn_joints, find_drawn_joints, values_on_corners, &
-                           states_on_corners, nodes_to_corners, num_values
+  use requested_fields, only: list_due_fields, asks_for_joints
+  use field_table, only: find_field
+  use field_type, only: result_field
+  use joint_surface, only: drawn_joints, joint_values, find_drawn_joints, means_on_corners, &
+                           heaviest_on_corners, nodes_to_corners
   use vtk_order, only: cell_of_polygon
   use vtu_files, only: vtu_file
   use pvd_files, only: pvd_file, frame_name
-  use file_system, only: make_folder
+  use file_system, only: file_name, make_folder
   implicit none
   private
-  public :: joint_series, open_joint_vtk
+  public :: joint_series
 
   type, extends(writer) :: joint_series
     private
@@ -26,6 +28,7 @@ module write_joint_vtk
     type(drawn_joints) :: drawn
     type(pvd_file) :: frames
   contains
+    procedure :: open => open_joint_vtk
     procedure :: write_increment => write_frame
     procedure, private :: prepare
     procedure, private :: fill
@@ -33,31 +36,35 @@ module write_joint_vtk
 
 contains
 
-  !> Nothing is written before something is due. `results` is the folder with a slash at its end.
-  subroutine open_joint_vtk(results, job, series)
-    character(*), intent(in) :: results, job
-    type(joint_series), intent(out) :: series
-    series%folder = results//job//'_vtk/'
-    series%stem = job//'_joints'
-    call series%frames%open(results//series%stem//'.pvd', job//'_vtk/')
+  !> Nothing is written before something is due.
+  subroutine open_joint_vtk(self, scene, stem, record, error)
+    class(joint_series), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    character(*), intent(in) :: stem
+    type(run_record), intent(inout) :: record
+    type(error_type), allocatable, intent(out) :: error
+    self%is_idle = size(scene%joints) == 0
+    self%folder = stem//'_vtk/'
+    self%stem = file_name(stem)//'_joints'
+    call self%frames%open(stem//'_joints.pvd', file_name(stem)//'_vtk/')
   end subroutine open_joint_vtk
 
-  !> One file of the series, when OPENING is due.
+  !> One file of the series, when a field of joints is due.
   subroutine write_frame(self, scene, now, record, error)
     class(joint_series), intent(inout) :: self
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
-    character(8), allocatable :: fields(:)
+    integer, allocatable :: fields(:)
     type(vtu_file) :: file
     call list_due_fields(scene, now, record, fields)
     if (size(fields) == 0) return
     self%num_frames = self%num_frames + 1
-    if (.not. any(fields == 'OPENING')) return
+    if (.not. asks_for_joints(record, fields)) return
     call self%prepare(scene, error)
     if (allocated(error) .or. self%drawn%num_cells == 0) return
-    call self%fill(scene, now, file)
+    call self%fill(scene, now, record, file)
     call file%save(self%folder//frame_name(self%stem, self%num_frames), error)
     if (allocated(error)) return
     call self%frames%add(now%total_time, frame_name(self%stem, self%num_frames), error)
@@ -77,38 +84,55 @@ contains
   end subroutine prepare
 
   !> Polygons and fields.
-  subroutine fill(self, scene, now, file)
+  subroutine fill(self, scene, now, record, file)
     class(joint_series), intent(in) :: self
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
+    type(run_record), intent(in) :: record
     type(vtu_file), intent(inout) :: file
-    real(rk) :: values(num_values, self%drawn%num_corners)
+    integer :: i
     associate (drawn => self%drawn, ends => self%drawn%first(2:) - 1)
       call file%start(nodes_to_corners(drawn, scene%mesh%x), drawn%corner - 1, ends, &
                       cell_of_polygon(drawn%first(2:) - drawn%first(:drawn%num_cells)))
-      call values_on_corners(scene, now, drawn, values)
       call file%put_point_integers('NODE_ID', node_numbers(scene, drawn))
-      call file%put_point_reals('U', nodes_to_corners(drawn, now%u), 'U1,U2,U3')
-      call file%put_point_reals('OPENING', values(1:1, :), '')
-      call file%put_point_reals('SLIP', values(2:3, :), 'SLIP1,SLIP2')
-      call file%put_point_reals('TRACTION', values(4:6, :), 'TN,T1,T2')
-      call file%put_point_integers('STATE', states_on_corners(now, drawn))
-      call file%put_point_reals('REACH_USED', values(7:7, :), '')
-      if (any_water(now)) call file%put_point_reals('WATER', values(8:8, :), '')
+      associate (moved => record%fields(find_field(record%fields, 'U')))
+        call file%put_point_reals(moved%name, nodes_to_corners(drawn, now%u), moved%components(3))
+      end associate
+      do i = 1, size(record%fields)
+        if (associated(record%fields(i)%of_joint)) then
+          call put_field(file, scene, now, drawn, record%fields(i))
+        end if
+      end do
       call file%put_cell_integers('JOINT', drawn%joint)
       call file%put_cell_integers('ELEMENT_ID', scene%mesh%element_id(drawn%element))
     end associate
   end subroutine fill
 
-  !> Is there water in a joint?
-  pure logical function any_water(now)
+  !> One field of the points of all joints; nothing where no joint has the field.
+  subroutine put_field(file, scene, now, drawn, item)
+    type(vtu_file), intent(inout) :: file
+    type(problem), intent(in) :: scene
     type(state), intent(in) :: now
+    type(drawn_joints), intent(in) :: drawn
+    type(result_field), intent(in) :: item
+    type(joint_values) :: of_joints(size(scene%joints))
+    real(rk), allocatable :: means(:, :)
+    logical :: is_there
     integer :: j
-    any_water = .false.
-    do j = 1, size(now%joints)
-      any_water = any_water .or. allocated(now%joints(j)%water)
+    is_there = .false.
+    do j = 1, size(scene%joints)
+      call item%of_joint(scene, now, j, of_joints(j)%at)
+      is_there = is_there .or. allocated(of_joints(j)%at)
     end do
-  end function any_water
+    if (.not. is_there) return
+    if (item%is_integer) then
+      call file%put_point_integers(item%name, heaviest_on_corners(drawn, of_joints))
+    else
+      allocate (means(item%width(scene), drawn%num_corners))
+      call means_on_corners(drawn, of_joints, means)
+      call file%put_point_reals(item%name, means, item%components(size(means, 1)))
+    end if
+  end subroutine put_field
 
   !> The deck's number of the slave node that a corner lies on; 0 between nodes.
   pure function node_numbers(scene, drawn) result(number)

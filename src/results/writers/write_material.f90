@@ -3,6 +3,8 @@ module write_material
   use errors, only: error_type
   use kinds, only: rk
   use csv_files, only: csv_file
+  use field_table, only: find_field, list_fields
+  use field_type, only: by_law, result_field
   use material_law, only: stress_law
   use material_path, only: path_record
   use material_points, only: stored_energy, fracture_energy, crushing_energy
@@ -11,9 +13,6 @@ module write_material
   implicit none
   private
   public :: write_curve
-
-  character(2), parameter :: components(6) = ['11', '22', '33', '12', '13', '23']
-  character(8), parameter :: fields(4) = [character(8) :: 'PE', 'DAMAGET', 'DAMAGEC', 'SDV']
 
 contains
 
@@ -28,8 +27,8 @@ contains
     real(rk), allocatable :: extra(:, :)
     integer :: i, row
     call collect_fields(law, record, names, extra)
-    call file%open(path, 'leg,increment,time'//tensor_names('E')//tensor_names('S')// &
-                   ',S1,S2,S3'//names//',work,stored,fracture,crushing,iterations', error)
+    call file%open(path, 'leg,increment,time,'//names// &
+                   ',work,stored,fracture,crushing,iterations', error)
     if (allocated(error)) return
     associate (state => record%state, lines => file%lines)
       do row = 1, record%num_rows
@@ -53,44 +52,29 @@ contains
     if (.not. allocated(error)) call file%close(error)
   end subroutine write_curve
 
-  !> What the law keeps besides strain and stress: only fields that it has.
+  !> What the law keeps besides strain and stress: only fields that the law has.
   subroutine collect_fields(law, record, names, values)
     class(stress_law), intent(in) :: law
     type(path_record), intent(in) :: record
-    character(:), allocatable, intent(out) :: names !< ',PE11,PE22,...'
+    character(:), allocatable, intent(out) :: names !< of strain, stress and all `values`
     real(rk), allocatable, intent(out) :: values(:, :) !< (columns, rows)
+    type(result_field), allocatable :: table(:)
     real(rk), allocatable :: field(:, :), longer(:, :)
-    integer :: i, k, num
-    names = ''
+    integer :: i, num
+    call list_fields(table)
+    names = table(find_field(table, 'E'))%columns(6)//','// &
+            table(find_field(table, 'S'))%columns(6)//',S1,S2,S3'
     allocate (values(0, record%num_rows))
-    do i = 1, size(fields)
-      call law%read_field(trim(fields(i)), record%state, field)
+    do i = 1, size(table)
+      if (table(i)%provider /= by_law) cycle
+      call law%read_field(table(i)%name, record%state, field)
       if (.not. allocated(field)) cycle
       num = size(values, 1)
       allocate (longer(num + size(field, 1), record%num_rows))
       longer(:num, :) = values
       longer(num + 1:, :) = field
       call move_alloc(longer, values)
-      if (fields(i) == 'PE') then
-        names = names//tensor_names('PE')
-      else if (fields(i) == 'SDV') then
-        do k = 1, size(field, 1)
-          names = names//',SDV'//text_of(k)
-        end do
-      else
-        names = names//','//trim(fields(i))
-      end if
+      names = names//','//table(i)%columns(size(field, 1))
     end do
   end subroutine collect_fields
-
-  !> ',E11,E22,E33,E12,E13,E23'
-  pure function tensor_names(letters) result(names)
-    character(*), intent(in) :: letters
-    character(:), allocatable :: names
-    integer :: i
-    names = ''
-    do i = 1, size(components)
-      names = names//','//letters//components(i)
-    end do
-  end function tensor_names
 end module write_material

@@ -7,17 +7,18 @@ module write_vtk
   use element_catalogue, only: is_solid
   use run_records, only: run_record
   use result_writer, only: writer
-  use requested_fields, only: list_due_fields, field_on_nodes, components_of, is_tensor
+  use requested_fields, only: list_due_fields
+  use field_table, only: find_field
   use law_fields, only: mean_of_elements
   use envelopes, only: name_of_field
   use vtk_order, only: tensor_in_vtk_order, tensor_names_in_vtk_order, cell_of_solid
   use vtu_files, only: vtu_file
   use pvd_files, only: pvd_file, frame_name
   use text_buffers, only: text_of
-  use file_system, only: make_folder
+  use file_system, only: file_name, make_folder
   implicit none
   private
-  public :: vtk_series, open_vtk
+  public :: vtk_series
 
   type, extends(writer) :: vtk_series
     private
@@ -28,6 +29,7 @@ module write_vtk
     integer, allocatable :: connectivity(:), ends(:), kinds(:), elements(:) !< of the solids' cells
     type(pvd_file) :: frames
   contains
+    procedure :: open => open_vtk
     procedure :: write_increment => write_frame
     procedure :: write_modes => write_mode_shapes
     procedure :: write_envelopes
@@ -37,13 +39,16 @@ module write_vtk
 
 contains
 
-  !> Nothing is written before something is due. `results` is the folder with a slash at its end.
-  subroutine open_vtk(results, job, series)
-    character(*), intent(in) :: results, job
-    type(vtk_series), intent(out) :: series
-    series%folder = results//job//'_vtk/'
-    series%job = job
-    call series%frames%open(results//job//'.pvd', job//'_vtk/')
+  !> Nothing is written before something is due.
+  subroutine open_vtk(self, scene, stem, record, error)
+    class(vtk_series), intent(inout) :: self
+    type(problem), intent(in) :: scene
+    character(*), intent(in) :: stem
+    type(run_record), intent(inout) :: record
+    type(error_type), allocatable, intent(out) :: error
+    self%folder = stem//'_vtk/'
+    self%job = file_name(stem)
+    call self%frames%open(stem//'.pvd', self%job//'_vtk/')
   end subroutine open_vtk
 
   !> One file of the series, when a request is due.
@@ -53,7 +58,7 @@ contains
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
-    character(8), allocatable :: fields(:)
+    integer, allocatable :: fields(:)
     real(rk), allocatable :: mean(:)
     type(vtu_file) :: file
     integer :: i
@@ -65,10 +70,11 @@ contains
     call self%start_grid(scene, file)
     do i = 1, size(fields)
       call put_field(file, scene, now, record, fields(i))
-      if (fields(i) == 'DAMAGET' .or. fields(i) == 'DAMAGEC') then
-        call mean_of_elements(scene, now, fields(i), mean)
-        call file%put_cell_reals(trim(fields(i))//'_MEAN', mean(self%elements))
-      end if
+      associate (item => record%fields(fields(i)))
+        if (.not. item%has_means) cycle
+        call mean_of_elements(scene, now, item%name, mean)
+        call file%put_cell_reals(item%name//'_MEAN', mean(self%elements))
+      end associate
     end do
     call file%save(self%folder//frame_name(self%job, self%num_frames), error)
     if (allocated(error)) return
@@ -77,20 +83,22 @@ contains
   end subroutine write_frame
 
   !> One field on the nodes.
-  subroutine put_field(file, scene, now, record, name)
+  subroutine put_field(file, scene, now, record, f)
     type(vtu_file), intent(inout) :: file
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
-    character(*), intent(in) :: name
+    integer, intent(in) :: f !< row of the record's table
     real(rk), allocatable :: values(:, :)
-    call field_on_nodes(scene, now, record, name, values)
-    if (is_tensor(name)) then
-      call file%put_point_reals(trim(name), tensor_in_vtk_order(values), &
-                                tensor_names_in_vtk_order(trim(name)))
-    else
-      call file%put_point_reals(trim(name), values, components_of(name, size(values, 1)))
-    end if
+    associate (item => record%fields(f))
+      call item%on_nodes(scene, now, record%stresses, values)
+      if (item%is_tensor()) then
+        call file%put_point_reals(item%name, tensor_in_vtk_order(values), &
+                                  tensor_names_in_vtk_order(item%name))
+      else
+        call file%put_point_reals(item%name, values, item%components(size(values, 1)))
+      end if
+    end associate
   end subroutine put_field
 
   !> The envelopes of a step in one file; nothing where the step has none.
@@ -145,14 +153,16 @@ contains
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     type(vtu_file) :: file
+    character(:), allocatable :: names
     character(5) :: number
     integer :: i
+    names = record%fields(find_field(record%fields, 'U'))%components(3)
     call self%prepare(scene, error)
     if (allocated(error)) return
     call self%start_grid(scene, file)
     do i = 1, size(modes)
       write (number, '(i5.2)') i
-      call file%put_point_reals('MODE_'//trim(adjustl(number)), modes(i)%shape, 'U1,U2,U3')
+      call file%put_point_reals('MODE_'//trim(adjustl(number)), modes(i)%shape, names)
     end do
     call save_listed(self, file, '_modes_step'//text_of(step)//'.vtu', record, error)
   end subroutine write_mode_shapes

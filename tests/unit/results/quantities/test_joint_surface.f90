@@ -11,12 +11,16 @@ program test_joint_surface
   use joint_contraction, only: contraction_law
   use joint_points, only: joint
   use joint_readings, only: joint_record, open_joint_record, opening_at_nodes
-  use joint_surface, only: drawn_joints, find_drawn_joints, values_on_corners, &
-                           states_on_corners, nodes_to_corners, num_values
+  use field_table, only: find_field, list_fields
+  use field_type, only: result_field
+  use joint_surface, only: drawn_joints, joint_values, find_drawn_joints, means_on_corners, &
+                           heaviest_on_corners, nodes_to_corners
   use mesh_faces, only: find_exterior
   use problem_definition, only: problem
   use testing, only: test_log, check, check_close
   implicit none
+  character(10), parameter :: shown(4) = ['OPENING   ', 'SLIP      ', 'TRACTION  ', 'REACH_USED']
+  integer, parameter :: num_values = 7 !< components of the fields above
   real(rk), parameter :: roundoff = 1.0e-15_rk !< of sums of a few numbers of order 1
   type(test_log) :: log
   log%suite = 'joint_surface'
@@ -69,6 +73,40 @@ contains
     now%u = 2.0_rk*scene%mesh%x
   end subroutine move_points
 
+  !> The fields of `shown` on the corners, one below the other.
+  subroutine values_on_corners(scene, now, drawn, values)
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(drawn_joints), intent(in) :: drawn
+    real(rk), intent(out) :: values(:, :) !< (num_values, corners)
+    type(result_field), allocatable :: table(:)
+    type(joint_values) :: of_joint(1)
+    integer :: i, row, width
+    call list_fields(table)
+    row = 0
+    do i = 1, size(shown)
+      associate (item => table(find_field(table, trim(shown(i)))))
+        width = item%width(scene)
+        call item%of_joint(scene, now, 1, of_joint(1)%at)
+        call means_on_corners(drawn, of_joint, values(row + 1:row + width, :))
+        row = row + width
+      end associate
+    end do
+  end subroutine values_on_corners
+
+  !> STATE on the corners.
+  function states_on_corners(scene, now, drawn) result(states)
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(drawn_joints), intent(in) :: drawn
+    integer :: states(drawn%num_corners)
+    type(result_field), allocatable :: table(:)
+    type(joint_values) :: of_joint(1)
+    call list_fields(table)
+    call table(find_field(table, 'STATE'))%of_joint(scene, now, 1, of_joint(1)%at)
+    states = heaviest_on_corners(drawn, of_joint)
+  end function states_on_corners
+
   !> Eight corners, since the edge is drawn once for each plane, with the points of that plane.
   subroutine a_kink_shows_each_plane(log)
     type(test_log), intent(inout) :: log
@@ -85,7 +123,7 @@ contains
     call check(log, drawn%num_cells == 2 .and. drawn%num_corners == 8, 'two cells, eight corners')
     allocate (values(num_values, drawn%num_corners))
     call values_on_corners(scene, now, drawn, values)
-    states = states_on_corners(now, drawn)
+    states = states_on_corners(scene, now, drawn)
     u = nodes_to_corners(drawn, now%u)
     is_right = .true.
     do c = 1, 2

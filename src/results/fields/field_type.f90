@@ -1,0 +1,219 @@
+!> A field of results: one row of the table in `field_table`.
+module field_type
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use analysis_state, only: state
+  use stress_fields, only: recovered_fields
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: result_field
+  public :: at_nodes, at_points, at_joints, on_faces, place_names
+  public :: by_solver, by_recovery, by_law, by_joint
+  public :: scalar, vector, tensor, counted
+  public :: values_on_nodes, values_at_points, values_of_block, values_of_joint, width_of, presence
+
+  !> Where the values of a field live.
+  integer, parameter :: at_nodes = 1
+  integer, parameter :: at_points = 2 !< integration points of solids; means of them on nodes
+  integer, parameter :: at_joints = 3 !< points of joints
+  integer, parameter :: on_faces = 4 !< points of joints, drawn on the faces of joints alone
+  character(12), parameter :: place_names(4) = ['nodes       ', 'solid points', 'joint points', &
+                                                'joint faces ']
+
+  !> Who computes a field.
+  character(*), parameter :: by_solver = 'equations of motion'
+  character(*), parameter :: by_recovery = 'stress recovery'
+  character(*), parameter :: by_law = 'material law'
+  character(*), parameter :: by_joint = 'joint law'
+
+  !> Endings of the names of components.
+  character(*), parameter :: scalar = ''
+  character(*), parameter :: vector = '1,2,3'
+  character(*), parameter :: tensor = '11,22,33,12,13,23'
+  character(*), parameter :: counted = '1,2,..' !< as many as the model has
+
+  type :: result_field
+    character(:), allocatable :: name !< upper case; at most 8 letters where a deck may name it
+    character(:), allocatable :: meaning !< a noun and what belongs to it
+    character(:), allocatable :: remark !< sentences; '' where the meaning says all
+    character(:), allocatable :: unit !< in SI; '1' for a pure number
+    character(:), allocatable :: provider !< who computes it
+    character(:), allocatable :: endings !< of the names of components, commas between
+    character(:), allocatable :: stem !< that the endings follow
+    character(:), allocatable :: requests !< keywords that may name it, ' | ' between
+    integer :: place = at_nodes
+    logical :: is_integer = .false. !< whole numbers, of which no mean is taken
+    logical :: has_means = .false. !< also written as mean over each element
+    logical :: wants_smallest = .false. !< the envelope keeps the smallest value
+    procedure(width_of), pointer :: count => null() !< null: as many as there are endings
+    procedure(presence), pointer :: is_there => null() !< null: whenever the model has the field
+    procedure(values_on_nodes), pointer :: on_nodes => null()
+    procedure(values_at_points), pointer :: of_solids => null()
+    procedure(values_of_block), pointer :: of_block => null()
+    procedure(values_of_joint), pointer :: of_joint => null()
+  contains
+    procedure :: width
+    procedure :: num_endings
+    procedure :: is_available
+    procedure :: may_stand_in
+    procedure :: component
+    procedure :: components
+    procedure :: columns
+    procedure :: is_tensor
+  end type result_field
+
+  abstract interface
+    !> Number of components in this model; 0 where the model does not have the field.
+    integer function width_of(self, scene)
+      import :: result_field, problem
+      implicit none
+      class(result_field), intent(in) :: self
+      type(problem), intent(in) :: scene
+    end function width_of
+
+    !> Does the analysis have the field now?
+    logical function presence(self, scene, now)
+      import :: result_field, problem, state
+      implicit none
+      class(result_field), intent(in) :: self
+      type(problem), intent(in) :: scene
+      type(state), intent(in) :: now
+    end function presence
+
+    !> Values on all nodes.
+    subroutine values_on_nodes(self, scene, now, stresses, values)
+      import :: result_field, problem, state, recovered_fields, rk
+      implicit none
+      class(result_field), intent(in) :: self
+      type(problem), intent(in) :: scene
+      type(state), intent(in) :: now
+      type(recovered_fields), intent(inout) :: stresses !< of this increment
+      real(rk), allocatable, intent(out) :: values(:, :) !< (components, nodes); unallocated: none
+    end subroutine values_on_nodes
+
+    !> Values at the integration points of some solids.
+    subroutine values_at_points(self, scene, now, stresses, solids, values)
+      import :: result_field, problem, state, recovered_fields, rk
+      implicit none
+      class(result_field), intent(in) :: self
+      type(problem), intent(in) :: scene
+      type(state), intent(in) :: now
+      type(recovered_fields), intent(inout) :: stresses !< of this increment
+      integer, intent(in) :: solids(:) !< numbers of the recovery plan
+      real(rk), allocatable, intent(out) :: values(:, :, :) !< (components, max_points, solids)
+    end subroutine values_at_points
+
+    !> Values at the points of an inelastic block.
+    subroutine values_of_block(self, scene, now, block, values)
+      import :: result_field, problem, state, rk
+      implicit none
+      class(result_field), intent(in) :: self
+      type(problem), intent(in) :: scene
+      type(state), intent(in) :: now
+      integer, intent(in) :: block !< position in the problem's list
+      real(rk), allocatable, intent(out) :: values(:, :) !< (components, points); unallocated: zero
+    end subroutine values_of_block
+
+    !> Values at the points of a joint.
+    subroutine values_of_joint(self, scene, now, number, values)
+      import :: result_field, problem, state, rk
+      implicit none
+      class(result_field), intent(in) :: self
+      type(problem), intent(in) :: scene
+      type(state), intent(in) :: now
+      integer, intent(in) :: number !< position of the joint
+      real(rk), allocatable, intent(out) :: values(:, :) !< (components, points); unallocated: none
+    end subroutine values_of_joint
+  end interface
+
+contains
+
+  !> Number of components in this model; 0 where the model does not have the field.
+  integer function width(self, scene)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    if (associated(self%count)) then
+      width = self%count(scene)
+    else
+      width = self%num_endings()
+    end if
+  end function width
+
+  !> Number of components that have names of their own; 1 for a scalar.
+  pure integer function num_endings(self)
+    class(result_field), intent(in) :: self
+    integer :: i
+    num_endings = 1 + count([(self%endings(i:i) == ',', i=1, len(self%endings))])
+  end function num_endings
+
+  !> Does the analysis have the field now?
+  logical function is_available(self, scene, now)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    is_available = self%width(scene) > 0
+    if (is_available .and. associated(self%is_there)) is_available = self%is_there(scene, now)
+  end function is_available
+
+  !> May a card of this keyword name the field?
+  pure logical function may_stand_in(self, keyword)
+    class(result_field), intent(in) :: self
+    character(*), intent(in) :: keyword !< 'NODE PRINT', ...
+    may_stand_in = index('| '//self%requests//' |', '| '//keyword//' |') > 0
+  end function may_stand_in
+
+  !> Name of a component: 'U1', 'S11', 'TN'.
+  pure function component(self, number) result(name)
+    class(result_field), intent(in) :: self
+    integer, intent(in) :: number !< from 1
+    character(:), allocatable :: name
+    integer :: i, first, last
+    if (self%endings == counted) then
+      name = self%stem//as_text(number)
+      return
+    end if
+    first = 1
+    do i = 2, number
+      first = first + index(self%endings(first:), ',')
+    end do
+    last = first + index(self%endings(first:)//',', ',') - 2
+    name = self%stem//self%endings(first:last)
+  end function component
+
+  !> Names of the components with commas between; '' for one.
+  pure function components(self, width) result(list)
+    class(result_field), intent(in) :: self
+    integer, intent(in) :: width !< how many
+    character(:), allocatable :: list
+    list = ''
+    if (width > 1) list = joined(self, width)
+  end function components
+
+  !> Names of the columns of a table, commas between; '' where the field has no component.
+  pure function columns(self, width) result(list)
+    class(result_field), intent(in) :: self
+    integer, intent(in) :: width !< how many
+    character(:), allocatable :: list
+    list = joined(self, width)
+  end function columns
+
+  !> Names of components with commas between.
+  pure function joined(item, width) result(list)
+    class(result_field), intent(in) :: item
+    integer, intent(in) :: width !< how many
+    character(:), allocatable :: list
+    integer :: i
+    list = ''
+    do i = 1, width
+      if (i > 1) list = list//','
+      list = list//item%component(i)
+    end do
+  end function joined
+
+  !> Is the field a symmetric tensor, ordered 11 22 33 12 13 23?
+  pure logical function is_tensor(self)
+    class(result_field), intent(in) :: self
+    is_tensor = self%endings == tensor
+  end function is_tensor
+end module field_type

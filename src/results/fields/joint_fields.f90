@@ -1,0 +1,107 @@
+!> Fields of joints: at their points, and the opening on nodes.
+module joint_fields
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use analysis_state, only: state
+  use joint_readings, only: opening_at_points, opening_at_nodes
+  use stress_fields, only: recovered_fields
+  use field_type, only: result_field
+  implicit none
+  private
+  public :: has_joints, opening_on_nodes
+  public :: opening_of_joint, slip_of_joint, traction_of_joint, state_of_joint
+  public :: used_reach_of_joint, water_of_joint
+
+contains
+
+  !> The model has joints.
+  logical function has_joints(self, scene, now)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    has_joints = size(scene%joints) > 0
+  end function has_joints
+
+  !> OPENING on the nodes of joints, zero on others.
+  subroutine opening_on_nodes(self, scene, now, stresses, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(recovered_fields), intent(inout) :: stresses
+    real(rk), allocatable, intent(out) :: values(:, :) !< (1, nodes) [m]
+    values = reshape(opening_at_nodes(scene, now), [1, scene%mesh%num_nodes])
+  end subroutine opening_on_nodes
+
+  !> OPENING.
+  subroutine opening_of_joint(self, scene, now, number, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    integer, intent(in) :: number
+    real(rk), allocatable, intent(out) :: values(:, :) !< (1, points) [m]
+    values = one_row(opening_at_points(now%joints(number)))
+  end subroutine opening_of_joint
+
+  !> SLIP.
+  subroutine slip_of_joint(self, scene, now, number, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    integer, intent(in) :: number
+    real(rk), allocatable, intent(out) :: values(:, :) !< (2, points) [m]
+    values = now%joints(number)%slip
+  end subroutine slip_of_joint
+
+  !> TRACTION.
+  subroutine traction_of_joint(self, scene, now, number, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    integer, intent(in) :: number
+    real(rk), allocatable, intent(out) :: values(:, :) !< (3, points) [Pa]
+    values = now%joints(number)%traction
+  end subroutine traction_of_joint
+
+  !> STATE, a whole number.
+  subroutine state_of_joint(self, scene, now, number, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    integer, intent(in) :: number
+    real(rk), allocatable, intent(out) :: values(:, :) !< (1, points)
+    values = one_row(real(now%joints(number)%status, rk))
+  end subroutine state_of_joint
+
+  !> REACH_USED; 0 where nothing limits the slip.
+  subroutine used_reach_of_joint(self, scene, now, number, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    integer, intent(in) :: number
+    real(rk), allocatable, intent(out) :: values(:, :) !< (1, points)
+    integer :: p
+    associate (jump => now%joints(number)%jump, reach => scene%joints(number)%reach)
+      allocate (values(1, size(reach)), source=0.0_rk)
+      do p = 1, size(reach)
+        if (reach(p) < huge(1.0_rk)) values(1, p) = hypot(jump(2, p), jump(3, p))/reach(p)
+      end do
+    end associate
+  end subroutine used_reach_of_joint
+
+  !> WATER; joints without uplift have none.
+  subroutine water_of_joint(self, scene, now, number, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    integer, intent(in) :: number
+    real(rk), allocatable, intent(out) :: values(:, :) !< (1, points) [Pa]
+    if (allocated(now%joints(number)%water)) values = one_row(now%joints(number)%water)
+  end subroutine water_of_joint
+
+  !> A list as a table of one row.
+  pure function one_row(list) result(row)
+    real(rk), intent(in) :: list(:)
+    real(rk) :: row(1, size(list))
+    row(1, :) = list
+  end function one_row
+end module joint_fields

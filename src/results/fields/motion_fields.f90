@@ -1,0 +1,70 @@
+!> Fields that the equations of motion give on the nodes.
+module motion_fields
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use analysis_state, only: state
+  use stress_fields, only: recovered_fields
+  use field_type, only: result_field
+  implicit none
+  private
+  public :: displacement, velocity, acceleration, reaction
+  public :: has_motion, has_reactions
+
+contains
+
+  !> U.
+  subroutine displacement(self, scene, now, stresses, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(recovered_fields), intent(inout) :: stresses
+    real(rk), allocatable, intent(out) :: values(:, :) !< (3, nodes) [m]
+    values = now%u
+  end subroutine displacement
+
+  !> V.
+  subroutine velocity(self, scene, now, stresses, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(recovered_fields), intent(inout) :: stresses
+    real(rk), allocatable, intent(out) :: values(:, :) !< (3, nodes) [m/s]
+    if (allocated(now%v)) values = now%v
+  end subroutine velocity
+
+  !> A.
+  subroutine acceleration(self, scene, now, stresses, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(recovered_fields), intent(inout) :: stresses
+    real(rk), allocatable, intent(out) :: values(:, :) !< (3, nodes) [m/s2]
+    if (allocated(now%a)) values = now%a
+  end subroutine acceleration
+
+  !> RF.
+  subroutine reaction(self, scene, now, stresses, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(recovered_fields), intent(inout) :: stresses
+    real(rk), allocatable, intent(out) :: values(:, :) !< (3, nodes) [N]
+    if (allocated(now%reaction)) values = now%reaction
+  end subroutine reaction
+
+  !> Velocities and accelerations belong to dynamic steps.
+  logical function has_motion(self, scene, now)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    has_motion = allocated(now%v) .and. allocated(now%a)
+  end function has_motion
+
+  !> The solver has formed the reactions.
+  logical function has_reactions(self, scene, now)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    has_reactions = allocated(now%reaction)
+  end function has_reactions
+end module motion_fields

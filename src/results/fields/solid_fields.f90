@@ -1,0 +1,175 @@
+!> Fields of solids: at integration points, in inelastic blocks, and as means on nodes.
+module solid_fields
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use analysis_state, only: state
+  use law_fields, only: field_at_points, field_of_block, width_of_field
+  use stress_fields, only: recovered_fields
+  use tensor6, only: principal_values
+  use field_type, only: result_field
+  implicit none
+  private
+  public :: stress_on_nodes, stress_of_solids, stress_of_block
+  public :: strain_on_nodes, strain_of_solids, strain_of_block
+  public :: principals_on_nodes, principals_of_solids, largest_on_nodes, smallest_on_nodes
+  public :: law_width, law_on_nodes, law_of_solids, law_of_block
+
+contains
+
+  !> S on nodes.
+  subroutine stress_on_nodes(self, scene, now, stresses, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(recovered_fields), intent(inout) :: stresses
+    real(rk), allocatable, intent(out) :: values(:, :) !< (6, nodes) [Pa]
+    call stresses%need_node_stress(scene, now)
+    values = stresses%node_stress
+  end subroutine stress_on_nodes
+
+  !> S at points.
+  subroutine stress_of_solids(self, scene, now, stresses, solids, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(recovered_fields), intent(inout) :: stresses
+    integer, intent(in) :: solids(:)
+    real(rk), allocatable, intent(out) :: values(:, :, :) !< (6, max_points, solids) [Pa]
+    call stresses%need_points(scene, now)
+    values = stresses%point_stress(:, :, solids)
+  end subroutine stress_of_solids
+
+  !> S of a block.
+  subroutine stress_of_block(self, scene, now, block, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    integer, intent(in) :: block
+    real(rk), allocatable, intent(out) :: values(:, :) !< (6, points) [Pa]
+    values = now%points(block)%stress
+  end subroutine stress_of_block
+
+  !> E on nodes.
+  subroutine strain_on_nodes(self, scene, now, stresses, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(recovered_fields), intent(inout) :: stresses
+    real(rk), allocatable, intent(out) :: values(:, :) !< (6, nodes)
+    call stresses%need_node_strain(scene, now)
+    values = stresses%node_strain
+  end subroutine strain_on_nodes
+
+  !> E at points.
+  subroutine strain_of_solids(self, scene, now, stresses, solids, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(recovered_fields), intent(inout) :: stresses
+    integer, intent(in) :: solids(:)
+    real(rk), allocatable, intent(out) :: values(:, :, :) !< (6, max_points, solids)
+    call stresses%need_points(scene, now)
+    values = stresses%point_strain(:, :, solids)
+  end subroutine strain_of_solids
+
+  !> E of a block.
+  subroutine strain_of_block(self, scene, now, block, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    integer, intent(in) :: block
+    real(rk), allocatable, intent(out) :: values(:, :) !< (6, points)
+    values = now%points(block)%strain
+  end subroutine strain_of_block
+
+  !> SP on nodes.
+  subroutine principals_on_nodes(self, scene, now, stresses, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(recovered_fields), intent(inout) :: stresses
+    real(rk), allocatable, intent(out) :: values(:, :) !< (3, nodes) [Pa]
+    call stresses%need_principals(scene, now)
+    values = stresses%node_principal
+  end subroutine principals_on_nodes
+
+  !> SP at points.
+  subroutine principals_of_solids(self, scene, now, stresses, solids, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(recovered_fields), intent(inout) :: stresses
+    integer, intent(in) :: solids(:)
+    real(rk), allocatable, intent(out) :: values(:, :, :) !< (3, max_points, solids) [Pa]
+    integer :: s, q
+    call stresses%need_points(scene, now)
+    allocate (values(3, size(stresses%point_stress, 2), size(solids)))
+    do s = 1, size(solids)
+      do q = 1, size(values, 2)
+        values(:, q, s) = principal_values(stresses%point_stress(:, q, solids(s)))
+      end do
+    end do
+  end subroutine principals_of_solids
+
+  !> S1 on nodes.
+  subroutine largest_on_nodes(self, scene, now, stresses, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(recovered_fields), intent(inout) :: stresses
+    real(rk), allocatable, intent(out) :: values(:, :) !< (1, nodes) [Pa]
+    call stresses%need_principals(scene, now)
+    values = stresses%node_principal(1:1, :)
+  end subroutine largest_on_nodes
+
+  !> S3 on nodes.
+  subroutine smallest_on_nodes(self, scene, now, stresses, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(recovered_fields), intent(inout) :: stresses
+    real(rk), allocatable, intent(out) :: values(:, :) !< (1, nodes) [Pa]
+    call stresses%need_principals(scene, now)
+    values = stresses%node_principal(3:3, :)
+  end subroutine smallest_on_nodes
+
+  !> Components of a field of laws.
+  integer function law_width(self, scene)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    law_width = width_of_field(scene, self%name)
+  end function law_width
+
+  !> A field of laws on nodes.
+  subroutine law_on_nodes(self, scene, now, stresses, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(recovered_fields), intent(inout) :: stresses
+    real(rk), allocatable, intent(out) :: values(:, :)
+    call stresses%field_on_nodes(scene, now, self%name, values)
+  end subroutine law_on_nodes
+
+  !> A field of laws at points.
+  subroutine law_of_solids(self, scene, now, stresses, solids, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    type(recovered_fields), intent(inout) :: stresses
+    integer, intent(in) :: solids(:)
+    real(rk), allocatable, intent(out) :: values(:, :, :)
+    call stresses%need_plan(scene)
+    call field_at_points(scene, stresses%plan, now, self%name, values)
+    values = values(:, :, solids)
+  end subroutine law_of_solids
+
+  !> A field of laws in a block.
+  subroutine law_of_block(self, scene, now, block, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: scene
+    type(state), intent(in) :: now
+    integer, intent(in) :: block
+    real(rk), allocatable, intent(out) :: values(:, :)
+    call field_of_block(scene, now, block, self%name, values)
+  end subroutine law_of_block
+end module solid_fields
