@@ -166,6 +166,8 @@ def test_reads_150_000_nodes_in_two_seconds(program_path: Path, tmp_path: Path) 
         (["--keywords", "joint", "law"], 0, "stdout", "TENSILE STRENGTH"),
         (["--keywords", "*elastic"], 0, "stdout", "Young's modulus; a number > 0 [Pa]; required"),
         (["--keywords", "STATC"], 2, "stderr", "did you mean '*STATIC'?"),
+        (["--fields"], 0, "stdout", "OPENING"),
+        (["--fields", "traction"], 0, "stdout", "TN,T1,T2"),
         (["--chekc", "a.inp"], 2, "stderr", "did you mean '--check'?"),
         (["--umat", "lib.so", "a.inp"], 2, "stderr", "cannot load the UMAT"),
         (["--continue", "a.inp"], 2, "stderr", "--continue is not available yet"),

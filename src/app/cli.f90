@@ -3,6 +3,7 @@ module cli
   use, intrinsic :: iso_fortran_env, only: output_unit
   use build_info, only: compiler, compiler_flags, libraries, program_version
   use errors, only: deck_is_wrong, error_type, raise
+  use field_help, only: field_lines, field_page
   use keyword_catalogue, only: list_all => list_keywords
   use keyword_handler, only: keyword_list
   use keyword_help, only: describe_keyword, list_keywords
@@ -21,17 +22,19 @@ module cli
     character(:), allocatable :: deck !< path, '' for none
     character(:), allocatable :: folder !< of the results
     character(:), allocatable :: keyword !< of --keywords, '' for all
+    character(:), allocatable :: field !< of --fields, '' for all
     type(umat_request) :: umat !< --umat and its like
     integer :: num_threads = 0 !< 0: as the system says
     logical :: is_check = .false. !< read and verify only
     logical :: is_material = .false. !< run the tests of materials, not the analysis
     logical :: is_quiet = .false.
-    logical :: wants_keywords = .false., wants_version = .false., wants_help = .false.
+    logical :: wants_keywords = .false., wants_fields = .false.
+    logical :: wants_version = .false., wants_help = .false.
     logical :: is_empty = .false. !< no argument at all
   end type command_line
 
-  character(*), parameter :: options = '-o | -j | -q | --check | --keywords | --version | '// &
-                             '--help | -h | --continue | --umat | --umat-flags | '// &
+  character(*), parameter :: options = '-o | -j | -q | --check | --keywords | --fields | '// &
+                             '--version | --help | -h | --continue | --umat | --umat-flags | '// &
                              '--umat-library | --umat-threadsafe | --umat-check | --material'
 
 contains
@@ -51,6 +54,7 @@ contains
            '  --umat-threadsafe  the UMAT may be called by several threads at once'//nl// &
            '  --umat-check       compare its DDSDDE with differences of STRESS'//nl// &
            '  --keywords [NAME]  the reference of the deck, from the program itself'//nl// &
+           '  --fields [NAME]    the fields of results: components, place, unit, meaning'//nl// &
            '  -q                 say nothing but errors'//nl// &
            '  --version          compiler, flags, libraries'//nl// &
            '  --help             this page'//nl// &
@@ -66,6 +70,7 @@ contains
     given%deck = ''
     given%folder = '.'
     given%keyword = ''
+    given%field = ''
     given%umat%flags = ''
     given%umat%target = ''
     allocate (given%umat%files(0))
@@ -78,7 +83,7 @@ contains
     if (given%is_empty .or. given%wants_help .or. given%wants_version) return
     call check_umat_options(given, error)
     if (allocated(error)) return
-    if (given%wants_keywords .or. len(given%deck) > 0) return
+    if (given%wants_keywords .or. given%wants_fields .or. len(given%deck) > 0) return
     if (size(given%umat%files) > 0 .and. len(given%umat%target) > 0) return
     call raise(error, 'keyway: no deck is named'//nl//usage(), deck_is_wrong)
   end subroutine parse_command_line
@@ -120,6 +125,12 @@ contains
         given%keyword = trim(given%keyword//' '//argument(i))
         i = i + 1
       end do
+    case ('--fields')
+      given%wants_fields = .true.
+      if (i > command_argument_count()) return
+      if (index(argument(i), '-') == 1) return
+      given%field = argument(i)
+      i = i + 1
     case ('--umat-threadsafe')
       given%umat%is_threadsafe = .true.
     case ('--umat-check')
@@ -206,7 +217,7 @@ contains
     call get_command_argument(number, text)
   end function argument
 
-  !> Prints what needs no deck: greeting, help, version, keywords.
+  !> Prints what needs no deck: greeting, help, version, keywords, fields.
   subroutine print_answer(given, is_answered, error)
     type(command_line), intent(in) :: given
     logical, intent(out) :: is_answered
@@ -226,6 +237,8 @@ contains
       call say('libraries: '//libraries)
     else if (given%wants_keywords) then
       call print_keywords(given%keyword, error)
+    else if (given%wants_fields) then
+      call print_fields(given%field, error)
     else
       is_answered = .false.
     end if
@@ -246,6 +259,20 @@ contains
     if (is_known) call say(text)
     if (.not. is_known) call raise(error, 'keyway: '//text, deck_is_wrong)
   end subroutine print_keywords
+
+  subroutine print_fields(name, error)
+    character(*), intent(in) :: name !< '' for all
+    type(error_type), allocatable, intent(out) :: error
+    character(:), allocatable :: text
+    logical :: is_known
+    if (name == '') then
+      call say(field_lines())
+      return
+    end if
+    call field_page(name, text, is_known)
+    if (is_known) call say(text)
+    if (.not. is_known) call raise(error, 'keyway: '//text, deck_is_wrong)
+  end subroutine print_fields
 
   subroutine say(text)
     character(*), intent(in) :: text

@@ -1,0 +1,44 @@
+"""The table of fields: docs/fields.md, messages, keywords and files come from it."""
+
+import subprocess
+from pathlib import Path
+
+import pytest
+from harness import ROOT
+from make_fields import read_pages, table
+
+
+@pytest.fixture(scope="module")
+def pages(program_path: Path) -> list[dict[str, str]]:
+    return read_pages(program_path)
+
+
+def test_the_documentation_is_up_to_date(pages: list[dict[str, str]]) -> None:
+    written = (ROOT / "docs/fields.md").read_text(encoding="utf-8")
+    assert table(pages) == written, "run tools/make_fields.py"
+
+
+def test_every_field_has_unit_and_meaning(pages: list[dict[str, str]]) -> None:
+    assert len(pages) >= 19
+    for page in pages:
+        assert page["unit"] and page["meaning"] and page["components"] and page["computed by"]
+        assert page["asked for by"] and page["written to"], page["field"]
+
+
+def test_keywords_take_the_fields_of_the_table(program_path: Path, pages) -> None:
+    """Each keyword offers all fields that name the keyword, and no other."""
+    for keyword in ("NODE PRINT", "EL PRINT", "NODE FILE", "EL FILE", "ENVELOPE", "NODE OUTPUT"):
+        done = subprocess.run(
+            [program_path, "--keywords", keyword], capture_output=True, text=True, check=True
+        )
+        data = " ".join(done.stdout.split("Data lines")[1].split("Example")[0].split())
+        offered = data.split("one of ")[1].split(", ")
+        expected = [p["field"] for p in pages if f"*{keyword}" in p["asked for by"].split(", ")]
+        assert offered == expected
+
+
+@pytest.mark.parametrize(("name", "nearest"), [("DAMAGE", "DAMAGET"), ("OPENIN", "OPENING")])
+def test_an_unknown_field_names_the_nearest(program_path: Path, name: str, nearest: str) -> None:
+    done = subprocess.run([program_path, "--fields", name], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert f"unknown field '{name}'; did you mean '{nearest}'?" in done.stderr
