@@ -11,6 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 WIDTH = 116  # letters of a line of the page
+NAME_WIDTH = 16  # where the values begin in keyway --fields NAME
 TITLE = """# Fields of results
 
 `tools/make_fields.py` writes this page from `keyway --fields`; a test compares both.
@@ -27,8 +28,14 @@ def ask(program: Path, *words: str) -> str:
 
 
 def read_page(text: str) -> dict[str, str]:
-    """Names and values of a page of `keyway --fields NAME`."""
-    return {line[:16].strip(): line[16:].strip() for line in text.splitlines()}
+    """Names and values of a page of `keyway --fields NAME`; a value may go on in later lines."""
+    page: dict[str, str] = {}
+    for line in text.splitlines():
+        if name := line[:NAME_WIDTH].strip():
+            page[name] = line[NAME_WIDTH:]
+        else:
+            page[next(reversed(page))] += " " + line[NAME_WIDTH:]
+    return page
 
 
 def read_pages(program: Path) -> list[dict[str, str]]:

@@ -7,7 +7,7 @@ module keyword_help
   use write_text, only: as_text
   implicit none
   private
-  public :: list_keywords, describe_keyword
+  public :: list_keywords, describe_keyword, hanging
 
   integer, parameter :: name_width = 34 !< room for the name of a keyword in the list
   integer, parameter :: field_width = 20 !< room for the name of a field

@@ -3,7 +3,7 @@ module keywords_print
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
-  use field_table, only: choices_of, fields_in_words
+  use field_table, only: choices_of, columns_of_joints, fields_in_words
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_word
   use kinds, only: rk
   use model_draft, only: draft
@@ -62,8 +62,8 @@ contains
     type(keyword), intent(out) :: spec
     spec%name = 'NODE PRINT'
     spec%meaning = 'History of nodes in job_node_NSET.csv: '//fields_in_words('NODE PRINT')// &
-                   '; all relative to the base. The last increment of a step is always '// &
-                   'written. Stays for the next steps until one has its own.'
+                   '. U, V and A are relative to the base. The last increment of a step is '// &
+                   'always written. Stays for the next steps until one has its own.'
     spec%example = '*NODE PRINT, NSET=CREST, FREQUENCY=2'//nl//'U, A'
     allocate (spec%parameters, source=[ &
               field('NSET', kind_word, 'the nodes', is_required=.true.)])
@@ -113,9 +113,9 @@ contains
     type(keyword), intent(out) :: spec
     spec%name = 'JOINT PRINT'
     spec%meaning = 'History of the points of a joint in job_joint_NAME.csv: '// &
-                   fields_in_words('JOINT PRINT')//' (0 open, 1 stick, 2 slip, 3 bonded). All '// &
-                   'columns are always written, whatever fields are named. slip1 is '// &
-                   'horizontal, slip2 up or down the joint.'
+                   columns_of_joints()//' (0 open, 1 stick, 2 slip, 3 bonded). All columns '// &
+                   'are always written, whatever fields are named. slip1 is horizontal, slip2 '// &
+                   'up or down the joint.'
     spec%example = '*JOINT PRINT, JOINT=J1, NSET=CREST'
     allocate (spec%parameters, source=[ &
               field('JOINT', kind_word, 'name of the joint', is_required=.true.), &

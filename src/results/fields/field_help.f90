@@ -2,6 +2,7 @@
 module field_help
   use field_table, only: find_field, list_fields
   use field_type, only: at_joints, counted, place_names, result_field
+  use keyword_help, only: hanging
   use nearest_words, only: nearest_word
   use parse_text, only: single_blanks, upper_case
   implicit none
@@ -78,13 +79,13 @@ contains
     text = text(:len(text) - 1)
   end function page
 
-  !> One line of a page.
+  !> Name and value, the value wrapped.
   pure function entry_of(name, value) result(line)
     character(*), intent(in) :: name, value
     character(:), allocatable :: line
     character(longest_name) :: wide
     wide = name
-    line = wide//value//nl
+    line = wide//hanging(value, longest_name)//nl
   end function entry_of
 
   !> Names of the components.

@@ -13,9 +13,10 @@ module field_table
                           law_on_nodes, law_of_solids, law_of_block
   use joint_fields, only: has_joints, opening_on_nodes, opening_of_joint, slip_of_joint, &
                           traction_of_joint, state_of_joint, used_reach_of_joint, water_of_joint
+  use json_writer, only: lower
   implicit none
   private
-  public :: list_fields, find_field, choices_of, fields_in_words
+  public :: list_fields, find_field, choices_of, fields_in_words, columns_of_joints
 
   integer, parameter :: most_fields = 100
 
@@ -98,24 +99,27 @@ contains
     type(result_field), intent(inout) :: room(:)
     integer, intent(inout) :: last !< number of fields so far
     call enter(room, last, result_field( &
-               name='OPENING', meaning='opening of joints', endings=scalar, unit='m', &
-               place=at_joints, remark='Normal relative displacement with the GAP added, '// &
+               name='OPENING', meaning='distance between the faces of joints', endings=scalar, &
+               unit='m', place=at_joints, &
+               remark='Normal relative displacement with the GAP added, '// &
                'negative while the joint is pressed together. On nodes the mean of the points '// &
                'next to them. The envelope keeps 0 where a joint is closed.', &
                provider=by_joint, requests='JOINT PRINT | NODE FILE | EL FILE | ENVELOPE', &
                on_nodes=opening_on_nodes, of_joint=opening_of_joint, is_there=has_joints))
     call enter(room, last, result_field( &
-               name='SLIP', meaning='irrecoverable sliding', endings='1,2', unit='m', &
+               name='SLIP', meaning='irrecoverable sliding of joints', endings='1,2', unit='m', &
                place=at_joints, remark='SLIP1 is horizontal, SLIP2 up or down the joint.', &
                provider=by_joint, requests='JOINT PRINT', of_joint=slip_of_joint))
     call enter(room, last, result_field( &
-               name='TRACTION', meaning='traction', stem='T', endings='N,1,2', unit='Pa', &
-               place=at_joints, remark='Normal, and along the axes of the slip. Tension is '// &
+               name='TRACTION', meaning='traction of joints', stem='T', endings='N,1,2', &
+               unit='Pa', place=at_joints, &
+               remark='Normal, and along the axes of the slip. Tension is '// &
                'positive.', provider=by_joint, requests='JOINT PRINT', &
                of_joint=traction_of_joint))
     call enter(room, last, result_field( &
-               name='STATE', meaning='state', endings=scalar, unit='1', is_integer=.true., &
-               place=at_joints, remark='0 open, 1 stick, 2 slip, 3 bonded; on drawn faces -1 '// &
+               name='STATE', meaning='contact of joints', endings=scalar, unit='1', &
+               is_integer=.true., place=at_joints, &
+               remark='0 open, 1 stick, 2 slip, 3 bonded; on drawn faces -1 '// &
                'where both faces share a node.', &
                provider=by_joint, requests='JOINT PRINT', of_joint=state_of_joint))
     call enter(room, last, result_field( &
@@ -124,7 +128,7 @@ contains
                'sliding allows; 0 for JOINT8.', &
                provider=by_joint, requests='', of_joint=used_reach_of_joint))
     call enter(room, last, result_field( &
-               name='WATER', meaning='pressure of water', endings=scalar, unit='Pa', &
+               name='WATER', meaning='pressure of water in joints', endings=scalar, unit='Pa', &
                place=at_joints, remark='Of joints with UPLIFT (*JOINT LAW).', &
                provider='uplift', requests='', of_joint=water_of_joint))
   end subroutine list_fields_of_joints
@@ -210,4 +214,21 @@ contains
     end do
     text = text(3:)
   end function fields_in_words
+
+  !> 'opening [m], slip1, slip2 [m]': the columns of *JOINT PRINT behind the place of the point.
+  function columns_of_joints() result(text)
+    character(:), allocatable :: text
+    type(result_field), allocatable :: table(:)
+    integer :: i, k
+    call list_fields(table)
+    text = ''
+    do i = 1, size(table)
+      if (.not. table(i)%may_stand_in('JOINT PRINT')) cycle
+      do k = 1, table(i)%num_endings()
+        text = text//', '//lower(table(i)%component(k))
+      end do
+      if (table(i)%unit /= '1') text = text//' ['//table(i)%unit//']'
+    end do
+    text = text(3:)
+  end function columns_of_joints
 end module field_table

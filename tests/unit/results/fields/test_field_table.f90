@@ -1,6 +1,6 @@
 !> The table of fields: each row is whole, and each field has the values that its requests need.
 program test_field_table
-  use field_table, only: choices_of, fields_in_words, find_field, list_fields
+  use field_table, only: choices_of, columns_of_joints, fields_in_words, find_field, list_fields
   use field_type, only: at_joints, at_nodes, at_points, on_faces, result_field
   use step_plan, only: field_name_length
   use testing, only: test_log, check, check_text
@@ -98,5 +98,7 @@ contains
                     'OPENING | SLIP | TRACTION | STATE | SLIP1 | SLIP2 | TN | T1 | T2', 'choices')
     call check_text(log, fields_in_words('NODE PRINT'), &
                     'U displacement, V velocity, A acceleration, RF reaction', 'in words')
+    call check_text(log, columns_of_joints(), &
+                    'opening [m], slip1, slip2 [m], tn, t1, t2 [Pa], state', 'columns of joints')
   end subroutine test_names
 end program test_field_table
