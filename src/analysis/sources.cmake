@@ -18,6 +18,7 @@ set(sources
   solids/tangent_choice.f90
   state/analysis_state.f90
   state/increment_listener.f90
+  state/state_archive.f90
   state/state_transfer.f90
   state/step_control.f90
   steps/initial_state.f90

@@ -2,9 +2,12 @@ set(sources
   errors.f90
   growing_lists.f90
   kinds.f90
+  files/archive_storage.f90
+  files/archive_type.f90
   files/csv_files.f90
   files/earlier_files.f90
   files/file_system.f90
+  files/hdf5_archive.f90
   files/hdf5_files.f90
   files/hdf5_tables.f90
   files/json_writer.f90

@@ -11,6 +11,7 @@ set(sources
   iteration/jump_block.f90
   iteration/newton_condensed.f90
   iteration/newton_full.f90
+  law/joint_archive.f90
   law/joint_catalogue.f90
   law/joint_constants.f90
   law/joint_contraction.f90

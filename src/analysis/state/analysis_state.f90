@@ -2,6 +2,9 @@
 !>
 !> An analysis holds two states, converged and trial. An increment fills the trial state. Accepting
 !> the increment swaps the two; a cut leaves the converged state as it is.
+!>
+!> The state saves and loads itself (state_archive). A new component gets a line in save and load of
+!> its type, there or in joint_archive and point_archive.
 module analysis_state
   use kinds, only: rk
   use joint_law, only: joint_state
@@ -33,6 +36,7 @@ module analysis_state
     logical :: is_last_of_step = .false.
     logical :: is_stop = .false. !< the run stops at this increment, before the end of its step
     real(rk) :: step_time = 0.0_rk, total_time = 0.0_rk, increment_size = 0.0_rk !< [s]
+    real(rk) :: step_start = 0.0_rk !< total time at the start of the step [s]
     !> Condition of the scaled matrix with all joints closed, in the 1-norm; 0 without joints
     real(rk) :: joint_condition = 0.0_rk
     real(rk) :: residual = 0.0_rk !< norm of the residual over the reference force
@@ -61,6 +65,8 @@ module analysis_state
     real(rk), allocatable :: u(:, :) !< (3, nodes) displacement relative to the base [m]
     real(rk), allocatable :: v(:, :), a(:, :) !< (3, nodes) [m/s], [m/s2]; dynamic steps only
     real(rk), allocatable :: reaction(:, :) !< (3, nodes) zero where nothing is fixed [N]
+    !> (fixities of the step) displacement at the start of the step, where supports start from [m]
+    real(rk), allocatable :: support_start(:)
     type(motion) :: motion !< the same in the unknowns of the step, with the forces
     type(joint_state), allocatable :: joints(:) !< (joints of the problem)
     type(point_state), allocatable :: points(:) !< (inelastic blocks of the problem)

@@ -18,6 +18,7 @@ module step_control
   real(rk), parameter :: smallest_dynamic = 1.0e-3_rk !< increment over the first, unless given
   real(rk), parameter :: roundoff = 1.0e-9_rk !< of times, over the increment
 
+  !> A new component gets a line in save and load of state_archive.
   type :: increment_control
     real(rk) :: size = 0.0_rk !< wanted next [s]
     real(rk) :: last_size = 0.0_rk !< of the last increment that was cut [s]

@@ -2,7 +2,7 @@
 !> of increments, cuts, accepts and reports; the integrator of the step fills the trial state.
 module step_loop
   use kinds, only: rk
-  use errors, only: error_type
+  use errors, only: error_type, raise, system_failed
   use problem_definition, only: problem
   use step_plan, only: step
   use analysis_state, only: state
@@ -29,18 +29,23 @@ module step_loop
 
 contains
 
-  !> Runs all steps. On an error `now` is the last state that converged; the listener has it.
+  !> Runs all steps. A state that was loaded goes on where it was saved. On an error `now` is the last
+  !> state that converged; the listener has it.
   subroutine run_all_steps(model, now, results, error)
     type(problem), intent(in) :: model
-    type(state), allocatable, intent(inout) :: now !< as `start_analysis` makes it
+    type(state), allocatable, intent(inout) :: now !< as `start_analysis` makes it, or loaded
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
     class(integrator), allocatable :: method
     integer :: i
-    do i = 1, size(model%steps)
-      call enter_step(i, now)
+    do i = first_step(now), size(model%steps)
       call make_integrator(model%steps(i)%procedure, method)
-      call method%open_step(model, model%steps(i), now, results, error)
+      if (i == now%step .and. now%increment > 0) then
+        call reopen_step(model, model%steps(i), method, now, results, error)
+      else
+        call enter_step(i, model%steps(i), now)
+        call method%open_step(model, model%steps(i), now, results, error)
+      end if
       if (allocated(error)) return
       call run_increments(model, model%steps(i), method, now, results, error)
       if (allocated(error)) return
@@ -49,10 +54,19 @@ contains
     end do
   end subroutine run_all_steps
 
-  !> Sets the counters of a step to its start.
-  subroutine enter_step(number, now)
+  !> The step that a state goes on with: the one that it is in, unless the state is its end.
+  pure integer function first_step(now)
+    type(state), intent(in) :: now
+    first_step = max(1, now%step)
+    if (now%is_last_of_step) first_step = now%step + 1
+  end function first_step
+
+  !> Sets the counters of a step to its start, and keeps what later increments need of the start.
+  subroutine enter_step(number, plan, now)
     integer, intent(in) :: number
+    type(step), intent(in) :: plan
     type(state), intent(inout) :: now
+    integer :: k
     now%step = number
     now%increment = 0
     now%iterations = 0
@@ -61,9 +75,52 @@ contains
     now%increment_size = 0.0_rk
     now%residual = 0.0_rk
     now%is_last_of_step = .false.
+    now%step_start = now%total_time
+    associate (fixed => plan%fixities)
+      now%support_start = [(now%u(fixed(k)%dof, fixed(k)%node), k=1, size(fixed))]
+    end associate
   end subroutine enter_step
 
-  !> Increments from the start of a step to its end.
+  !> Opens a step in its middle, for a state that was loaded. The integrator builds the equations
+  !> with supports where they stood at the start of the step. What the integrator computes of motion
+  !> and energies belongs to a start: the loaded state replaces it.
+  subroutine reopen_step(model, plan, method, now, results, error)
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    class(integrator), intent(inout) :: method
+    type(state), allocatable, intent(inout) :: now
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    type(state), allocatable :: loaded
+    integer :: k
+    loaded = now
+    if (fits(plan, loaded)) then
+      do k = 1, size(plan%fixities)
+        now%u(plan%fixities(k)%dof, plan%fixities(k)%node) = loaded%support_start(k)
+      end do
+      call method%open_step(model, plan, now, results, error)
+      if (allocated(error)) return
+      if (size(now%motion%q) == size(loaded%motion%q) &
+          .and. now%num_unknowns == loaded%num_unknowns) then
+        call move_alloc(loaded, now)
+        return
+      end if
+    end if
+    call raise(error, "the loaded state does not belong to step '"//plan%name//"' of this model: "// &
+               'supports, ties or the procedure of the step are others', system_failed)
+  end subroutine reopen_step
+
+  !> Whether a loaded state has what its step needs to go on.
+  pure logical function fits(plan, loaded)
+    type(step), intent(in) :: plan
+    type(state), intent(in) :: loaded
+    fits = allocated(loaded%support_start) .and. allocated(loaded%motion%q)
+    if (.not. fits) return
+    fits = size(loaded%support_start) == size(plan%fixities) &
+           .and. (allocated(loaded%motion%inertia) .eqv. plan%procedure%has_inertia)
+  end function fits
+
+  !> Increments to the end of a step.
   subroutine run_increments(model, plan, method, now, results, error)
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan
@@ -73,9 +130,9 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(attempt) :: next
     if (plan%procedure%finds_modes) return
-    next%when = step_time(is_dynamic=plan%procedure%has_inertia, start=now%total_time, &
+    next%when = step_time(is_dynamic=plan%procedure%has_inertia, start=now%step_start, &
                           duration=plan%duration)
-    call start_control(plan, plan%procedure%has_inertia, now%control)
+    if (now%increment == 0) call start_control(plan, plan%procedure%has_inertia, now%control)
     next%trial = now
     do while (now%step_time < plan%duration)
       call try_increment(model, plan, method, now, next, results, error)

@@ -16,7 +16,7 @@ module hdf5_files
   use kinds, only: rk
   implicit none
   private
-  public :: hdf5_file
+  public :: hdf5_file, start_hdf5, text_type
 
   type :: hdf5_file
     integer(hid_t) :: id = 0 !< 0 while it is not open
@@ -51,14 +51,21 @@ contains
     class(hdf5_file), intent(inout) :: self
     character(*), intent(in) :: path
     integer :: status
-    ! After a failure the file stays as it was last flushed: the library must not touch it at exit.
-    call h5dont_atexit_f(status)
-    call h5open_f(status)
+    call start_hdf5(status)
     call self%note(status)
-    call h5eset_auto_f(0, status)
     call h5fcreate_f(path, h5f_acc_trunc_f, self%id, status)
     call self%note(status)
   end subroutine create
+
+  !> Starts the library; it may have been started before.
+  subroutine start_hdf5(status)
+    integer, intent(out) :: status !< below 0 when this fails
+    integer :: ignored
+    ! After a failure the file stays as it was last flushed: the library must not touch it at exit.
+    call h5dont_atexit_f(ignored)
+    call h5open_f(status)
+    call h5eset_auto_f(0, ignored)
+  end subroutine start_hdf5
 
   !> Makes a group; those above it must be there.
   subroutine make_group(self, path)

@@ -5,7 +5,7 @@ module whole_files
   use raw_files, only: raw_file
   implicit none
   private
-  public :: whole_file, write_whole_file
+  public :: whole_file, write_whole_file, move_file
 
   type :: whole_file
     private
@@ -60,16 +60,24 @@ contains
     class(whole_file), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: error
     logical :: is_closed
+    logical :: is_moved
     integer(c_int) :: status
     call self%file%close(is_closed)
     self%is_good = self%is_good .and. is_closed
     if (self%is_good) then
-      status = c_rename(self%path//'.part'//c_null_char, self%path//c_null_char)
-      if (status == 0) return
+      call move_file(self%path//'.part', self%path, is_moved)
+      if (is_moved) return
     end if
     status = c_unlink(self%path//'.part'//c_null_char)
     call raise(error, "cannot write '"//self%path//"' (disk full?)", system_failed)
   end subroutine complete
+
+  !> Moves a file to its place in one step; a file that is there is replaced.
+  subroutine move_file(from, to, is_moved)
+    character(*), intent(in) :: from, to
+    logical, intent(out) :: is_moved
+    is_moved = c_rename(from//c_null_char, to//c_null_char) == 0
+  end subroutine move_file
 
   !> Writes a file in one go.
   subroutine write_whole_file(path, text, error)

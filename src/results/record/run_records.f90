@@ -29,6 +29,7 @@ module run_records
     character(:), allocatable :: text
   end type text_item
 
+  !> What changes in time is saved and loaded by record_archive; a new component goes there too.
   type :: run_record
     type(result_field), allocatable :: fields(:) !< the table of fields
     type(recovered_fields) :: stresses
@@ -40,8 +41,8 @@ module run_records
     type(text_item), allocatable :: warnings(:)
     type(text_item), allocatable :: files(:) !< names of what was written, beside job.json
     integer :: step = 0 !< the present step
-    real(rk), private :: most_taken = 0.0_rk !< by the stepping in this step so far [J]
-    real(rk), private :: last_strain = 0.0_rk, last_fracture = 0.0_rk !< energies before [J]
+    real(rk) :: most_taken = 0.0_rk !< by the stepping in this step so far [J]
+    real(rk) :: last_strain = 0.0_rk, last_fracture = 0.0_rk !< energies before [J]
   contains
     procedure :: open => open_record
     procedure :: begin_step

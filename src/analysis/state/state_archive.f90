@@ -1,0 +1,268 @@
+!> How the state of an analysis saves and loads itself. Every component of the types has a line in
+!> each procedure of a pair; tests/test_archives.py compares them with the types.
+module state_archive
+  use errors, only: error_type
+  use archive_type, only: archive
+  use write_text, only: as_text
+  use joint_archive, only: save_joint, load_joint
+  use point_archive, only: save_points, load_points
+  use step_control, only: increment_control
+  use analysis_state, only: state, increment_status, energy_balance, motion
+  implicit none
+  private
+  public :: save_state, load_state
+
+contains
+
+  !> Writes the state into the group `state`.
+  subroutine save_state(now, file, error)
+    type(state), intent(in) :: now
+    class(archive), intent(inout) :: file !< open for writing
+    type(error_type), allocatable, intent(out) :: error
+    integer :: i
+    call file%open_group('state')
+    call file%open_group('status')
+    call save_status(now%increment_status, file)
+    call file%close_group()
+    call file%put('u', now%u)
+    call file%put('v', now%v)
+    call file%put('a', now%a)
+    call file%put('reaction', now%reaction)
+    call file%put('support_start', now%support_start)
+    call file%open_group('motion')
+    call save_motion(now%motion, file)
+    call file%close_group()
+    call file%put('num_joints', size(now%joints))
+    do i = 1, size(now%joints)
+      call file%open_group('joint_'//as_text(i))
+      call save_joint(now%joints(i), file)
+      call file%close_group()
+    end do
+    call file%put('num_blocks', size(now%points))
+    do i = 1, size(now%points)
+      call file%open_group('points_'//as_text(i))
+      call save_points(now%points(i), file)
+      call file%close_group()
+    end do
+    call file%close_group()
+    call file%report(error)
+  end subroutine save_state
+
+  !> Reads the state. It arrives as `start_analysis` makes it for this model, which fixes the sizes.
+  !> After an error the state is of no use.
+  subroutine load_state(now, file, error)
+    type(state), intent(inout) :: now
+    class(archive), intent(inout) :: file !< open for reading
+    type(error_type), allocatable, intent(out) :: error
+    integer :: i
+    call file%open_group('state')
+    call file%open_group('status')
+    call load_status(now%increment_status, file)
+    call file%close_group()
+    call load_fields(now, file)
+    call file%open_group('motion')
+    call load_motion(now%motion, file)
+    call file%close_group()
+    call file%confirm('num_joints', size(now%joints))
+    do i = 1, size(now%joints)
+      call file%open_group('joint_'//as_text(i))
+      call load_joint(now%joints(i), file)
+      call file%close_group()
+    end do
+    call file%confirm('num_blocks', size(now%points))
+    do i = 1, size(now%points)
+      call file%open_group('points_'//as_text(i))
+      call load_points(now%points(i), file)
+      call file%close_group()
+    end do
+    call file%close_group()
+    call file%report(error)
+  end subroutine load_state
+
+  !> Reads the fields at nodes. A step without inertia has no velocities and accelerations.
+  subroutine load_fields(now, file)
+    type(state), intent(inout) :: now
+    class(archive), intent(inout) :: file
+    integer :: extent(2)
+    extent = shape(now%u)
+    call file%get('u', now%u)
+    call file%get('v', now%v, extent)
+    call file%get('a', now%a, extent)
+    call file%get('reaction', now%reaction)
+    if (allocated(now%support_start)) deallocate (now%support_start)
+    call file%get('support_start', now%support_start)
+  end subroutine load_fields
+
+  !> Writes where the analysis is.
+  subroutine save_status(status, file)
+    type(increment_status), intent(in) :: status
+    class(archive), intent(inout) :: file
+    call file%put('step', status%step)
+    call file%put('increment', status%increment)
+    call file%put('iterations', status%iterations)
+    call file%put('augmentations', status%augmentations)
+    call file%put('cutbacks', status%cutbacks)
+    call file%put('num_unknowns', status%num_unknowns)
+    call file%put('has_held_switches', status%has_held_switches)
+    call file%put('is_last_of_step', status%is_last_of_step)
+    call file%put('is_stop', status%is_stop)
+    call file%put('step_time', status%step_time)
+    call file%put('total_time', status%total_time)
+    call file%put('increment_size', status%increment_size)
+    call file%put('step_start', status%step_start)
+    call file%put('joint_condition', status%joint_condition)
+    call file%put('residual', status%residual)
+    call file%put('largest_force', status%largest_force)
+    call file%open_group('energy')
+    call save_energy(status%energy, file)
+    call file%close_group()
+    call file%open_group('control')
+    call save_control(status%control, file)
+    call file%close_group()
+  end subroutine save_status
+
+  !> Reads where the analysis is.
+  subroutine load_status(status, file)
+    type(increment_status), intent(inout) :: status
+    class(archive), intent(inout) :: file
+    call file%get('step', status%step)
+    call file%get('increment', status%increment)
+    call file%get('iterations', status%iterations)
+    call file%get('augmentations', status%augmentations)
+    call file%get('cutbacks', status%cutbacks)
+    call file%get('num_unknowns', status%num_unknowns)
+    call file%get('has_held_switches', status%has_held_switches)
+    call file%get('is_last_of_step', status%is_last_of_step)
+    call file%get('is_stop', status%is_stop)
+    call file%get('step_time', status%step_time)
+    call file%get('total_time', status%total_time)
+    call file%get('increment_size', status%increment_size)
+    call file%get('step_start', status%step_start)
+    call file%get('joint_condition', status%joint_condition)
+    call file%get('residual', status%residual)
+    call file%get('largest_force', status%largest_force)
+    call file%open_group('energy')
+    call load_energy(status%energy, file)
+    call file%close_group()
+    call file%open_group('control')
+    call load_control(status%control, file)
+    call file%close_group()
+  end subroutine load_status
+
+  !> Writes the energies.
+  subroutine save_energy(energy, file)
+    type(energy_balance), intent(in) :: energy
+    class(archive), intent(inout) :: file
+    call file%put('external', energy%external)
+    call file%put('kinetic', energy%kinetic)
+    call file%put('strain', energy%strain)
+    call file%put('damping', energy%damping)
+    call file%put('friction', energy%friction)
+    call file%put('fracture', energy%fracture)
+    call file%put('crushing', energy%crushing)
+    call file%put('numerical', energy%numerical)
+    call file%put('initial', energy%initial)
+    call file%put('error', energy%error)
+    call file%put('largest', energy%largest)
+  end subroutine save_energy
+
+  !> Reads the energies.
+  subroutine load_energy(energy, file)
+    type(energy_balance), intent(inout) :: energy
+    class(archive), intent(inout) :: file
+    call file%get('external', energy%external)
+    call file%get('kinetic', energy%kinetic)
+    call file%get('strain', energy%strain)
+    call file%get('damping', energy%damping)
+    call file%get('friction', energy%friction)
+    call file%get('fracture', energy%fracture)
+    call file%get('crushing', energy%crushing)
+    call file%get('numerical', energy%numerical)
+    call file%get('initial', energy%initial)
+    call file%get('error', energy%error)
+    call file%get('largest', energy%largest)
+  end subroutine load_energy
+
+  !> Writes the size of increments.
+  subroutine save_control(control, file)
+    type(increment_control), intent(in) :: control
+    class(archive), intent(inout) :: file
+    call file%put('size', control%size)
+    call file%put('last_size', control%last_size)
+    call file%put('smallest', control%smallest)
+    call file%put('largest', control%largest)
+    call file%put('duration', control%duration)
+    call file%put('growth', control%growth)
+    call file%put('easy_needed', control%easy_needed)
+    call file%put('is_direct', control%is_direct)
+    call file%put('easy_so_far', control%easy_so_far)
+    call file%put('cuts_in_a_row', control%cuts_in_a_row)
+    call file%put('cutbacks', control%cutbacks)
+  end subroutine save_control
+
+  !> Reads the size of increments.
+  subroutine load_control(control, file)
+    type(increment_control), intent(inout) :: control
+    class(archive), intent(inout) :: file
+    call file%get('size', control%size)
+    call file%get('last_size', control%last_size)
+    call file%get('smallest', control%smallest)
+    call file%get('largest', control%largest)
+    call file%get('duration', control%duration)
+    call file%get('growth', control%growth)
+    call file%get('easy_needed', control%easy_needed)
+    call file%get('is_direct', control%is_direct)
+    call file%get('easy_so_far', control%easy_so_far)
+    call file%get('cuts_in_a_row', control%cuts_in_a_row)
+    call file%get('cutbacks', control%cutbacks)
+  end subroutine load_control
+
+  !> Writes the vectors of the integrator that are allocated.
+  subroutine save_motion(own, file)
+    type(motion), intent(in) :: own
+    class(archive), intent(inout) :: file
+    call file%put('q', own%q)
+    call file%put('v', own%v)
+    call file%put('a', own%a)
+    call file%put('external', own%external)
+    call file%put('elastic', own%elastic)
+    call file%put('internal', own%internal)
+    call file%put('contact', own%contact)
+    call file%put('balanced', own%balanced)
+    call file%put('elastic_rate', own%elastic_rate)
+    call file%put('elastic_jerk', own%elastic_jerk)
+    call file%put('viscous', own%viscous)
+    call file%put('viscous_rate', own%viscous_rate)
+    call file%put('momentum', own%momentum)
+    call file%put('inertia', own%inertia)
+    call file%put('carried', own%carried)
+    call file%put('jump_rate', own%jump_rate)
+  end subroutine save_motion
+
+  !> Reads the vectors of the integrator that are allocated.
+  subroutine load_motion(own, file)
+    type(motion), intent(inout) :: own
+    class(archive), intent(inout) :: file
+    type(motion) :: none
+    integer :: extent(1)
+    own = none
+    call file%get('q', own%q)
+    extent = 0
+    if (allocated(own%q)) extent = shape(own%q)
+    call file%get('v', own%v, extent)
+    call file%get('a', own%a, extent)
+    call file%get('external', own%external, extent)
+    call file%get('elastic', own%elastic, extent)
+    call file%get('internal', own%internal, extent)
+    call file%get('contact', own%contact, extent)
+    call file%get('balanced', own%balanced, extent)
+    call file%get('elastic_rate', own%elastic_rate, extent)
+    call file%get('elastic_jerk', own%elastic_jerk, extent)
+    call file%get('viscous', own%viscous, extent)
+    call file%get('viscous_rate', own%viscous_rate, extent)
+    call file%get('momentum', own%momentum, extent)
+    call file%get('inertia', own%inertia, extent)
+    call file%get('carried', own%carried)
+    call file%get('jump_rate', own%jump_rate)
+  end subroutine load_motion
+end module state_archive
