@@ -1,0 +1,233 @@
+!> A state whose components all have values of their own, for tests of what saves and loads it.
+!> tests/test_archives.py finds a component that is missing here.
+module full_state
+  use kinds, only: rk
+  use analysis_state, only: state, increment_status, energy_balance, motion
+  use step_control, only: increment_control
+  use joint_law, only: joint_state
+  use material_points, only: point_state
+  implicit none
+  private
+  public :: make_full_state
+
+  !> Counts on, and fills a value or an array with the numbers.
+  interface fill
+    module procedure fill_real, fill_reals_1, fill_reals_2, fill_reals_3, fill_integer, &
+      fill_integers_1, fill_logical, fill_logicals_1
+  end interface fill
+
+contains
+
+  !> Three nodes, four unknowns, two joints of two points, one block of five points.
+  subroutine make_full_state(now)
+    type(state), allocatable, intent(out) :: now
+    integer :: n, i
+    n = 0
+    allocate (now)
+    call fill_status(now%increment_status, n)
+    allocate (now%u(3, 3), now%v(3, 3), now%a(3, 3), now%reaction(3, 3), now%support_start(2))
+    call fill(now%u, n)
+    call fill(now%v, n)
+    call fill(now%a, n)
+    call fill(now%reaction, n)
+    call fill(now%support_start, n)
+    call fill_motion(now%motion, n)
+    allocate (now%joints(2), now%points(1))
+    do i = 1, 2
+      call fill_joint(now%joints(i), n)
+    end do
+    call fill_points(now%points(1), n)
+  end subroutine make_full_state
+
+  !> Where the analysis is.
+  subroutine fill_status(status, n)
+    type(increment_status), intent(inout) :: status
+    integer, intent(inout) :: n
+    call fill(status%step, n)
+    call fill(status%increment, n)
+    call fill(status%iterations, n)
+    call fill(status%augmentations, n)
+    call fill(status%cutbacks, n)
+    call fill(status%num_unknowns, n)
+    call fill(status%has_held_switches, n)
+    call fill(status%is_last_of_step, n)
+    call fill(status%is_stop, n)
+    call fill(status%step_time, n)
+    call fill(status%total_time, n)
+    call fill(status%increment_size, n)
+    call fill(status%step_start, n)
+    call fill(status%joint_condition, n)
+    call fill(status%residual, n)
+    call fill(status%largest_force, n)
+    call fill_energy(status%energy, n)
+    call fill_control(status%control, n)
+  end subroutine fill_status
+
+  !> Energies.
+  subroutine fill_energy(energy, n)
+    type(energy_balance), intent(inout) :: energy
+    integer, intent(inout) :: n
+    call fill(energy%external, n)
+    call fill(energy%kinetic, n)
+    call fill(energy%strain, n)
+    call fill(energy%damping, n)
+    call fill(energy%friction, n)
+    call fill(energy%fracture, n)
+    call fill(energy%crushing, n)
+    call fill(energy%numerical, n)
+    call fill(energy%initial, n)
+    call fill(energy%error, n)
+    call fill(energy%largest, n)
+  end subroutine fill_energy
+
+  !> Size of increments.
+  subroutine fill_control(control, n)
+    type(increment_control), intent(inout) :: control
+    integer, intent(inout) :: n
+    call fill(control%size, n)
+    call fill(control%last_size, n)
+    call fill(control%smallest, n)
+    call fill(control%largest, n)
+    call fill(control%duration, n)
+    call fill(control%growth, n)
+    call fill(control%easy_needed, n)
+    call fill(control%is_direct, n)
+    call fill(control%easy_so_far, n)
+    call fill(control%cuts_in_a_row, n)
+    call fill(control%cutbacks, n)
+  end subroutine fill_control
+
+  !> Vectors of the integrator.
+  subroutine fill_motion(own, n)
+    type(motion), intent(inout) :: own
+    integer, intent(inout) :: n
+    allocate (own%q(4), own%v(4), own%a(4), own%external(4), own%elastic(4), own%internal(4), &
+              own%contact(4), own%balanced(4), own%elastic_rate(4), own%elastic_jerk(4), &
+              own%viscous(4), own%viscous_rate(4), own%momentum(4), own%inertia(4), &
+              own%carried(3, 4), own%jump_rate(3, 4))
+    call fill(own%q, n)
+    call fill(own%v, n)
+    call fill(own%a, n)
+    call fill(own%external, n)
+    call fill(own%elastic, n)
+    call fill(own%internal, n)
+    call fill(own%contact, n)
+    call fill(own%balanced, n)
+    call fill(own%elastic_rate, n)
+    call fill(own%elastic_jerk, n)
+    call fill(own%viscous, n)
+    call fill(own%viscous_rate, n)
+    call fill(own%momentum, n)
+    call fill(own%inertia, n)
+    call fill(own%carried, n)
+    call fill(own%jump_rate, n)
+  end subroutine fill_motion
+
+  !> History of a joint.
+  subroutine fill_joint(history, n)
+    type(joint_state), intent(inout) :: history
+    integer, intent(inout) :: n
+    allocate (history%gap(2), history%shift(2), history%jump(3, 2), history%traction(3, 2), &
+              history%slip(2, 2), history%is_broken(2), history%status(2), &
+              history%has_parted(2), history%friction_work(2), history%fracture_work(2), &
+              history%water(2))
+    call fill(history%gap, n)
+    call fill(history%shift, n)
+    call fill(history%jump, n)
+    call fill(history%traction, n)
+    call fill(history%slip, n)
+    call fill(history%is_broken, n)
+    call fill(history%status, n)
+    call fill(history%has_parted, n)
+    call fill(history%friction_work, n)
+    call fill(history%fracture_work, n)
+    call fill(history%water, n)
+  end subroutine fill_joint
+
+  !> Points of a block.
+  subroutine fill_points(points, n)
+    type(point_state), intent(inout) :: points
+    integer, intent(inout) :: n
+    allocate (points%strain(6, 5), points%stress(6, 5), points%internal(7, 5), &
+              points%energy(3, 5), points%gradient(3, 3, 5), points%is_elastic(5))
+    call fill(points%strain, n)
+    call fill(points%stress, n)
+    call fill(points%internal, n)
+    call fill(points%energy, n)
+    call fill(points%gradient, n)
+    call fill(points%is_elastic, n)
+  end subroutine fill_points
+
+  !> n + 1/3.
+  subroutine fill_real(x, n)
+    real(rk), intent(out) :: x
+    integer, intent(inout) :: n
+    n = n + 1
+    x = n + 1.0_rk/3.0_rk
+  end subroutine fill_real
+
+  !> A list.
+  subroutine fill_reals_1(x, n)
+    real(rk), intent(out) :: x(:)
+    integer, intent(inout) :: n
+    integer :: i
+    do i = 1, size(x)
+      call fill(x(i), n)
+    end do
+  end subroutine fill_reals_1
+
+  !> A table.
+  subroutine fill_reals_2(x, n)
+    real(rk), intent(out) :: x(:, :)
+    integer, intent(inout) :: n
+    integer :: i
+    do i = 1, size(x, 2)
+      call fill(x(:, i), n)
+    end do
+  end subroutine fill_reals_2
+
+  !> A block.
+  subroutine fill_reals_3(x, n)
+    real(rk), intent(out) :: x(:, :, :)
+    integer, intent(inout) :: n
+    integer :: i
+    do i = 1, size(x, 3)
+      call fill(x(:, :, i), n)
+    end do
+  end subroutine fill_reals_3
+
+  !> n.
+  subroutine fill_integer(x, n)
+    integer, intent(out) :: x
+    integer, intent(inout) :: n
+    n = n + 1
+    x = n
+  end subroutine fill_integer
+
+  !> A list.
+  subroutine fill_integers_1(x, n)
+    integer, intent(out) :: x(:)
+    integer, intent(inout) :: n
+    integer :: i
+    do i = 1, size(x)
+      call fill(x(i), n)
+    end do
+  end subroutine fill_integers_1
+
+  !> True: the default is false.
+  subroutine fill_logical(x, n)
+    logical, intent(out) :: x
+    integer, intent(inout) :: n
+    n = n + 1
+    x = .true.
+  end subroutine fill_logical
+
+  !> True and false by turns.
+  subroutine fill_logicals_1(x, n)
+    logical, intent(out) :: x(:)
+    integer, intent(inout) :: n
+    integer :: i
+    n = n + 1
+    x = [(mod(i, 2) == 1, i=1, size(x))]
+  end subroutine fill_logicals_1
+end module full_state

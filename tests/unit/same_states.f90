@@ -1,0 +1,239 @@
+!> Compares two states member by member and bit by bit. tests/test_archives.py finds a component
+!> that is missing here.
+module same_states
+  use kinds, only: rk, long
+  use step_control, only: increment_control
+  use analysis_state, only: state, increment_status, energy_balance, motion
+  use joint_law, only: joint_state
+  use material_points, only: point_state
+  use testing, only: test_log, check
+  implicit none
+  private
+  public :: compare_states, compare
+
+  !> Two values of one kind and rank.
+  interface compare
+    module procedure compare_real, compare_integer, compare_logical, compare_reals_1, &
+                     compare_reals_2, compare_reals_3, compare_integers_1, compare_logicals_1
+  end interface compare
+
+contains
+
+  !> Everything in two states.
+  subroutine compare_states(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what !< before the names of the members
+    type(state), intent(in) :: a, b
+    integer :: i
+    call compare_status(log, what, a%increment_status, b%increment_status)
+    call compare(log, what//'u', a%u, b%u)
+    call compare(log, what//'v', a%v, b%v)
+    call compare(log, what//'a', a%a, b%a)
+    call compare(log, what//'reaction', a%reaction, b%reaction)
+    call compare(log, what//'support_start', a%support_start, b%support_start)
+    call compare_motion(log, what//'motion%', a%motion, b%motion)
+    do i = 1, size(a%joints)
+      call compare_joint(log, what//'joints%', a%joints(i), b%joints(i))
+    end do
+    do i = 1, size(a%points)
+      call compare_points(log, what//'points%', a%points(i), b%points(i))
+    end do
+  end subroutine compare_states
+
+  !> Where the analysis is.
+  subroutine compare_status(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    type(increment_status), intent(in) :: a, b
+    call compare(log, what//'step', a%step, b%step)
+    call compare(log, what//'increment', a%increment, b%increment)
+    call compare(log, what//'iterations', a%iterations, b%iterations)
+    call compare(log, what//'augmentations', a%augmentations, b%augmentations)
+    call compare(log, what//'cutbacks', a%cutbacks, b%cutbacks)
+    call compare(log, what//'num_unknowns', a%num_unknowns, b%num_unknowns)
+    call compare(log, what//'has_held_switches', a%has_held_switches, b%has_held_switches)
+    call compare(log, what//'is_last_of_step', a%is_last_of_step, b%is_last_of_step)
+    call compare(log, what//'is_stop', a%is_stop, b%is_stop)
+    call compare(log, what//'step_time', a%step_time, b%step_time)
+    call compare(log, what//'total_time', a%total_time, b%total_time)
+    call compare(log, what//'increment_size', a%increment_size, b%increment_size)
+    call compare(log, what//'step_start', a%step_start, b%step_start)
+    call compare(log, what//'joint_condition', a%joint_condition, b%joint_condition)
+    call compare(log, what//'residual', a%residual, b%residual)
+    call compare(log, what//'largest_force', a%largest_force, b%largest_force)
+    call compare_energy(log, what//'energy%', a%energy, b%energy)
+    call compare_control(log, what//'control%', a%control, b%control)
+  end subroutine compare_status
+
+  !> Energies.
+  subroutine compare_energy(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    type(energy_balance), intent(in) :: a, b
+    call compare(log, what//'external', a%external, b%external)
+    call compare(log, what//'kinetic', a%kinetic, b%kinetic)
+    call compare(log, what//'strain', a%strain, b%strain)
+    call compare(log, what//'damping', a%damping, b%damping)
+    call compare(log, what//'friction', a%friction, b%friction)
+    call compare(log, what//'fracture', a%fracture, b%fracture)
+    call compare(log, what//'crushing', a%crushing, b%crushing)
+    call compare(log, what//'numerical', a%numerical, b%numerical)
+    call compare(log, what//'initial', a%initial, b%initial)
+    call compare(log, what//'error', a%error, b%error)
+    call compare(log, what//'largest', a%largest, b%largest)
+  end subroutine compare_energy
+
+  !> Size of increments.
+  subroutine compare_control(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    type(increment_control), intent(in) :: a, b
+    call compare(log, what//'size', a%size, b%size)
+    call compare(log, what//'last_size', a%last_size, b%last_size)
+    call compare(log, what//'smallest', a%smallest, b%smallest)
+    call compare(log, what//'largest', a%largest, b%largest)
+    call compare(log, what//'duration', a%duration, b%duration)
+    call compare(log, what//'growth', a%growth, b%growth)
+    call compare(log, what//'easy_needed', a%easy_needed, b%easy_needed)
+    call compare(log, what//'is_direct', a%is_direct, b%is_direct)
+    call compare(log, what//'easy_so_far', a%easy_so_far, b%easy_so_far)
+    call compare(log, what//'cuts_in_a_row', a%cuts_in_a_row, b%cuts_in_a_row)
+    call compare(log, what//'cutbacks', a%cutbacks, b%cutbacks)
+  end subroutine compare_control
+
+  !> Vectors of the integrator.
+  subroutine compare_motion(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    type(motion), intent(in) :: a, b
+    call compare(log, what//'q', a%q, b%q)
+    call compare(log, what//'v', a%v, b%v)
+    call compare(log, what//'a', a%a, b%a)
+    call compare(log, what//'external', a%external, b%external)
+    call compare(log, what//'elastic', a%elastic, b%elastic)
+    call compare(log, what//'internal', a%internal, b%internal)
+    call compare(log, what//'contact', a%contact, b%contact)
+    call compare(log, what//'balanced', a%balanced, b%balanced)
+    call compare(log, what//'elastic_rate', a%elastic_rate, b%elastic_rate)
+    call compare(log, what//'elastic_jerk', a%elastic_jerk, b%elastic_jerk)
+    call compare(log, what//'viscous', a%viscous, b%viscous)
+    call compare(log, what//'viscous_rate', a%viscous_rate, b%viscous_rate)
+    call compare(log, what//'momentum', a%momentum, b%momentum)
+    call compare(log, what//'inertia', a%inertia, b%inertia)
+    call compare(log, what//'carried', a%carried, b%carried)
+    call compare(log, what//'jump_rate', a%jump_rate, b%jump_rate)
+  end subroutine compare_motion
+
+  !> History of a joint.
+  subroutine compare_joint(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    type(joint_state), intent(in) :: a, b
+    call compare(log, what//'gap', a%gap, b%gap)
+    call compare(log, what//'shift', a%shift, b%shift)
+    call compare(log, what//'jump', a%jump, b%jump)
+    call compare(log, what//'traction', a%traction, b%traction)
+    call compare(log, what//'slip', a%slip, b%slip)
+    call compare(log, what//'is_broken', a%is_broken, b%is_broken)
+    call compare(log, what//'status', a%status, b%status)
+    call compare(log, what//'has_parted', a%has_parted, b%has_parted)
+    call compare(log, what//'friction_work', a%friction_work, b%friction_work)
+    call compare(log, what//'fracture_work', a%fracture_work, b%fracture_work)
+    call compare(log, what//'water', a%water, b%water)
+  end subroutine compare_joint
+
+  !> Points of a block.
+  subroutine compare_points(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    type(point_state), intent(in) :: a, b
+    call compare(log, what//'strain', a%strain, b%strain)
+    call compare(log, what//'stress', a%stress, b%stress)
+    call compare(log, what//'internal', a%internal, b%internal)
+    call compare(log, what//'energy', a%energy, b%energy)
+    call compare(log, what//'gradient', a%gradient, b%gradient)
+    call compare(log, what//'is_elastic', a%is_elastic, b%is_elastic)
+  end subroutine compare_points
+
+  !> A real, bit by bit.
+  subroutine compare_real(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    real(rk), intent(in) :: a, b
+    call check(log, transfer(a, 0_long) == transfer(b, 0_long), what)
+  end subroutine compare_real
+
+  !> An integer.
+  subroutine compare_integer(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    integer, intent(in) :: a, b
+    call check(log, a == b, what)
+  end subroutine compare_integer
+
+  !> A logical.
+  subroutine compare_logical(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    logical, intent(in) :: a, b
+    call check(log, a .eqv. b, what)
+  end subroutine compare_logical
+
+  !> An array of reals, bit by bit.
+  subroutine compare_reals_1(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    real(rk), allocatable, intent(in) :: a(:), b(:)
+    call check(log, allocated(a) .eqv. allocated(b), what//': allocated')
+    if (.not. allocated(a) .or. .not. allocated(b)) return
+    call check(log, all(shape(a) == shape(b)), what//': shape')
+    if (any(shape(a) /= shape(b))) return
+    call check(log, all(transfer(a, [0_long]) == transfer(b, [0_long])), what)
+  end subroutine compare_reals_1
+
+  !> An array of reals, bit by bit.
+  subroutine compare_reals_2(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    real(rk), allocatable, intent(in) :: a(:, :), b(:, :)
+    call check(log, allocated(a) .eqv. allocated(b), what//': allocated')
+    if (.not. allocated(a) .or. .not. allocated(b)) return
+    call check(log, all(shape(a) == shape(b)), what//': shape')
+    if (any(shape(a) /= shape(b))) return
+    call check(log, all(transfer(a, [0_long]) == transfer(b, [0_long])), what)
+  end subroutine compare_reals_2
+
+  !> An array of reals, bit by bit.
+  subroutine compare_reals_3(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    real(rk), allocatable, intent(in) :: a(:, :, :), b(:, :, :)
+    call check(log, allocated(a) .eqv. allocated(b), what//': allocated')
+    if (.not. allocated(a) .or. .not. allocated(b)) return
+    call check(log, all(shape(a) == shape(b)), what//': shape')
+    if (any(shape(a) /= shape(b))) return
+    call check(log, all(transfer(a, [0_long]) == transfer(b, [0_long])), what)
+  end subroutine compare_reals_3
+
+  !> A list of integers.
+  subroutine compare_integers_1(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    integer, allocatable, intent(in) :: a(:), b(:)
+    call check(log, allocated(a) .eqv. allocated(b), what//': allocated')
+    if (.not. allocated(a) .or. .not. allocated(b)) return
+    call check(log, size(a) == size(b), what//': size')
+    if (size(a) == size(b)) call check(log, all(a == b), what)
+  end subroutine compare_integers_1
+
+  !> A list of logicals.
+  subroutine compare_logicals_1(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    logical, allocatable, intent(in) :: a(:), b(:)
+    call check(log, allocated(a) .eqv. allocated(b), what//': allocated')
+    if (.not. allocated(a) .or. .not. allocated(b)) return
+    call check(log, size(a) == size(b), what//': size')
+    if (size(a) == size(b)) call check(log, all(a .eqv. b), what)
+  end subroutine compare_logicals_1
+end module same_states
