@@ -14,7 +14,7 @@ module same_states
   !> Two values of one kind and rank.
   interface compare
     module procedure compare_real, compare_integer, compare_logical, compare_reals_1, &
-                     compare_reals_2, compare_reals_3, compare_integers_1, compare_logicals_1
+      compare_reals_2, compare_reals_3, compare_integers_1, compare_logicals_1
   end interface compare
 
 contains

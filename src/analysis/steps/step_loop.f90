@@ -29,8 +29,8 @@ module step_loop
 
 contains
 
-  !> Runs all steps. A state that was loaded goes on where it was saved. On an error `now` is the last
-  !> state that converged; the listener has it.
+  !> Runs all steps. A state that was loaded goes on where it was saved. On an error `now` is the
+  !> last state that converged; the listener has it.
   subroutine run_all_steps(model, now, results, error)
     type(problem), intent(in) :: model
     type(state), allocatable, intent(inout) :: now !< as `start_analysis` makes it, or loaded
@@ -106,8 +106,8 @@ contains
         return
       end if
     end if
-    call raise(error, "the loaded state does not belong to step '"//plan%name//"' of this model: "// &
-               'supports, ties or the procedure of the step are others', system_failed)
+    call raise(error, "the loaded state does not belong to step '"//plan%name//"' of this "// &
+               'model: supports, ties or the procedure of the step are others', system_failed)
   end subroutine reopen_step
 
   !> Whether a loaded state has what its step needs to go on.

@@ -168,13 +168,13 @@ contains
     class(archive), intent(inout) :: self
     character(*), intent(in) :: name
     real(rk), intent(inout) :: value
-    real(rk) :: read(1)
+    real(rk) :: found(1)
     integer :: extent(0)
     logical :: is_present
-    read = value
+    found = value
     call self%measure(name, extent, is_present)
-    if (is_present) call self%read_reals(name, 1, read)
-    value = read(1)
+    if (is_present) call self%read_reals(name, 1, found)
+    value = found(1)
   end subroutine get_real
 
   !> A list of reals.
@@ -239,13 +239,13 @@ contains
     class(archive), intent(inout) :: self
     character(*), intent(in) :: name
     integer, intent(inout) :: value
-    integer :: read(1)
+    integer :: found(1)
     integer :: extent(0)
     logical :: is_present
-    read = value
+    found = value
     call self%measure(name, extent, is_present)
-    if (is_present) call self%read_integers(name, 1, read)
-    value = read(1)
+    if (is_present) call self%read_integers(name, 1, found)
+    value = found(1)
   end subroutine get_integer
 
   !> A list of integers.

@@ -1,13 +1,13 @@
 !> An archive in an HDF5 file.
 !>
-!> Damage does not pass: the newest format of HDF5 has checksums of all its structures; small values
-!> are stored within these structures, and large ones have a checksum of their own. The file grows as
-!> PATH.part and is moved to PATH when it is complete.
+!> A damaged value is found: the newest format of HDF5 has checksums of all its structures. Small
+!> arrays are stored within these structures, and large ones have a checksum of their own. The file
+!> grows as PATH.part and is moved to PATH when it is complete.
 module hdf5_archive
   use hdf5, only: hid_t, hsize_t, size_t, h5fcreate_f, h5fopen_f, h5fclose_f, h5f_acc_trunc_f, &
                   h5f_acc_rdonly_f, h5f_libver_latest_f, h5gcreate_f, h5gclose_f, h5screate_f, &
-                  h5screate_simple_f, h5sclose_f, h5s_scalar_f, h5s_null_f, h5dcreate_f, h5dopen_f, &
-                  h5dwrite_f, h5dread_f, h5dclose_f, h5dget_space_f, h5dget_type_f, &
+                  h5screate_simple_f, h5sclose_f, h5s_scalar_f, h5s_null_f, h5dcreate_f, &
+                  h5dopen_f, h5dwrite_f, h5dread_f, h5dclose_f, h5dget_space_f, h5dget_type_f, &
                   h5sget_simple_extent_type_f, h5sget_simple_extent_ndims_f, &
                   h5sget_simple_extent_dims_f, h5pcreate_f, h5pclose_f, h5pset_layout_f, &
                   h5pset_chunk_f, h5pset_fletcher32_f, h5pset_libver_bounds_f, h5p_file_access_f, &
@@ -359,8 +359,8 @@ contains
     integer :: status, class_of_type
     call h5dopen_f(self%id, self%group//name, dataset, status)
     if (status < 0) then
-      call self%fail(self%place_of(name)//' is missing: the file is damaged, or it is no state of '// &
-                     'Keyway, or another version has written it')
+      call self%fail(self%place_of(name)//' is missing: the file is damaged, or it is no state '// &
+                     'of Keyway, or another version has written it')
       return
     end if
     if (.not. present(expected)) return

@@ -26,8 +26,8 @@ contains
     call file%put('water', history%water)
   end subroutine save_joint
 
-  !> Reads the history of one joint from the present group. The history arrives as the law starts it,
-  !> which fixes the sizes.
+  !> Reads the history of one joint from the present group. The history arrives as the law starts
+  !> it, which fixes the sizes.
   subroutine load_joint(history, file)
     type(joint_state), intent(inout) :: history
     class(archive), intent(inout) :: file

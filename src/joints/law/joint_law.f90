@@ -11,8 +11,8 @@ module joint_law
 
   integer, parameter :: state_open = 0, state_stick = 1, state_slip = 2, state_bonded = 3
 
-  !> History of all points of one joint; two of them exist, converged and trial. A new component gets
-  !> a line in save and load of joint_archive.
+  !> History of all points of one joint; two of them exist, converged and trial. A new component
+  !> gets a line in save and load of joint_archive.
   type :: joint_state
     real(rk), allocatable :: gap(:) !< (points) at the start; the opening is jump(1) + gap [m]
     !> (points) multiplier of the contact over the normal stiffness, <= 0: contact begins where the

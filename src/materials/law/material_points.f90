@@ -30,8 +30,8 @@ module material_points
     real(rk), allocatable :: length(:) !< (points) cube root of the element's volume [m]
   end type point_set
 
-  !> What the points of a block are in, converged or on trial. A new component gets a line in save and
-  !> load of point_archive.
+  !> What the points of a block are in, converged or on trial. A new component gets a line in save
+  !> and load of point_archive.
   type :: point_state
     real(rk), allocatable :: strain(:, :) !< (6, points) 11 22 33 12 13 23, engineering shear
     real(rk), allocatable :: stress(:, :) !< (6, points) [Pa]
