@@ -1,5 +1,5 @@
 !> A state whose components all have values of their own, for tests of what saves and loads it.
-!> tests/test_archives.py finds a component that is missing here.
+!> tests/tools/test_archives.py finds a component that is missing here.
 module full_state
   use kinds, only: rk
   use analysis_state, only: state, increment_status, energy_balance, motion

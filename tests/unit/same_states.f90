@@ -1,5 +1,5 @@
-!> Compares two states member by member and bit by bit. tests/test_archives.py finds a component
-!> that is missing here.
+!> Compares two states member by member and bit by bit. tests/tools/test_archives.py finds a
+!> component that is missing here.
 module same_states
   use kinds, only: rk, long
   use step_control, only: increment_control

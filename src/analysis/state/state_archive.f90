@@ -1,5 +1,5 @@
 !> How the state of an analysis saves and loads itself. Every component of the types has a line in
-!> each procedure of a pair; tests/test_archives.py compares them with the types.
+!> each procedure of a pair; tests/tools/test_archives.py compares them with the types.
 module state_archive
   use errors, only: error_type
   use archive_type, only: archive

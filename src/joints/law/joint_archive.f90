@@ -1,5 +1,5 @@
 !> How the history of a joint saves and loads itself. Every component of `joint_state` has a line in
-!> each of the two procedures; tests/test_archives.py compares them with the type.
+!> each of the two procedures; tests/tools/test_archives.py compares them with the type.
 module joint_archive
   use archive_type, only: archive
   use joint_law, only: joint_state

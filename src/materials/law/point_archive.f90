@@ -1,5 +1,5 @@
 !> How the points of a material save and load themselves. Every component of `point_state` has a
-!> line in each of the two procedures; tests/test_archives.py compares them with the type.
+!> line in each of the two procedures; tests/tools/test_archives.py compares them with the type.
 module point_archive
   use archive_type, only: archive
   use material_points, only: point_state

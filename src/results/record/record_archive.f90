@@ -1,6 +1,6 @@
 !> How the record of a run saves and loads itself: extremes, envelopes, warnings. Faces of the dam
-!> come from the model, stresses from the state. tests/test_archives.py compares the procedures with
-!> the types.
+!> come from the model, stresses from the state. tests/tools/test_archives.py compares the
+!> procedures with the types.
 module record_archive
   use errors, only: error_type
   use kinds, only: rk

@@ -179,8 +179,8 @@ contains
     call read_state(now, error)
     call check(log, allocated(error), 'a model of another size is an error')
     if (.not. allocated(error)) return
-    call check_text(log, error%message, "'test_state_archive.h5': /state/u is an array of 3 x 24,"// &
-                    ' but of 3 x 20 in this model: the archive belongs to another model', &
+    call check_text(log, error%message, "'test_state_archive.h5': /state/u is an array of 3 x 24"// &
+                    ', but of 3 x 20 in this model: the archive belongs to another model', &
                     'a model of another size')
   end subroutine other_model_fails
 
@@ -197,8 +197,8 @@ contains
     call run_all_steps(scene, now, rest, error)
     call check(log, allocated(error), 'a step with other supports is an error')
     if (.not. allocated(error)) return
-    call check_text(log, error%message, "the loaded state does not belong to step 'Step' of this"// &
-                    ' model: supports, ties or the procedure of the step are others', &
+    call check_text(log, error%message, "the loaded state does not belong to step 'Step' of "// &
+                    'this model: supports, ties or the procedure of the step are others', &
                     'a step with other supports')
   end subroutine other_step_fails
 

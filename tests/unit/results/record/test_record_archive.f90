@@ -245,8 +245,8 @@ contains
     call pass_through(record, other, log, error)
     call check(log, allocated(error), 'a model with other joints is an error')
     if (.not. allocated(error)) return
-    call check_text(log, error%message, "'test_record_archive.h5': /record/num_joints is 2, but "// &
-                    '1 in this model: the archive belongs to another model', 'other joints')
+    call check_text(log, error%message, "'test_record_archive.h5': /record/num_joints is 2, "// &
+                    'but 1 in this model: the archive belongs to another model', 'other joints')
   end subroutine other_model_fails
 
   !> Takes the file of the test away.
