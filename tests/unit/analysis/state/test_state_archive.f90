@@ -179,8 +179,8 @@ contains
     call read_state(now, error)
     call check(log, allocated(error), 'a model of another size is an error')
     if (.not. allocated(error)) return
-    call check_text(log, error%message, "'test_state_archive.h5': /state/u is an array of 3 x 24"// &
-                    ', but of 3 x 20 in this model: the archive belongs to another model', &
+    call check_text(log, error%message, "'test_state_archive.h5': /state/u is an array of 3 x "// &
+                    '24, but of 3 x 20 in this model: the archive belongs to another model', &
                     'a model of another size')
   end subroutine other_model_fails
 
