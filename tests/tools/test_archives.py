@@ -83,6 +83,7 @@ TYPES = (
         "compare_records",
         stresses="made anew from the state",
         skin="of the model",
+        fields="the same for all runs",
     ),
     of_record(
         "joint_record",

@@ -92,10 +92,13 @@ contains
   subroutine save_joint_record(record, file)
     type(joint_record), intent(in) :: record
     class(archive), intent(inout) :: file
+    real(rk), allocatable :: largest_now(:)
+    largest_now = record%largest_now
     call save_extremes('opening', record%opening, file)
     call save_extremes('slip', record%slip, file)
     call save_extremes('pressure', record%pressure, file)
     call file%put('penetration', record%penetration)
+    call file%put('largest_now', largest_now)
     call save_extremes('water', record%water, file)
   end subroutine save_joint_record
 
@@ -103,10 +106,13 @@ contains
   subroutine load_joint_record(record, file)
     type(joint_record), intent(inout) :: record
     class(archive), intent(inout) :: file
+    real(rk), allocatable :: largest_now(:)
     call load_extremes('opening', record%opening, file)
     call load_extremes('slip', record%slip, file)
     call load_extremes('pressure', record%pressure, file)
     call file%get('penetration', record%penetration)
+    call file%get('largest_now', largest_now)
+    if (allocated(largest_now)) record%largest_now = largest_now
     call load_extremes('water', record%water, file)
   end subroutine load_joint_record
 
@@ -189,6 +195,7 @@ contains
     type(envelope), intent(in) :: item
     class(archive), intent(inout) :: file
     call file%put('name', item%name)
+    call file%put('row', item%row)
     call file%put('wants_smallest', item%wants_smallest)
     call file%put('is_empty', item%is_empty)
     call file%put('value', item%value)
@@ -204,6 +211,7 @@ contains
     character(:), allocatable :: name
     call file%get('name', name)
     if (allocated(name)) item%name = name
+    call file%get('row', item%row)
     call file%get('wants_smallest', item%wants_smallest)
     call file%get('is_empty', item%is_empty)
     call file%get('value', item%value)

@@ -62,6 +62,7 @@ contains
         call fill_extremes(10.0_rk*i + 2.0_rk, joint%pressure)
         call fill_extremes(10.0_rk*i + 3.0_rk, joint%water)
         joint%penetration = 10.0_rk*i + 4.0_rk
+        joint%largest_now = 10.0_rk*i + [5.0_rk, 6.0_rk, 7.0_rk]
       end associate
     end do
     associate (damage => record%damage)
@@ -113,7 +114,7 @@ contains
   subroutine compare_records(log, a, b)
     type(test_log), intent(inout) :: log
     type(run_record), intent(in) :: a, b
-    integer :: i
+    integer :: i, k
     call compare(log, 'step', a%step, b%step)
     call compare(log, 'active', a%active, b%active)
     call compare(log, 'most_taken', a%most_taken, b%most_taken)
@@ -125,6 +126,9 @@ contains
       call compare_extremes(log, 'pressure', a%joints(i)%pressure, b%joints(i)%pressure)
       call compare_extremes(log, 'water', a%joints(i)%water, b%joints(i)%water)
       call compare(log, 'penetration', a%joints(i)%penetration, b%joints(i)%penetration)
+      do k = 1, 3
+        call compare(log, 'largest_now', a%joints(i)%largest_now(k), b%joints(i)%largest_now(k))
+      end do
     end do
     call compare_damage(log, 'tension', a%damage%tension, b%damage%tension)
     call compare_damage(log, 'compression', a%damage%compression, b%damage%compression)
@@ -150,6 +154,7 @@ contains
       associate (x => a%envelopes(i), y => b%envelopes(i))
         call check_text(log, y%name, x%name, 'name')
         call compare(log, 'wants_smallest', x%wants_smallest, y%wants_smallest)
+        call compare(log, 'row', x%row, y%row)
         call compare(log, 'is_empty', x%is_empty, y%is_empty)
         call compare(log, 'value', x%value, y%value)
         call compare(log, 'time', x%time, y%time)
