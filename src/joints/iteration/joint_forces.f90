@@ -2,7 +2,7 @@
 module joint_forces
   use kinds, only: rk
   use global_vectors, only: dot
-  use joint_law, only: joint_state
+  use joint_law, only: joint_state, state_open
   use joint_points, only: joint
   use joint_operator, only: jump_operator
   use contact_augmentation, only: contact_multiplier
@@ -24,6 +24,7 @@ module joint_forces
     real(rk), allocatable :: traction(:, :) !< (3, points) the laws' own [Pa]
     real(rk), allocatable :: iterate(:, :) !< (3, points) of the augmented form [Pa]
     real(rk), allocatable :: tangent(:, :, :) !< (3, 3, points) [Pa/m]
+    logical, allocatable :: is_open(:) !< (points) as the laws report it
     logical, allocatable :: was_open(:) !< (points) at the linearisation before
     integer, allocatable :: num_openings(:) !< (points) within the increment's iteration
     real(rk), allocatable :: response(:, :) !< (3, points) jumps by the balance as linearised [m]
@@ -35,9 +36,6 @@ module joint_forces
     real(rk) :: start_force = 0.0_rk !< 2-norm of area*traction of the converged state [N]
     real(rk) :: bulk_force = 0.0_rk !< reference force of the bulk [N]
   end type joint_field
-
-  !> A point opened so often within one increment has parted (theory.md, 2.3).
-  integer, parameter :: parting_openings = 2
 
   !> Energies of all joints [J].
   type :: joint_work
@@ -85,10 +83,11 @@ contains
       first = operator%first_point(j)
       last = operator%first_point(j + 1) - 1
       associate (jump => field%jump(:, first:last), multiplier => field%multiplier(:, first:last))
-        new(j)%has_parted = field%num_openings(first:last) >= parting_openings
+        new(j)%num_openings = field%num_openings(first:last)
         call joints(j)%law%update(jump, old(j), multiplier, field%scale(first:last), new(j), &
                                   field%iterate(:, first:last), field%tangent(:, :, first:last))
       end associate
+      field%is_open(first:last) = new(j)%status == state_open
     end do
     call gather_tractions(operator, new, field%traction)
   end subroutine evaluate_joints

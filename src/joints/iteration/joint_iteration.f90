@@ -64,6 +64,7 @@ contains
     allocate (field%traction(3, n), field%iterate(3, n), field%tangent(3, 3, n))
     allocate (field%start_jump(3, n))
     allocate (field%num_openings(n), source=0)
+    allocate (field%is_open(n), source=.false.)
     field%scale = scale(1, :)
     field%own_scale = scale(2, :)
     field%shared_scale = field%scale
@@ -79,7 +80,8 @@ contains
     field%multiplier = field%traction(2:3, :)
     field%tangent = closed_tangent(reference)
     if (.not. balance%starts_bonded) then
-      where (field%traction(1, :) >= 0.0_rk) field%tangent(1, 1, :) = 0.0_rk
+      ! Points without pressure count as open: where they penetrate now, they come from there.
+      field%is_open = field%traction(1, :) >= 0.0_rk
       call linearise(joints, operator, old, reference, field, new)
       call approach_contact(reference, field, is_moved)
       if (is_moved) call linearise(joints, operator, old, reference, field, new)
@@ -97,10 +99,9 @@ contains
     type(joint_field), intent(inout) :: field
     type(joint_state), intent(inout) :: new(:)
     integer :: p, i
-    field%was_open = field%tangent(1, 1, :) < 0.5_rk*reference(1, :)
+    field%was_open = field%is_open
     call evaluate_joints(joints, operator, old, field, new)
-    where (.not. field%was_open .and. field%tangent(1, 1, :) < 0.5_rk*reference(1, :)) &
-      field%num_openings = field%num_openings + 1
+    where (field%is_open .and. .not. field%was_open) field%num_openings = field%num_openings + 1
     do p = 1, operator%num_points
       do i = 1, 3
         if (field%tangent(i, i, p) < reference(i, p)) then

@@ -32,6 +32,10 @@ module joint_contraction
     procedure :: limits
   end type contraction_law
 
+  !> A point that one increment has opened so often has parted: it loses its strength, and within
+  !> the increment its cohesion (theory.md, 2.3).
+  integer, parameter :: parting_openings = 2
+
   !> What the history holds of one point.
   type :: point_state
     real(rk) :: gap !< with the shift of the contact [m]
@@ -97,16 +101,18 @@ contains
     real(rk), intent(out) :: iterate(:, :)
     real(rk), intent(out) :: tangent(:, :, :)
     type(point_state) :: before, after
+    logical :: has_parted
     integer :: p
     do p = 1, size(jump, 2)
       before = point_state(old%gap(p) + old%shift(p), old%jump(:, p), old%traction(:, p), &
                            old%slip(:, p), old%friction_work(p), old%fracture_work(p), &
                            self%cohesion, old%is_broken(p), old%status(p))
       after = before
-      if (new%has_parted(p)) after%cohesion = 0.0_rk
+      has_parted = new%num_openings(p) >= parting_openings
+      if (has_parted) after%cohesion = 0.0_rk
       after%jump = jump(:, p)
       after%gap = old%gap(p) + new%shift(p)
-      if (.not. (before%is_broken .or. new%has_parted(p)) .and. &
+      if (.not. (before%is_broken .or. has_parted) .and. &
           jump(1, p)*self%normal_stiffness <= self%strength) then
         call stay_bonded(self, after, iterate(:, p), tangent(:, :, p))
       else if (jump(1, p) + after%gap > 0.0_rk) then

@@ -22,10 +22,12 @@ module joint_law
     real(rk), allocatable :: traction(:, :) !< (3, points) by the law at `jump` [Pa]
     real(rk), allocatable :: slip(:, :) !< (2, points) irrecoverable sliding [m]
     logical, allocatable :: is_broken(:) !< tensile strength lost
-    integer, allocatable :: status(:) !< open, stick, slip or bonded
-    !> The iteration of the increment opened the point again and again: it has no strength any more,
-    !> and no cohesion when it closes within the increment.
-    logical, allocatable :: has_parted(:)
+    !> (points) What the law reports: open (the point touches and carries nothing), stick or slip
+    !> (pressed), bonded (it can carry tension)
+    integer, allocatable :: status(:)
+    !> (points) How often the iteration of this increment has opened the point. The law decides from
+    !> which number on the point has parted, and what the point loses by that.
+    integer, allocatable :: num_openings(:)
     real(rk), allocatable :: friction_work(:) !< dissipated so far [J/m2]
     real(rk), allocatable :: fracture_work(:) !< set free when the strength was lost [J/m2]
     real(rk), allocatable :: water(:) !< (points) pressure of water in the joint; where there is any
@@ -76,7 +78,7 @@ module joint_law
       real(rk), intent(in) :: multiplier(:, :) !< (2, points) [Pa]
       real(rk), intent(in) :: scale(:) !< (points) [Pa/m]
       type(joint_state), intent(inout) :: new !< history at the trial jump, law's own traction;
-      !! has_parted and shift are given
+      !! num_openings and shift are given
       real(rk), intent(out) :: iterate(:, :) !< (3, points) traction of the augmented form [Pa]
       real(rk), intent(out) :: tangent(:, :, :) !< (3, 3, points) [Pa/m], unsymmetric
     end subroutine update
@@ -114,7 +116,8 @@ contains
     allocate (state%jump(3, num_points), state%traction(3, num_points), source=0.0_rk)
     allocate (state%slip(2, num_points), source=0.0_rk)
     allocate (state%friction_work(num_points), state%fracture_work(num_points), source=0.0_rk)
-    allocate (state%is_broken(num_points), state%has_parted(num_points), source=.false.)
+    allocate (state%is_broken(num_points), source=.false.)
+    allocate (state%num_openings(num_points), source=0)
     allocate (state%status(num_points), source=state_open)
   end subroutine allocate_state
 end module joint_law

@@ -164,15 +164,15 @@ contains
     type(joint_state) :: state
     law = joint_of(0.0_rk, 0.5_rk, 1.0e5_rk, 0.0_rk)
     call law%start_state([0.0_rk], state)
-    state%has_parted = .true.
+    state%num_openings = 2
     call go(law, [-1.0e-6_rk, 8.0e-6_rk, 0.0_rk], state)
     call check_close(log, state%traction(2, 1), 5.0e5_rk, 1.0e-6_rk, 'parted: mu p')
-    state%has_parted = .false.
+    state%num_openings = 0
     call go(law, [-1.0e-6_rk, 16.0e-6_rk, 0.0_rk], state)
     call check_close(log, state%traction(2, 1), 6.0e5_rk, 1.0e-6_rk, 'whole: mu p + c')
     law = joint_of(1.0e6_rk, 0.5_rk, 0.0_rk, 0.0_rk)
     call law%start_state([0.0_rk], state)
-    state%has_parted = .true.
+    state%num_openings = 2
     call go(law, [0.5e-6_rk, 0.0_rk, 0.0_rk], state)
     call check(log, state%status(1) == state_open .and. state%is_broken(1), 'parted: broken')
     call check_close(log, state%traction(1, 1), 0.0_rk, 0.0_rk, 'parted: no tension')
