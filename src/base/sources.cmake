@@ -1,7 +1,5 @@
 set(sources
   errors.f90
-  growing_lists.f90
-  kinds.f90
   files/archive_storage.f90
   files/archive_type.f90
   files/csv_files.f90
@@ -16,6 +14,8 @@ set(sources
   files/vtk_order.f90
   files/vtu_files.f90
   files/whole_files.f90
+  growing_lists.f90
+  kinds.f90
   math/dense_factor.f90
   math/row_tables.f90
   math/small_matrix.f90

@@ -4,7 +4,7 @@ module card_check
   use diagnostics, only: diagnostic_list, place, severity_error
   use field_text, only: expected_in, names_of_columns, text_or_nothing
   use keyword_spec, only: field, find_spec, keyword, kind_choice, kind_flag, kind_integer, &
-                          kind_real, later, without_effect
+                          kind_real, later, spec_of_variant, without_effect
   use kinds, only: rk
   use nearest_words, only: nearest_choice, nearest_word
   use parse_text, only: parse_integer, parse_real, single_blanks, upper_case
@@ -68,6 +68,9 @@ contains
     integer :: num_before
     num_before = faults%num_errors
     the_card%spec = spec
+    if (allocated(spec%variants)) then
+      the_card%spec = spec_of_variant(spec, single_blanks(the_card%word(spec%chooser)))
+    end if
     call check_given_parameters(the_card, faults)
     call check_required_parameters(the_card, faults)
     call check_line_count(the_card, faults)

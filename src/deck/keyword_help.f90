@@ -70,6 +70,7 @@ contains
     if (allocated(spec%parameters)) then
       if (size(spec%parameters) > 0) text = text//nl//nl//'Parameters'//rows(spec%parameters)
     end if
+    if (allocated(spec%variants)) text = text//variants(spec)
     if (allocated(spec%columns)) then
       if (size(spec%columns) > 0) text = text//nl//nl//data_title(spec)//rows(spec%columns)
     end if
@@ -78,6 +79,20 @@ contains
       text = text//nl//nl//'Example'//nl//indented(spec%example)
     end if
   end function page
+
+  !> A paragraph and the further parameters for each variant.
+  pure function variants(spec) result(text)
+    type(keyword), intent(in) :: spec
+    character(:), allocatable :: text
+    integer :: i
+    text = ''
+    do i = 1, size(spec%variants)
+      associate (one => spec%variants(i))
+        text = text//nl//nl//'With '//spec%chooser//'='//one%name//nl// &
+               wrapped(text_or_nothing(one%meaning), 2)//nl//rows(one%parameters)
+      end associate
+    end do
+  end function variants
 
   !> 'Data lines: at least 1'.
   pure function data_title(spec) result(text)

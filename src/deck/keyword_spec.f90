@@ -5,8 +5,9 @@ module keyword_spec
   use parse_text, only: without_blanks
   implicit none
   private
-  public :: keyword, field
+  public :: keyword, keyword_variant, field
   public :: parameter_default, column_default, column_of_field, find_spec
+  public :: choices_of, spec_of_variant
   public :: kind_real, kind_integer, kind_word, kind_flag, kind_choice, kind_text, kind_reference
   public :: available, later, without_effect
 
@@ -34,6 +35,14 @@ module keyword_spec
     logical :: excludes_lowest = .false., excludes_highest = .false. !< range is open there
   end type field
 
+  !> What a keyword takes besides where one of its parameters has a certain value: the constants of
+  !> one law, say.
+  type :: keyword_variant
+    character(:), allocatable :: name !< upper case: the value of the parameter
+    character(:), allocatable :: meaning !< a sentence or more
+    type(field), allocatable :: parameters(:)
+  end type keyword_variant
+
   !> A keyword of the deck.
   type :: keyword
     character(:), allocatable :: name !< upper case, without the star
@@ -43,6 +52,8 @@ module keyword_spec
     character(:), allocatable :: place !< 'model', 'step', 'anywhere', 'material'
     integer :: status = available
     type(field), allocatable :: parameters(:)
+    character(:), allocatable :: chooser !< parameter that selects the variant
+    type(keyword_variant), allocatable :: variants(:)
     type(field), allocatable :: columns(:) !< of one data line
     logical :: repeats_columns = .false. !< a line may hold the columns several times
     character(:), allocatable :: no_further !< why further columns of other programs are refused
@@ -50,7 +61,66 @@ module keyword_spec
     integer :: fewest_lines = 0, most_lines = huge(1) !< of data
     logical :: new_clears = .false. !< OP=NEW without data clears what there was
   end type keyword
+
 contains
+
+  !> The names of variants, as the choices of a parameter.
+  pure function choices_of(variants) result(choices)
+    type(keyword_variant), intent(in) :: variants(:)
+    character(:), allocatable :: choices !< 'A | B'
+    integer :: i
+    choices = ''
+    do i = 1, size(variants)
+      if (i > 1) choices = choices//' | '
+      choices = choices//variants(i)%name
+    end do
+  end function choices_of
+
+  !> The specification that holds for one variant: its parameters follow the one that selects it.
+  !> For a name that no variant has, it holds the parameters of all.
+  pure function spec_of_variant(spec, name) result(whole)
+    type(keyword), intent(in) :: spec !< with variants
+    character(*), intent(in) :: name !< of the variant, upper case
+    type(keyword) :: whole
+    logical :: is_known
+    integer :: i, j
+    is_known = any([(spec%variants(i)%name == name, i=1, size(spec%variants))])
+    whole = spec
+    deallocate (whole%parameters)
+    allocate (whole%parameters(0))
+    do i = 1, size(spec%parameters)
+      call append_field(whole%parameters, spec%parameters(i))
+      if (spec%parameters(i)%name /= spec%chooser) cycle
+      do j = 1, size(spec%variants)
+        if (is_known .and. spec%variants(j)%name /= name) cycle
+        call append_fields(whole%parameters, spec%variants(j)%parameters)
+      end do
+    end do
+  end function spec_of_variant
+
+  !> Puts the fields at the end of a list that does not hold their names.
+  pure subroutine append_fields(list, new)
+    type(field), allocatable, intent(inout) :: list(:)
+    type(field), intent(in) :: new(:)
+    integer :: i, j
+    do i = 1, size(new)
+      if (any([(list(j)%name == new(i)%name, j=1, size(list))])) cycle
+      call append_field(list, new(i))
+    end do
+  end subroutine append_fields
+
+  pure subroutine append_field(list, new)
+    type(field), allocatable, intent(inout) :: list(:)
+    type(field), intent(in) :: new
+    type(field), allocatable :: longer(:)
+    integer :: i
+    allocate (longer(size(list) + 1))
+    do i = 1, size(list)
+      longer(i) = list(i)
+    end do
+    longer(size(longer)) = new
+    call move_alloc(longer, list)
+  end subroutine append_field
 
   !> Position of the specification a card belongs to; names compare with blanks removed.
   !>

@@ -11,9 +11,9 @@ set(sources
   iteration/jump_block.f90
   iteration/newton_condensed.f90
   iteration/newton_full.f90
+  law/contraction_keyword.f90
   law/joint_archive.f90
   law/joint_catalogue.f90
-  law/joint_constants.f90
   law/joint_contraction.f90
   law/joint_law.f90
   law/joint_opening.f90

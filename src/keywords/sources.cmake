@@ -1,13 +1,9 @@
 set(sources
   deck_echo.f90
-  finish_model.f90
-  keyword_catalogue.f90
-  read_deck.f90
-  verify_blocks.f90
-  verify_model.f90
   draft/keyword_handler.f90
   draft/model_draft.f90
   draft/named_things.f90
+  finish_model.f90
   joints/contact_defaults.f90
   joints/cover_checks.f90
   joints/finish_interfaces.f90
@@ -17,6 +13,7 @@ set(sources
   joints/keywords_interface.f90
   joints/keywords_joint.f90
   joints/keywords_tie.f90
+  keyword_catalogue.f90
   loads/enter_load.f90
   loads/finish_uplift.f90
   loads/keywords_loads.f90
@@ -36,6 +33,7 @@ set(sources
   mesh/keywords_nodes.f90
   mesh/keywords_section.f90
   mesh/keywords_sets.f90
+  read_deck.f90
   steps/check_requests.f90
   steps/finish_step.f90
   steps/history_file.f90
@@ -47,4 +45,6 @@ set(sources
   steps/keywords_output.f90
   steps/keywords_print.f90
   steps/keywords_step.f90
+  verify_blocks.f90
+  verify_model.f90
 )

@@ -1,5 +1,4 @@
 set(sources
-  result_files.f90
   fields/field_help.f90
   fields/field_table.f90
   fields/field_type.f90
@@ -23,6 +22,7 @@ set(sources
   record/requested_fields.f90
   record/result_writer.f90
   record/run_records.f90
+  result_files.f90
   summary/damage_json.f90
   summary/joint_json.f90
   summary/material_summary.f90

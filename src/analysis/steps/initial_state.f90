@@ -90,16 +90,13 @@ contains
     type(joint), intent(in) :: seam
     real(rk), intent(in) :: u(:, :) !< (3, nodes) [m]
     type(joint_state), intent(inout) :: history
-    real(rk), dimension(3, seam%num_points) :: jump, iterate
-    real(rk) :: tangent(3, 3, seam%num_points), k(3)
+    real(rk) :: jump(3, seam%num_points), tangent(3, 3, seam%num_points)
     type(joint_state) :: old
     integer :: p
     do p = 1, seam%num_points
       jump(:, p) = matmul(seam%rotation(:, :, p), apart(seam, p, u))
     end do
     old = history
-    call seam%law%reference_stiffness(k)
-    call seam%law%update(jump, old, old%traction(2:3, :), spread(k(2), 1, seam%num_points), &
-                         history, iterate, tangent)
+    call seam%law%update(jump, old, history, tangent)
   end subroutine move_joint
 end module initial_state

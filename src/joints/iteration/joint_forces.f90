@@ -84,8 +84,9 @@ contains
       last = operator%first_point(j + 1) - 1
       associate (jump => field%jump(:, first:last), multiplier => field%multiplier(:, first:last))
         new(j)%num_openings = field%num_openings(first:last)
-        call joints(j)%law%update(jump, old(j), multiplier, field%scale(first:last), new(j), &
-                                  field%iterate(:, first:last), field%tangent(:, :, first:last))
+        call joints(j)%law%linearise(jump, old(j), multiplier, field%scale(first:last), new(j), &
+                                     field%iterate(:, first:last), &
+                                     field%tangent(:, :, first:last))
       end associate
       field%is_open(first:last) = new(j)%status == state_open
     end do

@@ -10,8 +10,11 @@
 !> lambda - (mu p + c) z/|z| = 0 gives the next traction. At a solution this is the return map and
 !> its consistent tangent; on the way it does not cycle, which the return map does.
 module joint_contraction
-  use joint_law, only: allocate_state, joint_state, state_bonded, state_open, state_slip, &
-                       state_stick, traction_law
+  use contraction_keyword, only: describe_contraction
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use joint_law, only: allocate_state, joint_state, solid_behind, state_bonded, state_open, &
+                       state_slip, state_stick, traction_law
   use kinds, only: rk
   use slip_dissipation, only: closing_work, opening_work, sliding_work
   implicit none
@@ -19,15 +22,21 @@ module joint_contraction
   public :: contraction_law
 
   type, extends(traction_law) :: contraction_law
-    real(rk) :: normal_stiffness = 0.0_rk !< k_n [Pa/m]
-    real(rk) :: tangent_stiffness = 0.0_rk !< k_t [Pa/m]
+    real(rk) :: normal_stiffness = 0.0_rk !< k_n [Pa/m]; 0: from the solid
+    real(rk) :: tangent_stiffness = 0.0_rk !< k_t [Pa/m]; 0: from the solid
     real(rk) :: strength = 0.0_rk !< q_on [Pa]
     real(rk) :: friction = 0.0_rk !< mu
     real(rk) :: cohesion = 0.0_rk !< c of the closed joint [Pa]
+    real(rk) :: thickness = 0.02_rk !< for the default of k_n [m]; paper_notes.md, 3
   contains
+    procedure, nopass :: describe => describe_contraction
+    procedure :: read_card
+    procedure :: needs_solid
+    procedure :: complete
     procedure :: start_state
     procedure :: reference_stiffness
     procedure :: update
+    procedure :: linearise
     procedure :: stored_energy
     procedure :: limits
   end type contraction_law
@@ -46,6 +55,50 @@ module joint_contraction
   end type point_state
 
 contains
+
+  !> The constants of a card.
+  subroutine read_card(self, this, faults)
+    class(contraction_law), intent(inout) :: self
+    type(card), intent(in) :: this
+    type(diagnostic_list), intent(inout) :: faults
+    self%normal_stiffness = this%real('KN')
+    self%tangent_stiffness = this%real('KT')
+    self%strength = this%real('TENSILE STRENGTH')
+    self%friction = this%real('FRICTION')
+    self%cohesion = this%real('COHESION')
+    self%thickness = this%real('THICKNESS')
+    self%gap = this%real('GAP')
+    self%penetration = this%real('PENETRATION')
+    if (self%gap > 0.0_rk .and. self%strength > 0.0_rk) then
+      call this%fault_parameter(faults, 'TENSILE STRENGTH', 'a joint with a GAP has no strength', &
+                                'GAP or TENSILE STRENGTH, not both')
+    end if
+    if (this%has('KN') .and. this%has('THICKNESS')) then
+      call this%warn(faults, 'THICKNESS has no effect: KN is given')
+    end if
+  end subroutine read_card
+
+  !> Whether a stiffness is still to come from the solid on the slave side.
+  pure logical function needs_solid(self)
+    class(contraction_law), intent(in) :: self
+    needs_solid = min(self%normal_stiffness, self%tangent_stiffness) <= 0.0_rk
+  end function needs_solid
+
+  !> k_n = E/thickness and k_t = k_n/(2 (1 + nu)) where the deck gave none (paper_notes.md, 3).
+  !> Where k_n only leads the iteration to contact without penetration (different_meshes.md, 13.5),
+  !> it is the stiffness of a layer of elements; k_t is that of the joint itself there, too.
+  pure subroutine complete(self, solid)
+    class(contraction_law), intent(inout) :: self
+    type(solid_behind), intent(in) :: solid
+    if (self%penetration > 0.0_rk .and. self%normal_stiffness <= 0.0_rk &
+        .and. self%strength <= 0.0_rk) self%normal_stiffness = solid%layer_stiffness
+    if (self%normal_stiffness <= 0.0_rk) self%normal_stiffness = solid%young/self%thickness
+    if (self%tangent_stiffness > 0.0_rk) return
+    self%tangent_stiffness = self%normal_stiffness/(2.0_rk*(1.0_rk + solid%poisson))
+    if (self%penetration > 0.0_rk) then
+      self%tangent_stiffness = solid%young/self%thickness/(2.0_rk*(1.0_rk + solid%poisson))
+    end if
+  end subroutine complete
 
   !> Bonded where there is strength, else closed, else open by the gap.
   pure subroutine start_state(self, clearance, state)
@@ -90,8 +143,22 @@ contains
                      + state%traction(2, :)**2/k(2) + state%traction(3, :)**2/k(3))
   end subroutine stored_energy
 
-  !> The law at all points of a joint.
-  pure subroutine update(self, jump, old, multiplier, scale, new, iterate, tangent)
+  !> The return map of friction and its consistent tangent: the augmented form whose multiplier is
+  !> the law's own traction.
+  pure subroutine update(self, jump, old, new, tangent)
+    class(contraction_law), intent(in) :: self
+    real(rk), intent(in) :: jump(:, :)
+    type(joint_state), intent(in) :: old
+    type(joint_state), intent(inout) :: new
+    real(rk), intent(out) :: tangent(:, :, :)
+    real(rk) :: iterate(3, size(jump, 2)), scale(size(jump, 2))
+    scale = self%tangent_stiffness
+    call self%linearise(jump, old, old%traction(2:3, :), scale, new, iterate, tangent)
+    call self%linearise(jump, old, new%traction(2:3, :), scale, new, iterate, tangent)
+  end subroutine update
+
+  !> The law at all points of a joint, friction in its augmented form.
+  pure subroutine linearise(self, jump, old, multiplier, scale, new, iterate, tangent)
     class(contraction_law), intent(in) :: self
     real(rk), intent(in) :: jump(:, :)
     type(joint_state), intent(in) :: old
@@ -130,7 +197,7 @@ contains
       new%is_broken(p) = after%is_broken
       new%status(p) = after%status
     end do
-  end subroutine update
+  end subroutine linearise
 
   !> The intact joint: three springs.
   pure subroutine stay_bonded(law, point, iterate, tangent)

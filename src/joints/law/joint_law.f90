@@ -2,11 +2,19 @@
 !>
 !> Local axes at a point: 1 normal (from master to slave), 2 and 3 in the plane of the joint.
 !> Signs: opening and tension positive.
+!>
+!> A new law is one file: a type that extends `traction_law` by what the interfaces below require,
+!> and its entry in joint_catalogue. The smallest law (tests/examples/softening_joint) writes
+!> `update`, the traction and its derivative. Only a law with Coulomb friction overrides
+!> `linearise` as well.
 module joint_law
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use keyword_spec, only: keyword_variant
   use kinds, only: rk
   implicit none
   private
-  public :: traction_law, joint_state, allocate_state
+  public :: traction_law, joint_state, solid_behind, allocate_state
   public :: state_open, state_stick, state_slip, state_bonded
 
   integer, parameter :: state_open = 0, state_stick = 1, state_slip = 2, state_bonded = 3
@@ -30,26 +38,54 @@ module joint_law
     integer, allocatable :: num_openings(:)
     real(rk), allocatable :: friction_work(:) !< dissipated so far [J/m2]
     real(rk), allocatable :: fracture_work(:) !< set free when the strength was lost [J/m2]
+    real(rk), allocatable :: internal(:, :) !< (variables, points) the law's own history
     real(rk), allocatable :: water(:) !< (points) pressure of water in the joint; where there is any
   end type joint_state
 
-  !> A joint law. `update` answers with the law's own traction (for the residual that decides
-  !> convergence) and with the traction and tangent of the augmented form (for the next iterate):
-  !> in Newton's iteration the traction follows iterate + tangent*(correction of the jump).
+  !> What a law may derive its stiffness from.
+  type :: solid_behind
+    real(rk) :: young = 0.0_rk !< E on the slave side [Pa]
+    real(rk) :: poisson = 0.0_rk !< on the slave side
+    !> E/h of the softer side, h the depth of its elements; 0 where no side has an E [Pa/m]
+    real(rk) :: layer_stiffness = 0.0_rk
+  end type solid_behind
+
   type, abstract :: traction_law
-    character(:), allocatable :: name !< upper case
+    character(:), allocatable :: name !< of the *JOINT LAW, upper case
     real(rk) :: gap = 0.0_rk !< at the start, of every point [m]
     !> Largest penetration of points in contact [m]; 0: as their stiffness gives it
     real(rk) :: penetration = 0.0_rk
   contains
+    procedure(describe), deferred, nopass :: describe
+    procedure(read_card), deferred :: read_card
+    procedure :: needs_solid => needs_no_solid
+    procedure :: complete => complete_nothing
     procedure(start_state), deferred :: start_state
     procedure(reference_stiffness), deferred :: reference_stiffness
     procedure(update), deferred :: update
+    procedure :: linearise => linearise_as_it_is
     procedure(stored_energy), deferred :: stored_energy
     procedure :: limits => no_limits
   end type traction_law
 
   abstract interface
+    !> The law's TYPE, its meaning and its parameters of *JOINT LAW.
+    pure subroutine describe(entry)
+      import :: keyword_variant
+      implicit none
+      type(keyword_variant), intent(out) :: entry
+    end subroutine describe
+
+    !> Takes the constants from a card; the card agrees with the law's entry, and defaults of the
+    !> entry are in the card.
+    subroutine read_card(self, this, faults)
+      import :: traction_law, card, diagnostic_list
+      implicit none
+      class(traction_law), intent(inout) :: self
+      type(card), intent(in) :: this
+      type(diagnostic_list), intent(inout) :: faults
+    end subroutine read_card
+
     !> History of a joint that has not moved yet, as the law wants it.
     pure subroutine start_state(self, clearance, state)
       import :: traction_law, joint_state, rk
@@ -67,20 +103,17 @@ module joint_law
       real(rk), intent(out) :: k(3)
     end subroutine reference_stiffness
 
-    !> Tractions at a trial jump. `multiplier` is the friction of the last iterate (tangential
-    !> traction), `scale` the r of the augmented form [Pa/m].
-    pure subroutine update(self, jump, old, multiplier, scale, new, iterate, tangent)
+    !> Traction at a trial jump and its derivative. `new` arrives with `num_openings` and `shift`;
+    !> it leaves with jump, traction, status, works and whatever history the law keeps. What `new`
+    !> held before does not count: each evaluation starts from `old`.
+    pure subroutine update(self, jump, old, new, tangent)
       import :: traction_law, joint_state, rk
       implicit none
       class(traction_law), intent(in) :: self
       real(rk), intent(in) :: jump(:, :) !< (3, points) trial [m]
       type(joint_state), intent(in) :: old !< converged history
-      real(rk), intent(in) :: multiplier(:, :) !< (2, points) [Pa]
-      real(rk), intent(in) :: scale(:) !< (points) [Pa/m]
-      type(joint_state), intent(inout) :: new !< history at the trial jump, law's own traction;
-      !! num_openings and shift are given
-      real(rk), intent(out) :: iterate(:, :) !< (3, points) traction of the augmented form [Pa]
-      real(rk), intent(out) :: tangent(:, :, :) !< (3, 3, points) [Pa/m], unsymmetric
+      type(joint_state), intent(inout) :: new !< history at the trial jump
+      real(rk), intent(out) :: tangent(:, :, :) !< (3, 3, points) [Pa/m], may be unsymmetric
     end subroutine update
 
     !> Elastic energy stored per area [J/m2].
@@ -95,8 +128,38 @@ module joint_law
 
 contains
 
-  !> What a closed point may carry, whatever its stiffness: friction, cohesion and strength [Pa]. A
-  !> law that says nothing of it presses and does no more.
+  !> Default: the law has all its constants from the deck.
+  pure logical function needs_no_solid(self)
+    class(traction_law), intent(in) :: self
+    needs_no_solid = .false.
+  end function needs_no_solid
+
+  !> Default: nothing is derived from the solid.
+  pure subroutine complete_nothing(self, solid)
+    class(traction_law), intent(inout) :: self
+    type(solid_behind), intent(in) :: solid
+  end subroutine complete_nothing
+
+  !> Traction and tangent for the next iterate: the traction of Newton's iteration follows
+  !> iterate + tangent*(correction of the jump), while `new` holds the law's own traction, which
+  !> decides convergence. Default: both are those of `update`. Coulomb friction needs another form
+  !> (theory.md, 2.3): `multiplier` is the tangential traction of the last iterate, `scale` the r of
+  !> the augmented form.
+  pure subroutine linearise_as_it_is(self, jump, old, multiplier, scale, new, iterate, tangent)
+    class(traction_law), intent(in) :: self
+    real(rk), intent(in) :: jump(:, :) !< (3, points) trial [m]
+    type(joint_state), intent(in) :: old !< converged history
+    real(rk), intent(in) :: multiplier(:, :) !< (2, points) [Pa]
+    real(rk), intent(in) :: scale(:) !< (points) [Pa/m]
+    type(joint_state), intent(inout) :: new !< history at the trial jump, see `update`
+    real(rk), intent(out) :: iterate(:, :) !< (3, points) [Pa]
+    real(rk), intent(out) :: tangent(:, :, :) !< (3, 3, points) [Pa/m], may be unsymmetric
+    call self%update(jump, old, new, tangent)
+    iterate = new%traction
+  end subroutine linearise_as_it_is
+
+  !> What a closed point may carry, whatever its stiffness: friction, cohesion and strength [Pa].
+  !> Default: frictionless unilateral contact.
   pure subroutine no_limits(self, friction, cohesion, strength)
     class(traction_law), intent(in) :: self
     real(rk), intent(out) :: friction, cohesion, strength
@@ -106,16 +169,20 @@ contains
   end subroutine no_limits
 
   !> Room for the history of the points of one joint, all zero but the gap.
-  pure subroutine allocate_state(gap, state)
+  pure subroutine allocate_state(gap, state, num_internal)
     real(rk), intent(in) :: gap(:) !< (points) [m]
     type(joint_state), intent(out) :: state
-    integer :: num_points
+    integer, intent(in), optional :: num_internal !< variables of the law's own history (0)
+    integer :: num_points, num_own
     num_points = size(gap)
+    num_own = 0
+    if (present(num_internal)) num_own = num_internal
     state%gap = gap
     allocate (state%shift(num_points), source=0.0_rk)
     allocate (state%jump(3, num_points), state%traction(3, num_points), source=0.0_rk)
     allocate (state%slip(2, num_points), source=0.0_rk)
     allocate (state%friction_work(num_points), state%fracture_work(num_points), source=0.0_rk)
+    allocate (state%internal(num_own, num_points), source=0.0_rk)
     allocate (state%is_broken(num_points), source=.false.)
     allocate (state%num_openings(num_points), source=0)
     allocate (state%status(num_points), source=state_open)

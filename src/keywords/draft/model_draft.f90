@@ -6,8 +6,8 @@ module model_draft
   use damage_constants, only: concrete_constants
   use deck_card, only: card
   use dof_tables, only: dof_table
-  use joint_constants, only: law_constants
   use guest_type, only: guest, guest_slot
+  use joint_law, only: traction_law
   use id_map, only: position_table
   use kinds, only: rk
   use material_user, only: user_constants
@@ -17,7 +17,8 @@ module model_draft
   use step_plan, only: step
   implicit none
   private
-  public :: draft, add_guest, add_load, origin, section_request, law_request, joint_request
+  public :: draft, add_guest, add_law, add_load, origin
+  public :: section_request, law_request, joint_request
   public :: concrete_request, user_request, tie_request, interface_request
 
   !> Where something stood: a card of the deck and one of its data lines (0: the keyword itself).
@@ -32,9 +33,9 @@ module model_draft
     type(origin) :: spot
   end type section_request
 
-  !> *JOINT LAW; stiffnesses that are zero are completed when the joint is built.
+  !> *JOINT LAW; what it takes from the solids is added when a joint is built.
   type :: law_request
-    type(law_constants) :: law
+    class(traction_law), allocatable :: law
     character(:), allocatable :: uplift, tail_water !< names of reservoirs, '' for none
     character(:), allocatable :: profile !< of the water: 'LINEAR' or 'OPEN'
     type(origin) :: spot
@@ -131,6 +132,19 @@ contains
     here%card = self%current
     here%line = line
   end function here
+
+  subroutine add_law(model, new)
+    type(draft), intent(inout) :: model
+    type(law_request), intent(in) :: new
+    type(law_request), allocatable :: longer(:)
+    integer :: i
+    allocate (longer(size(model%laws) + 1))
+    do i = 1, size(model%laws)
+      longer(i) = model%laws(i)
+    end do
+    longer(size(longer)) = new
+    call move_alloc(longer, model%laws)
+  end subroutine add_law
 
   !> Puts a load into the problem's list, which grows by doubling; its position is `num_loads`.
   subroutine add_load(model, item, name, family, target)

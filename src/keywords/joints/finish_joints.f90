@@ -1,6 +1,6 @@
 !> Joints when the whole deck is read: laws are completed, points are laid.
 module finish_joints
-  use contact_defaults, only: take_layer_stiffness
+  use contact_defaults, only: softest_layer
   use coupling_joint, only: lay_gauss_points, lay_node_points
   use cover_checks, only: claim_facets, claims, keep_cover, open_claims, report_bare
   use deck_card, only: card
@@ -8,8 +8,7 @@ module finish_joints
   use element_joint8, only: build_joint_points, find_attached_solids
   use errors, only: error_type
   use facet_segments, only: find_segments, leave_bare
-  use joint_catalogue, only: make_joint_law
-  use joint_constants, only: law_constants
+  use joint_law, only: solid_behind, traction_law
   use joint_points, only: joint
   use kinds, only: rk
   use model_draft, only: draft
@@ -33,7 +32,7 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(claims) :: taken
-    type(law_constants) :: law
+    class(traction_law), allocatable :: law
     type(joint), allocatable :: joints(:)
     integer :: i
     logical :: is_fit
@@ -77,22 +76,21 @@ contains
     end do
   end function count_slave_faces
 
-  !> The constants of the law that a joint names.
+  !> The law that a joint names.
   subroutine find_law(number, model, faults, law, is_found)
     integer, intent(in) :: number !< of the joint
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    type(law_constants), intent(out) :: law
+    class(traction_law), allocatable, intent(out) :: law
     logical, intent(out) :: is_found
     character(longest_name) :: known(size(model%laws))
     integer :: i
-    is_found = .false.
     do i = 1, size(known)
       known(i) = model%laws(i)%law%name
       if (model%laws(i)%law%name /= model%joints(number)%law) cycle
-      law = model%laws(i)%law
-      is_found = .true.
+      if (.not. allocated(law)) allocate (law, source=model%laws(i)%law)
     end do
+    is_found = allocated(law)
     if (is_found) return
     associate (place => model%cards(model%joints(number)%spot%card))
       call place%fault_parameter(faults, 'LAW', "there is no joint law '"//place%text('LAW')// &
@@ -105,7 +103,7 @@ contains
   subroutine build_from_elements(number, model, law, faults, new)
     integer, intent(in) :: number
     type(draft), intent(in) :: model
-    type(law_constants), intent(inout) :: law
+    class(traction_law), intent(inout) :: law
     type(diagnostic_list), intent(inout) :: faults
     type(joint), intent(out) :: new
     type(error_type), allocatable :: error
@@ -126,8 +124,7 @@ contains
       end if
       new%name = request%name
       new%kind = 'joint'
-      call make_joint_law(law, new%law)
-      if (.not. allocated(new%law)) return
+      allocate (new%law, source=law)
       call build_joint_points(model%scene%mesh, request%elements, request%is_nodal, new, error)
       if (allocated(error)) then
         call place%fault(faults, error%message)
@@ -141,7 +138,7 @@ contains
   subroutine build_from_surfaces(number, model, law, taken, faults, new)
     integer, intent(in) :: number
     type(draft), intent(inout) :: model !< gets the cover
-    type(law_constants), intent(inout) :: law
+    class(traction_law), intent(inout) :: law
     type(claims), intent(inout) :: taken
     type(diagnostic_list), intent(inout) :: faults
     type(joint), intent(out) :: new
@@ -159,8 +156,7 @@ contains
       end if
       new%name = request%name
       new%kind = 'joint'
-      call make_joint_law(law, new%law)
-      if (.not. allocated(new%law)) return
+      allocate (new%law, source=law)
       call find_segments(mesh%x, slave, master, segments, cover, &
                          merge(farthest_gap, farthest_seam, request%is_measured))
       if (request%is_nodal) then
@@ -232,7 +228,7 @@ contains
     integer, intent(in) :: behind(:) !< the element behind each facet of either side, 0 for none
     integer, intent(in) :: corners(:) !< nodes of these facets, four each
     type(draft), intent(in) :: model
-    type(law_constants), intent(inout) :: law
+    class(traction_law), intent(inout) :: law
     type(diagnostic_list), intent(inout) :: faults
     integer :: materials(size(solids))
     materials = model%scene%mesh%material_of_element(solids)
@@ -249,10 +245,10 @@ contains
       call place%warn(faults, "the slave side has several materials; KN and KT are made of '"// &
                       model%scene%materials(materials(1))%name//"'")
     end if
-    if (law%asks_for_layer()) then
-      call take_layer_stiffness(model%scene, behind, reshape(corners, [4, size(behind)]), law)
-    end if
-    call law%complete_stiffness(model%scene%materials(materials(1))%young, &
-                                model%scene%materials(materials(1))%poisson)
+    associate (slave => model%scene%materials(materials(1)))
+      call law%complete(solid_behind(slave%young, slave%poisson, &
+                                     softest_layer(model%scene, behind, &
+                                                   reshape(corners, [4, size(behind)]))))
+    end associate
   end subroutine complete_law
 end module finish_joints

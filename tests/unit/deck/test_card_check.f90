@@ -6,8 +6,9 @@ program test_card_check
   use diagnostic_text, only: text_of_errors, text_of_warnings
   use diagnostics, only: diagnostic_list
   use keyword_help, only: describe_keyword, list_keywords
-  use keyword_spec, only: field, find_spec, keyword, kind_choice, kind_flag, kind_integer, &
-                          kind_real, kind_reference, kind_text, kind_word, later, without_effect
+  use keyword_spec, only: choices_of, field, find_spec, keyword, keyword_variant, kind_choice, &
+                          kind_flag, kind_integer, kind_real, kind_reference, kind_text, &
+                          kind_word, later, without_effect
   use kinds, only: rk
   use testing, only: check, check_close, check_text, test_log
   implicit none
@@ -24,6 +25,7 @@ program test_card_check
   call repeated_columns()
   call names_of_keywords()
   call many_faults()
+  call variants_of_a_keyword()
   call reference_pages()
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
@@ -33,7 +35,8 @@ contains
   !> A few keywords that take all kinds of things.
   subroutine make_specs(specs)
     type(keyword), allocatable, intent(out) :: specs(:)
-    allocate (specs(7))
+    character(:), allocatable :: types
+    allocate (specs(8))
     specs(1) = keyword(name='ELASTIC', meaning='Linear elasticity. More of it.', &
                        family='material', place='material', example='*ELASTIC'//lf//'22e9, 0.2', &
                        fewest_lines=1, most_lines=1, &
@@ -64,6 +67,18 @@ contains
                                 field('dof', kind_integer, 'direction', lowest=1.0_rk, &
                                       highest=3.0_rk, is_required=.true.), &
                                 field('force', kind_real, 'force', 'N', default='0')])
+    specs(8) = keyword(name='LAW', meaning='A law.', family='joint', most_lines=0, &
+                       chooser='TYPE', &
+                       variants=[keyword_variant('STIFF', 'It holds.', &
+                                                 [field('K', kind_real, 'stiffness', &
+                                                        default='5')]), &
+                                 keyword_variant('SOFT', 'It gives.', &
+                                                 [field('K', kind_real, 'stiffness'), &
+                                                  field('G', kind_real, 'energy', &
+                                                        is_required=.true.)])])
+    types = choices_of(specs(8)%variants)
+    specs(8)%parameters = [field('TYPE', kind_choice, 'which', default='STIFF', choices=types), &
+                           field('NAME', kind_word, 'its name')]
   end subroutine make_specs
 
   !> Reads a deck from a text and checks all its cards.
@@ -209,6 +224,34 @@ contains
     text = text_of_errors(faults)
     call check_text(log, text(len(text) - 10:), 'and 80 more', 'the last line')
   end subroutine many_faults
+
+  !> What a card may hold depends on the variant that it selects.
+  subroutine variants_of_a_keyword()
+    type(card), allocatable :: cards(:)
+    type(diagnostic_list) :: faults
+    character(:), allocatable :: text
+    logical :: is_known
+    call check_deck('*LAW'//lf//'*LAW, TYPE=SOFT, G=3', cards, faults)
+    call check(log,.not. faults%has_errors(), 'no faults: '//text_of_errors(faults))
+    call check_close(log, cards(1)%real('K'), 5.0_rk, 0.0_rk, 'default of the first variant')
+    call check_close(log, cards(2)%real('K'), 0.0_rk, 0.0_rk, 'the second has no default')
+    call check_close(log, cards(2)%real('G'), 3.0_rk, 0.0_rk, 'parameter of the second')
+    call expect('*LAW, G=3', at//"1: *LAW: unknown parameter 'G'; expected one of TYPE, K, NAME")
+    call expect('*LAW, TYPE=SOFT', at//'1: *LAW: parameter G is missing; expected G = energy, '// &
+                'a number')
+    call expect('*LAW, TYPE=STIF, K=1, G=3', at//"1: *LAW: TYPE: found 'STIF'; expected "// &
+                "which, one of STIFF, SOFT; did you mean 'STIFF'?")
+    call describe_keyword(specs, 'LAW', text, is_known)
+    call check_text(log, text, '*LAW'//lf//'  A law.'//lf//lf//'Parameters'//lf// &
+                    '  TYPE               which; one of STIFF, SOFT; default STIFF'//lf// &
+                    '  NAME               its name; a name'//lf//lf// &
+                    'With TYPE=STIFF'//lf//'  It holds.'//lf//lf// &
+                    '  K                  stiffness; a number; default 5'//lf//lf// &
+                    'With TYPE=SOFT'//lf//'  It gives.'//lf//lf// &
+                    '  K                  stiffness; a number'//lf// &
+                    '  G                  energy; a number; required'//lf//lf// &
+                    'No data lines', 'page of variants')
+  end subroutine variants_of_a_keyword
 
   !> The reference is made of the same specifications.
   subroutine reference_pages()

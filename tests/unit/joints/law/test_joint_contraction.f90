@@ -1,9 +1,9 @@
 !> Paths of one joint point against closed forms; the augmented form against finite differences.
 program test_joint_contraction
   use joint_catalogue, only: make_joint_law
-  use joint_constants, only: law_constants
   use joint_contraction, only: contraction_law
-  use joint_law, only: joint_state, state_bonded, state_open, state_slip, state_stick, traction_law
+  use joint_law, only: joint_state, solid_behind, state_bonded, state_open, state_slip, &
+                       state_stick, traction_law
   use kinds, only: rk
   use testing, only: check, check_close, check_text, test_log
   implicit none
@@ -45,7 +45,7 @@ contains
     real(rk) :: iterate(3, 1), tangent(3, 3, 1), place(3, 1)
     new = state
     place(:, 1) = jump
-    call law%update(place, state, state%traction(2:3, :), [kt], new, iterate, tangent)
+    call law%linearise(place, state, state%traction(2:3, :), [kt], new, iterate, tangent)
     state = new
   end subroutine go
 
@@ -238,17 +238,19 @@ contains
     scale = 0.05_rk*kt
     multiplier = old%traction(2:3, :)
     do i = 1, 60
-      call law%update(jump, old, multiplier, scale, new, iterate, tangent)
+      call law%linearise(jump, old, multiplier, scale, new, iterate, tangent)
       multiplier = iterate(2:3, :)
     end do
     call check_close(log, norm2(iterate - new%traction), 0.0_rk, 1.0e-6_rk, 'fixed point')
+    call law%update(jump, old, moved, dummy)
+    call check_close(log, norm2(dummy - tangent), 0.0_rk, 1.0e-9_rk*kn, 'tangent of the law alone')
     do i = 1, 3
       shifted = jump
       shifted(i, 1) = jump(i, 1) + h
-      call law%update(shifted, old, multiplier, scale, moved, unused, dummy)
+      call law%linearise(shifted, old, multiplier, scale, moved, unused, dummy)
       column = moved%traction(:, 1)
       shifted(i, 1) = jump(i, 1) - h
-      call law%update(shifted, old, multiplier, scale, moved, unused, dummy)
+      call law%linearise(shifted, old, multiplier, scale, moved, unused, dummy)
       column = (column - moved%traction(:, 1))/(2.0_rk*h)
       call check_close(log, norm2(column - tangent(:, i, 1)), 0.0_rk, 1.0e-6_rk*kn, &
                        'tangent of the return map')
@@ -271,7 +273,7 @@ contains
     jump(:, 1) = [-1.3e-6_rk, 12.0e-6_rk, -9.0e-6_rk]
     multiplier(:, 1) = [-0.2e6_rk, 0.4e6_rk]
     scale = 0.3_rk*kt
-    call law%update(jump, old, multiplier, scale, new, iterate, tangent)
+    call law%linearise(jump, old, multiplier, scale, new, iterate, tangent)
     f = equation(jump(:, 1), multiplier(:, 1), scale(1))
     do i = 1, 2
       up(:2) = 0.0_rk
@@ -303,16 +305,12 @@ contains
   !> paper_notes.md, 3: 22 GPa over 2 cm.
   subroutine defaults_follow_the_solid(log)
     type(test_log), intent(inout) :: log
-    type(law_constants) :: constants
     class(traction_law), allocatable :: law
     real(rk) :: k(3)
-    constants%name = 'LAW'
-    constants%kind = 'CONTRACTION'
-    call check(log, constants%needs_solid(), 'stiffnesses are to come')
-    call constants%complete_stiffness(22.0e9_rk, 0.167_rk)
-    call check(log,.not. constants%needs_solid(), 'stiffnesses are there')
-    call make_joint_law(constants, law)
-    call check_text(log, law%name, 'LAW', 'name')
+    call make_joint_law('CONTRACTION', law)
+    call check(log, law%needs_solid(), 'stiffnesses are to come')
+    call law%complete(solid_behind(young=22.0e9_rk, poisson=0.167_rk))
+    call check(log,.not. law%needs_solid(), 'stiffnesses are there')
     call law%reference_stiffness(k)
     call check_close(log, k(1), 1.1e12_rk, 1.0_rk, 'k_n')
     call check_close(log, k(2), 1.1e12_rk/2.334_rk, 1.0_rk, 'k_t')
