@@ -2,6 +2,7 @@
 module keyword_catalogue
   use keyword_handler, only: keyword_list, pass_definitions, pass_elements, pass_nodes, pass_rest
   use keywords_amplitude, only: describe_amplitude, read_amplitude
+  use keywords_base_motion, only: describe_base_motion, read_base_motion
   use keywords_boundary, only: describe_boundary, read_boundary
   use keywords_concrete, only: describe_plasticity, read_plasticity
   use keywords_concrete_tables, only: describe_cracking, describe_crushing, describe_hardening, &
@@ -27,8 +28,7 @@ module keyword_catalogue
                              describe_preprint, read_envelope, read_fields, read_output
   use keywords_print, only: describe_el_print, describe_joint_print, describe_node_print, &
                             read_el_print, read_joint_print, read_node_print
-  use keywords_reservoir, only: describe_base_motion, describe_reservoir, read_base_motion, &
-                                read_reservoir
+  use keywords_reservoir, only: describe_reservoir, read_reservoir
   use keywords_section, only: describe_solid_section, read_solid_section
   use keywords_sets, only: describe_elset, describe_nset, describe_surface, read_elset, &
                            read_nset, read_surface

@@ -16,6 +16,7 @@ set(sources
   keyword_catalogue.f90
   loads/enter_load.f90
   loads/finish_uplift.f90
+  loads/keywords_base_motion.f90
   loads/keywords_loads.f90
   loads/keywords_reservoir.f90
   materials/concrete_remarks.f90

@@ -8,17 +8,16 @@ module load_base_motion
 
   type, extends(load) :: base_motion
     integer :: dof = 0 !< 1..3
-    real(rk) :: scale = 1.0_rk !< turns the amplitude into [m/s2]
   contains
     procedure :: add_base_acceleration
   end type base_motion
 
 contains
 
-  !> The acceleration of the base when the amplitude is 1.
+  !> 1 m/s2; the factor of the step (amplitude times SCALE) multiplies it.
   pure subroutine add_base_acceleration(self, acceleration)
     class(base_motion), intent(in) :: self
     real(rk), intent(inout) :: acceleration(3)
-    acceleration(self%dof) = acceleration(self%dof) + self%scale
+    acceleration(self%dof) = acceleration(self%dof) + 1.0_rk
   end subroutine add_base_acceleration
 end module load_base_motion

@@ -8,7 +8,7 @@ module load_pressure
   use wetted_facet, only: water_body, wet_facet, wet_the_facet
   implicit none
   private
-  public :: pressure_load
+  public :: pressure_load, face_of_word, faces_of_elements
 
   type, extends(load) :: pressure_load
     type(surface) :: faces !< where it acts
@@ -59,4 +59,24 @@ contains
       end do
     end do
   end function face_force
+
+  !> Face 1..6 that P1..P6 or HP1..HP6 names, 0 for any other word.
+  pure integer function face_of_word(word) result(face)
+    character(*), intent(in) :: word !< upper case
+    integer :: length
+    length = len_trim(word)
+    face = 0
+    if (length < 2) return
+    if (word(:length - 1) /= 'P' .and. word(:length - 1) /= 'HP') return
+    face = index('123456', word(length:length))
+  end function face_of_word
+
+  !> One face of each element as a surface without a name.
+  pure function faces_of_elements(elements, face) result(faces)
+    integer, intent(in) :: elements(:) !< positions
+    integer, intent(in) :: face !< 1..6
+    type(surface) :: faces
+    allocate (faces%element(size(elements)), source=elements)
+    allocate (faces%face(size(elements)), source=face)
+  end function faces_of_elements
 end module load_pressure

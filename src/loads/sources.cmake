@@ -2,7 +2,6 @@ set(sources
   applied_load.f90
   joint_rim.f90
   load_base_motion.f90
-  load_catalogue.f90
   load_gravity.f90
   load_point.f90
   load_pressure.f90

@@ -8,9 +8,8 @@ module keywords_loads
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real, kind_reference, &
                           kind_word
   use kinds, only: rk
-  use load_catalogue, only: face_of_word, faces_of_elements
   use load_gravity, only: gravity_load
-  use load_pressure, only: pressure_load
+  use load_pressure, only: face_of_word, faces_of_elements, pressure_load
   use model_draft, only: draft
   use named_things, only: elements_at, find_amplitude, find_surface_at, nodes_at
   use nearest_words, only: nearest_choice
