@@ -4,14 +4,14 @@ module finish_model
   use cover_checks, only: report_bare
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
-  use finish_concrete, only: complete_concretes
   use finish_interfaces, only: complete_interfaces
   use finish_joints, only: complete_joints
+  use finish_materials, only: complete_materials
   use finish_ties, only: complete_ties
   use finish_uplift, only: complete_uplift
-  use finish_user_materials, only: complete_user_materials
   use joined_twice, only: refuse_joined_twice
-  use model_draft, only: draft
+  use material_catalogue, only: names_of_laws
+  use model_draft, only: draft, has_request
   implicit none
   private
   public :: complete_model
@@ -27,8 +27,7 @@ contains
     model%scene%node_sets = model%node_sets%trimmed()
     model%scene%element_sets = model%element_sets%trimmed()
     call check_contents(model, faults)
-    call complete_concretes(model, faults)
-    call complete_user_materials(model, faults)
+    call complete_materials(model, faults)
     call check_materials(model, faults)
     call check_solids(model, faults)
     call complete_interfaces(model, faults)
@@ -78,11 +77,10 @@ contains
     integer :: i
     do i = 1, size(model%scene%materials)
       if (allocated(model%scene%materials(i)%law)) cycle
-      if (any(model%concretes%material == i)) cycle ! told there
-      if (any(model%user_materials%material == i)) cycle ! told there
+      if (has_request(model, i)) cycle ! reported by the request
       if (.not. any(model%scene%mesh%material_of_element == i)) cycle
       call model%cards(model%material_origin(i)%card)%fault( &
-        faults, "material '"//model%scene%materials(i)%name//"' has no stiffness", '*ELASTIC')
+        faults, "material '"//model%scene%materials(i)%name//"' has no stiffness", names_of_laws())
     end do
   end subroutine check_materials
 

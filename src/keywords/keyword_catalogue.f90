@@ -4,10 +4,6 @@ module keyword_catalogue
   use keywords_amplitude, only: describe_amplitude, read_amplitude
   use keywords_base_motion, only: describe_base_motion, read_base_motion
   use keywords_boundary, only: describe_boundary, read_boundary
-  use keywords_concrete, only: describe_plasticity, read_plasticity
-  use keywords_concrete_tables, only: describe_cracking, describe_crushing, describe_hardening, &
-                                      describe_stiffening, read_cracking, read_crushing, &
-                                      read_hardening, read_stiffening
   use keywords_controls, only: describe_controls, describe_step_damping, read_controls, &
                                read_step_damping
   use keywords_elements, only: describe_element, read_elements
@@ -17,9 +13,8 @@ module keyword_catalogue
   use keywords_later, only: add_later_keywords
   use keywords_loads, only: describe_cload, describe_dload, describe_dsload, read_cload, &
                             read_dload, read_dsload
-  use keywords_material, only: describe_density, describe_elastic, describe_material, &
-                               describe_material_damping, read_density, read_elastic, &
-                               read_material, read_material_damping
+  use keywords_material, only: describe_density, describe_material, describe_material_damping, &
+                               read_density, read_material, read_material_damping
   use keywords_material_test, only: describe_material_test, read_material_test
   use keywords_nodes, only: describe_heading, describe_include, describe_node, read_heading, &
                             read_nodes
@@ -36,8 +31,7 @@ module keyword_catalogue
                            describe_static, describe_step, read_dynamic, read_end_step, &
                            read_frequency, read_static, read_step
   use keywords_tie, only: describe_tie, read_tie
-  use keywords_user_material, only: describe_depvar, describe_user_material, read_depvar, &
-                                    read_user_material
+  use material_catalogue, only: add_material_laws
   implicit none
   private
   public :: list_keywords
@@ -68,15 +62,8 @@ contains
     call list%add(describe_surface, read_surface, pass_rest)
     call list%add(describe_material, read_material, pass_definitions)
     call list%add(describe_density, read_density, pass_definitions)
-    call list%add(describe_elastic, read_elastic, pass_definitions)
-    call list%add(describe_user_material, read_user_material, pass_definitions)
-    call list%add(describe_depvar, read_depvar, pass_definitions)
     call list%add(describe_material_damping, read_material_damping, pass_definitions)
-    call list%add(describe_plasticity, read_plasticity, pass_definitions)
-    call list%add(describe_hardening, read_hardening, pass_definitions)
-    call list%add(describe_stiffening, read_stiffening, pass_definitions)
-    call list%add(describe_crushing, read_crushing, pass_definitions)
-    call list%add(describe_cracking, read_cracking, pass_definitions)
+    call add_material_laws(list)
     call list%add(describe_material_test, read_material_test, pass_rest)
     call list%add(describe_solid_section, read_solid_section, pass_rest)
     call list%add(describe_joint_law, read_joint_law, pass_definitions)

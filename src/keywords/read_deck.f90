@@ -79,8 +79,8 @@ contains
       allocate (scene%steps(count([(model%cards(i)%keyword == 'STEP', i=1, size(model%cards))])))
     end associate
     allocate (model%surface_origin(0), model%material_origin(0), model%test_origin(0))
-    allocate (model%sections(0), model%laws(0), model%joints(0), model%concretes(0))
-    allocate (model%user_materials(0), model%procedure_card(0), model%ties(0))
+    allocate (model%sections(0), model%laws(0), model%joints(0))
+    allocate (model%material_requests(0), model%procedure_card(0), model%ties(0))
     allocate (model%interfaces(0))
   end subroutine open_draft
 

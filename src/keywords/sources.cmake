@@ -20,15 +20,19 @@ set(sources
   loads/keywords_loads.f90
   loads/keywords_reservoir.f90
   materials/concrete_remarks.f90
+  materials/concrete_request.f90
   materials/concrete_widths.f90
   materials/finish_concrete.f90
+  materials/finish_materials.f90
   materials/finish_tests.f90
   materials/finish_user_materials.f90
   materials/keywords_concrete.f90
   materials/keywords_concrete_tables.f90
+  materials/keywords_elastic.f90
   materials/keywords_material.f90
   materials/keywords_material_test.f90
   materials/keywords_user_material.f90
+  materials/material_catalogue.f90
   materials/material_test_legs.f90
   mesh/keywords_elements.f90
   mesh/keywords_nodes.f90

@@ -15,7 +15,6 @@ set(sources
   concrete/damage_tangent.f90
   concrete/damage_yield.f90
   concrete/material_damage_plasticity.f90
-  law/material_catalogue.f90
   law/material_elastic.f90
   law/material_law.f90
   law/material_points.f90

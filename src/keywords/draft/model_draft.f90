@@ -3,14 +3,13 @@
 !> Handlers of keywords fill it one card after the other; `finish_model` turns it into the problem.
 module model_draft
   use applied_load, only: load, load_slot
-  use damage_constants, only: concrete_constants
   use deck_card, only: card
+  use diagnostics, only: diagnostic_list
   use dof_tables, only: dof_table
   use guest_type, only: guest, guest_slot
   use joint_law, only: traction_law
   use id_map, only: position_table
   use kinds, only: rk
-  use material_user, only: user_constants
   use load_books, only: load_book
   use problem_definition, only: problem
   use set_lists, only: set_list
@@ -18,8 +17,8 @@ module model_draft
   implicit none
   private
   public :: draft, add_guest, add_law, add_load, origin
-  public :: section_request, law_request, joint_request
-  public :: concrete_request, user_request, tie_request, interface_request
+  public :: section_request, law_request, joint_request, tie_request, interface_request
+  public :: material_request, find_material_request, has_request
 
   !> Where something stood: a card of the deck and one of its data lines (0: the keyword itself).
   type :: origin
@@ -69,20 +68,18 @@ module model_draft
     type(origin) :: spot
   end type interface_request
 
-  !> The *CONCRETE keywords of a material; a spot with card 0: not given.
-  type :: concrete_request
+  !> What the keywords of one law say of a material, for a law that is made when the whole deck is
+  !> read. A family of keywords extends the type by what it collects.
+  type, abstract :: material_request
     integer :: material = 0 !< position
-    type(concrete_constants) :: constants
-    type(origin) :: plasticity, hardening, stiffening, compression_damage, tension_damage
-    logical :: is_right = .true. !< its cards agree with their specifications
-  end type concrete_request
+  contains
+    procedure(complete), deferred :: complete
+    procedure :: check_test => accept_test
+  end type material_request
 
-  !> *USER MATERIAL and *DEPVAR of a material; a spot with card 0: not given.
-  type :: user_request
-    integer :: material = 0 !< position
-    type(user_constants) :: constants
-    type(origin) :: spot, depvar
-  end type user_request
+  type :: request_slot
+    class(material_request), allocatable :: item
+  end type request_slot
 
   type :: draft
     type(card), allocatable :: cards(:) !< the whole deck
@@ -97,8 +94,7 @@ module model_draft
     type(joint_request), allocatable :: joints(:)
     type(tie_request), allocatable :: ties(:)
     type(interface_request), allocatable :: interfaces(:)
-    type(concrete_request), allocatable :: concretes(:)
-    type(user_request), allocatable :: user_materials(:)
+    type(request_slot), allocatable :: material_requests(:)
     integer, allocatable :: joint_of_element(:) !< position in `joints`, 0 for none
     integer, allocatable :: interface_of_element(:) !< position in `interfaces`, 0 for none
     character(:), allocatable :: mass_kind !< MASS of *SOLID SECTION once it is given
@@ -123,6 +119,17 @@ module model_draft
     procedure :: here
   end type draft
 
+  abstract interface
+    !> Checks the request and gives the material its law. The request is not in the draft meanwhile.
+    subroutine complete(self, model, faults)
+      import :: material_request, draft, diagnostic_list
+      implicit none
+      class(material_request), intent(inout) :: self
+      type(draft), intent(inout) :: model
+      type(diagnostic_list), intent(inout) :: faults
+    end subroutine complete
+  end interface
+
 contains
 
   !> The place of a data line of the card being read.
@@ -132,6 +139,50 @@ contains
     here%card = self%current
     here%line = line
   end function here
+
+  !> Default: any *MATERIAL TEST suits the law.
+  subroutine accept_test(self, number, model, faults)
+    class(material_request), intent(in) :: self !< complete
+    integer, intent(in) :: number !< of the test
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+  end subroutine accept_test
+
+  !> Position of the request, of the type of `blank`, for the material that is being read; where
+  !> there is none, `blank` becomes it.
+  subroutine find_material_request(model, blank, found)
+    type(draft), intent(inout) :: model
+    class(material_request), intent(in) :: blank
+    integer, intent(out) :: found
+    type(request_slot), allocatable :: longer(:)
+    integer :: material, num, i
+    material = size(model%scene%materials)
+    num = size(model%material_requests)
+    do found = 1, num
+      associate (item => model%material_requests(found)%item)
+        if (item%material == material .and. same_type_as(item, blank)) return
+      end associate
+    end do
+    allocate (longer(num + 1))
+    do i = 1, num
+      call move_alloc(model%material_requests(i)%item, longer(i)%item)
+    end do
+    allocate (longer(num + 1)%item, source=blank)
+    longer(num + 1)%item%material = material
+    call move_alloc(longer, model%material_requests)
+  end subroutine find_material_request
+
+  !> Does a request in the draft concern the material?
+  pure logical function has_request(model, material)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: material !< position
+    integer :: i
+    has_request = .false.
+    do i = 1, size(model%material_requests)
+      if (.not. allocated(model%material_requests(i)%item)) cycle
+      if (model%material_requests(i)%item%material == material) has_request = .true.
+    end do
+  end function has_request
 
   subroutine add_law(model, new)
     type(draft), intent(inout) :: model

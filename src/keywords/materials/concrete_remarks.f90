@@ -1,11 +1,12 @@
 !> What is odd about the constants of a concrete, and what they are in a line for people.
 module concrete_remarks
+  use concrete_request, only: concrete_cards
   use damage_checks, only: find_longest_band, stiffening_table, table_fault
   use damage_constants, only: concrete_constants
   use damage_model, only: concrete_model, largest_safe_dilation, make_concrete_model
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
-  use model_draft, only: concrete_request, draft
+  use model_draft, only: draft
   use write_text, only: as_text
   implicit none
   private
@@ -18,7 +19,7 @@ contains
 
   !> Tells what is allowed and hardly meant.
   subroutine warn_of_constants(given, model, faults)
-    type(concrete_request), intent(in) :: given !< whose tables are free of faults
+    type(concrete_cards), intent(in) :: given !< whose tables are free of faults
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     call warn_of_units(given, model, faults)
@@ -29,7 +30,7 @@ contains
   !> Concrete of any quality cracks at a strain of about 1e-4 (f_t 1 to 5 MPa, E 15 to 45 GPa);
   !> far from that the strength and the modulus are in two units.
   subroutine warn_of_units(given, model, faults)
-    type(concrete_request), intent(in) :: given
+    type(concrete_cards), intent(in) :: given
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     real(rk) :: strain
@@ -44,7 +45,7 @@ contains
   !> (1 - alpha) c: where its slope is less than tan psi, q - p tan psi and with it the work of flow
   !> are negative from some pressure on.
   subroutine warn_of_dilation(given, model, faults)
-    type(concrete_request), intent(in) :: given
+    type(concrete_cards), intent(in) :: given
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(concrete_model) :: kernel
@@ -62,7 +63,7 @@ contains
 
   !> A table over strain whose stress falls faster than the strain grows: a test would snap back.
   subroutine warn_of_steep_strain(given, model, faults)
-    type(concrete_request), intent(in) :: given
+    type(concrete_cards), intent(in) :: given
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(concrete_constants) :: as_openings

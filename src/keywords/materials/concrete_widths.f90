@@ -1,11 +1,12 @@
 !> Elements of concrete that are longer than a crack band may be, theory.md, (11.12).
 module concrete_widths
+  use concrete_request, only: concrete_cards
   use damage_checks, only: find_longest_band, stiffening_table, table_fault
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use element_sizes, only: measure_widths
   use kinds, only: rk
-  use model_draft, only: concrete_request, draft
+  use model_draft, only: draft
   use number_ranges, only: as_ranges
   use sorted_lists, only: sorted_unique
   use write_text, only: as_text
@@ -21,7 +22,7 @@ contains
   !> range of their widths. Too long elements are one fault, or one warning if their strength is to
   !> be lowered.
   subroutine check_widths(given, model, faults, smallest, largest)
-    type(concrete_request), intent(in) :: given !< whose tables are free of faults
+    type(concrete_cards), intent(in) :: given !< whose tables are free of faults
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     real(rk), intent(out) :: smallest, largest !< [m]; smallest > largest without elements
@@ -51,7 +52,7 @@ contains
 
   !> Names the longest element and the row of the table that does not admit it.
   subroutine fault_length(given, model, elements, width, longest, faults)
-    type(concrete_request), intent(in) :: given
+    type(concrete_cards), intent(in) :: given
     type(draft), intent(in) :: model
     integer, intent(in) :: elements(:) !< user's numbers
     real(rk), intent(in) :: width(:), longest !< [m]
@@ -81,7 +82,7 @@ contains
 
   !> Lists the elements that crack below the strength of the table.
   subroutine warn_of_strength(given, model, elements, width, longest, faults)
-    type(concrete_request), intent(in) :: given
+    type(concrete_cards), intent(in) :: given
     type(draft), intent(in) :: model
     integer, intent(in) :: elements(:) !< user's numbers
     real(rk), intent(in) :: width(:), longest !< [m]

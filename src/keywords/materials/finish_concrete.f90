@@ -1,41 +1,40 @@
-!> Makes the laws of concrete when the whole deck is read, and tells what is missing or wrong.
+!> Makes the law of a concrete when the whole deck is read; reports what is missing or wrong.
 module finish_concrete
+  use concrete_request, only: concrete_cards
   use concrete_remarks, only: describe_concrete, warn_of_constants
   use concrete_widths, only: check_widths
-  use damage_checks, only: compression_damage_table, find_table_faults, hardening_table, &
-                           stiffening_table, table_fault, tension_damage_table
+  use damage_checks, only: compression_damage_table, find_longest_band, find_table_faults, &
+                           hardening_table, stiffening_table, table_fault, tension_damage_table
   use diagnostics, only: diagnostic_list
   use errors, only: error_type
   use kinds, only: rk
   use material_damage_plasticity, only: concrete_law, make_concrete_law
-  use model_draft, only: concrete_request, draft, origin
+  use model_draft, only: draft, material_request, origin
+  use write_text, only: as_text
   implicit none
   private
-  public :: complete_concretes
+  public :: concrete_material
+
+  type, extends(material_request) :: concrete_material
+    type(concrete_cards) :: given
+  contains
+    procedure :: complete
+    procedure :: check_test
+  end type concrete_material
 
 contains
 
-  !> Gives every concrete of the deck its law.
-  subroutine complete_concretes(model, faults)
-    type(draft), intent(inout) :: model
-    type(diagnostic_list), intent(inout) :: faults
-    integer :: i
-    do i = 1, size(model%concretes)
-      call complete_concrete(i, model, faults)
-    end do
-  end subroutine complete_concretes
-
-  !> The law of one concrete, if nothing is wrong with it.
-  subroutine complete_concrete(i, model, faults)
-    integer, intent(in) :: i !< position in model%concretes
+  !> The law of the concrete, if nothing is wrong with it.
+  subroutine complete(self, model, faults)
+    class(concrete_material), intent(inout) :: self
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(concrete_law) :: law
     type(error_type), allocatable :: error
     real(rk) :: smallest, largest
     integer :: num_before
-    associate (given => model%concretes(i), &
-               now => model%scene%materials(model%concretes(i)%material))
+    self%given%material = self%material
+    associate (given => self%given, now => model%scene%materials(self%material))
       given%constants%young = now%young
       given%constants%poisson = now%poisson
       num_before = faults%num_errors
@@ -51,11 +50,11 @@ contains
       call warn_of_constants(given, model, faults)
       now%remark = describe_concrete(given%constants, smallest, largest)
     end associate
-  end subroutine complete_concrete
+  end subroutine complete
 
   !> The keywords that a concrete cannot be without.
   subroutine check_members(given, model, faults)
-    type(concrete_request), intent(in) :: given
+    type(concrete_cards), intent(in) :: given
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(origin) :: spot
@@ -83,7 +82,7 @@ contains
 
   !> The first of the keywords there are, where to tell what is missing.
   pure type(origin) function first_spot(given)
-    type(concrete_request), intent(in) :: given
+    type(concrete_cards), intent(in) :: given
     first_spot = given%plasticity
     if (first_spot%card == 0) first_spot = given%stiffening
     if (first_spot%card == 0) first_spot = given%hardening
@@ -93,7 +92,7 @@ contains
 
   !> Every fault of the tables, at its row.
   subroutine check_tables(given, model, faults)
-    type(concrete_request), intent(in) :: given
+    type(concrete_cards), intent(in) :: given
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(table_fault), allocatable :: found(:)
@@ -115,7 +114,7 @@ contains
 
   !> Where a table stands.
   type(origin) function spot_of_table(given, keyword) result(spot)
-    type(concrete_request), intent(in) :: given
+    type(concrete_cards), intent(in) :: given
     character(*), intent(in) :: keyword !< as damage_checks names it
     select case (keyword)
     case (stiffening_table)
@@ -130,4 +129,42 @@ contains
       error stop 'spot_of_table: a table that concrete does not have'
     end select
   end function spot_of_table
+
+  !> A concrete whose tables hold openings has a length, and one that does not snap back.
+  subroutine check_test(self, number, model, faults)
+    class(concrete_material), intent(in) :: self
+    integer, intent(in) :: number !< of the test
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(table_fault) :: limit
+    real(rk) :: longest
+    associate (test => model%scene%tests(number), given => self%given, &
+               place => model%cards(model%test_origin(number)%card))
+      if (.not. uses_length(given)) return
+      if (.not. place%has('LENGTH')) then
+        call place%warn(faults, "LENGTH is not given and turns the openings of '"// &
+                        model%scene%materials(test%material)%name//"' into strains: 1 is taken", &
+                        'LENGTH, the side of an element [m]')
+      end if
+      call find_longest_band(given%constants, longest, limit)
+      if (test%length <= longest) return
+      if (given%constants%lowers_strength) then
+        call place%warn(faults, 'in a length of '//as_text(test%length)//' m the concrete '// &
+                        'cracks at a lower strength, with the same energy', &
+                        'at most '//as_text(longest)//' m for its own strength')
+        return
+      end if
+      call place%fault_parameter(faults, 'LENGTH', 'the concrete snaps back in a length of '// &
+                                 as_text(test%length)//' m', 'at most '//as_text(longest)// &
+                                 ' m: '//limit%expected)
+    end associate
+  end subroutine check_test
+
+  !> A table of the concrete is over openings, or G_f makes it.
+  pure logical function uses_length(given)
+    type(concrete_cards), intent(in) :: given
+    uses_length = given%constants%stiffening /= 'STRAIN' .or. &
+                  given%constants%tension_damage_type /= 'STRAIN' .and. &
+                  allocated(given%constants%tension_damage)
+  end function uses_length
 end module finish_concrete

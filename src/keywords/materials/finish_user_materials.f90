@@ -1,90 +1,66 @@
-!> Makes the laws of user materials when the whole deck is read: the UMAT is asked for the stiffness
-!> of each at the start.
+!> Makes the law of a user material when the whole deck is read: the UMAT gives its stiffness at the
+!> start.
 module finish_user_materials
   use diagnostics, only: diagnostic_list, place, severity_warning
   use element_hex8, only: hex8_gradients
   use errors, only: error_type
   use kinds, only: rk
   use material_points, only: consistent_tangent, point_set, time_increment
-  use material_user, only: find_stiffness, make_user_law, user_law
-  use model_draft, only: draft
+  use material_user, only: find_stiffness, make_user_law, user_constants, user_law
+  use model_draft, only: draft, has_request, material_request, origin
   use write_text, only: as_text
   implicit none
   private
-  public :: complete_user_materials
+  public :: check_library, user_material
+
+  !> A spot with card 0: not given.
+  type, extends(material_request) :: user_material
+    type(user_constants) :: constants
+    type(origin) :: spot, depvar
+  contains
+    procedure :: complete
+  end type user_material
 
 contains
 
-  !> Gives every user material of the deck its law.
-  subroutine complete_user_materials(model, faults)
-    type(draft), intent(inout) :: model
-    type(diagnostic_list), intent(inout) :: faults
-    integer :: i
-    call check_library(model, faults)
-    do i = 1, size(model%user_materials)
-      call check_request(i, model, faults)
-      if (faults%has_errors()) cycle
-      call make_law(i, model, faults)
-    end do
-  end subroutine complete_user_materials
-
-  !> User materials need a UMAT, told at the first of them; and a UMAT needs one of them.
+  !> User materials need a UMAT, reported at the first of them; and a UMAT needs one of them.
   subroutine check_library(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(place) :: deck
     integer :: i
-    if (associated(model%scene%umat)) then
-      if (size(model%user_materials) > 0) return
-      deck%file = model%scene%deck_file ! a constructor of the type would take a wrong length
-      deck%keyword = ''
-      deck%source = ''
-      call faults%add(severity_warning, deck, '--umat is given and no material asks for it', &
-                      '*USER MATERIAL in a *MATERIAL')
-      return
-    end if
-    do i = 1, size(model%user_materials)
-      if (model%user_materials(i)%spot%card == 0) cycle
-      call model%cards(model%user_materials(i)%spot%card)%fault( &
-        faults, 'no UMAT is given', 'the option --umat with its source or library: keyway '// &
-        '--umat law.for job.inp')
-      return
+    do i = 1, size(model%material_requests)
+      select type (given => model%material_requests(i)%item)
+      type is (user_material)
+        if (associated(model%scene%umat)) return
+        if (given%spot%card == 0) cycle
+        call model%cards(given%spot%card)%fault( &
+          faults, 'no UMAT is given', 'the option --umat with its source or library: keyway '// &
+          '--umat law.for job.inp')
+        return
+      end select
     end do
+    if (.not. associated(model%scene%umat)) return
+    deck%file = model%scene%deck_file ! a constructor of the type would take a wrong length
+    deck%keyword = ''
+    deck%source = ''
+    call faults%add(severity_warning, deck, '--umat is given and no material asks for it', &
+                    '*USER MATERIAL in a *MATERIAL')
   end subroutine check_library
 
-  subroutine check_request(number, model, faults)
-    integer, intent(in) :: number
-    type(draft), intent(in) :: model
-    type(diagnostic_list), intent(inout) :: faults
-    associate (given => model%user_materials(number))
-      if (given%spot%card == 0) then
-        call model%cards(given%depvar%card)%fault( &
-          faults, "material '"//given%constants%name//"' has no *USER MATERIAL", &
-          'it beside *DEPVAR')
-        return
-      end if
-      associate (spot => model%cards(given%spot%card))
-        if (allocated(model%scene%materials(given%material)%law)) then
-          call spot%fault(faults, "material '"//given%constants%name//"' has an *ELASTIC, too", &
-                          'one law: the UMAT gives the elastic stiffness')
-        else if (any(model%concretes%material == given%material)) then
-          call spot%fault(faults, "material '"//given%constants%name//"' has the keywords of "// &
-                          'concrete, too', 'one law')
-        end if
-      end associate
-    end associate
-  end subroutine check_request
-
-  subroutine make_law(number, model, faults)
-    integer, intent(in) :: number
+  !> Asks the UMAT for the stiffness at the start.
+  subroutine complete(self, model, faults)
+    class(user_material), intent(inout) :: self
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(user_law) :: law
     type(point_set) :: points
     type(time_increment) :: time
     type(error_type), allocatable :: error
-    call make_user_law(model%scene%umat, model%user_materials(number)%constants, law)
-    call first_point(model, model%user_materials(number)%material, points)
+    call check_cards(self, model, faults)
+    if (faults%has_errors()) return
+    call make_user_law(model%scene%umat, self%constants, law)
+    call first_point(model, self%material, points)
     time%tangent = consistent_tangent
     if (size(model%scene%steps) > 0) then
       if (model%scene%steps(1)%first_increment > 0.0_rk) then
@@ -93,15 +69,36 @@ contains
     end if
     call find_stiffness(law, points, time, error)
     if (allocated(error)) then
-      call model%cards(model%user_materials(number)%spot%card)%fault(faults, error%message)
+      call model%cards(self%spot%card)%fault(faults, error%message)
       return
     end if
-    associate (now => model%scene%materials(model%user_materials(number)%material))
+    associate (now => model%scene%materials(self%material))
       allocate (now%law, source=law)
       now%remark = 'UMAT with '//as_text(size(law%constants%values))//' constants and '// &
                    as_text(law%constants%num_variables)//' state variables'
     end associate
-  end subroutine make_law
+  end subroutine complete
+
+  !> A user material has its *USER MATERIAL, and no other law.
+  subroutine check_cards(self, model, faults)
+    type(user_material), intent(in) :: self
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    if (self%spot%card == 0) then
+      call model%cards(self%depvar%card)%fault( &
+        faults, "material '"//self%constants%name//"' has no *USER MATERIAL", 'it beside *DEPVAR')
+      return
+    end if
+    associate (spot => model%cards(self%spot%card))
+      if (allocated(model%scene%materials(self%material)%law)) then
+        call spot%fault(faults, "material '"//self%constants%name//"' has an *ELASTIC, too", &
+                        'one law: the UMAT gives the elastic stiffness')
+      else if (has_request(model, self%material)) then
+        call spot%fault(faults, "material '"//self%constants%name//"' has the keywords of "// &
+                        'another law, too', 'one law')
+      end if
+    end associate
+  end subroutine check_cards
 
   !> The middle of the first element of a material; where there is none, of a cube as long as its
   !> first *MATERIAL TEST says.

@@ -2,10 +2,11 @@
 module keywords_concrete
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
+  use finish_concrete, only: concrete_material
   use keyword_spec, only: keyword, field, kind_choice, kind_real
   use keywords_material, only: claim_card
   use kinds, only: rk
-  use model_draft, only: concrete_request, draft
+  use model_draft, only: draft, find_material_request
   implicit none
   private
   public :: describe_plasticity, read_plasticity, find_concrete, no_dependencies
@@ -65,29 +66,28 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     integer :: i
     call find_concrete(model, i)
-    associate (now => model%concretes(i)%constants)
-      now%dilation = this%real_at(1, 1)
-      now%offset = this%real_at(1, 2)
-      now%biaxial_ratio = this%real_at(1, 3)
-      now%meridian_ratio = this%real_at(1, 4)
-      now%viscosity = this%real_at(1, 5)
-      now%recovers_by_sign = this%word('RECOVERY') == 'SIGN'
-    end associate
-    call claim_card(this, model, model%concretes(i)%plasticity, faults)
+    select type (one => model%material_requests(i)%item)
+    type is (concrete_material)
+      associate (now => one%given%constants)
+        now%dilation = this%real_at(1, 1)
+        now%offset = this%real_at(1, 2)
+        now%biaxial_ratio = this%real_at(1, 3)
+        now%meridian_ratio = this%real_at(1, 4)
+        now%viscosity = this%real_at(1, 5)
+        now%recovers_by_sign = this%word('RECOVERY') == 'SIGN'
+      end associate
+      call claim_card(this, model, one%given%plasticity, faults)
+    end select
   end subroutine read_plasticity
 
-  !> Position of the concrete of the material that is being read; a new one with its first keyword.
+  !> Position in model%material_requests of the concrete that is being read.
   subroutine find_concrete(model, i)
     type(draft), intent(inout) :: model
     integer, intent(out) :: i
-    type(concrete_request) :: new
-    new%material = size(model%scene%materials)
-    i = 0
-    if (size(model%concretes) > 0) i = findloc(model%concretes%material, new%material, dim=1)
-    if (i == 0) then
-      model%concretes = [model%concretes, new]
-      i = size(model%concretes)
-    end if
-    model%concretes(i)%is_right = model%concretes(i)%is_right .and. model%is_right
+    call find_material_request(model, concrete_material(), i)
+    select type (one => model%material_requests(i)%item)
+    type is (concrete_material)
+      one%given%is_right = one%given%is_right .and. model%is_right
+    end select
   end subroutine find_concrete
 end module keywords_concrete

@@ -3,19 +3,31 @@
 module keywords_concrete_tables
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
+  use finish_concrete, only: concrete_material
+  use keyword_handler, only: keyword_list, pass_definitions
   use keyword_spec, only: keyword, field, kind_choice, kind_real
-  use keywords_concrete, only: find_concrete, no_dependencies
+  use keywords_concrete, only: describe_plasticity, find_concrete, no_dependencies, &
+                               read_plasticity
   use keywords_material, only: claim_card
   use kinds, only: rk
   use model_draft, only: draft
   implicit none
   private
-  public :: describe_hardening, describe_stiffening, describe_crushing, describe_cracking
-  public :: read_hardening, read_stiffening, read_crushing, read_cracking
+  public :: add_concrete
 
   character, parameter :: nl = new_line('a')
 
 contains
+
+  !> All keywords of concrete.
+  subroutine add_concrete(list)
+    type(keyword_list), intent(inout) :: list
+    call list%add(describe_plasticity, read_plasticity, pass_definitions)
+    call list%add(describe_hardening, read_hardening, pass_definitions)
+    call list%add(describe_stiffening, read_stiffening, pass_definitions)
+    call list%add(describe_crushing, read_crushing, pass_definitions)
+    call list%add(describe_cracking, read_cracking, pass_definitions)
+  end subroutine add_concrete
 
   !> What the four have in common.
   subroutine describe_table(spec, ordinate, abscissa)
@@ -61,8 +73,11 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     integer :: i
     call find_concrete(model, i)
-    call read_table(this, model%concretes(i)%constants%compression)
-    call claim_card(this, model, model%concretes(i)%hardening, faults)
+    select type (one => model%material_requests(i)%item)
+    type is (concrete_material)
+      call read_table(this, one%given%constants%compression)
+      call claim_card(this, model, one%given%hardening, faults)
+    end select
   end subroutine read_hardening
 
   subroutine describe_stiffening(spec)
@@ -97,18 +112,21 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     integer :: i
     call find_concrete(model, i)
-    associate (now => model%concretes(i)%constants)
-      call read_table(this, now%tension)
-      now%stiffening = this%word('TYPE')
-      now%lowers_strength = this%word('LONG ELEMENTS') /= 'ERROR'
-      if (now%stiffening == 'GFI' .and. this%num_lines > 1) then
-        call this%fault_at(faults, 2, 0, 'a second row with TYPE=GFI', 'one row: f_t, G_f')
-        model%concretes(i)%is_right = .false.
-      else if (now%stiffening == 'STRAIN' .and. this%has('LONG ELEMENTS')) then
-        call this%warn(faults, 'LONG ELEMENTS has no effect: TYPE=STRAIN knows no length')
-      end if
-    end associate
-    call claim_card(this, model, model%concretes(i)%stiffening, faults)
+    select type (one => model%material_requests(i)%item)
+    type is (concrete_material)
+      associate (now => one%given%constants)
+        call read_table(this, now%tension)
+        now%stiffening = this%word('TYPE')
+        now%lowers_strength = this%word('LONG ELEMENTS') /= 'ERROR'
+        if (now%stiffening == 'GFI' .and. this%num_lines > 1) then
+          call this%fault_at(faults, 2, 0, 'a second row with TYPE=GFI', 'one row: f_t, G_f')
+          one%given%is_right = .false.
+        else if (now%stiffening == 'STRAIN' .and. this%has('LONG ELEMENTS')) then
+          call this%warn(faults, 'LONG ELEMENTS has no effect: TYPE=STRAIN knows no length')
+        end if
+      end associate
+      call claim_card(this, model, one%given%stiffening, faults)
+    end select
   end subroutine read_stiffening
 
   subroutine describe_crushing(spec)
@@ -140,9 +158,12 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     integer :: i
     call find_concrete(model, i)
-    call read_table(this, model%concretes(i)%constants%compression_damage)
-    model%concretes(i)%constants%tension_recovery = this%real('TENSION RECOVERY')
-    call claim_card(this, model, model%concretes(i)%compression_damage, faults)
+    select type (one => model%material_requests(i)%item)
+    type is (concrete_material)
+      call read_table(this, one%given%constants%compression_damage)
+      one%given%constants%tension_recovery = this%real('TENSION RECOVERY')
+      call claim_card(this, model, one%given%compression_damage, faults)
+    end select
   end subroutine read_crushing
 
   subroutine describe_cracking(spec)
@@ -173,9 +194,12 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     integer :: i
     call find_concrete(model, i)
-    call read_table(this, model%concretes(i)%constants%tension_damage)
-    model%concretes(i)%constants%tension_damage_type = this%word('TYPE')
-    model%concretes(i)%constants%compression_recovery = this%real('COMPRESSION RECOVERY')
-    call claim_card(this, model, model%concretes(i)%tension_damage, faults)
+    select type (one => model%material_requests(i)%item)
+    type is (concrete_material)
+      call read_table(this, one%given%constants%tension_damage)
+      one%given%constants%tension_damage_type = this%word('TYPE')
+      one%given%constants%compression_recovery = this%real('COMPRESSION RECOVERY')
+      call claim_card(this, model, one%given%tension_damage, faults)
+    end select
   end subroutine read_cracking
 end module keywords_concrete_tables

@@ -1,16 +1,15 @@
-!> *MATERIAL, *DENSITY, *ELASTIC, *DAMPING of a material.
+!> *MATERIAL, *DENSITY, *DAMPING of a material.
 module keywords_material
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
-  use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_word
+  use keyword_spec, only: keyword, field, kind_real, kind_word
   use kinds, only: rk
-  use material_catalogue, only: make_stress_law
   use material_law, only: material
   use model_draft, only: draft, origin
   implicit none
   private
-  public :: describe_material, describe_density, describe_elastic, describe_material_damping
-  public :: read_material, read_density, read_elastic, read_material_damping
+  public :: describe_material, describe_density, describe_material_damping
+  public :: read_material, read_density, read_material_damping
   public :: claim_card
 
   character, parameter :: nl = new_line('a')
@@ -77,40 +76,6 @@ contains
       now%density = this%real_at(1, 1)
     end associate
   end subroutine read_density
-
-  subroutine describe_elastic(spec)
-    type(keyword), intent(out) :: spec
-    spec%name = 'ELASTIC'
-    spec%family = 'material'
-    spec%place = 'material'
-    spec%meaning = 'Linear elasticity, the same in all directions.'
-    spec%example = '*ELASTIC'//nl//'22e9, 0.167'
-    spec%fewest_lines = 1
-    spec%most_lines = 1
-    allocate (spec%parameters, source=[ &
-              field('TYPE', kind_choice, 'kind of elasticity', default='ISOTROPIC', &
-                    choices='ISOTROPIC | ISO')])
-    allocate (spec%columns, source=[ &
-              field('E', kind_real, 'Young''s modulus', 'Pa', is_required=.true., &
-                    lowest=0.0_rk, excludes_lowest=.true.), &
-              field('nu', kind_real, 'Poisson''s ratio', default='0', lowest=-1.0_rk, &
-                    highest=0.5_rk, excludes_lowest=.true., excludes_highest=.true.)])
-  end subroutine describe_elastic
-
-  subroutine read_elastic(this, model, faults)
-    type(card), intent(in) :: this
-    type(draft), intent(inout) :: model
-    type(diagnostic_list), intent(inout) :: faults
-    associate (now => model%scene%materials(size(model%scene%materials)))
-      if (allocated(now%law)) then
-        call this%fault(faults, "material '"//now%name//"' has an *ELASTIC already", 'one only')
-        return
-      end if
-      now%young = this%real_at(1, 1)
-      now%poisson = this%real_at(1, 2)
-      call make_stress_law('ELASTIC', [now%young, now%poisson], now%law)
-    end associate
-  end subroutine read_elastic
 
   subroutine describe_material_damping(spec)
     type(keyword), intent(out) :: spec

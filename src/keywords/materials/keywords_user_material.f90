@@ -2,20 +2,28 @@
 module keywords_user_material
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
+  use finish_user_materials, only: user_material
+  use keyword_handler, only: keyword_list, pass_definitions
   use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, kind_real, &
                           kind_text
   use keywords_material, only: claim_card
   use kinds, only: rk
-  use model_draft, only: draft, user_request
+  use model_draft, only: draft, find_material_request
   use write_text, only: as_text
   implicit none
   private
-  public :: describe_user_material, describe_depvar, read_user_material, read_depvar
+  public :: add_user_material
 
   character, parameter :: nl = new_line('a')
   integer, parameter :: constants_of_line = 8
 
 contains
+
+  subroutine add_user_material(list)
+    type(keyword_list), intent(inout) :: list
+    call list%add(describe_user_material, read_user_material, pass_definitions)
+    call list%add(describe_depvar, read_depvar, pass_definitions)
+  end subroutine add_user_material
 
   subroutine describe_user_material(spec)
     type(keyword), intent(out) :: spec
@@ -45,11 +53,12 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     integer :: i
     call find_request(model, i)
-    associate (now => model%user_materials(i))
+    select type (now => model%material_requests(i)%item)
+    type is (user_material)
       call claim_card(this, model, now%spot, faults)
       now%constants%is_unsymmetric = this%has('UNSYMM')
       call read_constants(this, now%constants%values, faults)
-    end associate
+    end select
   end subroutine read_user_material
 
   !> All lines but the last are full, and there are as many constants as the keyword says.
@@ -101,7 +110,8 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     integer :: i, line, number
     call find_request(model, i)
-    associate (now => model%user_materials(i))
+    select type (now => model%material_requests(i)%item)
+    type is (user_material)
       call claim_card(this, model, now%depvar, faults)
       number = this%integer_at(1, 1)
       if (this%num_fields(1) /= 1 .or. .not. this%is_integer_at(1, 1) .or. number < 0) then
@@ -118,26 +128,21 @@ contains
                            as_text(now%constants%num_variables)//', and its name')
         return
       end do
-    end associate
+    end select
     if (this%num_lines > 1) then
       call this%ignore(faults, 'the names have no effect: results call the state variables '// &
                        'SDV1, SDV2, ..')
     end if
   end subroutine read_depvar
 
-  !> The request of the material that is being read; a new one with its first keyword.
+  !> Position in model%material_requests of the user material that is being read.
   subroutine find_request(model, i)
     type(draft), intent(inout) :: model
     integer, intent(out) :: i
-    type(user_request) :: new
-    new%material = size(model%scene%materials)
-    i = 0
-    if (size(model%user_materials) > 0) then
-      i = findloc(model%user_materials%material, new%material, dim=1)
-    end if
-    if (i > 0) return
-    new%constants%name = model%scene%materials(new%material)%name
-    model%user_materials = [model%user_materials, new]
-    i = size(model%user_materials)
+    call find_material_request(model, user_material(), i)
+    select type (now => model%material_requests(i)%item)
+    type is (user_material)
+      now%constants%name = model%scene%materials(now%material)%name
+    end select
   end subroutine find_request
 end module keywords_user_material
