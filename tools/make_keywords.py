@@ -40,6 +40,7 @@ class Keyword:
     place: str
     meaning: list[str] = field(default_factory=list)  # paragraphs
     blocks: list[tuple[str, list[tuple[str, str]]]] = field(default_factory=list)
+    about: dict[str, list[str]] = field(default_factory=dict)  # texts above the rows
     example: list[str] = field(default_factory=list)
 
 
@@ -105,6 +106,10 @@ def read_keywords(text: str) -> list[Keyword]:
 
     for line in [*text.splitlines(), "*END  (of text)"]:
         head = re.match(r"\*(.*?)(?: \(([^()]*)\))?  \((.*)\)$", line)
+        if title.startswith("With ") and not line and lines and title not in keywords[-1].about:
+            keywords[-1].about[title] = join_wrapped(lines)
+            lines = []
+            continue
         if not head and (not line or line.startswith("  ")):
             lines += [line] if line else []
             continue
@@ -146,6 +151,7 @@ def section(keyword: Keyword) -> str:
     parts += [wrapped(escaped(paragraph)) for paragraph in keyword.meaning]
     for title, rows in keyword.blocks:
         parts.append(f"**{title}**" if rows else f"{title}.")
+        parts += [wrapped(escaped(paragraph)) for paragraph in keyword.about.get(title, [])]
         if rows:
             parts.append(
                 "\n".join(wrapped(f"`{name}`: {escaped(text)}", "- ", "  ") for name, text in rows)

@@ -43,6 +43,16 @@ def test_answer_of_the_program_is_read() -> None:
     assert keyword.example == ["*JOINT LAW, NAME=A", "1, 2"]
 
 
+def test_variants_of_a_keyword_have_a_text_of_their_own() -> None:
+    variant = "With TYPE=SOFT\n  It gives.\n\n  G                  energy; a number; required\n\n"
+    (keyword,) = make_keywords.read_keywords(
+        HELP.replace("No data lines", variant + "No data lines")
+    )
+    assert keyword.about == {"With TYPE=SOFT": ["It gives."]}
+    assert keyword.blocks[1] == ("With TYPE=SOFT", [("G", "energy; a number; required")])
+    assert "**With TYPE=SOFT**\n\nIt gives.\n\n- `G`: energy" in make_keywords.section(keyword)
+
+
 def test_keyword_of_two_places_gives_two() -> None:
     later = HELP.replace("LAW  (in the model)", "LAW (not available yet)  (in a step)")
     first, second = make_keywords.read_keywords(HELP + "\n" + later)
