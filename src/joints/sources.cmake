@@ -2,6 +2,7 @@ set(sources
   iteration/condensation.f90
   iteration/contact_augmentation.f90
   iteration/equilibrium.f90
+  iteration/equilibrium_catalogue.f90
   iteration/equilibrium_linear.f90
   iteration/joint_compliance.f90
   iteration/joint_forces.f90

@@ -9,8 +9,7 @@ module step_equilibrium
   use solver_catalogue, only: make_solver, symmetric_solver
   use equilibrium, only: equilibrium_solver, balance_outcome
   use equilibrium_linear, only: linear_equilibrium
-  use condensation, only: condensed_equilibrium
-  use newton_full, only: full_equilibrium
+  use equilibrium_catalogue, only: condensed_solver, full_solver, make_joint_solver
   use step_system, only: dam_system
   use write_text, only: as_text
   implicit none
@@ -36,22 +35,17 @@ contains
     logical, intent(in) :: is_symmetric !< the tangent of the solids
     class(equilibrium_solver), allocatable, intent(out) :: balance
     type(error_type), allocatable, intent(out) :: error
-    logical :: is_full
-    select case (plan%controls%joint_solver)
-    case ('FULL')
-      is_full = .true.
-    case ('CONDENSED')
-      is_full = .false.
-    case default
-      is_full = system%operator%num_points > most_condensed_points
-    end select
-    is_full = is_full .or. .not. is_symmetric
+    character(len(plan%controls%joint_solver)) :: name
+    name = plan%controls%joint_solver
+    if (name == 'AUTO') then
+      name = condensed_solver
+      if (system%operator%num_points > most_condensed_points) name = full_solver
+    end if
+    if (.not. is_symmetric) name = full_solver
     if (system%operator%num_points == 0) then
       allocate (linear_equilibrium :: balance)
-    else if (is_full) then
-      allocate (full_equilibrium :: balance)
     else
-      allocate (condensed_equilibrium :: balance)
+      call make_joint_solver(trim(name), balance)
     end if
     balance%controls = plan%controls
     if (system%matrix%is_symmetric) call check_memory(system%operator%num_points, error)

@@ -2,6 +2,7 @@
 module keywords_controls
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
+  use equilibrium_catalogue, only: names_of_joint_solvers
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real
   use kinds, only: rk
   use model_draft, only: draft
@@ -13,6 +14,8 @@ contains
 
   subroutine describe_controls(spec)
     type(keyword), intent(out) :: spec
+    character(:), allocatable :: joint_solvers
+    joint_solvers = 'AUTO | '//names_of_joint_solvers()
     spec%name = 'CONTROLS'
     spec%family = 'step'
     spec%place = 'step'
@@ -29,7 +32,7 @@ contains
                     default='15', lowest=1.0_rk), &
               field('JOINT SOLVER', kind_choice, 'iterate on the joints alone (condensed) or '// &
                     'on everything (full Newton)', default='AUTO', &
-                    choices='AUTO | CONDENSED | FULL'), &
+                    choices=joint_solvers), &
               field('JOINT FORCES', kind_choice, 'weight of joint forces in time: the impulse '// &
                     'of the end of the step, as the bulk, or end of the step', &
                     default='IMPLICIT', choices='IMPLICIT | HHT | END'), &
