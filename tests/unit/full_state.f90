@@ -129,8 +129,8 @@ contains
     integer, intent(inout) :: n
     allocate (history%gap(2), history%shift(2), history%jump(3, 2), history%traction(3, 2), &
               history%slip(2, 2), history%is_broken(2), history%status(2), &
-              history%has_parted(2), history%friction_work(2), history%fracture_work(2), &
-              history%water(2))
+              history%num_openings(2), history%friction_work(2), history%fracture_work(2), &
+              history%internal(2, 2), history%water(2))
     call fill(history%gap, n)
     call fill(history%shift, n)
     call fill(history%jump, n)
@@ -138,9 +138,10 @@ contains
     call fill(history%slip, n)
     call fill(history%is_broken, n)
     call fill(history%status, n)
-    call fill(history%has_parted, n)
+    call fill(history%num_openings, n)
     call fill(history%friction_work, n)
     call fill(history%fracture_work, n)
+    call fill(history%internal, n)
     call fill(history%water, n)
   end subroutine fill_joint
 

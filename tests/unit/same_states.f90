@@ -136,9 +136,10 @@ contains
     call compare(log, what//'slip', a%slip, b%slip)
     call compare(log, what//'is_broken', a%is_broken, b%is_broken)
     call compare(log, what//'status', a%status, b%status)
-    call compare(log, what//'has_parted', a%has_parted, b%has_parted)
+    call compare(log, what//'num_openings', a%num_openings, b%num_openings)
     call compare(log, what//'friction_work', a%friction_work, b%friction_work)
     call compare(log, what//'fracture_work', a%fracture_work, b%fracture_work)
+    call compare(log, what//'internal', a%internal, b%internal)
     call compare(log, what//'water', a%water, b%water)
   end subroutine compare_joint
 

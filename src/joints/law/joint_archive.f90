@@ -20,9 +20,10 @@ contains
     call file%put('slip', history%slip)
     call file%put('is_broken', history%is_broken)
     call file%put('status', history%status)
-    call file%put('has_parted', history%has_parted)
+    call file%put('num_openings', history%num_openings)
     call file%put('friction_work', history%friction_work)
     call file%put('fracture_work', history%fracture_work)
+    call file%put('internal', history%internal)
     call file%put('water', history%water)
   end subroutine save_joint
 
@@ -38,9 +39,10 @@ contains
     call file%get('slip', history%slip)
     call file%get('is_broken', history%is_broken)
     call file%get('status', history%status)
-    call file%get('has_parted', history%has_parted)
+    call file%get('num_openings', history%num_openings)
     call file%get('friction_work', history%friction_work)
     call file%get('fracture_work', history%fracture_work)
+    call file%get('internal', history%internal)
     if (allocated(history%gap)) call file%get('water', history%water, shape(history%gap))
   end subroutine load_joint
 end module joint_archive
