@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Runs many decks, some at a time, and ends in a table.
+"""Runs many decks, several at a time, and prints a table of the runs.
 
-Each deck leaves its results in DIR/<its name>. A deck that finished before with the same content
-(included files too), options and version of the program is not run again. Options of keyway go
-behind a `--`, as in: tools/batch.py input/*/*.inp -j 2 -- -q
+The results of a deck are in DIR/<name of the deck>. A deck that finished before with the same
+content (included files too), options and version of the program is not run again. Options of
+keyway follow a `--`, as in: tools/batch.py input/*/*.inp -j 2 -- -q
 """
 
 from __future__ import annotations
@@ -36,14 +36,20 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         epilog="exit code: 0 all finished, 1 some did not, 2 usage, 130 interrupted",
     )
     add = parser.add_argument
-    add("decks", nargs="+", type=Path, metavar="DECKS", help="decks, or folders that hold some")
-    add("-o", type=Path, default=Path("results"), metavar="DIR", help="results (results)")
+    add("decks", nargs="+", type=Path, metavar="DECKS", help="decks, or folders with decks")
+    add(
+        "-o",
+        type=Path,
+        default=Path("results"),
+        metavar="DIR",
+        help="folder of the results (results)",
+    )
     add("-j", type=positive, default=1, metavar="RUNS", help="runs at a time (1)")
     add("--threads", type=positive, help="threads of each run (processors / runs)")
     add("--timeout", type=float, metavar="SECONDS", help="ends a run that takes longer")
     add("--again", action="store_true", help="run finished decks again")
     add("--program", type=Path, default=ROOT / "build/release/keyway", help="the program")
-    add("--json", metavar="FILE", help="write the table as JSON too; - writes it in its place")
+    add("--json", metavar="FILE", help="write the table also as JSON; -: only JSON, on stdout")
     result = parser.parse_args(arguments)
     processors = len(os.sched_getaffinity(0))
     threads = result.threads or max(1, processors // result.j)
@@ -59,7 +65,7 @@ def positive(text: str) -> int:
 
 
 def find_decks(places: list[Path]) -> list[Path]:
-    """The decks named, and of each folder the files *.inp that hold a step."""
+    """The decks named, and the files *.inp with a step in the folders named."""
     found: list[Path] = []
     for place in places:
         if place.is_dir():
@@ -69,7 +75,7 @@ def find_decks(places: list[Path]) -> list[Path]:
         else:
             raise FileNotFoundError(f"there is no deck '{place}'")
     if not found:
-        raise FileNotFoundError("no decks there")
+        raise FileNotFoundError("no decks found")
     return list(dict.fromkeys(p.resolve() for p in found))
 
 
@@ -79,19 +85,19 @@ def has_step(path: Path) -> bool:
 
 
 def folders_of(decks: list[Path], top: Path) -> dict[Path, Path]:
-    """A folder for each deck: its name, with its parent's name in front where two share one."""
+    """A folder for each deck: its name, after the name of its parent if two decks share a name."""
     count = Counter(deck.stem for deck in decks)
     folders = {
         deck: top / (deck.stem if count[deck.stem] == 1 else f"{deck.parent.name}_{deck.stem}")
         for deck in decks
     }
     if len({*folders.values()}) < len(decks):
-        raise ValueError("decks of one name in folders of one name; give them other names")
+        raise ValueError("several decks have the same name and folder name; rename them")
     return folders
 
 
 def run_all(runner: DeckRunner, folders: dict[Path, Path], options) -> list[Record]:
-    """Runs the decks on options.j threads; an interruption ends the children and what waits."""
+    """Runs the decks on options.j threads; an interruption ends running and waiting decks."""
     handler = signal.signal(signal.SIGTERM, signal.default_int_handler)
     done = 0
     with ThreadPoolExecutor(options.j) as pool:

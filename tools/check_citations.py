@@ -1,9 +1,9 @@
-"""Checks that every citation leads somewhere.
+"""Checks that every citation has a target.
 
 Pages are cited by name, with a section or, in brackets, an equation: `theory.md, 8` and
 `theory.md, (8.1)`. The numbered notes on the paper are `paper_notes.md, 8`. `Eq. 9` and
 `Eqs. 14-25` are equations of the paper. Links in Markdown lead to files and headings that exist.
-Of sources and decks only comments and docstrings are read: texts of the program are not citations.
+Only comments and docstrings of sources and decks are read: other texts are not citations.
 
 usage: check_citations.py [ROOT]
 """
@@ -21,8 +21,8 @@ from pathlib import Path
 
 EQUATIONS_OF_THE_PAPER = 25
 READ = {".md", ".py", ".f90", ".for", ".inp", ".toml", ".cmake", ".sh", ".txt", ""}
-LARGEST = 300_000  # bytes; meshes and records are larger and cite nothing
-# Texts of the program, and what programs of the repository write.
+LARGEST = 300_000  # bytes; larger files are meshes and records, without citations
+# Texts of the program, and files that programs of the repository write.
 TEXTS = re.compile(r"docs/keywords\.md|tests/errors/[^/]+/expected\.txt")
 WRITTEN = {"tables.md"}
 
@@ -41,13 +41,13 @@ OLD = (
 # An equation of the page itself.
 OWN = re.compile(r"\((\d{1,2}\.\d{1,2}(?:\.\d)?[a-z]?)\)")
 LINK = re.compile(r"!?\[[^\]\n]*\]\(([^)\s]+)\)")
-# What stands at the start of a line of a comment.
+# Marks at the start of a line of a comment.
 MARKS = re.compile(r"^\s*(?:!>|!<|!|#:?|\*\*|//)?\s*")
 
 
 @dataclass
 class Page:
-    """A page of the documentation and what can be cited of it."""
+    """A page of the documentation, with its headings, notes and equations."""
 
     path: Path
     sections: set[str] = field(default_factory=set)
@@ -129,7 +129,7 @@ def comment_of(line: str) -> str:
 
 
 def prose(path: Path) -> tuple[str, list[int]]:
-    """Text without marks of comments, lines joined by blanks, and where each line begins."""
+    """Text without marks of comments, lines joined by blanks, and the start of each line."""
     text = path.read_text(encoding="utf-8", errors="replace")
     lines = text.splitlines()
     if path.suffix == ".f90":
@@ -171,7 +171,7 @@ def check_prose(path: Path, root: Path, pages: dict[str, Page]) -> list[str]:
 
 
 def wrong_spellings(text: str) -> Iterator[tuple[int, str]]:
-    """Citations in an old spelling, and equations that the paper has not."""
+    """Citations in an old spelling, and equations that the paper does not have."""
     for pattern, better in OLD:
         for found in pattern.finditer(text):
             yield found.start(), f"'{found[0]}': citations are spelt {better}"
@@ -193,7 +193,7 @@ def lost_pages(
 
 
 def wrong_numbers(text: str, pages: dict[str, Page]) -> Iterator[tuple[int, str]]:
-    """Sections and equations that a page has not."""
+    """Sections and equations that a page does not have."""
     for found in CITED.finditer(text):
         page = pages.get(found[1])
         for number, is_equation in numbers_in(found[2]) if page else ():
@@ -203,7 +203,7 @@ def wrong_numbers(text: str, pages: dict[str, Page]) -> Iterator[tuple[int, str]
 
 
 def check_own_equations(page: Page, root: Path, known: set[str]) -> list[str]:
-    """Numbers in brackets, on a page with equations, that no equation has."""
+    """Numbers in brackets, on a page with equations, without an equation."""
     if not page.equations:
         return []
     text = without_code(page.path.read_text(encoding="utf-8"))
@@ -226,7 +226,7 @@ def check_links(path: Path, root: Path, pages: dict[Path, Page]) -> list[str]:
         line = text.count("\n", 0, found.start()) + 1
         goal = (path.parent / target).resolve() if target else path.resolve()
         if not goal.exists():
-            faults.append(f"{path.relative_to(root)}:{line}: the link '{found[1]}' leads nowhere")
+            faults.append(f"{path.relative_to(root)}:{line}: the link '{found[1]}' has no target")
         elif anchor and goal in pages and anchor not in pages[goal].anchors:
             faults.append(f"{path.relative_to(root)}:{line}: no heading '#{anchor}' in {goal.name}")
     return faults
@@ -238,7 +238,7 @@ def check(root: Path) -> list[str]:
     files = tracked_files(root)
     markdown = [read_page(p) for p in files if p.suffix == ".md"]
     of_path = {page.path.resolve(): page for page in markdown}
-    # Of two pages of one name that of docs/ itself is meant.
+    # Of two pages with one name, the citation means the page directly in docs/.
     named = {page.path.name: page for page in sorted(markdown, key=lambda p: -len(p.path.parts))}
     own = {Path(__file__).resolve(), root / "tests" / "tools" / "test_check_citations.py"}
     faults = []

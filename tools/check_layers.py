@@ -1,7 +1,7 @@
 """Checks the layers of the sources.
 
-A module uses its own room (folder) and lower ones; no two modules use each other; a file bears the
-name of its module; the lists sources.cmake name every file and no other.
+A module uses its own room (folder) and lower ones; no two modules use each other; file and module
+have the same name; the lists sources.cmake name every file and no other.
 
 usage: check_layers.py [ROOT]
 """
@@ -95,7 +95,7 @@ def read_sources(root: Path) -> tuple[list[Source], list[str]]:
         unit = unit_name(text) or ""
         stem = path.name.split(".")[0]
         if unit != stem and not (room == "app" and stem == "main"):
-            faults.append(f"{place}: holds '{unit}'; file and module bear the same name")
+            faults.append(f"{place}: holds '{unit}'; file and module must have the same name")
         found.append(Source(place, room, unit, parent_name(text), tuple(uses(text))))
     return found, faults
 
@@ -119,7 +119,7 @@ def check_directions(sources: list[Source]) -> list[str]:
 
 
 def check_cycles(sources: list[Source]) -> list[str]:
-    """Modules that use themselves; a submodule counts as a part of its module."""
+    """Circles of modules that use each other; a submodule counts as a part of its module."""
     part_of = {s.unit: s.parent or s.unit for s in sources}
     graph: dict[str, set[str]] = {}
     for source in sources:
@@ -159,9 +159,13 @@ def check_lists(root: Path) -> list[str]:
             if p.suffix in {".f90", ".c"}
         }
         place = f"src/{folder}/sources.cmake"
-        faults += [f"{place}: '{n}' is listed and not there" for n in sorted({*listed} - present)]
+        faults += [
+            f"{place}: '{n}' is listed but does not exist" for n in sorted({*listed} - present)
+        ]
         faults += [f"{place}: '{n}' is not listed" for n in sorted(present - {*listed})]
-        faults += [f"{place}: '{n}' twice" for n in sorted({*listed}) if listed.count(n) > 1]
+        faults += [
+            f"{place}: '{n}' is listed twice" for n in sorted({*listed}) if listed.count(n) > 1
+        ]
     return faults
 
 

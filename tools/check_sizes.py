@@ -1,8 +1,8 @@
-"""Checks sizes of files, folders and procedures, and leftovers, where no linter does.
+"""Checks sizes of files, folders and procedures, and leftovers, which no linter checks.
 
 usage: check_sizes.py [ROOT]
 
-Python has ruff for all but the length of files (pyproject.toml).
+For Python, ruff checks all but the length of files (pyproject.toml).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ MAX_KERNEL = 100
 MAX_ARGUMENTS = 8
 MAX_NESTING = 4
 
-# Straight-line kernels that may have MAX_KERNEL lines; anything else is to be split.
+# Kernels without branches that may have MAX_KERNEL lines; all other procedures must be split.
 KERNELS: set[str] = set()
 # Tables of constants, which may be long.
 TABLES: set[str] = set()
@@ -54,7 +54,7 @@ def check_leftovers(place: str, text: str) -> list[str]:
 
 
 def check_fortran(place: str, text: str) -> list[str]:
-    """Procedures that are too long, too deep or take too much."""
+    """Procedures that are too long, nest too deep or have too many arguments."""
     faults = []
     for procedure in procedures(text):
         where = f"{place}:{procedure.line}: {procedure.name}"

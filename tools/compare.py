@@ -2,9 +2,9 @@
 """Compares two results folders, or a results folder or file with a reference file.
 
 A and B are folders of results, or A is a folder or file and B a reference file (CSV, JSON, HDF5).
-Two values are equal when |a - b| <= absolute + relative |b|; NaN equals NaN alone. Rows of tables
-are matched by step, increment, node, element and point where both tables have them, else by their
-order. What one side lacks is a difference, but a reference for a folder may leave out columns, JSON
+Two values are equal when |a - b| <= absolute + relative |b|; NaN equals only NaN. Rows of tables
+are matched by step, increment, node, element and point if both tables have these columns, else by
+order. Missing data are a difference, but a reference for a folder may leave out columns, JSON
 keys and datasets, and with --subset B may hold less of everything.
 """
 
@@ -52,14 +52,14 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("--by-column", action="store_true", help="relative to the column's largest value")
     add("--subset", action="store_true", help="B may hold less than A")
     add("--table", default="", help="the table a CSV reference belongs to, as in node_TIP")
-    add("--job", default=None, help="the job, where a folder holds several")
+    add("--job", default=None, help="the job, if a folder holds several")
     add("-n", type=int, default=10, help="how many of the largest differences to show (10)")
     add("--json", type=Path, metavar="FILE", help="write the findings as JSON")
     return parser.parse_args(arguments)
 
 
 def make_rules(options: argparse.Namespace) -> Rules:
-    """Tolerances of the file, then those of the command line, which rule."""
+    """Tolerances of the file, then those of the command line, which take precedence."""
     content = tomllib.loads(options.tolerances.read_text()) if options.tolerances else {}
     columns = content.pop("column", {})
     given = {"relative": options.rel, "absolute": options.abs}
@@ -88,7 +88,7 @@ def compare(a: Path, b: Path, rules: Rules, job: str | None = None, table: str =
             raise FileNotFoundError(f"there is no '{path}'")
     if b.is_dir():
         if not a.is_dir():
-            raise ValueError("B is a folder and A is not")
+            raise ValueError("B is a folder but A is not")
         return comparison.compare_folders(Results(a, job), Results(b, job), rules)
     if b.suffix.lower() not in comparison.READERS:
         raise ValueError(f"'{b.name}': expected a reference in CSV, JSON or HDF5")
@@ -96,7 +96,7 @@ def compare(a: Path, b: Path, rules: Rules, job: str | None = None, table: str =
         rules.fewer_columns = True
         return comparison.compare_with_reference(Results(a, job), b, rules, table)
     if a.suffix.lower() != b.suffix.lower():
-        raise ValueError(f"'{a.name}' and '{b.name}' are of two kinds")
+        raise ValueError(f"'{a.name}' and '{b.name}' are of different kinds")
     report = Report()
     comparison.compare_files(report, a, b, rules)
     return report

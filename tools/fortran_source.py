@@ -1,4 +1,4 @@
-"""Reads Fortran sources just far enough for the style checks: logical lines and program units."""
+"""Reads logical lines and program units of Fortran sources, for the style checks."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Procedure:
 
 
 def bare(line: str) -> str:
-    """The line without its comment and with the insides of texts removed, in lower case."""
+    """The line in lower case, without comment and without the contents of texts."""
     kept, quote = [], ""
     for letter in line:
         if quote:

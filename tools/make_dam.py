@@ -7,7 +7,7 @@ contraction joints. Example:
     tools/make_dam.py -o my_dam/dam.inp --height 200 --crest-arc 500 --joints 4 \
         --motion acc_x.txt acc_y.txt acc_z.txt
 
-Blocks between joints may have meshes of their own, here the middle one 3:2:
+Blocks between joints may have separate meshes, here the middle one 3:2:
 
     tools/make_dam.py -o dam.inp --arc 16 --levels 7 --bottom 2 --thick 2 --joints 2 \
         --refine 2 --fine 2 --fine-refine 3 --fine-thick 3
@@ -81,7 +81,7 @@ def add_mesh_options(parser: argparse.ArgumentParser) -> None:
 def add_block_options(parser: argparse.ArgumentParser) -> None:
     """Options that become BlockOptions."""
     group = parser.add_argument_group(
-        "blocks meshed by their own; the elements above are then cells of a lattice"
+        "blocks with separate meshes; the elements above are then cells of a lattice"
     )
     group.add_argument("--refine", type=int, default=1, help="elements along a cell's side (1)")
     group.add_argument(
@@ -132,7 +132,7 @@ def add_deck_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--friction", type=float, default=0.6, help="of the joints (0.6)")
     group.add_argument("--cohesion", type=float, default=0.0, help="of the joints [Pa] (0)")
     group.add_argument(
-        "--bonded", action="store_true", help="joints that never open: the run without joints"
+        "--bonded", action="store_true", help="joints that never open, as a run without joints"
     )
     group.add_argument(
         "--water", type=float, help="depth of the water [m]; 0: empty (105/135.5 of the height)"
@@ -149,9 +149,7 @@ def add_deck_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--damping", type=float, nargs=3, default=DeckOptions.damping, metavar=("RATIO", "F1", "F2")
     )
-    group.add_argument(
-        "--modes", type=int, default=0, help="natural modes to find in a step of their own (0)"
-    )
+    group.add_argument("--modes", type=int, default=0, help="natural modes, in a separate step (0)")
 
 
 def read_options(arguments: list[str] | None) -> argparse.Namespace:
@@ -262,7 +260,7 @@ def main(arguments: list[str] | None = None) -> int:
         return 2
     faults = find_faults(mesh)
     if faults:
-        print("make_dam: the mesh is not sound:\n  " + "\n  ".join(faults), file=sys.stderr)
+        print("make_dam: the mesh has faults:\n  " + "\n  ".join(faults), file=sys.stderr)
         return 1
     heading = header(mesh, shape, mesh_options, options.title, tuple(chosen.note), blocks)
     mesh_file = write_deck(chosen, mesh, heading, options)
@@ -285,7 +283,7 @@ def write_deck(
 
 
 def show(chosen: argparse.Namespace, mesh: BrickMesh, mesh_file: Path) -> None:
-    """Print the report on the mesh, and draw the mesh where a picture is asked for."""
+    """Print the report on the mesh, and draw the mesh if requested."""
     free = 3 * (len(mesh.x) - len(mesh.node_sets["FIXED"]))
     print(report(mesh))
     if mesh.surface_joints or mesh.ties:
@@ -295,7 +293,7 @@ def show(chosen: argparse.Namespace, mesh: BrickMesh, mesh_file: Path) -> None:
     print(f"{counts}, {free} unknowns")
     print(f"wrote {chosen.output} and {mesh_file}")
     if chosen.picture:
-        from keyway_tools.picture_mesh import picture_mesh  # VTK takes its time to load
+        from keyway_tools.picture_mesh import picture_mesh  # VTK is slow to load
 
         print("wrote", picture_mesh(mesh, mesh_file.with_suffix(".png")))
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Write the decks of input/ anew: the small ones and the two arch dams."""
+"""Write the decks of input/: the small ones and the two arch dams."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ DIFFERENT_MESH += " --fine 2 --fine-refine 3 --fine-thick 3"
 
 
 def write_small_decks(folder: Path) -> None:
-    """The decks of one file each, with what they read."""
+    """The decks of one file each, with the files that they read."""
     folder.mkdir(parents=True, exist_ok=True)
     for name, text_of in SMALL_DECKS.items():
         (folder / name).parent.mkdir(exist_ok=True)
@@ -48,7 +48,7 @@ def write_small_decks(folder: Path) -> None:
 def write_dam(folder: Path) -> None:
     """The arch dam and its ground motion."""
     make_motion.main(["-o", str(folder / "motion"), "--seed", "3"])
-    (folder / "motion_records.png").unlink()  # the spectra say enough
+    (folder / "motion_records.png").unlink()  # the spectra are sufficient
     title = "Xingbiling arch dam, 135.5 m, joints between matching meshes"
     write_shaken_dam(folder, DAM_MESH, title, DAM_NOTES)
 
@@ -65,7 +65,7 @@ def write_shaken_dam(folder: Path, mesh: str, title: str, notes: tuple[str, ...]
 
 
 def write_different_dam(folder: Path) -> None:
-    """The same dam with a middle block of its own mesh."""
+    """The same dam with a separate mesh in the middle block."""
     title = "Xingbiling arch dam, 135.5 m, joints between different meshes"
     write_shaken_dam(folder, DIFFERENT_MESH, title, DIFFERENT_NOTES)
 

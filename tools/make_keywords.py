@@ -1,4 +1,4 @@
-"""Writes docs/keywords.md, the reference of all keywords, from what the program says of them.
+"""Writes docs/keywords.md, the reference of all keywords, from the output of the program.
 
 usage: make_keywords.py [--program PATH] [-o FILE]
 """
@@ -45,7 +45,7 @@ class Keyword:
 
 
 def ask(program: Path, *names: str) -> str:
-    """What keyway --keywords prints."""
+    """The output of keyway --keywords."""
     command = [str(program), "--keywords", *names]
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout
 
@@ -62,7 +62,7 @@ def read_families(text: str) -> list[tuple[str, list[str]]]:
 
 
 def join_wrapped(lines: list[str]) -> list[str]:
-    """Paragraphs of wrapped lines: a line ends one where the next word would have fitted on it."""
+    """Paragraphs of wrapped lines: a line ends a paragraph if the next word would have fitted."""
     paragraphs: list[str] = []
     last = ""
     for line in lines:
@@ -157,7 +157,7 @@ def section(keyword: Keyword) -> str:
                 "\n".join(wrapped(f"`{name}`: {escaped(text)}", "- ", "  ") for name, text in rows)
             )
     if keyword.example:
-        # A fence: below a list an indented block would be a part of the last item.
+        # A fence, because an indented block below a list would belong to the last item.
         parts.append("\n".join(["```", *keyword.example, "```"]))
     return "\n\n".join(parts) + "\n"
 
@@ -168,7 +168,7 @@ def render(program: Path) -> str:
     for family, names in read_families(ask(program)):
         parts.append(f"## {family}\n")
         for name in names:
-            # A keyword that stands at two places is listed twice and described in that order.
+            # A keyword with two places is listed twice and described in that order.
             place = seen.get(name, 0)
             seen[name] = place + 1
             parts.append(section(read_keywords(ask(program, name))[place]))

@@ -6,9 +6,9 @@
 
 RESULTS is the folder that the run was given with -o. For each job in it: principal-stress,
 displacement and damage envelopes on the dam's faces, its damaged elements, openings over the
-joints and in time, the deformed shape, mode shapes, histories of nodes and energies; whatever
-the run kept. Units: SI in the deck, MPa and mm in the pictures. The names of the pictures are
-printed.
+joints and in time, the deformed shape, mode shapes, histories of nodes and energies, as far as the
+run has stored them. Units: SI in the deck, MPa and mm in the pictures. The names of the pictures
+are printed.
 
 `material` draws the curves of `keyway --material` (job_material_NAME.csv), several in one picture:
 stress against strain, damage, energies, beside measured points (strain, stress a line) if given.
@@ -68,7 +68,7 @@ def draw_material(arguments: list[str]) -> int:
     """Draw curves of material tests in one picture."""
     parser = argparse.ArgumentParser(prog="plot.py material")
     parser.add_argument("curves", type=Path, nargs="+", help="job_material_NAME.csv")
-    points = "measured points, a strain and a stress a line; may be given again"
+    points = "measured points, a strain and a stress per line; may be repeated"
     parser.add_argument("-e", "--experiment", type=Path, action="append", default=[], help=points)
     component = "of strain and stress (the one whose stress changes most)"
     parser.add_argument("-c", "--component", choices=COMPONENTS, help=component)
@@ -113,7 +113,7 @@ def main(arguments: list[str] | None = None) -> int:
                 num_pictures += 1
         if num_pictures == 0:
             wanted = "*ENVELOPE, *NODE FILE, *NODE PRINT or *JOINT PRINT in the deck"
-            print(f"plot: {job} kept nothing to draw; ask with {wanted}", file=sys.stderr)
+            print(f"plot: {job} has nothing to draw; request it with {wanted}", file=sys.stderr)
     return 0
 
 

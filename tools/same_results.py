@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs decks with two programs and compares everything they write.
+"""Runs decks with two programs and compares all their results.
 
 BEFORE and AFTER are two executables. The decks are those of input/ and tests/decks, and each DECK.
 A difference is relative to the largest value of its column or array; vector components share it,
@@ -26,7 +26,7 @@ from keyway_tools.deck_runs import digest_of, files_of
 from keyway_tools.written_values import Difference, compare_written
 
 ROOT = Path(__file__).resolve().parent.parent
-# Two numbers of 13 digits that differ by one in the last are 1e-12 apart, give or take round-off.
+# Two numbers of 13 digits that differ by one in the last digit differ by about 1e-12.
 SLACK = 1 + 1e-3
 
 
@@ -60,7 +60,12 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("--tolerance", type=float, default=1e-12, help="largest difference allowed (1e-12)")
     add("--ignore", action="append", default=[], metavar="PATTERN", help="leave these places out")
     add("-n", type=int, default=10, help="differences to show of each deck (10)")
-    add("--keep", type=Path, metavar="DIR", help="keep results here; what is kept is not run again")
+    add(
+        "--keep",
+        type=Path,
+        metavar="DIR",
+        help="keep results here; decks with results here are not run again",
+    )
     return parser.parse_args(arguments)
 
 
@@ -102,7 +107,7 @@ def run(program: Path, deck: Path, threads: str, folder: Path) -> tuple[Path, fl
     final = folder / f"{name_of(deck)}_{hashlib.sha256(text.encode()).hexdigest()[:16]}"
     if final.exists():
         return final, 0.0
-    # The results move to their place at the end, so that others never see a part of them.
+    # The results are moved to their folder at the end, so that others never read a part of them.
     with tempfile.TemporaryDirectory(dir=folder) as place:
         out = Path(place) / "results"
         out.mkdir()

@@ -69,7 +69,7 @@ def test_right_tree_has_no_faults(tmp_path: Path) -> None:
         ("src/law.f90", "!\n! see DECK.md\n", "src/law.f90:2: there is no page 'DECK.md'"),
         ("tests/test_law.py", '"""Eq 9."""\n', "tests/test_law.py:1: 'Eq 9'"),
         ("input/bar.inp", "** NOTES 2\n", "input/bar.inp:1: 'NOTES 2'"),
-        ("docs/a.md", "[x](gone.md)\n", "docs/a.md:1: the link 'gone.md' leads nowhere"),
+        ("docs/a.md", "[x](gone.md)\n", "docs/a.md:1: the link 'gone.md' has no target"),
         ("docs/a.md", "\n[x](theory.md#no)\n", "docs/a.md:2: no heading '#no' in theory.md"),
         ("docs/theory.md", THEORY + "as in (2.7)\n", "docs/theory.md:12: no equation (2.7)"),
     ],

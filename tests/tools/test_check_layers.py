@@ -74,7 +74,7 @@ def test_lists_and_files_agree(tmp_path):
     (root / "src/loads/sources.cmake").write_text("set(sources\n  gone.f90\n  # old.f90\n)\n")
     assert check_layers.check(root) == [
         "src/model/sources.cmake: 'mesh/lost.f90' is not listed",
-        "src/loads/sources.cmake: 'gone.f90' is listed and not there",
+        "src/loads/sources.cmake: 'gone.f90' is listed but does not exist",
     ]
 
 

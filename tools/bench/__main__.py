@@ -1,17 +1,17 @@
-"""Measures what a run costs against the bare work of the equation solver, and what accuracy costs.
+"""Measures the time of runs relative to the equation solver, and the time for given accuracy.
 
 usage: .venv/bin/python tools/bench [run] [accuracy] [--sizes 48000 145000] [--json FILE]
 
 run (default): ratios of times taken in one process, which hardly depend on the machine:
   static    the whole program, from deck to results, over analyse + factor + solve
-  dynamic   one linear increment over one solve with the same matrix; with two joints too
-  sound     increments of concrete that could crack and does not, over the same without its laws
-Peak memory and the reading of a large deck are told with them. A figure past its limit is marked,
+  dynamic   one linear increment over one solve with the same matrix; also with two joints
+  sound     increments of undamaged concrete, over the same without the time of its laws
+Peak memory and the time to read a large deck are measured too. A figure past its limit is marked,
 and the exit code is 1.
 
-accuracy: a small arch dam on finer and finer meshes, with every element, in smaller and smaller
-increments: time of the run against the errors of displacement, stress and frequency, as
-docs/accuracy.md shows them; --picture FILE draws them.
+accuracy: a small arch dam with finer meshes, every element, and smaller increments: time of the
+run against the errors of displacement, stress and frequency, as in docs/accuracy.md; --picture
+FILE draws them.
 """
 
 from __future__ import annotations
@@ -37,22 +37,22 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     )
     add = parser.add_argument
     add("what", nargs="*", metavar="run|accuracy", help="what to measure (run)")
-    add("--sizes", type=int, nargs="+", default=[48_000, 145_000], help="unknowns of the scenes")
+    add("--sizes", type=int, nargs="+", default=[48_000, 145_000], help="unknowns of the models")
     add("--increments", type=int, default=60, help="dynamic increments (60)")
     add("--threads", type=int, default=2, help="of the program (2)")
     add("--program", type=Path, default=ROOT / "build/release/keyway", help="the program")
     add("--json", type=Path, metavar="FILE", help="write the figures as JSON too")
-    add("--picture", type=Path, metavar="FILE", help="draw what accuracy costs")
+    add("--picture", type=Path, metavar="FILE", help="draw time against accuracy")
     options = parser.parse_args(arguments)
     options.what = options.what or ["run"]
     if set(options.what) - {"run", "accuracy"}:
-        parser.error("it measures 'run' or 'accuracy'")
+        parser.error("expected 'run' or 'accuracy'")
     return options
 
 
 def table(figures: list[Figure]) -> str:
     """Figures as lines of a table in Markdown."""
-    lines = ["| scene | what | measured | limit | |", "|---|---|---|---|---|"]
+    lines = ["| model | what | measured | limit | |", "|---|---|---|---|---|"]
     for f in figures:
         limit = "" if f.limit is None else f"{f.limit:g}"
         mark = "" if f.is_kept else " PAST THE LIMIT"

@@ -1,4 +1,4 @@
-!> Time of the law of concrete per point, in blocks as the structure calls it, on one thread.
+!> Time of the law of concrete per point, in blocks as in an analysis, on one thread.
 program bench_concrete
   use concrete_scene, only: lee_fenves, repeat_chance, table_one
   use damage_constants, only: concrete_constants

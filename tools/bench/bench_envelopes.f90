@@ -1,5 +1,5 @@
 !> Time of the envelopes S1 and DAMAGET of an increment over one solve, for shares of cracked
-!> elements: bench_envelopes ACROSS ALONG OVER BLOCKS. The points carry what the bench sets.
+!> elements: bench_envelopes ACROSS ALONG OVER BLOCKS. The bench sets the state of the points.
 program bench_envelopes
   use kinds, only: rk, long
   use errors, only: error_type
@@ -44,7 +44,7 @@ program bench_envelopes
 
 contains
 
-  !> Seconds of one solve with the stiffness of the whole.
+  !> Seconds of one solve with the stiffness of the model.
   real(rk) function time_of_solve() result(seconds)
     type(numbering) :: numbers
     type(row_table) :: cells
@@ -72,7 +72,7 @@ contains
     seconds = (wall() - start)/repeats
   end function time_of_solve
 
-  !> Gives the whole a law with a history, and a step with both envelopes.
+  !> Gives the model a law with a history, and a step with both envelopes.
   subroutine prepare()
     type(by_hand) :: law
     type(step) :: plan
@@ -99,7 +99,7 @@ contains
     call set_elastic(scene, now)
   end subroutine prepare
 
-  !> Cracks whole blocks of 16 elements, as a crack takes neighbours.
+  !> Cracks whole blocks of 16 elements, since neighbours of cracked elements crack.
   subroutine crack(share)
     real(rk), intent(in) :: share
     integer :: i
@@ -110,7 +110,7 @@ contains
     end do
   end subroutine crack
 
-  !> Seconds of an increment's envelopes, and over one solve.
+  !> Prints the seconds of an increment's envelopes, and their ratio to one solve.
   subroutine report(share)
     real(rk), intent(in) :: share
     type(run_record) :: record

@@ -1,5 +1,5 @@
-!> Time to find and to integrate the segments of two faces: both turned against each other, curved
-!> and not, at three sizes; the last with 50 000 facets a face.
+!> Time to find and to integrate the segments of two faces, rotated relative to each other, plane
+!> and curved, at three sizes; the largest has 50 000 facets per face.
 program bench_segments
   use facet_segments, only: find_segments
   use kinds, only: rk
@@ -60,7 +60,7 @@ contains
     if (abs(area - cover%covered_area) > 1.0e-5_rk) error stop 'the points do not add up'
   end subroutine measure
 
-  !> Time of the processor, so that others on the machine do not count.
+  !> Processor time, which excludes other work of the machine.
   real(rk) function seconds()
     call cpu_time(seconds)
   end function seconds

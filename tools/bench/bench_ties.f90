@@ -1,4 +1,4 @@
-!> Times of what dependent nodes make dearer, for the first step of a deck: bench_ties DECK.
+!> Times of the work that dependent nodes increase, for the first step of a deck: bench_ties DECK.
 program bench_ties
   use kinds, only: long, rk
   use errors, only: error_type

@@ -1,4 +1,4 @@
-"""What accuracy costs in time: a small arch dam in finer meshes, other elements, smaller steps."""
+"""Time against accuracy: a small arch dam with finer meshes, other elements, smaller steps."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from scenes import refined_dam, write_deck
 
 ELEMENTS = ("C3D8", "C3D8I", "C3D8B", "C3D8R")
 FACTORS = (1, 2, 3)  # of the meshes
-FINEST = 5  # of the mesh that errors are taken against, with C3D8I
+FINEST = 5  # factor of the reference mesh, with C3D8I
 INCREMENTS = (0.02, 0.01, 0.005)  # [s]
-FINEST_INCREMENT = 0.00125  # [s] that errors are taken against
+FINEST_INCREMENT = 0.00125  # [s] of the reference run
 DURATION = 2.0  # of the motion [s]
 
 
 @dataclass
 class Row:
-    """One run: what it took, what it found and how far that is from the finest."""
+    """One run: its time, its results and their errors relative to the finest run."""
 
     study: str  # 'mesh' or 'increment'
     name: str  # element, or size of the increment
@@ -69,13 +69,13 @@ def crest_stress(results: Results) -> float:
 
 
 def crest_displacement(results: Results) -> np.ndarray:
-    """Along the valley, at the crest of the crown, of every row of the table [m]."""
+    """Displacement along the valley at the crest of the crown, for every row of the table [m]."""
     table = results.table("node_CROWN_CREST")
     return table["U2"][table["node"] == table["node"][0]]
 
 
 def measure_increments(program: Program, folder: Path) -> list[Row]:
-    """The dam with two joints in a motion, in smaller and smaller increments."""
+    """The dam with two joints in a motion, with smaller increments."""
     mesh = refined_dam(2, num_joints=2)
     rows = []
     for increment in (*INCREMENTS, FINEST_INCREMENT):
@@ -95,7 +95,7 @@ def dynamics(results: Results) -> dict[str, float]:
 
 
 def with_errors(rows: list[Row]) -> list[Row]:
-    """Relative to the last row, which stays in the table as what the others are held to."""
+    """Adds errors relative to the last row, which stays in the table as the reference."""
     for row in rows:
         row.errors = {key: abs(row.found[key] / best - 1.0) for key, best in rows[-1].found.items()}
     return rows

@@ -1,4 +1,4 @@
-"""What runs cost against the bare work of the equation solver: ratios within one process."""
+"""Time of runs relative to the bare work of the equation solver: ratios within one process."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from scenes import INCREMENT, dam_of_size, make_concrete, scaled_dam, write_deck
 
 STATIC_LIMIT = 1.6  # whole program over analyse + factor + solve
 STEP_LIMIT = 2.0  # linear increment over solve
-SOUND_LIMIT = 1.5  # increment of concrete that stays sound over the same without its laws
+SOUND_LIMIT = 1.5  # increment of undamaged concrete over the same without its laws
 MEMORY_LIMIT_MB = {145_000: 1600.0}  # of a static run
 READING_LIMIT = 2.0  # [s] for 150 000 nodes and elements
 
-# Parts of the ledger that come once in a step, not in its increments.
+# Parts of the ledger that occur once in a step, not in its increments.
 ONCE = (
     "start program|read deck|open results|assemble .*|analyse structure|factor structure|"
     "condense .*|solve initial acceleration"
@@ -40,16 +40,16 @@ def measure_static(program: Program, folder: Path, size: int) -> list[Figure]:
     run = program.run(write_deck(folder, f"static_{size}", dam_of_size(size)))
     work, _ = run.cost("(analyse|factor|solve) structure")
     scene = f"arch dam, {run.unknowns} unknowns"
-    told = f"{run.wall:.2f} s over {work:.2f} s for analyse + factor + solve"
+    detail = f"{run.wall:.2f} s over {work:.2f} s for analyse + factor + solve"
     memory = run.results.find("ledger.peak_memory_mb")
     return [
-        Figure(scene, "static run / bare solver", run.wall / work, STATIC_LIMIT, told),
+        Figure(scene, "static run / bare solver", run.wall / work, STATIC_LIMIT, detail),
         Figure(scene, "memory of the static run [MB]", memory, MEMORY_LIMIT_MB.get(size), ""),
     ]
 
 
 def measure_dynamic(program: Program, folder: Path, size: int, count: int) -> list[Figure]:
-    """Linear increments with next to no output, and with envelopes of the stresses."""
+    """Linear increments with hardly any output, and with envelopes of the stresses."""
     mesh = dam_of_size(size)
     figures = []
     for has_envelopes in (False, True):
@@ -72,26 +72,26 @@ def measure_jointed(program: Program, folder: Path, size: int, count: int) -> Fi
 
 
 def measure_sound(program: Program, folder: Path, size: int, count: int) -> Figure:
-    """Increments of a dam of concrete that could crack and does not, with and less the laws."""
+    """Increments of a dam of undamaged concrete, with and without the time of the laws."""
     mesh = dam_of_size(size)
     deck = write_deck(folder, f"sound_{size}", mesh, count * INCREMENT, has_envelopes=False)
     run = program.run(make_concrete(deck))
     laws, calls = run.cost("update .*")
     once, _ = run.cost(ONCE)
     whole = run.results.find("ledger.wall_s") - once
-    told = f"{len(mesh.brick_sets['DAM'])} elements, laws {laws / calls * 1e3:.1f} ms a call"
+    detail = f"{len(mesh.brick_sets['DAM'])} elements, laws {laws / calls * 1e3:.1f} ms a call"
     scene = f"arch dam, {run.unknowns} unknowns"
-    what = "increment of sound concrete / without its laws"
-    return Figure(scene, what, whole / (whole - laws), SOUND_LIMIT, told)
+    what = "increment of undamaged concrete / without its laws"
+    return Figure(scene, what, whole / (whole - laws), SOUND_LIMIT, detail)
 
 
 def ratio_of_increment(run: Run, solving: str, what: str, limit: float | None) -> Figure:
-    """Everything between the first increment and the end, over the solves; all in one process."""
+    """Time from the first increment to the end over the time of the solves, in one process."""
     time_of_solves, count = run.cost(solving)
     once, _ = run.cost(ONCE)
     step, solve = (run.results.find("ledger.wall_s") - once) / count, time_of_solves / count
-    told = f"{step * 1e3:.1f} ms over {solve * 1e3:.1f} ms"
-    return Figure(f"arch dam, {run.unknowns} unknowns", what, step / solve, limit, told)
+    detail = f"{step * 1e3:.1f} ms over {solve * 1e3:.1f} ms"
+    return Figure(f"arch dam, {run.unknowns} unknowns", what, step / solve, limit, detail)
 
 
 def measure_reading(program: Program, folder: Path) -> Figure:
@@ -101,8 +101,8 @@ def measure_reading(program: Program, folder: Path) -> Figure:
     seconds = program.check(deck)
     size = (folder / "reading_mesh.inp").stat().st_size / 1.0e6
     scene = f"arch dam, {len(mesh.x) + len(mesh.bricks)} nodes and elements"
-    told = f"{size:.1f} MB"
-    return Figure(scene, "deck read and verified [s]", seconds, READING_LIMIT, told)
+    detail = f"{size:.1f} MB"
+    return Figure(scene, "deck read and verified [s]", seconds, READING_LIMIT, detail)
 
 
 def measure_all(program: Program, folder: Path, sizes: list[int], count: int) -> list[Figure]:

@@ -14,14 +14,14 @@ from keyway_tools.results import Results
 
 @dataclass(frozen=True)
 class Run:
-    """What a run took, and its results."""
+    """The time of a run and its results."""
 
     wall: float  # [s]
     processor: float  # of all threads, system included [s]
     results: Results
 
     def cost(self, pattern: str) -> tuple[float, int]:
-        """Wall seconds and calls of the ledger's parts whose whole name fits."""
+        """Wall seconds and calls of the ledger's parts whose full name matches."""
         parts = [p for p in self.parts if re.fullmatch(pattern, p["name"])]
         if not parts:
             names = ", ".join(p["name"] for p in self.parts)

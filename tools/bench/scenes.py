@@ -13,9 +13,9 @@ from keyway_tools.deck_text import mesh_deck
 from keyway_tools.mesh_data import BrickMesh
 
 INCREMENT = 0.01  # [s]
-ENVELOPES = "*ENVELOPE\n"  # and the line behind it
+ENVELOPES = "*ENVELOPE\n"  # and the line after it
 
-# Concrete so strong and tough that no motion of the bench cracks it.
+# Concrete so strong and tough that no motion of the bench causes cracks.
 STRONG = """*CONCRETE DAMAGED PLASTICITY
 36.31, 0.1, 1.16, 0.6667, 0.
 *CONCRETE COMPRESSION HARDENING
@@ -31,7 +31,7 @@ def unknowns_of(mesh: BrickMesh) -> int:
 
 
 def dam_of_size(unknowns: int, num_joints: int = 0) -> BrickMesh:
-    """The arch dam whose number of unknowns is nearest to the one asked for."""
+    """The arch dam whose number of unknowns is nearest to the given one."""
     meshes: list[BrickMesh] = []
     for levels in range(6, 60):
         meshes += [scaled_dam(levels, more, num_joints) for more in (0, 2, 4)]
@@ -41,7 +41,7 @@ def dam_of_size(unknowns: int, num_joints: int = 0) -> BrickMesh:
 
 
 def scaled_dam(levels: int, more: int, num_joints: int) -> BrickMesh:
-    """An arch dam with rock, counts in proportion to its levels, and `more` along the arc."""
+    """An arch dam with rock: numbers of elements proportional to `levels`, `more` along the arc."""
     layers = max(2, round(levels / 3))
     rock = RockOptions(num_upstream=layers, num_downstream=layers, num_deep=layers)
     bottom = 2 * max(1, levels // 6)
@@ -57,7 +57,7 @@ def scaled_dam(levels: int, more: int, num_joints: int) -> BrickMesh:
 
 
 def refined_dam(factor: int, num_joints: int = 0) -> BrickMesh:
-    """A small arch dam whose every element is cut `factor` times in each direction."""
+    """A small arch dam with every element divided by `factor` in each direction."""
     layers = 2 * factor
     rock = RockOptions(
         num_upstream=layers, num_downstream=layers, num_deep=layers, growth=1.6 ** (1.0 / factor)
@@ -74,7 +74,7 @@ def refined_dam(factor: int, num_joints: int = 0) -> BrickMesh:
 
 
 def shaking(duration: float) -> np.ndarray:
-    """A base acceleration at every millisecond [m/s2]: some sines, as smooth as time steps like."""
+    """A smooth base acceleration at every millisecond [m/s2]: a sum of sines."""
     t = np.arange(0.0, duration + 1.0e-9, 1.0e-3)
     sines = [(1.2, 1.7), (1.6, 2.9), (0.8, 5.3), (0.4, 8.1)]  # [m/s2], [Hz]
     build_up = np.minimum(1.0, t / 0.4) ** 2
@@ -91,7 +91,7 @@ def write_deck(
     num_modes: int = 0,
     has_envelopes: bool = True,
 ) -> Path:
-    """Gravity and water, then perhaps modes and a motion along the valley; nothing is drawn."""
+    """Gravity and water, then optionally modes and a motion along the valley; no VTK output."""
     motions: tuple[str, ...] = ()
     if duration > 0.0:
         np.savetxt(folder / "motion.txt", shaking(duration), fmt="%.9g")

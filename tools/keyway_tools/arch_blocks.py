@@ -1,10 +1,10 @@
-"""An arch dam whose blocks are meshed by their own: different meshes meet at joints and on rock.
+"""An arch dam whose blocks have different meshes, which meet at joints and on the rock.
 
 from keyway_tools.arch_blocks import BlockOptions, build_block_dam
 mesh = build_block_dam(ArchShape(), DamOptions(), BlockOptions(fine=(2,)))
 
-All blocks are cut from one lattice (arch_lattice), so that joint faces and bases lie on each other
-whatever their meshes. Blocks of one mesh keep the classical joint of JOINT8 elements.
+All blocks are cut from one lattice (arch_lattice), so that joint faces and bases coincide for any
+meshes. Blocks of one mesh keep the classical joint of JOINT8 elements.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ class BlockOptions:
     """Which blocks are finer, and how meshes are joined."""
 
     refine: int = 1  # elements along each side of a cell in ordinary blocks and on the rock
-    fine: tuple[int, ...] = ()  # blocks with a mesh of their own, from 1 at the left end
+    fine: tuple[int, ...] = ()  # blocks with a separate mesh, from 1 at the left end
     fine_mesh: PartMesh = FINE
     fine_above: float = 0.0  # share of the height above which they are finer
     join: str = "auto"  # auto: JOINT8 between equal meshes, surfaces between different ones
     # side of a joint on surfaces: fine or coarse (equal meshes: right, left). A block of two parts
     # is never the slave: its nodes along the tie between them follow others
     slave: str = "fine"
-    is_tied: bool = False  # tie every block to the rock, also where the meshes agree
+    is_tied: bool = False  # tie every block to the rock, also with equal meshes
 
     def __post_init__(self) -> None:
         if self.join not in JOINS:
@@ -62,7 +62,7 @@ class Block:
         return [face for part in self.parts for face in part.faces.get(side, [])]
 
     def has_mesh_of(self, other: Block) -> bool:
-        """True when both are one part each, cut in the same way."""
+        """True if both blocks have one part each, with equal meshes."""
         both = [part.mesh for block in (self, other) for part in block.parts]
         return len(both) == 2 and both[0] == both[1]
 
@@ -83,7 +83,7 @@ class Assembly:
         return np.arange(self.num_nodes - len(x), self.num_nodes)
 
     def add_part(self, part: Part) -> None:
-        """Append a part; its faces from now on name bricks of the whole mesh."""
+        """Append a part; its faces then refer to bricks of the whole mesh."""
         first = len(self.mesh.bricks)
         self.add_nodes(part.x)
         self.mesh.bricks = np.concatenate((self.mesh.bricks, part.bricks))
@@ -169,7 +169,7 @@ def _build_blocks(
             if foot > cut:
                 raise ValueError(
                     f"block {number} meets the rock at level {foot} of {lattice.top}, above "
-                    f"level {cut}, where it is to become finer"
+                    f"level {cut}, where it is to be finer"
                 )
             layers = [(0, cut, base), (cut, lattice.top, options.fine_mesh)]
         parts = []
@@ -255,7 +255,7 @@ def _join_by_chain(
     quads = f"IFACE{name.removeprefix('JOINT')}"
     mesh.quad_sets[quads] = np.arange(len(mesh.quads), len(mesh.quads) + len(own))
     mesh.quads = np.concatenate((mesh.quads, own))
-    # the coarse face is the master, whose normal looks to the quads
+    # the coarse face is the master; its normal points to the quads
     order = slice(None) if side[coarse.number] == "RIGHT" else slice(None, None, -1)
     _add_joint_elements(mesh, name, faces[:, order], own[:, order])
     mesh.surfaces[f"{name}_FINE"] = fine.faces_to(side[fine.number])

@@ -37,8 +37,8 @@ class DamOptions:
 class DamNodes:
     """Numbers of the dam's nodes by station, slot and place in the thickness.
 
-    A station that carries a joint owns two nodes wherever the joint parts them: everywhere above
-    the foot. The foot is shared, so that the joint ends in the rock.
+    A station with a joint has two nodes at each place above the foot. Both sides share the foot, so
+    that the joint ends in the rock.
     """
 
     def __init__(
@@ -91,7 +91,7 @@ class DamNodes:
 def _column_polygons(nodes: DamNodes, column: int) -> list[list[np.ndarray]]:
     """Node lines (through the thickness) around each element of the column station..station+1.
 
-    Counter-clockwise seen from upstream to downstream's back: along the arc, then up.
+    Counter-clockwise in a view from upstream: along the arc, then up.
     """
     left_foot, right_foot = nodes.foot(column), nodes.foot(column + 1)
     start = max(left_foot, right_foot)
@@ -138,7 +138,7 @@ def _joint_elements(nodes: DamNodes, station: int) -> np.ndarray:
 
 
 def build_arch_dam(shape: ArchShape, options: DamOptions | None = None) -> BrickMesh:
-    """The whole mesh; left-right symmetric to the last bit."""
+    """The whole mesh, exactly symmetric left to right."""
     options = options or DamOptions()
     stations = place_stations(shape, options.num_arc, options.num_height, options.num_bottom)
     parted = joint_stations(shape, stations, options.num_joints)

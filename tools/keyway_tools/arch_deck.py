@@ -38,7 +38,7 @@ class DeckOptions:
 
 
 def arch_dam_deck(mesh: BrickMesh, heading: str, mesh_file: str, options: DeckOptions) -> str:
-    """Main file of the deck; the mesh comes in by *INCLUDE."""
+    """Main file of the deck, which includes the mesh by *INCLUDE."""
     parts = [comment(heading), "*HEADING", options.title, f"*INCLUDE, INPUT={mesh_file}"]
     parts += _materials(mesh, options) + _joints(mesh, options) + _couplings(mesh, options)
     parts += ["*BOUNDARY", "FIXED, 1, 3", *_amplitudes(options), *_static_step(mesh, options)]
@@ -71,7 +71,7 @@ def _joints(mesh: BrickMesh, options: DeckOptions) -> list[str]:
         return []
     law = "*JOINT LAW, NAME=CONTRACTION"
     normal, shear = options.normal_stiffness, options.shear_stiffness
-    if normal is None and mesh.interfaces:  # the quads have no solid that gives E
+    if normal is None and mesh.interfaces:  # the quads have no solid with E
         normal = options.concrete[0] / options.joint_thickness
     if normal is None:
         law += f", THICKNESS={options.joint_thickness:g}"

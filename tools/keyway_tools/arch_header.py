@@ -1,4 +1,4 @@
-"""The header of an arch dam's deck: what it holds and every assumption behind it."""
+"""The header of an arch dam's deck: its contents and all its assumptions."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def header(
 
 
 def _block_lines(mesh: BrickMesh, options: DamOptions, blocks: BlockOptions) -> list[str]:
-    """Lines on blocks with meshes of their own and on what joins them."""
+    """Lines on blocks with separate meshes and on their joints and ties."""
     own = blocks.fine_mesh
     text = (
         f"the elements above are cells of a lattice; blocks and rock have {blocks.refine} elements "

@@ -1,8 +1,8 @@
-"""Finer meshes of one and the same arch dam: cells of a lattice, cut into equal elements.
+"""Finer meshes of one arch dam: cells of a lattice, cut into equal elements.
 
 The lattice is the developed mesh of arch_stations: columns between stations, levels, wedges at the
 abutment. A cell is a trilinear brick (the wedge: a prism), so that cells cut into 2, 3 or 4 along
-each side fill the same body to the last bit: their faces lie on each other.
+each side fill exactly the same volume and their faces coincide.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ class PartMesh:
 
     def __post_init__(self) -> None:
         if self.refine < 1 or self.thick < 1:
-            raise ValueError("a cell has at least one element along each side")
+            raise ValueError("a cell must have at least one element along each side")
         if not abs(self.shift) < 1.0:
-            raise ValueError(f"levels shift by less than an element, found {self.shift}")
+            raise ValueError(f"levels must shift by less than an element, found {self.shift}")
 
 
 def in_cells(place: int, refine: int) -> float:
-    """A count of elements as a coordinate in cells, whole cells without round-off."""
+    """A number of elements as a coordinate in cells; whole cells have no round-off."""
     cell, inside = divmod(abs(place), refine)
     return (-1.0 if place < 0 else 1.0) * (cell + inside / refine)
 
@@ -106,7 +106,7 @@ class Part:
     ):
         """Columns between two stations (signed), rows between two levels, all in cells.
 
-        Levels above `fixed` may be shifted; the stations of the abutment go with them.
+        Levels above `fixed` may be shifted, with the stations of the abutment.
         """
         self.lattice, self.mesh, self.rows = lattice, mesh, rows
         self.left, self.right = (c * mesh.refine for c in columns)
@@ -170,7 +170,7 @@ class Part:
         self.faces.setdefault(name, []).append((brick, face))
 
     def _polygons(self, column: int) -> list[tuple[list[np.ndarray], str]]:
-        """Node lines around each element of a column, upwards, and the ends it has a side at."""
+        """Node lines around each element of a column, upwards, and its ends with a side."""
         left, right = self.foot(column), self.foot(column + 1)
         start = max(left, right)
         at = self.nodes

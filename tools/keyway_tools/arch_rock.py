@@ -23,7 +23,7 @@ class RockOptions:
     num_downstream: int = 4
     num_deep: int = 5
     growth: float = 1.4  # thickness of a layer over that of the one nearer to the dam
-    fanning: float = 0.35  # 0: layers go out across the valley; 1: along the crest's tangent
+    fanning: float = 0.35  # 0: layers extend across the valley; 1: along the crest's tangent
 
     def __post_init__(self) -> None:
         for name in ("num_upstream", "num_downstream", "num_deep"):
@@ -66,11 +66,11 @@ def build_rock(
 def _ground_surface(foot: np.ndarray, shape: ArchShape, options: RockOptions) -> np.ndarray:
     """Surface of the valley for the right half: foot of the dam, valley up- and downstream of it.
 
-    Away from the dam the valley runs along y, each level line straight on from the dam's edge.
+    Away from the dam the valley runs along y: level lines continue straight from the dam's edge.
     """
-    reach = options.extent * shape.height
-    y_up = foot[:, -1, 1].min() - reach
-    y_down = foot[:, 0, 1].max() + reach
+    extent = options.extent * shape.height
+    y_up = foot[:, -1, 1].min() - extent
+    y_down = foot[:, 0, 1].max() + extent
     up, down = foot[:, -1:], foot[:, :1]
     shares_up = grade(options.num_upstream, options.growth)[1:]
     shares_down = grade(options.num_downstream, options.growth)[:0:-1]
@@ -87,7 +87,7 @@ def _extrude(surface: np.ndarray, shape: ArchShape, options: RockOptions) -> np.
     outer = surface.copy()
     outline = _box_outline(len(surface), shape, options)
     outer[:, :, 0], outer[:, :, 2] = outline[:, None, 0], outline[:, None, 1]
-    # the outer box is turned with the arch, as far as its own ends allow
+    # the outer box is rotated with the arch, as far as its ends allow
     y = surface[:, :, 1]
     room = np.minimum(1.0, (y[:, -1:] - y) * (y - y[:, :1]) / (0.5 * (y[:, -1:] - y[:, :1])) ** 2)
     run = np.abs(outer[:, :, 0] - surface[:, :, 0]) * surface[:, :, 0] / shape.crest_radius
@@ -100,8 +100,8 @@ def _extrude(surface: np.ndarray, shape: ArchShape, options: RockOptions) -> np.
 
 def _box_outline(num_stations: int, shape: ArchShape, options: RockOptions) -> np.ndarray:
     """x and z of the box's boundary for each station, from below the crown to the crest's end."""
-    reach = options.extent * shape.height
-    width, depth = shape.crest_half_width + reach, reach
+    extent = options.extent * shape.height
+    width, depth = shape.crest_half_width + extent, extent
     share_of_bottom = width / (width + depth + shape.height)
     corner = int(np.clip(round(share_of_bottom * (num_stations - 1)), 1, num_stations - 2))
     outline = np.empty((num_stations, 2))

@@ -25,7 +25,7 @@ class ArchShape:
     base_thickness: float = 35.0
     crest_angle: float = 100.0  # central angle of the crest's upstream arc [deg]
     base_radius_ratio: float = 0.6  # upstream radius at the base over that at the crest
-    crest_overhang: float = 0.25  # slope of the upstream crown at the crest, to upstream going down
+    crest_overhang: float = 0.25  # slope of the upstream crown at the crest, upstream with depth
     vertical_tangent: float = 0.65  # depth / height where the upstream crown is vertical
     bottom_width: float = 40.0  # of the valley at z = 0, along x
 

@@ -40,7 +40,7 @@ def place_stations(shape: ArchShape, num_arc: int, num_height: int, num_bottom: 
         raise ValueError("the numbers of elements along the arc and on the bottom must be even")
     if (shape.bottom_width > 0.0) != (num_bottom > 0):
         raise ValueError(
-            "elements on the valley's bottom and a bottom width come together or not at all"
+            "elements on the valley's bottom need a bottom width, and a bottom width needs elements"
         )
     flat, climbing = num_bottom // 2, (num_arc - num_bottom) // 2
     if climbing < num_height:

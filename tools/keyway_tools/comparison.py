@@ -12,9 +12,9 @@ import numpy as np
 from keyway_tools.result_files import Table, read_hdf5, read_json, read_table
 from keyway_tools.results import Results
 
-# Columns that name a row; two tables are matched by those that both have.
+# Columns that identify a row; two tables are matched by those that both have.
 KEYS = ("step", "increment", "node", "element", "point")
-# What may differ between two runs of one deck: who ran it, where and how long.
+# Entries that may differ between two runs of one deck: user, machine and time.
 SUMMARY_IGNORED = ("program.*", "deck.*", "ledger.*", "*.wall_s", "ignored_input.*.file")
 
 
@@ -37,7 +37,7 @@ class Tolerance:
 
 @dataclass
 class Rules:
-    """The tolerance of each column: the last pattern that fits its name, else the default."""
+    """The tolerance of each column: of the last pattern that matches its name, else the default."""
 
     default: Tolerance = field(default_factory=Tolerance)
     patterns: list[tuple[str, Tolerance]] = field(default_factory=list)
@@ -57,7 +57,7 @@ class Difference:
 
     place: str
     text: str
-    excess: float  # |a - b| over what is allowed; infinite where it cannot be told
+    excess: float  # |a - b| over the tolerance; infinite without a value
 
     @property
     def counts(self) -> bool:
@@ -84,33 +84,33 @@ class Report:
 
 
 def distances(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """|a - b|; two NaN or two infinities of one sign are equal, one NaN is infinitely far."""
+    """|a - b|; 0 for two NaN or two infinities of one sign, infinite for one NaN."""
     with np.errstate(invalid="ignore", over="ignore"):
-        apart = np.abs(a - b, dtype=float)
+        distance = np.abs(a - b, dtype=float)
     same = (a == b) | (np.isnan(a) & np.isnan(b))
-    return np.where(same, 0.0, np.where(np.isnan(apart), np.inf, apart))
+    return np.where(same, 0.0, np.where(np.isnan(distance), np.inf, distance))
 
 
 def compare_numbers(report: Report, place: str, a: Any, b: Any, tolerance: Tolerance, name) -> None:
-    """Adds the largest difference of two arrays of one shape; name(i) tells entry i."""
+    """Adds the largest difference of two arrays of one shape; name(i) is the name of entry i."""
     a, b = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
     report.num_columns += 1
     report.num_values += a.size
     if not a.size:
         return
-    apart, allowed = distances(a, b), tolerance.allowed(b)
+    distance, allowed = distances(a, b), tolerance.allowed(b)
     with np.errstate(divide="ignore", invalid="ignore"):
-        excess = np.where(apart == 0, 0.0, apart / allowed)
+        excess = np.where(distance == 0, 0.0, distance / allowed)
     worst = np.unravel_index(int(np.argmax(excess)), a.shape)
     count = int(np.count_nonzero(excess > 1))
     size = abs(b[worst])
-    relative = f", {apart[worst] / size:.3g} of it" if 0 < size < np.inf else ""
+    relative = f", {distance[worst] / size:.3g} of it" if 0 < size < np.inf else ""
     text = (
         f"{count} of {a.size} past the tolerance; largest at {name(worst)}: "
-        f"{a[worst]:.9g} against {b[worst]:.9g} (apart {apart[worst]:.3g}{relative}, "
+        f"{a[worst]:.9g} against {b[worst]:.9g} (apart {distance[worst]:.3g}{relative}, "
         f"allowed {allowed[worst]:.3g})"
     )
-    if apart[worst] > 0:
+    if distance[worst] > 0:
         report.found.append(Difference(place, text, float(excess[worst])))
 
 
@@ -140,13 +140,13 @@ def compare_maps(report: Report, place: str, a: dict, b: dict, rules: Rules) -> 
 
 
 def row_keys(table: Table, names: list[str]) -> list[tuple] | None:
-    """What names each row, or nothing when two rows would share a name."""
+    """The key of each row, or None if two rows have the same key."""
     keys = list(zip(*(table[n].tolist() for n in names), strict=True))
     return keys if names and len(set(keys)) == len(keys) else None
 
 
 def match_rows(report: Report, place: str, a: Table, b: Table, fewer_rows: bool):
-    """Row numbers of both tables that belong together, and a function that names a row of b."""
+    """Matching row numbers of both tables, and a function that names a row of b."""
     names = [n for n in KEYS if n in a and n in b]
     count_a, count_b = (len(next(iter(t.values()))) for t in (a, b))
     keys_a, keys_b = row_keys(a, names), row_keys(b, names)
@@ -241,13 +241,13 @@ def compare_files(report: Report, a: Path, b: Path, rules: Rules, place: str = "
 
 
 def without(rules: Rules, *patterns: str) -> Rules:
-    """The rules, with the entries of these patterns left out."""
+    """The rules, without the entries of these patterns."""
     ignored = [(pattern, Tolerance(ignore=True)) for pattern in patterns]
     return replace(rules, patterns=ignored + rules.patterns)
 
 
 def compare_folders(a: Results, b: Results, rules: Rules) -> Report:
-    """Summary, tables and HDF5 file of two runs; the VTK files repeat what those hold."""
+    """Summary, tables and HDF5 file of two runs; the VTK files hold the same data."""
     report = Report()
     summary = without(rules, *SUMMARY_IGNORED)
     compare_files(report, a.path(".json"), b.path(".json"), summary, "summary")
@@ -266,7 +266,7 @@ def compare_folders(a: Results, b: Results, rules: Rules) -> Report:
 
 
 def compare_with_reference(a: Results, b: Path, rules: Rules, table: str) -> Report:
-    """The run's file of the reference's kind; of several tables, the one named."""
+    """Compares the run's file of the reference's kind; of several tables, the one named."""
     report = Report()
     if b.suffix.lower() == ".csv":
         compare_files(report, a.path(f"_{table or choose_table(a, b)}.csv"), b, rules)
@@ -277,12 +277,12 @@ def compare_with_reference(a: Results, b: Path, rules: Rules, table: str) -> Rep
 
 
 def choose_table(a: Results, reference: Path) -> str:
-    """The table that the name of the reference file ends in, or the only one."""
+    """The table whose name ends the name of the reference file, or the only table."""
     tables = a.tables()
     named = [t for t in tables if reference.stem == t or reference.stem.endswith(f"_{t}")]
     if named or len(tables) == 1:
         return max(named, key=len) if named else tables[0]
     raise ValueError(
         f"'{reference.name}' could be any of the tables {', '.join(tables) or '(none)'}; "
-        "say which with --table"
+        "choose one with --table"
     )

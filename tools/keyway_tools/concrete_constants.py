@@ -1,4 +1,4 @@
-"""The constants of a deck's concrete as umat_damage_plasticity.f90 wants them."""
+"""The constants of a deck's concrete in the order of umat_damage_plasticity.f90."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ A_LINE = 8  # constants
 
 
 class Card:
-    """A keyword with its lines as they stand in the deck."""
+    """A keyword with its lines as written in the deck."""
 
     def __init__(self, line: str):
         self.lines = [line]
@@ -43,7 +43,7 @@ def _number(word: str) -> float:
 
 
 def cards_of(deck: str) -> list[Card]:
-    """Keywords in their order; what stands before the first is left out."""
+    """Keywords in their order; text before the first keyword is left out."""
     cards: list[Card] = []
     for line in deck.splitlines():
         if line.lstrip().startswith("*") and not line.lstrip().startswith("**"):

@@ -54,7 +54,7 @@ def monolith_water() -> str:
 
 
 def monolith_mesh() -> str:
-    """What it includes."""
+    """The mesh file that the deck includes."""
     high = CELLS_BELOW + CELLS_ABOVE
 
     def place(a, b, c):

@@ -33,7 +33,7 @@ def exponential_curve() -> np.ndarray:
     """Rows of stress [Pa], opening [m], damage: f_t exp(-f_t w / G_f), made to enclose G_f.
 
     The damage 1 - sigma / f_t keeps the effective strength at f_t. The chords of the curve lie
-    above it: the openings are drawn together by the ratio of the areas.
+    above it, so the openings are reduced by the ratio of the areas.
     """
     stress = np.exp(-OPENINGS)
     area = np.sum(0.5 * (stress[1:] + stress[:-1]) * np.diff(OPENINGS))

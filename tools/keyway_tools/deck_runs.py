@@ -18,9 +18,9 @@ from keyway_tools.results import Results
 
 RECORD = ".batch.json"
 EXTREMES = ("S1", "S3", "OPENING", "DAMAGET")
-# What the exit code of the program says (DECK, "Running").
+# Meaning of the exit codes of the program (deck.md, "Running").
 STATUS_OF_CODE = {0: "finished", 1: "stopped", 2: "bad deck", 3: "system failed"}
-GRACE = 10.0  # seconds between the request to end and the end by force
+GRACE = 10.0  # seconds from the request to end until the process is killed
 
 
 @dataclass
@@ -45,7 +45,7 @@ class Record:
 
 
 def files_of(deck: Path) -> list[Path]:
-    """The deck and every file it names with INPUT=, in the order they are met."""
+    """The deck and every file named with INPUT=, in order."""
     found, waiting = [], [deck.resolve()]
     while waiting:
         path = waiting.pop(0)
@@ -62,7 +62,7 @@ def files_of(deck: Path) -> list[Path]:
 
 
 def digest_of(deck: Path, program: str) -> str:
-    """Changes with the deck, the files it includes and the version of the program."""
+    """A digest of the deck, the files it includes and the version of the program."""
     total = hashlib.sha256(program.encode())
     for path in files_of(deck):
         total.update(path.name.encode())
@@ -79,7 +79,7 @@ def earlier_record(folder: Path) -> Record | None:
 
 
 class DeckRunner:
-    """Runs one deck after another for any number of threads, until it is told to end."""
+    """Runs one deck after another for any number of threads, until `end` is called."""
 
     def __init__(self, program: Path, options: list[str], timeout: float | None = None):
         self.program = program
@@ -121,7 +121,7 @@ class DeckRunner:
         watch = threading.Timer(self.timeout, self._end, [child]) if self.timeout else None
         if watch:
             watch.start()
-        # wait4 instead of child.wait: it tells the memory of this child alone.
+        # wait4 instead of child.wait: wait4 reports the memory of this child alone.
         _, status, usage = os.wait4(child.pid, 0)
         with self._lock:
             self._children.discard(child)
@@ -143,7 +143,7 @@ class DeckRunner:
         return STATUS_OF_CODE.get(code, f"exit code {code}")
 
     def _end(self, child: subprocess.Popen[bytes]) -> None:
-        """Asks one child to end, and makes it end if it does not."""
+        """Requests one child to end, and kills it if it does not."""
         for sign, patience in ((signal.SIGTERM, GRACE), (signal.SIGKILL, 0.0)):
             with self._lock:
                 if child not in self._children:
@@ -154,7 +154,7 @@ class DeckRunner:
                 time.sleep(0.05)
 
     def end(self) -> None:
-        """Ends the running children; those that wait are not begun."""
+        """Ends the running children; waiting decks are not started."""
         self.is_ending = True
         for child in list(self._children):
             self._end(child)
@@ -176,7 +176,7 @@ def version_of(program: Path) -> str:
 
 
 def read_summary(deck: Path, record: Record) -> None:
-    """Takes extremes and message from the summary, where the run came so far as to write one."""
+    """Takes extremes and message from the summary, if the run has written one."""
     try:
         results = Results(record.folder, deck.stem)
         summary: dict[str, Any] = results.summary
@@ -186,7 +186,7 @@ def read_summary(deck: Path, record: Record) -> None:
         last = (Path(record.folder) / "batch.out").read_text(errors="replace").strip().splitlines()
         record.message = last[0] if last else ""
         return
-    # The system's figure counts the moment before the program took over from its parent, too.
+    # The system's figure includes the moment before the child process starts the program.
     memory = (summary.get("ledger") or {}).get("peak_memory_mb")
     record.peak_memory_mb = memory or record.peak_memory_mb
     envelopes = summary.get("envelopes") or {}
@@ -194,5 +194,5 @@ def read_summary(deck: Path, record: Record) -> None:
         extreme = (envelopes.get(name) or {}).get("anywhere") or {}
         record.extremes[name] = extreme.get("value")
     damage = (summary.get("damage") or {}).get("DAMAGET") or {}
-    record.extremes["DAMAGET"] = damage.get("value")  # told without *ENVELOPE as well
+    record.extremes["DAMAGET"] = damage.get("value")  # written also without *ENVELOPE
     record.message = summary.get("message") or ""

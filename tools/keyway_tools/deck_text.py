@@ -17,7 +17,7 @@ def comment(text: str) -> str:
 
 
 def node_lines(x: np.ndarray) -> Iterable[str]:
-    """Data lines of *NODE; the numbers read back to the same bits."""
+    """Data lines of *NODE; reading gives exactly the same numbers."""
     for number, point in enumerate(x.tolist(), start=1):
         yield f"{number}, {point[0]!r}, {point[1]!r}, {point[2]!r}"
 

@@ -1,8 +1,8 @@
 """Accelerograms that fit a response spectrum.
 
-Random phases under an intensity envelope; then, some times over, Fourier amplitudes are scaled by
-target over response (phases are kept), the largest acceleration is set and the baseline corrected.
-The best record of a few sets of phases is kept.
+A record starts from random phases under an intensity envelope. Then, repeatedly, Fourier amplitudes
+are scaled by target over response (phases are kept), the largest acceleration is set and the
+baseline corrected. The best record of a few sets of phases is kept.
 """
 
 from __future__ import annotations
@@ -58,12 +58,12 @@ class Motion:
 
     @property
     def mean_misfit(self) -> float:
-        """Mean of its size."""
+        """Mean size of the misfit."""
         return float(np.abs(self.misfit).mean())
 
     @property
     def score(self) -> float:
-        """What a better record has less of: the mean misfit and a little of the largest."""
+        """Measure to minimise: the mean misfit plus a small share of the largest."""
         return self.mean_misfit + 0.1 * float(np.abs(self.misfit).max())
 
 
@@ -91,10 +91,10 @@ def final_motion(acceleration: np.ndarray, dt: float) -> np.ndarray:
 
 
 def correct_baseline(acceleration: np.ndarray, dt: float, shape: np.ndarray) -> np.ndarray:
-    """Record with zero velocity and displacement at its end and little drift on the way.
+    """Record with zero velocity and displacement at its end and little drift before.
 
-    First the displacement's least-squares polynomial t^2..t^6 goes, then two slow waves under the
-    envelope `shape` take the remaining end values away exactly.
+    First the displacement's least-squares polynomial t^2..t^6 is subtracted. Two slow waves under
+    the envelope `shape` cancel the remaining end values exactly.
     """
     s = np.linspace(0.0, 1.0, len(acceleration))
     duration = dt * (len(acceleration) - 1)
@@ -111,10 +111,10 @@ def correct_baseline(acceleration: np.ndarray, dt: float, shape: np.ndarray) -> 
 
 
 def set_peak(acceleration: np.ndarray, dt: float, shape: np.ndarray) -> np.ndarray:
-    """Record with a right baseline whose largest acceleration is 1 to the last bit or two.
+    """Record with a corrected baseline whose largest acceleration is 1 to one or two bits.
 
-    Peaks beyond 1 are cut, a lower peak is raised over its own half wave: the spectrum hardly
-    feels either.
+    Peaks beyond 1 are cut, a lower peak is raised over its half wave: both hardly change the
+    spectrum.
     """
     record = correct_baseline(acceleration, dt, shape)
     for _ in range(4):
@@ -142,7 +142,7 @@ def fit_motion(
 
 
 def _fit_phases(target, seed: list[int], shape: np.ndarray, options: MotionOptions) -> Motion:
-    """The best record on the way of scaling amplitudes, for one set of phases."""
+    """The best record while scaling amplitudes, for one set of phases."""
     period, dt = options.periods(), options.dt
     goal = target(period)
     frequency = np.fft.rfftfreq(len(shape), dt)

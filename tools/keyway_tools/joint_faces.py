@@ -1,4 +1,4 @@
-"""The faces of joints as job.h5 keeps them: polygons, and the facets of the slave side."""
+"""The faces of joints as in job.h5: polygons, and the facets of the slave side."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class JointFaces:
 
 
 def read_joint_faces(group, position: dict[int, int], mesh) -> JointFaces | None:
-    """From the group of a joint in job.h5; None where nothing of it is drawn.
+    """Reads the group of a joint in job.h5; None for a joint without polygons.
 
     `position` finds nodes by the deck's numbers; `mesh` has element_id, element_types and
     connectivity.

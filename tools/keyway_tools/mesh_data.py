@@ -1,4 +1,4 @@
-"""A hexahedral mesh with joints, sets and surfaces: what the tools hand to each other."""
+"""A hexahedral mesh with joints, sets and surfaces: the data that the tools exchange."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def jacobians(mesh: BrickMesh, points: np.ndarray) -> np.ndarray:
 
 
 def corner_jacobians(mesh: BrickMesh) -> np.ndarray:
-    """The same at the corners; the collapsed corners of wedges, zero by nature, are made NaN."""
+    """Determinants at the corners; NaN at the collapsed corners of wedges, where they are zero."""
     found = jacobians(mesh, _CORNER)
     for corner, other in ((2, 3), (3, 2), (6, 7), (7, 6)):
         found[mesh.bricks[:, corner] == mesh.bricks[:, other], corner] = np.nan
@@ -101,7 +101,7 @@ def measure(mesh: BrickMesh, name: str) -> Quality:
 
 
 def find_faults(mesh: BrickMesh) -> list[str]:
-    """What is wrong with a mesh, in words; an empty list for a sound one."""
+    """Faults of a mesh as text; an empty list without faults."""
     faults = []
     corner = corner_jacobians(mesh)
     for brick, place in np.argwhere(corner <= 0.0)[:5]:
@@ -111,7 +111,7 @@ def find_faults(mesh: BrickMesh) -> list[str]:
     if len(mesh.joints):
         gap = np.abs(mesh.x[mesh.joints[:, :4]] - mesh.x[mesh.joints[:, 4:]]).max()
         if gap > 0.0:
-            faults.append(f"joint faces do not coincide: {gap:.3g} m apart")
+            faults.append(f"joint faces do not coincide: distance {gap:.3g} m")
     used = np.zeros(len(mesh.x), dtype=bool)
     used[mesh.bricks] = True
     used[mesh.quads] = True

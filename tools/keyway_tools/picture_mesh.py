@@ -29,7 +29,7 @@ def block_of_brick(mesh: BrickMesh) -> np.ndarray:
 
 
 def picture_mesh(mesh: BrickMesh, path: Path) -> Path:
-    """Dam and rock from upstream and above; blocks between joints in turn of two colours."""
+    """Dam and rock from upstream and above; blocks between joints in alternating colours."""
     plotter = pv.Plotter(off_screen=True, window_size=PIXELS)
     plotter.set_background("white")
     look = {
@@ -50,8 +50,8 @@ def picture_mesh(mesh: BrickMesh, path: Path) -> Path:
         )
     x = mesh.x if "ROCK" in mesh.brick_sets else mesh.x[np.unique(dam)]
     middle = 0.5 * (x.min(axis=0) + x.max(axis=0))
-    reach = float(np.ptp(x, axis=0).max())
-    plotter.camera_position = [middle + reach * np.array([-0.75, -1.55, 1.15]), middle, (0, 0, 1)]
+    extent = float(np.ptp(x, axis=0).max())
+    plotter.camera_position = [middle + extent * np.array([-0.75, -1.55, 1.15]), middle, (0, 0, 1)]
     plotter.camera.zoom(1.0)
     plotter.enable_anti_aliasing("ssaa")
     plotter.screenshot(path)

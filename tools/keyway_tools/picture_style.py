@@ -1,4 +1,4 @@
-"""One look for every picture: type, colours safe for the colour-blind, thin frames."""
+"""The style of all pictures: type, colours safe for the colour-blind, thin frames."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # after the choice of a back end without a display
 from cycler import cycler
 
-# Okabe and Ito's palette, in an order that keeps neighbours apart in grey as well
+# Okabe and Ito's palette, in an order in which neighbours differ also in grey
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 GREY = "#666666"
 
@@ -42,13 +42,13 @@ _STYLE = {
 def new_figure(
     rows: int = 1, width: float = 8.0, row_height: float = 2.6, columns: int = 1, **more
 ):
-    """A figure and its axes (an array when there are several) in the house's style [inches]."""
+    """A figure and its axes (an array for several) in the common style [inches]."""
     plt.rcParams.update(_STYLE)
     return plt.subplots(rows, columns, figsize=(width, row_height * rows + 0.6), **more)
 
 
 def save_figure(figure, path: Path) -> Path:
-    """Write and close a figure; returns its path. No date inside: same data, same bytes."""
+    """Write and close a figure; returns its path. Without date: same data give the same bytes."""
     figure.savefig(path, metadata={"Software": None})
     plt.close(figure)
     return path

@@ -100,7 +100,7 @@ def plot_energy(results: Results, path: Path) -> Path | None:
 
 
 def plot_damage_growth(results: Results, path: Path) -> Path | None:
-    """Damaged volumes, and the energy that cracks and crushing took, in time."""
+    """Damaged volumes, and the energy dissipated by cracks and crushing, in time."""
     table = results.history("damage")
     if len(table.get("time", ())) < 3 or table["inelastic_volume"].max() <= 0.0:
         return None

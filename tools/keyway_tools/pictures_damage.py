@@ -1,6 +1,6 @@
-"""Where a body is cracked: on its faces, and its damaged elements seen through the body.
+"""Damage on the faces of a body, and its damaged elements inside a transparent body.
 
-Means over the elements: on nodes a crack one element wide would fade to a half.
+Damage is averaged over elements: at nodes, a crack one element wide would show half its damage.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def plot_mean_envelope(faces: Faces, step: Step, name: str, path: Path) -> Path:
 
 
 def plot_damaged_elements(faces: Faces, path: Path) -> Path | None:
-    """Mean damage in tension of the elements that have some, at the last time it was saved."""
+    """Mean damage in tension of the damaged elements, at the last saved time."""
     results = faces.results
     found = results.damage("DAMAGET")
     if found is None:

@@ -59,7 +59,7 @@ class Faces:
     def joint_lines(
         self, shift: np.ndarray | None = None, values: np.ndarray | None = None
     ) -> pv.PolyData | None:
-        """Where the joints meet the faces; with values of all nodes as 'value' when given."""
+        """Lines where the joints meet the faces; given values of all nodes become 'value'."""
         x = self.results.x if shift is None else self.results.x + shift
         parts = []
         for name in self.results.joint_names():
@@ -77,7 +77,7 @@ class Faces:
 
 
 def _views(results: Results, nodes: np.ndarray) -> dict[str, View]:
-    """From upstream and downstream where the reservoir tells them apart, else one view."""
+    """Views from upstream and downstream if the deck has a reservoir, else one view."""
     x = results.x[nodes]
     upstream, downstream = results.face_flags("upstream"), results.face_flags("downstream")
     if not upstream.any():
@@ -87,7 +87,7 @@ def _views(results: Results, nodes: np.ndarray) -> dict[str, View]:
     other = results.x[downstream] if downstream.any() else x
     towards = results.x[upstream].mean(axis=0) - other.mean(axis=0)
     view = View.from_direction(towards, 12.0)
-    if np.ptp(x @ view.right) < 0.5 * np.ptp(x @ view.towards):  # a slice: its side says more
+    if np.ptp(x @ view.right) < 0.5 * np.ptp(x @ view.towards):  # a slice: its side shows more
         return {
             "": View.from_direction(view.right + 0.12 * towards / np.linalg.norm(towards), 12.0)
         }

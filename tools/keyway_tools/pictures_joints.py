@@ -1,4 +1,4 @@
-"""Openings over the area of joints, on the polygons that a run keeps of them."""
+"""Openings over the area of joints, on the polygons in job.h5."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .results import Results, Step
 
 
 def plot_joint_areas(results: Results, step: Step, path: Path) -> Path | None:
-    """Largest opening over the area of every joint, seen square to it."""
+    """Largest opening over the area of every joint, in a view normal to the joint."""
     joints = {name: results.joint_faces(name) for name in results.joint_names()}
     joints = {name: joint for name, joint in joints.items() if joint is not None}
     opening = np.nan_to_num(1000.0 * step.envelopes["OPENING"])
@@ -43,7 +43,7 @@ def plot_joint_areas(results: Results, step: Step, path: Path) -> Path | None:
 
 
 def _joint_panel(axis, x: np.ndarray, joint: JointFaces, values: np.ndarray, top: float):
-    """One joint in its own plane: along it and up, or in plan where it lies flat."""
+    """One joint in its plane: along the joint and up; a horizontal joint in plan."""
     size = np.ptp(x, axis=0)
     if size[2] > 0.05 * size.max():
         across = np.linalg.svd(x[:, :2] - x[:, :2].mean(axis=0), full_matrices=False)[2][0]

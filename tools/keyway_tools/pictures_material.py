@@ -18,7 +18,7 @@ MARKERS = "osD^vP"
 
 @dataclass(frozen=True)
 class Curve:
-    """One test: the table that the driver wrote and the component that is looked at."""
+    """One test: its table and the component to draw."""
 
     name: str
     table: Table
@@ -35,7 +35,7 @@ class Curve:
         return MEGA * self.table[f"S{self.component}"]
 
     def has(self, column: str) -> bool:
-        """There is such a column with more than roundoff in it (damage, or energy in J/m3)."""
+        """Whether the column exists and holds more than roundoff (damage, or energy in J/m3)."""
         return column in self.table and bool(np.abs(self.table[column]).max() > 1e-6)
 
 
@@ -51,7 +51,7 @@ def read_curve(path: Path, component: str | None = None) -> Curve:
 
 
 def read_points(path: Path) -> tuple[str, np.ndarray, np.ndarray]:
-    """Measured points: what the file says of itself, strain in 1e-3, stress in MPa.
+    """Measured points: the name in the file, strain in 1e-3, stress in MPa.
 
     The first two columns are strain and stress in the units of the deck; a line that begins with
     '#' is a remark (the first names the points), a line without numbers a heading.
@@ -117,7 +117,7 @@ def _stress_panel(axis, curves: list[Curve], experiments: list[Path]) -> None:
 
 
 def _damage_panel(axis, curves: list[Curve]) -> None:
-    """Damage along the strain: tension drawn through, compression broken."""
+    """Damage over strain: tension as solid lines, compression as dashed lines."""
     lines = (("DAMAGET", "-", "tension"), ("DAMAGEC", "--", "compression"))
     for curve, colour in zip(curves, _colours(curves), strict=True):
         for column, style, _ in lines:
@@ -133,7 +133,7 @@ def _damage_panel(axis, curves: list[Curve]) -> None:
 
 
 def _energy_panel(axis, curves: list[Curve]) -> None:
-    """Work and what became of it, in time; of several tests what was dissipated."""
+    """Work and its parts in time; for several tests the dissipated energy."""
     table = curves[0].table
     top = max(np.abs(c.table["work"]).max() for c in curves)
     scale, unit = (1e-3, "kJ/m3") if top > 2e3 else (1.0, "J/m3")

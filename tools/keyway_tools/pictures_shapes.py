@@ -11,8 +11,8 @@ from .pictures_faces import FIELDS, Faces, compose, nice_limits
 from .render_dam import View, render
 
 
-def _telling_state(faces: Faces) -> tuple[str, float] | None:
-    """The saved displacements at which joints open most, else those that are largest."""
+def _largest_state(faces: Faces) -> tuple[str, float] | None:
+    """The saved displacements with the largest joint opening, else the largest displacements."""
     saved = faces.results.displacements()
     if not saved:
         return None
@@ -30,8 +30,8 @@ def _telling_state(faces: Faces) -> tuple[str, float] | None:
 
 
 def plot_deformed(faces: Faces, path: Path) -> Path | None:
-    """A telling state, displacements drawn large and coloured by their size, from above as well."""
-    state = _telling_state(faces)
+    """The state of `_largest_state`, displacements enlarged, coloured by size, also from above."""
+    state = _largest_state(faces)
     if state is None:
         return None
     place, time = state

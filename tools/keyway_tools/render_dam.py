@@ -1,6 +1,6 @@
-"""Pictures of bodies without a display: VTK renders, the caller frames the image.
+"""Pictures of bodies without a display: VTK renders, the caller sets the frame.
 
-VTK finds the way itself: a display when there is one, else EGL (packages libegl1 and
+VTK chooses the back end: a display if there is one, else EGL (packages libegl1 and
 libgl1-mesa-dri draw in software), else OSMesa.
 """
 
@@ -12,11 +12,18 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkLogger
 
-vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)  # no word about a missing X server
+vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)  # no warnings about a missing X server
 
 PIXELS = (1500, 1000)
 MARGIN = 1.06
-WEDGE = (0, 2, 1, 4, 6, 5)  # corners of a brick with 3 = 4 and 7 = 8, so that VTK looks outward
+WEDGE = (
+    0,
+    2,
+    1,
+    4,
+    6,
+    5,
+)  # corners of a brick with 3 = 4 and 7 = 8, for outward normals in VTK
 
 
 @dataclass(frozen=True)
@@ -29,7 +36,7 @@ class View:
 
     @staticmethod
     def from_direction(towards: np.ndarray, elevation: float) -> View:
-        """Look at the body from the side of `towards` (made level), a little from above."""
+        """View from the side of `towards` (made horizontal), a little from above."""
         level = np.array([towards[0], towards[1], 0.0])
         level /= np.linalg.norm(level)
         angle = np.radians(elevation)
@@ -111,8 +118,8 @@ def render(
         _add_outline(plotter, outline, view, limits, colours, bands)
     plotter.enable_parallel_projection()
     plotter.enable_anti_aliasing("ssaa")
-    reach = 10.0 * float(np.ptp(points, axis=0).max())
-    plotter.camera_position = [centre + reach * view.towards, centre, view.up]
+    distance = 10.0 * float(np.ptp(points, axis=0).max())
+    plotter.camera_position = [centre + distance * view.towards, centre, view.up]
     plotter.camera.parallel_scale = half_height
     plotter.reset_camera_clipping_range()
     image = plotter.screenshot(None, return_img=True)

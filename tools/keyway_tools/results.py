@@ -1,4 +1,4 @@
-"""What a run leaves in its folder: the summary, the tables and the fields of a job."""
+"""The results of a run: the summary, the tables and the fields of a job."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def is_summary(path: Path) -> bool:
 
 @dataclass
 class Step:
-    """What a step left on the nodes and elements."""
+    """The envelopes of a step at nodes and elements."""
 
     number: int
     name: str
@@ -53,7 +53,7 @@ class Step:
 
 
 class Results:
-    """The results of one job in a folder, each read when it is asked for."""
+    """The results of one job in a folder, each read at its first use."""
 
     def __init__(self, folder: Path | str, job: str | None = None):
         self.folder = Path(folder)

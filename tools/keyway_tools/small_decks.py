@@ -1,4 +1,4 @@
-"""The small decks of input/: each shows one thing and names the number to expect."""
+"""The small decks of input/: each shows one feature and gives the expected number."""
 
 from __future__ import annotations
 

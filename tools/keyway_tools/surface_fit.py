@@ -1,4 +1,4 @@
-"""How two meshed surfaces lie on each other: areas, distances. For the checks of meshes."""
+"""Areas and distances of two meshed surfaces, for the checks of meshes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from .mesh_data import BrickMesh
 
 _GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3.0)
-_NEIGHBOURS = 12  # facets looked at for the nearest point
+_NEIGHBOURS = 12  # facets searched for the nearest point
 
 
 @dataclass(frozen=True)

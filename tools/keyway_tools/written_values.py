@@ -1,4 +1,4 @@
-"""Everything that a run has written, as arrays under names that two runs share."""
+"""All results of a run as named arrays, to compare two runs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 from keyway_tools.comparison import distances
 from keyway_tools.result_files import as_array, hdf5_items, read_json, read_table
 
-# Files of a run that hold no results: its log, and what the caller has caught of its output.
+# Files of a run without results: its log, and its output on stdout and stderr.
 NO_RESULTS = (".log", ".out")
 # Entries of the summary that depend on the machine and the hour, or are prose.
 SUMMARY_IGNORED = (
@@ -32,7 +32,7 @@ ENERGIES = {
     *("external", "kinetic", "strain", "damping", "friction", "fracture", "crushing"),
     *("numerical", "work", "stored"),
 }
-# Numbers that are relative already: their differences count as they are.
+# Numbers that are relative already: their differences are not divided.
 RATIOS = ("error", "residual", "largest_residual", "largest_energy_error")
 # Shapes of modes: /steps/0001/modes/shape (modes, nodes, 3) and MODE_01 (nodes, 3).
 MODES = re.compile(r"modes/shape|\bMODE_\d+$")
@@ -40,7 +40,7 @@ MODES = re.compile(r"modes/shape|\bMODE_\d+$")
 
 @dataclass(frozen=True)
 class Values:
-    """An array, and the group of arrays in its file whose largest value is the measure."""
+    """An array, and its group of arrays, whose largest value scales the differences."""
 
     data: np.ndarray
     group: str
@@ -137,7 +137,7 @@ def files_of_results(folder: Path) -> set[str]:
 
 
 def compare_written(before: Path, after: Path) -> Iterator[Difference]:
-    """A difference for each array of two folders, the sizes 0 included."""
+    """A difference for each array of two folders, also differences of size 0."""
     files = files_of_results(before), files_of_results(after)
     for name in sorted(files[0] | files[1]):
         if name not in files[1] or name not in files[0]:
@@ -172,7 +172,7 @@ def compare_maps(
 
 
 def with_signs_of(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """The modes b, each with the sign that brings it nearer to a: a mode has none of its own."""
+    """The modes b, each with the sign nearer to a, since the sign of a mode is arbitrary."""
     if a.ndim < 3:
         return b if np.vdot(a, b) >= 0 else -b
     return np.array([with_signs_of(one, other) for one, other in zip(a, b, strict=True)])
