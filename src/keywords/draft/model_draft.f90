@@ -99,7 +99,7 @@ module model_draft
     integer, allocatable :: interface_of_element(:) !< position in `interfaces`, 0 for none
     character(:), allocatable :: mass_kind !< MASS of *SOLID SECTION once it is given
     integer :: num_loads = 0 !< in use of scene%loads, which grows by doubling
-    type(load_book) :: loads_at_work
+    type(load_book) :: active_loads
     type(dof_table) :: supports, point_forces
     ! The card being read.
     integer :: current = 0 !< its position in `cards`

@@ -1,5 +1,5 @@
-!> Checks of what joints, ties and interfaces cover: elements that none of them takes, parts of
-!> faces without a partner, faces that two joints cover.
+!> Checks of joints, ties and interfaces: elements that belong to none of them, parts of faces
+!> without a partner, faces that two joints cover.
 module cover_checks
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
@@ -12,30 +12,30 @@ module cover_checks
   private
   public :: report_bare, keep_cover, claims, open_claims, claim_facets
 
-  !> Bare parts of a face up to this part of it are not reported: rims whose nodes are written with
-  !> five digits.
+  !> Bare parts up to this fraction of a face are not reported: nodes written with five digits cause
+  !> them at the rim.
   real(rk), parameter :: bare_part = 1.0e-4_rk
 
-  !> Gaps and overlaps up to this part of a mean facet's side are not reported: faces of different
-  !> meshes on one curved surface have them when a facet turns by 5 degrees.
+  !> Gaps and overlaps up to this fraction of the mean side of a facet are not reported: different
+  !> meshes on one curved surface have them if a facet spans 5 degrees.
   real(rk), parameter :: gap_part = 0.01_rk
 
-  !> Coordinates and distances below this part of the largest coordinate are zero.
+  !> Coordinates and distances below this fraction of the largest coordinate are zero.
   real(rk), parameter :: round_off = 1.0e-12_rk
 
-  !> What two joints may cover of one face together: more than the whole of it by this part means
-  !> that they lie on each other. Faces that fit but for the mesher's digits stay below.
+  !> Two joints overlap if they cover a face together by more than this fraction beyond the whole.
+  !> Faces that fit up to the rounding of the mesher stay below.
   real(rk), parameter :: most_cover = 1.01_rk
 
   type :: claims
     type(face_table) :: table
     integer, allocatable :: owner(:) !< (faces) the first joint that took the face
-    real(rk), allocatable :: covered(:) !< (faces) part of it, by all joints
+    real(rk), allocatable :: covered(:) !< (faces) fraction covered by all joints
   end type claims
 
 contains
 
-  !> Reports the first of the elements that lack something, and how many more there are.
+  !> Reports the first of the elements that lack something, and the number of others.
   subroutine report_bare(is_bare, lack, expected, model, faults)
     logical, intent(in) :: is_bare(:) !< (elements)
     character(*), intent(in) :: lack, expected
@@ -54,14 +54,14 @@ contains
     end associate
   end subroutine report_bare
 
-  !> Stores how well two faces cover each other and reports faults at the card of the interface: an
-  !> error where they do not at all, warnings where a part has no partner or the faces lie apart.
+  !> Stores how well two faces cover each other, and reports faults at the card of the interface: an
+  !> error without any cover, warnings for parts without partner, gaps and overlaps.
   subroutine keep_cover(place, name, kind, cover, gaps_count, model, faults)
     type(card), intent(in) :: place
     character(*), intent(in) :: name !< upper case
     character(*), intent(in) :: kind !< 'JOINT', 'TIE' or 'INTERFACE'
     type(surface_cover), intent(in) :: cover
-    logical, intent(in) :: gaps_count !< gaps between the faces as meshed are meant
+    logical, intent(in) :: gaps_count !< gaps in the mesh are intended
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(named_cover) :: new
@@ -75,7 +75,7 @@ contains
     model%scene%covers = [model%scene%covers, new]
     if (cover%covered_area <= 0.0_rk) then
       call place%fault(faults, 'no facet of one face lies opposite a facet of the other', &
-                       'faces that lie on each other and look against each other')
+                       'faces that lie on each other, with opposite normals')
       return
     end if
     bare = cover%slave_area - cover%covered_area
@@ -85,9 +85,9 @@ contains
                       place_text(cover%bare_place))
     end if
     if (cover%excess_area > bare_part*cover%slave_area) then
-      call place%warn(faults, 'master facets lie upon each other: '// &
+      call place%warn(faults, 'master facets overlap: '// &
                       as_text(cover%excess_area)//' of the '//as_text(cover%slave_area)// &
-                      ' m2 of the slave face count twice')
+                      ' m2 of the slave face are covered twice')
     end if
     side = sqrt(cover%slave_area/max(1, size(cover%bare)))
     if (cover%largest_gap > gap_part*side .and. .not. gaps_count) then
@@ -109,7 +109,7 @@ contains
     text = '('//as_text(y(1))//', '//as_text(y(2))//', '//as_text(y(3))//')'
   end function place_text
 
-  !> No face is taken yet.
+  !> Starts with no face taken.
   pure subroutine open_claims(num_nodes, capacity, taken)
     integer, intent(in) :: num_nodes !< of the mesh
     integer, intent(in) :: capacity !< most faces
@@ -119,14 +119,14 @@ contains
     allocate (taken%covered(capacity), source=0.0_rk)
   end subroutine open_claims
 
-  !> Adds the slave facets of a joint; returns the first one that another joint has covered.
+  !> Adds the slave facets of a joint, and returns the first one that another joint covers.
   pure subroutine claim_facets(taken, joint, slave, cover, facet, earlier)
     type(claims), intent(inout) :: taken
     integer, intent(in) :: joint
     type(facet_set), intent(in) :: slave
     type(surface_cover), intent(in) :: cover
-    integer, intent(out) :: facet !< taken before, 0 for none
-    integer, intent(out) :: earlier !< the joint that has it
+    integer, intent(out) :: facet !< covered by an earlier joint, 0 for none
+    integer, intent(out) :: earlier !< the earlier joint
     integer :: f, number
     facet = 0
     earlier = 0

@@ -1,4 +1,4 @@
-!> Builds the couplings of *INTERFACE when the whole deck is read.
+!> Builds the couplings of *INTERFACE after the whole deck is read.
 module finish_interfaces
   use cover_checks, only: keep_cover
   use diagnostics, only: diagnostic_list
@@ -16,7 +16,7 @@ module finish_interfaces
   private
   public :: complete_interfaces, append_coupling
 
-  !> A corner of 180 degrees, but for the digits of a mesher.
+  !> A corner counts as 180 degrees up to the rounding of a mesher.
   real(rk), parameter :: round_off = 1.0e-6_rk
 
 contains
@@ -35,14 +35,14 @@ contains
     end do
   end subroutine complete_interfaces
 
-  !> Every IFACE4 belongs to an *INTERFACE, is convex, and shares no node with a solid.
+  !> Checks that every IFACE4 belongs to an *INTERFACE, is convex, and shares no node with a solid.
   subroutine check_quads(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     logical, allocatable :: is_of_solid(:)
     integer :: i, e, a
     do i = 1, size(model%interfaces)
-      if (size(model%interfaces(i)%elements) == 0) return ! its fault is told
+      if (size(model%interfaces(i)%elements) == 0) return ! reported already
     end do
     allocate (is_of_solid(model%scene%mesh%num_nodes), source=.false.)
     associate (mesh => model%scene%mesh)
@@ -57,7 +57,7 @@ contains
           return
         end if
         if (norm2(face_vector(mesh%x(:, mesh%nodes(1:4, e)))) <= tiny(1.0_rk)) then
-          call fault_quad(e, 'has no area', 'four corners in a row around it', model, faults)
+          call fault_quad(e, 'has no area', 'four corners in order around it', model, faults)
           return
         end if
         if (bends_inward(mesh%x(:, mesh%nodes(1:4, e)))) then
@@ -67,7 +67,7 @@ contains
         do a = 1, 4
           if (.not. is_of_solid(mesh%nodes(a, e))) cycle
           call fault_quad(e, 'shares node '//as_text(mesh%node_id(mesh%nodes(a, e)))// &
-                          ' with a solid', 'nodes of its own: the *INTERFACE couples them', &
+                          ' with a solid', 'separate nodes: the *INTERFACE couples them', &
                           model, faults)
           return
         end do
@@ -75,8 +75,8 @@ contains
     end associate
   end subroutine check_quads
 
-  !> Whether a corner lies within the triangle of the others, or two sides cross: the shape
-  !> functions do not cover such a quad once.
+  !> Whether a corner lies within the triangle of the others, or two sides cross: the map of such a
+  !> quad is not one to one.
   pure logical function bends_inward(x)
     real(rk), intent(in) :: x(3, 4) !< corners [m]
     real(rk) :: vector(3), to_next(3), to_last(3)
@@ -92,7 +92,7 @@ contains
     end do
   end function bends_inward
 
-  !> Points at an element.
+  !> Reports a fault at an element.
   subroutine fault_quad(e, problem, expected, model, faults)
     integer, intent(in) :: e !< position
     character(*), intent(in) :: problem, expected
@@ -123,8 +123,8 @@ contains
       if (stiffness <= 0.0_rk) then
         stiffness = softest(model, faces)
         if (stiffness <= 0.0_rk) then
-          call place%fault(faults, 'the solids behind SURFACE have no E (a UMAT) to make '// &
-                           'STIFFNESS of', 'STIFFNESS')
+          call place%fault(faults, 'the solids behind SURFACE have no E (a UMAT) as default '// &
+                           'of STIFFNESS', 'STIFFNESS')
           return
         end if
       end if
@@ -137,7 +137,7 @@ contains
     call append_coupling(model, new)
   end subroutine build_interface
 
-  !> The least E of the solids behind facets, 0 where one has none [Pa].
+  !> The smallest E of the solids behind facets, 0 if a solid has no E [Pa].
   pure real(rk) function softest(model, facets) result(young)
     type(draft), intent(in) :: model
     type(facet_set), intent(in) :: facets

@@ -1,6 +1,6 @@
-!> Builds the ties of a deck once all of it is read: the supports of all steps count.
+!> Builds the ties after the whole deck is read, since they depend on the supports of all steps.
 module finish_ties
-  use coupling_tie, only: lay_tie
+  use coupling_tie, only: build_tie_rows
   use cover_checks, only: keep_cover
   use dam_mesh, only: node_tie
   use deck_card, only: card
@@ -20,18 +20,18 @@ module finish_ties
   private
   public :: complete_ties
 
-  !> Initial values of a slave face that differ from what it follows by more than this part of the
-  !> largest are told; the round-off of the projection stays far below.
+  !> Initial values of slave nodes are reported if they differ from the tied values by more than
+  !> this fraction of the largest; the round-off of the projection is far below.
   real(rk), parameter :: equal_values = 1.0e-9_rk
 
-  !> Nodes that follow more others in the mean are told: measured, ten times as fine a master makes
-  !> the factor a hundred times as dear (different_meshes.md, 13.3). A finer slave follows 4 to 9, a
-  !> slave coarser by 3 follows 49.
+  !> A tie whose nodes follow more others on average is reported: a master ten times as fine makes
+  !> the factor a hundred times as expensive (different_meshes.md, 13.3). A node of a finer slave
+  !> follows 4 to 9 others, of a slave coarser by 3 it follows 49.
   integer, parameter :: most_followed = 50
 
 contains
 
-  !> Builds all ties in the order of the deck. Surfaces, sections and steps are known to be right.
+  !> Builds all ties in the order of the deck. Surfaces, sections and steps have been checked.
   subroutine complete_ties(model, faults)
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
@@ -51,8 +51,8 @@ contains
     if (.not. faults%has_errors()) call check_initial_values(.true., model, faults)
   end subroutine complete_ties
 
-  !> Moves nodes to the places that they follow: any motion that is linear in space, a rotation
-  !> above all, then agrees with the ties.
+  !> Moves nodes to the places that the ties give: any motion that is linear in space, such as a
+  !> rotation, then agrees with the ties.
   subroutine adjust_nodes(ties, model, faults)
     type(node_tie), intent(in) :: ties(:)
     type(draft), intent(inout) :: model
@@ -63,8 +63,8 @@ contains
     call model%cards(model%ties(1)%spot%card)%fault(faults, 'the ties: '//error%message)
   end subroutine adjust_nodes
 
-  !> What the supports of any step hold: a node has the same multipliers in all steps, so that a
-  !> state goes over from one to the next.
+  !> Collects the supports of all steps: a node has the same multipliers in all steps, so that a
+  !> state continues from step to step.
   subroutine collect_supports(model, is_fixed, is_always)
     type(draft), intent(in) :: model
     logical, allocatable, intent(out) :: is_fixed(:, :) !< (3, nodes) in any step
@@ -86,7 +86,7 @@ contains
     end do
   end subroutine collect_supports
 
-  !> One pair of surfaces.
+  !> Builds the tie of one pair of surfaces.
   subroutine build_tie(request, is_fixed, is_always, model, faults)
     type(tie_request), intent(in) :: request
     logical, intent(in) :: is_fixed(:, :), is_always(:, :) !< (3, nodes) by supports
@@ -117,11 +117,11 @@ contains
       call keep_cover(place, request%name, 'TIE', cover, .false., model, faults)
       if (request%stiffness > 0.0_rk) return
       tie%name = request%name
-      call lay_tie(scene%mesh%x, slave, master, segments, is_fixed, scene%ties, tie, is_idle)
+      call build_tie_rows(scene%mesh%x, slave, master, segments, is_fixed, scene%ties, tie, is_idle)
       if (size(tie%node) == 0) then
-        call place%fault_at(faults, request%spot%line, 1, 'the tie holds nothing: supports or '// &
-                            'earlier ties hold every node of the slave surface', &
-                            'the surfaces the other way round')
+        call place%fault_at(faults, request%spot%line, 1, 'the tie constrains no node: '// &
+                            'supports or earlier ties hold every node of the slave surface', &
+                            'slave and master exchanged')
         return
       end if
       if (size(tie%master) > most_followed*size(tie%node)) then
@@ -129,14 +129,14 @@ contains
                         as_text(size(tie%master)/size(tie%node))//' others in the mean, which '// &
                         'makes large and dense equations', 'the finer surface as slave')
       end if
-      call tell_idle(place, slave%node, is_idle, is_always, model, faults)
+      call report_idle(place, slave%node, is_idle, is_always, model, faults)
       scene%ties = [scene%ties, tie]
     end associate
   end subroutine build_tie
 
-  !> Tells of facets that transmit nothing because supports of some steps or earlier ties hold all
-  !> their corners; where supports always do, they carry what arrives there.
-  subroutine tell_idle(place, corner, is_idle, is_always, model, faults)
+  !> Reports facets that transmit no force because supports of some steps or earlier ties hold all
+  !> their corners. Supports that act in all steps carry the force.
+  subroutine report_idle(place, corner, is_idle, is_always, model, faults)
     type(card), intent(in) :: place
     integer, intent(in) :: corner(:, :) !< (4, slave facets)
     logical, intent(in) :: is_idle(:, :) !< (3, slave facets)
@@ -154,13 +154,13 @@ contains
     if (num_idle == 0) return
     call place%warn(faults, &
                     as_text(num_idle)//' of '//as_text(size(corner, 2))//' slave facets '// &
-                    'pass on nothing: supports of some step or earlier ties hold all their '// &
+                    'transmit no force: supports of some step or earlier ties hold all their '// &
                     'corners, the first at node '// &
                     as_text(model%scene%mesh%node_id(corner(1, worst))), &
-                    'more facets across, or the surfaces the other way round')
-  end subroutine tell_idle
+                    'more facets across, or slave and master exchanged')
+  end subroutine report_idle
 
-  !> Initial values that the deck gives to nodes which follow others and that contradict the ties.
+  !> Reports initial values of tied nodes that contradict the ties.
   subroutine check_initial_values(is_velocity, model, faults)
     logical, intent(in) :: is_velocity !< else displacements
     type(draft), intent(in) :: model

@@ -1,9 +1,8 @@
-!> Faces that two ties or joints between surfaces join: their stiffnesses would add up, or one of
-!> them would have nothing left to do.
+!> Refuses faces that two ties or joints join: their stiffnesses would add up, or one of them would
+!> have no effect.
 !>
-!> A face may belong to several ties and joints with different partners. What is refused are two
-!> facets, opposite each other, that belong together to two of them, whichever is the slave and
-!> whatever their surfaces are called.
+!> A face may belong to several ties and joints with different partners. Two opposite facets may not
+!> belong to the same two ties or joints, for any choice of slave and any names of surfaces.
 module joined_twice
   use dam_mesh, only: mesh, surface
   use diagnostics, only: diagnostic_list
@@ -17,19 +16,19 @@ module joined_twice
   private
   public :: refuse_joined_twice
 
-  !> Facets of which less than this part lies opposite are neighbours of partners: the digits of
-  !> a mesher.
+  !> Facets opposite by less than this fraction are neighbours of partners, from the rounding of a
+  !> mesher.
   real(rk), parameter :: sliver = 0.01_rk
 
   !> Two surfaces that a tie or a joint joins.
   type :: pair
     character(:), allocatable :: name !< with its kind: "tie 'T'"
     integer :: surfaces(2) = 0 !< slave and master, positions
-    real(rk) :: farthest = farthest_seam !< apart, in diagonals of a facet
+    real(rk) :: farthest = farthest_seam !< largest distance, in diagonals of a facet
     type(origin) :: spot
   end type pair
 
-  !> Which pairs a face of an element belongs to: a list for each face.
+  !> The pairs of each face of an element, as linked lists.
   type :: face_book
     integer :: used = 0
     integer, allocatable :: first(:, :) !< (6, elements) newest entry, 0 for none
@@ -39,7 +38,7 @@ module joined_twice
 
 contains
 
-  !> An error at each tie or joint that joins what an earlier one of the deck joins.
+  !> Reports each tie or joint that joins the same facets as an earlier one of the deck.
   subroutine refuse_joined_twice(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
@@ -102,7 +101,7 @@ contains
     end do
   end subroutine list_pairs
 
-  !> The first pair entered so far that joins facets of pair `new`, 0 for none.
+  !> The first earlier pair that joins facets of pair `new`, 0 for none.
   subroutine find_earlier(new, pairs, model, book, meets, earlier)
     integer, intent(in) :: new
     type(pair), intent(in) :: pairs(:)
@@ -133,7 +132,7 @@ contains
     earlier = 0
   end subroutine find_earlier
 
-  !> Do faces that two pairs share lie opposite each other?
+  !> Whether faces shared by two pairs lie opposite each other.
   logical function join_the_same(new, old, number, side, model, book)
     type(pair), intent(in) :: new, old
     integer, intent(in) :: number !< of the old pair
@@ -153,7 +152,7 @@ contains
                     .or. cover%covered_area > sliver*cover%master_area
   end function join_the_same
 
-  !> Facets of a surface that are on one side of a pair.
+  !> Facets of a surface on one side of a pair.
   pure subroutine list_shared(model, faces, number, side, book, facets)
     type(mesh), intent(in) :: model
     type(surface), intent(in) :: faces
@@ -176,7 +175,7 @@ contains
     call list_surface_facets(model, shared, facets)
   end subroutine list_shared
 
-  !> Writes down which pair has the faces.
+  !> Stores the pair of each face.
   pure subroutine enter_faces(number, side, faces, book)
     integer, intent(in) :: number, side !< of the pair
     type(surface), intent(in) :: faces

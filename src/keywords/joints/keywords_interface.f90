@@ -19,11 +19,11 @@ contains
     spec%name = 'INTERFACE'
     spec%family = 'joint'
     spec%place = 'model'
-    spec%meaning = 'Couples the IFACE4 quadrilaterals of a set (nodes of their own, without '// &
+    spec%meaning = 'Couples the IFACE4 quadrilaterals of a set (separate nodes without '// &
                    'mass) to a surface of solids whose mesh may differ, by springs of '// &
                    'STIFFNESS per area on the true overlap of the facets. JOINT8 elements may '// &
                    'then stand between the quadrilaterals and another body. Area without a '// &
-                   'partner, gaps and overlaps are told.'
+                   'partner, gaps and overlaps are reported.'
     spec%example = '*INTERFACE, NAME=I1, ELSET=QUADS, SURFACE=FINE_SIDE'
     spec%most_lines = 0
     allocate (spec%columns(0))
@@ -62,7 +62,7 @@ contains
     model%interfaces = [model%interfaces, new]
   end subroutine read_interface
 
-  !> Elements of an interface are IFACE4 and belong to no other interface; none after a fault.
+  !> The elements of an interface: IFACE4 of no other interface. Empty after a fault.
   subroutine claim_elements(this, elements, model, faults)
     type(card), intent(in) :: this
     integer, allocatable, intent(inout) :: elements(:) !< positions

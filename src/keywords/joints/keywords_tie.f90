@@ -21,12 +21,12 @@ contains
     spec%meaning = 'Ties surfaces whose meshes may differ, in all directions. Without '// &
                    'STIFFNESS the nodes of the slave surface follow the master surface '// &
                    'exactly, as mean values over the true overlap of the facets (a dual '// &
-                   'mortar method). The finer side is the better slave, as a rule, and the '// &
-                   'cheaper one in a tie; where the face itself bends between meshes 1:2 and '// &
-                   'more apart, tractions are smoother with the coarser one. Where a slave '// &
-                   'node is held by *BOUNDARY in any step, or follows others by an earlier '// &
-                   'tie, it follows nothing here in that direction. With STIFFNESS, springs '// &
-                   'between the faces hold them together. Parts of the slave surface without '// &
+                   'mortar method). The finer side is usually the better slave, and the '// &
+                   'cheaper one. If the face itself bends and the meshes differ by 1:2 or '// &
+                   'more, tractions are smoother with the coarser slave. If *BOUNDARY of '// &
+                   'any step or an earlier tie prescribes a direction of a slave node, this '// &
+                   'tie leaves that direction free. With STIFFNESS, springs '// &
+                   'connect the faces. Parts of the slave surface without '// &
                    'partner stay free.'
     spec%example = '*TIE, NAME=BLOCK1_TO_ROCK'//new_line('a')//'BLOCK1_BASE, ROCK_TOP'
     spec%fewest_lines = 1
@@ -35,10 +35,10 @@ contains
               field('STIFFNESS', kind_real, 'of springs between the faces', 'Pa/m', &
                     lowest=0.0_rk, excludes_lowest=.true.), &
               field('ADJUST', kind_choice, 'moves slave nodes onto the master surface before '// &
-                    'the analysis, so that where the faces lie apart (curved ones) a rotation '// &
-                    'leaves no stress', default='NO', choices='YES | NO')])
+                    'the analysis: between faces with gaps (curved ones) a rotation then '// &
+                    'causes no stress', default='NO', choices='YES | NO')])
     allocate (spec%columns, source=[ &
-              field('slave', kind_word, 'slave surface, as a rule the finer one', &
+              field('slave', kind_word, 'slave surface, usually the finer one', &
                     is_required=.true.), &
               field('master', kind_word, 'master surface', is_required=.true.)])
   end subroutine describe_tie
@@ -53,7 +53,7 @@ contains
     new%stiffness = this%real('STIFFNESS')
     new%adjusts = this%word('ADJUST') == 'YES'
     if (new%adjusts .and. this%has('STIFFNESS')) then
-      call this%fault_parameter(faults, 'ADJUST', 'springs have no use for it', &
+      call this%fault_parameter(faults, 'ADJUST', 'ADJUST has no effect on springs', &
                                 'ADJUST without STIFFNESS')
     end if
     do i = 1, size(model%ties)
@@ -77,7 +77,7 @@ contains
     end do
   end subroutine read_tie
 
-  !> No tie holds the same two surfaces already: springs would add up.
+  !> Refuses two ties of the same surfaces: their springs would add up.
   subroutine check_pair(this, line, new, model, faults)
     type(card), intent(in) :: this
     integer, intent(in) :: line

@@ -1,4 +1,4 @@
-!> Puts a load that a card gives into the problem and into the book of what is at work.
+!> Adds the load of a card to the problem and to the list of active loads.
 module enter_load
   use applied_load, only: load
   use kinds, only: rk
@@ -9,20 +9,20 @@ module enter_load
 
 contains
 
-  !> A load like one that is at work only changes its factor; another one is added.
+  !> Adds a load; if an equal load is active, only its factor changes.
   subroutine put_load(model, item, name, family, target, pattern, factor, history)
     type(draft), intent(inout) :: model
     class(load), allocatable, intent(inout) :: item !< pattern of forces at factor 1; taken over
     character(*), intent(in) :: name !< for the log and the list of effects
     character(*), intent(in) :: family !< its keyword
-    character(*), intent(in) :: target !< what it acts on
-    character(*), intent(in) :: pattern !< all else that shapes it but the factor
+    character(*), intent(in) :: target !< what the load acts on
+    character(*), intent(in) :: pattern !< all other data of the load but the factor
     real(rk), intent(in) :: factor
     integer, intent(in) :: history !< amplitude, 0 for none
     integer :: known
-    call model%loads_at_work%take_over(family, target, pattern, factor, history, known)
+    call model%active_loads%take_over(family, target, pattern, factor, history, known)
     if (known > 0) return
     call add_load(model, item, name, family, target)
-    call model%loads_at_work%enter(family, target, pattern, factor, history, model%num_loads)
+    call model%active_loads%enter(family, target, pattern, factor, history, model%num_loads)
   end subroutine put_load
 end module enter_load

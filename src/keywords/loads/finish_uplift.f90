@@ -1,5 +1,5 @@
-!> The water in joints (*JOINT LAW, UPLIFT): a load of its own beside each *RESERVOIR that is named,
-!> at work in the same steps and with the same factors.
+!> The water in joints (*JOINT LAW, UPLIFT): a separate load for each *RESERVOIR named, active in
+!> the same steps with the same factors.
 module finish_uplift
   use applied_load, only: load
   use dam_mesh, only: surface
@@ -24,7 +24,7 @@ module finish_uplift
 
 contains
 
-  !> Once all joints are built.
+  !> Adds the loads of uplift. All joints must be built.
   subroutine complete_uplift(model, faults)
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
@@ -42,7 +42,7 @@ contains
     end do
   end subroutine complete_uplift
 
-  !> The reservoirs of a law exist, and press.
+  !> Checks that the reservoirs of a law exist and have hydrostatic pressure.
   subroutine check_names(model, law, faults)
     type(draft), intent(in) :: model
     integer, intent(in) :: law !< position
@@ -53,7 +53,7 @@ contains
     end associate
   end subroutine check_names
 
-  !> One of them; '' is none.
+  !> Checks one name of a reservoir; '' is none.
   subroutine check_name(model, place, parameter_name, wanted, faults)
     type(draft), intent(in) :: model
     type(card), intent(in) :: place
@@ -87,13 +87,13 @@ contains
     end if
   end subroutine check_name
 
-  !> The loads of one joint: one beside each load that is the reservoir, in whichever steps.
+  !> Adds the loads of one joint: one for each load of the reservoir, in any step.
   subroutine fill_joint(model, j, request, lake_name, is_tail, faults)
     type(draft), intent(inout) :: model
     integer, intent(in) :: j !< joint
     type(law_request), intent(in) :: request
     character(*), intent(in) :: lake_name !< '' for none
-    logical, intent(in) :: is_tail !< it is that of TAIL WATER
+    logical, intent(in) :: is_tail !< the reservoir is that of TAIL WATER
     type(diagnostic_list), intent(inout) :: faults
     type(uplift_load) :: water
     integer :: i, num_before
@@ -150,7 +150,7 @@ contains
     end associate
   end subroutine fill_water
 
-  !> The surface that tells the upstream edge: that of UPLIFT, for the water downstream too.
+  !> The surface that defines the upstream edge: that of UPLIFT, also for the tail water.
   function upstream_of(model, request, lake, is_tail) result(faces)
     type(draft), intent(in) :: model
     type(law_request), intent(in) :: request
@@ -201,8 +201,8 @@ contains
     end associate
   end subroutine list_faces
 
-  !> The rim of the face that fits into the other, the smaller one; of the other one where the
-  !> reservoir's surface does not reach that.
+  !> The rim of the smaller face; of the larger one if the reservoir's surface does not touch the
+  !> smaller one.
   subroutine choose_rim(x, slave, master, is_wet, rim)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     integer, intent(in) :: slave(:, :), master(:, :) !< (4, facets)
@@ -218,7 +218,7 @@ contains
     end if
   end subroutine choose_rim
 
-  !> Puts the load into the problem and into the steps in which the reservoir is at work.
+  !> Adds the load to the problem, active in the steps in which the reservoir is active.
   subroutine enter_water(model, lake, water, profile, lake_name)
     type(draft), intent(inout) :: model
     integer, intent(in) :: lake !< load that is the reservoir

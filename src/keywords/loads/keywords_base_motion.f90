@@ -22,9 +22,9 @@ contains
     spec%family = 'load'
     spec%place = 'step'
     spec%meaning = 'Acceleration of the base, the same everywhere. Results are relative to the '// &
-                   'base; the water''s added mass takes part. Like every load it stays: a '// &
-                   'history over the time of its step holds its last value afterwards. One in '// &
-                   'the same direction replaces it in a later step, adds to it in its own.'
+                   'base; the added mass of the water is included. The motion continues in '// &
+                   'later steps: a history over step time keeps its last value. A second '// &
+                   'motion in one direction adds in the same step, and replaces in a later one.'
     spec%example = '*BASE MOTION, DOF=1, AMPLITUDE=QUAKE, SCALE=9.81'
     spec%most_lines = 0
     allocate (spec%parameters, source=[ &

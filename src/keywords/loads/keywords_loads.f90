@@ -40,8 +40,8 @@ contains
     type(keyword), intent(out) :: spec
     call add_load_parameters(spec)
     spec%name = 'CLOAD'
-    spec%meaning = 'Forces at nodes. Given twice in one step they add up; given again in a '// &
-                   'later step the new one rules.'
+    spec%meaning = 'Forces at nodes. Forces given twice in one step add up; a force of a '// &
+                   'later step replaces the earlier one.'
     spec%example = '*CLOAD'//nl//'TIP, 3, -1000.'
     allocate (spec%columns, source=[ &
               field('node', kind_reference, 'the nodes', &
@@ -61,10 +61,10 @@ contains
     if (this%word('OP') == 'NEW') call model%point_forces%clear_old()
     do line = 1, this%num_lines
       call nodes_at(this, line, 1, model, faults, nodes)
-      if (this%integer_at(line, 2) < 1 .or. this%integer_at(line, 2) > 3) cycle ! told
+      if (this%integer_at(line, 2) < 1 .or. this%integer_at(line, 2) > 3) cycle ! reported already
       associate (table => model%point_forces, dof => this%integer_at(line, 2))
         if (any(table%is_new(dof, nodes) .and. table%history(dof, nodes) /= history)) then
-          call this%fault_at(faults, line, 1, 'a force under another amplitude acts there', &
+          call this%fault_at(faults, line, 1, 'a force with another amplitude acts there', &
                              'one amplitude for the forces of a degree of freedom in a step')
         end if
         call table%add(nodes, dof, this%real_at(line, 3), history)
@@ -77,7 +77,7 @@ contains
     call add_load_parameters(spec)
     spec%name = 'DLOAD'
     spec%meaning = 'Weight and pressures on elements. GRAV, g, x, y, z: an acceleration along '// &
-                   '(x, y, z), which need not be of length one. P1..P6, p: pressure on a face, '// &
+                   '(x, y, z), a vector of any length. P1..P6, p: pressure on a face, '// &
                    'positive towards the element. HP1..HP6, p, z_top, z_ref: hydrostatic along '// &
                    'axis 3, zero at z_top and above, p at z_ref.'
     spec%example = '*DLOAD'//nl//'DAM, GRAV, 9.81, 0., 0., -1.'//nl//'UPSTREAM, P3, 1e5'//nl// &
@@ -100,7 +100,7 @@ contains
     integer, allocatable :: elements(:)
     integer :: line, history, num_before
     call find_amplitude(this, model, faults, history)
-    if (this%word('OP') == 'NEW') call model%loads_at_work%clear_old('DLOAD')
+    if (this%word('OP') == 'NEW') call model%active_loads%clear_old('DLOAD')
     do line = 1, this%num_lines
       num_before = faults%num_errors
       call elements_at(this, line, 1, model, faults, elements)
@@ -179,7 +179,7 @@ contains
     real(rk) :: heights(2)
     label = this%word_at(line, 2)
     if (.not. all(is_solid(model%scene%mesh%element_type(elements)))) then
-      call this%fault_at(faults, line, 1, 'pressure on an element that is no solid', &
+      call this%fault_at(faults, line, 1, 'pressure on an element that is not a solid', &
                          'solid elements')
       return
     end if
@@ -204,7 +204,7 @@ contains
                   this%real_at(line, 3), history)
   end subroutine put_pressure
 
-  !> Numbers as a text to compare: the same text, the same pattern.
+  !> Numbers as a text to compare: equal texts mean equal patterns.
   pure function pattern_of(numbers) result(text)
     real(rk), intent(in) :: numbers(:)
     character(24*size(numbers)) :: text
@@ -215,7 +215,7 @@ contains
     type(keyword), intent(out) :: spec
     call add_load_parameters(spec)
     spec%name = 'DSLOAD'
-    spec%meaning = 'Pressure on a surface, positive towards the body.'
+    spec%meaning = 'Pressure on a surface, positive towards the solid.'
     spec%example = '*DSLOAD, AMPLITUDE=FILLING'//nl//'UPSTREAM, P, 1e5'
     allocate (spec%columns, source=[ &
               field('surface', kind_word, 'name of a surface', is_required=.true.), &
@@ -233,7 +233,7 @@ contains
     push%kind = 'pressure'
     push%pressure = 1.0_rk
     call find_amplitude(this, model, faults, history)
-    if (this%word('OP') == 'NEW') call model%loads_at_work%clear_old('DSLOAD')
+    if (this%word('OP') == 'NEW') call model%active_loads%clear_old('DSLOAD')
     do line = 1, this%num_lines
       call find_surface_at(this, line, model, faults, found)
       if (found == 0) cycle

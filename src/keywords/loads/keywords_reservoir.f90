@@ -26,7 +26,7 @@ contains
                    'normal (H the depth of the reservoir, h of the point), takes part in the '// &
                    'inertia force of the base motion and has no weight. NORMAL keeps the '// &
                    'block m n n^T of each node, DIAGONAL its diagonal. The surface of the '// &
-                   'first reservoir tells upstream from downstream in the results.'
+                   'first reservoir defines upstream and downstream in the results.'
     spec%example = '*RESERVOIR, NAME=LAKE, SURFACE=UPSTREAM, LEVEL=105., BED=0., '// &
                    'ADDED MASS=WESTERGAARD'
     spec%most_lines = 0
@@ -80,7 +80,7 @@ contains
     lake%is_diagonal = this%word('DIRECTION') == 'DIAGONAL'
     if (wetted_area(lake, model%scene%mesh) <= 0.0_rk) then
       call this%fault_parameter(faults, 'SURFACE', 'no face of the surface is wetted', &
-                                'a surface that reaches between BED, '//this%text('BED')// &
+                                'a surface with faces between BED, '//this%text('BED')// &
                                 ' m, and LEVEL, '//this%text('LEVEL')//' m')
       return
     end if
@@ -90,7 +90,7 @@ contains
                   pattern_of_card(this), 1.0_rk, 0)
   end subroutine read_reservoir
 
-  !> All that is given, as a text to compare: the same text, the same reservoir.
+  !> All parameters as a text to compare: equal texts mean equal reservoirs.
   pure function pattern_of_card(this) result(text)
     type(card), intent(in) :: this
     character(:), allocatable :: text

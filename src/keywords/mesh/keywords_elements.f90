@@ -27,9 +27,9 @@ contains
     spec%meaning = 'Elements and their nodes. Solids: 4 corners of one face, then those of the '// &
                    'opposite face above them; repeated nodes make a wedge. C3D8: 2x2x2 points, '// &
                    'as in CalculiX. C3D8B: B-bar (what Abaqus calls C3D8). C3D8I: incompatible '// &
-                   'modes. C3D8R: one point with hourglass control. JOINT8: two faces on each '// &
-                   'other, nodes 1-4 of the master, 5-8 of the slave. IFACE4: a '// &
-                   'quadrilateral with nodes of its own for an *INTERFACE.'
+                   'modes. C3D8R: one point with hourglass control. JOINT8: two coincident '// &
+                   'faces, nodes 1-4 of the master, 5-8 of the slave. IFACE4: a '// &
+                   'quadrilateral with separate nodes for an *INTERFACE.'
     spec%example = '*ELEMENT, TYPE=C3D8I, ELSET=DAM'//nl//'1, 1, 2, 3, 4, 5, 6, 7, 8'
     spec%fewest_lines = 1
     spec%checks_own_data = .true.
@@ -40,15 +40,15 @@ contains
     allocate (spec%parameters, source=[ &
               field('TYPE', kind_choice, 'a solid of 8 nodes, a joint or an interface (no '// &
                     'plane elements, no shells)', choices=kinds, is_required=.true.), &
-              field('ELSET', kind_word, 'an element set that gets these elements')])
+              field('ELSET', kind_word, 'an element set to which these elements are added')])
     allocate (spec%columns, source=[ &
               field('id', kind_integer, 'number of the element', is_required=.true., &
                     lowest=1.0_rk), &
-              field('nodes', kind_integer, '8 ids of nodes (IFACE4: 4); they may go on in the '// &
-                    'next line', is_required=.true., lowest=1.0_rk)])
+              field('nodes', kind_integer, '8 ids of nodes (IFACE4: 4), continued in the '// &
+                    'next line if needed', is_required=.true., lowest=1.0_rk)])
   end subroutine describe_element
 
-  !> Allocates the elements; there are no more than data lines.
+  !> Allocates the elements, as many as data lines.
   pure subroutine make_room_for_elements(model, most)
     type(draft), intent(inout) :: model
     integer, intent(in) :: most !< data lines of all *ELEMENT cards
@@ -60,7 +60,7 @@ contains
     call model%element_position%reserve(most)
   end subroutine make_room_for_elements
 
-  !> Gives back what continuation lines left unused.
+  !> Frees the memory that continuation lines left unused.
   pure subroutine trim_mesh(model)
     type(draft), intent(inout) :: model
     integer :: used
@@ -110,7 +110,7 @@ contains
     integer, intent(in) :: wanted !< nodes of the element
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    integer, intent(out) :: nodes(most_nodes) !< positions, zeros behind those of the element
+    integer, intent(out) :: nodes(most_nodes) !< positions, then zeros
     integer, intent(out) :: next !< the line after the element
     logical, intent(out) :: is_right
     integer :: found, field
@@ -187,7 +187,7 @@ contains
     model%scene%mesh%num_elements = element
     model%scene%mesh%element_id(element) = id
     model%scene%mesh%element_type(element) = this%word('TYPE')
-    if (find_element_kind(this%word('TYPE')) == 0) then ! told; any solid keeps others from failing
+    if (find_element_kind(this%word('TYPE')) == 0) then ! reported; a solid avoids more faults
       model%scene%mesh%element_type(element) = element_kinds(1)%name
     end if
     model%scene%mesh%nodes(:, element) = nodes

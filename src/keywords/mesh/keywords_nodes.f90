@@ -1,4 +1,4 @@
-!> *HEADING, *NODE, and the page of *INCLUDE, which deck_source carries out.
+!> *HEADING, *NODE, and the specification of *INCLUDE, which deck_source reads.
 module keywords_nodes
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
@@ -66,7 +66,7 @@ contains
     spec%example = '*NODE, NSET=ALL'//nl//'1, 0., 0., 0.'//nl//'2, 10., 0., 0.'
     spec%fewest_lines = 1
     allocate (spec%parameters, source=[ &
-              field('NSET', kind_word, 'a node set that gets these nodes')])
+              field('NSET', kind_word, 'a node set to which these nodes are added')])
     allocate (spec%columns, source=[ &
               field('id', kind_integer, 'number of the node', is_required=.true., &
                     lowest=1.0_rk), &
@@ -75,7 +75,7 @@ contains
               field('z', kind_real, 'coordinate', 'm', '0')])
   end subroutine describe_node
 
-  !> Allocates the nodes; their number is known before the first is read.
+  !> Allocates the nodes, as many as data lines.
   pure subroutine make_room_for_nodes(model, most)
     type(draft), intent(inout) :: model
     integer, intent(in) :: most !< data lines of all *NODE cards
@@ -123,7 +123,7 @@ contains
     end do
   end function positions
 
-  !> An id that is there already: tells both places.
+  !> Reports an id that is defined twice, with both places.
   subroutine fault_twice(this, line, kind, earlier, model, faults)
     type(card), intent(in) :: this
     integer, intent(in) :: line

@@ -23,8 +23,8 @@ contains
     spec%family = 'material'
     spec%place = 'model'
     spec%meaning = 'Gives the solid elements of a set their material. Stresses are averaged at '// &
-                   'nodes within a section, never across; the section defined first rules '// &
-                   'where two meet. The mass is of one kind in the whole model.'
+                   'nodes within a section, never across sections; where two sections meet, '// &
+                   'the one defined first is used. The whole model has one kind of mass.'
     spec%example = '*SOLID SECTION, ELSET=DAM, MATERIAL=CONCRETE'
     spec%most_lines = 1
     allocate (spec%parameters, source=[ &
@@ -33,7 +33,7 @@ contains
               field('MASS', kind_choice, 'mass matrix', default='CONSISTENT', &
                     choices='CONSISTENT | LUMPED')])
     allocate (spec%columns, source=[ &
-              field('thickness', kind_real, 'a thickness, which solids do not need')])
+              field('thickness', kind_real, 'thickness, not used for solids')])
   end subroutine describe_solid_section
 
   subroutine read_solid_section(this, model, faults)
@@ -51,7 +51,7 @@ contains
     call give_material(this, new%elements, num_material, model, faults)
   end subroutine read_solid_section
 
-  !> Position of the material; a name that does not exist is a fault.
+  !> Position of the material; an unknown name is a fault.
   subroutine find_material(this, model, faults, found)
     type(card), intent(in) :: this
     type(draft), intent(in) :: model
@@ -70,7 +70,7 @@ contains
                               nearest_word(this%word('MATERIAL'), known))
   end subroutine find_material
 
-  !> MASS may be given once or the same everywhere.
+  !> Checks that all sections give the same MASS.
   subroutine choose_mass(this, model, faults)
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model

@@ -41,14 +41,14 @@ contains
     spec%name = name
     spec%family = 'mesh'
     spec%place = 'model'
-    spec%meaning = 'A set of '//kind//'s, from ids and sets defined above. Given again under '// &
-                   'the same name it grows.'
+    spec%meaning = 'A set of '//kind//'s, from ids and sets defined above. A second card '// &
+                   'with the same name adds members.'
     spec%checks_own_data = .true.
     spec%fewest_lines = 1
     spec%repeats_columns = .true.
     allocate (spec%parameters, source=[ &
               field(name, kind_word, 'name of the set', is_required=.true.), &
-              field('GENERATE', kind_flag, 'a line is: first, last, step (1)')])
+              field('GENERATE', kind_flag, 'each line holds: first, last, step (1)')])
     allocate (spec%columns, source=[ &
               field('member', kind_reference, 'id of a '//kind//' or name of a set, any '// &
                     'number in a line')])
@@ -72,7 +72,7 @@ contains
     call model%element_sets%add(this%word('ELSET'), members)
   end subroutine read_elset
 
-  !> All members of the card; a card without any is a fault.
+  !> All members of the card; an empty card is a fault.
   subroutine collect_members(this, kind, model, faults, members)
     type(card), intent(in) :: this
     character(*), intent(in) :: kind !< 'node' or 'element'
@@ -193,7 +193,7 @@ contains
     model%surface_origin = [model%surface_origin, model%here(0)]
   end subroutine read_surface
 
-  !> A face counts once, however often a surface names it.
+  !> Removes repeated faces, since a face counts once.
   subroutine drop_repeats(this, line, face, model, seen, members, faults)
     type(card), intent(in) :: this
     integer, intent(in) :: line
@@ -218,7 +218,7 @@ contains
     members = pack(members, is_new)
   end subroutine drop_repeats
 
-  !> A face must belong to a solid and must not have collapsed.
+  !> Checks that each face belongs to a solid and has an area.
   subroutine check_faces(this, line, members, face, model, faults)
     type(card), intent(in) :: this
     integer, intent(in) :: line

@@ -48,11 +48,11 @@ contains
     real(rk) :: end_time
     call collect_point_forces(model)
     call collect_fixities(model)
-    model%now%loads = [model%now%loads, model%loads_at_work%loads_of_step()]
+    model%now%loads = [model%now%loads, model%active_loads%loads_of_step()]
     is_perturbation = model%now%procedure%finds_modes
     end_time = model%total_time + model%now%duration
     associate (histories => model%scene%amplitudes, duration => model%now%duration)
-      call model%loads_at_work%end_step(histories, duration, end_time, is_perturbation)
+      call model%active_loads%end_step(histories, duration, end_time, is_perturbation)
       call model%supports%end_step(histories, duration, end_time, is_perturbation)
       call model%point_forces%end_step(histories, duration, end_time, is_perturbation)
     end associate
@@ -86,12 +86,12 @@ contains
     integer :: history
     allocate (model%now%loads(0))
     associate (table => model%point_forces)
-      if (.not. any(table%is_set .or. abs(table%reached) > 0.0_rk)) return
+      if (.not. any(table%is_set .or. abs(table%previous) > 0.0_rk)) return
       force = merge(table%value, 0.0_rk, table%history == 0)
-      if (all(abs(force - table%reached) <= 0.0_rk)) then
+      if (all(abs(force - table%previous) <= 0.0_rk)) then
         call add_forces(model, force, 1.0_rk, 1.0_rk, 0)
       else
-        call add_forces(model, table%reached, 1.0_rk, 0.0_rk, 0)
+        call add_forces(model, table%previous, 1.0_rk, 0.0_rk, 0)
         call add_forces(model, force, 0.0_rk, 1.0_rk, 0)
       end if
     end associate

@@ -46,7 +46,7 @@ contains
       return
     end if
     call open_step(model)
-    if (model%loads_at_work%holds('BASE MOTION')) then
+    if (model%active_loads%holds('BASE MOTION')) then
       call this%warn(faults, 'the base motion of an earlier step goes on at its last value')
     end if
     if (this%has('NAME')) model%now%name = this%word('NAME')

@@ -60,15 +60,15 @@ contains
     call make_box(matrix, values, num_jumps)
     call solver%analyse(matrix, error)
     call solver%factorise(matrix, values, error)
-    call solver%take_end(matrix%num_free - 1, lower, unknown, is_there)
+    call solver%take_schur_block(matrix%num_free - 1, lower, unknown, is_there)
     call check(log, is_there .eqv. .false., 'other unknowns are not in their order')
-    call solver%take_end(num_jumps, lower, unknown, is_there)
+    call solver%take_schur_block(num_jumps, lower, unknown, is_there)
     call check(log, is_there .and. minval(unknown) == matrix%num_free - num_jumps + 1, 'the end')
     half = [(cos(real(j, rk)), j=1, matrix%num_free)]
     later(:, 1) = [(sin(2.0_rk*j), j=1, num_jumps)]
     whole = reshape(half, [matrix%num_free, 1])
     call solver%solve(whole, error)
-    call solver%eliminate(half, error)
+    call solver%forward_substitute(half, error)
     end_of_half = reshape(half(matrix%num_free - num_jumps + 1:), [num_jumps, 1])
     call solve_lower_transposed(lower, end_of_half)
     call check_close(log, maxval(abs(end_of_half(:, 1) - whole(unknown, 1))), 0.0_rk, 1.0e-12_rk, &
@@ -79,7 +79,7 @@ contains
     call solver%solve(whole, error)
     call solve_lower(lower, later)
     half(matrix%num_free - num_jumps + 1:) = half(matrix%num_free - num_jumps + 1:) + later(:, 1)
-    call solver%substitute(half, error)
+    call solver%backward_substitute(half, error)
     call check_close(log, maxval(abs(half - whole(:, 1))), 0.0_rk, 1.0e-12_rk, 'two halves')
   end subroutine halves
 

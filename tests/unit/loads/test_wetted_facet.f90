@@ -2,7 +2,7 @@
 program test_wetted_facet
   use kinds, only: rk
   use testing, only: check_close, test_log
-  use wetted_facet, only: water_body, wet_facet, wet_the_facet
+  use wetted_facet, only: water_body, wet_facet, integrate_wet_part
   implicit none
   type(test_log) :: log
 
@@ -26,7 +26,7 @@ contains
     integer :: i
     do i = 1, 4
       h = 0.3_rk*i
-      call wet_the_facet(x, water_body(level=h), wet)
+      call integrate_wet_part(x, water_body(level=h), wet)
       if (h > 1.0_rk) then
         call check_close(log, sum(wet%head(1, :)), h - 0.5_rk, 1.0e-14_rk, 'force under water')
         call check_close(log, sum(wet%root), (h**1.5_rk - (h - 1.0_rk)**1.5_rk)/1.5_rk, &
@@ -40,7 +40,7 @@ contains
         call check_close(log, sum(wet%root), h**1.5_rk/1.5_rk, 1.0e-14_rk, 'root')
       end if
     end do
-    call wet_the_facet(x, water_body(level=0.9_rk, bed=0.4_rk), wet)
+    call integrate_wet_part(x, water_body(level=0.9_rk, bed=0.4_rk), wet)
     call check_close(log, sum(wet%area(1, :)), 0.5_rk, 1.0e-14_rk, 'cut by the bed')
     call check_close(log, sum(wet%head(1, :)), 0.125_rk, 1.0e-14_rk, 'force above the bed')
   end subroutine upright_square
@@ -57,7 +57,7 @@ contains
     integer :: i, j
     integer, parameter :: strips = 3000
     x = spread(e1, 2, 4)*spread(flat(1, :), 1, 3) + spread(e2, 2, 4)*spread(flat(2, :), 1, 3)
-    call wet_the_facet(x, water_body(level=level), wet)
+    call integrate_wet_part(x, water_body(level=level), wet)
     force = 0.0_rk
     moment = 0.0_rk
     do i = 1, strips
@@ -104,7 +104,7 @@ contains
     real(rk), parameter :: x(3, 4) = reshape(real([0, 0, 0, 0, 1, 1, 0, 0, 2, 0, -1, 1], rk), &
                                              [3, 4])
     type(wet_facet) :: wet
-    call wet_the_facet(x, water_body(level=1.0_rk), wet)
+    call integrate_wet_part(x, water_body(level=1.0_rk), wet)
     call check_close(log, sum(wet%area(1, :)), 1.0_rk, 1.0e-14_rk, 'half of it')
     call check_close(log, sum(wet%head(1, :)), 1.0_rk/3.0_rk, 1.0e-14_rk, 'force')
     call check_close(log, sum(wet%root), 2.0_rk*(2.0_rk/3.0_rk - 0.4_rk), 1.0e-14_rk, 'root')
@@ -116,7 +116,7 @@ contains
     type(test_log), intent(inout) :: log
     real(rk), parameter :: x(3, 4) = reshape(real([0, 0, 0, 0, 2, 0, 0, 1, 2, 0, 1, 2], rk), [3, 4])
     type(wet_facet) :: wet
-    call wet_the_facet(x, water_body(level=1.0_rk), wet)
+    call integrate_wet_part(x, water_body(level=1.0_rk), wet)
     call check_close(log, sum(wet%area(1, :)), 1.5_rk, 1.0e-14_rk, 'area')
     call check_close(log, sum(wet%head(1, :)), 1.0_rk - 1.0_rk/6.0_rk, 1.0e-14_rk, 'force')
     call check_close(log, sum(wet%head(1, :)*x(2, :)), 1.0_rk - 1.0_rk/6.0_rk, 1.0e-14_rk, 'middle')
@@ -128,11 +128,11 @@ contains
     type(test_log), intent(inout) :: log
     real(rk), parameter :: x(3, 4) = reshape(real([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0], rk), [3, 4])
     type(wet_facet) :: wet
-    call wet_the_facet(x, water_body(level=-0.1_rk), wet)
+    call integrate_wet_part(x, water_body(level=-0.1_rk), wet)
     call check_close(log, maxval(abs(wet%head)) + maxval(abs(wet%area)), 0.0_rk, 0.0_rk, 'dry')
-    call wet_the_facet(x, water_body(level=0.0_rk), wet)
+    call integrate_wet_part(x, water_body(level=0.0_rk), wet)
     call check_close(log, sum(wet%root), 0.0_rk, 0.0_rk, 'at the level')
-    call wet_the_facet(x, water_body(level=4.0_rk), wet)
+    call integrate_wet_part(x, water_body(level=4.0_rk), wet)
     call check_close(log, sum(wet%root), 2.0_rk, 1.0e-14_rk, 'floor')
   end subroutine dry_and_level
 end program test_wetted_facet

@@ -1,6 +1,6 @@
 !> Which nodes of a slave face follow the master face, in which directions, and what they follow.
 program test_coupling_tie
-  use coupling_tie, only: find_bound, lay_tie
+  use coupling_tie, only: find_bound, build_tie_rows
   use dam_mesh, only: node_tie
   use errors, only: error_type
   use facet_segments, only: find_segments
@@ -45,7 +45,7 @@ contains
     type(surface_cover) :: cover
     logical, allocatable :: is_idle(:, :)
     call find_segments(x, slave, master, segments, cover)
-    call lay_tie(x, slave, master, segments, is_fixed, earlier, tie, is_idle)
+    call build_tie_rows(x, slave, master, segments, is_fixed, earlier, tie, is_idle)
   end subroutine tie_faces
 
   !> How often each node follows in each direction.

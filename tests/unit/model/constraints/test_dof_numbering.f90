@@ -139,7 +139,7 @@ contains
     call check_close(log, sum(abs(field(pressure, [1, 3, 5]))), 0.0_rk, 0.0_rk, &
                      'nodes without a pressure')
     allocate (r(17))
-    call numbers%compress(field, r)
+    call numbers%restrict(field, r)
     r(numbers%first_jump(1):numbers%first_jump(1) + 2) = &
       q(numbers%first_jump(1):numbers%first_jump(1) + 2)
     call check_close(log, maxval(abs(r - q)), 0.0_rk, 0.0_rk, 'compressed as expanded')
