@@ -1,4 +1,4 @@
-!> Reads a deck, tells its faults, and prints what the model holds.
+!> Reads a deck, reports its faults, and prints a summary of the model.
 module check_deck
   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
   use cli, only: command_line
@@ -21,7 +21,7 @@ contains
     type(command_line), intent(in) :: given
     type(problem), allocatable, intent(out) :: scene
     type(diagnostic_list), intent(out) :: faults !< warnings, for the summary of the run
-    character(:), allocatable, intent(out) :: echo !< the deck with every default made visible
+    character(:), allocatable, intent(out) :: echo !< the deck with its defaults
     type(error_type), allocatable, intent(out) :: error
     type(user_library), pointer :: umat
     character(:), allocatable :: note
@@ -35,7 +35,7 @@ contains
     if (faults%has_errors()) call raise(error, text_of_errors(faults), deck_is_wrong)
   end subroutine load_deck
 
-  !> Prints the effective deck and what the model holds.
+  !> Prints the deck with its defaults and a summary of the model.
   subroutine report_model(given, scene, echo)
     type(command_line), intent(in) :: given
     type(problem), intent(in) :: scene

@@ -1,4 +1,4 @@
-!> The command line: options, and the answers that need no deck.
+!> The command line: options, and output that needs no deck.
 module cli
   use, intrinsic :: iso_fortran_env, only: output_unit
   use build_info, only: compiler, compiler_flags, libraries, program_version
@@ -17,14 +17,14 @@ module cli
 
   character, parameter :: nl = new_line('a')
 
-  !> What the user asked for.
+  !> The options that the user gave.
   type :: command_line
     character(:), allocatable :: deck !< path, '' for none
-    character(:), allocatable :: folder !< of the results
-    character(:), allocatable :: keyword !< of --keywords, '' for all
-    character(:), allocatable :: field !< of --fields, '' for all
-    type(umat_request) :: umat !< --umat and its like
-    integer :: num_threads = 0 !< 0: as the system says
+    character(:), allocatable :: folder !< folder of the results
+    character(:), allocatable :: keyword !< argument of --keywords, '' for all
+    character(:), allocatable :: field !< argument of --fields, '' for all
+    type(umat_request) :: umat !< --umat and the options that go with it
+    integer :: num_threads = 0 !< 0: as many as the system has
     logical :: is_check = .false. !< read and verify only
     logical :: is_material = .false. !< run the tests of materials, not the analysis
     logical :: is_quiet = .false.
@@ -45,17 +45,17 @@ contains
     text = 'usage: keyway [options] job.inp'//nl// &
            '  -o DIR             folder of the results (default: .)'//nl// &
            '  -j N               threads'//nl// &
-           '  --check            read and verify only, print what the model holds'//nl// &
+           '  --check            read and verify only, print a summary of the model'//nl// &
            '  --material         run the tests of materials (*MATERIAL TEST), no analysis'//nl// &
            '  --umat FILE ..     the user''s own materials: UMAT as Fortran source or '// &
            'shared library'//nl// &
-           '  --umat-flags TEXT  of the compiler, for these sources'//nl// &
-           '  --umat-library LIB keep the library they make; without a deck do no more'//nl// &
-           '  --umat-threadsafe  the UMAT may be called by several threads at once'//nl// &
-           '  --umat-check       compare its DDSDDE with differences of STRESS'//nl// &
-           '  --keywords [NAME]  the reference of the deck, from the program itself'//nl// &
+           '  --umat-flags TEXT  compiler flags for these sources'//nl// &
+           '  --umat-library LIB keep the library; without a deck only build it'//nl// &
+           '  --umat-threadsafe  several threads may call the UMAT at once'//nl// &
+           '  --umat-check       compare DDSDDE of the UMAT with differences of STRESS'//nl// &
+           '  --keywords [NAME]  the reference of all keywords, or of one'//nl// &
            '  --fields [NAME]    the fields of results: components, place, unit, meaning'//nl// &
-           '  -q                 say nothing but errors'//nl// &
+           '  -q                 print errors only'//nl// &
            '  --version          compiler, flags, libraries'//nl// &
            '  --help             this page'//nl// &
            'exit code: 0 finished, 1 the analysis stopped, 2 bad deck or usage, '// &
@@ -142,7 +142,7 @@ contains
     end select
   end subroutine read_argument
 
-  !> The options of UMATs need one.
+  !> The options for UMATs need --umat.
   subroutine check_umat_options(given, error)
     type(command_line), intent(in) :: given
     type(error_type), allocatable, intent(out) :: error
@@ -155,7 +155,7 @@ contains
                '--umat-check go with --umat'//nl//usage(), deck_is_wrong)
   end subroutine check_umat_options
 
-  !> The word behind --umat, and those behind it that end like code; `i` is the last of them.
+  !> The argument after --umat, and the following ones that end like code; `i` is the last of them.
   subroutine read_umat_files(i, given)
     integer, intent(inout) :: i
     type(command_line), intent(inout) :: given
@@ -217,24 +217,24 @@ contains
     call get_command_argument(number, text)
   end function argument
 
-  !> Prints what needs no deck: greeting, help, version, keywords, fields.
+  !> Prints what needs no deck: usage, help, version, keywords, fields.
   subroutine print_answer(given, is_answered, error)
     type(command_line), intent(in) :: given
     logical, intent(out) :: is_answered
     type(error_type), allocatable, intent(out) :: error
     is_answered = .true.
     if (given%is_empty) then
-      call say('Keyway '//program_version//': finite-element analysis of concrete dams')
-      call say('Give it a deck, and it shakes your dam:')
-      call say('')
-      call say(usage())
+      call print_line('Keyway '//program_version//': finite-element analysis of concrete dams')
+      call print_line('Start it with a deck:')
+      call print_line('')
+      call print_line(usage())
     else if (given%wants_help) then
-      call say(usage())
+      call print_line(usage())
     else if (given%wants_version) then
-      call say('keyway '//program_version)
-      call say('compiler:  '//compiler)
-      call say('flags:     '//compiler_flags)
-      call say('libraries: '//libraries)
+      call print_line('keyway '//program_version)
+      call print_line('compiler:  '//compiler)
+      call print_line('flags:     '//compiler_flags)
+      call print_line('libraries: '//libraries)
     else if (given%wants_keywords) then
       call print_keywords(given%keyword, error)
     else if (given%wants_fields) then
@@ -252,11 +252,11 @@ contains
     logical :: is_known
     call list_all(list)
     if (name == '') then
-      call say(list_keywords(list%specs))
+      call print_line(list_keywords(list%specs))
       return
     end if
     call describe_keyword(list%specs, name, text, is_known)
-    if (is_known) call say(text)
+    if (is_known) call print_line(text)
     if (.not. is_known) call raise(error, 'keyway: '//text, deck_is_wrong)
   end subroutine print_keywords
 
@@ -266,16 +266,16 @@ contains
     character(:), allocatable :: text
     logical :: is_known
     if (name == '') then
-      call say(field_lines())
+      call print_line(field_lines())
       return
     end if
     call field_page(name, text, is_known)
-    if (is_known) call say(text)
+    if (is_known) call print_line(text)
     if (.not. is_known) call raise(error, 'keyway: '//text, deck_is_wrong)
   end subroutine print_fields
 
-  subroutine say(text)
+  subroutine print_line(text)
     character(*), intent(in) :: text
     write (output_unit, '(a)') text
-  end subroutine say
+  end subroutine print_line
 end module cli

@@ -1,4 +1,4 @@
-!> What a model holds, in lines for people.
+!> The summary of a model as text.
 module model_summary
   use dam_mesh, only: named_set
   use joint_points, only: joint
@@ -31,7 +31,7 @@ contains
     text = text//loads_of(scene)//steps_of(scene)//tests_of(scene)
   end function summary_of
 
-  !> What `keyway --material` works on.
+  !> The materials and tests of `keyway --material`.
   function summary_of_tests(scene) result(text)
     type(problem), intent(in) :: scene
     character(:), allocatable :: text !< lines with new_line between them
@@ -104,7 +104,7 @@ contains
     end do
   end function materials_of
 
-  !> 'E .. Pa, nu ..'; a UMAT has none that anyone knows.
+  !> 'E .. Pa, nu ..'; a UMAT exposes no elastic constants.
   pure function elastic_text(now) result(text)
     type(material), intent(in) :: now
     character(:), allocatable :: text
@@ -112,7 +112,7 @@ contains
     if (now%young <= 0.0_rk) text = 'a UMAT'
   end function elastic_text
 
-  !> '; 12 elements', where there are any.
+  !> '; 12 elements', '' without elements.
   pure function elements_of(scene, material) result(text)
     type(problem), intent(in) :: scene
     integer, intent(in) :: material
@@ -155,7 +155,7 @@ contains
     end do
   end function joints_of
 
-  !> What a joint is made of, and where its law is asked.
+  !> What a joint is made of, and where its law is evaluated.
   pure function make_of(item) result(text)
     type(joint), intent(in) :: item
     character(:), allocatable :: text
@@ -244,7 +244,7 @@ contains
     text = lines%contents()
   end function steps_of
 
-  !> A load at work in a step.
+  !> A load that is active in a step.
   pure function work_of(scene, work) result(text)
     type(problem), intent(in) :: scene
     type(step_load), intent(in) :: work

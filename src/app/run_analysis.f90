@@ -1,4 +1,4 @@
-!> One analysis: opens the results, runs the steps, closes the results, also after a failure.
+!> One analysis: opens the results, runs the steps, and closes the results even after a failure.
 module run_analysis
   use omp_lib, only: omp_set_num_threads
   use kinds, only: rk
@@ -23,14 +23,14 @@ module run_analysis
 
 contains
 
-  !> Runs a problem as the command line says. An error leaves readable results behind.
+  !> Runs a problem with the options of the command line. After an error the results are readable.
   subroutine run_problem(scene, given, remarks, echo, costs, started_at, error)
     type(problem), intent(in) :: scene
     type(command_line), intent(in) :: given
     type(diagnostic_list), intent(in) :: remarks !< warnings of the deck
     character(*), intent(in) :: echo !< the deck with its defaults, for the log
     type(ledger), intent(in) :: costs !< open since the start of the program
-    real(rk), intent(in) :: started_at !< by the wall clock [s]
+    real(rk), intent(in) :: started_at !< wall clock [s]
     type(error_type), allocatable, intent(out) :: error
     type(result_folder) :: results
     type(state), allocatable :: now

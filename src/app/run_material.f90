@@ -1,4 +1,4 @@
-!> The tests of materials: each is run and written; one that stops does not stop the others.
+!> Runs and writes the tests of materials. A test that stops does not stop the others.
 module run_material
   use cli, only: command_line
   use diagnostics, only: diagnostic_list
@@ -20,12 +20,12 @@ module run_material
 
 contains
 
-  !> Runs all tests of the deck. An error leaves the rows of every test so far behind.
+  !> Runs all tests of the deck. After an error the rows computed so far are in the files.
   subroutine run_tests(scene, given, echo, started_at, error)
     type(problem), intent(in) :: scene
     type(command_line), intent(in) :: given
     character(*), intent(in) :: echo !< the deck with its defaults, for the log
-    real(rk), intent(in) :: started_at !< by the wall clock [s]
+    real(rk), intent(in) :: started_at !< wall clock [s]
     type(error_type), allocatable, intent(out) :: error
     type(test_summary), allocatable :: summaries(:)
     type(error_type), allocatable :: failure

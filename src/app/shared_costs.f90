@@ -1,4 +1,4 @@
-!> Effects whose work is done for all of them at once: the ledger divides it by number of points.
+!> Divides work that is done for several effects at once by their numbers of points.
 module shared_costs
   use kinds, only: rk
   use problem_definition, only: problem
@@ -9,8 +9,8 @@ module shared_costs
 
 contains
 
-  !> Divides the work on all joints among the joints, and that on all inelastic solids among their
-  !> materials.
+  !> Divides the work on all joints among the joints, and the work on all inelastic solids among
+  !> their materials.
   subroutine share_costs(scene, costs)
     type(problem), intent(in) :: scene
     type(ledger), intent(in) :: costs

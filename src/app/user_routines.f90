@@ -1,4 +1,4 @@
-!> The UMAT of the command line: loaded before the deck is read, told of the end of the run.
+!> The UMAT of the command line: loaded before the deck is read, called at the end of the run.
 module user_routines
   use cli, only: command_line
   use errors, only: error_type
@@ -13,7 +13,7 @@ module user_routines
 
 contains
 
-  !> Builds and loads what --umat names; null without it.
+  !> Builds and loads the UMAT that --umat names; null without --umat.
   subroutine load_user_routines(given, umat, error)
     type(command_line), intent(in) :: given
     type(user_library), pointer, intent(out) :: umat !< lives as long as the program
@@ -26,7 +26,7 @@ contains
     call open_library(given%umat, base_name(given%deck), given%folder, umat, error)
   end subroutine load_user_routines
 
-  !> Tells UEXTERNALDB of the end, and the log what was learnt of the UMAT.
+  !> Calls UEXTERNALDB at the end of the run, and writes the checks of the UMAT to the log.
   subroutine end_user_routines(scene, time, log, error)
     type(problem), intent(in) :: scene
     real(rk), intent(in) :: time !< total [s]

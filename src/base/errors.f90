@@ -1,4 +1,4 @@
-!> The one error of the program: a message and the exit code it leads to.
+!> The error of the program: a message and the exit code that it leads to.
 !>
 !> Every procedure that can fail ends with `type(error_type), allocatable, intent(out) :: error`;
 !> not allocated means success. Only the main program ends the run.
@@ -14,7 +14,7 @@ module errors
 
   type :: error_type
     integer :: exit_code = analysis_failed !< what the program returns to the shell
-    character(:), allocatable :: message !< one or more lines for people
+    character(:), allocatable :: message !< one or more lines
   end type error_type
 
 contains

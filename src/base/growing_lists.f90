@@ -1,20 +1,19 @@
-!> Lists that grow by doubling: an entry costs the same in the mean, however long the list becomes.
+!> Lists that grow by doubling: the mean cost of an entry does not depend on the length.
 !>
-!> A list is an allocatable array of which the first `used` entries are in use. Lists of derived
-!> types with few entries (one a keyword) are written `list = [list, new]` instead.
+!> A list is an allocatable array of which the first `used` entries are in use. Short lists of
+!> derived types (one entry per keyword) are written `list = [list, new]` instead.
 module growing_lists
   use kinds, only: rk
   implicit none
   private
   public :: append, make_room
 
-  !> Adds one entry, or several, behind those in use.
+  !> Adds one or several entries after those in use.
   interface append
     module procedure :: append_integer, append_integers, append_real
   end interface append
 
-  !> Lengthens a list where more entries do not fit behind those in use; makes one that is not
-  !> allocated.
+  !> Lengthens a list so that more entries fit after those in use; allocates a new list.
   interface make_room
     module procedure :: lengthen_integers, lengthen_reals, lengthen_columns
   end interface make_room

@@ -1,4 +1,4 @@
-!> Checks cards against the specifications of their keywords; every fault is told, none stops it.
+!> Checks cards against the specifications of their keywords. Every fault is reported.
 module card_check
   use deck_card, only: card
   use diagnostics, only: diagnostic_list, place, severity_error
@@ -13,16 +13,17 @@ module card_check
   private
   public :: check_card, match_card
 
-  integer, parameter :: longest_name = 80 !< letters of a name that are compared for 'did you mean'
+  integer, parameter :: longest_name = 80 !< letters of a name compared for 'did you mean'
 
 contains
 
-  !> Finds the keyword of a card. Unknown or not yet available: an error; without effect: noted.
+  !> Finds the keyword of a card. An unknown or unavailable keyword is an error; a keyword without
+  !> effect is noted.
   subroutine match_card(the_card, specs, faults, found, where_it_stands)
     type(card), intent(in) :: the_card
     type(keyword), intent(in) :: specs(:)
     type(diagnostic_list), intent(inout) :: faults
-    integer, intent(out) :: found !< position in `specs`; 0: there is nothing to do for this card
+    integer, intent(out) :: found !< position in `specs`; 0: ignore the card
     character(*), intent(in), optional :: where_it_stands !< see `find_spec`
     found = find_spec(specs, the_card%keyword, where_it_stands)
     if (found == 0) then
@@ -36,7 +37,7 @@ contains
     end if
   end subroutine match_card
 
-  !> Tells that a keyword is unknown, and what it may have been meant to be.
+  !> Reports an unknown keyword, with the known keyword of the nearest spelling.
   subroutine fault_unknown(the_card, specs, faults)
     type(card), intent(in) :: the_card
     type(keyword), intent(in) :: specs(:)
@@ -45,7 +46,7 @@ contains
     character(:), allocatable :: nearest
     integer :: i
     if (len(the_card%keyword) == 0) then
-      call the_card%fault(faults, "no keyword behind the '*'", "a keyword, or '**' for a comment")
+      call the_card%fault(faults, "no keyword after the '*'", "a keyword, or '**' for a comment")
     else if (index(the_card%keyword, '=') > 0) then
       call the_card%fault(faults, 'unknown keyword with a "="', &
                           'a comma between the keyword and its parameters')
@@ -59,12 +60,12 @@ contains
     end if
   end subroutine fault_unknown
 
-  !> Compares a card with its specification, keeps the specification in the card.
+  !> Checks a card against its specification, and stores the specification in the card.
   subroutine check_card(the_card, spec, faults, is_right)
     type(card), intent(inout) :: the_card
     type(keyword), intent(in) :: spec
     type(diagnostic_list), intent(inout) :: faults
-    logical, intent(out) :: is_right !< nothing was found
+    logical, intent(out) :: is_right !< no fault was found
     integer :: num_before
     num_before = faults%num_errors
     the_card%spec = spec
@@ -78,7 +79,7 @@ contains
     is_right = faults%num_errors == num_before
   end subroutine check_card
 
-  !> Every parameter that is given must be known and hold what it should.
+  !> Checks that every given parameter is known and has a valid value.
   subroutine check_given_parameters(the_card, faults)
     type(card), intent(in) :: the_card
     type(diagnostic_list), intent(inout) :: faults
@@ -99,7 +100,7 @@ contains
             call the_card%fault_parameter(faults, given%name, given%name//' has no value', &
                                           expected_in(wanted))
           else
-            call judge(the_card%text(given%name), wanted, problem, nearest)
+            call check_word(the_card%text(given%name), wanted, problem, nearest)
             if (len(problem) > 0) call the_card%fault_parameter( &
               faults, given%name, given%name//': '//problem, expected_in(wanted), nearest)
           end if
@@ -108,7 +109,7 @@ contains
     end do
   end subroutine check_given_parameters
 
-  !> Tells that a parameter is unknown; points at its name.
+  !> Reports an unknown parameter at the place of its name.
   subroutine fault_unknown_parameter(the_card, i, faults)
     type(card), intent(in) :: the_card
     integer, intent(in) :: i !< position of the parameter in the card
@@ -133,7 +134,7 @@ contains
     end associate
   end subroutine fault_unknown_parameter
 
-  !> Every parameter that is required must be given.
+  !> Checks that every required parameter is given.
   subroutine check_required_parameters(the_card, faults)
     type(card), intent(in) :: the_card
     type(diagnostic_list), intent(inout) :: faults
@@ -147,7 +148,7 @@ contains
     end do
   end subroutine check_required_parameters
 
-  !> There must be as many data lines as the keyword takes.
+  !> Checks the number of data lines.
   subroutine check_line_count(the_card, faults)
     type(card), intent(in) :: the_card
     type(diagnostic_list), intent(inout) :: faults
@@ -179,7 +180,7 @@ contains
     if (num_lines == 0) text = 'no data line'
   end function lines_in_words
 
-  !> Every field of every data line must hold what its column says.
+  !> Checks every field of every data line against its column.
   subroutine check_lines(the_card, faults)
     type(card), intent(in) :: the_card
     type(diagnostic_list), intent(inout) :: faults
@@ -196,7 +197,7 @@ contains
     end do
   end subroutine check_lines
 
-  !> Tells that a line holds more fields than there are columns, and why if there is more to say.
+  !> Reports a line with more fields than columns, with the reason if the specification has one.
   subroutine fault_further_columns(the_card, line, faults)
     type(card), intent(in) :: the_card
     integer, intent(in) :: line !< data line
@@ -211,7 +212,7 @@ contains
     end associate
   end subroutine fault_further_columns
 
-  !> Compares the fields of a line with the columns, group by group where the columns repeat.
+  !> Checks the fields of a line against the columns; columns may repeat.
   subroutine check_columns(the_card, line, faults)
     type(card), intent(in) :: the_card
     integer, intent(in) :: line !< data line
@@ -233,7 +234,7 @@ contains
           end if
           cycle
         end if
-        call judge(the_card%lines%body(first:last), columns(column), problem, nearest)
+        call check_word(the_card%lines%body(first:last), columns(column), problem, nearest)
         if (len(problem) > 0) then
           call the_card%fault_at(faults, line, number, problem, expected_in(columns(column)), &
                                  nearest)
@@ -242,12 +243,12 @@ contains
     end associate
   end subroutine check_columns
 
-  !> Compares a word with what it should be.
-  pure subroutine judge(word, wanted, problem, nearest)
+  !> Checks a word against the kind and range of its field.
+  pure subroutine check_word(word, wanted, problem, nearest)
     character(*), intent(in) :: word !< not empty
     type(field), intent(in) :: wanted
-    character(:), allocatable, intent(out) :: problem !< '' where it is right
-    character(:), allocatable, intent(out) :: nearest !< a choice that is near, or ''
+    character(:), allocatable, intent(out) :: problem !< '' for a valid word
+    character(:), allocatable, intent(out) :: nearest !< a choice of similar spelling, or ''
     real(rk) :: value
     integer :: number
     logical :: is_right
@@ -267,9 +268,9 @@ contains
       is_right = .true.
     end select
     if (.not. is_right) problem = "found '"//word//"'"
-  end subroutine judge
+  end subroutine check_word
 
-  !> The value lies in the range of the field.
+  !> Whether the value lies in the range of the field.
   pure logical function is_in_range(value, wanted)
     real(rk), intent(in) :: value
     type(field), intent(in) :: wanted
@@ -278,14 +279,14 @@ contains
     if (wanted%excludes_highest) is_in_range = is_in_range .and. value < wanted%highest
   end function is_in_range
 
-  !> The word is one of the choices, regardless of case.
+  !> Whether the word is one of the choices, regardless of case.
   pure logical function is_choice(word, choices)
     character(*), intent(in) :: word
     character(*), intent(in) :: choices !< 'A | B'
     is_choice = index('| '//choices//' |', '| '//single_blanks(upper_case(word))//' |') > 0
   end function is_choice
 
-  !> Position of a parameter in the specification, 0 where it is not known.
+  !> Position of a parameter in the specification, 0 for an unknown one.
   pure integer function position_of(spec, name) result(found)
     type(keyword), intent(in) :: spec
     character(*), intent(in) :: name
@@ -296,7 +297,7 @@ contains
     end do
   end function position_of
 
-  !> Parameters a keyword takes.
+  !> Names of the parameters of a keyword.
   pure integer function num_parameters(spec)
     type(keyword), intent(in) :: spec
     num_parameters = 0

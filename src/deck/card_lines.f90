@@ -1,4 +1,4 @@
-!> The bytes of a card: its lines, where they come from, and the fields of its data.
+!> The text of a card: its lines, their places in the files, and the fields of its data.
 module card_lines
   use diagnostics, only: place
   implicit none
@@ -10,7 +10,7 @@ module card_lines
     character(:), allocatable :: path !< as the user named it
   end type file_name
 
-  !> One line and where it comes from.
+  !> One line and its place in a file.
   type :: line_origin
     integer :: file = 1 !< index into `files`
     integer :: number = 0 !< line in that file
@@ -19,11 +19,11 @@ module card_lines
     integer :: num_fields = 0 !< empty ones at the end do not count
   end type line_origin
 
-  !> Lines of one card, filled by the lexer: first those of the keyword, then the data lines.
+  !> Lines of one card, filled by the lexer: first the keyword lines, then the data lines.
   type :: line_store
     character(:), allocatable :: body !< the lines one after the other
     type(file_name), allocatable :: files(:)
-    integer :: num_heads = 1 !< lines the keyword takes
+    integer :: num_heads = 1 !< number of keyword lines
     type(line_origin), allocatable :: rows(:) !< keyword lines, then data lines
     integer, allocatable :: field_first(:), field_last(:) !< bytes of each field, without quotes
   contains
@@ -37,7 +37,7 @@ module card_lines
 
 contains
 
-  !> Bytes of a field in the body; first > last where it is empty or missing.
+  !> Bytes of a field in the body; first > last for an empty or missing field.
   pure subroutine find_field(self, line, field, first, last)
     class(line_store), intent(in) :: self
     integer, intent(in) :: line, field !< data line and field
@@ -53,7 +53,7 @@ contains
     last = self%field_last(i)
   end subroutine find_field
 
-  !> Place of some bytes of the body in the file they come from.
+  !> Place of some bytes of the body in their file.
   pure function spot(self, row, first, last, keyword)
     class(line_store), intent(in) :: self
     integer, intent(in) :: row !< index into `rows`
@@ -70,7 +70,7 @@ contains
     end associate
   end function spot
 
-  !> Place of a field: of the whole data line for field 0, of the line's end where it is missing.
+  !> Place of a field: of the whole data line for field 0, of the line's end for a missing field.
   pure function spot_of_field(self, line, field, keyword) result(spot)
     class(line_store), intent(in) :: self
     integer, intent(in) :: line, field !< data line and field; line 0: the keyword line
@@ -89,7 +89,7 @@ contains
     spot = self%spot(row, first, last, keyword)
   end function spot_of_field
 
-  !> Place of the keyword, from its star on.
+  !> Place of the keyword, star included.
   pure function spot_of_keyword(self, keyword) result(spot)
     class(line_store), intent(in) :: self
     character(*), intent(in) :: keyword !< name of the card
@@ -104,7 +104,7 @@ contains
     spot = self%spot(1, self%rows(1)%first + star - 1, self%rows(1)%first + last - 1, keyword)
   end function spot_of_keyword
 
-  !> 'file:line' of a data line, of the keyword for `line` = 0.
+  !> 'file:line' of a data line; of the keyword for `line` = 0.
   pure function file_and_line(self, line) result(name)
     class(line_store), intent(in) :: self
     integer, intent(in) :: line !< data line
@@ -117,7 +117,7 @@ contains
     name = self%files(self%rows(row)%file)%path//':'//trim(number)
   end function file_and_line
 
-  !> The data line ends in a comma.
+  !> Whether the data line ends in a comma.
   pure logical function ends_in_comma(self, line)
     class(line_store), intent(in) :: self
     integer, intent(in) :: line !< data line

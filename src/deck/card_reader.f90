@@ -1,11 +1,11 @@
-!> Data that do not keep to their line: streams of fields, and records that go on in the next line.
+!> Data that do not end with their line: streams of fields, and records continued in the next line.
 module card_reader
   use deck_card, only: card
   implicit none
   private
   public :: field_reader, find_record
 
-  !> Walks over all fields of all data lines of a card, for data of 'any number a line'.
+  !> Reads all fields of all data lines of a card one by one, for data of any number per line.
   !>
   !>     do while (reader%advance(the_card))
   !>       value = the_card%real_at(reader%line, reader%field)
@@ -14,13 +14,13 @@ module card_reader
     integer :: line = 1 !< data line of the field
     integer :: field = 0 !< field in that line, from 1
   contains
-    procedure :: advance
+    procedure :: advance => next_field
   end type field_reader
 
 contains
 
-  !> Steps to the next field (which may be empty); false behind the last one.
-  logical function advance(self, the_card) result(has_field)
+  !> Moves to the next field (which may be empty); false after the last one.
+  logical function next_field(self, the_card) result(has_field)
     class(field_reader), intent(inout) :: self
     type(card), intent(in) :: the_card
     self%field = self%field + 1
@@ -30,17 +30,17 @@ contains
       self%field = 1
     end do
     has_field = self%line <= the_card%num_lines
-  end function advance
+  end function next_field
 
-  !> Finds the fields of a record, such as an element with its nodes, that begins in a data line.
+  !> Finds the fields of a record that begins in a data line, such as an element with its nodes.
   !>
-  !> A record with fewer fields than wanted goes on in the next line. `num_found` differs from the
-  !> number wanted where the data end too early or a line holds too many fields.
+  !> A record with fewer fields than wanted continues in the next line. `num_found` differs from the
+  !> number wanted if the data end too early or a line holds too many fields.
   pure subroutine find_record(the_card, line, lines, fields, num_found, next_line)
     type(card), intent(in) :: the_card
     integer, intent(in) :: line !< data line where the record begins
-    integer, intent(out) :: lines(:), fields(:) !< of each field wanted: data line, field in it
-    integer, intent(out) :: num_found !< fields there are, also those beyond the number wanted
+    integer, intent(out) :: lines(:), fields(:) !< data line and field of each field wanted
+    integer, intent(out) :: num_found !< fields found, also beyond the number wanted
     integer, intent(out) :: next_line !< data line where the next record begins
     integer :: i, num_here
     lines = line

@@ -1,8 +1,8 @@
 !> A card: one keyword line of the deck with its parameters and data lines.
 !>
-!> A card owns its lines and knows the place of every word, so that a message can point at it.
-!> Getters fall back to the default of the specification the card was checked against; they never
-!> fail: `check_card` has told about every word that is not what it should be.
+!> A card holds its lines and the place of every word, so that a message can point at any word.
+!> Getters return the default of the specification for what is not given. Getters never fail:
+!> `check_card` has reported every invalid word.
 !> Data lines and their fields count from 1; names of parameters are upper case.
 module deck_card
   use card_lines, only: line_store
@@ -19,18 +19,18 @@ module deck_card
     character(:), allocatable :: name !< upper case, single blanks
     integer :: row = 1 !< line of the name
     integer :: first = 1, last = 0 !< bytes of the name
-    logical :: has_value = .false. !< there is a '='
+    logical :: has_value = .false. !< the parameter has a '='
     integer :: value_row = 1 !< line of the value
     integer :: value_first = 1, value_last = 0 !< bytes of the value, without quotes
   end type card_parameter
 
-  !> One keyword of the deck with all it says.
+  !> One keyword of the deck with its parameters and data.
   type :: card
     character(:), allocatable :: keyword !< upper case, single blanks, without the star
     integer :: num_lines = 0 !< data lines
-    type(keyword) :: spec !< what it was checked against
+    type(keyword) :: spec !< the specification of the keyword
     type(card_parameter), allocatable :: parameters(:) !< in the order of the deck
-    type(line_store) :: lines !< its bytes and their places
+    type(line_store) :: lines !< text and places
   contains
     procedure :: has
     procedure :: text
@@ -61,14 +61,14 @@ module deck_card
 
 contains
 
-  !> The keyword line holds the parameter or flag.
+  !> Whether the keyword line holds the parameter or flag.
   pure logical function has(self, name)
     class(card), intent(in) :: self
     character(*), intent(in) :: name
     has = self%find_parameter(name) > 0
   end function has
 
-  !> Index into `parameters`, 0 where the keyword line has no such parameter.
+  !> Index into `parameters`, 0 for a parameter that is not given.
   pure integer function find_parameter(self, name) result(found)
     class(card), intent(in) :: self
     character(*), intent(in) :: name
@@ -80,7 +80,7 @@ contains
     end do
   end function find_parameter
 
-  !> Value of a parameter as written, without quotes; its default where it is not given.
+  !> Value of a parameter as written, without quotes; else its default.
   pure function text(self, name) result(value)
     class(card), intent(in) :: self
     character(*), intent(in) :: name
@@ -94,7 +94,7 @@ contains
     if (len(value) == 0) value = parameter_default(self%spec, name)
   end function text
 
-  !> Value of a parameter in upper case; its default where it is not given.
+  !> Value of a parameter in upper case; else its default.
   pure function word(self, name) result(value)
     class(card), intent(in) :: self
     character(*), intent(in) :: name
@@ -102,7 +102,7 @@ contains
     value = upper_case(self%text(name))
   end function word
 
-  !> Number given to a parameter; its default where it is not given, zero without a default.
+  !> Number given to a parameter; else its default, zero without a default.
   pure real(rk) function real_of(self, name) result(value)
     class(card), intent(in) :: self
     character(*), intent(in) :: name
@@ -110,7 +110,7 @@ contains
     call parse_real(self%text(name), value, is_number)
   end function real_of
 
-  !> Integer given to a parameter; its default where it is not given, zero without a default.
+  !> Integer given to a parameter; else its default, zero without a default.
   pure integer function integer_of(self, name) result(value)
     class(card), intent(in) :: self
     character(*), intent(in) :: name
@@ -118,7 +118,7 @@ contains
     call parse_integer(self%text(name), value, is_integer)
   end function integer_of
 
-  !> Fields of a data line; empty ones at its end do not count.
+  !> Number of fields of a data line, without empty fields at the end.
   pure integer function num_fields(self, line)
     class(card), intent(in) :: self
     integer, intent(in) :: line
@@ -128,7 +128,7 @@ contains
     end if
   end function num_fields
 
-  !> A field as written, without quotes and outer blanks; default of its column where it is empty.
+  !> A field as written, without quotes and outer blanks; default of its column for an empty field.
   pure function text_at(self, line, field) result(value)
     class(card), intent(in) :: self
     integer, intent(in) :: line, field
@@ -142,7 +142,7 @@ contains
     end if
   end function text_at
 
-  !> A field in upper case; default of its column where it is empty.
+  !> A field in upper case; default of its column if the field is empty.
   pure function word_at(self, line, field) result(value)
     class(card), intent(in) :: self
     integer, intent(in) :: line, field
@@ -150,7 +150,7 @@ contains
     value = upper_case(self%text_at(line, field))
   end function word_at
 
-  !> A number; default of its column (or zero) where the field is empty or no number.
+  !> A number; default of its column (or zero) if the field is empty or no number.
   pure real(rk) function real_at(self, line, field) result(value)
     class(card), intent(in) :: self
     integer, intent(in) :: line, field
@@ -161,7 +161,7 @@ contains
     if (.not. is_number) call parse_real(column_default(self%spec, field), value, is_number)
   end function real_at
 
-  !> An integer; default of its column (or zero) where the field is empty or no integer.
+  !> An integer; default of its column (or zero) if the field is empty or no integer.
   pure integer function integer_at(self, line, field) result(value)
     class(card), intent(in) :: self
     integer, intent(in) :: line, field
@@ -172,7 +172,7 @@ contains
     if (.not. is_integer) call parse_integer(column_default(self%spec, field), value, is_integer)
   end function integer_at
 
-  !> Nothing is written there.
+  !> Whether the field is empty or missing.
   pure logical function is_empty_at(self, line, field)
     class(card), intent(in) :: self
     integer, intent(in) :: line, field
@@ -181,7 +181,7 @@ contains
     is_empty_at = first > last
   end function is_empty_at
 
-  !> The field holds a number.
+  !> Whether the field holds a number.
   pure logical function is_real_at(self, line, field)
     class(card), intent(in) :: self
     integer, intent(in) :: line, field
@@ -191,7 +191,7 @@ contains
     call parse_real(self%lines%body(first:last), value, is_real_at)
   end function is_real_at
 
-  !> The field holds an integer.
+  !> Whether the field holds an integer.
   pure logical function is_integer_at(self, line, field)
     class(card), intent(in) :: self
     integer, intent(in) :: line, field
@@ -200,7 +200,7 @@ contains
     call parse_integer(self%lines%body(first:last), value, is_integer_at)
   end function is_integer_at
 
-  !> The data line ends in a comma (for keywords whose data go on in the next line).
+  !> Whether the data line ends in a comma (for keywords whose data continue in the next line).
   pure logical function ends_in_comma(self, line)
     class(card), intent(in) :: self
     integer, intent(in) :: line
@@ -214,7 +214,7 @@ contains
     spot = self%lines%spot_of_keyword(self%keyword)
   end function place_of_card
 
-  !> Place of the value of a parameter; of its name without a value, of the keyword without both.
+  !> Place of the value of a parameter; without a value of its name, without a name of the keyword.
   pure function place_of(self, name) result(spot)
     class(card), intent(in) :: self
     character(*), intent(in) :: name
@@ -234,7 +234,7 @@ contains
     end if
   end function place_of
 
-  !> Place of a field: of the whole data line for field 0, of the line's end where it is missing.
+  !> Place of a field: of the whole data line for field 0, of the line's end for a missing field.
   pure function place_at(self, line, field) result(spot)
     class(card), intent(in) :: self
     integer, intent(in) :: line, field
@@ -242,7 +242,7 @@ contains
     spot = self%lines%spot_of_field(line, field, self%keyword)
   end function place_at
 
-  !> 'file:line' of a data line, of the keyword for `line` = 0.
+  !> 'file:line' of a data line; of the keyword for `line` = 0.
   pure function file_and_line(self, line) result(name)
     class(card), intent(in) :: self
     integer, intent(in) :: line
@@ -256,7 +256,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     character(*), intent(in) :: problem !< what is wrong
     character(*), intent(in), optional :: expected !< what was expected
-    character(*), intent(in), optional :: nearest !< a known word that is near, or ''
+    character(*), intent(in), optional :: nearest !< a known word of similar spelling, or ''
     type(place), intent(in), optional :: first !< where the same was defined before
     call faults%add(severity_error, self%place(), problem, expected, nearest, first)
   end subroutine fault
@@ -287,7 +287,7 @@ contains
   subroutine warn(self, faults, problem, expected)
     class(card), intent(in) :: self
     type(diagnostic_list), intent(inout) :: faults
-    character(*), intent(in) :: problem !< what is odd
+    character(*), intent(in) :: problem !< what is unusual
     character(*), intent(in), optional :: expected !< what was expected
     call faults%add(severity_warning, self%place(), problem, expected)
   end subroutine warn
@@ -297,7 +297,7 @@ contains
     class(card), intent(in) :: self
     type(diagnostic_list), intent(inout) :: faults
     integer, intent(in) :: line, field !< data line and field
-    character(*), intent(in) :: problem !< what is odd
+    character(*), intent(in) :: problem !< what is unusual
     character(*), intent(in), optional :: expected !< what was expected
     call faults%add(severity_warning, self%place_at(line, field), problem, expected)
   end subroutine warn_at

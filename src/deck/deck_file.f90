@@ -7,11 +7,11 @@ module deck_file
 
 contains
 
-  !> Reads a file whole.
+  !> Reads a whole file.
   subroutine load_file(path, text, reason)
     character(*), intent(in) :: path
     character(:), allocatable, intent(out) :: text !< its bytes
-    character(:), allocatable, intent(out) :: reason !< why it cannot be read, '' when it could
+    character(:), allocatable, intent(out) :: reason !< why the file cannot be read, '' for success
     character(200) :: message
     integer(long) :: num_bytes
     integer :: unit, status
@@ -34,7 +34,7 @@ contains
     close (unit)
   end subroutine load_file
 
-  !> What the run-time library says, without the name of the file in front.
+  !> The message of the run-time library without the name of the file.
   pure function cause(message) result(reason)
     character(*), intent(in) :: message
     character(:), allocatable :: reason
@@ -42,10 +42,10 @@ contains
     if (len(reason) == 0) reason = 'it is no file'
   end function cause
 
-  !> Path of a file that is named in another: relative paths start where that one is.
+  !> Path of a file that another file names: relative paths start in the folder of the naming file.
   pure function path_beside(path, name) result(joined)
-    character(*), intent(in) :: path !< of the file that names it
-    character(*), intent(in) :: name !< as it is named
+    character(*), intent(in) :: path !< of the naming file
+    character(*), intent(in) :: name !< as written there
     character(:), allocatable :: joined
     joined = name
     if (name(1:1) /= '/') joined = path(:index(path, '/', back=.true.))//name

@@ -15,10 +15,10 @@ module deck_lexer
 
 contains
 
-  !> Reads a deck with all the files it includes and takes it apart into cards.
+  !> Reads a deck with all included files and splits it into cards.
   !>
-  !> A keyword line that ends in a comma goes on in the next line when that line holds parameters:
-  !> a '=', or first a parameter `specs` knows for the keyword. Else the comma is a stray one.
+  !> A keyword line that ends in a comma continues in the next line if that line holds parameters: a
+  !> '=', or first a parameter that `specs` has for the keyword. Else the comma is ignored.
   subroutine read_cards(path, specs, cards, faults)
     character(*), intent(in) :: path !< of the deck
     type(keyword), intent(in) :: specs(:) !< of all keywords
@@ -44,7 +44,7 @@ contains
     end do
   end subroutine read_cards
 
-  !> Tells of data above the first keyword.
+  !> Reports data before the first keyword.
   subroutine fault_headless_data(source, faults)
     type(source_text), intent(in) :: source
     type(diagnostic_list), intent(inout) :: faults
@@ -60,7 +60,7 @@ contains
   !> Makes a card of its lines.
   subroutine read_card(source, lines, specs, new, faults)
     type(source_text), intent(in) :: source
-    type(source_line), intent(in) :: lines(:) !< the keyword line and all up to the next one
+    type(source_line), intent(in) :: lines(:) !< the lines up to the next keyword
     type(keyword), intent(in) :: specs(:)
     type(card), intent(out) :: new
     type(diagnostic_list), intent(inout) :: faults
@@ -79,7 +79,7 @@ contains
     call find_fields(new)
   end subroutine read_card
 
-  !> Copies the bytes of a card, so that it stands on its own.
+  !> Copies the text of a card, so that the card does not need the deck.
   subroutine copy_lines(source, lines, new)
     type(source_text), intent(in) :: source
     type(source_line), intent(in) :: lines(:)
@@ -106,7 +106,7 @@ contains
     end do
   end subroutine copy_lines
 
-  !> Position of a file's name among those of the card, which gets it where it is new.
+  !> Position of a file's name in the list of the card; a new name is added.
   subroutine name_file(files, path, position)
     type(file_name), allocatable, intent(inout) :: files(:)
     character(*), intent(in) :: path
@@ -130,7 +130,7 @@ contains
     allocate (new%parameters(0))
   end subroutine read_keyword
 
-  !> The keyword goes on in this line.
+  !> Whether the keyword continues in this line.
   logical function goes_on(new, row, specs)
     type(card), intent(in) :: new
     integer, intent(in) :: row !< of the line
@@ -184,7 +184,7 @@ contains
     end associate
   end subroutine read_parameters
 
-  !> Adds a parameter; one that is given twice, or whose quotes stay open, is a fault.
+  !> Adds a parameter; a repeated parameter or an open quote is a fault.
   subroutine add_parameter(new, given, faults)
     type(card), intent(inout) :: new
     type(card_parameter), intent(in) :: given
@@ -225,7 +225,7 @@ contains
     new%lines%field_last = field_last(:num_used)
   end subroutine find_fields
 
-  !> Commas in the data lines, at least.
+  !> An upper bound of the number of fields.
   pure integer function count_commas(new) result(num_commas)
     type(card), intent(in) :: new
     integer :: i
@@ -235,7 +235,7 @@ contains
     end do
   end function count_commas
 
-  !> Finds the fields of a data line; empty ones at its end are left out.
+  !> Finds the fields of a data line, without empty fields at the end.
   pure subroutine split_line(line, origin, field_first, field_last)
     character(*), intent(in) :: line
     type(line_origin), intent(inout) :: origin

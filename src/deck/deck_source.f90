@@ -1,4 +1,4 @@
-!> The text of a deck: its files, *INCLUDE carried out, blank lines and comments left out.
+!> The lines of a deck with all included files, without blank lines and comments.
 module deck_source
   use deck_file, only: load_file, path_beside
   use deck_words, only: is_blank, next_word, split_parameter
@@ -10,23 +10,23 @@ module deck_source
 
   character, parameter :: line_feed = achar(10), return = achar(13)
   character(*), parameter :: byte_order_mark = char(239)//char(187)//char(191) !< UTF-8
-  integer, parameter :: deepest = 100 !< files that include each other
+  integer, parameter :: deepest = 100 !< levels of *INCLUDE
 
-  !> One file, whole.
+  !> One file.
   type :: source_file
     character(:), allocatable :: path !< as the user named it
     character(:), allocatable :: text !< its bytes
   end type source_file
 
-  !> One line that counts.
+  !> One line that is neither blank nor a comment.
   type :: source_line
     integer :: file = 0 !< index into `files`
     integer :: number = 0 !< line in the file, from 1
-    integer :: first = 1, last = 0 !< its bytes in the file; blanks at its end are left out
+    integer :: first = 1, last = 0 !< its bytes in the file, without trailing blanks
     logical :: is_keyword = .false. !< begins with a star
   end type source_line
 
-  !> All lines of a deck in the order they count.
+  !> All lines of a deck in the order in which they are read.
   type :: source_text
     type(source_file), allocatable :: files(:)
     type(source_line), allocatable :: lines(:) !< the first `num_lines` are in use
@@ -35,7 +35,7 @@ module deck_source
 
 contains
 
-  !> Reads a deck and all the files it includes. Files that are missing are faults.
+  !> Reads a deck and all included files. Missing files are faults.
   subroutine read_source(path, source, faults)
     character(*), intent(in) :: path !< of the deck
     type(source_text), intent(out) :: source
@@ -47,10 +47,10 @@ contains
     call read_file(path, nowhere, parents, source, faults)
   end subroutine read_source
 
-  !> Adds the lines of one file, and of the files it includes where it names them.
+  !> Adds the lines of one file, with the lines of included files in their places.
   recursive subroutine read_file(path, named_at, parents, source, faults)
     character(*), intent(in) :: path
-    type(place), intent(in) :: named_at !< where the file is named
+    type(place), intent(in) :: named_at !< place of the file's name in the deck
     integer, intent(in) :: parents(:) !< files that are being read
     type(source_text), intent(inout) :: source
     type(diagnostic_list), intent(inout) :: faults
@@ -62,7 +62,7 @@ contains
     if (file == 0) return
     if (any(parents == file) .or. size(parents) > deepest) then
       call faults%add(severity_error, named_at, 'the file includes itself', &
-                      'files that do not name each other in a circle')
+                      'files that do not include each other')
       return
     end if
     call find_lines(source%files(file)%text, file, lines)
@@ -75,16 +75,16 @@ contains
         end if
         i = i + num_heads
       else
-        call append(source, lines(i))
+        call append_line(source, lines(i))
         i = i + 1
       end if
     end do
   end subroutine read_file
 
-  !> Position of a file among those read; it is read where it is new. 0: it cannot be read.
+  !> Position of a file in the list; a new file is read. 0: the file cannot be read.
   subroutine find_or_load(path, named_at, source, faults, file)
     character(*), intent(in) :: path
-    type(place), intent(in) :: named_at !< where the file is named
+    type(place), intent(in) :: named_at !< place of the file's name in the deck
     type(source_text), intent(inout) :: source
     type(diagnostic_list), intent(inout) :: faults
     integer, intent(out) :: file
@@ -113,7 +113,7 @@ contains
     call move_alloc(longer, source%files)
   end subroutine find_or_load
 
-  !> The lines of a file that are not blank and no comment.
+  !> The lines of a file without blank lines and comments.
   pure subroutine find_lines(text, file, lines)
     character(*), intent(in) :: text !< of the file
     integer, intent(in) :: file !< its number
@@ -141,7 +141,7 @@ contains
     lines = lines(:num_used)
   end subroutine find_lines
 
-  !> Line feeds in a text, and one.
+  !> Number of line feeds in a text, plus one.
   pure integer function count_lines(text)
     character(*), intent(in) :: text
     integer :: i
@@ -151,7 +151,7 @@ contains
     end do
   end function count_lines
 
-  !> First and last letter of a line that is not blank.
+  !> First and last letter of a line, without blanks around them.
   pure subroutine trim_line(text, first, last, begin, end)
     character(*), intent(in) :: text
     integer, intent(in) :: first, last !< the line, without its line feed
@@ -168,14 +168,14 @@ contains
     end do
   end subroutine trim_line
 
-  !> The line is no comment and not blank.
+  !> Whether the line is neither a comment nor blank.
   pure logical function counts(line)
     character(*), intent(in) :: line !< without blanks around it
     counts = len(line) > 0
     if (len(line) > 1) counts = line(1:2) /= '**'
   end function counts
 
-  !> The line is *INCLUDE.
+  !> Whether the line is *INCLUDE.
   pure logical function is_include(source, line)
     type(source_text), intent(in) :: source
     type(source_line), intent(in) :: line
@@ -190,14 +190,14 @@ contains
     end associate
   end function is_include
 
-  !> Reads *INCLUDE, INPUT=name, which may go on in the next line.
+  !> Reads *INCLUDE, INPUT=name, which may continue in the next line.
   subroutine read_include(source, lines, faults, name, spot, num_heads)
     type(source_text), intent(in) :: source
-    type(source_line), intent(in) :: lines(:) !< the line of *INCLUDE and those behind it
+    type(source_line), intent(in) :: lines(:) !< the line of *INCLUDE and the following ones
     type(diagnostic_list), intent(inout) :: faults
-    character(:), allocatable, intent(out) :: name !< '' where none is given
+    character(:), allocatable, intent(out) :: name !< '' if none is given
     type(place), intent(out) :: spot !< of the name
-    integer, intent(out) :: num_heads !< lines it takes
+    integer, intent(out) :: num_heads !< lines of *INCLUDE
     integer :: i
     name = ''
     num_heads = 1
@@ -221,7 +221,7 @@ contains
     type(source_line), intent(in) :: line
     logical, intent(in) :: is_first !< the line begins with the keyword
     type(diagnostic_list), intent(inout) :: faults
-    character(:), allocatable, intent(inout) :: name !< stays where it is not in this line
+    character(:), allocatable, intent(inout) :: name !< unchanged if not in this line
     type(place), intent(inout) :: spot !< of the name
     integer :: position, first, last, equals, key_last, value_first, value_last
     associate (text => source%files(line%file)%text(line%first:line%last))
@@ -258,8 +258,8 @@ contains
     spot%source = source%files(line%file)%text(line%first:line%last)
   end function spot_in_source
 
-  !> Puts a line at the end.
-  pure subroutine append(source, line)
+  !> Adds a line at the end.
+  pure subroutine append_line(source, line)
     type(source_text), intent(inout) :: source
     type(source_line), intent(in) :: line
     type(source_line), allocatable :: longer(:)
@@ -270,5 +270,5 @@ contains
     end if
     source%num_lines = source%num_lines + 1
     source%lines(source%num_lines) = line
-  end subroutine append
+  end subroutine append_line
 end module deck_source

@@ -1,4 +1,4 @@
-!> Where the words of a line are: commas separate them, quotes protect them.
+!> Finds the words of a line: commas separate words, quotes protect commas.
 module deck_words
   implicit none
   private
@@ -8,14 +8,14 @@ module deck_words
 
 contains
 
-  !> Finds the next word of a line: what stands between two commas, without blanks around it.
+  !> Finds the next word of a line: the text between two commas, without blanks around it.
   !>
-  !> A quote that opens a word or the value behind '=' and is closed in the line protects commas;
-  !> elsewhere it is a letter. The quotes themselves belong to the word here.
+  !> A quote at the start of a word or of the value after '=' protects commas if the line closes the
+  !> quote; other quotes are letters. The quotes themselves belong to the word here.
   pure subroutine next_word(line, position, first, last)
     character(*), intent(in) :: line
-    integer, intent(inout) :: position !< where to begin; then behind the comma; len + 2: no more
-    integer, intent(out) :: first, last !< of the word; first > last where it is empty
+    integer, intent(inout) :: position !< where to begin; then after the comma; len + 2: none
+    integer, intent(out) :: first, last !< of the word; first > last for an empty word
     integer :: i
     logical :: may_open
     first = position
@@ -37,7 +37,7 @@ contains
     position = i + 1
   end subroutine next_word
 
-  !> Where the quote at `i` is closed; `i` itself where there is no quote or none that closes it.
+  !> Position of the quote that closes the quote at `i`; `i` itself if there is none.
   pure integer function closing_quote(line, i) result(closing)
     character(*), intent(in) :: line
     integer, intent(in) :: i
@@ -45,7 +45,7 @@ contains
     if (line(i:i) == "'" .or. line(i:i) == '"') closing = i + index(line(i + 1:), line(i:i))
   end function closing_quote
 
-  !> Takes the quotes off a word that stands in quotes.
+  !> Removes the quotes around a word.
   pure subroutine strip_quotes(line, first, last)
     character(*), intent(in) :: line
     integer, intent(inout) :: first, last !< of the word
@@ -63,7 +63,7 @@ contains
     end do
   end subroutine strip_quotes
 
-  !> A blank or a tab.
+  !> Whether a letter is a blank or a tab.
   elemental logical function is_blank(letter)
     character, intent(in) :: letter
     is_blank = letter == ' ' .or. letter == tab
@@ -73,9 +73,9 @@ contains
   pure subroutine split_parameter(line, first, last, equals, key_last, value_first, value_last)
     character(*), intent(in) :: line
     integer, intent(in) :: first, last !< the word, as `next_word` finds it
-    integer, intent(out) :: equals !< where the '=' is, 0 where there is none (a flag)
-    integer, intent(out) :: key_last !< end of the key; it begins with the word
-    integer, intent(out) :: value_first, value_last !< first > last where there is no value
+    integer, intent(out) :: equals !< position of the '=', 0 for a flag
+    integer, intent(out) :: key_last !< end of the key, which begins with the word
+    integer, intent(out) :: value_first, value_last !< first > last without a value
     key_last = last
     value_first = last + 1
     value_last = last

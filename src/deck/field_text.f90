@@ -1,4 +1,4 @@
-!> What a field may hold, in words: for messages and for the keyword reference.
+!> Descriptions of the valid values of a field, for messages and the keyword reference.
 module field_text
   use keyword_spec, only: field, keyword, kind_choice, kind_flag, kind_integer, kind_real, &
                           kind_reference, kind_text, kind_word
@@ -8,12 +8,12 @@ module field_text
   private
   public :: expected_in, kind_in_words, names_of_columns, text_or_nothing
 
-  integer, parameter :: longest_meaning = 80 !< letters, before the choices of a message
+  integer, parameter :: longest_meaning = 80 !< letters; longer meanings are left out before choices
 
 contains
 
-  !> "Young's modulus, a number > 0 [Pa]". A long meaning of a choice stays in the help: the choices
-  !> say what was expected.
+  !> "Young's modulus, a number > 0 [Pa]". A long meaning of a choice is left out, since the choices
+  !> are the expected values.
   pure function expected_in(described) result(text)
     type(field), intent(in) :: described
     character(:), allocatable :: text
@@ -101,7 +101,7 @@ contains
     if (spec%repeats_columns) text = text//', ..'
   end function names_of_columns
 
-  !> A text that may not be there.
+  !> The text, '' if it is not allocated.
   pure function text_or_nothing(text) result(given)
     character(:), allocatable, intent(in) :: text
     character(:), allocatable :: given

@@ -1,4 +1,4 @@
-!> The keyword reference, made from the specifications the reader checks decks with.
+!> The keyword reference, made from the specifications with which decks are checked.
 module keyword_help
   use field_text, only: kind_in_words, text_or_nothing
   use keyword_spec, only: field, find_spec, keyword, kind_flag, later, without_effect
@@ -16,7 +16,7 @@ module keyword_help
 
 contains
 
-  !> All keywords by family, one line each.
+  !> The list of all keywords by family, one line each.
   pure function list_keywords(specs) result(text)
     type(keyword), intent(in) :: specs(:)
     character(:), allocatable :: text !< lines with new_line between them
@@ -32,15 +32,15 @@ contains
                first_sentence(text_or_nothing(specs(j)%meaning))//remark(specs(j))//nl
       end do
     end do
-    text = text//nl//'keyway --keywords NAME tells what a keyword takes.'
+    text = text//nl//'keyway --keywords NAME describes one keyword.'
   end function list_keywords
 
-  !> What a keyword takes; several places of one name follow each other.
+  !> The page of a keyword; a name with several places has several pages.
   pure subroutine describe_keyword(specs, name, text, is_known)
     type(keyword), intent(in) :: specs(:)
     character(*), intent(in) :: name !< with or without its star, in any case
     character(:), allocatable, intent(out) :: text !< lines with new_line between them
-    logical, intent(out) :: is_known !< else the text tells that it is not
+    logical, intent(out) :: is_known !< false: the text is a message
     character(80) :: names(size(specs))
     character(:), allocatable :: wanted, nearest
     integer :: i
@@ -110,7 +110,7 @@ contains
     if (spec%repeats_columns) text = text//'; the columns may repeat in a line'
   end function data_title
 
-  !> A line or more for each field.
+  !> One or more lines for each field.
   pure function rows(fields) result(text)
     type(field), intent(in) :: fields(:)
     character(:), allocatable :: text
@@ -155,7 +155,7 @@ contains
     end select
   end function place_in_words
 
-  !> What the program does with the keyword, where it is not simply available.
+  !> A remark on a keyword that is not available or has no effect.
   pure function remark(spec) result(text)
     type(keyword), intent(in) :: spec
     character(:), allocatable :: text
@@ -169,7 +169,7 @@ contains
     end select
   end function remark
 
-  !> Both keywords belong to one family.
+  !> Whether both keywords belong to one family.
   pure logical function same_family(a, b)
     type(keyword), intent(in) :: a, b
     same_family = text_or_nothing(a%family) == text_or_nothing(b%family)
@@ -187,7 +187,7 @@ contains
     if (sentence(len(sentence):) == '.') sentence = sentence(:len(sentence) - 1)
   end function first_sentence
 
-  !> The text with blanks up to a width.
+  !> The text, filled with blanks up to a width.
   pure function padded(text, width) result(wide)
     character(*), intent(in) :: text
     integer, intent(in) :: width

@@ -1,5 +1,5 @@
-!> The specification of a keyword: the one place from which the parser's checks, the messages and
-!> `keyway --keywords` are made.
+!> The specification of a keyword: source of the parser's checks, the messages and
+!> `keyway --keywords`.
 module keyword_spec
   use kinds, only: rk
   use parse_text, only: without_blanks
@@ -11,13 +11,13 @@ module keyword_spec
   public :: kind_real, kind_integer, kind_word, kind_flag, kind_choice, kind_text, kind_reference
   public :: available, later, without_effect
 
-  !> What a field may hold.
+  !> Kinds of values of a field.
   integer, parameter :: kind_real = 1, kind_integer = 2, kind_word = 3, kind_flag = 4
   integer, parameter :: kind_choice = 5 !< one word of `choices`
-  integer, parameter :: kind_text = 6 !< anything, kept as it is (file names)
+  integer, parameter :: kind_text = 6 !< any text, kept unchanged (file names)
   integer, parameter :: kind_reference = 7 !< a number, or the name of a set
 
-  !> What the program does with a keyword.
+  !> Availability of a keyword.
   integer, parameter :: available = 1
   integer, parameter :: later = 2 !< known, an error: 'not available yet'
   integer, parameter :: without_effect = 3 !< understood, a warning
@@ -32,7 +32,7 @@ module keyword_spec
     character(:), allocatable :: choices !< words separated by ' | '
     logical :: is_required = .false.
     real(rk) :: lowest = -huge(1.0_rk), highest = huge(1.0_rk) !< allowed range
-    logical :: excludes_lowest = .false., excludes_highest = .false. !< range is open there
+    logical :: excludes_lowest = .false., excludes_highest = .false. !< open range
   end type field
 
   !> What a keyword takes besides where one of its parameters has a certain value: the constants of
@@ -57,9 +57,9 @@ module keyword_spec
     type(field), allocatable :: columns(:) !< of one data line
     logical :: repeats_columns = .false. !< a line may hold the columns several times
     character(:), allocatable :: no_further !< why further columns of other programs are refused
-    logical :: checks_own_data = .false. !< the handler reads the data lines itself
+    logical :: checks_own_data = .false. !< the handler checks the data lines
     integer :: fewest_lines = 0, most_lines = huge(1) !< of data
-    logical :: new_clears = .false. !< OP=NEW without data clears what there was
+    logical :: new_clears = .false. !< OP=NEW without data clears earlier data
   end type keyword
 
 contains
@@ -122,10 +122,10 @@ contains
     call move_alloc(longer, list)
   end subroutine append_field
 
-  !> Position of the specification a card belongs to; names compare with blanks removed.
+  !> Position of the specification of a card; blanks in names are ignored.
   !>
-  !> Where two keywords share a name (*DAMPING of a material and of a step), the one whose `place`
-  !> is the given one is found, else the first.
+  !> If two keywords share a name (*DAMPING of a material and of a step), the result is the keyword
+  !> of the given place, else the first.
   pure integer function find_spec(specs, name, where_it_stands) result(found)
     type(keyword), intent(in) :: specs(:)
     character(*), intent(in) :: name !< upper case, without the star
@@ -142,7 +142,7 @@ contains
     end do
   end function find_spec
 
-  !> Default of a parameter, '' where there is none.
+  !> Default of a parameter, '' without one.
   pure function parameter_default(spec, name) result(default)
     type(keyword), intent(in) :: spec
     character(*), intent(in) :: name !< upper case
@@ -156,7 +156,7 @@ contains
     end do
   end function parameter_default
 
-  !> Default of the column a field of a data line belongs to, '' where there is none.
+  !> Default of the column of a field in a data line, '' without one.
   pure function column_default(spec, number) result(default)
     type(keyword), intent(in) :: spec
     integer, intent(in) :: number !< of the field, from 1
@@ -168,7 +168,7 @@ contains
     if (allocated(spec%columns(column)%default)) default = spec%columns(column)%default
   end function column_default
 
-  !> Column a field of a data line belongs to, 0 where it has none.
+  !> Column of a field in a data line, 0 for a field beyond the columns.
   pure integer function column_of_field(spec, number) result(column)
     type(keyword), intent(in) :: spec
     integer, intent(in) :: number !< of the field, from 1

@@ -1,4 +1,4 @@
-!> The single list of elements: names in the deck, number of nodes, what they are.
+!> The single list of elements: names in the deck, numbers of nodes, descriptions.
 module element_catalogue
   use element_formulation, only: solid_element
   use element_hex8, only: full_hexahedron
@@ -29,7 +29,7 @@ module element_catalogue
                                    element_kind('JOINT8', 8, .false., &
                                                 'two coincident faces: master 1-4, slave 5-8'), &
                                    element_kind('IFACE4', 4, .false., &
-                                                'interface quadrilateral with nodes of its own')]
+                                                'interface quadrilateral with its own nodes')]
 
 contains
 

@@ -1,7 +1,7 @@
-!> What every solid element can do: give its strain-displacement operator at its points.
+!> The contract of solid elements: each gives its strain-displacement operator at its points.
 !>
-!> All else (stiffness, forces, strains) is generic: K = sum w B^T D B (+ hourglass control),
-!> f = sum w B^T sigma, eps = B u. Blocks of elements are handled in one call.
+!> Stiffness, forces and strains are generic: K = sum w B^T D B (+ hourglass control),
+!> f = sum w B^T sigma, eps = B u. One call handles a block of elements.
 module element_formulation
   use kinds, only: rk
   implicit none
@@ -32,7 +32,7 @@ module element_formulation
 
 contains
 
-  !> Adds a stiffness that stabilises the element, where it needs one (hourglass control).
+  !> Adds the stiffness of hourglass control, if the element needs it.
   subroutine add_stabilisation(self, x, d, ke)
     class(solid_element), intent(in) :: self
     real(rk), contiguous, intent(in) :: x(:, :, :) !< (3, 8, elements) [m]

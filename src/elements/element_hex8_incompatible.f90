@@ -1,8 +1,8 @@
 !> C3D8I: the hexahedron with incompatible modes, which bends without locking.
 !>
 !> The modes 1 - xi_i**2 are differentiated with the Jacobian of the centre, scaled by the ratio of
-!> determinants, so that their mean strain is zero and the patch test passes. They are condensed
-!> with the elastic stiffness, which leaves an operator B of the 24 displacements alone.
+!> determinants, so that their mean strain is zero and the patch test passes. Condensation with the
+!> elastic stiffness leaves an operator B of the 24 displacements.
 !> Source: Taylor, Beresford, Wilson, Int. J. Num. Meth. Engng 10 (1976) 1211.
 module element_hex8_incompatible
   use kinds, only: rk
@@ -22,7 +22,7 @@ module element_hex8_incompatible
 
 contains
 
-  !> B + B_i A with the modes A = -K_ii**-1 K_iu that the displacements call up.
+  !> B + B_i A with the amplitudes A = -K_ii**-1 K_iu of the modes.
   subroutine strain_operator(self, x, d, b, weight, status)
     class(incompatible_hexahedron), intent(in) :: self
     real(rk), contiguous, intent(in) :: x(:, :, :)

@@ -2,8 +2,8 @@
 !>
 !> Source: Flanagan & Belytschko, Int. J. Num. Meth. Engng 17 (1981) 679. The size of the hourglass
 !> stiffness, 0.0005 E V b:b on base vectors of entries 1 and -1, is CalculiX's, so that both
-!> programs answer alike. It is soft: read C3D8R only on meshes with several elements through
-!> a bent thickness.
+!> programs give the same results. This stiffness is soft: C3D8R needs several elements through
+!> the thickness in bending.
 module element_hex8_reduced
   use kinds, only: rk
   use element_formulation, only: solid_element

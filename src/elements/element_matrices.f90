@@ -9,7 +9,7 @@ module element_matrices
   private
   public :: stiffness_matrices, consistent_masses, nodal_volumes, strains_at_points, stress_forces
 
-  !> Elements whose operators are in the first-level cache at a time (tools/bench/bench_elements).
+  !> Elements whose operators fit into the first-level cache (tools/bench/bench_elements).
   integer, parameter :: chunk = 4
 
 contains
@@ -65,7 +65,7 @@ contains
     end do
   end subroutine integrate_stiffness
 
-  !> K = A C^T for a symmetric result: whole columns 1-8, then what lies below for the rest.
+  !> K = A C^T for a symmetric result: columns 1-8 whole, the others below the diagonal blocks.
   pure subroutine multiply_columns(inner, a, c, k)
     integer, intent(in) :: inner
     real(rk), intent(in) :: a(hex8_dofs, inner), c(hex8_dofs, inner)
@@ -86,7 +86,7 @@ contains
     end do
   end subroutine multiply_columns
 
-  !> rho * integral of N_a N_b over each element; the same for the three directions.
+  !> rho * integral of N_a N_b over each element, equal in the three directions.
   pure subroutine consistent_masses(x, density, mass)
     real(rk), contiguous, intent(in) :: x(:, :, :) !< (3, 8, elements) [m]
     real(rk), intent(in) :: density !< [kg/m3]

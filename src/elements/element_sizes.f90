@@ -28,8 +28,8 @@ contains
     if (area > 0.0_rk) depth = abs(volume)/area
   end function depth_behind
 
-  !> Smallest and largest width that a band can have at the integration points of solid elements,
-  !> whatever the direction of the crack.
+  !> Smallest and largest width of a crack band at the integration points of solid elements, over
+  !> all directions of the crack.
   subroutine measure_widths(body, elements, smallest, largest)
     type(mesh), intent(in) :: body
     integer, intent(in) :: elements(:) !< positions
@@ -38,7 +38,7 @@ contains
     real(rk) :: x(3, 8), least, most
     integer :: i, q
     do i = 1, size(elements)
-      call need_formulation(body%element_type(elements(i)), formulation)
+      call choose_formulation(body%element_type(elements(i)), formulation)
       x = body%x(:, body%nodes(:, elements(i)))
       smallest(i) = huge(1.0_rk)
       largest(i) = 0.0_rk
@@ -54,13 +54,13 @@ contains
     end do
   end subroutine measure_widths
 
-  !> Makes the formulation of a kind unless it is the one at hand.
-  subroutine need_formulation(kind, formulation)
+  !> Makes the formulation of a kind, unless the formulation has this kind already.
+  subroutine choose_formulation(kind, formulation)
     character(*), intent(in) :: kind
     class(solid_element), allocatable, intent(inout) :: formulation
     if (allocated(formulation)) then
       if (formulation%name == kind) return
     end if
     call make_solid(kind, formulation)
-  end subroutine need_formulation
+  end subroutine choose_formulation
 end module element_sizes

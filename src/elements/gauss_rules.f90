@@ -1,4 +1,4 @@
-!> Gauss's rules: two points a direction for elements and faces, more on a line for water.
+!> Gauss rules: two points per direction for elements and faces, up to five on a line.
 module gauss_rules
   use kinds, only: rk
   implicit none

@@ -1,4 +1,4 @@
-!> The trilinear 8-node hexahedron: shape functions, gradients, and whether its corners are sound.
+!> The trilinear 8-node hexahedron: shape functions, gradients, and a check of its corners.
 module shape_hex8
   use kinds, only: rk
   use node_dofs, only: num_directions
@@ -11,7 +11,7 @@ module shape_hex8
   public :: corner_fault, corner_of_point, corners_from_points
 
   integer, parameter :: num_corners = 8
-  !> Displacements of an element, node by node; its matrices know no other unknowns.
+  !> Number of displacements of an element, the only unknowns of its matrices.
   integer, parameter :: hex8_dofs = num_directions*num_corners
 
   !> Natural coordinates of the corners.
@@ -43,7 +43,7 @@ module shape_hex8
   integer, parameter :: edge_end(3, 8) = reshape([2, 4, 5, 3, 1, 6, 4, 2, 7, 1, 3, 8, &
                                                   8, 6, 1, 5, 7, 2, 6, 8, 3, 7, 5, 4], [3, 8])
 
-  !> A Jacobian below this part of the product of the edges counts as zero.
+  !> A Jacobian below this fraction of the product of the edges counts as zero.
   real(rk), parameter :: flat_corner = 1.0e-10_rk
 
 contains
@@ -70,8 +70,8 @@ contains
     dn(:, 3) = 0.125_rk*corner(3, :)*s(:, 1)*s(:, 2)
   end function derivative_at
 
-  !> The edges of a brick as one of its points sees them: columns 2 dx/dxi_i. They are the edges
-  !> themselves where the brick is a parallelepiped.
+  !> The edge vectors of a brick at one of its points: columns 2 dx/dxi_i; the edges themselves for
+  !> a parallelepiped.
   pure function edges_at(x, xi) result(edges)
     real(rk), intent(in) :: x(3, 8) !< corners [m]
     real(rk), intent(in) :: xi(3) !< natural coordinates
@@ -133,11 +133,11 @@ contains
     end do
   end subroutine strain_rows
 
-  !> The corner with the lowest Jacobian when that is zero or negative, 0 for a sound element.
+  !> The corner with the lowest Jacobian if that is zero or negative, else 0.
   !>
   !> An element can be integrated as long as the Jacobian is positive at its points (the patch of
-  !> MacNeal & Harder has a negative corner); a bad corner is worth a warning. Corners on collapsed
-  !> edges (wedges made by repeated nodes) have no Jacobian and are passed over.
+  !> MacNeal & Harder has a negative corner); such a corner gives a warning. Corners on collapsed
+  !> edges (wedges made by repeated nodes) have no Jacobian and are left out.
   pure integer function corner_fault(x) result(fault)
     real(rk), intent(in) :: x(3, 8) !< [m]
     real(rk) :: edge(3, 3), jacobian, lowest, lengths
@@ -157,7 +157,8 @@ contains
     end do
   end function corner_fault
 
-  !> Matrix that carries values from the 2 x 2 x 2 points to the corners (exact for trilinear ones).
+  !> Matrix that extrapolates values from the 2 x 2 x 2 points to the corners, exact for trilinear
+  !> fields.
   pure function corners_from_points() result(matrix)
     real(rk) :: matrix(8, 8) !< (corner, point)
     integer :: a

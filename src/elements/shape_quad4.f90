@@ -1,4 +1,4 @@
-!> The bilinear 4-node facet in space; a triangle when a node is repeated.
+!> The bilinear 4-node facet in space; a repeated node makes a triangle.
 module shape_quad4
   use kinds, only: rk
   use gauss_rules, only: quad_point

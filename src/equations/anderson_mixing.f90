@@ -1,5 +1,5 @@
-!> Anderson's acceleration of an iteration s <- g(s): the next s is the combination of the last ones
-!> whose change g(s) - s is smallest. With a linear g it is GMRES on s = g(s).
+!> Anderson acceleration of an iteration s <- g(s): the next s is the combination of the last
+!> iterates with the smallest change g(s) - s. For a linear g this is GMRES on s = g(s).
 module anderson_mixing
   use kinds, only: rk
   use global_vectors, only: dot
@@ -8,8 +8,8 @@ module anderson_mixing
   private
   public :: mixer
 
-  integer, parameter :: most_pairs = 8 !< of differences that are kept
-  !> Differences of the changes that depend on each other to this part are left out.
+  integer, parameter :: most_pairs = 8 !< pairs of differences that are kept
+  !> Differences are left out if they are linearly dependent to this fraction.
   real(rk), parameter :: least_angle = 1.0e-10_rk
 
   type :: mixer
@@ -19,12 +19,13 @@ module anderson_mixing
     real(rk), allocatable :: last_s(:), last_f(:)
     integer, private :: next = 1 !< column that the next pair overwrites
   contains
-    procedure :: forget, advance
+    procedure :: forget
+    procedure :: advance => mix_iterates
   end type mixer
 
 contains
 
-  !> Starts anew.
+  !> Discards all pairs.
   subroutine forget(self)
     class(mixer), intent(inout) :: self
     self%num_pairs = 0
@@ -33,7 +34,7 @@ contains
   end subroutine forget
 
   !> Replaces s by the next iterate.
-  subroutine advance(self, f, s)
+  subroutine mix_iterates(self, f, s)
     class(mixer), intent(inout) :: self
     real(rk), intent(in) :: f(:) !< g(s) - s
     real(rk), intent(inout) :: s(:)
@@ -49,9 +50,9 @@ contains
     end do
     self%last_s = here
     self%last_f = f
-  end subroutine advance
+  end subroutine mix_iterates
 
-  !> Keeps the difference to the last iterate in place of the oldest one.
+  !> Stores the difference to the last iterate in place of the oldest difference.
   subroutine keep_pair(self, f, s)
     type(mixer), intent(inout) :: self
     real(rk), intent(in) :: f(:), s(:)
@@ -64,7 +65,7 @@ contains
     self%next = 1 + mod(self%next, most_pairs)
   end subroutine keep_pair
 
-  !> Weights of the differences that make |f - df*weight| smallest, by the normal equations.
+  !> Weights that minimise |f - df*weight|, by the normal equations.
   subroutine find_weights(self, f, weight)
     type(mixer), intent(in) :: self
     real(rk), intent(in) :: f(:)

@@ -9,15 +9,15 @@ module arpack
   private
   public :: lanczos
 
-  !> Of the eigenvalues, relative. The vectors are then good to about its square root or better.
+  !> Relative tolerance of the eigenvalues; the vectors are accurate to about its square root.
   real(rk), parameter :: tolerance = 1.0e-13_rk
   integer, parameter :: most_restarts = 300
 
-  !> What ARPACK asks for through `request`, from its manual.
+  !> Values of `request`, from the manual of ARPACK.
   integer, parameter :: first_product = -1, product = 1, product_of_mass = 2, done = 99
   integer, parameter :: shift_and_invert = 3, exact_shifts = 1
 
-  ! ARPACK's arguments are what they are.
+  ! The arguments are those of ARPACK.
   ! allow(assumed-size)
   interface
     subroutine dsaupd(ido, bmat, n, which, nev, tol, resid, ncv, v, ldv, iparam, ipntr, workd, &
@@ -45,7 +45,7 @@ module arpack
     end subroutine dseupd
   end interface
 
-  !> What ARPACK keeps between its requests.
+  !> Data that ARPACK needs between its requests.
   type :: workspace
     integer :: parameters(11) = 0, places(11) = 0
     real(rk), allocatable :: residual(:), basis(:, :), vectors(:), small(:)
@@ -67,7 +67,7 @@ contains
     n = matrix%num_free
     allocate (work%residual(n), work%basis(n, num_basis), work%vectors(3*n))
     allocate (work%small(num_basis*(num_basis + 8)))
-    ! A fixed start makes runs repeat; it is not orthogonal to symmetric or antisymmetric modes.
+    ! A fixed start makes runs reproducible; it has symmetric and antisymmetric parts.
     work%residual(:) = [(1.0_rk + 0.5_rk*sin(1.7_rk*k) + 0.25_rk*cos(0.13_rk*k), k=1, n)]
     work%parameters(1) = exact_shifts
     work%parameters(3) = most_restarts
@@ -78,15 +78,15 @@ contains
       call dsaupd(request, 'G', n, 'LM', size(lambda), tolerance, work%residual, num_basis, &
                   work%basis, n, work%parameters, work%places, work%vectors, work%small, &
                   size(work%small), status)
-      call answer(request, matrix, mass, solver, work, error)
+      call apply_request(request, matrix, mass, solver, work, error)
       if (allocated(error)) return
     end do
-    if (status == 0) call extract(n, num_basis, work, lambda, phi, status)
-    if (status /= 0) call report(status, error)
+    if (status == 0) call extract_modes(n, num_basis, work, lambda, phi, status)
+    if (status /= 0) call raise_failure(status, error)
   end subroutine lanczos
 
-  !> Does the product that ARPACK asks for.
-  subroutine answer(request, matrix, mass, solver, work, error)
+  !> Computes the product that ARPACK requests.
+  subroutine apply_request(request, matrix, mass, solver, work, error)
     integer, intent(in) :: request
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: mass(:)
@@ -107,10 +107,10 @@ contains
     end if
     if (request /= product_of_mass) call solver%solve(y(:n, :), error)
     work%vectors(work%places(2):work%places(2) + n - 1) = y(:n, 1)
-  end subroutine answer
+  end subroutine apply_request
 
-  !> Turns the Lanczos vectors into eigenvectors.
-  subroutine extract(n, num_basis, work, lambda, phi, status)
+  !> Computes the eigenvectors from the Lanczos vectors.
+  subroutine extract_modes(n, num_basis, work, lambda, phi, status)
     integer, intent(in) :: n, num_basis
     type(workspace), intent(inout) :: work
     real(rk), intent(out) :: lambda(:), phi(:, :)
@@ -122,10 +122,10 @@ contains
                 tolerance, work%residual, num_basis, work%basis, n, work%parameters, &
                 work%places, work%vectors, work%small, size(work%small), status)
     if (status == 0 .and. work%parameters(5) < size(lambda)) status = 1
-  end subroutine extract
+  end subroutine extract_modes
 
-  !> Says what went wrong.
-  subroutine report(status, error)
+  !> Raises the error of a status of ARPACK.
+  subroutine raise_failure(status, error)
     integer, intent(in) :: status !< of ARPACK
     type(error_type), allocatable, intent(out) :: error
     character(80) :: text
@@ -135,5 +135,5 @@ contains
       write (text, '(a,i0,a)') 'ARPACK could not find the frequencies (info ', status, ')'
       call raise(error, trim(text))
     end if
-  end subroutine report
+  end subroutine raise_failure
 end module arpack

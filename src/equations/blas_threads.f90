@@ -1,6 +1,6 @@
-!> Threads and kernels of the BLAS: many threads for factors, one elsewhere.
+!> Threads and kernels of the BLAS: many threads for factors, one for all other work.
 !>
-!> OpenBLAS's workers spin between calls and starve OpenMP, so they are woken only where they pay.
+!> Threads of OpenBLAS spin between calls and slow down OpenMP, so only factors use them.
 module blas_threads
   use, intrinsic :: iso_c_binding, only: c_int
   use omp_lib, only: omp_get_max_active_levels, omp_get_max_threads, omp_set_max_active_levels
@@ -21,8 +21,8 @@ module blas_threads
       integer(c_int) :: answer
     end function keyway_blas_uses_openmp
 
-    !> Starts the program again when OpenBLAS does not know the processor or idle threads would keep
-    !> their cores busy; call it first of all.
+    !> Restarts the program if OpenBLAS does not know the processor or if idle threads would keep
+    !> their cores busy; must be the first call of the program.
     subroutine restart_with_fast_libraries() bind(c, name='keyway_restart_with_fast_libraries')
       implicit none
     end subroutine restart_with_fast_libraries
@@ -30,16 +30,16 @@ module blas_threads
 
 contains
 
-  !> As many as OpenMP has been given. Inside, CHOLMOD must not open teams of its own: they have
-  !> four threads whatever the user says, and doubled the processor time of a factor.
+  !> Gives the BLAS as many threads as OpenMP has. CHOLMOD must not open teams of threads: these
+  !> have four threads regardless of the user's number, and doubled the processor time of a factor.
   subroutine use_many_threads(levels)
-    integer, intent(out) :: levels !< of OpenMP, to be given back
+    integer, intent(out) :: levels !< of OpenMP, for `use_one_thread`
     levels = omp_get_max_active_levels()
     call keyway_set_blas_threads(int(omp_get_max_threads(), c_int))
     if (keyway_blas_uses_openmp() == 0) call omp_set_max_active_levels(0)
   end subroutine use_many_threads
 
-  !> Back to one thread in the BLAS and to what OpenMP had before.
+  !> Restores one thread in the BLAS and the former levels of OpenMP.
   subroutine use_one_thread(levels)
     integer, intent(in) :: levels !< from `use_many_threads`
     call keyway_set_blas_threads(1_c_int)

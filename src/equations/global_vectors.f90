@@ -1,11 +1,10 @@
 !> Operations that need all entries of a global vector: products, norms, sums, A x.
 !>
-!> A global vector has one entry for each unknown, or three for each point of the joints. All code
-!> above this floor takes its scalar products, norms, extremes and matrix products from here, so a
-!> distributed back end replaces this module and no other: each process adds its own entries, and
-!> an exchange between processes completes the result. Sums and multiples of vectors need no
-!> exchange; they stay array expressions of the caller. The functions are not pure, because an
-!> exchange is not.
+!> A global vector has one entry for each unknown, or three for each point of the joints. All
+!> higher rooms take their scalar products, norms, extremes and matrix products from here, so a
+!> distributed back end replaces this module only: each process adds its own entries, and an
+!> exchange between processes completes the result. Sums and multiples of vectors need no exchange
+!> and are array expressions of the caller. The functions are not pure, because an exchange is not.
 module global_vectors
   use kinds, only: rk
   use matrix_pattern, only: pattern, multiply_local => multiply, diagonal_local => diagonal
@@ -37,7 +36,7 @@ contains
     norm = norm2(x)
   end function norm_of_vector
 
-  !> The same of a field.
+  !> Norm of a field.
   real(rk) function norm_of_field(x) result(norm)
     real(rk), intent(in) :: x(:, :) !< (components, nodes or points)
     norm = norm2(x)
@@ -49,7 +48,7 @@ contains
     distance = norm2(x - y)
   end function distance_of_vectors
 
-  !> The same of fields.
+  !> Norm of the difference of two fields.
   real(rk) function distance_of_fields(x, y) result(distance)
     real(rk), intent(in) :: x(:, :), y(:, :) !< (components, nodes or points)
     distance = norm2(x - y)
@@ -66,8 +65,8 @@ contains
     work = 0.5_rk*work
   end function work
 
-  !> sqrt(x . x) by one sum of squares: quicker than `norm`; overflows above 1e154. The two differ
-  !> by round-off.
+  !> sqrt(x . x) by one sum of squares: quicker than `norm`, but overflows above 1e154. The two
+  !> results differ by round-off.
   real(rk) function length(x)
     real(rk), intent(in) :: x(:)
     length = sqrt(dot_product(x, x))
@@ -79,7 +78,7 @@ contains
     total = sum(x)
   end function total
 
-  !> The largest entry; of an empty vector -huge. A distributed back end takes the largest of all
+  !> The largest entry; -huge for an empty vector. A distributed back end takes the largest of all
   !> parts.
   real(rk) function largest_entry(x)
     real(rk), intent(in) :: x(:)

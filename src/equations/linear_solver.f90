@@ -1,4 +1,4 @@
-!> What every linear solver can do. A distributed back end would come in behind this type.
+!> The contract of linear solvers. A distributed back end would extend this type.
 module linear_solver
   use kinds, only: rk
   use errors, only: error_type, raise
@@ -8,14 +8,14 @@ module linear_solver
   public :: equation_solver
 
   type, abstract :: equation_solver
-    integer :: failed_unknown = 0 !< whose pivot made the last factorisation fail, 0 for none
+    integer :: failed_unknown = 0 !< unknown whose pivot failed, 0 for none
   contains
     procedure(analyse), deferred :: analyse
     procedure(factorise), deferred :: factorise
     procedure(solve), deferred :: solve
-    procedure :: take_end
-    procedure :: eliminate => solve_no_half
-    procedure :: substitute => solve_no_half
+    procedure :: take_schur_block
+    procedure :: forward_substitute => refuse_half_solve
+    procedure :: backward_substitute => refuse_half_solve
   end type equation_solver
 
   abstract interface
@@ -28,8 +28,8 @@ module linear_solver
       type(error_type), allocatable, intent(out) :: error
     end subroutine analyse
 
-    !> Factors the free part of the matrix. Fails when it is singular or not positive definite and
-    !> names the unknown.
+    !> Factors the free part of the matrix. Fails with `failed_unknown` if this part is singular or
+    !> not positive definite.
     subroutine factorise(self, matrix, values, error)
       import :: equation_solver, pattern, error_type, rk
       implicit none
@@ -51,9 +51,10 @@ module linear_solver
 
 contains
 
-  !> The dense end of a factor L L^T whose last columns are the last unknowns. A solve can halt
-  !> before it: `eliminate` gives y = L^-1 P b, `substitute` x = P^T L^-T y. Not every solver can.
-  subroutine take_end(self, num_last, block, unknown, is_there)
+  !> The Schur block: the dense end of a factor L L^T whose last columns are the last unknowns.
+  !> `forward_substitute` gives y = L^-1 P b, `backward_substitute` x = P^T L^-T y. Not every
+  !> solver has these three.
+  subroutine take_schur_block(self, num_last, block, unknown, is_there)
     class(equation_solver), intent(in) :: self
     integer, intent(in) :: num_last !< unknowns at the end
     real(rk), allocatable, intent(out) :: block(:, :) !< (num_last, num_last) lower triangle
@@ -61,13 +62,13 @@ contains
     logical, intent(out) :: is_there
     allocate (block(0, 0), unknown(0))
     is_there = .false.
-  end subroutine take_end
+  end subroutine take_schur_block
 
-  !> One half of a solve, for solvers that have none.
-  subroutine solve_no_half(self, b, error)
+  !> Half of a solve, for solvers without forward and backward substitution.
+  subroutine refuse_half_solve(self, b, error)
     class(equation_solver), intent(inout) :: self
     real(rk), intent(inout) :: b(:) !< (free unknowns)
     type(error_type), allocatable, intent(out) :: error
-    call raise(error, 'this solver solves at once')
-  end subroutine solve_no_half
+    call raise(error, 'this solver has no separate forward and backward substitution')
+  end subroutine refuse_half_solve
 end module linear_solver

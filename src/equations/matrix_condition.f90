@@ -1,10 +1,9 @@
-!> The condition of a factored, symmetric matrix, estimated.
+!> Estimates the condition of a factored symmetric matrix.
 !>
-!> Scaled to a unit diagonal, S = D^-1/2 K D^-1/2: unknowns of different stiffness (jumps of a stiff
-!> joint beside displacements) cost a Cholesky factor no digits, so they do not count. What is told
-!> is |S|_1 |S^-1|_1, the second norm by the estimator of Hager and Higham (Higham 1988, ACM TOMS
-!> 14; LAPACK's dlacn2): a lower bound, as a rule exact to a factor of 3, at the price of 4 or 5
-!> solves.
+!> The matrix is scaled to a unit diagonal, S = D^-1/2 K D^-1/2, because unknowns of different
+!> stiffness (jumps of a stiff joint, displacements) cost a Cholesky factor no digits. The result
+!> is |S|_1 |S^-1|_1. The second norm is estimated by Hager and Higham (Higham 1988, ACM TOMS 14;
+!> LAPACK's dlacn2) with 4 or 5 solves: a lower bound, mostly exact to a factor of 3.
 module matrix_condition
   use kinds, only: rk
   use errors, only: error_type

@@ -1,7 +1,7 @@
 !> The pattern of all matrices of a step, by columns, free unknowns first.
 !>
-!> Stiffness, mass and damping share one pattern; each is only an array of values. Symmetric
-!> matrices keep the lower triangle; an unsymmetric tangent has a full pattern of its own.
+!> Stiffness, mass and damping share one pattern; each is an array of values. Symmetric matrices
+!> keep the lower triangle; an unsymmetric tangent has a separate full pattern.
 module matrix_pattern
   use kinds, only: rk
   implicit none
@@ -12,18 +12,18 @@ module matrix_pattern
   type :: pattern
     integer :: num_free = 0 !< free unknowns come first
     integer :: num_total = 0 !< free and prescribed
-    integer :: num_last = 0 !< last of the free ones; a factor keeps them last
+    integer :: num_last = 0 !< last of the free ones, also last in a factor
     logical :: is_symmetric = .true. !< lower triangle only
     integer, allocatable :: column_start(:) !< (num_total + 1), 1-based
     integer, allocatable :: row(:) !< ascending in each column (symmetric: the diagonal first)
     integer, allocatable :: free_entries(:) !< entries of each column in rows <= num_free
-    !> How many columns from each one on have the same rows below them; of a symmetric pattern.
+    !> Number of columns from each column on with the same rows below them, in a symmetric pattern.
     integer, allocatable :: alike(:)
   end type pattern
 
 contains
 
-  !> Where an entry of a column is kept, 0 when the pattern has no such entry.
+  !> Position of an entry of a column, 0 if the pattern has no such entry.
   pure integer function position_of(matrix, row, column) result(found)
     type(pattern), intent(in) :: matrix
     integer, intent(in) :: row, column !< symmetric: row >= column
@@ -43,8 +43,8 @@ contains
     found = merge(low, 0, matrix%row(low) == row)
   end function position_of
 
-  !> Adds a small dense matrix; the pattern must hold its entries. Of a symmetric pattern only the
-  !> lower triangle is added, so the block must be symmetric (or its lower part be meant).
+  !> Adds a small dense matrix; the pattern must hold its entries. In a symmetric pattern only the
+  !> lower triangle of the block is added.
   pure subroutine add_block(matrix, unknown, block, values)
     type(pattern), intent(in) :: matrix
     integer, intent(in) :: unknown(:) !< ascending, each once
@@ -92,7 +92,7 @@ contains
     end if
   end subroutine multiply
 
-  !> Adds what a column and its mirror image give.
+  !> Adds the product of a column and of its mirror image.
   pure subroutine multiply_one(matrix, values, j, q, y)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: values(:), q(:)
@@ -110,7 +110,7 @@ contains
     y(j) = y(j) + sum_j
   end subroutine multiply_one
 
-  !> The same of three columns of one node: rows are read, and `y` is reached, once for all three.
+  !> Adds the product of three columns of one node: rows are read and `y` is addressed once for all.
   pure subroutine multiply_three(matrix, values, j, q, y)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: values(:), q(:)
@@ -150,7 +150,7 @@ contains
     end do
   end subroutine diagonal
 
-  !> A symmetric matrix without its zeros, for products.
+  !> Removes the zeros of a symmetric matrix, for products.
   pure subroutine drop_zeros(matrix, values, thin, thin_values)
     type(pattern), intent(in) :: matrix !< symmetric
     real(rk), intent(in) :: values(:)

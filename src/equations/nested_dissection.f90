@@ -1,8 +1,8 @@
-!> The order of elimination: nested dissection on the graph of nodes, what joints work in last.
+!> The order of elimination: nested dissection on the graph of nodes, the unknowns of joints last.
 !>
-!> Unknowns that stand together and are coupled with the same others (those of one node) are one
-!> vertex, weighted by their number. With the jumps last (and what points without jumps see), the
-!> end of the factor is that of the Schur complement onto them.
+!> Consecutive unknowns that are coupled with the same others (those of one node) are one vertex,
+!> weighted by their number. The last unknowns are the jumps and the dofs at points without jumps.
+!> The end of the factor is the factor of the Schur complement onto these unknowns.
 module nested_dissection
   use, intrinsic :: iso_c_binding, only: c_int
   use errors, only: error_type, raise, system_failed
@@ -22,7 +22,7 @@ module nested_dissection
     end function keyway_nested_dissection
   end interface
 
-  integer, parameter :: small = 30 !< vertices; so few are left in their order
+  integer, parameter :: small = 30 !< graphs of fewer vertices keep their order
 
 contains
 
@@ -57,7 +57,7 @@ contains
     order(num_plain + 1:) = [(j, j=num_plain + 1, matrix%num_free)]
   end subroutine dissect
 
-  !> First unknown of each vertex, and one behind the last.
+  !> First unknown of each vertex, and one entry after the last.
   pure subroutine find_vertices(matrix, num_plain, first)
     type(pattern), intent(in) :: matrix
     integer, intent(in) :: num_plain !< unknowns to order
@@ -76,7 +76,7 @@ contains
     first = first(:num_vertices + 1)
   end subroutine find_vertices
 
-  !> Column j holds the same rows below the diagonal as the column before it.
+  !> Whether column j holds the same rows below the diagonal as the column before.
   pure logical function are_alike(matrix, j)
     type(pattern), intent(in) :: matrix
     integer, intent(in) :: j !< > 1

@@ -1,5 +1,5 @@
-!> Symmetric positive definite equations by CHOLMOD: supernodal L L^T, METIS, what joints work
-!> in last.
+!> Symmetric positive definite equations by CHOLMOD: supernodal L L^T, METIS, the unknowns of
+!> joints last.
 module solver_cholmod
   use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_int, c_loc, c_null_ptr, c_ptr
   use kinds, only: rk
@@ -14,17 +14,17 @@ module solver_cholmod
 
   integer, parameter :: most_columns = 32 !< solved at once, which bounds the workspace
 
-  !> A pivot so much smaller than its diagonal entry is roundoff: the matrix is singular.
+  !> A pivot below this fraction of its diagonal entry is roundoff: the matrix is singular.
   real(rk), parameter :: smallest_ratio = 1.0e-14_rk
 
   type, extends(equation_solver) :: cholmod_solver
-    logical :: uses_own_order = .false. !< CHOLMOD orders by itself, jumps anywhere
+    logical :: uses_own_order = .false. !< the order is CHOLMOD's, jumps anywhere
     type(c_ptr), private :: handle = c_null_ptr
     integer, private :: num_free = 0
     integer(c_int), allocatable, private :: start(:), row(:) !< pattern, 0-based
   contains
     procedure :: analyse, factorise, solve, statistics, elimination_order
-    procedure :: take_end, eliminate, substitute
+    procedure :: take_schur_block, forward_substitute, backward_substitute
     final :: release
   end type cholmod_solver
 
@@ -161,8 +161,8 @@ contains
     row(:) = matrix%row(:num_entries) - 1
   end subroutine shift_pattern
 
-  !> Factors the free part. A matrix that is not positive definite, or singular but for roundoff, is
-  !> an error; `failed_unknown` names the unknown.
+  !> Factors the free part. A matrix that is not positive definite, or singular up to roundoff, is
+  !> an error; `failed_unknown` is the unknown.
   subroutine factorise(self, matrix, values, error)
     class(cholmod_solver), intent(inout) :: self
     type(pattern), intent(in) :: matrix !< as analysed
@@ -207,8 +207,8 @@ contains
     if (status /= 0) call raise(error, 'no memory to solve the equations', system_failed)
   end subroutine solve
 
-  !> The dense end of the factor, when its last columns are the last unknowns.
-  subroutine take_end(self, num_last, block, unknown, is_there)
+  !> The dense end of the factor, if its last columns are the last unknowns.
+  subroutine take_schur_block(self, num_last, block, unknown, is_there)
     class(cholmod_solver), intent(in) :: self
     integer, intent(in) :: num_last
     real(rk), allocatable, intent(out) :: block(:, :)
@@ -219,10 +219,10 @@ contains
     if (is_there) is_there = keyway_cholmod_end(self%handle, self%num_free, num_last, block, &
                                                 unknown) == 0
     unknown(:) = unknown + 1
-  end subroutine take_end
+  end subroutine take_schur_block
 
   !> Replaces b by L^-1 P b, in the order of elimination.
-  subroutine eliminate(self, b, error)
+  subroutine forward_substitute(self, b, error)
     class(cholmod_solver), intent(inout) :: self
     real(rk), intent(inout) :: b(:)
     type(error_type), allocatable, intent(out) :: error
@@ -231,10 +231,10 @@ contains
       call raise(error, 'no memory to solve the equations', system_failed)
     end if
     b = y
-  end subroutine eliminate
+  end subroutine forward_substitute
 
   !> Replaces y by P^T L^-T y, in the order of the unknowns.
-  subroutine substitute(self, b, error)
+  subroutine backward_substitute(self, b, error)
     class(cholmod_solver), intent(inout) :: self
     real(rk), intent(inout) :: b(:)
     type(error_type), allocatable, intent(out) :: error
@@ -243,9 +243,9 @@ contains
       call raise(error, 'no memory to solve the equations', system_failed)
     end if
     b = x
-  end subroutine substitute
+  end subroutine backward_substitute
 
-  !> What the factor costs.
+  !> Size and memory of the factor.
   subroutine statistics(self, entries, bytes, peak_bytes)
     class(cholmod_solver), intent(in) :: self
     real(rk), intent(out) :: entries !< of L
@@ -266,7 +266,7 @@ contains
     order(:) = order + 1
   end subroutine elimination_order
 
-  !> Gives the memory of CHOLMOD back.
+  !> Frees the memory of CHOLMOD.
   subroutine release(self)
     type(cholmod_solver), intent(inout) :: self
     call keyway_cholmod_finish(self%handle)

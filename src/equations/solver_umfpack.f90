@@ -10,7 +10,7 @@ module solver_umfpack
   private
   public :: umfpack_solver
 
-  !> Places in UMFPACK's list of settings and their values; from its manual.
+  !> Indices in UMFPACK's list of settings and their values, from its manual.
   integer, parameter :: num_settings = 20, num_answers = 90
   integer, parameter :: at_strategy = 6, at_refinements = 8, at_ordering = 11
   real(rk), parameter :: is_nearly_symmetric = 3.0_rk, by_metis = 3.0_rk
@@ -27,7 +27,7 @@ module solver_umfpack
     final :: release
   end type umfpack_solver
 
-  ! Some of these do not tell the lengths of their lists.
+  ! Some of these procedures do not pass the lengths of their lists.
   ! allow(assumed-size)
   interface
     subroutine umfpack_di_defaults(settings) bind(c)
@@ -88,14 +88,14 @@ module solver_umfpack
 
 contains
 
-  !> Picks the free part out of the full pattern. UMFPACK plans with the first values.
+  !> Copies the free part of the full pattern. UMFPACK plans with the first values.
   subroutine analyse(self, matrix, error)
     class(umfpack_solver), intent(inout) :: self
     type(pattern), intent(in) :: matrix !< full, not symmetric
     type(error_type), allocatable, intent(out) :: error
     integer :: j, k, first
     if (matrix%is_symmetric) then
-      call raise(error, 'UMFPACK wants both triangles of the matrix', system_failed)
+      call raise(error, 'UMFPACK needs both triangles of the matrix', system_failed)
       return
     end if
     call release(self)
@@ -116,7 +116,7 @@ contains
     end do
   end subroutine analyse
 
-  !> Factors the free part. Fails when it is singular.
+  !> Factors the free part. Fails if this part is singular.
   subroutine factorise(self, matrix, values, error)
     class(umfpack_solver), intent(inout) :: self
     type(pattern), intent(in) :: matrix !< as analysed
@@ -172,7 +172,7 @@ contains
     end do
   end subroutine solve
 
-  !> Gives the memory of UMFPACK back.
+  !> Frees the memory of UMFPACK.
   subroutine release(self)
     type(umfpack_solver), intent(inout) :: self
     if (c_associated(self%factor)) call umfpack_di_free_numeric(self%factor)

@@ -1,9 +1,9 @@
 !> The contract of guests: the effects that a deck brings into a model, such as a reservoir, springs
 !> between meshes, a joint or a load.
 !>
-!> The defaults do nothing, so that a guest overrides only what it brings. The step asks every guest
-!> that takes part in it, in the order of guest_list, and no other code asks whether a guest is
-!> present. What no guest brings is not allocated.
+!> The defaults do nothing, so that a guest overrides only what it has. A step calls every guest
+!> that takes part in it, in the order of guest_list; no other code checks whether a guest is
+!> present. Arrays that no guest needs are not allocated.
 module guest_type
   use kinds, only: rk
   use dam_mesh, only: mesh
@@ -89,15 +89,15 @@ contains
     real(rk), intent(inout) :: acceleration(3) !< [m/s2]
   end subroutine add_base_acceleration
 
-  !> Appends the displacements that the guest's stiffness ties to the ground: with them a body may
-  !> be supported without *BOUNDARY.
+  !> Appends the displacements that the guest's stiffness connects to the ground: they can support a
+  !> body without *BOUNDARY.
   subroutine add_supports(self, node, direction)
     class(guest), intent(in) :: self
     integer, allocatable, intent(inout) :: node(:) !< positions in the mesh
     integer, allocatable, intent(inout) :: direction(:) !< 1..3, one for each node of the list
   end subroutine add_supports
 
-  !> The guest in the words of the summary of the model.
+  !> The description of the guest for the summary of the model.
   function describe(self) result(text)
     class(guest), intent(in) :: self
     character(:), allocatable :: text

@@ -19,10 +19,10 @@ contains
     type(pattern), intent(in) :: matrix
     real(rk), intent(inout) :: values(:)
     integer, dimension(num_directions*size(nodes)) :: dof, unknown, place
-    logical :: is_plain
+    logical :: is_independent
     dof = numbers%dofs%displacements_of(nodes)
-    call find_plain(numbers, dof, unknown, place, is_plain)
-    if (is_plain) then
+    call find_independent(numbers, dof, unknown, place, is_independent)
+    if (is_independent) then
       call add_block(matrix, unknown, k(place, place), values)
     else
       call scatter_general(numbers, dof, k, matrix, values)
@@ -43,20 +43,20 @@ contains
     end do
   end subroutine scatter_blocks
 
-  !> The usual case: every dof is an unknown of its own, each once. Sorts them.
-  pure subroutine find_plain(numbers, dof, unknown, place, is_plain)
+  !> The usual case: every dof is an independent unknown, each once. Sorts the unknowns.
+  pure subroutine find_independent(numbers, dof, unknown, place, is_independent)
     type(numbering), intent(in) :: numbers
     integer, intent(in) :: dof(:)
     integer, intent(out) :: unknown(:) !< ascending
     integer, intent(out) :: place(:) !< position of each among the dofs
-    logical, intent(out) :: is_plain
+    logical, intent(out) :: is_independent
     integer :: i, k, row
-    is_plain = .true.
+    is_independent = .true.
     do i = 1, size(dof)
       row = numbers%row_start(dof(i))
-      is_plain = numbers%row_start(dof(i) + 1) == row + 1
-      if (is_plain) is_plain = abs(numbers%coefficient(row) - 1.0_rk) < epsilon(1.0_rk)
-      if (.not. is_plain) return
+      is_independent = numbers%row_start(dof(i) + 1) == row + 1
+      if (is_independent) is_independent = abs(numbers%coefficient(row) - 1.0_rk) < epsilon(1.0_rk)
+      if (.not. is_independent) return
       do k = i - 1, 1, -1
         if (unknown(k) <= numbers%unknown(row)) exit
         unknown(k + 1) = unknown(k)
@@ -65,10 +65,10 @@ contains
       unknown(k + 1) = numbers%unknown(row)
       place(k + 1) = i
     end do
-    is_plain = all(unknown(2:) > unknown(:size(unknown) - 1))
-  end subroutine find_plain
+    is_independent = all(unknown(2:) > unknown(:size(unknown) - 1))
+  end subroutine find_independent
 
-  !> With dependent dofs, or nodes that come twice (wedges).
+  !> Adds a matrix with dependent dofs or repeated nodes (wedges).
   subroutine scatter_general(numbers, dof, k, matrix, values)
     type(numbering), intent(in) :: numbers
     integer, intent(in) :: dof(:)
@@ -95,7 +95,7 @@ contains
     call add_block(matrix, unknown, block, values)
   end subroutine scatter_general
 
-  !> The rows of T of these dofs, on the unknowns that they touch.
+  !> The rows of T of these dofs, over the unknowns in these rows.
   subroutine gather_rows(numbers, dof, unknown, first, place, coefficient)
     type(numbering), intent(in) :: numbers
     integer, intent(in) :: dof(:)

@@ -1,5 +1,5 @@
-!> What every load can do beyond a guest. A load is a constant pattern; its factor in time belongs
-!> to the step.
+!> The contract of loads, an extension of guests. A load is a constant pattern; its factor in time
+!> belongs to the step.
 module applied_load
   use guest_type, only: guest
   use kinds, only: rk

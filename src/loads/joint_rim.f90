@@ -1,8 +1,9 @@
-!> The rim of a joint's face: the edge where a reservoir reaches it, and the edge opposite.
+!> The rim of a joint's face: the edge at a reservoir, and the opposite edge.
 !>
-!> Upstream are the outer edges of the face that lie in the reservoir's surface, downstream those
-!> that look away from the nearest of them (different_meshes.md, 13.6). The sides between
-!> them are neither: the crest and the foot of a contraction joint, the ends of a base.
+!> Upstream are the outer edges of the face that lie in the reservoir's surface. Downstream are the
+!> edges whose outward direction is opposite to that of the nearest upstream edge
+!> (different_meshes.md, 13.6). The sides between are neither: the crest and the foot of a
+!> contraction joint, the ends of a base.
 module joint_rim
   use kinds, only: rk
   use mesh_faces, only: face_vector
@@ -11,8 +12,8 @@ module joint_rim
   private
   public :: face_rim, find_rim, distance_to_edges, area_of_facets
 
-  !> An outer edge is downstream when the cosine between its outward direction, in the plane of the
-  !> face, and that of the nearest upstream edge is less; as for the faces of a dam in the results.
+  !> An outer edge is downstream if the cosine between its outward direction, in the plane of the
+  !> face, and that of the nearest upstream edge is less (as for faces of a dam in the results).
   real(rk), parameter :: largest_cosine = -0.3_rk
 
   type :: face_rim
@@ -29,7 +30,7 @@ module joint_rim
 
 contains
 
-  !> Finds both edges; either is empty where there is none.
+  !> Finds both edges; a missing one is empty.
   subroutine find_rim(x, facets, is_wet, rim)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     integer, intent(in) :: facets(:, :) !< (4, facets) nodes, all turning the same way
@@ -53,7 +54,7 @@ contains
     rim%downstream = edges%node(:, pack([(e, e=1, size(is_upstream))], is_downstream))
   end subroutine find_rim
 
-  !> Edges that belong to one facet only.
+  !> The edges of one facet only.
   subroutine list_outer_edges(x, facets, edges)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     integer, intent(in) :: facets(:, :) !< (4, facets)
@@ -106,7 +107,7 @@ contains
     end do
   end subroutine set_directions
 
-  !> The first of the places that is nearest.
+  !> Index of the nearest place; the first of equal ones.
   pure integer function nearest_place(places, here) result(nearest)
     real(rk), intent(in) :: places(:, :) !< (3, places) [m]
     real(rk), intent(in) :: here(3) !< [m]

@@ -5,13 +5,13 @@ module load_pressure
   use kinds, only: rk
   use mesh_faces, only: face_nodes
   use shape_quad4, only: facet_point
-  use wetted_facet, only: water_body, wet_facet, wet_the_facet
+  use wetted_facet, only: water_body, wet_facet, integrate_wet_part
   implicit none
   private
   public :: pressure_load, face_of_word, faces_of_elements
 
   type, extends(load) :: pressure_load
-    type(surface) :: faces !< where it acts
+    type(surface) :: faces !< loaded faces
     real(rk) :: pressure = 0.0_rk !< positive pushes on the solid [Pa]; hydrostatic: at `reference`
     logical :: is_hydrostatic = .false. !< linear in z, zero at `top` and above
     real(rk) :: top = 0.0_rk, reference = 0.0_rk !< z [m]
@@ -47,7 +47,7 @@ contains
     real(rk) :: n(4), area(3)
     integer :: q, a
     if (self%is_hydrostatic) then
-      call wet_the_facet(x, water_body(level=self%top), wet)
+      call integrate_wet_part(x, water_body(level=self%top), wet)
       share = -self%pressure/(self%top - self%reference)*wet%head
       return
     end if

@@ -1,11 +1,10 @@
-!> *RESERVOIR: hydrostatic pressure on the wetted part of a surface, and the water that moves with
-!> it.
+!> *RESERVOIR: hydrostatic pressure and added mass of the water on the wetted part of a surface.
 !>
 !> Added mass by Westergaard (paper_notes.md, 17): 7/8 rho sqrt(H y) per area, y the depth of the
 !> point and H that of the reservoir; integrated with the shape functions over the wetted area, so
-!> that the total over a vertical face of any mesh is 7/12 rho H**2 a metre. A node moves it along
-!> its normal, the mean of its wetted facets weighted by area: m n n^T, or only the diagonal of
-!> that.
+!> that the total over a vertical face of any mesh is 7/12 rho H**2 per metre. The mass acts along
+!> the normal of the node, the mean of its wetted facets weighted by area: m n n^T, or only its
+!> diagonal.
 module load_reservoir
   use applied_load, only: load
   use dam_mesh, only: mesh, surface
@@ -15,7 +14,7 @@ module load_reservoir
   use matrix_pattern, only: pattern
   use scatter_matrix, only: scatter_blocks
   use mesh_faces, only: face_nodes
-  use wetted_facet, only: water_body, wet_facet, wet_the_facet
+  use wetted_facet, only: water_body, wet_facet, integrate_wet_part
   implicit none
   private
   public :: reservoir_load, wetted_area
@@ -23,11 +22,11 @@ module load_reservoir
   real(rk), parameter :: westergaard = 7.0_rk/8.0_rk !< paper_notes.md, 17
 
   type, extends(load) :: reservoir_load
-    type(surface) :: faces !< upstream face; its dry part does not count
+    type(surface) :: faces !< upstream face; its dry part is ignored
     type(water_body) :: water
     real(rk) :: density = 1000.0_rk !< of water [kg/m3]
     real(rk) :: gravity = 9.81_rk !< [m/s2]
-    logical :: is_hydrostatic = .true. !< presses on the surface
+    logical :: is_hydrostatic = .true. !< has pressure
     logical :: has_added_mass = .false. !< Westergaard
     logical :: is_diagonal = .true. !< m n_k**2 on each axis, else m n n^T
   contains
@@ -50,7 +49,7 @@ contains
     if (.not. self%is_hydrostatic) return
     do i = 1, size(self%faces%element)
       nodes = face_nodes(model, self%faces%element(i), self%faces%face(i))
-      call wet_the_facet(model%x(:, nodes), self%water, wet)
+      call integrate_wet_part(model%x(:, nodes), self%water, wet)
       do a = 1, 4
         force(:, nodes(a)) = force(:, nodes(a)) - self%density*self%gravity*wet%head(:, a)
       end do
@@ -63,7 +62,7 @@ contains
     has_matrix = self%has_added_mass .and. kind == mass_matrix
   end function has_matrix
 
-  !> The mass of the water that moves with the nodes. The nodes are not coupled.
+  !> Adds the added mass of the water. The nodes are not coupled.
   subroutine add_matrix(self, kind, model, numbers, matrix, values)
     class(reservoir_load), intent(in) :: self
     integer, intent(in) :: kind
@@ -112,7 +111,7 @@ contains
     factor = westergaard*self%density*sqrt(self%water%level - self%water%bed)
     do i = 1, size(self%faces%element)
       nodes = face_nodes(model, self%faces%element(i), self%faces%face(i))
-      call wet_the_facet(model%x(:, nodes), self%water, wet)
+      call integrate_wet_part(model%x(:, nodes), self%water, wet)
       do a = 1, 4
         normal(:, nodes(a)) = normal(:, nodes(a)) + wet%area(:, a)
         mass(nodes(a)) = mass(nodes(a)) + factor*wet%root(a)
@@ -120,7 +119,7 @@ contains
     end do
   end subroutine gather_water
 
-  !> Size of the wetted part of the surface [m2]; 0 when the reservoir does not reach it.
+  !> Area of the wetted part of the surface [m2]; 0 if the surface is dry.
   pure real(rk) function wetted_area(self, model) result(area)
     type(reservoir_load), intent(in) :: self
     type(mesh), intent(in) :: model
@@ -129,7 +128,7 @@ contains
     area = 0.0_rk
     do i = 1, size(self%faces%element)
       nodes = face_nodes(model, self%faces%element(i), self%faces%face(i))
-      call wet_the_facet(model%x(:, nodes), self%water, wet)
+      call integrate_wet_part(model%x(:, nodes), self%water, wet)
       area = area + norm2(sum(wet%area, 2))
     end do
   end function wetted_area

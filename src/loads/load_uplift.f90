@@ -1,9 +1,9 @@
 !> *JOINT LAW, UPLIFT: the pressure of a reservoir's water in a joint. It pushes both faces apart.
 !>
 !> Source: different_meshes.md, 13.6. LINEAR: the head of the reservoir at each point times
-!> the share s = b/(a + b), a and b its distances to the upstream and the downstream edge, whether
-!> the joint is open or not; a reservoir downstream gives 1 - s of its own head. OPEN: the full head
-!> where the joint is open as far as the upstream edge; the solver says where that is.
+!> the share s = b/(a + b), a and b its distances to the upstream and the downstream edge, in open
+!> and closed joints; a reservoir downstream gives 1 - s of its head. OPEN: the full head at points
+!> that open points connect with the upstream edge; the solver determines these points.
 module load_uplift
   use applied_load, only: load
   use dam_mesh, only: mesh
@@ -28,8 +28,8 @@ module load_uplift
 
 contains
 
-  !> Head times density and gravity, as a reservoir would have it at the points of a joint [Pa].
-  pure function still_pressure(lake, seam) result(pressure)
+  !> Hydrostatic pressure of a reservoir at the points of a joint [Pa].
+  pure function hydrostatic_pressure(lake, seam) result(pressure)
     type(reservoir_load), intent(in) :: lake
     type(joint), intent(in) :: seam
     real(rk) :: pressure(seam%num_points)
@@ -37,9 +37,9 @@ contains
     if (lake%is_hydrostatic) then
       pressure = lake%density*lake%gravity*max(0.0_rk, lake%water%level - seam%x(lake%water%up, :))
     end if
-  end function still_pressure
+  end function hydrostatic_pressure
 
-  !> The classical diagram: full head at one edge, falling to nothing at the other.
+  !> The classical diagram: full head at one edge, falling to zero at the other.
   subroutine fill_linear(model, seam, rim, lake, is_tail, self)
     type(mesh), intent(in) :: model
     type(joint), intent(in) :: seam
@@ -49,7 +49,7 @@ contains
     type(uplift_load), intent(inout) :: self
     real(rk) :: a, b
     integer :: p
-    self%pressure = still_pressure(lake, seam)
+    self%pressure = hydrostatic_pressure(lake, seam)
     do p = 1, seam%num_points
       a = distance_to_edges(model%x, rim%upstream, seam%x(:, p))
       b = distance_to_edges(model%x, rim%downstream, seam%x(:, p))
@@ -62,7 +62,7 @@ contains
     call list_forces(seam, self)
   end subroutine fill_linear
 
-  !> Full head, and the ways by which water gets in.
+  !> Full head, and the paths of the water.
   subroutine fill_open(model, seam, rim, facets, lake, self)
     type(mesh), intent(in) :: model
     type(joint), intent(in) :: seam
@@ -73,7 +73,7 @@ contains
     real(rk), allocatable :: distance(:)
     integer :: p
     self%follows_opening = .true.
-    self%pressure = still_pressure(lake, seam)
+    self%pressure = hydrostatic_pressure(lake, seam)
     allocate (distance(seam%num_points), self%node(0), self%force(3, 0))
     do p = 1, seam%num_points
       distance(p) = distance_to_edges(model%x, rim%upstream, seam%x(:, p))
@@ -81,7 +81,7 @@ contains
     call build_paths(model%num_nodes, seam, facets, distance, self%paths)
   end subroutine fill_open
 
-  !> Forces area*pressure along the normal: on the slave face with it, on the master against it.
+  !> Forces area*pressure along the normal on the slave face, and opposite on the master face.
   subroutine list_forces(seam, self)
     type(joint), intent(in) :: seam
     type(uplift_load), intent(inout) :: self
@@ -95,7 +95,7 @@ contains
     end do
   end subroutine list_forces
 
-  !> The forces of a constant profile; one that follows the opening has none here.
+  !> Adds the forces of a constant profile; does nothing for profile OPEN.
   subroutine add_force(self, model, density, force)
     class(uplift_load), intent(in) :: self
     type(mesh), intent(in) :: model
@@ -107,7 +107,8 @@ contains
     end do
   end subroutine add_force
 
-  !> The constant profile, or the full head where the joint is open as far as the upstream edge.
+  !> The constant profile, or the full head at points that open points connect to the upstream
+  !> edge.
   pure subroutine joint_pressure(self, is_open, pressure)
     class(uplift_load), intent(in) :: self
     logical, intent(in) :: is_open(:)

@@ -1,7 +1,7 @@
-!> How far water gets into a joint: along open points that hang together with its upstream edge.
+!> The extent of water in a joint: open points that are connected with the upstream edge.
 !>
-!> Points hang together through facets: those at the nodes of one slave facet (points at nodes), or
-!> those that see a common slave node (points between nodes).
+!> Points are connected if they belong to nodes of one slave facet (points at nodes) or have a
+!> common slave node (points between nodes).
 module water_paths
   use joint_points, only: joint
   use kinds, only: rk
@@ -10,9 +10,9 @@ module water_paths
   private
   public :: path_net, build_paths, find_wet
 
-  !> Points between nodes lie beside the edge, not on it: those count as inlets that are nearer to
-  !> it than this part of the distances that their neighbours have, and none of these is twice as
-  !> near. Rows of 2 x 2 points have 0.13 and 0.5, rows of nodes 0 and 0.5.
+  !> Points between nodes do not lie on the edge. A point is an inlet if its distance to the edge is
+  !> less than this fraction of the distances of its neighbours, and no neighbour is at half its
+  !> distance. Rows of 2 x 2 points have the fractions 0.13 and 0.5, rows of nodes 0 and 0.5.
   real(rk), parameter :: nearest_share = 0.4_rk, much_nearer = 0.5_rk
 
   type :: path_net
@@ -46,7 +46,7 @@ contains
     call mark_inlets(distance, net)
   end subroutine build_paths
 
-  !> Points by the slave nodes that they see.
+  !> Points by their slave nodes.
   subroutine list_points_of_nodes(num_nodes, seam, points_of_node)
     integer, intent(in) :: num_nodes
     type(joint), intent(in) :: seam
@@ -60,7 +60,7 @@ contains
     call transpose_rows(nodes_of_point, num_nodes, points_of_node)
   end subroutine list_points_of_nodes
 
-  !> The points where water comes in.
+  !> Marks the points where water enters.
   subroutine mark_inlets(distance, net)
     real(rk), intent(in) :: distance(:) !< (points) [m]
     type(path_net), intent(inout) :: net
@@ -79,7 +79,7 @@ contains
     net%is_inlet = distance <= nearest_share*(most - least) .and. least >= much_nearer*distance
   end subroutine mark_inlets
 
-  !> Marks the open points that water reaches through open points.
+  !> Marks the open points that open points connect with an inlet.
   pure subroutine find_wet(net, is_open, is_wet)
     type(path_net), intent(in) :: net
     logical, intent(in) :: is_open(:) !< (points)

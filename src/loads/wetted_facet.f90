@@ -1,9 +1,9 @@
-!> The part of a facet that lies in water: integrals of its depth with the shape functions.
+!> The part of a facet under water: integrals of the depth with the shape functions.
 !>
 !> A facet is cut at the water level and at the bed. Forces and moments of the linear pressure are
-!> exact on planar facets, however they are cut. The square root of the depth (Westergaard) is
-!> integrated by substituting s = sqrt(depth), which makes it a polynomial: triangles are cut into
-!> pieces with one horizontal edge, and along their height Gauss's points are laid in s.
+!> exact on planar facets for any cut. The substitution s = sqrt(depth) turns the square root of the
+!> depth (Westergaard) into a polynomial: triangles are cut into pieces with one horizontal edge,
+!> with Gauss points in s along their height.
 module wetted_facet
   use gauss_rules, only: line2_point, line2_weight, line5_point, line5_weight
   use kinds, only: rk
@@ -11,9 +11,9 @@ module wetted_facet
   use small_matrix, only: cross_product, solve2
   implicit none
   private
-  public :: wet_facet, water_body, wet_the_facet
+  public :: wet_facet, water_body, integrate_wet_part
 
-  !> Still water between a level and a bed.
+  !> Water at rest between a level and a bed.
   type :: water_body
     real(rk) :: level = 0.0_rk !< of the surface, along the axis `up` [m]
     real(rk) :: bed = -huge(1.0_rk) !< of the ground [m]; nothing below is wet
@@ -27,12 +27,12 @@ module wetted_facet
     real(rk) :: root(4) = 0.0_rk !< sqrt(y) N_a dA [m2.5]
   end type wet_facet
 
-  integer, parameter :: most_corners = 6 !< of a triangle cut twice, with one to spare
+  integer, parameter :: most_corners = 6 !< of a triangle cut twice, plus one
 
 contains
 
   !> Integrals over the part of a facet under water.
-  pure subroutine wet_the_facet(x, water, wet)
+  pure subroutine integrate_wet_part(x, water, wet)
     real(rk), intent(in) :: x(3, 4) !< corners [m]; two may be equal
     type(water_body), intent(in) :: water
     type(wet_facet), intent(out) :: wet
@@ -53,9 +53,9 @@ contains
       end do
     end do
     if (all(depth >= 0.0_rk) .and. all(x(water%up, :) >= water%bed)) call submerge(x, water, wet)
-  end subroutine wet_the_facet
+  end subroutine integrate_wet_part
 
-  !> A facet wholly under water: the bilinear surface itself by 2 x 2 points, exact.
+  !> A facet completely under water: the bilinear surface by 2 x 2 points, exact.
   pure subroutine submerge(x, water, wet)
     real(rk), intent(in) :: x(3, 4)
     type(water_body), intent(in) :: water
@@ -155,8 +155,8 @@ contains
     end do
   end subroutine add_piece
 
-  !> Shape functions of the facet at a place on it: barycentric in a triangle, else by Newton's
-  !> method, which in a warped facet finds the nearest point.
+  !> Shape functions of the facet at one of its places: barycentric in a triangle, else by Newton's
+  !> method, which finds the nearest point of a warped facet.
   pure function shape_in_facet(x, place) result(n)
     real(rk), intent(in) :: x(3, 4), place(3)
     real(rk) :: n(4)
@@ -179,7 +179,7 @@ contains
     n = facet_shape(xi)
   end function shape_in_facet
 
-  !> Barycentric coordinates in a facet whose corner after `double` repeats it.
+  !> Barycentric coordinates in a facet whose corner after `double` repeats corner `double`.
   pure function shape_in_triangle(x, double, place) result(n)
     real(rk), intent(in) :: x(3, 4), place(3)
     integer, intent(in) :: double

@@ -60,7 +60,7 @@ contains
     real(rk), intent(in) :: u(:, :) !< (3, nodes)
     real(rk), intent(out) :: q(:) !< (num_total)
     integer :: j, p, pair, first
-    call numbers%compress(u, q)
+    call numbers%restrict(u, q)
     pair = 0
     do j = 1, size(joints)
       if (.not. joints(j)%is_nodal) cycle

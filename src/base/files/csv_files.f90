@@ -1,4 +1,4 @@
-!> A CSV file that grows by whole lines: neither a killed run nor a full disk leaves a torn one.
+!> A CSV file that grows by whole lines: neither a killed run nor a full disk leaves half a line.
 module csv_files
   use errors, only: error_type, raise, system_failed
   use kinds, only: rk
@@ -15,8 +15,8 @@ module csv_files
     type(raw_file), private :: file
   contains
     procedure :: open => open_csv
-    procedure :: add_row
-    procedure :: save
+    procedure :: add_row => add_increment
+    procedure :: save => save_lines
     procedure :: close => close_csv
   end type csv_file
 
@@ -40,7 +40,7 @@ contains
   end subroutine open_csv
 
   !> Adds a line of one increment: step, increment, numbers.
-  subroutine add_row(self, step, increment, row)
+  subroutine add_increment(self, step, increment, row)
     class(csv_file), intent(inout) :: self
     integer, intent(in) :: step, increment
     real(rk), intent(in) :: row(:)
@@ -53,10 +53,10 @@ contains
       call self%lines%add_real(row(i))
     end do
     call self%lines%add(new_line('a'))
-  end subroutine add_row
+  end subroutine add_increment
 
-  !> Writes the gathered lines, all or none.
-  subroutine save(self, error)
+  !> Writes the lines in memory to the disk, all or none.
+  subroutine save_lines(self, error)
     class(csv_file), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: error
     logical :: is_good
@@ -65,7 +65,7 @@ contains
     call self%lines%clear()
     if (is_good) return
     call raise(error, "cannot write '"//self%path//"' (disk full?)", system_failed)
-  end subroutine save
+  end subroutine save_lines
 
   !> Closes the file.
   subroutine close_csv(self, error)

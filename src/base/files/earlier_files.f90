@@ -1,5 +1,5 @@
-!> Takes away what an earlier run of the same job left in the folder, so that nothing of it is taken
-!> for a result of this one. Only files that its summary lists, and its numbered pictures, go.
+!> Removes the files of an earlier run of the same job, so that none is taken for a result of this
+!> run. Only files listed in the earlier summary and its numbered VTK files are removed.
 module earlier_files
   use file_system, only: file_name
   implicit none
@@ -29,7 +29,7 @@ contains
     close (unit)
   end subroutine remove_earlier_files
 
-  !> Pictures PREFIX0001.vtu, PREFIX0002.vtu and so on.
+  !> Removes PREFIX0001.vtu, PREFIX0002.vtu and so on.
   subroutine remove_series(prefix)
     character(*), intent(in) :: prefix
     character(12) :: digits
@@ -45,7 +45,7 @@ contains
     end do
   end subroutine remove_series
 
-  !> One entry of the list; a name that is not the job's own stays.
+  !> Removes one entry of the list; a file whose name does not begin with the job's stays.
   subroutine remove_listed(stem, line)
     character(*), intent(in) :: stem
     character(*), intent(in) :: line !< of the summary, '    "dam_energy.csv",'

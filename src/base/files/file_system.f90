@@ -22,7 +22,7 @@ module file_system
 
 contains
 
-  !> Makes a folder and those above it; one that exists already is fine.
+  !> Makes a folder and its parents; a folder that exists is no error.
   subroutine make_folder(path, error)
     character(*), intent(in) :: path
     type(error_type), allocatable, intent(out) :: error
@@ -36,7 +36,7 @@ contains
     if (status /= 0) call raise(error, "cannot write in the folder '"//path//"'", system_failed)
   end subroutine make_folder
 
-  !> A name that is safe in a file's name: letters, digits, '_', '-' and '.'; others become '_'.
+  !> The name with all but letters, digits, '_', '-' and '.' turned to '_', for names of files.
   pure function safe_name(name) result(safe)
     character(*), intent(in) :: name
     character(len(name)) :: safe
@@ -51,7 +51,7 @@ contains
     end do
   end function safe_name
 
-  !> A name that is safe in a path of an HDF5 file: any, but that '/' becomes '_'.
+  !> The name with '/' turned to '_', for paths in an HDF5 file.
   pure function link_name(name) result(safe)
     character(*), intent(in) :: name
     character(len(name)) :: safe

@@ -1,7 +1,7 @@
-!> The few things Keyway does with HDF5: groups, arrays, texts, attributes and growing tables.
+!> Writes HDF5 files: groups, arrays, texts, attributes and growing tables.
 !>
-!> Arrays keep Fortran's memory, so that h5py sees (3, nodes) as (nodes, 3). A failure is kept in
-!> `has_failed` and asked for once after a group of calls.
+!> Arrays keep Fortran's order in memory, so that h5py reads (3, nodes) as (nodes, 3). A failure
+!> sets `has_failed`, which the caller checks once after a group of calls.
 module hdf5_files
   use hdf5, only: h5dont_atexit_f
   use hdf5, only: hid_t, hsize_t, size_t, h5open_f, h5eset_auto_f, h5fcreate_f, h5fclose_f
@@ -46,7 +46,7 @@ module hdf5_files
 
 contains
 
-  !> Makes the file; an old one is replaced.
+  !> Makes the file, in place of an old one.
   subroutine create(self, path)
     class(hdf5_file), intent(inout) :: self
     character(*), intent(in) :: path
@@ -57,9 +57,9 @@ contains
     call self%note(status)
   end subroutine create
 
-  !> Starts the library; it may have been started before.
+  !> Starts the library, also if it is started already.
   subroutine start_hdf5(status)
-    integer, intent(out) :: status !< below 0 when this fails
+    integer, intent(out) :: status !< below 0 for a failure
     integer :: ignored
     ! After a failure the file stays as it was last flushed: the library must not touch it at exit.
     call h5dont_atexit_f(ignored)
@@ -67,7 +67,7 @@ contains
     call h5eset_auto_f(0, ignored)
   end subroutine start_hdf5
 
-  !> Makes a group; those above it must be there.
+  !> Makes a group; its parents must exist.
   subroutine make_group(self, path)
     class(hdf5_file), intent(inout) :: self
     character(*), intent(in) :: path
@@ -267,7 +267,7 @@ contains
     call self%close_dataset(dataset, all_rows)
   end subroutine extend_table
 
-  !> Brings everything to the disk: from here on the file is whole even if the run is killed.
+  !> Writes everything to the disk: the file stays readable if the run is killed afterwards.
   subroutine flush_file(self)
     class(hdf5_file), intent(inout) :: self
     integer :: status
@@ -286,7 +286,7 @@ contains
     self%id = 0
   end subroutine close_file
 
-  !> Remembers a failure.
+  !> Sets `has_failed` after a failure.
   subroutine note(self, status)
     class(hdf5_file), intent(inout) :: self
     integer, intent(in) :: status

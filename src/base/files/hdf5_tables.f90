@@ -1,4 +1,4 @@
-!> Tables of an HDF5 file that grow by a row an increment; rows gather in memory between flushes.
+!> Tables of an HDF5 file that get a row per increment; rows stay in memory between flushes.
 module hdf5_tables
   use kinds, only: rk
   use hdf5_files, only: hdf5_file
@@ -14,15 +14,15 @@ module hdf5_tables
     real(rk), allocatable :: rows(:, :) !< (columns, capacity)
     integer :: num_kept = 0, num_written = 0
   contains
-    procedure :: start
-    procedure :: add
+    procedure :: start => start_rows
+    procedure :: add => add_table_row
     procedure :: bring_out
   end type growing_table
 
 contains
 
   !> Makes the empty table in the file.
-  subroutine start(self, file, path, columns)
+  subroutine start_rows(self, file, path, columns)
     class(growing_table), intent(inout) :: self
     type(hdf5_file), intent(inout) :: file
     character(*), intent(in) :: path
@@ -31,19 +31,19 @@ contains
     self%path = path
     allocate (self%rows(1 + count([(columns(i:i) == ',', i=1, len(columns))]), capacity))
     call file%start_table(path, columns)
-  end subroutine start
+  end subroutine start_rows
 
   !> Adds a row.
-  subroutine add(self, file, row)
+  subroutine add_table_row(self, file, row)
     class(growing_table), intent(inout) :: self
     type(hdf5_file), intent(inout) :: file
     real(rk), intent(in) :: row(:)
     if (self%num_kept == capacity) call self%bring_out(file)
     self%num_kept = self%num_kept + 1
     self%rows(:, self%num_kept) = row
-  end subroutine add
+  end subroutine add_table_row
 
-  !> Moves the rows from memory to the file; nothing for a table that was not started.
+  !> Moves the rows from memory to the file; does nothing for a table that was not started.
   subroutine bring_out(self, file)
     class(growing_table), intent(inout) :: self
     type(hdf5_file), intent(inout) :: file

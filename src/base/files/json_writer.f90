@@ -1,4 +1,4 @@
-!> Writes JSON: the caller names keys and values, this module minds commas, escapes and NaN.
+!> Writes JSON: the caller gives keys and values, this module writes commas, escapes and null.
 module json_writer
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use kinds, only: rk
@@ -23,8 +23,8 @@ module json_writer
     procedure :: put_real
     procedure :: put_reals
     procedure :: contents
-    procedure, private :: start
-    procedure, private :: finish
+    procedure, private :: start_value
+    procedure, private :: close_level
     procedure, private :: add_quoted
     procedure, private :: add_number
   end type json_text
@@ -35,7 +35,7 @@ contains
   subroutine open_object(self, key)
     class(json_text), intent(inout) :: self
     character(*), intent(in), optional :: key
-    call self%start(key)
+    call self%start_value(key)
     call self%buffer%add('{')
     self%is_first = .true.
     self%depth = self%depth + 1
@@ -45,7 +45,7 @@ contains
   subroutine open_array(self, key)
     class(json_text), intent(inout) :: self
     character(*), intent(in), optional :: key
-    call self%start(key)
+    call self%start_value(key)
     call self%buffer%add('[')
     self%is_first = .true.
     self%depth = self%depth + 1
@@ -54,13 +54,13 @@ contains
   !> '}'
   subroutine close_object(self)
     class(json_text), intent(inout) :: self
-    call self%finish('}')
+    call self%close_level('}')
   end subroutine close_object
 
   !> ']'
   subroutine close_array(self)
     class(json_text), intent(inout) :: self
-    call self%finish(']')
+    call self%close_level(']')
   end subroutine close_array
 
   !> A string; every character that JSON reserves is escaped.
@@ -68,7 +68,7 @@ contains
     class(json_text), intent(inout) :: self
     character(*), intent(in) :: text
     character(*), intent(in), optional :: key
-    call self%start(key)
+    call self%start_value(key)
     call self%add_quoted(text)
   end subroutine put_text
 
@@ -77,16 +77,16 @@ contains
     class(json_text), intent(inout) :: self
     integer, intent(in) :: number
     character(*), intent(in), optional :: key
-    call self%start(key)
+    call self%start_value(key)
     call self%buffer%add_integer(number)
   end subroutine put_integer
 
-  !> A real; null when it is not finite, since JSON has no NaN.
+  !> A real; null for a number that is not finite, since JSON has no NaN.
   subroutine put_real(self, number, key)
     class(json_text), intent(inout) :: self
     real(rk), intent(in) :: number
     character(*), intent(in), optional :: key
-    call self%start(key)
+    call self%start_value(key)
     call self%add_number(number)
   end subroutine put_real
 
@@ -96,7 +96,7 @@ contains
     real(rk), intent(in) :: numbers(:)
     character(*), intent(in), optional :: key
     integer :: i
-    call self%start(key)
+    call self%start_value(key)
     call self%buffer%add('[')
     do i = 1, size(numbers)
       if (i > 1) call self%buffer%add(', ')
@@ -113,7 +113,7 @@ contains
   end function contents
 
   !> Comma, new line, indentation and key.
-  subroutine start(self, key)
+  subroutine start_value(self, key)
     class(json_text), intent(inout) :: self
     character(*), intent(in), optional :: key
     if (.not. self%is_first) call self%buffer%add(',')
@@ -122,17 +122,17 @@ contains
     if (.not. present(key)) return
     call self%add_quoted(key)
     call self%buffer%add(': ')
-  end subroutine start
+  end subroutine start_value
 
   !> Closes a level.
-  subroutine finish(self, bracket)
+  subroutine close_level(self, bracket)
     class(json_text), intent(inout) :: self
     character(*), intent(in) :: bracket
     self%depth = self%depth - 1
     if (.not. self%is_first) call self%buffer%add(new_line('a')//repeat('  ', self%depth))
     call self%buffer%add(bracket)
     self%is_first = .false.
-  end subroutine finish
+  end subroutine close_level
 
   !> A number, or null.
   subroutine add_number(self, number)
@@ -145,7 +145,7 @@ contains
     end if
   end subroutine add_number
 
-  !> A quoted string. Bytes above 127 that are no UTF-8 (old decks hold Latin-1) become '?'.
+  !> A quoted string. Bytes above 127 that are not UTF-8 (old decks hold Latin-1) become '?'.
   subroutine add_quoted(self, text)
     class(json_text), intent(inout) :: self
     character(*), intent(in) :: text

@@ -1,4 +1,4 @@
-!> The list of a VTK series with times (.pvd), readable at any moment of the run.
+!> The list of a VTK series with times (.pvd), complete at any moment of the run.
 module pvd_files
   use kinds, only: rk
   use errors, only: error_type
@@ -22,7 +22,7 @@ module pvd_files
 
 contains
 
-  !> The file comes into being with its first entry.
+  !> Opens the list; the file is written with its first entry.
   subroutine open_pvd(self, path, folder)
     class(pvd_file), intent(inout) :: self
     character(*), intent(in) :: path
@@ -31,7 +31,7 @@ contains
     self%folder = folder
   end subroutine open_pvd
 
-  !> Adds a file and writes the list anew.
+  !> Adds a file and rewrites the list.
   subroutine add_entry(self, time, name, error)
     class(pvd_file), intent(inout) :: self
     real(rk), intent(in) :: time !< total time [s]

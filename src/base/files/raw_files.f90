@@ -1,5 +1,5 @@
-!> Files written without buffers, so that a full disk is noticed at the very write: Fortran's own
-!> units tell neither when they are flushed nor when they are closed.
+!> Files written without buffers, so that the write itself fails on a full disk: units of Fortran
+!> report no failure when they are flushed or closed.
 module raw_files
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_null_char, c_size_t
   use kinds, only: long
@@ -13,12 +13,12 @@ module raw_files
   contains
     procedure :: create
     procedure :: is_open
-    procedure :: put
+    procedure :: put => put_raw
     procedure :: close => close_file
   end type raw_file
 
   interface
-    !> POSIX creat: an empty file, also in place of an old one.
+    !> POSIX creat: makes an empty file or empties an old one.
     function c_creat(path, mode) result(descriptor) bind(c, name='creat')
       import :: c_char, c_int
       implicit none
@@ -28,7 +28,7 @@ module raw_files
       integer(c_int) :: descriptor
     end function c_creat
 
-    !> POSIX write: bytes that were taken, or -1.
+    !> POSIX write: the number of bytes written, or -1.
     function c_write(descriptor, bytes, num_bytes) result(num_taken) bind(c, name='write')
       import :: c_char, c_int, c_size_t
       implicit none
@@ -71,14 +71,14 @@ contains
     is_good = self%descriptor >= 0
   end subroutine create
 
-  !> Whether bytes can be put into it.
+  !> Whether the file is open.
   pure logical function is_open(self)
     class(raw_file), intent(in) :: self
     is_open = self%descriptor >= 0
   end function is_open
 
-  !> Writes all bytes, or none: when the disk is full the file is cut back to where it was.
-  subroutine put(self, bytes, is_good)
+  !> Writes all bytes, or none: on a full disk the file is cut back to its former length.
+  subroutine put_raw(self, bytes, is_good)
     class(raw_file), intent(inout) :: self
     character(*), intent(in) :: bytes
     logical, intent(out) :: is_good
@@ -95,7 +95,7 @@ contains
     else if (c_ftruncate(self%descriptor, int(self%num_bytes, c_long)) /= 0) then
       return ! nothing more can be done: the caller reports the failure
     end if
-  end subroutine put
+  end subroutine put_raw
 
   !> Closes the file.
   subroutine close_file(self, is_good)

@@ -1,4 +1,4 @@
-!> The only place that reorders: from Keyway's order of tensors to VTK's; codes of VTK's cells.
+!> The order of tensor components in VTK, and the codes of its cells.
 module vtk_order
   use kinds, only: rk
   implicit none
@@ -27,13 +27,14 @@ contains
     list = name//'11,'//name//'22,'//name//'33,'//name//'12,'//name//'23,'//name//'13'
   end function tensor_names_in_vtk_order
 
-  !> The cell of an 8-node solid and its nodes: a hexahedron has the same order of nodes; one whose
-  !> nodes repeat so that an edge has shrunk on two opposite faces is drawn as a wedge, and any
-  !> other as a hexahedron with repeated nodes.
+  !> The VTK cell of an 8-node solid. A hexahedron keeps the order of its nodes. A solid with one
+  !> collapsed edge on each of two opposite faces becomes a wedge. Other solids with repeated nodes
+  !> stay hexahedra.
   pure subroutine cell_of_solid(nodes, kind, corners, num_corners)
     integer, intent(in) :: nodes(8)
     integer, intent(out) :: kind, corners(8), num_corners
-    !> Rings of corners round two opposite faces, right-handed about the way from one to the other.
+    !> Corners around two opposite faces, right-handed about the direction from the first to the
+    !> second.
     integer, parameter :: near(4, 3) = reshape([1, 2, 3, 4, 1, 4, 8, 5, 1, 5, 6, 2], [4, 3])
     integer, parameter :: far(4, 3) = reshape([5, 6, 7, 8, 2, 3, 7, 6, 4, 8, 7, 3], [4, 3])
     integer :: ring, k, next
@@ -69,12 +70,12 @@ contains
     end select
   end function cell_of_polygon
 
-  !> The ring without its member number `gone`.
-  pure function without(ring, gone) result(triangle)
-    integer, intent(in) :: ring(4), gone
+  !> The ring without its member number `left_out`.
+  pure function without(ring, left_out) result(triangle)
+    integer, intent(in) :: ring(4), left_out
     integer :: triangle(3)
-    triangle(:gone - 1) = ring(:gone - 1)
-    triangle(gone:) = ring(gone + 1:)
+    triangle(:left_out - 1) = ring(:left_out - 1)
+    triangle(left_out:) = ring(left_out + 1:)
   end function without
 
   !> How many of the nodes differ.

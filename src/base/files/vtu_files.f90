@@ -1,8 +1,8 @@
 !> One VTK unstructured grid file (.vtu), raw appended binary, little endian.
 !>
-!> Arrays gather in memory; `save` writes the header with their offsets and then their bytes, beside
-!> the final place and moved there. The bytes stand in the reverse order of the header's list:
-!> meshio looks arrays up by offsets that it changes on the way, and takes the first in the list.
+!> Arrays stay in memory until `save` writes the header with their offsets, then their bytes. The
+!> bytes stand in reverse order of the header's list: meshio finds arrays by offsets that it
+!> changes while reading, and takes the first match in the list.
 module vtu_files
   use, intrinsic :: iso_fortran_env, only: int32, int64
   use kinds, only: rk
@@ -31,19 +31,19 @@ module vtu_files
     type(data_array), allocatable :: arrays(:) !< in the order of the header
     integer :: num_points = 0, num_cells = 0
   contains
-    procedure :: start
+    procedure :: start => start_vtu
     procedure :: put_point_reals
     procedure :: put_point_integers
     procedure :: put_cell_reals
     procedure :: put_cell_integers
-    procedure :: save
+    procedure :: save => save_vtu
     procedure, private :: append
   end type vtu_file
 
 contains
 
   !> Starts a file with its grid.
-  subroutine start(self, x, connectivity, ends, kinds)
+  subroutine start_vtu(self, x, connectivity, ends, kinds)
     class(vtu_file), intent(inout) :: self
     real(rk), intent(in) :: x(:, :) !< (3, points) [m]
     integer, intent(in) :: connectivity(:) !< points of the cells, from 0
@@ -56,7 +56,7 @@ contains
     call self%append(in_cells, 'connectivity', 'Int32', 1, bytes_of_integers(connectivity), '')
     call self%append(in_cells, 'offsets', 'Int32', 1, bytes_of_integers(ends), '')
     call self%append(in_cells, 'types', 'UInt8', 1, low_bytes(kinds), '')
-  end subroutine start
+  end subroutine start_vtu
 
   !> A field on the points.
   subroutine put_point_reals(self, name, values, components)
@@ -143,7 +143,7 @@ contains
     call move_alloc(more, self%arrays)
   end subroutine append
 
-  !> Hands an array over without a copy of its bytes.
+  !> Moves an array without a copy of its bytes.
   subroutine move_array(from, to)
     type(data_array), intent(inout) :: from, to
     to%section = from%section
@@ -168,7 +168,7 @@ contains
   end function component_names
 
   !> Writes the file.
-  subroutine save(self, path, error)
+  subroutine save_vtu(self, path, error)
     class(vtu_file), intent(inout) :: self
     character(*), intent(in) :: path
     type(error_type), allocatable, intent(out) :: error
@@ -188,7 +188,7 @@ contains
     end do
     call file%put(nl//'</AppendedData>'//nl//'</VTKFile>'//nl)
     call file%complete(error)
-  end subroutine save
+  end subroutine save_vtu
 
   !> Everything before the bytes.
   function header_of(self) result(text)

@@ -1,4 +1,4 @@
-!> Files that are never seen half written: they grow beside their place and are moved there.
+!> Files that are never visible half written: they are written as PATH.part and then renamed.
 module whole_files
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
   use errors, only: error_type, raise, system_failed
@@ -14,12 +14,12 @@ module whole_files
     logical :: is_good = .false. !< everything so far is on the disk
   contains
     procedure :: open => open_file
-    procedure :: put
+    procedure :: put => put_bytes
     procedure :: complete
   end type whole_file
 
   interface
-    !> C rename: replaces `to` in one move.
+    !> C rename: replaces `to` in one operation.
     function c_rename(from, to) result(status) bind(c, name='rename')
       import :: c_char, c_int
       implicit none
@@ -49,13 +49,13 @@ contains
   end subroutine open_file
 
   !> Adds bytes.
-  subroutine put(self, bytes)
+  subroutine put_bytes(self, bytes)
     class(whole_file), intent(inout) :: self
     character(*), intent(in) :: bytes
     if (self%is_good) call self%file%put(bytes, self%is_good)
-  end subroutine put
+  end subroutine put_bytes
 
-  !> Moves PATH.part to PATH; takes it away when it is not whole.
+  !> Renames PATH.part to PATH, or removes PATH.part when a write has failed.
   subroutine complete(self, error)
     class(whole_file), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: error
@@ -72,14 +72,14 @@ contains
     call raise(error, "cannot write '"//self%path//"' (disk full?)", system_failed)
   end subroutine complete
 
-  !> Moves a file to its place in one step; a file that is there is replaced.
+  !> Renames a file in one operation; an existing file is replaced.
   subroutine move_file(from, to, is_moved)
     character(*), intent(in) :: from, to
     logical, intent(out) :: is_moved
     is_moved = c_rename(from//c_null_char, to//c_null_char) == 0
   end subroutine move_file
 
-  !> Writes a file in one go.
+  !> Writes a whole file.
   subroutine write_whole_file(path, text, error)
     character(*), intent(in) :: path, text
     type(error_type), allocatable, intent(out) :: error

@@ -67,9 +67,9 @@ contains
     end do
   end subroutine gram
 
-  !> Factors a square matrix, which is moved into the factor.
+  !> Factors a square matrix; the matrix is moved into the factor.
   subroutine factorise_dense(matrix, factor)
-    real(rk), allocatable, intent(inout) :: matrix(:, :) !< gone afterwards
+    real(rk), allocatable, intent(inout) :: matrix(:, :) !< not allocated afterwards
     type(lu_factor), intent(out) :: factor
     integer :: n, info
     call move_alloc(matrix, factor%values)

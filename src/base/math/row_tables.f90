@@ -1,4 +1,4 @@
-!> Rows of different length in one list: what many lists of lists are kept in.
+!> Rows of different length in one list (compressed rows).
 module row_tables
   use growing_lists, only: append_items => append, make_room
   implicit none
@@ -12,16 +12,16 @@ module row_tables
     integer, allocatable :: item(:)
     integer, private :: num_added = 0 !< rows, while the table is built row by row
   contains
-    procedure :: append
-    procedure :: finish
+    procedure :: append => append_row
+    procedure :: finish => finish_rows
     procedure :: num_rows
     procedure :: row
   end type row_table
 
 contains
 
-  !> Adds a row behind those there are.
-  pure subroutine append(self, items)
+  !> Adds a row at the end.
+  pure subroutine append_row(self, items)
     class(row_table), intent(inout) :: self
     integer, intent(in) :: items(:)
     integer :: num_items
@@ -31,10 +31,10 @@ contains
     call append_items(self%item, num_items, items)
     self%num_added = self%num_added + 1
     self%first(self%num_added + 1) = num_items + 1
-  end subroutine append
+  end subroutine append_row
 
-  !> Gives back the room that the rows do not use; no row can be added any more.
-  pure subroutine finish(self)
+  !> Frees unused memory; no row can be added afterwards.
+  pure subroutine finish_rows(self)
     class(row_table), intent(inout) :: self
     if (self%num_added == 0) then
       self%first = [1]
@@ -43,9 +43,9 @@ contains
       self%first = self%first(:self%num_added + 1)
       self%item = self%item(:self%first(self%num_added + 1) - 1)
     end if
-  end subroutine finish
+  end subroutine finish_rows
 
-  !> Number of rows of a table that is finished.
+  !> Number of rows of a finished table.
   pure integer function num_rows(self)
     class(row_table), intent(in) :: self
     num_rows = size(self%first) - 1
@@ -94,9 +94,9 @@ contains
     end do
   end subroutine transpose_rows
 
-  !> Room for the items of each key.
+  !> Allocates the items of each key.
   pure subroutine open_rows(key, num_keys, table)
-    integer, intent(in) :: key(:) !< 0: counts in no row
+    integer, intent(in) :: key(:) !< 0: in no row
     integer, intent(in) :: num_keys
     type(row_table), intent(out) :: table
     integer :: i

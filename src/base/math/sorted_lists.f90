@@ -1,4 +1,4 @@
-!> Lists of positions in ascending order, each once: what sets are made of.
+!> Lists of positions in ascending order, each once, as sets hold them.
 module sorted_lists
   implicit none
   private
@@ -21,7 +21,7 @@ contains
     members = pack(work, [.true., work(2:) /= work(:size(work) - 1)])
   end function sorted_unique
 
-  !> The list holds a position.
+  !> Whether the list holds a position.
   pure logical function contains_position(list, position) result(is_member)
     integer, intent(in) :: list(:) !< ascending
     integer, intent(in) :: position
@@ -29,7 +29,7 @@ contains
     if (size(list) > 0) is_member = list(place_in(list, position)) == position
   end function contains_position
 
-  !> Where an item stands, or would stand, in an ascending list (binary search).
+  !> Index of an item in an ascending list, or the index where to insert it (binary search).
   pure integer function place_in(list, item) result(low)
     integer, intent(in) :: list(:) !< ascending, not empty
     integer, intent(in) :: item

@@ -6,7 +6,7 @@ module symmetric_modes
   private
   public :: find_modes, null_space
 
-  !> An eigenvalue below this part of the largest one counts as zero.
+  !> Eigenvalues below this fraction of the largest one count as zero.
   real(rk), parameter :: rank_tolerance = 1.0e-10_rk
 
   interface
@@ -42,7 +42,7 @@ contains
     end if
   end subroutine find_modes
 
-  !> Orthonormal vectors that a positive semidefinite matrix takes to zero.
+  !> An orthonormal basis of the null space of a positive semidefinite matrix.
   subroutine null_space(matrix, vectors, error)
     real(rk), intent(in) :: matrix(:, :) !< symmetric
     real(rk), allocatable, intent(out) :: vectors(:, :) !< by columns

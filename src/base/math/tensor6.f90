@@ -51,9 +51,9 @@ contains
 
   !> Principal values, the largest first; accurate to roundoff also where values coincide.
   !>
-  !> Values that are apart come from the angle of Lode alone. Else Scherzinger and Dohrmann, Comput.
-  !> Methods Appl. Mech. Engrg. 197 (2008) 4007-4015: the value that is farthest from the two
-  !> others comes from the angle, the two others from the 2 x 2 problem normal to its axis.
+  !> Well separated values come from the Lode angle alone. Else Scherzinger and Dohrmann, Comput.
+  !> Methods Appl. Mech. Engrg. 197 (2008) 4007-4015: the value farthest from the two others comes
+  !> from the Lode angle, the two others from the 2 x 2 problem normal to its axis.
   pure function principal_values(t) result(values)
     real(rk), intent(in) :: t(6)
     real(rk) :: values(3)
@@ -78,7 +78,7 @@ contains
     end if
   end function principal_values
 
-  !> Cosines of an angle between 0 and 60 degrees, of it less and of it plus a third of a turn.
+  !> Cosines of an angle (0 to 60 degrees), of the angle - 120 and of the angle + 120 degrees.
   pure function cosines_by_thirds(angle) result(cosines)
     real(rk), intent(in) :: angle
     real(rk) :: cosines(3), cosine, sine
@@ -88,15 +88,15 @@ contains
   end function cosines_by_thirds
 
   !> Principal values, the largest first, and an orthonormal basis of principal directions; accurate
-  !> to roundoff also where values coincide, when the directions of these are one choice of many.
+  !> to roundoff also where values coincide; the directions of equal values are then arbitrary.
   !>
-  !> The value that is farthest from the two others comes from the angle of Lode, the others and
-  !> their directions from the 2 x 2 problem normal to its axis (as in `principal_values`).
+  !> The value farthest from the two others comes from the Lode angle, the others and their
+  !> directions from the 2 x 2 problem normal to its axis (as in `principal_values`).
   pure subroutine principal_axes(t, values, axes)
     real(rk), intent(in) :: t(6)
     real(rk), intent(out) :: values(3)
     real(rk), intent(out) :: axes(3, 3) !< columns in the order of the values
-    real(rk) :: mean, scale, s(6), j2, cosine, angle, apart, pair(2), plane(3, 2), columns(3, 3)
+    real(rk) :: mean, scale, s(6), j2, cosine, angle, single, pair(2), plane(3, 2), columns(3, 3)
     mean = trace(t)/3.0_rk
     s(1:3) = t(1:3) - mean
     s(4:6) = t(4:6)
@@ -113,26 +113,26 @@ contains
     cosine = 0.5_rk*third_invariant(s)/(j2*sqrt(j2))
     angle = acos(max(-1.0_rk, min(1.0_rk, cosine)))/3.0_rk
     if (cosine < 0.0_rk) angle = angle + third_of_turn
-    apart = 2.0_rk*sqrt(j2)*cos(angle)
+    single = 2.0_rk*sqrt(j2)*cos(angle)
     columns = as_matrix(s)
-    call span_normal_plane(columns, apart, plane(:, 1), plane(:, 2))
-    call turn_in_plane(columns, plane, pair)
-    if (apart > 0.0_rk) then
-      values = mean + scale*[apart, pair]
+    call span_normal_plane(columns, single, plane(:, 1), plane(:, 2))
+    call rotate_in_plane(columns, plane, pair)
+    if (single > 0.0_rk) then
+      values = mean + scale*[single, pair]
       axes(:, 1) = cross_product(plane(:, 1), plane(:, 2))
       axes(:, 2:3) = plane
     else
-      values = mean + scale*[pair, apart]
+      values = mean + scale*[pair, single]
       axes(:, 1:2) = plane
       axes(:, 3) = cross_product(plane(:, 1), plane(:, 2))
     end if
   end subroutine principal_axes
 
-  !> Turns two axes in their plane into principal directions of the part of a tensor in it.
-  pure subroutine turn_in_plane(matrix, plane, pair)
+  !> Rotates two axes in their plane to the principal directions of the tensor in this plane.
+  pure subroutine rotate_in_plane(matrix, plane, pair)
     real(rk), intent(in) :: matrix(3, 3)
     real(rk), intent(inout) :: plane(3, 2) !< unit vectors normal to each other
-    real(rk), intent(out) :: pair(2) !< values, the larger first
+    real(rk), intent(out) :: pair(2) !< principal values, the larger first
     real(rk) :: image(3), a, b, c, half, radius, cosine, sine, first(3)
     image = matrix(:, 1)*plane(1, 1) + matrix(:, 2)*plane(2, 1) + matrix(:, 3)*plane(3, 1)
     a = dot_product(plane(:, 1), image)
@@ -153,29 +153,29 @@ contains
     first = plane(:, 1)
     plane(:, 1) = cosine*first + sine*plane(:, 2)
     plane(:, 2) = cosine*plane(:, 2) - sine*first
-  end subroutine turn_in_plane
+  end subroutine rotate_in_plane
 
-  !> All principal values of a deviator, from the one that is farthest from the two others.
-  pure function values_around(s, apart) result(values)
+  !> All principal values of a deviator, from the value farthest from the two others.
+  pure function values_around(s, single) result(values)
     real(rk), intent(in) :: s(6) !< deviator
-    real(rk), intent(in) :: apart !< the known value
+    real(rk), intent(in) :: single !< the known value
     real(rk) :: values(3)
     real(rk) :: first(3), second(3), matrix(3, 3), in_plane(2)
     matrix = as_matrix(s)
-    call span_normal_plane(matrix, apart, first, second)
+    call span_normal_plane(matrix, single, first, second)
     in_plane = values_of_pair(dot_product(first, matmul(matrix, first)), &
                               dot_product(second, matmul(matrix, second)), &
                               dot_product(first, matmul(matrix, second)))
-    if (apart > 0.0_rk) then
-      values = [apart, in_plane]
+    if (single > 0.0_rk) then
+      values = [single, in_plane]
     else
-      values = [in_plane, apart]
+      values = [in_plane, single]
     end if
   end function values_around
 
   !> Two unit vectors normal to each other and to the axis of a single principal value. The columns
-  !> of the tensor less that value lie in the plane: the longest is one direction; the axis is
-  !> normal to it and to the column that differs most from it.
+  !> of tensor - value*identity lie in their plane. The longest column gives the first vector; the
+  !> axis is normal to this column and to the column that differs most from it in direction.
   pure subroutine span_normal_plane(matrix, value, first, second)
     real(rk), intent(in) :: matrix(3, 3), value !< the tensor and its principal value
     real(rk), intent(out) :: first(3), second(3)
@@ -197,7 +197,7 @@ contains
     second = cross_product(axis/sqrt(square_of(axis)), first)
   end subroutine span_normal_plane
 
-  !> v . v, without the call that norm2 makes.
+  !> v . v, without the call of norm2.
   pure real(rk) function square_of(v)
     real(rk), intent(in) :: v(3)
     square_of = v(1)**2 + v(2)**2 + v(3)**2

@@ -1,4 +1,4 @@
-!> The one renderer of diagnostics: what a person reads about a fault of the deck.
+!> The text of diagnostics: messages on faults of the deck.
 !>
 !>     dam.inp:12: *ELASTIC: found '31 GPa'; expected Young's modulus, a number > 0 [Pa]
 !>        12 | 31 GPa, 0.2
@@ -17,10 +17,10 @@ module diagnostic_text
 
 contains
 
-  !> Every error that was kept, file by file in the order of lines, and how many more there are.
+  !> The errors kept, by file and line, and the number of further errors.
   pure function text_of_errors(list) result(text)
     type(diagnostic_list), intent(in) :: list
-    character(:), allocatable :: text !< lines with new_line between them; '' without errors
+    character(:), allocatable :: text !< lines separated by new_line; '' without errors
     integer :: order(list%num_kept), i
     text = ''
     order = order_by_place(list)
@@ -52,7 +52,7 @@ contains
     end do
   end function order_by_place
 
-  !> Every warning and every note on ignored input, without the deck lines; '' without any.
+  !> All warnings and notes on ignored input, without the deck lines; '' without any.
   pure function text_of_warnings(list) result(text)
     type(diagnostic_list), intent(in) :: list
     character(:), allocatable :: text !< lines with new_line between them, none at the end
@@ -64,7 +64,7 @@ contains
     end do
   end function text_of_warnings
 
-  !> One fault: the headline, the line of the deck, carets, and where the same was defined before.
+  !> One fault: the headline, the line of the deck, carets, and the place of an earlier definition.
   pure function text_of_diagnostic(fault) result(text)
     type(diagnostic), intent(in) :: fault
     character(:), allocatable :: text
@@ -116,7 +116,7 @@ contains
     text = repeat(' ', max(number_width - len(number), 0))//number//' | '
   end function line_label
 
-  !> Blanks as wide as what stands before the word: tabs stay, letters of several bytes count once.
+  !> Blanks as wide as the text before the word: tabs stay, letters of several bytes count once.
   pure function blank_like(spot, first) result(text)
     type(place), intent(in) :: spot
     integer, intent(in) :: first !< first byte of the line that is shown
@@ -134,7 +134,7 @@ contains
     end do
   end function blank_like
 
-  !> A caret for each letter of the word that is shown.
+  !> A caret below each letter of the word.
   pure function carets(spot, last) result(text)
     type(place), intent(in) :: spot
     integer, intent(in) :: last !< last byte of the line that is shown
@@ -146,13 +146,13 @@ contains
     end do
   end function carets
 
-  !> The byte is a later one of a letter in UTF-8.
+  !> Whether the byte continues a letter in UTF-8.
   pure logical function continues_letter(byte)
     character, intent(in) :: byte
     continues_letter = iand(ichar(byte), 192) == 128
   end function continues_letter
 
-  !> The text with control letters, which could upset a terminal, turned to '?'; tabs stay.
+  !> The text with control characters turned to '?', since terminals obey them; tabs stay.
   pure function printable(text) result(clean)
     character(*), intent(in) :: text
     character(len(text)) :: clean

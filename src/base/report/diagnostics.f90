@@ -1,7 +1,6 @@
 !> Faults of the deck: where, what is wrong, what was expected.
 !>
-!> One list collects them all while the deck is read; `render` (in `render_diagnostics`) is the one
-!> place that turns them into lines for people.
+!> One list collects all faults while the deck is read; diagnostic_text makes messages of them.
 module diagnostics
   implicit none
   private
@@ -9,7 +8,7 @@ module diagnostics
   public :: severity_error, severity_warning, severity_ignored
 
   integer, parameter :: severity_error = 1 !< the deck is wrong
-  integer, parameter :: severity_warning = 2 !< the deck is odd
+  integer, parameter :: severity_warning = 2 !< the deck is unusual
   integer, parameter :: severity_ignored = 3 !< understood, has no effect here
 
   !> A spot in the deck.
@@ -27,9 +26,9 @@ module diagnostics
     integer :: severity = severity_error
     type(place) :: spot
     character(:), allocatable :: problem !< what is wrong
-    character(:), allocatable :: expected !< what was expected, '' where that says nothing
-    character(:), allocatable :: nearest !< a known word that is near, or ''
-    type(place) :: first !< second spot: 'first defined here'; no file where there is none
+    character(:), allocatable :: expected !< what was expected, '' for none
+    character(:), allocatable :: nearest !< a known word of similar spelling, or ''
+    type(place) :: first !< place of an earlier definition; no file: none
   end type diagnostic
 
   !> Everything found in a deck, in the order found.
@@ -40,22 +39,22 @@ module diagnostics
     type(diagnostic), allocatable :: warnings(:) !< the first `num_warnings` are in use
     integer :: num_kept = 0
   contains
-    procedure :: add
+    procedure :: add => add_diagnostic
     procedure :: has_errors
   end type diagnostic_list
 
-  integer, parameter :: most_kept = 20 !< errors; contract: at most 20 are shown in one go
+  integer, parameter :: most_kept = 20 !< errors that are shown (deck.md)
 
 contains
 
   !> Adds one fault or remark.
-  subroutine add(self, severity, spot, problem, expected, nearest, first)
+  subroutine add_diagnostic(self, severity, spot, problem, expected, nearest, first)
     class(diagnostic_list), intent(inout) :: self
     integer, intent(in) :: severity !< one of the severities above
     type(place), intent(in) :: spot !< where
     character(*), intent(in) :: problem !< what is wrong
     character(*), intent(in), optional :: expected !< what was expected
-    character(*), intent(in), optional :: nearest !< a known word that is near
+    character(*), intent(in), optional :: nearest !< a known word of similar spelling
     type(place), intent(in), optional :: first !< where the same was defined before
     type(diagnostic) :: new
     new%severity = severity
@@ -68,20 +67,20 @@ contains
     if (present(first)) new%first = first
     if (severity == severity_error) then
       self%num_errors = self%num_errors + 1
-      if (self%num_kept < most_kept) call append(self%errors, self%num_kept, new)
+      if (self%num_kept < most_kept) call append_diagnostic(self%errors, self%num_kept, new)
     else
-      call append(self%warnings, self%num_warnings, new)
+      call append_diagnostic(self%warnings, self%num_warnings, new)
     end if
-  end subroutine add
+  end subroutine add_diagnostic
 
-  !> The deck cannot be run.
+  !> Whether the deck cannot be run.
   pure logical function has_errors(self)
     class(diagnostic_list), intent(in) :: self
     has_errors = self%num_errors > 0
   end function has_errors
 
-  !> Puts an entry at the end of a growing list.
-  subroutine append(list, num_used, new)
+  !> Adds an entry to a growing list.
+  subroutine append_diagnostic(list, num_used, new)
     type(diagnostic), allocatable, intent(inout) :: list(:)
     integer, intent(inout) :: num_used !< entries in use
     type(diagnostic), intent(in) :: new
@@ -94,5 +93,5 @@ contains
     end if
     num_used = num_used + 1
     list(num_used) = new
-  end subroutine append
+  end subroutine append_diagnostic
 end module diagnostics

@@ -1,4 +1,4 @@
-!> The ledger as a table: the parts that took longest, with their shares of the time of the run.
+!> The ledger as a table: the longest parts, with their shares of the time of the run.
 module ledger_text
   use kinds, only: rk
   use run_ledger, only: ledger, ledger_part
@@ -10,7 +10,7 @@ module ledger_text
 
 contains
 
-  !> Rows by falling time, below a row of headings.
+  !> Rows by decreasing time, below a row of headings.
   function text_of_ledger(costs) result(text)
     type(ledger), intent(in) :: costs
     character(:), allocatable :: text !< lines with new_line between them
@@ -54,7 +54,7 @@ contains
     write (column, '(i10)') num_calls
   end function count_of
 
-  !> Positions of the parts by falling time.
+  !> Positions of the parts by decreasing time.
   pure subroutine sort_by_time(parts, order)
     type(ledger_part), intent(in) :: parts(:)
     integer, allocatable, intent(out) :: order(:)

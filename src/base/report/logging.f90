@@ -1,7 +1,7 @@
-!> What a run says: to job.log, and to people on stderr.
+!> The log of a run: job.log, and lines on stderr.
 !>
-!> On a terminal the progress of a run stays in one line that is written over; through a pipe it is
-!> plain lines. Quiet: stderr holds errors only.
+!> On a terminal, progress overwrites one line; through a pipe, progress is plain lines. Quiet:
+!> stderr holds errors only.
 module logging
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: error_unit
@@ -11,16 +11,16 @@ module logging
   private
   public :: run_log
 
-  character, parameter :: return = achar(13) !< goes back to the start of the line
+  character, parameter :: return = achar(13) !< moves to the start of the line
   integer(c_int), parameter :: standard_error = 2 !< its file descriptor
 
   !> The log of a run.
   type :: run_log
-    type(raw_file), private :: file !< not open: there is none
+    type(raw_file), private :: file !< not open: no file
     logical :: is_quiet = .false. !< only errors go to stderr
     logical :: is_terminal = .false. !< stderr is a terminal
     logical :: has_failed = .false. !< a line could not be written to the file (disk full)
-    integer :: width_in_place = 0 !< letters of the progress line that stands on the terminal
+    integer :: width_in_place = 0 !< letters of the progress line on the terminal
   contains
     procedure :: open => open_log
     procedure :: say
@@ -31,7 +31,7 @@ module logging
   end type run_log
 
   interface
-    !> C library: 1 where the file descriptor is a terminal.
+    !> C library: 1 for a terminal.
     function isatty(descriptor) result(answer) bind(C, name='isatty')
       import :: c_int
       implicit none
@@ -45,7 +45,7 @@ contains
   !> Opens the log; without a path lines go to stderr only.
   subroutine open_log(self, is_quiet, error, path)
     class(run_log), intent(inout) :: self
-    logical, intent(in) :: is_quiet !< say nothing on stderr
+    logical, intent(in) :: is_quiet !< only errors go to stderr
     type(error_type), allocatable, intent(out) :: error
     character(*), intent(in), optional :: path !< of the file, written over
     logical :: is_good
@@ -57,7 +57,7 @@ contains
     call raise(error, "cannot write the log '"//path//"'", system_failed)
   end subroutine open_log
 
-  !> A line for the file and for people.
+  !> Writes a line to the file and to stderr.
   subroutine say(self, line)
     class(run_log), intent(inout) :: self
     character(*), intent(in) :: line !< may hold several lines
@@ -65,7 +65,7 @@ contains
     if (.not. self%is_quiet) call show(self, line)
   end subroutine say
 
-  !> A line for the file only.
+  !> Writes a line to the file only.
   subroutine note(self, line)
     class(run_log), intent(inout) :: self
     character(*), intent(in) :: line !< may hold several lines
@@ -75,7 +75,7 @@ contains
     if (.not. is_good) self%has_failed = .true.
   end subroutine note
 
-  !> A line about an increment: takes the place of the one before on a terminal.
+  !> Writes a line on an increment; on a terminal it replaces the previous one.
   subroutine progress(self, line)
     class(run_log), intent(inout) :: self
     character(*), intent(in) :: line
@@ -92,7 +92,7 @@ contains
     self%width_in_place = len(line)
   end subroutine progress
 
-  !> An error: for the file and for people, quiet or not.
+  !> Writes an error to the file and to stderr, quiet or not.
   subroutine complain(self, line)
     class(run_log), intent(inout) :: self
     character(*), intent(in) :: line !< may hold several lines
@@ -117,7 +117,7 @@ contains
     write (error_unit, '(a)') line
   end subroutine show
 
-  !> Leaves the progress line where it stands and goes on below it.
+  !> Ends the progress line; further lines follow below it.
   subroutine end_progress(self)
     class(run_log), intent(inout) :: self
     if (self%width_in_place > 0) write (error_unit, '(a)') ''

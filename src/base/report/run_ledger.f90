@@ -1,8 +1,8 @@
 !> The ledger of a run: time, memory and calls by part.
 !>
 !> A part is work on an effect: 'factor' on the 'structure', 'iterate' on a joint, 'write' on 'VTK'.
-!> `start` pauses the part that runs, `stop` resumes it: each moment of a run belongs to one part,
-!> and the times of all parts add up to the time of the run, also in the middle of a step.
+!> `start` pauses the running part, `stop` resumes it. Each moment of a run belongs to one part, and
+!> the times of all parts add up to the time of the run, also in the middle of a step.
 !>
 !>     call costs%start('factor', 'structure', 'solver')
 !>     ...
@@ -17,12 +17,12 @@ module run_ledger
   public :: ledger, ledger_part
 
   !> Peak memory is read in the first calls of a part, and whenever a part has run this long without
-  !> a pause [s]: reading it takes some 50 us. The system needs longer than 10 ms to provide some
-  !> 40 MB, so that less than this can be booked on the next part by mistake.
+  !> a pause [s], since a reading takes about 50 us. The system provides about 40 MB in 10 ms: at
+  !> most so much memory is booked on the wrong part.
   integer, parameter :: num_weighed_calls = 4
   real(rk), parameter :: weighed_time = 0.01_rk
 
-  !> Position of the part that runs while no other does.
+  !> Position of the part that runs while no other part does.
   integer, parameter :: other_part = 1
 
   !> One line of the ledger.
@@ -30,15 +30,15 @@ module run_ledger
     character(:), allocatable :: work !< 'read', 'assemble', 'factor', 'solve', ..
     character(:), allocatable :: effect !< 'structure', name of a joint, a load, a file family, ..
     character(:), allocatable :: kind !< of the effect: 'solver', 'joint', 'load', 'output', ..
-    real(rk) :: wall_time = 0.0_rk !< without the parts that were started within this part [s]
-    real(rk) :: memory = 0.0_rk !< growth of the peak memory of the process meanwhile [MB]
-    integer :: num_calls = 0 !< that have ended
-    integer, private :: successor = other_part !< part that was started next, last time
+    real(rk) :: wall_time = 0.0_rk !< without parts started within this part [s]
+    real(rk) :: memory = 0.0_rk !< growth of the peak memory of the process [MB]
+    integer :: num_calls = 0 !< calls that have ended
+    integer, private :: successor = other_part !< part that followed at the last call
   contains
     procedure :: name => name_of_part
   end type ledger_part
 
-  !> An effect that stands for several, and the member whose share comes next.
+  !> The share of one member in a group of effects.
   type :: effect_share
     character(:), allocatable :: group !< effect that parts are booked on
     character(:), allocatable :: member !< effect that gets the share
@@ -46,7 +46,7 @@ module run_ledger
     real(rk) :: share = 0.0_rk !< shares of a group add up to 1
   end type effect_share
 
-  !> What all copies of a ledger write to.
+  !> The data that all copies of a ledger share.
   type :: ledger_book
     type(ledger_part), allocatable :: parts(:) !< in the order of their first start
     type(effect_share), allocatable :: shares(:)
@@ -58,13 +58,13 @@ module run_ledger
     real(rk) :: peak = 0.0_rk !< memory that is booked [MB]
   end type ledger_book
 
-  !> A ledger. Copies share one book, so that each solver of a run can keep a copy. A ledger that is
-  !> not open books nothing.
+  !> A ledger. Copies share their data, so that each solver can keep a copy. A ledger that is not
+  !> open records nothing.
   type :: ledger
     type(ledger_book), pointer, private :: book => null()
   contains
     procedure :: open => open_book
-    procedure :: start
+    procedure :: start => start_part
     procedure :: stop => stop_part
     procedure :: stop_all
     procedure :: share
@@ -73,10 +73,10 @@ module run_ledger
 
 contains
 
-  !> Opens the book.
+  !> Opens the ledger.
   subroutine open_book(self, started_at)
     class(ledger), intent(inout) :: self
-    real(rk), intent(in), optional :: started_at !< by the wall clock [s]; now when absent
+    real(rk), intent(in), optional :: started_at !< wall clock [s]; default: now
     integer, parameter :: usual_depth = 32
     allocate (self%book)
     associate (book => self%book)
@@ -90,11 +90,11 @@ contains
     end associate
   end subroutine open_book
 
-  !> Starts a part and pauses the part that runs.
-  subroutine start(self, work, effect, kind)
+  !> Starts a part and pauses the running part.
+  subroutine start_part(self, work, effect, kind)
     class(ledger), intent(in) :: self
     character(*), intent(in) :: work !< 'read', 'assemble', 'factor', 'solve', ..
-    character(*), intent(in) :: effect !< on whose account
+    character(*), intent(in) :: effect !< what causes the work
     character(*), intent(in) :: kind !< of the effect
     integer :: part
     if (.not. associated(self%book)) return
@@ -108,11 +108,10 @@ contains
       call book_time(book, book%parts(part)%num_calls < num_weighed_calls)
       call push(book, part)
     end associate
-  end subroutine start
+  end subroutine start_part
 
-  !> Stops the part that runs and resumes the part around it. With `name`, stops the part of this
-  !> name and all parts within it that an error has left running; nothing where this part does not
-  !> run.
+  !> Stops the running part and resumes the part around it. With `name`, stops the part of this name
+  !> and all parts within it that an error has left running; does nothing if no such part runs.
   subroutine stop_part(self, name)
     class(ledger), intent(in) :: self
     character(*), intent(in), optional :: name !< work and effect: 'factor structure'
@@ -129,14 +128,14 @@ contains
     end associate
   end subroutine stop_part
 
-  !> Stops all parts: at the end of a run that an error has ended.
+  !> Stops all parts, at the end of a run that an error has ended.
   subroutine stop_all(self)
     class(ledger), intent(in) :: self
     if (associated(self%book)) call stop_down_to(self%book, other_part + 1)
   end subroutine stop_all
 
-  !> Declares that an effect stands for several: its parts are divided among the members by weight.
-  !> A group without weight stays undivided.
+  !> Declares a group of effects: its parts are divided among the members by weight. A group without
+  !> weight stays undivided.
   subroutine share(self, group, kind, members, weights)
     class(ledger), intent(in) :: self
     character(*), intent(in) :: group !< effect that parts are booked on
@@ -184,11 +183,11 @@ contains
     name = self%work//' '//self%effect
   end function name_of_part
 
-  !> Books the time since the last booking on the part that runs, and the growth of the memory where
-  !> it is read.
+  !> Books the time since the last booking on the running part, and the growth of memory if it is
+  !> read.
   subroutine book_time(book, is_weighed)
     type(ledger_book), intent(inout) :: book
-    logical, intent(in) :: is_weighed !< read the memory, however short the time is
+    logical, intent(in) :: is_weighed !< read the memory even after a short time
     real(rk) :: now, passed, peak
     now = wall_clock()
     passed = now - book%booked_until
@@ -203,7 +202,7 @@ contains
     book%booked_until = now
   end subroutine book_time
 
-  !> Lets a part run.
+  !> Makes a part the running part.
   subroutine push(book, part)
     type(ledger_book), intent(inout) :: book
     integer, intent(in) :: part
@@ -254,14 +253,14 @@ contains
     parts(i)%num_calls = parts(i)%num_calls + part%num_calls
   end subroutine add_share
 
-  !> Is a part this work on this effect?
+  !> Whether a part is this work on this effect.
   pure logical function is_part(part, work, effect, kind)
     type(ledger_part), intent(in) :: part
     character(*), intent(in) :: work, effect, kind
     is_part = part%effect == effect .and. part%work == work .and. part%kind == kind
   end function is_part
 
-  !> Position of a part, which is added where it is missing.
+  !> Position of a part; a missing part is added.
   subroutine find_or_add(parts, work, effect, kind, part)
     type(ledger_part), allocatable, intent(inout) :: parts(:)
     character(*), intent(in) :: work, effect, kind

@@ -16,7 +16,7 @@ contains
     seconds = real(ticks, rk)/real(rate, rk)
   end function wall_clock
 
-  !> Most memory the process has held so far [MB]; 0 where the system does not report it.
+  !> Peak memory of the process so far [MB]; 0 if the system does not report it.
   real(rk) function peak_memory() result(megabytes)
     character(*), parameter :: wanted = 'VmHWM:'
     character(256) :: line

@@ -1,4 +1,4 @@
-!> 'Did you mean ..': the known word that is nearest to a misspelt one.
+!> 'Did you mean ..': the known word nearest to a misspelt word.
 module nearest_words
   use parse_text, only: upper_case
   implicit none
@@ -9,7 +9,7 @@ module nearest_words
 
 contains
 
-  !> The candidate nearest to `word` regardless of case; '' where none is near.
+  !> The candidate nearest to `word` regardless of case; '' if none is near.
   !>
   !> Near: at most one change per three letters, at most three in all.
   pure function nearest_word(word, candidates) result(nearest)
@@ -54,7 +54,7 @@ contains
     end do
   end function count_choices
 
-  !> Changes a misspelt word may have: one per three letters, one to three.
+  !> Changes that a misspelt word may have: one per three letters, one to three.
   pure integer function most_changes(word)
     character(*), intent(in) :: word
     most_changes = min(max(len_trim(word)/3, 1), 3)
@@ -80,12 +80,12 @@ contains
     distance = last(len(b))
   end function word_distance
 
-  !> Lowers the distances where the last two letters are the same, swapped.
+  !> Reduces the distances where the last two letters are swapped.
   pure subroutine try_swaps(pair, b, before, row)
     character(2), intent(in) :: pair !< last two letters of the one word
     character(*), intent(in) :: b !< the other word
     integer, intent(in) :: before(0:) !< distances without the pair
-    integer, intent(inout) :: row(0:) !< distances with it
+    integer, intent(inout) :: row(0:) !< distances with the pair
     integer :: j
     do j = 2, len(b)
       if (pair(2:2)//pair(1:1) == b(j - 1:j)) row(j) = min(row(j), before(j - 2) + 1)

@@ -1,4 +1,4 @@
-!> Lists of numbers in few letters: '1-4, 7, 9-12'.
+!> Short text for a list of numbers: '1-4, 7, 9-12'.
 module number_ranges
   use write_text, only: as_text
   implicit none
@@ -7,7 +7,7 @@ module number_ranges
 
 contains
 
-  !> The numbers with runs of neighbours drawn together.
+  !> The numbers, with consecutive numbers written as ranges.
   pure function as_ranges(numbers) result(text)
     integer, intent(in) :: numbers(:) !< in increasing order
     character(:), allocatable :: text

@@ -1,4 +1,4 @@
-!> Strict reading of numbers and words: a word is a number as a whole or not at all.
+!> Strict reading of numbers and words: a number must fill the whole word.
 module parse_text
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_null_char, c_null_ptr, c_ptr
   use kinds, only: long, rk
@@ -6,24 +6,24 @@ module parse_text
   private
   public :: parse_real, parse_integer, upper_case, single_blanks, without_blanks
 
-  integer, parameter :: most_digits = 18 !< that fit a 64-bit integer whatever they are
+  integer, parameter :: most_digits = 18 !< any number of so many digits fits 64 bits
   integer(long), parameter :: exact_limit = 2_long**53 !< integers below are exact reals
   integer, parameter :: largest_power = 22 !< 10**22 is the last exact power of ten
   integer, parameter :: largest_magnitude = 307 !< decades of a normal real, up and down
-  integer, parameter :: longest_exponent = 100000 !< more is clipped: too large anyway
+  integer, parameter :: longest_exponent = 100000 !< larger ones are clipped: out of range anyway
   real(rk), parameter :: power_of_ten(0:largest_power) = [ &
                          1e0_rk, 1e1_rk, 1e2_rk, 1e3_rk, 1e4_rk, 1e5_rk, 1e6_rk, 1e7_rk, &
                          1e8_rk, 1e9_rk, 1e10_rk, 1e11_rk, 1e12_rk, 1e13_rk, 1e14_rk, 1e15_rk, &
                          1e16_rk, 1e17_rk, 1e18_rk, 1e19_rk, 1e20_rk, 1e21_rk, 1e22_rk]
   character, parameter :: tab = achar(9)
 
-  !> A number taken apart: digits*10**exponent.
+  !> A number in parts: digits*10**exponent.
   type :: decimal
     logical :: is_negative = .false.
-    integer(long) :: digits = 0 !< the first significant ones
-    integer :: num_digits = 0 !< significant ones, also those beyond `digits`
-    integer :: exponent = 0 !< of ten, of `digits`
-    logical :: is_cut = .false. !< `digits` does not hold them all
+    integer(long) :: digits = 0 !< the first significant digits
+    integer :: num_digits = 0 !< significant digits, also those beyond `digits`
+    integer :: exponent = 0 !< of ten
+    logical :: is_cut = .false. !< `digits` does not hold all digits
   end type decimal
 
   interface
@@ -42,15 +42,15 @@ contains
 
   !> Reads a real: `1`, `1.`, `.5`, `1e3`, `1.D+3`; correctly rounded.
   !>
-  !> No number: anything else in the word, `NaN`, `Inf`, beyond 1e308 or nonzero below 1e-307.
+  !> Not a number: other letters in the word, `NaN`, `Inf`, above 1e308 or nonzero below 1e-307.
   pure subroutine parse_real(text, value, is_number)
     character(*), intent(in) :: text !< one word; blanks around it do not count
-    real(rk), intent(out) :: value !< zero where it is no number
+    real(rk), intent(out) :: value !< zero if the word is no number
     logical, intent(out) :: is_number !< the whole word is a number
     type(decimal) :: parts
     integer :: magnitude
     value = 0.0_rk
-    call take_apart(text, parts, is_number)
+    call split_number(text, parts, is_number)
     if (.not. is_number .or. parts%digits == 0) return
     magnitude = parts%exponent + min(parts%num_digits, most_digits) - 1
     is_number = abs(magnitude) <= largest_magnitude
@@ -71,7 +71,7 @@ contains
   !> Reads an integer: an optional sign and digits, nothing else.
   pure subroutine parse_integer(text, value, is_integer)
     character(*), intent(in) :: text !< one word; blanks around it do not count
-    integer, intent(out) :: value !< zero where it is no integer
+    integer, intent(out) :: value !< zero if the word is no integer
     logical, intent(out) :: is_integer !< the whole word is an integer that fits
     integer :: position, first, last, digit
     integer(long) :: total
@@ -95,8 +95,8 @@ contains
     end if
   end subroutine parse_integer
 
-  !> Takes a number apart and tells whether it is one.
-  pure subroutine take_apart(text, parts, is_number)
+  !> Splits a word into the parts of a number; `is_number` is false if the word is none.
+  pure subroutine split_number(text, parts, is_number)
     character(*), intent(in) :: text
     type(decimal), intent(out) :: parts
     logical, intent(out) :: is_number
@@ -125,13 +125,13 @@ contains
     end do
     if (num_seen == 0) return
     call add_exponent(text(position:last), parts, is_number)
-  end subroutine take_apart
+  end subroutine split_number
 
-  !> Adds a digit of the mantissa; zeros in front are not significant.
+  !> Adds a digit of the mantissa; leading zeros are not significant.
   pure subroutine add_digit(parts, digit, has_point)
     type(decimal), intent(inout) :: parts
     integer, intent(in) :: digit !< 0 to 9
-    logical, intent(in) :: has_point !< it stands behind the point
+    logical, intent(in) :: has_point !< the digit stands after the point
     if (digit > 0 .or. parts%num_digits > 0) parts%num_digits = parts%num_digits + 1
     if (parts%num_digits > most_digits) then
       if (digit > 0) parts%is_cut = .true.
@@ -181,7 +181,7 @@ contains
     value = strtod(letters, c_null_ptr)
   end function nearest_double
 
-  !> First and last letter that is no blank and no tab; first > last where there is none.
+  !> First and last letter that is neither blank nor tab; first > last if there is none.
   pure subroutine find_ends(text, first, last)
     character(*), intent(in) :: text
     integer, intent(out) :: first, last

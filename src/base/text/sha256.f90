@@ -1,6 +1,6 @@
-!> The SHA-256 digest of a file, so that a result can be traced to the very deck that made it.
+!> The SHA-256 digest of a file, so that a result can be traced to its deck.
 !>
-!> Source: FIPS 180-4. Words are kept in 64-bit integers and masked, for Fortran has no unsigned.
+!> Source: FIPS 180-4. Words are 64-bit integers with a mask, since Fortran has no unsigned ones.
 module sha256
   use kinds, only: long
   implicit none
@@ -27,7 +27,7 @@ module sha256
 
 contains
 
-  !> Digest of the bytes of a file, 64 hexadecimal digits; empty when it cannot be read.
+  !> Digest of the bytes of a file, 64 hexadecimal digits; empty if the file cannot be read.
   function digest_of_file(path) result(digest)
     character(*), intent(in) :: path
     character(:), allocatable :: digest, bytes

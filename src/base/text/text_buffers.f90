@@ -1,4 +1,4 @@
-!> A text that grows: many small pieces, one write to the file.
+!> A text that grows by many small pieces, for one write to a file.
 module text_buffers
   use kinds, only: rk
   implicit none
@@ -11,7 +11,7 @@ module text_buffers
     integer :: length = 0
     character(:), allocatable :: room !< the text is room(:length)
   contains
-    procedure :: add
+    procedure :: add => add_text
     procedure :: add_real
     procedure :: add_integer
     procedure :: clear
@@ -25,8 +25,8 @@ module text_buffers
 
 contains
 
-  !> Appends `text` as it is.
-  pure subroutine add(self, text)
+  !> Appends `text` unchanged.
+  pure subroutine add_text(self, text)
     class(text_buffer), intent(inout) :: self
     character(*), intent(in) :: text
     character(:), allocatable :: larger
@@ -40,7 +40,7 @@ contains
     end if
     self%room(self%length + 1:needed) = text
     self%length = needed
-  end subroutine add
+  end subroutine add_text
 
   !> Appends a real number, 13 significant digits, no blanks.
   subroutine add_real(self, number)
@@ -60,7 +60,7 @@ contains
     call self%add(trim(digits))
   end subroutine add_integer
 
-  !> Empties the text; the room is kept.
+  !> Empties the text; its memory is kept.
   pure subroutine clear(self)
     class(text_buffer), intent(inout) :: self
     self%length = 0

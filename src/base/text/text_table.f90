@@ -1,4 +1,4 @@
-!> Numbers for texts, 1, 2, 3 .. in the order in which they come: a table with open addressing.
+!> Numbers texts 1, 2, 3 .. in the order in which they are added: a hash table, open addressing.
 module text_table
   use growing_lists, only: append
   use kinds, only: long
@@ -11,7 +11,7 @@ module text_table
   integer(long), parameter :: offset_basis = 2166136261_long, prime = 16777619_long
   integer(long), parameter :: low_bits = 4294967295_long !< 2^32 - 1
 
-  !> Numbers of texts. The table of seats never fills beyond a half.
+  !> Numbers of texts. At most half of the seats of the hash table are in use.
   type :: text_numbers
     private
     integer :: num_texts = 0
@@ -25,7 +25,7 @@ module text_table
 
 contains
 
-  !> Number of a text, 0 when it is unknown.
+  !> Number of a text, 0 for an unknown one.
   pure integer function find(self, text) result(number)
     class(text_numbers), intent(in) :: self
     character(*), intent(in) :: text
@@ -33,13 +33,13 @@ contains
     if (self%num_texts > 0) number = self%number_at(seat_of(self, text))
   end function find
 
-  !> Number of a text, which gets the next one where it is new.
+  !> Number of a text; a new text gets the next number.
   pure subroutine find_or_add(self, text, number)
     class(text_numbers), intent(inout) :: self
     character(*), intent(in) :: text
     integer, intent(out) :: number
     integer :: seat
-    call make_room(self)
+    call double_seats(self)
     seat = seat_of(self, text)
     number = self%number_at(seat)
     if (number > 0) return
@@ -49,7 +49,7 @@ contains
     self%number_at(seat) = number
   end subroutine find_or_add
 
-  !> The seat of a text, or the empty one where it belongs.
+  !> The seat of a text, or the empty seat for it.
   pure integer function seat_of(self, text) result(seat)
     class(text_numbers), intent(in) :: self
     character(*), intent(in) :: text
@@ -84,7 +84,7 @@ contains
   end function hash
 
   !> Doubles the seats before they are half full.
-  pure subroutine make_room(self)
+  pure subroutine double_seats(self)
     class(text_numbers), intent(inout) :: self
     integer :: number, first, num_seats
     if (.not. allocated(self%number_at)) allocate (self%number_at(64), source=0)
@@ -97,5 +97,5 @@ contains
       self%number_at(seat_of(self, self%bytes%room(first:self%last(number)))) = number
       first = self%last(number) + 1
     end do
-  end subroutine make_room
+  end subroutine double_seats
 end module text_table

@@ -8,7 +8,7 @@ module write_text
   integer, parameter :: num_decimals = 5 !< behind the first significant digit
   integer, parameter :: lowest_plain = -3, highest_plain = 5 !< decades written without exponent
 
-  !> A number in as few letters as it needs: '3', '0.2', '1e10' (6 significant digits).
+  !> A number in the fewest letters: '3', '0.2', '1e10' (6 significant digits).
   interface as_text
     module procedure integer_as_text, long_as_text, real_as_text
   end interface as_text
@@ -55,7 +55,7 @@ contains
     end if
   end function real_as_text
 
-  !> A decimal number without the zeros behind its last digit, and without a bare point.
+  !> A decimal number without trailing zeros and without a trailing point.
   pure function without_zeros(number) result(text)
     character(*), intent(in) :: number !< holds a point
     character(:), allocatable :: text

@@ -1,10 +1,10 @@
 !> The points of a joint between two surfaces whose meshes differ, without interface elements.
 !>
-!> At the nodes of the slave face (default) the relative displacement is the mortar projection of
-!> mortar_projection: the law works at one point a node and plane, as in a joint of JOINT8 elements,
-!> and its tractions do not oscillate (different_meshes.md, 13.2). At Gauss points the law works
-!> where the segments have theirs, a penalty that does. The normal points out of the master's solid,
-!> from master to slave.
+!> At the nodes of the slave face (default) the relative displacement is that of mortar_projection.
+!> The law has one point per node and plane, as in a joint of JOINT8 elements, and its tractions do
+!> not oscillate (different_meshes.md, 13.2). At the Gauss points of the segments the law is a
+!> penalty whose tractions oscillate. The normal points out of the master's solid, from master to
+!> slave.
 module coupling_joint
   use joint_points, only: joint, joint_cells, local_axes
   use kinds, only: rk
@@ -18,7 +18,7 @@ module coupling_joint
   private
   public :: lay_node_points, lay_gauss_points
 
-  !> One of the Gauss points: the mean of a quarter of a segment.
+  !> A Gauss point: the mean over a quarter of a segment.
   type :: quarter
     real(rk) :: area = 0.0_rk !< [m2]
     real(rk) :: slave_shape(4) = 0.0_rk, master_shape(4) = 0.0_rk
@@ -28,10 +28,10 @@ module coupling_joint
 
 contains
 
-  !> One point for each node of the slave face that has cover, and plane. Nodes that both faces
-  !> share have none; they hold the faces together. Nodes that follow others of the face by a
-  !> tie have none either, for their jumps are those of the others: the points beside them see them
-  !> too. Name and law of the joint are the caller's.
+  !> One point for each plane and each covered node of the slave face. Nodes shared by both faces
+  !> have no point, since they connect the faces. Nodes tied to other nodes of the face have no
+  !> point, since their jumps follow from those of the others; the points of the neighbours include
+  !> them. The caller sets name and law of the joint.
   subroutine lay_node_points(x, slave, master, segments, is_tied, is_measured, built, is_bare)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(facet_set), intent(in) :: slave, master
@@ -41,40 +41,40 @@ contains
     type(joint), intent(inout) :: built
     logical, allocatable, intent(out) :: is_bare(:) !< (slave facets) too little covered
     type(mortar_rows) :: rows
-    logical :: is_shared(size(x, 2)), is_beside(size(x, 2))
+    logical :: is_shared(size(x, 2)), is_neighbour(size(x, 2))
     integer :: p
     is_shared = shared_nodes(size(x, 2), slave, master)
-    is_beside = mark_corners(size(x, 2), slave) .and. is_tied .and. .not. is_shared
-    call project(x, slave, master, segments, is_shared .or. is_beside, rows)
+    is_neighbour = mark_corners(size(x, 2), slave) .and. is_tied .and. .not. is_shared
+    call project(x, slave, master, segments, is_shared .or. is_neighbour, rows)
     built%is_nodal = .true.
     call open_points(rows%num_rows, rows%num_rows + size(rows%master), built)
     do p = 1, rows%num_rows
       associate (first => rows%first(p), last => rows%first(p + 1) - 1)
         call add_row(p, rows%node(p), rows%area(p), rows%master(first:last), &
-                     rows%weight(first:last), is_beside, built)
+                     rows%weight(first:last), is_neighbour, built)
       end associate
       built%rotation(:, :, p) = local_axes(-rows%normal(:, p))
     end do
     built%x = x(:, rows%node)
-    built%reach = rows%reach
+    built%reach = rows%facet_size
     built%clearance = merge(rows%gap, 0.0_rk, is_measured)
     call close_points(rows%num_rows, built)
     call list_cells(slave, segments, rows%is_bare, built%cells)
     call move_alloc(rows%is_bare, is_bare)
   end subroutine lay_node_points
 
-  !> The point of a row. A tied node beside it has given its dual function to the row: it goes to
-  !> the slave side, with its area, and the jump is the mean over the two.
-  subroutine add_row(p, node, area, masters, weights, is_beside, built)
+  !> Adds the point of a row. A tied neighbour whose dual function belongs to the row is a slave
+  !> node of the point, with its area; the jump is the mean over both nodes.
+  subroutine add_row(p, node, area, masters, weights, is_neighbour, built)
     integer, intent(in) :: p, node
     real(rk), intent(in) :: area !< of the node itself [m2]
     integer, intent(in) :: masters(:)
-    real(rk), intent(in) :: weights(:) !< of the row; negative at nodes beside it
-    logical, intent(in) :: is_beside(:) !< (nodes)
+    real(rk), intent(in) :: weights(:) !< of the row; negative at tied neighbours
+    logical, intent(in) :: is_neighbour(:) !< (nodes)
     type(joint), intent(inout) :: built
     logical :: is_slave(size(masters))
     real(rk) :: whole
-    is_slave = is_beside(masters)
+    is_slave = is_neighbour(masters)
     whole = 1.0_rk - sum(weights, mask=is_slave)
     built%area(p) = area*whole
     call add_nodes(p, [node, pack(masters, is_slave)], &
@@ -82,7 +82,7 @@ contains
                    pack(masters,.not. is_slave), pack(weights,.not. is_slave)/whole, built)
   end subroutine add_row
 
-  !> Four points a segment, each seeing one facet of either face.
+  !> Four points per segment, each between one facet of the slave and one of the master face.
   subroutine lay_gauss_points(x, slave, master, segments, is_measured, built)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(facet_set), intent(in) :: slave, master
@@ -116,8 +116,8 @@ contains
     call list_cells(slave, segments, spread(.false., 1, size(slave%node, 2)), built%cells)
   end subroutine lay_gauss_points
 
-  !> The points of a segment gathered into four, by the natural coordinates of the slave facet. They
-  !> see the means of its points, so that a constant traction comes over as exactly as with all.
+  !> Gathers the points of a segment into four, by the natural coordinates of the slave facet. Each
+  !> holds the means of its points, so that a constant traction is transmitted as exactly as by all.
   pure subroutine find_quarters(points, quarters)
     type(segment_points), intent(in) :: points
     type(quarter), intent(out) :: quarters(4)
@@ -144,7 +144,7 @@ contains
     end do
   end subroutine find_quarters
 
-  !> Room for points and the nodes they see.
+  !> Allocates the points and their nodes.
   subroutine open_points(num_points, most_nodes, built)
     integer, intent(in) :: num_points, most_nodes
     type(joint), intent(inout) :: built
@@ -155,21 +155,21 @@ contains
     allocate (built%area(num_points), built%clearance(num_points), built%reach(num_points))
   end subroutine open_points
 
-  !> The nodes that point p sees, slave first; those without weight are left out.
+  !> Adds the nodes of point p, slave first; nodes without weight are left out.
   subroutine add_nodes(p, slave, slave_weight, master, master_weight, built)
-    integer, intent(in) :: p !< point; the one before has its nodes
+    integer, intent(in) :: p !< point; the previous point has its nodes
     integer, intent(in) :: slave(:), master(:) !< positions in the mesh
     real(rk), intent(in) :: slave_weight(:), master_weight(:) !< each adds up to 1
     type(joint), intent(inout) :: built
     integer :: next
     next = built%first(p)
-    call add(slave, slave_weight)
+    call add_side(slave, slave_weight)
     built%first_master(p) = next
-    call add(master, -master_weight)
+    call add_side(master, -master_weight)
     built%first(p + 1) = next
   contains
     !> Nodes of one side.
-    subroutine add(nodes, weights)
+    subroutine add_side(nodes, weights)
       integer, intent(in) :: nodes(:)
       real(rk), intent(in) :: weights(:)
       integer :: k
@@ -179,10 +179,10 @@ contains
         built%weight(next) = weights(k)
         next = next + 1
       end do
-    end subroutine add
+    end subroutine add_side
   end subroutine add_nodes
 
-  !> Cuts all to size.
+  !> Cuts all arrays to size.
   subroutine close_points(num_points, built)
     integer, intent(in) :: num_points
     type(joint), intent(inout) :: built
@@ -208,7 +208,7 @@ contains
     is_shared = mark_corners(num_nodes, slave) .and. mark_corners(num_nodes, master)
   end function shared_nodes
 
-  !> What results draw: the polygons of the segments, with the slave facets' shape functions.
+  !> Cells for the results: polygons of the segments, with shape functions of the slave facets.
   pure subroutine list_cells(slave, segments, is_bare, cells)
     type(facet_set), intent(in) :: slave
     type(segment_set), intent(in) :: segments
@@ -226,7 +226,7 @@ contains
       if (is_bare(segments%slave(s))) cycle
       c = c + 1
       cells%element(c) = slave%element(segments%slave(s))
-      ! Anticlockwise about the slave's outward normal, against which the joint's points.
+      ! Anticlockwise about the slave's outward normal, which is opposite to the joint's normal.
       do v = segments%first_vertex(s + 1) - 1, segments%first_vertex(s), -1
         corner = corner + 1
         cells%corner(corner) = corner

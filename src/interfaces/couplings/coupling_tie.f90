@@ -1,11 +1,12 @@
 !> The exact tie of two faces whose meshes differ: a mortar constraint with dual multipliers,
-!> condensed (different_meshes.md, 13.3). Each node of the slave face that bears a multiplier
-!> follows the master face,
+!> condensed (different_meshes.md, 13.3). Each node of the slave face with a multiplier follows the
+!> master face,
 !>   u(a) = sum_m w_m u(m),   w the weights of mortar_projection.
 !>
-!> A slave node bears none in a direction in which it is held by a support in any step, follows
-!> others by an earlier tie, is a node of the master face too, or is followed, near or far, by the
-!> master face or by a node that bears none. Its dual function goes to its neighbours on each facet.
+!> A slave node has no multiplier in a direction in which a support of any step holds it, or an
+!> earlier tie makes it follow others; nor if it is also a node of the master face; nor if the
+!> master face or a node without multiplier follows it, directly or through others. The dual
+!> function of such a node is added to those of its neighbours on each facet.
 module coupling_tie
   use dam_mesh, only: node_tie
   use kinds, only: rk
@@ -15,19 +16,19 @@ module coupling_tie
   use surface_segments, only: facet_set, segment_set
   implicit none
   private
-  public :: lay_tie, find_bound
+  public :: build_tie_rows, find_bound
 
 contains
 
-  !> The rows of a tie. Directions that bear multipliers at the same nodes share them.
-  subroutine lay_tie(x, slave, master, segments, is_fixed, earlier, tie, is_idle)
+  !> The rows of a tie. Directions with multipliers at the same nodes share rows.
+  subroutine build_tie_rows(x, slave, master, segments, is_fixed, earlier, tie, is_idle)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(facet_set), intent(in) :: slave, master
     type(segment_set), intent(in) :: segments
     logical, intent(in) :: is_fixed(:, :) !< (3, nodes) by a support in any step
-    type(node_tie), intent(in) :: earlier(:) !< ties that stand before this one
-    type(node_tie), intent(inout) :: tie !< its name is the caller's
-    logical, allocatable, intent(out) :: is_idle(:, :) !< (3, slave facets) no corner bears any
+    type(node_tie), intent(in) :: earlier(:) !< earlier ties of the deck
+    type(node_tie), intent(inout) :: tie !< the caller sets its name
+    logical, allocatable, intent(out) :: is_idle(:, :) !< (3, slave facets) no corner has one
     type(mortar_rows) :: rows
     logical :: is_bound(size(x, 2), 3), together(3)
     integer :: i, j, f
@@ -52,7 +53,7 @@ contains
         is_idle(:, f) = is_idle(:, f) .or. (together .and. all(is_bound(slave%node(:, f), i)))
       end do
     end do
-  end subroutine lay_tie
+  end subroutine build_tie_rows
 
   !> Appends the rows of some directions.
   pure subroutine add_rows(rows, directions, tie)
@@ -76,16 +77,16 @@ contains
     type(node_tie), intent(in) :: earlier(:)
     logical, intent(out) :: is_bound(:) !< (nodes)
     integer, allocatable :: row(:, :)
-    logical, allocatable :: is_slave(:), is_reached(:)
+    logical, allocatable :: is_slave(:), is_followed(:)
     call list_followers(direction, earlier, size(is_fixed), row)
     is_slave = mark_corners(size(is_fixed), slave)
     is_bound = is_slave .and. (is_fixed .or. row(1, :) > 0)
-    is_reached = mark_corners(size(is_fixed), master) .or. is_bound
-    call flood(earlier, row, is_reached)
-    is_bound = is_slave .and. is_reached
+    is_followed = mark_corners(size(is_fixed), master) .or. is_bound
+    call mark_followed(earlier, row, is_followed)
+    is_bound = is_slave .and. is_followed
   end subroutine find_bound
 
-  !> Where it is said what each node follows: (1) the tie, 0 for none, and (2) its row.
+  !> The place where each node is tied: (1) the tie, 0 for none, and (2) its row.
   pure subroutine list_followers(direction, ties, num_nodes, row)
     integer, intent(in) :: direction, num_nodes
     type(node_tie), intent(in) :: ties(:)
@@ -99,28 +100,28 @@ contains
     end do
   end subroutine list_followers
 
-  !> Marks all that the marked nodes follow, near or far.
-  pure subroutine flood(ties, row, is_reached)
+  !> Marks all nodes that the marked nodes follow, directly or through others.
+  pure subroutine mark_followed(ties, row, is_followed)
     type(node_tie), intent(in) :: ties(:)
     integer, intent(in) :: row(:, :) !< (2, nodes)
-    logical, intent(inout) :: is_reached(:) !< (nodes)
+    logical, intent(inout) :: is_followed(:) !< (nodes)
     integer, allocatable :: stack(:)
     integer :: top, node, k
-    top = count(is_reached)
-    allocate (stack(size(is_reached)))
-    stack(:top) = pack([(node, node=1, size(is_reached))], is_reached)
+    top = count(is_followed)
+    allocate (stack(size(is_followed)))
+    stack(:top) = pack([(node, node=1, size(is_followed))], is_followed)
     do while (top > 0)
       node = stack(top)
       top = top - 1
       if (row(1, node) == 0) cycle
       associate (tie => ties(row(1, node)))
         do k = tie%first(row(2, node)), tie%first(row(2, node) + 1) - 1
-          if (is_reached(tie%master(k))) cycle
-          is_reached(tie%master(k)) = .true.
+          if (is_followed(tie%master(k))) cycle
+          is_followed(tie%master(k)) = .true.
           top = top + 1
           stack(top) = tie%master(k)
         end do
       end associate
     end do
-  end subroutine flood
+  end subroutine mark_followed
 end module coupling_tie

@@ -27,7 +27,7 @@ module surface_coupling
   type, extends(guest) :: coupling
     character(:), allocatable :: keyword !< 'INTERFACE' or 'TIE'
     real(rk) :: stiffness = 0.0_rk !< k_x = k_y = k_z [Pa/m]
-    integer, allocatable :: node(:, :) !< (8, segments) positions: the slave facet's, the master's
+    integer, allocatable :: node(:, :) !< (8, segments) of the slave facet, then the master facet
     real(rk), allocatable :: product(:, :, :) !< (8, 8, segments) int N^T N dA [m2]
   contains
     procedure :: add_cells
@@ -80,7 +80,7 @@ contains
     has_matrix = kind == stiffness_matrix
   end function has_matrix
 
-  !> K = K + k int N^T N dA, segment by segment, the same in the three directions.
+  !> K = K + k int N^T N dA, segment by segment, equal in the three directions.
   subroutine add_matrix(self, kind, model, numbers, matrix, values)
     class(coupling), intent(in) :: self
     integer, intent(in) :: kind

@@ -1,8 +1,8 @@
 !> Clipping one convex polygon with another (Sutherland & Hodgman 1974).
 !>
-!> No tolerances: a corner is inside an edge or not. Where edges nearly coincide, corners may land
-!> on either side; what two neighbours then both keep or both lose is a sliver of round-off area, so
-!> that pieces of a tiling tile to round-off.
+!> There are no tolerances: a corner is inside an edge or not. If edges nearly coincide, two
+!> neighbours may both keep or both lose a piece of round-off area; the areas of the pieces still
+!> add up to round-off.
 module facet_clip
   use kinds, only: rk
   implicit none

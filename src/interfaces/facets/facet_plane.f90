@@ -1,8 +1,7 @@
-!> The mean plane of a facet, facets projected on it, and where a point of the plane lies in them.
+!> The mean plane of a facet, the projection of facets on it, and natural coordinates of its points.
 !>
-!> The projection is linear, so that a bilinear facet stays a bilinear facet: its shape functions at
-!> a point of the plane are those of the point of the facet above or below
-!> (different_meshes.md, 13.1).
+!> The projection is linear, so a bilinear facet stays bilinear: its shape functions at a point of
+!> the plane are those at the point of the facet above or below (different_meshes.md, 13.1).
 module facet_plane
   use kinds, only: rk
   use mesh_faces, only: face_vector
@@ -15,7 +14,7 @@ module facet_plane
 
   type :: plane
     real(rk) :: origin(3) = 0.0_rk !< mean of the corners [m]
-    real(rk) :: normal(3) = 0.0_rk !< unit, right-hand rule about the facet; 0: it has no area
+    real(rk) :: normal(3) = 0.0_rk !< unit, right-hand rule; 0 for a facet without area
     real(rk) :: axis(3, 2) = 0.0_rk !< unit, in the plane; axis 1 x axis 2 = normal
   end type plane
 
@@ -24,9 +23,9 @@ module facet_plane
     integer :: num_corners = 0 !< 4, 3 when two neighbours are equal, else 0: no facet
     integer :: double = 0 !< triangle: the corner that the next one repeats
     real(rk) :: corner(2, 4) = 0.0_rk !< the different ones, anticlockwise
-    logical :: is_turned = .false. !< it looks against the plane's normal
+    logical :: is_turned = .false. !< its normal is opposite to the plane's normal
     real(rk) :: centre(2) = 0.0_rk, along(2, 2) = 0.0_rk, twist(2) = 0.0_rk
-    logical :: is_affine = .true. !< twist = 0 but for round-off: a parallelogram or triangle
+    logical :: is_affine = .true. !< no twist beyond round-off: parallelogram or triangle
   end type flat_facet
 
   !> A slave and a master facet on the slave facet's plane.
@@ -36,7 +35,7 @@ module facet_plane
     type(flat_facet) :: own, other !< the slave and the master facet on it
   end type facet_pair
 
-  !> A twist below this part of the sides is round-off of the projection.
+  !> A twist below this fraction of the sides is round-off of the projection.
   real(rk), parameter :: no_twist = 64.0_rk*epsilon(1.0_rk)
 
 contains

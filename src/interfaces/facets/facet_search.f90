@@ -1,8 +1,8 @@
-!> A tree of boxes over facets: which of them are near a box, in O(log n) each.
+!> A tree of boxes over facets: finds the facets near a box in O(log n) each.
 !>
-!> Built by halving at the median of the longest axis, which a selection finds in linear time, so
-!> that building takes O(n log n) however the facets are ordered. The tree is complete: node i has
-!> the children 2 i and 2 i + 1.
+!> Each node is halved at the median of its longest axis. A selection finds the median in linear
+!> time, so that building takes O(n log n) for any order of the facets. The tree is complete: node
+!> i has the children 2 i and 2 i + 1.
 module facet_search
   use growing_lists, only: append, make_room
   use kinds, only: rk
@@ -47,7 +47,7 @@ contains
     end do
   end subroutine build_tree
 
-  !> The box of a node, and its halves when it is no leaf.
+  !> The box of a node, and the halves of a node that is no leaf.
   pure subroutine fill_node(tree, i, centre)
     type(box_tree), intent(inout) :: tree
     integer, intent(in) :: i !< tree node

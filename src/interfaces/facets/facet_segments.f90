@@ -17,23 +17,23 @@ module facet_segments
   !> Facets are partners when their mean normals are within 60 degrees of opposite.
   real(rk), parameter :: least_cosine = 0.5_rk
 
-  !> A segment below this part of its slave facet is round-off of the clipping; it is left out and
-  !> counts as bare.
+  !> A segment below this fraction of its slave facet is round-off of the clipping; it is left out
+  !> and counts as bare.
   real(rk), parameter :: smallest_part = 1.0e-14_rk
 
-  !> Boxes are enlarged by this part of a diagonal, so that faces that touch do meet.
+  !> Boxes are enlarged by this fraction of a diagonal, so that the boxes of touching faces overlap.
   real(rk), parameter :: touching = 1.0e-6_rk
 
 contains
 
-  !> The segments of two faces and how well they cover each other. Nothing is dropped in silence:
-  !> what has no partner is in `cover`.
+  !> The segments of two faces and how well they cover each other. Areas without a partner are
+  !> listed in `cover`.
   pure subroutine find_segments(x, slave, master, segments, cover, farthest)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(facet_set), intent(in) :: slave, master
     type(segment_set), intent(out) :: segments
     type(surface_cover), intent(out) :: cover
-    real(rk), intent(in), optional :: farthest !< apart, in diagonals of a facet
+    real(rk), intent(in), optional :: farthest !< largest distance, in diagonals
     type(box_tree) :: tree
     integer, allocatable :: near(:)
     real(rk) :: low(3), high(3), covered, area, largest, largest_bare
@@ -48,8 +48,8 @@ contains
     call build_master_tree(x, master, tree, largest)
     largest_bare = 0.0_rk
     do f = 1, size(slave%element)
-      call reach_box(x(:, slave%node(:, f)), segments%farthest &
-                     *max(largest, diameter(x(:, slave%node(:, f)))), low, high)
+      call search_box(x(:, slave%node(:, f)), segments%farthest &
+                      *max(largest, diameter(x(:, slave%node(:, f)))), low, high)
       num = 0
       if (size(master%element) > 0) call find_boxes(tree, low, high, num, near)
       covered = 0.0_rk
@@ -66,7 +66,7 @@ contains
     call close_segments(segments)
   end subroutine find_segments
 
-  !> Takes facets out of the cover that bear nothing after all.
+  !> Marks facets that transmit no force as bare in the cover.
   pure subroutine leave_bare(x, slave, is_bare, cover)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(facet_set), intent(in) :: slave
@@ -114,18 +114,18 @@ contains
     call build_tree(low, high, tree)
   end subroutine build_master_tree
 
-  !> The box of what lies above and below a slave facet, as far as it finds partners.
-  pure subroutine reach_box(x, reach, low, high)
+  !> The box in which a slave facet searches for partners.
+  pure subroutine search_box(x, distance, low, high)
     real(rk), intent(in) :: x(3, 4)
-    real(rk), intent(in) :: reach !< [m]
+    real(rk), intent(in) :: distance !< beyond the facet [m]
     real(rk), intent(out) :: low(3), high(3)
     type(plane) :: ground
     real(rk) :: along(3)
     call find_plane(x, ground)
-    along = reach*abs(ground%normal) + touching*diameter(x)
+    along = distance*abs(ground%normal) + touching*diameter(x)
     low = minval(x, dim=2) - along
     high = maxval(x, dim=2) + along
-  end subroutine reach_box
+  end subroutine search_box
 
   !> The longer diagonal of a facet [m].
   pure real(rk) function diameter(x)
@@ -133,7 +133,7 @@ contains
     diameter = max(norm2(x(:, 3) - x(:, 1)), norm2(x(:, 4) - x(:, 2)))
   end function diameter
 
-  !> Cuts the segments of one slave facet.
+  !> Finds the segments of one slave facet.
   pure subroutine cut_facet(x, slave, master, f, near, segments, cover, covered)
     real(rk), intent(in) :: x(:, :)
     type(facet_set), intent(in) :: slave, master
@@ -141,7 +141,7 @@ contains
     integer, intent(in) :: near(:) !< master facets
     type(segment_set), intent(inout) :: segments
     type(surface_cover), intent(inout) :: cover
-    real(rk), intent(out) :: covered !< part of the facet
+    real(rk), intent(out) :: covered !< fraction of the facet
     type(facet_pair) :: pair
     real(rk) :: polygon(2, most_corners), area, whole
     integer :: k, num
@@ -170,7 +170,7 @@ contains
     end do
   end subroutine cut_facet
 
-  !> Seen along the slave facet's normal, circles around the two facets do not meet.
+  !> Whether circles around the two facets, projected along the slave facet's normal, are disjoint.
   pure logical function lies_beside(pair)
     type(facet_pair), intent(in) :: pair
     real(rk) :: centre(3), away(3), radii
@@ -182,7 +182,7 @@ contains
     lies_beside = sum(away**2) > radii**2
   end function lies_beside
 
-  !> Two facets look against each other; one without a solid behind may look either way.
+  !> Whether the normals of two facets are opposite; a facet without a solid has no side.
   pure logical function are_opposed(pair, slave_solid, master_solid)
     type(facet_pair), intent(in) :: pair
     integer, intent(in) :: slave_solid, master_solid !< 0 for none
@@ -230,7 +230,7 @@ contains
     segments%vertex_shape(:, last - num:last - 1) = shape(:, :num)
   end subroutine add_segment
 
-  !> Keeps the largest gap and the largest overlap and where they are.
+  !> Stores the largest gap and the largest overlap with their places.
   pure subroutine note_gaps(gap, place, cover)
     real(rk), intent(in) :: gap(:), place(:, :) !< (corners), (3, corners) [m]
     type(surface_cover), intent(inout) :: cover
@@ -255,7 +255,7 @@ contains
     allocate (segments%vertex(2, 8*num_facets), segments%vertex_shape(4, 8*num_facets))
   end subroutine open_segments
 
-  !> Cuts the lists to what is used.
+  !> Cuts the lists to size.
   pure subroutine close_segments(segments)
     type(segment_set), intent(inout) :: segments
     integer :: num, used

@@ -3,9 +3,10 @@
 !> The polygon is cut into triangles, each with a collapsed product of Gauss's rules (Duffy 1982;
 !> n x n points are exact to degree 2 n - 2). In parallelograms and triangles all shape functions
 !> are polynomials of the place and 4 x 4 points integrate N_s N_m N_s exactly. In other facets they
-!> hold a square root that ends where the Jacobian J of the bilinear map vanishes; Gauss's error
-!> falls as rho^(-2 n) with rho = (J_max + J_min) / (J_max - J_min) over the segment. From k, the n
-!> of which this is round-off, follow the 3 + 0.6 k points that 1500 pairs of random facets needed.
+!> hold a square root with a branch point where the Jacobian J of the bilinear map vanishes; the
+!> error of Gauss's rule falls as rho^(-2 n), rho = (J_max + J_min) / (J_max - J_min) over the
+!> segment. With k the n for which rho^(-2 n) is round-off, 3 + 0.6 k points are used: enough for
+!> 1500 pairs of random facets.
 module segment_quadrature
   use facet_plane, only: area_element, facet_pair, find_plane, flat_facet, natural_at, &
                          project_facet, shape_at, stretch_at
@@ -15,7 +16,7 @@ module segment_quadrature
   private
   public :: segment_points, integrate_segment
 
-  !> The points of one segment: one place on the slave face each, and what lies opposite.
+  !> The points of one segment: places on the slave face, and values of both facets there.
   type :: segment_points
     integer :: num_points = 0 !< all arrays have this size
     real(rk), allocatable :: slave_shape(:, :), master_shape(:, :) !< (4, points)
@@ -29,18 +30,18 @@ module segment_quadrature
   integer, parameter :: fewest = 4 !< points a direction
   integer, parameter :: most = 24 !< points a direction; enough while J changes by a factor of 5
 
-  !> What the rule may leave of an integral.
+  !> Error that is allowed in an integral.
   real(rk), parameter :: error_left = 1.0e-14_rk
 
 contains
 
-  !> Points that integrate over segment s.
+  !> The integration points of segment s.
   pure subroutine integrate_segment(x, slave, master, segments, s, points)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(facet_set), intent(in) :: slave, master
     type(segment_set), intent(in) :: segments !< of these two faces
     integer, intent(in) :: s
-    type(segment_points), intent(inout) :: points !< room is used again
+    type(segment_points), intent(inout) :: points !< memory is reused
     type(facet_pair) :: pair
     real(rk) :: turn
     integer :: first, last, i
@@ -60,7 +61,7 @@ contains
     end do
   end subroutine integrate_segment
 
-  !> The rule for a polygon, and room for its points.
+  !> Chooses the rule for a polygon and allocates its points.
   pure subroutine choose_rule(own, other, polygon, points)
     type(flat_facet), intent(in) :: own, other
     real(rk), intent(in) :: polygon(:, :) !< (2, corners)
@@ -72,7 +73,7 @@ contains
     end if
     if (.not. allocated(points%line)) then
       allocate (points%line(n), points%weight(n))
-      call lay_line(points%line, points%weight)
+      call make_rule(points%line, points%weight)
     end if
     num = (size(polygon, 2) - 2)*n**2
     if (allocated(points%area)) then
@@ -84,7 +85,7 @@ contains
     allocate (points%normal(3, num), points%gap(num), points%x(3, num))
   end subroutine choose_rule
 
-  !> Points a direction that a facet's shape functions need over a polygon.
+  !> Number of points per direction that a facet's shape functions need over a polygon.
   pure integer function points_for(flat, polygon) result(n)
     type(flat_facet), intent(in) :: flat
     real(rk), intent(in) :: polygon(:, :)
@@ -136,8 +137,8 @@ contains
     end do
   end subroutine add_triangle
 
-  !> Gauss's points and weights on 0..1: zeros of Legendre's polynomial by Newton's method.
-  pure subroutine lay_line(point, weight)
+  !> Gauss points and weights on 0..1: zeros of the Legendre polynomial by Newton's method.
+  pure subroutine make_rule(point, weight)
     real(rk), intent(out) :: point(:), weight(:)
     real(rk), parameter :: pi = acos(-1.0_rk)
     real(rk) :: z, step, value, slope
@@ -155,9 +156,9 @@ contains
       point(i) = 0.5_rk*(1.0_rk - z)
       weight(i) = 1.0_rk/((1.0_rk - z**2)*slope**2)
     end do
-  end subroutine lay_line
+  end subroutine make_rule
 
-  !> Legendre's polynomial of degree n and its slope, by the three-term recursion.
+  !> The Legendre polynomial of degree n and its slope, by the three-term recursion.
   pure subroutine legendre(n, z, value, slope)
     integer, intent(in) :: n !< at least 2
     real(rk), intent(in) :: z

@@ -9,7 +9,7 @@ module surface_facets
 
 contains
 
-  !> The facets of a surface of solids; faces that have collapsed to an edge are left out.
+  !> The facets of a surface of solids; faces collapsed to an edge are left out.
   pure subroutine list_surface_facets(model, faces, facets)
     type(mesh), intent(in) :: model
     type(surface), intent(in) :: faces
@@ -27,7 +27,7 @@ contains
     facets%element = facets%element(:used)
   end subroutine list_surface_facets
 
-  !> The facets of IFACE4 elements: no solid behind them, so that they may look either way.
+  !> The facets of IFACE4 elements. They have no solid, so their normals have no outward side.
   pure subroutine list_interface_facets(model, elements, facets)
     type(mesh), intent(in) :: model
     integer, intent(in) :: elements(:) !< positions
@@ -40,7 +40,7 @@ contains
     allocate (facets%element(size(elements)), source=0)
   end subroutine list_interface_facets
 
-  !> Which nodes are corners of these facets.
+  !> Marks the nodes that are corners of these facets.
   pure function mark_corners(num_nodes, facets) result(is_corner)
     integer, intent(in) :: num_nodes !< of the mesh
     type(facet_set), intent(in) :: facets

@@ -1,14 +1,14 @@
-!> Lets a constant stress pass through a curved face: a small change of the weights of a mortar
-!> projection (different_meshes.md, 13.2).
+!> Changes the weights of a mortar projection slightly, so that a curved face transmits a constant
+!> stress (different_meshes.md, 13.2).
 !>
-!> The stress s puts s c_a on node a of the slave face, c_a = int N_a n dA, and s c_m on node m of
-!> the master face. The rows hand on sum_a w_am s c_a. On a plane face that is s c_m; on a curved
-!> one it is off by what the dual functions leave of a normal that turns within a facet, where one
-!> mesh is not nested in the other. The weights are changed by the least dw, sum of squares, with
+!> The stress s gives the forces s c_a at node a of the slave face, c_a = int N_a n dA, and s c_m at
+!> node m of the master face. The rows transmit sum_a w_am s c_a. On a plane face this equals s c_m.
+!> On a curved face with meshes that are not nested it differs, because the normal varies within a
+!> facet. The weights are changed by the dw of least squares with
 !>   sum_a dw_am c_a = c_m - sum_a w_am c_a,   sum_m dw_am = 0,   sum_m dw_am x_m = 0,
-!> so that each row keeps to linear fields. With P, for each row, the projection on what leaves
-!> 1 and x alone, dw = P C^T y and (C P C^T) y = r by conjugate gradients; the three conditions of a
-!> node are combined beforehand so that their block of the matrix is the identity.
+!> so that each row stays exact for linear fields. P is, for each row, the projection orthogonal to
+!> 1 and x. Then dw = P C^T y, and (C P C^T) y = r is solved by conjugate gradients. The three
+!> conditions of a node are combined beforehand so that their block of the matrix is the identity.
 module mortar_balance
   use kinds, only: rk
   use mortar_table, only: mortar_rows
@@ -16,29 +16,29 @@ module mortar_balance
   private
   public :: balance_weights
 
-  !> Nothing to do below this part of the largest nodal force: round-off.
+  !> Differences below this fraction of the largest nodal force are round-off.
   real(rk), parameter :: balanced = 1.0e-12_rk
 
-  !> The search ends at this residual of the combined conditions, after so many steps, or so many
-  !> without a smaller residual. The steps that it takes grow with the facets along a side squared
-  !> (480 for 24); what is left of the error then falls with the third power of their size.
+  !> The search ends at this residual of the combined conditions, after so many steps, or after so
+  !> many without a smaller residual. The number of steps grows with the square of the number of
+  !> facets along a side (480 for 24); the error left falls with the third power of the facet size.
   real(rk), parameter :: solved = 1.0e-13_rk
   integer, parameter :: most_steps = 1000, patience = 200
-  real(rk), parameter :: most_work = 1.0e8_rk !< steps times weights, a few seconds
+  real(rk), parameter :: most_work = 1.0e8_rk !< steps times weights: seconds
 
-  !> No weight changes by more; where that would be needed the weights stay as they are.
+  !> Largest change of a weight; if more is needed, all weights stay unchanged.
   real(rk), parameter :: largest_change = 0.25_rk
 
-  !> A field of a row that the others imply but for this part is none.
+  !> A field of a row that depends on the others to this fraction is left out.
   real(rk), parameter :: dependent = 1.0e-9_rk
 
-  !> Normals that turn by less than this are round-off, and by less than so many times the digits of
-  !> the nodes: a plane face whose nodes are rounded keeps its weights.
+  !> Normals that differ by less are equal: this for round-off, and so many times the rounding of
+  !> the nodes, so that a plane face with rounded nodes keeps its weights.
   real(rk), parameter :: least_turn = 1.0e-7_rk, digits_of_turn = 100.0_rk
 
   !> The conditions on dw.
   type :: conditions
-    integer, allocatable :: column(:) !< (weights) number of their node among those that count
+    integer, allocatable :: column(:) !< (weights) number of their node among the columns
     integer, allocatable :: node(:) !< (columns)
     real(rk), allocatable :: basis(:, :) !< (4, weights) of 1 and x over each row, orthonormal
     real(rk), allocatable :: force(:, :) !< (3, weights) c_a, as combined for each column
@@ -47,11 +47,11 @@ module mortar_balance
 
 contains
 
-  !> Changes the weights where the forces of a constant stress ask for it.
+  !> Changes the weights if the transmitted forces of a constant stress differ from the target.
   pure subroutine balance_weights(x, target_force, noise, rows)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     real(rk), intent(in) :: target_force(:, :) !< (3, nodes) c_m; -c_b at bound slave nodes [m2]
-    real(rk), intent(in) :: noise !< how far the faces are from coinciding, part of a facet
+    real(rk), intent(in) :: noise !< distance of the faces over a facet's size
     type(mortar_rows), intent(inout) :: rows
     type(conditions) :: system
     real(rk), allocatable :: missing(:, :), change(:)
@@ -64,17 +64,17 @@ contains
         system%force(:, k) = rows%pressed(:, a)
       end do
     end do
-    missing = target_force(:, system%node) - handed_on(system, rows%weight)
+    missing = target_force(:, system%node) - transmitted_force(system, rows%weight)
     if (maxval(abs(missing)) <= max(balanced, 10.0_rk*noise)*maxval(abs(target_force))) return
-    call lay_conditions(x, max(least_turn, digits_of_turn*noise), rows, system)
+    call build_conditions(x, max(least_turn, digits_of_turn*noise), rows, system)
     do k = 1, size(missing, 2)
       missing(:, k) = matmul(system%combine(:, :, k), missing(:, k))
     end do
-    call solve(rows, system, missing, change)
+    call solve_balance(rows, system, missing, change)
     if (maxval(abs(change)) <= largest_change) rows%weight = rows%weight + change
   end subroutine balance_weights
 
-  !> Numbers the nodes that rows see.
+  !> Numbers the nodes of the rows.
   pure subroutine list_columns(rows, num_nodes, system)
     type(mortar_rows), intent(in) :: rows
     integer, intent(in) :: num_nodes
@@ -96,7 +96,7 @@ contains
   end subroutine list_columns
 
   !> C w: sum_a w_am c_a of each column.
-  pure function handed_on(system, weight) result(force)
+  pure function transmitted_force(system, weight) result(force)
     type(conditions), intent(in) :: system
     real(rk), intent(in) :: weight(:)
     real(rk) :: force(3, size(system%node))
@@ -105,13 +105,13 @@ contains
     do k = 1, size(weight)
       force(:, system%column(k)) = force(:, system%column(k)) + weight(k)*system%force(:, k)
     end do
-  end function handed_on
+  end function transmitted_force
 
   !> The bases of the rows, and the conditions of each column combined by the inverse of Cholesky's
   !> factor of their block of C P C^T.
-  pure subroutine lay_conditions(x, turn, rows, system)
+  pure subroutine build_conditions(x, turn, rows, system)
     real(rk), intent(in) :: x(:, :)
-    real(rk), intent(in) :: turn !< normals that turn by less are equal
+    real(rk), intent(in) :: turn !< normals that differ by less are equal
     type(mortar_rows), intent(in) :: rows
     type(conditions), intent(inout) :: system
     real(rk) :: part
@@ -120,7 +120,7 @@ contains
     allocate (system%combine(3, 3, size(system%node)), source=0.0_rk)
     do a = 1, rows%num_rows
       associate (first => rows%first(a), last => rows%first(a + 1) - 1)
-        call lay_basis(x(:, rows%master(first:last)), system%basis(:, first:last))
+        call build_basis(x(:, rows%master(first:last)), system%basis(:, first:last))
       end associate
     end do
     do k = 1, size(rows%master)
@@ -137,11 +137,11 @@ contains
     do k = 1, size(rows%master)
       system%force(:, k) = matmul(system%combine(:, :, system%column(k)), system%force(:, k))
     end do
-  end subroutine lay_conditions
+  end subroutine build_conditions
 
-  !> An orthonormal basis of 1 and x over the nodes of a row, by Gram and Schmidt, twice; zero in
-  !> place of fields that depend on those before.
-  pure subroutine lay_basis(x, basis)
+  !> An orthonormal basis of 1 and x over the nodes of a row, by Gram-Schmidt applied twice; zero
+  !> for fields that depend on earlier ones.
+  pure subroutine build_basis(x, basis)
     real(rk), intent(in) :: x(:, :) !< (3, nodes)
     real(rk), intent(inout) :: basis(:, :) !< (4, nodes)
     real(rk) :: field(size(x, 2)), centred(3, size(x, 2))
@@ -157,11 +157,11 @@ contains
       end do
       if (i == 1 .or. norm2(field) > dependent*norm2(centred)) basis(i, :) = field/norm2(field)
     end do
-  end subroutine lay_basis
+  end subroutine build_basis
 
   !> Replaces a block by the inverse of its Cholesky factor; rows of dependent conditions become 0.
   pure subroutine factor_block(least, block)
-    real(rk), intent(in) :: least !< part of the largest diagonal that a pivot must exceed
+    real(rk), intent(in) :: least !< fraction of the largest diagonal that a pivot must exceed
     real(rk), intent(inout) :: block(3, 3)
     real(rk) :: lower(3, 3), pivot, largest
     integer :: i, j
@@ -186,8 +186,9 @@ contains
     end do
   end subroutine factor_block
 
-  !> dw by conjugate gradients; the best on the way, for round-off has them part in the end.
-  pure subroutine solve(rows, system, missing, change)
+  !> dw by conjugate gradients: the iterate of least residual, since round-off makes them diverge in
+  !> the end.
+  pure subroutine solve_balance(rows, system, missing, change)
     type(mortar_rows), intent(in) :: rows
     type(conditions), intent(in) :: system
     real(rk), intent(in) :: missing(:, :) !< (3, columns) r, as combined
@@ -211,7 +212,7 @@ contains
       if (.not. curvature > 0.0_rk) return
       length = product/curvature
       sum_of_steps = sum_of_steps + length*step
-      residual = residual - length*handed_on(system, step)
+      residual = residual - length*transmitted_force(system, step)
       before = product
       product = sum(residual**2)
       if (product < least) then
@@ -221,7 +222,7 @@ contains
       end if
       if (maxval(abs(residual)) <= solved .or. i > best + patience) return
     end do
-  end subroutine solve
+  end subroutine solve_balance
 
   !> P C^T y.
   pure subroutine change_along(rows, system, y, step)

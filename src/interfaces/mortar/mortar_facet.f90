@@ -1,9 +1,9 @@
-!> One slave facet of a mortar projection: its integrals over the covered part, its dual functions.
+!> One slave facet of a mortar projection: integrals over its covered part, and dual functions.
 !>
 !> With M_ab = int N_a N_b and D_a = int N_a over the part of the facet that the other face covers,
 !> the dual functions phi = D M^-1 N satisfy int phi_a N_b = delta_ab D_a and sum_a phi_a = 1
-!> (different_meshes.md, 13.2; Wohlmuth 2000, Popp et al. 2010). Over the covered part alone they
-!> keep both where the facet is covered in part only (Cichosz & Bischoff 2011).
+!> (different_meshes.md, 13.2; Wohlmuth 2000, Popp et al. 2010). Integrals over the covered part
+!> keep both properties on partly covered facets (Cichosz & Bischoff 2011).
 module mortar_facet
   use facet_segments, only: facet_area
   use kinds, only: rk
@@ -14,10 +14,9 @@ module mortar_facet
   private
   public :: facet_part, integrate_facet, share_bound, facet_extent
 
-  !> A facet less covered than this counts as bare. Its functions see its corners from a strip as
-  !> narrow as that: weights grow with the inverse of the part and the condition of M with its
-  !> square, here to 1e4, and a node one facet away from the other face would follow it, stretched
-  !> fifty times. What is lost is at most 2 % of one row of facets.
+  !> A facet of which less than this fraction is covered counts as bare. The weights grow with the
+  !> inverse of the fraction (here to 50) and the condition of M with the inverse squared (here to
+  !> 1e4). At most 2 % of one row of facets is lost.
   real(rk), parameter :: least_part = 0.02_rk
 
   !> A facet of n corners (3 or 4 different nodes).
@@ -86,8 +85,8 @@ contains
     end do
   end subroutine fold_corners
 
-  !> Turns integrals of N_a into those of phi_a. M is scaled to a unit diagonal first, so that a
-  !> part along one side of the facet does no harm to its inverse.
+  !> Computes integrals of phi_a from those of N_a. M is scaled to a unit diagonal first, so that a
+  !> covered strip along one side of the facet does not spoil its inverse.
   subroutine make_dual(mass, part)
     real(rk), intent(in) :: mass(4, 4)
     type(facet_part), intent(inout) :: part
@@ -114,8 +113,8 @@ contains
     part%gap(:n) = matmul(dual, part%gap(:n))
   end subroutine make_dual
 
-  !> How the dual functions of bound corners go to the others: phi_a + sum_b share(a, b) phi_b. A
-  !> bound corner gives to its free neighbours on the facet, else to the corner opposite.
+  !> Shares of the dual functions of bound corners: phi_a + sum_b share(a, b) phi_b. A bound corner
+  !> gives its function to its free neighbours on the facet, else to the opposite corner.
   pure subroutine share_bound(part, is_bound, share)
     type(facet_part), intent(in) :: part
     logical, intent(in) :: is_bound(4) !< (corners)

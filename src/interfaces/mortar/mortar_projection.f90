@@ -1,12 +1,11 @@
 !> The mortar projection of one face onto the nodes of another whose mesh differs
 !> (different_meshes.md, 13.2).
 !>
-!> Row a says where node a of the slave face stands on the master face: its relative displacement
-!> is
+!> Row a belongs to node a of the slave face. Its displacement relative to the master face is
 !>   u(node(a)) - sum_k weight(k) u(master(k)),   k = first(a) .. first(a + 1) - 1,
 !> weights (1/A_a) int phi_a N_m dA with the dual functions phi of mortar_facet and the area
 !> A_a = int N_a dA.
-!> The weights add up to 1 and a linear field is met exactly where the faces lie on each other.
+!> The weights add up to 1, and a linear field is exact if the faces coincide.
 module mortar_projection
   use joint_points, only: share_a_plane
   use kinds, only: rk
@@ -20,18 +19,18 @@ module mortar_projection
   private
   public :: mortar_rows, project
 
-  !> Faces no farther apart than this part of a facet coincide, but for the digits of a mesher.
-  !> Where they do not, a constant stress has no exact way through, whatever the weights.
+  !> Faces coincide, up to the rounding of a mesher, if their distance is below this fraction of a
+  !> facet. Between other faces no weights transmit a constant stress exactly.
   real(rk), parameter :: touching = 1.0e-6_rk
 
   !> Weights below this are round-off of the orthogonality of phi and N; the largest weight of the
   !> row takes their sum.
   real(rk), parameter :: no_weight = 1.0e-13_rk
 
-  !> Rows while they are gathered.
+  !> Rows during assembly.
   type :: gathering
     integer, allocatable :: newest(:) !< (nodes) last row of each node, 0 for none
-    integer, allocatable :: next(:) !< (rows) the row of the same node before
+    integer, allocatable :: next(:) !< (rows) the previous row of the same node
     integer :: num_terms = 0
     integer, allocatable :: row(:), node(:) !< (terms)
     real(rk), allocatable :: value(:) !< (terms) [m2]
@@ -40,11 +39,11 @@ module mortar_projection
 
 contains
 
-  !> Makes the rows. A slave node without cover has none; one whose facets' normals differ by more
-  !> than 30 degrees has one for each plane, unless planes are merged (ties need one row a node).
+  !> Makes the rows. A slave node without cover has no row. A node whose facets' normals differ by
+  !> more than 30 degrees has a row for each plane, unless planes are merged (ties: one per node).
   !>
-  !> Slave nodes that are bound have no row: on each facet their dual functions go to its other
-  !> nodes (Wohlmuth's modification), whose rows then hold the bound nodes with their weights.
+  !> Bound slave nodes have no row: on each facet their dual functions are added to those of the
+  !> other nodes (Wohlmuth's modification), whose rows then hold weights of the bound nodes.
   subroutine project(x, slave, master, segments, is_bound, rows, merges_planes)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(facet_set), intent(in) :: slave, master
@@ -75,12 +74,12 @@ contains
                      smallest_extent(x, slave%node(:, f), partners), rows, gathered)
     end do
     call close_rows(gathered, rows)
-    if (all(abs(rows%gap) <= touching*rows%reach)) then
-      call balance_weights(x, gathered%target_force, maxval(abs(rows%gap)/rows%reach), rows)
+    if (all(abs(rows%gap) <= touching*rows%facet_size)) then
+      call balance_weights(x, gathered%target_force, maxval(abs(rows%gap)/rows%facet_size), rows)
     end if
   end subroutine project
 
-  !> Room for the most rows and terms that there can be.
+  !> Allocates the largest possible number of rows and terms.
   subroutine open_rows(num_nodes, num_facets, num_segments, rows, gathered)
     integer, intent(in) :: num_nodes, num_facets, num_segments
     type(mortar_rows), intent(inout) :: rows
@@ -91,7 +90,7 @@ contains
     allocate (gathered%row(most_terms), gathered%node(most_terms), gathered%value(most_terms))
     allocate (rows%node(4*num_facets), rows%area(4*num_facets), rows%normal(3, 4*num_facets))
     allocate (gathered%target_force(3, num_nodes), source=0.0_rk)
-    allocate (rows%gap(4*num_facets), rows%reach(4*num_facets))
+    allocate (rows%gap(4*num_facets), rows%facet_size(4*num_facets))
     allocate (rows%is_bare(num_facets), source=.true.)
   end subroutine open_rows
 
@@ -120,7 +119,7 @@ contains
       rows%area(row) = rows%area(row) + part%diagonal(a)
       rows%normal(:, row) = rows%normal(:, row) + part%normal(:, a)
       rows%gap(row) = rows%gap(row) + dot_product(share(a, :), part%gap)
-      rows%reach(row) = min(rows%reach(row), extent)
+      rows%facet_size(row) = min(rows%facet_size(row), extent)
       do s = 1, size(part%coupling, 3)
         do m = 1, 4
           call add_term(row, masters(m, s), dot_product(share(a, :), part%coupling(:, m, s)))
@@ -131,7 +130,7 @@ contains
       end do
     end do
   contains
-    !> One more term of a row; terms of one node are added up in the end.
+    !> Adds a term to a row; terms of one node are summed at the end.
     subroutine add_term(at, node, value)
       integer, intent(in) :: at, node
       real(rk), intent(in) :: value !< [m2]
@@ -143,7 +142,8 @@ contains
     end subroutine add_term
   end subroutine add_facet
 
-  !> The forces of a unit pressure on the master nodes and, against them, on the bound slave nodes.
+  !> Adds the forces of a unit pressure at the master nodes and, with opposite sign, at the bound
+  !> slave nodes.
   pure subroutine add_pressed(part, masters, corner_is_bound, force)
     type(facet_part), intent(in) :: part
     integer, intent(in) :: masters(:, :) !< (4, segments) nodes
@@ -160,7 +160,7 @@ contains
     end do
   end subroutine add_pressed
 
-  !> The row of a node in the plane of a normal; a new one where there is none.
+  !> The row of a node in the plane of a normal; a missing row is added.
   subroutine find_row(node, normal, splits, rows, gathered, row)
     integer, intent(in) :: node
     real(rk), intent(in) :: normal(3) !< of any length
@@ -182,7 +182,7 @@ contains
     rows%area(row) = 0.0_rk
     rows%normal(:, row) = 0.0_rk
     rows%gap(row) = 0.0_rk
-    rows%reach(row) = huge(1.0_rk)
+    rows%facet_size(row) = huge(1.0_rk)
   end subroutine find_row
 
   !> Cuts the rows to size, divides them by their areas and adds up terms of one node.
@@ -196,7 +196,7 @@ contains
     rows%node = rows%node(:n)
     rows%area = rows%area(:n)
     rows%gap = rows%gap(:n)/rows%area
-    rows%reach = rows%reach(:n)
+    rows%facet_size = rows%facet_size(:n)
     rows%pressed = rows%normal(:, :n)
     rows%normal = rows%normal(:, :n)/spread(norm2(rows%normal(:, :n), dim=1), 1, 3)
     call group_by_key(gathered%row(:gathered%num_terms), n, terms)
@@ -225,7 +225,7 @@ contains
     rows%weight = rows%weight(:used)
   end subroutine close_rows
 
-  !> Leaves out the weights of one row that are round-off.
+  !> Removes the weights of one row that are round-off.
   pure subroutine drop_round_off(first, last, rows)
     integer, intent(in) :: first
     integer, intent(inout) :: last

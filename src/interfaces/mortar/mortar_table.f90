@@ -5,8 +5,8 @@ module mortar_table
   private
   public :: mortar_rows
 
-  !> Row a says where a node of the slave face stands on the master face: it moves by
-  !> sum_k weight(k) u(master(k)), k = first(a) .. first(a + 1) - 1, when the two stay together.
+  !> Row a gives the displacement of the master face opposite a node of the slave face:
+  !> sum_k weight(k) u(master(k)), k = first(a) .. first(a + 1) - 1.
   type :: mortar_rows
     integer :: num_rows = 0
     integer, allocatable :: node(:) !< (rows) node of the slave face
@@ -17,7 +17,7 @@ module mortar_table
     real(rk), allocatable :: pressed(:, :) !< (3, rows) int N_a n dA: force of a unit pressure [m2]
     real(rk), allocatable :: normal(:, :) !< (3, rows) unit, out of the slave's solid
     real(rk), allocatable :: gap(:) !< (rows) (1/A_a) int phi_a gap dA, from slave to master [m]
-    real(rk), allocatable :: reach(:) !< (rows) shortest side of the facets that meet there [m]
-    logical, allocatable :: is_bare(:) !< (slave facets) too little covered to take part
+    real(rk), allocatable :: facet_size(:) !< (rows) shortest side of the facets that meet there [m]
+    logical, allocatable :: is_bare(:) !< (slave facets) too little covered to be used
   end type mortar_rows
 end module mortar_table

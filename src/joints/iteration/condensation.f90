@@ -170,7 +170,7 @@ contains
     call self%operator%add_forces(self%weight*excess, x)
     half = rhs + x(:size(rhs))
     call self%costs%start('solve forward', 'structure', 'solver')
-    call self%factor%eliminate(half, error)
+    call self%factor%forward_substitute(half, error)
     x = 0.0_rk
     call self%jumps%show(half, x)
     call self%costs%stop()
@@ -189,7 +189,7 @@ contains
       call self%operator%add_forces(self%weight*change, correction)
       call self%costs%start('solve backward', 'structure', 'solver')
       call self%jumps%add_forces(correction, half)
-      call self%factor%substitute(half, error)
+      call self%factor%backward_substitute(half, error)
       x = 0.0_rk
       x(:size(half)) = half
       call self%costs%stop()

@@ -31,7 +31,7 @@ contains
     type(jump_factor), intent(out) :: jumps
     jumps%num_free = num_free
     if (any(operator%unknown <= num_free - num_last)) return
-    call factor%take_end(num_last, jumps%lower, jumps%unknown, jumps%is_there)
+    call factor%take_schur_block(num_last, jumps%lower, jumps%unknown, jumps%is_there)
   end subroutine take_jump_factor
 
   !> G = B S^-1 B^T = Z^T Z with Z = E^-1 B^T.

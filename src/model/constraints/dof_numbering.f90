@@ -1,9 +1,9 @@
-!> The numbering of unknowns: every physical dof is a combination of unknowns, u = T q.
+!> The numbering of unknowns: every dof is a combination of unknowns, u = T q.
 !>
-!> Most dofs have an unknown of their own. A dependent dof (the slave side of a joint or of a tie,
-!> later equations) is written through others and through jumps. Free unknowns come first,
-!> prescribed ones after them. Last among the free are what the joints work in: dofs that points
-!> without a jump see, then the jumps. Nodes without any element have no unknowns.
+!> Most dofs are unknowns themselves. A dependent dof (the slave side of a joint or of a tie, later
+!> equations) is a combination of others and of jumps. Free unknowns come first, prescribed ones
+!> after them. The last free unknowns are those of the joints: dofs at points without a jump, then
+!> the jumps. Nodes without any element have no unknowns.
 module dof_numbering
   use kinds, only: rk
   use errors, only: error_type, raise
@@ -13,8 +13,8 @@ module dof_numbering
   private
   public :: numbering, linear_links, number_unknowns
 
-  !> Dependent dofs: dof(k) = sum of coefficient*term, dofs as in `dof_map`. A term may depend on
-  !> others only if their link stands earlier in the list.
+  !> Dependent dofs: dof(k) = sum of coefficient*term, dofs as in `dof_map`. A term may itself be
+  !> dependent only if its link stands earlier in the list.
   type :: linear_links
     integer :: num_links = 0, num_terms = 0
     integer, allocatable :: dof(:) !< (links) the dependent dof
@@ -30,7 +30,7 @@ module dof_numbering
   type :: numbering
     integer :: num_nodes = 0
     integer :: num_free = 0, num_total = 0 !< unknowns: free; free and prescribed
-    integer :: num_last = 0 !< of the free ones: all that joints work in, jumps included
+    integer :: num_last = 0 !< free unknowns of joints, jumps included
     integer :: num_jumps = 0 !< the last of these
     type(dof_map) :: dofs !< rows of T
     integer, allocatable :: row_start(:) !< (dofs + 1) first entry of each row of T
@@ -41,7 +41,7 @@ module dof_numbering
     integer, allocatable :: direction(:) !< (num_total) component of the node; of a jump: n, s1, s2
     integer, allocatable :: first_jump(:) !< (points) first unknown of a point's jump, 0 for none
   contains
-    procedure :: expand, add_expanded, expand_prescribed, compress
+    procedure :: expand, add_expanded, expand_prescribed, restrict
     procedure :: reduce, add_reduced, unknown_of, describe
   end type numbering
 
@@ -63,7 +63,7 @@ contains
     call resolve_rows(links, own, link, numbers, error)
   end subroutine number_unknowns
 
-  !> The link that gives each dof, 0 for none.
+  !> The link of each dof, 0 for none.
   subroutine find_links(dofs, is_fixed, links, link, error)
     type(dof_map), intent(in) :: dofs
     logical, intent(in) :: is_fixed(:, :)
@@ -82,7 +82,7 @@ contains
     end do
   end subroutine find_links
 
-  !> Gives numbers to the dofs that have an unknown of their own, and to the jumps.
+  !> Numbers the independent dofs and the jumps.
   subroutine number_own(is_used, is_fixed, link, links, numbers, own)
     logical, intent(in) :: is_used(:), is_fixed(:, :)
     integer, intent(in) :: link(:)
@@ -121,7 +121,7 @@ contains
     numbers%direction = numbers%direction(:numbers%num_total)
   end subroutine number_own
 
-  !> The dofs that stand last: of nodes so marked, or what these follow.
+  !> Marks the dofs numbered last: those of the marked nodes, or the dofs that these follow.
   pure subroutine find_last(dofs, links, is_last)
     type(dof_map), intent(in) :: dofs
     type(linear_links), intent(in) :: links
@@ -155,7 +155,7 @@ contains
     end do
   end subroutine number_where
 
-  !> Fills the rows of T: links first, in their order, so that chains resolve to the root.
+  !> Fills the rows of T: links first, in their order, so that chains of links are resolved.
   subroutine resolve_rows(links, own, link, numbers, error)
     type(linear_links), intent(in) :: links
     integer, intent(in) :: own(:), link(:)
@@ -191,11 +191,11 @@ contains
     end do
   end subroutine resolve_rows
 
-  !> Writes every link through unknowns. Fails when a term has no unknown.
+  !> Expresses every link in unknowns. Fails if a term has no unknown.
   subroutine resolve_links(links, own, link, before_jumps, start, unknown, coefficient, error)
     type(linear_links), intent(in) :: links
     integer, intent(in) :: own(:), link(:)
-    integer, intent(in) :: before_jumps !< unknowns in front of the first jump
+    integer, intent(in) :: before_jumps !< number of unknowns before the first jump
     integer, allocatable, intent(out) :: start(:), unknown(:)
     real(rk), allocatable, intent(out) :: coefficient(:)
     type(error_type), allocatable, intent(out) :: error
@@ -225,7 +225,7 @@ contains
       place(unknown(start(k):start(k + 1) - 1)) = 0
     end do
   contains
-    !> Adds to the row under way, whose end is start(k + 1).
+    !> Adds a term to the current row, whose end is start(k + 1).
     subroutine add_term(column, value)
       integer, intent(in) :: column
       real(rk), intent(in) :: value
@@ -245,8 +245,8 @@ contains
     end subroutine add_term
   end subroutine resolve_links
 
-  !> u = T q. A field has the first components of each node: 3 rows hold the displacements, and one
-  !> row more holds what the fourth component is, zero at nodes without it.
+  !> u = T q. A field has the first components of each node: 3 rows hold the displacements, a fourth
+  !> row holds the fourth component, zero at nodes without it.
   pure subroutine expand(self, q, u)
     class(numbering), intent(in) :: self
     real(rk), intent(in) :: q(:) !< (num_total)
@@ -283,12 +283,12 @@ contains
     end do
   end subroutine expand_prescribed
 
-  !> The unknowns of a field, the inverse of `expand` but for jumps: those are not known to the
-  !> numbering and become zero.
-  pure subroutine compress(self, u, q)
+  !> The unknowns of a field, the inverse of `expand` except for jumps, which become zero because a
+  !> field does not hold them.
+  pure subroutine restrict(self, u, q)
     class(numbering), intent(in) :: self
     real(rk), intent(in) :: u(:, :) !< (components, nodes)
-    real(rk), intent(out) :: q(:) !< (num_total) zero where the field lacks the component
+    real(rk), intent(out) :: q(:) !< (num_total) zero for components not in the field
     integer :: k
     do k = 1, self%num_total
       q(k) = 0.0_rk
@@ -296,7 +296,7 @@ contains
         q(k) = u(self%direction(k), self%node(k))
       end if
     end do
-  end subroutine compress
+  end subroutine restrict
 
   !> r = T^T f.
   pure subroutine reduce(self, f, r)
@@ -323,8 +323,8 @@ contains
     end do
   end subroutine add_reduced
 
-  !> The unknown that a component of a node is, 0 where it has none of its own: the node belongs to
-  !> no element or the component depends on others.
+  !> The unknown of a component of a node, 0 if the node belongs to no element or the component
+  !> depends on others.
   pure integer function unknown_of(self, node, component) result(unknown)
     class(numbering), intent(in) :: self
     integer, intent(in) :: node, component
@@ -343,7 +343,7 @@ contains
     is_jump = unknown > numbers%num_free - numbers%num_jumps .and. unknown <= numbers%num_free
   end function is_jump
 
-  !> An unknown in the user's words: 'node 12, displacement along z' or 'joint slip 1 at node 12'.
+  !> An unknown as text for the user: 'node 12, displacement along z', 'joint slip 1 at node 12'.
   pure function describe(self, unknown, node_id) result(text)
     class(numbering), intent(in) :: self
     integer, intent(in) :: unknown

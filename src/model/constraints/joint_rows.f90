@@ -1,4 +1,4 @@
-!> Rows of the jumps at points of joints: a point has an opening and two slips.
+!> Rows of the jumps at points of joints; a point has an opening and two slips.
 !>
 !> Only this module knows the layout: vectors over all points list the rows of a point together.
 module joint_rows
@@ -12,7 +12,7 @@ module joint_rows
 
 contains
 
-  !> Rows of so many points.
+  !> Number of rows of some points.
   pure integer function num_rows(num_points)
     integer, intent(in) :: num_points
     num_rows = num_axes*num_points

@@ -1,13 +1,12 @@
-!> Dependent nodes: those of ties, u_s = sum_m w_m u_m, and those across points of joints, whose
-!> jumps d are unknowns in their place, u_s = sum_m w_m u_m + R^T d (theory.md, 3;
-!> different_meshes.md, 13.3).
+!> Dependent nodes: those of ties, u_s = sum_m w_m u_m, and slave nodes of joints, whose jumps d are
+!> unknowns instead, u_s = sum_m w_m u_m + R^T d (theory.md, 3; different_meshes.md, 13.3).
 !>
-!> A node follows others once at most, and not where a support holds any of its directions. Ties
-!> come first, then points that see several nodes of the master face, whose slave node follows them;
-!> then pairs of nodes, where either may follow the other. Pairs are edges of a graph: each of its
-!> trees is written through one node, so chains of joints resolve. A point that would close a circle
-!> gets no jump, nor one with a node that is held, has no element or is on both sides: the joint
-!> then works in the unknowns that are there.
+!> A node follows others at most once, and not if a support holds any of its directions. Ties come
+!> first, then points with several nodes of the master face, which their slave node follows; then
+!> pairs of nodes, of which either may follow the other. Pairs are edges of a graph: each of its
+!> trees depends on one node, so chains of joints are resolved. A point gets no jump if the jump
+!> would close a circle, or if the node is held, has no element or is on both sides: the joint then
+!> uses the displacements.
 module jump_links
   use dam_mesh, only: node_tie
   use kinds, only: rk
@@ -27,16 +26,16 @@ module jump_links
     real(rk), allocatable :: own(:) !< (points) weight of the slave node in the jump
     integer, allocatable :: first(:) !< (points + 1)
     integer, allocatable :: master(:)
-    real(rk), allocatable :: weight(:) !< of the masters, over that of the slave; they add up to 1
+    real(rk), allocatable :: weight(:) !< of the masters, over that of the slave; sum 1
     real(rk), allocatable :: rotation(:, :, :) !< (3, 3, points) rows: normal, slip 1, slip 2
-    !> Nodes without mass, which had better follow: where a node with mass follows one, the mass
-    !> matrix over the two and their jump is singular where forces act. Not allocated: none.
+    !> Nodes without mass, which should be the dependent ones: if a node with mass follows a node
+    !> without, the mass matrix of both and their jump is singular. Not allocated: none.
     logical, allocatable :: is_light(:)
   end type nodal_points
 
 contains
 
-  !> Points of which each sees one node on either face.
+  !> Points with one node on each face.
   pure subroutine pairs_of_nodes(slave, master, rotation, points)
     integer, intent(in) :: slave(:), master(:) !< (pairs)
     real(rk), intent(in) :: rotation(:, :, :) !< (3, 3, pairs)
@@ -50,8 +49,8 @@ contains
     points%rotation = rotation
   end subroutine pairs_of_nodes
 
-  !> Chooses the points that get jump unknowns and writes the dependent dofs. Fails where ties
-  !> depend on each other in a circle.
+  !> Chooses the points that get jump unknowns and adds the dependent dofs. Fails if ties depend on
+  !> each other in a circle.
   subroutine link_nodes(dofs, points, ties, is_used, is_fixed, links, error)
     type(dof_map), intent(in) :: dofs
     type(nodal_points), intent(in) :: points
@@ -62,7 +61,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(dependence) :: graph
     integer :: i, most_rows, most_masters
-    call make_room(points, ties, links)
+    call allocate_links(points, ties, links)
     most_rows = size(points%slave) + sum([(size(ties(i)%node), i=1, size(ties))])
     most_masters = size(points%master) + sum([(size(ties(i)%master), i=1, size(ties))])
     call graph%start(any(is_fixed(:num_directions, :), 1), most_rows, most_masters)
@@ -71,12 +70,12 @@ contains
     end do
     call link_wide_points(dofs, points, is_used, graph, links)
     call link_pairs(points, is_used, graph, links)
-    call walk_trees(dofs, points, graph, links)
+    call link_trees(dofs, points, graph, links)
     call order_links(dofs%num_dofs, links, error)
   end subroutine link_nodes
 
-  !> Room for all links that can come.
-  pure subroutine make_room(points, ties, links)
+  !> Allocates the largest possible number of links.
+  pure subroutine allocate_links(points, ties, links)
     type(nodal_points), intent(in) :: points
     type(node_tie), intent(in) :: ties(:)
     type(linear_links), intent(inout) :: links
@@ -91,9 +90,9 @@ contains
     allocate (links%first(num_links + 1), source=1)
     allocate (links%jump_node(num_rows(size(points%slave))))
     allocate (links%first_jump(size(points%slave)), source=0)
-  end subroutine make_room
+  end subroutine allocate_links
 
-  !> One more dependent dof.
+  !> Adds a dependent dof.
   pure subroutine add_link(dof, term, coefficient, links)
     integer, intent(in) :: dof
     integer, intent(in) :: term(:) !< dofs, or -k for jump k
@@ -109,7 +108,7 @@ contains
     links%first(links%num_links + 1) = last + 1
   end subroutine add_link
 
-  !> The nodes that follow by a tie, in the directions in which they do.
+  !> Adds the nodes of a tie, in their tied directions.
   subroutine link_tie(dofs, tie, graph, links)
     type(dof_map), intent(in) :: dofs
     type(node_tie), intent(in) :: tie
@@ -128,7 +127,7 @@ contains
     end do
   end subroutine link_tie
 
-  !> Jumps of points that see several nodes of the master face.
+  !> Adds jumps of points with several nodes of the master face.
   subroutine link_wide_points(dofs, points, is_used, graph, links)
     type(dof_map), intent(in) :: dofs
     type(nodal_points), intent(in) :: points
@@ -160,7 +159,7 @@ contains
     is_pair = points%first(p + 1) == points%first(p) + 1
   end function is_pair
 
-  !> The next three jumps are those of a point.
+  !> Adds the three jumps of a point.
   pure subroutine add_jump(p, node, links, jump)
     integer, intent(in) :: p
     integer, intent(in) :: node !< that follows
@@ -172,7 +171,7 @@ contains
     links%jump_node(jump:jump + num_axes - 1) = node
   end subroutine add_jump
 
-  !> Numbers the jumps of the pairs that join two trees, at most one of which is held.
+  !> Numbers the jumps of pairs that join two trees, of which at most one is held.
   subroutine link_pairs(points, is_used, graph, links)
     type(nodal_points), intent(in) :: points
     logical, intent(in) :: is_used(:)
@@ -190,9 +189,9 @@ contains
     end do
   end subroutine link_pairs
 
-  !> Walks every tree of pairs from its root: a node that cannot follow, else one that is never a
-  !> slave, else any; those without mass come last.
-  subroutine walk_trees(dofs, points, graph, links)
+  !> Links every tree of pairs from its root: a node that cannot follow, else one that is never a
+  !> slave, else any; nodes without mass are chosen last.
+  subroutine link_trees(dofs, points, graph, links)
     type(dof_map), intent(in) :: dofs
     type(nodal_points), intent(in) :: points
     type(dependence), intent(in) :: graph
@@ -216,12 +215,12 @@ contains
         if (rank == 1 .and. .not. graph%is_end(node)) cycle
         if (rank == 2 .and. is_slave(node)) cycle
         if (rank <= 3 .and. is_light(node) .and. .not. graph%is_end(node)) cycle
-        call walk_from(node)
+        call link_from(node)
       end do
     end do
   contains
-    !> Breadth first, so that the links of a node stand behind those of its parent.
-    subroutine walk_from(root)
+    !> Links a tree breadth first, so that the links of a node stand after those of its parent.
+    subroutine link_from(root)
       integer, intent(in) :: root
       integer :: head, tail, k, child
       is_seen(root) = .true.
@@ -240,8 +239,8 @@ contains
           call add_links(dofs, points, edge(k), child, queue(head), links)
         end do
       end do
-    end subroutine walk_from
-  end subroutine walk_trees
+    end subroutine link_from
+  end subroutine link_trees
 
   !> The chosen pairs at each node.
   subroutine list_edges(points, first_jump, num_nodes, first, edge)

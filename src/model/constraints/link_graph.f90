@@ -1,8 +1,8 @@
-!> Who follows whom: nodes that depend on others, kept free of circles.
+!> The graph of nodes that depend on others, without circles.
 !>
-!> Nodes joined by pairs form trees. A tree is written through one of its nodes; one that is held by
-!> supports or that follows other nodes must be that one, so a tree has one such node at most. What
-!> follows what is a graph of trees: from each with a node that follows to those of its masters.
+!> Nodes joined by pairs form trees. All nodes of a tree depend on one of its nodes. A node that is
+!> held by supports or that follows nodes of other trees must be this node, so a tree has at most
+!> one. Dependences form a graph of trees: from the tree of a node to the trees of its masters.
 module link_graph
   implicit none
   private
@@ -11,22 +11,24 @@ module link_graph
   type :: dependence
     integer, allocatable, private :: parent(:) !< (nodes) towards the root of the tree
     integer, allocatable, private :: end_node(:) !< (roots) held or following node, 0 for none
-    integer, allocatable, private :: first_row(:) !< (nodes) of those that follow, 0 for none
-    integer, allocatable, private :: next_row(:), first(:), master(:) !< rows of what is followed
+    integer, allocatable, private :: first_row(:) !< (nodes) first row of a node, 0 for none
+    integer, allocatable, private :: next_row(:), first(:), master(:) !< rows of masters
     integer, private :: num_rows = 0
     integer, allocatable, private :: stamp(:), stack(:) !< of the search
     integer, private :: num_searches = 0
   contains
-    procedure :: start, add_row, follow, join, is_end
+    procedure :: start => start_graph
+    procedure :: add_row => add_follower
+    procedure :: follow, join, is_end
   end type dependence
 
 contains
 
-  !> No node follows another yet.
-  subroutine start(self, is_held, most_rows, most_masters)
+  !> Starts with no node that follows another.
+  subroutine start_graph(self, is_held, most_rows, most_masters)
     class(dependence), intent(inout) :: self
     logical, intent(in) :: is_held(:) !< (nodes) by supports
-    integer, intent(in) :: most_rows, most_masters !< that will be added at most
+    integer, intent(in) :: most_rows, most_masters !< largest numbers to be added
     integer :: i, n
     n = size(is_held)
     allocate (self%parent(n), self%end_node(n), self%stack(n))
@@ -35,10 +37,10 @@ contains
     allocate (self%first_row(n), self%stamp(n), self%next_row(most_rows), source=0)
     allocate (self%first(most_rows + 1), source=1)
     allocate (self%master(most_masters))
-  end subroutine start
+  end subroutine start_graph
 
-  !> A node follows others, come what may.
-  subroutine add_row(self, node, masters)
+  !> Makes a node follow others without any check.
+  subroutine add_follower(self, node, masters)
     class(dependence), intent(inout) :: self
     integer, intent(in) :: node, masters(:)
     integer :: row, root, next
@@ -51,9 +53,9 @@ contains
     self%first_row(node) = row
     call find_root(self%parent, node, root)
     self%end_node(root) = node
-  end subroutine add_row
+  end subroutine add_follower
 
-  !> A node follows others if it is free to, and if none of them follows it.
+  !> Makes a node follow others if it is free and none of them follows it.
   subroutine follow(self, node, masters, is_linked)
     class(dependence), intent(inout) :: self
     integer, intent(in) :: node, masters(:)
@@ -67,7 +69,7 @@ contains
     if (is_linked) call self%add_row(node, masters)
   end subroutine follow
 
-  !> Joins the trees of two nodes, if one of them is free to follow the other.
+  !> Joins the trees of two nodes if one node is free to follow the other.
   subroutine join(self, a, b, is_joined)
     class(dependence), intent(inout) :: self
     integer, intent(in) :: a, b
@@ -88,7 +90,7 @@ contains
     is_joined = .true.
   end subroutine join
 
-  !> The node can follow no other: its tree must be written through it.
+  !> Whether all nodes of its tree must depend on this node.
   pure logical function is_end(self, node)
     class(dependence), intent(in) :: self
     integer, intent(in) :: node
@@ -100,7 +102,7 @@ contains
     is_end = self%end_node(root) == node
   end function is_end
 
-  !> Whether what these nodes follow, near or far, includes a tree.
+  !> Whether the nodes that these nodes follow, directly or through others, include a tree.
   subroutine find_circle(self, nodes, target_root, is_circle)
     class(dependence), intent(inout) :: self
     integer, intent(in) :: nodes(:)
@@ -120,7 +122,7 @@ contains
       end do
     end do
   contains
-    !> Puts the ends of the trees of some nodes on the stack, each once.
+    !> Puts the end nodes of the trees of some nodes on the stack, each once.
     subroutine visit(others)
       integer, intent(in) :: others(:)
       integer :: i, root
@@ -136,7 +138,7 @@ contains
     end subroutine visit
   end subroutine find_circle
 
-  !> The root of a node's tree, halving the path to it on the way.
+  !> The root of a node's tree; halves the path to the root.
   pure subroutine find_root(parent, node, root)
     integer, intent(inout) :: parent(:)
     integer, intent(in) :: node

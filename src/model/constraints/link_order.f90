@@ -1,4 +1,4 @@
-!> Puts dependent dofs behind those that they depend on.
+!> Orders dependent dofs after those on which they depend.
 module link_order
   use kinds, only: rk
   use errors, only: error_type, raise
@@ -9,8 +9,8 @@ module link_order
 
 contains
 
-  !> Orders the links so that each term is independent or stands earlier. Fails when a dof depends
-  !> on itself, near or far, or depends on others twice.
+  !> Orders the links so that each term is independent or stands earlier. Fails if a dof depends on
+  !> itself, directly or through others, or depends on others twice.
   subroutine order_links(num_dofs, links, error)
     integer, intent(in) :: num_dofs
     type(linear_links), intent(inout) :: links
@@ -24,7 +24,7 @@ contains
     call rearrange(order, links)
   end subroutine order_links
 
-  !> The link of each dof, 0 for none; and whether the links stand in order as they are.
+  !> The link of each dof, 0 for none; and whether the links are in order already.
   subroutine find_links(num_dofs, links, link, is_ordered, error)
     integer, intent(in) :: num_dofs
     type(linear_links), intent(in) :: links
@@ -49,7 +49,7 @@ contains
     end do
   end subroutine find_links
 
-  !> Depth first: a link is listed once all that it depends on are.
+  !> Sorts depth first: a link is listed after all links on which it depends.
   subroutine sort(links, link, order, error)
     type(linear_links), intent(in) :: links
     integer, intent(in) :: link(:) !< (dofs)
@@ -90,7 +90,7 @@ contains
       is_open(one) = .true.
     end subroutine push
 
-    !> The next link that this one needs and that is not listed, 0 for none.
+    !> The next link on which this one depends and that is not listed, 0 for none.
     subroutine find_next(one, needed)
       integer, intent(in) :: one
       integer, intent(out) :: needed
@@ -107,7 +107,7 @@ contains
     end subroutine find_next
   end subroutine sort
 
-  !> Writes the links in another order.
+  !> Reorders the links.
   subroutine rearrange(order, links)
     integer, intent(in) :: order(:)
     type(linear_links), intent(inout) :: links

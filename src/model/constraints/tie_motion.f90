@@ -1,4 +1,4 @@
-!> Fields at nodes that agree with the ties.
+!> Makes fields at nodes agree with the ties.
 module tie_motion
   use dam_mesh, only: node_tie
   use kinds, only: rk
@@ -12,7 +12,7 @@ module tie_motion
 
 contains
 
-  !> Gives the nodes that follow others by ties what they follow. Fails where ties depend on each
+  !> Computes the values at tied nodes from the nodes that they follow. Fails if ties depend on each
   !> other in a circle.
   subroutine follow_ties(ties, field, error)
     type(node_tie), intent(in) :: ties(:)

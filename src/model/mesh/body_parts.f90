@@ -1,5 +1,5 @@
-!> Bodies: parts of the model that hang together through elements (joints too), ties and couplings,
-!> and whether supports hold them.
+!> Bodies: parts of the model connected by elements (also joints), ties and couplings; and checks
+!> that supports hold them.
 module body_parts
   use dam_mesh, only: mesh
   use kinds, only: rk
@@ -8,7 +8,7 @@ module body_parts
   private
   public :: find_bodies, free_motion, unite, root_of
 
-  !> A pivot below this part of the largest one counts as zero; coordinates are scaled to one.
+  !> A pivot below this fraction of the largest counts as zero; coordinates are scaled to one.
   real(rk), parameter :: rank_tolerance = 1.0e-10_rk
 
 contains
@@ -16,7 +16,7 @@ contains
   !> Numbers the bodies.
   pure subroutine find_bodies(model, groups, body, example)
     type(mesh), intent(in) :: model
-    type(row_table), intent(in) :: groups !< nodes that joints, ties and springs hold together
+    type(row_table), intent(in) :: groups !< nodes that joints, ties and springs connect
     integer, allocatable, intent(out) :: body(:) !< of each node; 0 for a node without an element
     integer, allocatable, intent(out) :: example(:) !< first element of each body (position)
     integer, allocatable :: parent(:)
@@ -54,7 +54,7 @@ contains
     end do
   end subroutine find_bodies
 
-  !> Joins the trees of two nodes; the lower node becomes the root.
+  !> Joins the trees of two nodes; the node of lower number becomes the root.
   pure subroutine unite(parent, a, b)
     integer, intent(inout) :: parent(:)
     integer, intent(in) :: a, b
@@ -83,9 +83,9 @@ contains
     end do
   end function root_of
 
-  !> The rigid motion that supports leave free, in words; '' when there is none.
+  !> Description of the rigid motion that supports leave free; '' for none.
   pure function free_motion(x, dofs) result(motion)
-    real(rk), intent(in) :: x(:, :) !< (3, supports) where they are [m]
+    real(rk), intent(in) :: x(:, :) !< (3, supports) their places [m]
     integer, intent(in) :: dofs(:) !< direction of each, 1..3
     character(:), allocatable :: motion
     real(rk) :: normal(6, 6), row(6), centre(3), size_of_body, r(3)

@@ -1,7 +1,7 @@
 !> Nodes and elements of the whole model, in the order of the deck, with the user's numbers; sets
 !> and surfaces made of them, and nodes that follow others by ties.
 !>
-!> Everything inside Keyway speaks in positions (1..num_nodes, 1..num_elements); the user's ids
+!> Keyway identifies nodes and elements by position (1..num_nodes, 1..num_elements); the user's ids
 !> appear only in messages and results.
 module dam_mesh
   use kinds, only: rk
@@ -36,12 +36,12 @@ module dam_mesh
 
   !> One *TIE with an exact constraint, as links of single nodes of its slave face:
   !> u(node) = sum_k weight(k) u(master(k)), k = first(i) .. first(i + 1) - 1, in the directions
-  !> that are tied. A node may have several rows, in different directions: what follows there
-  !> differs where supports do.
+  !> that are tied. A node may have several rows, in different directions, if supports differ by
+  !> direction.
   type :: node_tie
     character(:), allocatable :: name !< upper case
     integer, allocatable :: node(:) !< (ties) the node that follows
-    logical, allocatable :: is_tied(:, :) !< (3, ties) the directions in which it does
+    logical, allocatable :: is_tied(:, :) !< (3, ties) the tied directions
     integer, allocatable :: first(:) !< (ties + 1)
     integer, allocatable :: master(:) !< nodes it follows, on either face
     real(rk), allocatable :: weight(:) !< they add up to 1

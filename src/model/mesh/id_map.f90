@@ -1,7 +1,7 @@
-!> From the user's numbers to positions: a table with open addressing, quick for any ids.
+!> Positions of the user's numbers: a hash table with open addressing, quick for any ids.
 !>
 !> Ids of real decks are sparse, unsorted and often multiples of a power of ten; a multiplicative
-!> hash spreads them all. The table never fills beyond a half.
+!> hash spreads all these. At most half of the table is in use.
 module id_map
   use kinds, only: long
   implicit none
@@ -25,7 +25,7 @@ module id_map
 
 contains
 
-  !> Makes room for `num_ids` ids in all, so that inserting them never moves the table.
+  !> Allocates memory for `num_ids` ids, so that inserting them never resizes the table.
   pure subroutine reserve(self, num_ids)
     class(position_table), intent(inout) :: self
     integer, intent(in) :: num_ids
@@ -37,7 +37,7 @@ contains
     if (bits > self%bits) call resize(self, bits)
   end subroutine reserve
 
-  !> Adds an id; `earlier` is the position it has already, 0 when it is new (then it is added).
+  !> Adds a new id, with `earlier` = 0; for a known id `earlier` is its position.
   pure subroutine insert(self, id, position, earlier)
     class(position_table), intent(inout) :: self
     integer, intent(in) :: id !< user's number
@@ -53,7 +53,7 @@ contains
     self%count = self%count + 1
   end subroutine insert
 
-  !> Position of an id, 0 when it is unknown.
+  !> Position of an id, 0 for an unknown one.
   pure integer function find(self, id) result(position)
     class(position_table), intent(in) :: self
     integer, intent(in) :: id
@@ -61,7 +61,7 @@ contains
     if (self%count > 0) position = self%position(seat_of(self, id))
   end function find
 
-  !> The seat that holds an id, or the empty one where it belongs.
+  !> The seat of an id, or the empty seat for it.
   pure integer function seat_of(self, id) result(seat)
     type(position_table), intent(in) :: self
     integer, intent(in) :: id

@@ -1,8 +1,8 @@
-!> Faces of hexahedra: their nodes, area vectors, and which of them bound a body.
+!> Faces of hexahedra: their nodes, area vectors, and the exterior faces.
 !>
-!> Faces carry the numbers of CalculiX and Abaqus, S1..S6. Their corners are listed here so that the
-!> right-hand rule gives the outward normal. A face with one repeated node is a triangle; with fewer
-!> than three different nodes it is no face at all.
+!> Faces have the numbers of CalculiX and Abaqus, S1..S6. Their corners are listed here so that the
+!> right-hand rule gives the outward normal. A face with one repeated node is a triangle; a face
+!> with fewer than three different nodes has collapsed.
 module mesh_faces
   use kinds, only: rk
   use dam_mesh, only: mesh, surface
@@ -17,7 +17,7 @@ module mesh_faces
   integer, parameter :: face_corner(4, 6) = reshape([1, 4, 3, 2, 5, 6, 7, 8, 1, 2, 6, 5, &
                                                      2, 3, 7, 6, 3, 4, 8, 7, 4, 1, 5, 8], [4, 6])
 
-  !> Faces that can be found by their nodes, whatever the order: lists by the smallest node.
+  !> Table to find faces by their nodes in any order: lists by the smallest node.
   type :: face_table
     integer :: num_faces = 0
     integer, allocatable :: first(:) !< (nodes of the mesh) newest face with this smallest node
@@ -53,7 +53,7 @@ contains
     centre = sum(model%x(:, pack(key, key > 0)), dim=2)/count(key > 0)
   end function face_centre
 
-  !> How many different nodes a face has: 4, 3 for a triangle, 2 or 1 when it has collapsed.
+  !> Number of different nodes of a face: 4, 3 for a triangle, 2 or 1 for a collapsed face.
   pure integer function count_corners(nodes) result(corners)
     integer, intent(in) :: nodes(4)
     corners = count(face_key(nodes) > 0)
@@ -88,7 +88,7 @@ contains
     allocate (table%key(4, capacity), source=0)
   end subroutine open_table
 
-  !> Puts a face into the table and returns its number there, 1 for the first.
+  !> Adds a face to the table and returns its number there, from 1.
   pure subroutine insert_face(table, nodes, number)
     type(face_table), intent(inout) :: table
     integer, intent(in) :: nodes(4)
@@ -102,8 +102,8 @@ contains
     table%first(lowest) = number
   end subroutine insert_face
 
-  !> Number in the table of the newest face with the same nodes that comes before `before`
-  !> (default: of all), 0 when there is none.
+  !> Number in the table of the newest face with the same nodes and a number below `before`
+  !> (default: of all faces), 0 for none.
   pure integer function find_face(table, nodes, before) result(number)
     type(face_table), intent(in) :: table
     integer, intent(in) :: nodes(4)
@@ -118,7 +118,7 @@ contains
     end do
   end function find_face
 
-  !> Faces of the elements that no other of them shares: the skin of the body.
+  !> The exterior faces of the elements: faces that no other of them shares.
   pure subroutine find_exterior(model, elements, skin)
     type(mesh), intent(in) :: model
     integer, intent(in) :: elements(:) !< positions of solid elements
@@ -145,7 +145,7 @@ contains
     skin%face = pack(face_of, is_outer)
   end subroutine find_exterior
 
-  !> Tells which faces of a skin lie on a JOINT8 element (its master or slave face).
+  !> Marks the faces of a skin that are the master or slave face of a JOINT8 element.
   pure subroutine mark_covered(model, skin, is_covered)
     type(mesh), intent(in) :: model
     type(surface), intent(in) :: skin

@@ -1,9 +1,9 @@
-!> Degrees of freedom (dofs) of nodes: how many a node has, what they mean, where they stand.
+!> Degrees of freedom (dofs) of nodes: their number, meaning and position.
 !>
-!> Only this module knows the layout. A vector of dofs lists the nodes one after the other, and for
-!> each node its components in the order of `components`. Displacements come first; a node with
-!> another unknown, such as a pressure, has a component more. Fields of vectors at nodes, and the
-!> vectors and matrices of displacement elements, list x, y, z of each node.
+!> Only this module depends on the layout. A vector of dofs lists the nodes in order, and for each
+!> node its components in the order of `components`. Displacements come first; a node with another
+!> unknown, such as a pressure, has one more component. Fields of vectors at nodes, and the vectors
+!> and matrices of displacement elements, list x, y, z of each node.
 module node_dofs
   use kinds, only: rk
   implicit none
@@ -45,7 +45,7 @@ contains
   !> The dofs of nodes with different numbers of components.
   pure function number_dofs(components, num_of_node) result(dofs)
     type(dof_component), intent(in) :: components(:) !< displacements first
-    integer, intent(in) :: num_of_node(:) !< (nodes) a node has so many of the first components
+    integer, intent(in) :: num_of_node(:) !< (nodes) number of components of each node
     type(dof_map) :: dofs
     integer :: node
     allocate (dofs%first(size(num_of_node) + 1))
@@ -61,7 +61,7 @@ contains
     end do
   end function number_dofs
 
-  !> How many components a node has.
+  !> Number of components of a node.
   elemental integer function num_of_node(self, node)
     class(dof_map), intent(in) :: self
     integer, intent(in) :: node
@@ -75,7 +75,7 @@ contains
     dof_of = self%first(node) + component - 1
   end function dof_of
 
-  !> The component of its node that a dof is.
+  !> The component of a dof at its node.
   elemental integer function component_of(self, dof)
     class(dof_map), intent(in) :: self
     integer, intent(in) :: dof
@@ -102,7 +102,7 @@ contains
     allocate (field(num_directions, num_nodes), source=0.0_rk)
   end function zero_vectors
 
-  !> The vectors at some nodes, one after the other, as elements take them.
+  !> The vectors at some nodes, one after the other, as in the vectors of elements.
   pure function gather_vectors(field, nodes) result(values)
     real(rk), intent(in) :: field(:, :) !< (directions, nodes)
     integer, intent(in) :: nodes(:)
@@ -116,7 +116,7 @@ contains
   !> Adds vectors of an element, one after the other, to those at its nodes.
   pure subroutine add_vectors(values, nodes, field)
     real(rk), intent(in) :: values(:) !< (directions*nodes of the element)
-    integer, intent(in) :: nodes(:) !< of the element; one may come twice
+    integer, intent(in) :: nodes(:) !< of the element; nodes may repeat
     real(rk), intent(inout) :: field(:, :) !< (directions, nodes)
     integer :: a
     do a = 1, size(nodes)

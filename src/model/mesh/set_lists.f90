@@ -1,4 +1,4 @@
-!> A growing list of named sets; what is added to a name that exists joins its members.
+!> A growing list of named sets; members added to an existing name join that set.
 module set_lists
   use dam_mesh, only: named_set
   use sorted_lists, only: sorted_unique
@@ -13,21 +13,21 @@ module set_lists
     type(named_set), allocatable :: sets(:) !< the first `num_sets` are in use
   contains
     procedure :: find
-    procedure :: add
+    procedure :: add => add_members
     procedure :: trimmed
   end type set_list
 
 contains
 
-  !> Position of a set, 0 when there is none of that name.
+  !> Position of a set, 0 for an unknown name.
   pure integer function find(self, name) result(found)
     class(set_list), intent(in) :: self
     character(*), intent(in) :: name !< upper case
     found = self%names%find(name)
   end function find
 
-  !> Makes a set of some positions, or adds them to the set of that name.
-  pure subroutine add(self, name, members)
+  !> Makes a set of some positions, or adds the positions to the set of that name.
+  pure subroutine add_members(self, name, members)
     class(set_list), intent(inout) :: self
     character(*), intent(in) :: name !< upper case
     integer, intent(in) :: members(:) !< positions in any order
@@ -37,11 +37,11 @@ contains
       self%sets(i)%members = sorted_unique([self%sets(i)%members, members])
       return
     end if
-    call make_room(self)
+    call double_list(self)
     self%num_sets = self%num_sets + 1
     self%sets(self%num_sets)%name = name
     self%sets(self%num_sets)%members = sorted_unique(members)
-  end subroutine add
+  end subroutine add_members
 
   !> The sets in use.
   pure function trimmed(self) result(sets)
@@ -52,7 +52,7 @@ contains
   end function trimmed
 
   !> Doubles the list when it is full; members are moved, not copied.
-  pure subroutine make_room(self)
+  pure subroutine double_list(self)
     type(set_list), intent(inout) :: self
     type(named_set), allocatable :: longer(:)
     integer :: i
@@ -64,5 +64,5 @@ contains
       call move_alloc(self%sets(i)%members, longer(i)%members)
     end do
     call move_alloc(longer, self%sets)
-  end subroutine make_room
+  end subroutine double_list
 end module set_lists

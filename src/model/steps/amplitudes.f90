@@ -1,4 +1,4 @@
-!> Histories that scale loads: straight lines between points, the end values outside.
+!> Histories that scale loads: linear between points, constant outside.
 module amplitudes
   use kinds, only: rk
   implicit none
@@ -17,7 +17,7 @@ contains
   !> Value of the history at time `t`.
   pure real(rk) function amplitude_at(history, t) result(value)
     type(amplitude), intent(in) :: history
-    real(rk), intent(in) :: t !< [s], step or total time as the history wants
+    real(rk), intent(in) :: t !< [s], step or total time as in `uses_total_time`
     integer :: low, high, middle
     real(rk) :: share
     high = size(history%time)

@@ -1,6 +1,6 @@
-!> Values given to degrees of freedom of nodes, carried from step to step: supports, point forces.
+!> Values at degrees of freedom of nodes that continue from step to step: supports, point forces.
 !>
-!> A value stays until it is given anew (OP=MOD) or everything older is cleared (OP=NEW).
+!> A value stays until it is given again (OP=MOD) or all older values are cleared (OP=NEW).
 module dof_tables
   use kinds, only: rk
   use node_dofs, only: num_directions, zero_vectors
@@ -13,32 +13,32 @@ module dof_tables
     logical, allocatable :: is_set(:, :) !< (3, nodes)
     logical, allocatable :: is_new(:, :) !< given in the step being read
     real(rk), allocatable :: value(:, :) !< at the end of the step
-    real(rk), allocatable :: reached(:, :) !< at the end of the step before
+    real(rk), allocatable :: previous(:, :) !< at the end of the step before
     integer, allocatable :: history(:, :) !< amplitude that scales the value, 0 for none
   contains
-    procedure :: prepare
-    procedure :: put
-    procedure :: add
+    procedure :: prepare => allocate_table
+    procedure :: put => set_value
+    procedure :: add => add_value
     procedure :: clear_old
     procedure :: end_step
   end type dof_table
 
 contains
 
-  !> Makes room for a model; what is already there stays.
-  pure subroutine prepare(self, num_nodes)
+  !> Allocates the table for a model; existing values stay.
+  pure subroutine allocate_table(self, num_nodes)
     class(dof_table), intent(inout) :: self
     integer, intent(in) :: num_nodes
     if (allocated(self%is_set)) return
     allocate (self%is_set(num_directions, num_nodes), source=.false.)
     allocate (self%is_new(num_directions, num_nodes), source=.false.)
     self%value = zero_vectors(num_nodes)
-    self%reached = zero_vectors(num_nodes)
+    self%previous = zero_vectors(num_nodes)
     allocate (self%history(num_directions, num_nodes), source=0)
-  end subroutine prepare
+  end subroutine allocate_table
 
   !> Sets a value; it replaces every earlier one.
-  pure subroutine put(self, nodes, dof, value, history)
+  pure subroutine set_value(self, nodes, dof, value, history)
     class(dof_table), intent(inout) :: self
     integer, intent(in) :: nodes(:) !< positions
     integer, intent(in) :: dof !< 1..3
@@ -51,10 +51,10 @@ contains
       self%value(dof, nodes(i)) = value
       self%history(dof, nodes(i)) = history
     end do
-  end subroutine put
+  end subroutine set_value
 
   !> Adds to a value of this step under the same amplitude, replaces one of an earlier step.
-  pure subroutine add(self, nodes, dof, value, history)
+  pure subroutine add_value(self, nodes, dof, value, history)
     class(dof_table), intent(inout) :: self
     integer, intent(in) :: nodes(:) !< positions
     integer, intent(in) :: dof !< 1..3
@@ -69,9 +69,9 @@ contains
       end if
       call self%put(nodes(i:i), dof, sum, history)
     end do
-  end subroutine add
+  end subroutine add_value
 
-  !> OP=NEW: forgets what earlier steps have given.
+  !> OP=NEW: clears the values of earlier steps.
   pure subroutine clear_old(self)
     class(dof_table), intent(inout) :: self
     where (.not. self%is_new)
@@ -81,7 +81,7 @@ contains
     end where
   end subroutine clear_old
 
-  !> Closes a step: values that followed an amplitude over the step's time are held from now on.
+  !> Ends a step: values that followed an amplitude over step time stay constant from now on.
   pure subroutine end_step(self, histories, step_time, total_time, is_perturbation)
     class(dof_table), intent(inout) :: self
     type(amplitude), intent(in) :: histories(:)
@@ -92,14 +92,14 @@ contains
     if (is_perturbation) return
     do node = 1, size(self%value, 2)
       do dof = 1, num_directions
-        self%reached(dof, node) = self%value(dof, node)
+        self%previous(dof, node) = self%value(dof, node)
         if (self%history(dof, node) == 0) cycle
         associate (history => histories(self%history(dof, node)))
           if (history%uses_total_time) then
-            self%reached(dof, node) = self%value(dof, node)*amplitude_at(history, total_time)
+            self%previous(dof, node) = self%value(dof, node)*amplitude_at(history, total_time)
           else
-            self%reached(dof, node) = self%value(dof, node)*amplitude_at(history, step_time)
-            self%value(dof, node) = self%reached(dof, node)
+            self%previous(dof, node) = self%value(dof, node)*amplitude_at(history, step_time)
+            self%value(dof, node) = self%previous(dof, node)
             self%history(dof, node) = 0
           end if
         end associate

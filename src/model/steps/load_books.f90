@@ -1,9 +1,9 @@
-!> Which loads are at work, carried from step to step (OP=MOD and OP=NEW of deck.md).
+!> The active loads, which continue from step to step (OP=MOD and OP=NEW of deck.md).
 !>
-!> A load is known by its family and target (what it acts on, and how). Given again in a later step
-!> with the same pattern it only changes its factor; with another pattern the old one fades to
-!> nothing while the new one comes in, which is the straight line between the two. Given twice in
-!> one step, both act.
+!> Family and target (what the load acts on, and how) identify a load. A load given again in a later
+!> step with the same pattern changes its factor. With another pattern the old load fades to zero
+!> while the new one grows, which is linear interpolation between the two. Two loads given in one
+!> step both act.
 module load_books
   use growing_lists, only: make_room
   use kinds, only: rk
@@ -14,22 +14,22 @@ module load_books
   private
   public :: load_book
 
-  !> One load at work.
-  type :: load_at_work
+  !> One active load.
+  type :: active_load
     integer :: load = 0 !< position in the problem's list of loads
     character(:), allocatable :: family, pattern
     integer :: name = 0 !< number of family and target in the book
     integer :: next = 0 !< entry with the same name, 0 for none
-    real(rk) :: reached = 0.0_rk !< factor at the end of the step before
-    real(rk) :: factor = 0.0_rk !< asked for now
+    real(rk) :: previous = 0.0_rk !< factor at the end of the step before
+    real(rk) :: factor = 0.0_rk !< factor that the deck gives last
     integer :: history = 0 !< amplitude, 0 for none
     logical :: is_new = .false. !< given in the step being read
-    logical :: is_ending = .false. !< fades to nothing in this step
-  end type load_at_work
+    logical :: is_ending = .false. !< fades to zero in this step
+  end type active_load
 
   type :: load_book
     integer :: num_entries = 0
-    type(load_at_work), allocatable :: entries(:) !< the first `num_entries` are in use
+    type(active_load), allocatable :: entries(:) !< the first `num_entries` are in use
     type(text_numbers), private :: names !< of family and target
     integer, private :: num_names = 0
     integer, allocatable, private :: first(:), last(:) !< (names) entries, 0 for none
@@ -44,16 +44,16 @@ module load_books
 
 contains
 
-  !> Gives a load anew when its pattern is known already; `load` is 0 when it is not, and older
-  !> loads on the same target have been ended.
+  !> Gives an active load of the same pattern a new factor. Without one, `load` is 0, and older
+  !> loads on the same target end in this step.
   pure subroutine take_over(self, family, target, pattern, factor, history, load)
     class(load_book), intent(inout) :: self
     character(*), intent(in) :: family !< its keyword
-    character(*), intent(in) :: target !< what it acts on
-    character(*), intent(in) :: pattern !< all else that shapes it but the factor
+    character(*), intent(in) :: target !< what the load acts on
+    character(*), intent(in) :: pattern !< all other data of the load but the factor
     real(rk), intent(in) :: factor
     integer, intent(in) :: history !< amplitude, 0 for none
-    integer, intent(out) :: load !< position in the problem's list, 0: none like it is at work
+    integer, intent(out) :: load !< position in the problem's list, 0 for none
     integer :: i, name
     load = 0
     name = self%names%find(name_of(family, target))
@@ -75,14 +75,14 @@ contains
     end do
   end subroutine take_over
 
-  !> Enters a load that is new in the problem's list.
+  !> Adds a new load of the problem's list.
   pure subroutine enter(self, family, target, pattern, factor, history, load)
     class(load_book), intent(inout) :: self
     character(*), intent(in) :: family, target, pattern !< as in `take_over`
     real(rk), intent(in) :: factor
     integer, intent(in) :: history !< amplitude, 0 for none
     integer, intent(in) :: load !< position in the problem's list
-    type(load_at_work), allocatable :: longer(:)
+    type(active_load), allocatable :: longer(:)
     if (.not. allocated(self%entries)) allocate (self%entries(8))
     if (self%num_entries == size(self%entries)) then
       allocate (longer(2*self%num_entries))
@@ -102,14 +102,14 @@ contains
     call list_by_name(self, self%num_entries)
   end subroutine enter
 
-  !> One text for a family and a target.
+  !> The text that identifies a family and a target.
   pure function name_of(family, target) result(name)
     character(*), intent(in) :: family, target
     character(:), allocatable :: name
     name = family//new_line('a')//target
   end function name_of
 
-  !> Puts an entry behind those with its name.
+  !> Adds an entry after those of the same name.
   pure subroutine list_by_name(self, entry)
     type(load_book), intent(inout) :: self
     integer, intent(in) :: entry
@@ -130,7 +130,7 @@ contains
     self%last(name) = entry
   end subroutine list_by_name
 
-  !> OP=NEW: what earlier steps have given of this family fades to nothing.
+  !> OP=NEW: loads of this family from earlier steps fade to zero.
   pure subroutine clear_old(self, family)
     class(load_book), intent(inout) :: self
     character(*), intent(in) :: family !< its keyword
@@ -142,7 +142,7 @@ contains
     end do
   end subroutine clear_old
 
-  !> A load of this family goes on at the last value of a history that has ended.
+  !> Whether a load of this family keeps the last value of a history that has ended.
   pure logical function holds(self, family)
     class(load_book), intent(in) :: self
     character(*), intent(in) :: family !< its keyword
@@ -151,12 +151,12 @@ contains
     do i = 1, self%num_entries
       associate (now => self%entries(i))
         holds = holds .or. now%family == family .and. now%history == 0 .and. &
-                abs(now%reached) > 0.0_rk
+                abs(now%previous) > 0.0_rk
       end associate
     end do
   end function holds
 
-  !> All loads at work in the step being read.
+  !> All loads that are active in the step being read.
   pure function loads_of_step(self) result(loads)
     class(load_book), intent(in) :: self
     type(step_load), allocatable :: loads(:)
@@ -165,10 +165,10 @@ contains
     used = 0
     do i = 1, self%num_entries
       associate (now => self%entries(i))
-        if (now%is_ending .and. abs(now%reached) <= 0.0_rk) cycle
+        if (now%is_ending .and. abs(now%previous) <= 0.0_rk) cycle
         used = used + 1
         loads(used)%load = now%load
-        loads(used)%start_factor = now%reached
+        loads(used)%start_factor = now%previous
         loads(used)%end_factor = merge(0.0_rk, now%factor, now%is_ending)
         loads(used)%amplitude = merge(0, now%history, now%is_ending)
       end associate
@@ -176,7 +176,7 @@ contains
     loads = loads(:used)
   end function loads_of_step
 
-  !> Closes a step. A load that followed an amplitude over the step's time is held from now on.
+  !> Ends a step. A load that followed an amplitude over step time stays constant from now on.
   pure subroutine end_step(self, histories, step_time, total_time, is_perturbation)
     class(load_book), intent(inout) :: self
     type(amplitude), intent(in) :: histories(:)
@@ -193,23 +193,23 @@ contains
       used = used + 1
       if (used < i) self%entries(used) = self%entries(i)
       call list_by_name(self, used)
-      call reach_end(self%entries(used), histories, step_time, total_time)
+      call hold_last_value(self%entries(used), histories, step_time, total_time)
     end do
     self%num_entries = used
   end subroutine end_step
 
-  pure subroutine reach_end(now, histories, step_time, total_time)
-    type(load_at_work), intent(inout) :: now
+  pure subroutine hold_last_value(now, histories, step_time, total_time)
+    type(active_load), intent(inout) :: now
     type(amplitude), intent(in) :: histories(:)
     real(rk), intent(in) :: step_time, total_time
-    now%reached = now%factor
+    now%previous = now%factor
     if (now%history == 0) return
     if (histories(now%history)%uses_total_time) then
-      now%reached = now%factor*amplitude_at(histories(now%history), total_time)
+      now%previous = now%factor*amplitude_at(histories(now%history), total_time)
     else
-      now%reached = now%factor*amplitude_at(histories(now%history), step_time)
-      now%factor = now%reached
+      now%previous = now%factor*amplitude_at(histories(now%history), step_time)
+      now%factor = now%previous
       now%history = 0
     end if
-  end subroutine reach_end
+  end subroutine hold_last_value
 end module load_books

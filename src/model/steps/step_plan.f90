@@ -1,5 +1,5 @@
-!> What the user asked for in each step: procedure, loads, supports, requests. Plain data, filled by
-!> the keywords, read by the solvers.
+!> The steps of the deck: procedure, loads, supports, requests. Plain data, filled by the keywords,
+!> read by the solvers.
 module step_plan
   use kinds, only: rk
   implicit none
@@ -9,7 +9,7 @@ module step_plan
 
   integer, parameter :: field_name_length = 8 !< of names of fields that a deck may give
 
-  !> A load at work in a step. Its factor goes from `start_factor` (end of the step before) to
+  !> A load that is active in a step. Its factor goes from `start_factor` (end of the last step) to
   !> `end_factor` over a static step, and is `end_factor` at once in a dynamic one; with an
   !> amplitude it is end_factor*amplitude(t). A load that was removed ends at 0.
   type :: step_load
@@ -46,7 +46,7 @@ module step_plan
 
   !> *CONTROLS; the defaults are documented in the keyword's specification.
   type :: step_controls
-    real(rk) :: residual_tolerance = 1.0e-6_rk !< out-of-balance over the reference force
+    real(rk) :: residual_tolerance = 1.0e-6_rk !< residual over the reference force
     real(rk) :: increment_tolerance = 1.0e-6_rk !< last correction over the increment
     integer :: max_iterations = 15
     character(16) :: joint_solver = 'AUTO' !< 'CONDENSED', 'FULL' or 'AUTO'
@@ -67,7 +67,7 @@ module step_plan
   type :: step_procedure
     character(16) :: name = '' !< its keyword: 'STATIC', ..; '' until the deck names one
     character(16) :: scheme = '' !< of the time integration
-    logical :: has_inertia = .false. !< velocities take part; loads without amplitude act at once
+    logical :: has_inertia = .false. !< inertia acts; loads without amplitude act at once
     logical :: finds_modes = .false. !< takes no time
   contains
     procedure :: is_static
@@ -85,8 +85,8 @@ module step_plan
     integer :: num_modes = 0 !< *FREQUENCY
     real(rk) :: damping_ratio = 0.0_rk !< *DAMPING in a step; 0 for none
     real(rk) :: damping_f1 = 0.0_rk, damping_f2 = 0.0_rk !< [Hz]
-    type(step_load), allocatable :: loads(:) !< all loads at work, also those kept from before
-    type(step_fixity), allocatable :: fixities(:) !< all supports, also those kept from before
+    type(step_load), allocatable :: loads(:) !< all active loads, also those of earlier steps
+    type(step_fixity), allocatable :: fixities(:) !< all supports, also those of earlier steps
     type(print_request), allocatable :: prints(:)
     type(field_request), allocatable :: outputs(:)
     character(field_name_length), allocatable :: envelope(:) !< fields of *ENVELOPE
@@ -94,7 +94,7 @@ module step_plan
   end type step
 contains
 
-  !> Whether loads ramp over the step and nothing has inertia.
+  !> Whether loads ramp over the step, without inertia.
   elemental logical function is_static(self)
     class(step_procedure), intent(in) :: self
     is_static = .not. (self%has_inertia .or. self%finds_modes) .and. self%name /= ''
