@@ -22,7 +22,7 @@ TITLE = """# Fields of results
 
 
 def ask(program: Path, *words: str) -> str:
-    """What the program prints about fields."""
+    """The output of keyway --fields."""
     done = subprocess.run([program, "--fields", *words], capture_output=True, text=True, check=True)
     return done.stdout
 

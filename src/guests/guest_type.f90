@@ -69,7 +69,7 @@ contains
     real(rk), intent(inout) :: values(:) !< of the pattern
   end subroutine add_matrix
 
-  !> Whether a guest that is no load has forces of its own; they act in every step at factor 1.
+  !> Whether a guest that is not a load has forces; they act in every step at factor 1.
   pure logical function has_force(self)
     class(guest), intent(in) :: self
     has_force = .false.

@@ -10,8 +10,8 @@ module applied_load
   type, abstract, extends(guest) :: load
     character(:), allocatable :: family !< its keyword, for OP=NEW: 'CLOAD', 'DLOAD', ...
     character(:), allocatable :: target !< identity for OP=MOD: same target, new magnitude
-    integer :: wet_joint = 0 !< position of the joint that has the water of this load, 0 for none
-    logical :: follows_opening = .false. !< its forces depend on which points are open
+    integer :: wet_joint = 0 !< position of the joint with the water of this load, 0 for none
+    logical :: follows_opening = .false. !< its forces depend on the open points
   contains
     procedure :: joint_pressure
   end type load

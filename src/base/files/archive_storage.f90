@@ -1,6 +1,6 @@
-!> What a format of archives must be able to do: store and read named values in groups.
+!> The contract of a format of archives: store and read named values in groups.
 !>
-!> The storage keeps its first failure; calls after it do nothing, and `report` hands it over.
+!> The storage keeps its first failure. Later calls do nothing, and `report` returns the failure.
 module archive_storage
   use kinds, only: rk
   use errors, only: error_type, raise, system_failed
@@ -38,7 +38,7 @@ module archive_storage
       character(*), intent(in) :: name !< without '/'
     end subroutine open_group
 
-    !> Leaves the present group for the one above.
+    !> Leaves the current group for its parent.
     subroutine close_group(self)
       import :: storage
       implicit none
@@ -132,7 +132,7 @@ module archive_storage
 
 contains
 
-  !> Keeps a failure, unless there was one before.
+  !> Stores a failure, if it is the first one.
   pure subroutine fail(self, message)
     class(storage), intent(inout) :: self
     character(*), intent(in) :: message
@@ -145,7 +145,7 @@ contains
     has_failed = allocated(self%failure)
   end function has_failed
 
-  !> Hands over the first failure.
+  !> Returns the first failure.
   pure subroutine report(self, error)
     class(storage), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: error

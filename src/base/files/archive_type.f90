@@ -1,8 +1,8 @@
-!> An archive holds values by name, in groups, and gives them back bit by bit.
+!> An archive stores values by name, in groups, and returns them bit by bit.
 !>
-!> Whatever changes in time saves itself with `put` and loads itself with `get`, one call for each
-!> component. An allocatable component that is not allocated is stored as absent and comes back not
-!> allocated. An array that is allocated before `get` fixes the extent: another one is a failure.
+!> All data that change in time are saved with `put` and loaded with `get`, one call for each
+!> component. A component that is not allocated is stored as absent and is not allocated after
+!> `get`. An array that is allocated before `get` fixes the extent: another extent is a failure.
 module archive_type
   use kinds, only: rk
   use write_text, only: as_text

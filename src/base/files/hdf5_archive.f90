@@ -1,8 +1,8 @@
 !> An archive in an HDF5 file.
 !>
-!> A damaged value is found: the newest format of HDF5 has checksums of all its structures. Small
-!> arrays are stored within these structures, and large ones have a checksum of their own. The file
-!> grows as PATH.part and is moved to PATH when it is complete.
+!> Damaged values are detected: the newest format of HDF5 has checksums of all its structures. Small
+!> arrays are stored within these structures, and large arrays have a separate checksum. The file
+!> is written as PATH.part and renamed to PATH when it is complete.
 module hdf5_archive
   use hdf5, only: hid_t, hsize_t, size_t, h5fcreate_f, h5fopen_f, h5fclose_f, h5f_acc_trunc_f, &
                   h5f_acc_rdonly_f, h5f_libver_latest_f, h5gcreate_f, h5gclose_f, h5screate_f, &
@@ -90,7 +90,7 @@ contains
     call self%confirm(version_name, version)
   end subroutine open_store
 
-  !> What writing and reading begin with.
+  !> Prepares the archive for writing or reading.
   subroutine start_file(self, path, is_written)
     class(hdf5_store), intent(inout) :: self
     character(*), intent(in) :: path
@@ -137,7 +137,7 @@ contains
     self%group = self%group//name//'/'
   end subroutine open_group
 
-  !> Leaves the present group for the one above.
+  !> Leaves the current group for its parent.
   subroutine close_group(self)
     class(hdf5_store), intent(inout) :: self
     if (self%has_failed()) return
@@ -170,7 +170,7 @@ contains
     call h5dclose_f(dataset, status)
   end subroutine find
 
-  !> A dataset without any room stands for what is not allocated.
+  !> Stores an empty dataset for a component that is not allocated.
   subroutine write_absent(self, name)
     class(hdf5_store), intent(inout) :: self
     character(*), intent(in) :: name
@@ -221,7 +221,7 @@ contains
     call self%check_write(status)
   end subroutine write_integers
 
-  !> A text; HDF5 knows no empty one, a null character stands for it.
+  !> A text; a null character represents the empty text, which HDF5 does not have.
   subroutine write_text(self, name, text)
     class(hdf5_store), intent(inout) :: self
     character(*), intent(in) :: name, text
@@ -274,7 +274,7 @@ contains
     call h5dclose_f(dataset, status)
   end subroutine read_integers
 
-  !> A text of the length that it was written with.
+  !> A text, of the length with which it was written.
   subroutine read_text(self, name, text)
     class(hdf5_store), intent(inout) :: self
     character(*), intent(in) :: name
