@@ -42,11 +42,11 @@ contains
   pure function motion_text(blocks, b, motion) result(text)
     type(block_set), intent(in) :: blocks
     integer, intent(in) :: b !< block
-    real(rk), intent(in) :: motion(6) !< v, reach*w
+    real(rk), intent(in) :: motion(6) !< v, radius*w
     character(:), allocatable :: text
     real(rk) :: v(3), w(3), along
     v = motion(1:3)
-    w = motion(4:6)/blocks%reach(b)
+    w = motion(4:6)/blocks%radius(b)
     if (norm2(motion(4:6)) <= negligible*norm2(v)) then
       text = 'move along '//direction_text(v, .true.)
       return
@@ -74,7 +74,7 @@ contains
     text = moves_text(motion(1:3, :num_moves))
     turns = ''
     do k = num_moves + 1, size(motion, 2)
-      turns = turns//', '//axis_text(blocks, b, motion(1:3, k), motion(4:6, k)/blocks%reach(b), &
+      turns = turns//', '//axis_text(blocks, b, motion(1:3, k), motion(4:6, k)/blocks%radius(b), &
                                      .false.)
     end do
     if (len(turns) == 0) return
@@ -83,19 +83,19 @@ contains
   end function freedom_text
 
   !> 'move along x, y'; where two or more ways lie skew, along what they do not reach.
-  pure function moves_text(ways) result(text)
-    real(rk), intent(in) :: ways(:, :) !< (3, ways) orthonormal
+  pure function moves_text(directions) result(text)
+    real(rk), intent(in) :: directions(:, :) !< (3, directions) orthonormal
     character(:), allocatable :: text
     real(rk) :: held(3)
     integer :: i
     text = ''
-    select case (size(ways, 2))
+    select case (size(directions, 2))
     case (0)
       return
     case (1)
-      text = 'move along '//direction_text(ways(:, 1), .false.)
+      text = 'move along '//direction_text(directions(:, 1), .false.)
     case (2)
-      held = cross_product(ways(:, 1), ways(:, 2))
+      held = cross_product(directions(:, 1), directions(:, 2))
       if (maxval(abs(held)) < 1.0_rk - negligible**2) then
         text = 'move in all directions across '//direction_text(held, .false.)
         return
@@ -136,7 +136,7 @@ contains
     character(:), allocatable :: text
     real(rk) :: place(3), unit
     place = blocks%centre(:, b) + cross_product(w, v)/max(dot_product(w, w), tiny(1.0_rk))
-    unit = 10.0_rk**(floor(log10(max(maxval(abs(place)), blocks%reach(b)))) - 3)
+    unit = 10.0_rk**(floor(log10(max(maxval(abs(place)), blocks%radius(b)))) - 3)
     text = 'the axis '//direction_text(w, has_sense)//' through '//place_text(place, unit)
   end function axis_text
 

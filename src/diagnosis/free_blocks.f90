@@ -68,11 +68,11 @@ contains
     if (allocated(failure)) return ! the error is reported without the blocks
     if (size(task%rows, 1) == 0) return
     asked = when
-    call judge(scene, system, task, asked, text, is_known)
+    call find_driven_block(scene, system, task, asked, text, is_known)
     if (.not. is_known) return
     if (text == '') then
       asked%now = when%duration
-      call judge(scene, system, task, asked, text, is_known)
+      call find_driven_block(scene, system, task, asked, text, is_known)
       if (.not. is_known) return
     end if
     if (text /= '') then
@@ -83,7 +83,7 @@ contains
     if (text == '') then
       text = '; as rigid blocks the model has an equilibrium, which may need a thrust that '// &
              'these loads do not bring, smaller increments, or more ITERATIONS (*CONTROLS)'// &
-             parted_block(scene, task%blocks, last)
+             separated_block(scene, task%blocks, last)
     end if
     error%message = error%message//text
   end subroutine name_free_block
@@ -129,7 +129,7 @@ contains
   end subroutine open_task
 
   !> Which block goes where under the loads of a time; '' when the joints may hold them all.
-  subroutine judge(scene, system, task, when, text, is_known)
+  subroutine find_driven_block(scene, system, task, when, text, is_known)
     type(problem), intent(in) :: scene
     type(dam_system), intent(in) :: system
     type(block_task), intent(in) :: task
@@ -154,7 +154,7 @@ contains
     text = block_name(scene, task%blocks, b)//': it is free to '// &
            motion_text(task%blocks, b, motion(:, b))
     if (others > 0) text = text//' ('//as_text(others)//' more blocks move with it)'
-  end subroutine judge
+  end subroutine find_driven_block
 
   !> The loads on the motions of the blocks.
   subroutine sum_loads(scene, system, task, when, load)
@@ -187,14 +187,14 @@ contains
     type(problem), intent(in) :: scene
     type(block_set), intent(in) :: blocks
     integer, intent(in) :: b
-    real(rk), intent(in) :: motion(6) !< v, reach*w
+    real(rk), intent(in) :: motion(6) !< v, radius*w
     real(rk), intent(out) :: u(:, :) !< (3, nodes)
     real(rk) :: r(3)
     integer :: node
     u = 0.0_rk
     do node = 1, size(u, 2)
       if (blocks%block_of(node) /= b) cycle
-      r = (scene%mesh%x(:, node) - blocks%centre(:, b))/blocks%reach(b)
+      r = (scene%mesh%x(:, node) - blocks%centre(:, b))/blocks%radius(b)
       u(:, node) = motion(1:3) + [motion(5)*r(3) - motion(6)*r(2), &
                                   motion(6)*r(1) - motion(4)*r(3), &
                                   motion(4)*r(2) - motion(5)*r(1)]
@@ -202,7 +202,7 @@ contains
   end subroutine move_block
 
   !> The first block that the iteration has left with open joints alone; '' when there is none.
-  function parted_block(scene, blocks, last) result(text)
+  function separated_block(scene, blocks, last) result(text)
     type(problem), intent(in) :: scene
     type(block_set), intent(in) :: blocks
     type(joint_state), intent(in) :: last(:)
@@ -224,27 +224,27 @@ contains
     b = findloc(has_joint(1:) .and. .not. is_touched(1:), .true., 1)
     if (b == 0) return
     text = '; where the iteration ended all joints of '//block_name(scene, blocks, b)//' were open'
-  end function parted_block
+  end function separated_block
 
   !> A motion that no joint resists and no load drives: '' when there is none.
   function idle_motion(scene, task) result(text)
     type(problem), intent(in) :: scene
     type(block_task), intent(in) :: task
     character(:), allocatable :: text
-    real(rk), allocatable :: ways(:, :), shares(:), own(:, :), motion(:, :)
+    real(rk), allocatable :: directions(:, :), shares(:), own(:, :), motion(:, :)
     type(error_type), allocatable :: error
     integer :: b
     text = ''
-    call null_space(matmul(task%rows, transpose(task%rows)), ways, error)
+    call null_space(matmul(task%rows, transpose(task%rows)), directions, error)
     if (allocated(error)) then
       text = '; whether a block is free to move is not known: '//error%message
       return
     end if
-    if (size(ways, 2) == 0) return
-    ways = matmul(task%free, ways)
-    shares = [(sum(ways(6*b - 5:6*b, :)**2), b=1, task%blocks%num_blocks)]
+    if (size(directions, 2) == 0) return
+    directions = matmul(task%free, directions)
+    shares = [(sum(directions(6*b - 5:6*b, :)**2), b=1, task%blocks%num_blocks)]
     b = maxloc(shares, 1)
-    own = ways(6*b - 5:6*b, :)
+    own = directions(6*b - 5:6*b, :)
     call find_modes(matmul(own, transpose(own)), shares, motion, error)
     if (allocated(error)) then
       text = '; '//block_name(scene, task%blocks, b)//' is free to move: no load drives it and '// &
@@ -263,7 +263,7 @@ contains
     type(best_forces), intent(in) :: best
     real(rk), intent(in) :: load(:) !< (motions)
     real(rk) :: motion(size(load))
-    real(rk), allocatable :: matrix(:, :), ways(:, :)
+    real(rk), allocatable :: matrix(:, :), directions(:, :)
     real(rk) :: largest, shear
     type(error_type), allocatable :: error
     integer :: p, i, num_held
@@ -286,12 +286,12 @@ contains
         end associate
       end do
     end do
-    call null_space(matrix, ways, error)
+    call null_space(matrix, directions, error)
     if (allocated(error)) then
       motion = best%mechanism
       return
     end if
-    motion = matmul(ways, matmul(load, ways))
+    motion = matmul(directions, matmul(load, directions))
     if (norm2(motion) <= no_force*norm2(load)) motion = best%mechanism
   end function driven_motion
 end module free_blocks

@@ -1,7 +1,7 @@
 !> Blocks: parts of the model that hang together without joints, as rigid bodies.
 !>
 !> Elements, ties and couplings hold a block together; joints and supports hold it in its place. Its
-!> six motions are v + w x (x - centre); as unknowns they are v and reach*w, reach the distance of
+!> six motions are v + w x (x - centre); as unknowns they are v and radius*w, reach the distance of
 !> its farthest node, so that all six are lengths (different_meshes.md, 13.7).
 module rigid_blocks
   use body_parts, only: root_of, unite
@@ -19,7 +19,7 @@ module rigid_blocks
     integer, allocatable :: block_of(:) !< (nodes) 0: a node without an element
     integer, allocatable :: example(:) !< (blocks) element with the lowest number (position)
     real(rk), allocatable :: centre(:, :) !< (3, blocks) mean of the nodes [m]
-    real(rk), allocatable :: reach(:) !< (blocks) [m]
+    real(rk), allocatable :: radius(:) !< (blocks) [m]
   end type block_set
 
 contains
@@ -119,9 +119,9 @@ contains
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(block_set), intent(inout) :: blocks
     integer :: members(blocks%num_blocks), node, b
-    allocate (blocks%centre(3, blocks%num_blocks), blocks%reach(blocks%num_blocks))
+    allocate (blocks%centre(3, blocks%num_blocks), blocks%radius(blocks%num_blocks))
     blocks%centre = 0.0_rk
-    blocks%reach = tiny(1.0_rk)
+    blocks%radius = tiny(1.0_rk)
     members = 0
     do node = 1, size(x, 2)
       b = blocks%block_of(node)
@@ -135,7 +135,7 @@ contains
     do node = 1, size(x, 2)
       b = blocks%block_of(node)
       if (b == 0) cycle
-      blocks%reach(b) = max(blocks%reach(b), norm2(x(:, node) - blocks%centre(:, b)))
+      blocks%radius(b) = max(blocks%radius(b), norm2(x(:, node) - blocks%centre(:, b)))
     end do
   end subroutine measure_blocks
 
@@ -151,7 +151,7 @@ contains
     if (b == 0) return
     row(1:3, b) = row(1:3, b) + direction
     row(4:6, b) = row(4:6, b) &
-                  + cross_product(x(:, node) - blocks%centre(:, b), direction)/blocks%reach(b)
+                  + cross_product(x(:, node) - blocks%centre(:, b), direction)/blocks%radius(b)
   end subroutine add_node_motion
 
   !> The jumps of a point of a joint, in its axes, when the blocks move.

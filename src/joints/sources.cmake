@@ -21,5 +21,5 @@ set(sources
   law/slip_dissipation.f90
   points/element_joint8.f90
   points/joint_points.f90
-  points/slip_reach.f90
+  points/admissible_slip.f90
 )

@@ -18,7 +18,7 @@ module verify_blocks
   public :: verify_free_blocks
 
   integer, parameter :: most_blocks = 100 !< more are not looked at
-  integer, parameter :: most_told = 5 !< blocks; the others are counted
+  integer, parameter :: most_reported = 5 !< blocks; the others are counted
   !> A block's share in the motions that are left, squared: less is round-off.
   real(rk), parameter :: no_share = 1.0e-6_rk
   character(*), parameter :: no_check = 'whether joints leave blocks free is not known: '
@@ -31,7 +31,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(block_set) :: blocks
     type(error_type), allocatable :: error
-    real(rk), allocatable :: by_joints(:, :), matrix(:, :), ways(:, :)
+    real(rk), allocatable :: by_joints(:, :), matrix(:, :), directions(:, :)
     integer, allocatable :: node(:), direction(:)
     integer :: i, n
     if (size(model%scene%joints) == 0) return
@@ -48,13 +48,13 @@ contains
         matrix = by_joints
         call supports_of_step(model%scene, step, node, direction)
         call add_supports(blocks, model%scene%mesh%x, node, direction, matrix)
-        call null_space(matrix, ways, error)
+        call null_space(matrix, directions, error)
         if (allocated(error)) then
           call model%cards(model%procedure_card(i))%warn(faults, no_check//error%message)
           return
         end if
-        if (size(ways, 2) == 0) cycle
-        call tell(model, i, blocks, ways, faults)
+        if (size(directions, 2) == 0) cycle
+        call warn_of_motions(model, i, blocks, directions, faults)
         return
       end associate
     end do
@@ -85,18 +85,18 @@ contains
   end subroutine add_joint
 
   !> One warning for each block that takes part in the motions that are left.
-  subroutine tell(model, number, blocks, ways, faults)
+  subroutine warn_of_motions(model, number, blocks, directions, faults)
     type(draft), intent(in) :: model
     integer, intent(in) :: number !< of the step
     type(block_set), intent(in) :: blocks
-    real(rk), intent(in) :: ways(:, :) !< (6*blocks, motions) orthonormal
+    real(rk), intent(in) :: directions(:, :) !< (6*blocks, motions) orthonormal
     type(diagnostic_list), intent(inout) :: faults
     type(error_type), allocatable :: error
     real(rk), allocatable :: share(:), motion(:, :)
     integer :: b, num_told
     num_told = 0
     do b = 1, blocks%num_blocks
-      associate (own => ways(6*b - 5:6*b, :))
+      associate (own => directions(6*b - 5:6*b, :))
         call find_modes(matmul(own, transpose(own)), share, motion, error)
       end associate
       if (allocated(error)) then
@@ -105,15 +105,15 @@ contains
       end if
       if (share(6) <= no_share) cycle
       num_told = num_told + 1
-      if (num_told > most_told) cycle
+      if (num_told > most_reported) cycle
       call model%cards(model%procedure_card(number))%warn( &
         faults, block_name(model%scene, blocks, b)//' is free to '// &
         freedom_text(blocks, b, motion(:, findloc(share > no_share, .true., 1):))// &
         ': only joints hold it, and they do not resist that (no friction, no cohesion, no '// &
         'strength)')
     end do
-    if (num_told <= most_told) return
+    if (num_told <= most_reported) return
     call model%cards(model%procedure_card(number))%warn( &
       faults, 'more such blocks are free; these were the first')
-  end subroutine tell
+  end subroutine warn_of_motions
 end module verify_blocks

@@ -5,7 +5,7 @@ module verify_model
   use element_catalogue, only: is_solid
   use element_hex8, only: hex8_gradients
   use guest_list, only: supports_of_step
-  use held_together, only: list_groups
+  use bonded_nodes, only: list_groups
   use kinds, only: rk
   use load_gravity, only: gravity_load
   use model_draft, only: draft

@@ -45,17 +45,18 @@ contains
       call add_moving_supports(system, solids%values, moved, task%balance%rhs)
       task%start = new%q + moved
       call set_jumps(system, scheme, before, task%start, task%balance)
-      task%balance%reference = largest_force(scheme, old, n)
+      task%balance%reference_force = largest_force(scheme, old, n)
       allocate (task%x(system%matrix%num_total))
       if (solids%has_inelastic()) then
-        task%reference = max(task%balance%reference, before%largest_force, length(new%external(:n)))
+        task%reference_force = max(task%balance%reference_force, before%largest_force, &
+                                   length(new%external(:n)))
       end if
-      call solids%solve(model, system, task, before, after, outcome, error)
+      call solids%solve_increment(model, system, task, before, after, outcome, error)
       if (allocated(error) .or. .not. outcome%has_converged) return
       call correct(system, scheme, solids, task%x + moved, before, after, rhs)
       ! Reactions count: displaced supports alone may be what strains the dam.
-      after%largest_force = max(task%balance%reference, length(new%internal), &
-                                largest_force(scheme, new, n), task%reference)
+      after%largest_force = max(task%balance%reference_force, length(new%internal), &
+                                largest_force(scheme, new, n), task%reference_force)
       call check_bulk(rhs(:n), after%largest_force, solids%solver%controls%residual_tolerance, &
                       outcome)
     end associate

@@ -38,7 +38,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(increment_task) :: task
     call pose_task(model, system, solids, when, before, after, task)
-    call solids%solve(model, system, task, before, after, outcome, error)
+    call solids%solve_increment(model, system, task, before, after, outcome, error)
     if (allocated(error) .or. .not. outcome%has_converged) return
     associate (old => before%motion, new => after%motion, n => system%matrix%num_free)
       new%q = new%q + task%x
@@ -69,11 +69,11 @@ contains
       moved = new%q - old%q
       task%balance%rhs = new%external(:n) - old%elastic(:n)
       call add_moving_supports(system, system%stiffness, moved, task%balance%rhs)
-      task%balance%reference = norm(task%balance%rhs)
+      task%balance%reference_force = norm(task%balance%rhs)
       call set_jumps(system, before, new%q, task%balance)
       task%start = new%q
       task%counts_reactions = .true.
-      if (solids%has_inelastic()) task%reference = known_force(system%diagonal, before, after)
+      if (solids%has_inelastic()) task%reference_force = known_force(system%diagonal, before, after)
       allocate (task%x(size(moved)))
     end associate
   end subroutine pose_task
@@ -117,6 +117,6 @@ contains
     call system%operator%jumps(q, balance%offset)
     call gather_jumps(system%operator, before%joints, balance%guess)
     call gather_tractions(system%operator, before%joints, traction)
-    balance%starts_bonded = .not. any(abs(traction) > 0.0_rk)
+    balance%starts_closed = .not. any(abs(traction) > 0.0_rk)
   end subroutine set_jumps
 end module static_increment

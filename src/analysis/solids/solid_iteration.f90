@@ -32,7 +32,7 @@ module solid_iteration
     type(force_balance) :: balance !< without the initial-stress force
     real(rk), allocatable :: start(:) !< (num_total) u at x = 0, supports in place [m]
     real(rk), allocatable :: x(:) !< (num_total) the answer; zero on prescribed unknowns [m]
-    real(rk) :: reference = 0.0_rk !< largest force known beforehand [N]
+    real(rk) :: reference_force = 0.0_rk !< largest force known beforehand [N]
     logical :: counts_reactions = .false. !< reactions enter the reference force
   end type increment_task
 
@@ -50,9 +50,10 @@ module solid_iteration
     type(mixer) :: mixer
   contains
     procedure :: open => open_solids
-    procedure :: open_increment, solve, effort, set_internal
+    procedure :: open_increment, solve_increment, effort, set_internal
     procedure :: has_inelastic
-    procedure, private :: iterate, start_iteration, try, measure, advance, linearise
+    procedure, private :: iterate_on_forces, start_iteration, solve_iterate, measure_iterate
+    procedure, private :: choose_guess, linearise
   end type solid_solver
 
   !> Where the iteration is.
@@ -140,7 +141,7 @@ contains
 
   !> Solves the balance for `task%x`, with joints and points in `after`. No convergence is no error.
   !> When a law requests a smaller increment no other tangent is tried.
-  subroutine solve(self, model, system, task, before, after, outcome, error)
+  subroutine solve_increment(self, model, system, task, before, after, outcome, error)
     class(solid_solver), intent(inout) :: self
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
@@ -151,15 +152,15 @@ contains
     type(error_type), allocatable, intent(out) :: error
     integer :: i
     if (.not. self%has_inelastic()) then
-      call self%solver%solve(task%balance, model%joints, before%joints, after%joints, task%x, &
-                             outcome, error)
+      call self%solver%solve_balance(task%balance, model%joints, before%joints, after%joints, &
+                                     task%x, outcome, error)
       return
     end if
     do i = 1, size(self%choices)
       self%chosen = self%choices(i)
       self%time%tangent = self%chosen%kind
       self%time%holds_switches = self%chosen%holds_switches
-      call self%iterate(model, system, task, before, after, outcome, error)
+      call self%iterate_on_forces(model, system, task, before, after, outcome, error)
       outcome%has_held_switches = self%chosen%holds_switches
       if (allocated(error) .or. outcome%has_converged) return
       if (.not. self%matrix%is_elastic) then
@@ -168,10 +169,10 @@ contains
       end if
       if (outcome%size_ratio < 1.0_rk) return
     end do
-  end subroutine solve
+  end subroutine solve_increment
 
   !> Iterates until the laws agree with the balance.
-  subroutine iterate(self, model, system, task, before, after, outcome, error)
+  subroutine iterate_on_forces(self, model, system, task, before, after, outcome, error)
     class(solid_solver), intent(inout) :: self
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
@@ -188,15 +189,15 @@ contains
     allocate (outcome%history(0))
     call self%start_iteration(system, before, now)
     do while (outcome%iterations < most_iterations)
-      call self%try(model, system, now, before, after, outcome, error)
+      call self%solve_iterate(model, system, now, before, after, outcome, error)
       if (allocated(error) .or. now%is_lost) return
-      call self%measure(system, before, now, outcome)
+      call self%measure_iterate(system, before, now, outcome)
       if (outcome%has_converged) exit
-      call self%advance(model, system, after, now, error)
+      call self%choose_guess(model, system, after, now, error)
       if (allocated(error) .or. now%is_lost) return
     end do
     task%x = now%task%x
-  end subroutine iterate
+  end subroutine iterate_on_forces
 
   !> The first guess: the last matrix still holds.
   subroutine start_iteration(self, system, before, now)
@@ -217,7 +218,7 @@ contains
   end subroutine start_iteration
 
   !> Solves with the guess and evaluates the laws; `now%is_lost` where the iteration cannot go on.
-  subroutine try(self, model, system, now, before, after, outcome, error)
+  subroutine solve_iterate(self, model, system, now, before, after, outcome, error)
     class(solid_solver), intent(inout) :: self
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
@@ -233,11 +234,11 @@ contains
       last_x = task%x
       task%balance%rhs = now%rhs + self%weight*now%guess
       if (outcome%iterations > 0 .and. system%operator%num_points > 0) then
-        task%balance%starts_bonded = .false.
+        task%balance%starts_closed = .false.
         call gather_jumps(system%operator, after%joints, task%balance%guess)
       end if
-      call self%solver%solve(task%balance, model%joints, before%joints, after%joints, task%x, &
-                             inner, error)
+      call self%solver%solve_balance(task%balance, model%joints, before%joints, after%joints, &
+                                     task%x, inner, error)
       outcome%iterations = max(outcome%iterations + 1, inner%own_iterations())
       outcome%augmentations = outcome%augmentations + inner%augmentations
       outcome%penetration = inner%penetration
@@ -257,10 +258,10 @@ contains
       now%answer = self%excess(:size(now%guess)) - product(:size(now%guess))
       now%moved = norm(task%x - last_x)
     end associate
-  end subroutine try
+  end subroutine solve_iterate
 
   !> The residual, and an estimate of the correction that remains, from the last correction.
-  subroutine measure(self, system, before, now, outcome)
+  subroutine measure_iterate(self, system, before, now, outcome)
     class(solid_solver), intent(in) :: self
     type(dam_system), intent(in) :: system
     type(state), intent(in) :: before
@@ -270,7 +271,7 @@ contains
     now%last_force = now%force
     now%force = self%weight*norm(now%answer - now%guess)
     q = now%task%start + now%task%x
-    reference = now%task%reference
+    reference = now%task%reference_force
     if (now%task%counts_reactions) then
       call multiply(system%matrix, system%stiffness, q, product)
       reference = max(reference, norm(product - self%excess))
@@ -287,10 +288,10 @@ contains
                               (outcome%residual <= controls%residual_tolerance .and. &
                                outcome%correction <= controls%increment_tolerance)
     end associate
-  end subroutine measure
+  end subroutine measure_iterate
 
   !> The next guess.
-  subroutine advance(self, model, system, after, now, error)
+  subroutine choose_guess(self, model, system, after, now, error)
     class(solid_solver), intent(inout) :: self
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
@@ -301,13 +302,13 @@ contains
     if (self%chosen%patience > 0 .and. .not. is_slow(now, self%chosen%patience)) then
       if (now%tries == 1) now%base_force = now%force
       call self%mixer%advance(now%answer - now%guess, now%guess)
-    else if (self%chosen%patience == 0 .and. goes_astray(now)) then
+    else if (self%chosen%patience == 0 .and. has_grown(now)) then
       now%share = 0.5_rk*now%share
       now%guess = now%base - (1.0_rk - now%share)*now%unbalance
     else
       call self%linearise(model, system, after, now, error)
     end if
-  end subroutine advance
+  end subroutine choose_guess
 
   !> Whether the matrix reduces the residual too slowly.
   pure logical function is_slow(now, patience)
@@ -317,10 +318,10 @@ contains
   end function is_slow
 
   !> Whether a Newton step has increased the residual, so that it is halved.
-  pure logical function goes_astray(now)
+  pure logical function has_grown(now)
     type(iterate_state), intent(in) :: now
-    goes_astray = now%force > largest_growth*now%base_force .and. now%share > smallest_share
-  end function goes_astray
+    has_grown = now%force > largest_growth*now%base_force .and. now%share > smallest_share
+  end function has_grown
 
   !> Takes the tangent at the present iterate.
   subroutine linearise(self, model, system, after, now, error)

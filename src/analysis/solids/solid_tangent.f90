@@ -34,7 +34,8 @@ contains
     class(equilibrium_solver), intent(inout) :: solver
     type(error_type), allocatable, intent(out) :: error
     self%is_elastic = .true.
-    call solver%prepare(system%matrix, values, solver%weight, scene%joints, system%operator, error)
+    call solver%prepare_matrix(system%matrix, values, solver%weight, scene%joints, &
+                               system%operator, error)
   end subroutine factorise_elastic
 
   !> Factors K_eff - weight*A with the tangents of the last update. An error with `analysis_failed`
@@ -66,11 +67,11 @@ contains
     end if
     call solver%costs%stop()
     if (self%is_symmetric) then
-      call solver%prepare(system%matrix, tangent, solver%weight, scene%joints, system%operator, &
-                          error)
+      call solver%prepare_matrix(system%matrix, tangent, solver%weight, scene%joints, &
+                                 system%operator, error)
     else
-      call solver%prepare(self%full_matrix, tangent, solver%weight, scene%joints, &
-                          system%operator, error)
+      call solver%prepare_matrix(self%full_matrix, tangent, solver%weight, scene%joints, &
+                                 system%operator, error)
     end if
   end subroutine factorise
 

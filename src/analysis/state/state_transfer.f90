@@ -2,7 +2,7 @@
 module state_transfer
   use kinds, only: rk
   use joint_law, only: joint_state
-  use joint_points, only: joint, apart
+  use joint_points, only: joint, relative_displacement
   use dof_numbering, only: numbering
   use analysis_state, only: state, motion
   use joint_operator, only: jump_operator
@@ -68,7 +68,8 @@ contains
         pair = pair + 1
         first = numbers%first_jump(pair)
         if (first == 0) cycle
-        q(first:first + 2) = matmul(joints(j)%rotation(:, :, p), apart(joints(j), p, u))
+        q(first:first + 2) = matmul(joints(j)%rotation(:, :, p), &
+                                    relative_displacement(joints(j), p, u))
       end do
     end do
   end subroutine restrict

@@ -3,7 +3,7 @@ module initial_state
   use kinds, only: rk
   use node_dofs, only: zero_vectors
   use problem_definition, only: problem
-  use joint_points, only: joint, apart
+  use joint_points, only: joint, relative_displacement
   use joint_law, only: joint_state
   use joint_forces, only: start_joints
   use errors, only: error_type, raise
@@ -94,7 +94,7 @@ contains
     type(joint_state) :: old
     integer :: p
     do p = 1, seam%num_points
-      jump(:, p) = matmul(seam%rotation(:, :, p), apart(seam, p, u))
+      jump(:, p) = matmul(seam%rotation(:, :, p), relative_displacement(seam, p, u))
     end do
     old = history
     call seam%law%update(jump, old, history, tangent)

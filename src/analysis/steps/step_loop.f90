@@ -157,7 +157,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     real(rk) :: size
     size = now%control%next_size(now%step_time)
-    call next%when%advance(now%step_time, size)
+    call next%when%set_end(now%step_time, size)
     call begin_user_increment(model, now, size, error)
     if (allocated(error)) return
     call method%start_increment(model, plan, size, results, error)

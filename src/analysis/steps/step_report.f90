@@ -9,7 +9,7 @@ module step_report
   use equilibrium, only: balance_outcome
   use step_loads, only: step_time
   use step_system, only: dam_system
-  use slip_reach, only: check_reach
+  use admissible_slip, only: check_slip
   use user_increments, only: end_user_increment
   use write_text, only: as_text
   implicit none
@@ -41,7 +41,7 @@ contains
     if (allocated(error)) return
     call end_user_increment(model, now, results, error)
     if (allocated(error)) return
-    call check_reach(model%joints, now%joints, now%total_time, error)
+    call check_slip(model%joints, now%joints, now%total_time, error)
     if (allocated(error) .or. now%is_last_of_step) return
     if (now%increment >= plan%max_increments) then
       call raise(error, "step '"//plan%name//"' has used its "//count_text(plan%max_increments)// &

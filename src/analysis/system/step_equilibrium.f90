@@ -85,7 +85,7 @@ contains
     class(equilibrium_solver), intent(inout) :: balance
     type(error_type), allocatable, intent(out) :: error
     type(error_type), allocatable :: cause
-    call balance%prepare(system%matrix, values, weight, scene%joints, system%operator, cause)
+    call balance%prepare_matrix(system%matrix, values, weight, scene%joints, system%operator, cause)
     if (.not. allocated(cause)) return
     if (balance%factor%failed_unknown > 0) then
       call raise(error, 'nothing holds the model at '// &

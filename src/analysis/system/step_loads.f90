@@ -25,7 +25,7 @@ module step_loads
     real(rk) :: duration = 1.0_rk !< of the step [s]
     real(rk) :: increment = 0.0_rk !< that ends now [s]
   contains
-    procedure :: advance
+    procedure :: set_end
   end type step_time
 
   !> Loads with one rule of time. Water that follows the opening of a joint has a group of its own.
@@ -47,14 +47,14 @@ module step_loads
 contains
 
   !> Goes to the end of an increment; what is left of the step by roundoff belongs to it.
-  pure subroutine advance(self, from, increment)
+  pure subroutine set_end(self, from, increment)
     class(step_time), intent(inout) :: self
     real(rk), intent(in) :: from !< since the start of the step [s]
     real(rk), intent(in) :: increment !< [s]
     self%increment = increment
     self%now = from + increment
     if (self%duration - self%now < 1.0e-9_rk*increment) self%now = self%duration
-  end subroutine advance
+  end subroutine set_end
 
   !> Sums the patterns of the loads of a step, base motion included, rule by rule, and the forces of
   !> guests that act in every step.

@@ -56,7 +56,7 @@ contains
       built%rotation(:, :, p) = local_axes(-rows%normal(:, p))
     end do
     built%x = x(:, rows%node)
-    built%reach = rows%facet_size
+    built%admissible_slip = rows%facet_size
     built%clearance = merge(rows%gap, 0.0_rk, is_measured)
     call close_points(rows%num_rows, built)
     call list_cells(slave, segments, rows%is_bare, built%cells)
@@ -108,7 +108,7 @@ contains
           built%x(:, p) = matmul(x(:, own), quarters(q)%slave_shape)
           built%area(p) = quarters(q)%area
           built%clearance(p) = merge(quarters(q)%gap, 0.0_rk, is_measured)
-          built%reach(p) = min(facet_extent(x(:, own)), facet_extent(x(:, other)))
+          built%admissible_slip(p) = min(facet_extent(x(:, own)), facet_extent(x(:, other)))
         end do
       end associate
     end do
@@ -152,7 +152,7 @@ contains
     allocate (built%first(num_points + 1), built%first_master(num_points), source=1)
     allocate (built%node(most_nodes), built%weight(most_nodes))
     allocate (built%rotation(3, 3, num_points), built%x(3, num_points))
-    allocate (built%area(num_points), built%clearance(num_points), built%reach(num_points))
+    allocate (built%area(num_points), built%clearance(num_points), built%admissible_slip(num_points))
   end subroutine open_points
 
   !> Adds the nodes of point p, slave first; nodes without weight are left out.
@@ -197,7 +197,7 @@ contains
     built%x = built%x(:, :num_points)
     built%area = built%area(:num_points)
     built%clearance = built%clearance(:num_points)
-    built%reach = built%reach(:num_points)
+    built%admissible_slip = built%admissible_slip(:num_points)
   end subroutine close_points
 
   !> Nodes that belong to both faces.

@@ -9,12 +9,12 @@ module condensation
   use joint_points, only: joint
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, reference_stiffness, gather_jumps, gather_tractions
-  use joint_iteration, only: start_iteration, relief, closed_tangent
-  use joint_compliance, only: find_compliance, friction_scale
+  use joint_iteration, only: start_iteration, excess_traction, closed_tangent
+  use joint_compliance, only: find_compliance, find_friction_scale
   use matrix_condition, only: estimate_condition
   use blas_threads, only: use_many_threads, use_one_thread
-  use jump_block, only: jump_factor, take_jump_factor, compliance_of_jumps
-  use newton_condensed, only: condensed_joints, iterate
+  use jump_block, only: jump_schur_block, extract_schur_block, schur_compliance
+  use newton_condensed, only: condensed_joints, iterate_on_jumps
   use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
   implicit none
   private
@@ -22,9 +22,9 @@ module condensation
 
   type, extends(equilibrium_solver) :: condensed_equilibrium
     type(condensed_joints) :: condensed
-    type(jump_factor) :: jumps !< where there is one, an increment takes one solve in place of two
+    type(jump_schur_block) :: jumps !< saves one of the two solves of an increment
   contains
-    procedure :: prepare, solve
+    procedure :: prepare_matrix, solve_balance
     procedure, private :: solve_from, has_drifted, begin_solve, end_solve
   end type condensed_equilibrium
 
@@ -34,7 +34,7 @@ module condensation
 contains
 
   !> Factors K_0, finds its compliance on the joints and the scale of the friction iteration.
-  subroutine prepare(self, matrix, values, weight, joints, operator, error)
+  subroutine prepare_matrix(self, matrix, values, weight, joints, operator, error)
     class(condensed_equilibrium), intent(inout) :: self
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: values(:) !< K_eff
@@ -47,9 +47,9 @@ contains
     self%operator = operator
     self%weight = weight
     self%condensed%weight = weight
-    call reference_stiffness(joints, operator, self%condensed%reference)
+    call reference_stiffness(joints, operator, self%condensed%k_ref)
     allocate (closed, source=values)
-    call operator%add_stiffness(weight*closed_tangent(self%condensed%reference), matrix, closed)
+    call operator%add_stiffness(weight*closed_tangent(self%condensed%k_ref), matrix, closed)
     call self%costs%start('factor', 'structure', 'solver')
     call self%factor%factorise(matrix, closed, error)
     self%num_factorisations = self%num_factorisations + 1
@@ -62,10 +62,10 @@ contains
       if (allocated(error)) return
     end if
     call self%costs%start('condense', 'joints', 'joint')
-    call take_jump_factor(self%factor, operator, matrix%num_free, matrix%num_last, self%jumps)
+    call extract_schur_block(self%factor, operator, matrix%num_free, matrix%num_last, self%jumps)
     if (self%jumps%is_there) then
       call use_many_threads(levels)
-      call compliance_of_jumps(self%jumps, operator, self%condensed%compliance)
+      call schur_compliance(self%jumps, operator, self%condensed%compliance)
       call use_one_thread(levels)
     else
       call find_compliance(self%factor, operator, matrix%num_free, self%condensed%compliance, error)
@@ -75,14 +75,14 @@ contains
       return
     end if
     call use_many_threads(levels)
-    call friction_scale(self%condensed%compliance, operator, self%condensed%reference, weight, &
-                        self%condensed%scale)
+    call find_friction_scale(self%condensed%compliance, operator, self%condensed%k_ref, weight, &
+                             self%condensed%friction_scale)
     call use_one_thread(levels)
     call self%costs%stop()
-  end subroutine prepare
+  end subroutine prepare_matrix
 
   !> Solves, and once more from the jumps found where they have drifted from the balance.
-  subroutine solve(self, balance, joints, old, new, x, outcome, error)
+  subroutine solve_balance(self, balance, joints, old, new, x, outcome, error)
     class(condensed_equilibrium), intent(inout) :: self
     type(force_balance), intent(in) :: balance
     type(joint), intent(in) :: joints(:)
@@ -97,12 +97,12 @@ contains
     if (allocated(error) .or. .not. outcome%has_converged) return
     if (.not. self%has_drifted(balance, new, x)) return
     nearer = balance
-    nearer%starts_bonded = .false.
+    nearer%starts_closed = .false.
     call gather_jumps(self%operator, new, nearer%guess)
     iterations = outcome%iterations
     call self%solve_from(nearer, joints, old, new, x, outcome, error)
     outcome%iterations = outcome%iterations + iterations
-  end subroutine solve
+  end subroutine solve_balance
 
   !> Are the jumps of the solution others than those the laws were evaluated at? A block that
   !> touched nothing for an iterate went so far that the digits of its way back are missing.
@@ -116,9 +116,9 @@ contains
     call self%operator%jumps(x, drift)
     call gather_jumps(self%operator, new, jump)
     call gather_tractions(self%operator, new, traction)
-    drift = self%condensed%reference*(drift + balance%offset - jump)
+    drift = self%condensed%k_ref*(drift + balance%offset - jump)
     associate (area => spread(self%operator%area, 1, 3))
-      force = max(norm(area*traction), balance%reference)
+      force = max(norm(area*traction), balance%reference_force)
       has_drifted = norm(area*drift) > allowed_drift*self%controls%residual_tolerance*force
     end associate
   end function has_drifted
@@ -137,19 +137,20 @@ contains
     type(joint_field) :: field
     real(rk), dimension(3, self%operator%num_points) :: first_excess, excess
     real(rk), allocatable :: half(:)
-    associate (reference => self%condensed%reference, operator => self%operator)
-      call start_iteration(balance, joints, operator, reference, self%condensed%scale, old, &
-                           field, new)
-      first_excess = relief(reference, field%jump, balance%offset, field%iterate)
+    associate (k_ref => self%condensed%k_ref, operator => self%operator)
+      call start_iteration(balance, joints, operator, k_ref, self%condensed%friction_scale, &
+                           old, field, new)
+      first_excess = excess_traction(k_ref, field%jump, balance%offset, field%iterate)
       call self%begin_solve(balance%rhs, first_excess, half, x, error)
       if (allocated(error)) return
       call operator%jumps(x, field%response)
       field%response = field%response + balance%offset
       call self%costs%start('iterate', 'joints', 'joint')
-      call iterate(self%condensed, self%controls, joints, operator, old, field, new, outcome)
+      call iterate_on_jumps(self%condensed, self%controls, joints, operator, old, field, new, &
+                            outcome)
       call self%costs%stop()
       if (.not. outcome%has_converged) return
-      excess = relief(reference, field%jump, balance%offset, field%iterate)
+      excess = excess_traction(k_ref, field%jump, balance%offset, field%iterate)
     end associate
     call self%end_solve(excess - first_excess, half, x, error)
   end subroutine solve_from
@@ -172,7 +173,7 @@ contains
     call self%costs%start('solve forward', 'structure', 'solver')
     call self%factor%forward_substitute(half, error)
     x = 0.0_rk
-    call self%jumps%show(half, x)
+    call self%jumps%store_jumps(half, x)
     call self%costs%stop()
   end subroutine begin_solve
 
@@ -188,7 +189,7 @@ contains
       correction = 0.0_rk
       call self%operator%add_forces(self%weight*change, correction)
       call self%costs%start('solve backward', 'structure', 'solver')
-      call self%jumps%add_forces(correction, half)
+      call self%jumps%add_jump_forces(correction, half)
       call self%factor%backward_substitute(half, error)
       x = 0.0_rk
       x(:size(half)) = half

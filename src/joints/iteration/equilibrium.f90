@@ -22,8 +22,8 @@ module equilibrium
     real(rk), allocatable :: rhs(:) !< (free unknowns) [N]
     real(rk), allocatable :: offset(:, :) !< (3, points) jumps at x = 0 [m]
     real(rk), allocatable :: guess(:, :) !< (3, points) jumps near the solution [m]
-    logical :: starts_bonded = .false. !< the first iterate takes every joint as closed and sticking
-    real(rk) :: reference = 0.0_rk !< largest force of the bulk so far [N]
+    logical :: starts_closed = .false. !< the first iterate takes every joint as closed and sticking
+    real(rk) :: reference_force = 0.0_rk !< largest force of the bulk so far [N]
   end type force_balance
 
   !> How the iteration went.
@@ -57,13 +57,13 @@ module equilibrium
     real(rk) :: condition = 0.0_rk
     type(ledger) :: costs !< a copy: it books in the ledger of the run
   contains
-    procedure(prepare), deferred :: prepare
-    procedure(solve), deferred :: solve
+    procedure(prepare_matrix), deferred :: prepare_matrix
+    procedure(solve_balance), deferred :: solve_balance
   end type equilibrium_solver
 
   abstract interface
     !> Takes a new K_eff and weight: after a change of the increment's size.
-    subroutine prepare(self, matrix, values, weight, joints, operator, error)
+    subroutine prepare_matrix(self, matrix, values, weight, joints, operator, error)
       import :: equilibrium_solver, pattern, rk, joint, jump_operator, error_type
       implicit none
       class(equilibrium_solver), intent(inout) :: self
@@ -73,10 +73,10 @@ module equilibrium
       type(joint), intent(in) :: joints(:)
       type(jump_operator), intent(in) :: operator
       type(error_type), allocatable, intent(out) :: error
-    end subroutine prepare
+    end subroutine prepare_matrix
 
     !> Solves the balance. An iteration that does not converge is no error.
-    subroutine solve(self, balance, joints, old, new, x, outcome, error)
+    subroutine solve_balance(self, balance, joints, old, new, x, outcome, error)
       import :: equilibrium_solver, force_balance, balance_outcome, rk, joint, joint_state, &
         error_type
       implicit none
@@ -88,7 +88,7 @@ module equilibrium
       real(rk), intent(out) :: x(:) !< (all unknowns) prescribed ones return as zero
       type(balance_outcome), intent(out) :: outcome
       type(error_type), allocatable, intent(out) :: error
-    end subroutine solve
+    end subroutine solve_balance
   end interface
 
 contains

@@ -18,13 +18,13 @@ module equilibrium_linear
     class(equation_solver), allocatable :: unsymmetric_factor
     logical :: is_unsymmetric = .false. !< the last matrix was
   contains
-    procedure :: prepare, solve
+    procedure :: prepare_matrix, solve_balance
   end type linear_equilibrium
 
 contains
 
   !> Factors K_eff.
-  subroutine prepare(self, matrix, values, weight, joints, operator, error)
+  subroutine prepare_matrix(self, matrix, values, weight, joints, operator, error)
     class(linear_equilibrium), intent(inout) :: self
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: values(:) !< K_eff
@@ -50,10 +50,10 @@ contains
     end if
     call self%costs%stop()
     self%num_factorisations = self%num_factorisations + 1
-  end subroutine prepare
+  end subroutine prepare_matrix
 
   !> x = K_eff^-1 rhs.
-  subroutine solve(self, balance, joints, old, new, x, outcome, error)
+  subroutine solve_balance(self, balance, joints, old, new, x, outcome, error)
     class(linear_equilibrium), intent(inout) :: self
     type(force_balance), intent(in) :: balance
     type(joint), intent(in) :: joints(:) !< none
@@ -76,5 +76,5 @@ contains
     if (size(joints) > 0) new = old
     outcome%has_converged = .true.
     outcome%iterations = 1
-  end subroutine solve
+  end subroutine solve_balance
 end module equilibrium_linear

@@ -9,7 +9,7 @@ module joint_compliance
   use dense_factor, only: lu_factor, factorise_dense, solve_factored
   implicit none
   private
-  public :: find_compliance, friction_scale
+  public :: find_compliance, find_friction_scale
 
   integer, parameter :: block_size = 48 !< right-hand sides solved at once
   !> r over the structure's own stiffness, for sliding together (theory.md, 2.3): from 1 on, a block
@@ -76,22 +76,22 @@ contains
   !> r of the augmented friction per area: a part of the structure's own tangential stiffness at
   !> each point when all points slide at once, and alone; never more than the joint's own.
   !> The structure alone, without joints, has the compliance G (I - W k_ref G)^-1, W = weight*area.
-  subroutine friction_scale(compliance, operator, reference, weight, scale)
+  subroutine find_friction_scale(compliance, operator, k_ref, weight, friction_scale)
     real(rk), intent(in) :: compliance(:, :) !< G with the closed joints [m/N]
     type(jump_operator), intent(in) :: operator
-    real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
+    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
     real(rk), intent(in) :: weight !< of the joint forces
-    real(rk), allocatable, intent(out) :: scale(:, :) !< (2, points) together, alone [Pa/m]
+    real(rk), allocatable, intent(out) :: friction_scale(:, :) !< (2, points) all, one [Pa/m]
     type(lu_factor) :: factor
     real(rk), allocatable :: matrix(:, :), alone(:, :)
     real(rk) :: joint_stiffness, flexibility, share
     integer :: m, p, i, j, row, slip(2), other_slip(2)
     m = size(compliance, 1)
-    allocate (matrix(m, m), scale(2, operator%num_points))
+    allocate (matrix(m, m), friction_scale(2, operator%num_points))
     do p = 1, operator%num_points
       do i = 1, num_axes
         row = row_of(p, i)
-        joint_stiffness = (1.0_rk - kept_stiffness)*weight*operator%area(p)*reference(i, p)
+        joint_stiffness = (1.0_rk - kept_stiffness)*weight*operator%area(p)*k_ref(i, p)
         matrix(:, row) = -joint_stiffness*compliance(:, row)
         matrix(row, row) = 1.0_rk + matrix(row, row)
       end do
@@ -108,17 +108,17 @@ contains
         share = weight*operator%area(j)*(abs(alone(other_slip(1), slip(1))) &
                                          + abs(alone(other_slip(2), slip(2))))
         flexibility = flexibility + share
-        if (j == p) scale(2, p) = scale_for(share, minval(reference(2:3, p)))
+        if (j == p) friction_scale(2, p) = scale_for(share, minval(k_ref(2:3, p)))
       end do
-      scale(1, p) = scale_for(flexibility, minval(reference(2:3, p)))
+      friction_scale(1, p) = scale_for(flexibility, minval(k_ref(2:3, p)))
     end do
-  end subroutine friction_scale
+  end subroutine find_friction_scale
 
   !> r that goes with the compliance in two directions.
-  pure real(rk) function scale_for(flexibility, most) result(scale)
+  pure real(rk) function scale_for(flexibility, most) result(friction_scale)
     real(rk), intent(in) :: flexibility !< [m/Pa]
     real(rk), intent(in) :: most !< [Pa/m]
-    scale = most
-    if (flexibility*most > 2.0_rk*scale_factor) scale = 2.0_rk*scale_factor/flexibility
+    friction_scale = most
+    if (flexibility*most > 2.0_rk*scale_factor) friction_scale = 2.0_rk*scale_factor/flexibility
   end function scale_for
 end module joint_compliance

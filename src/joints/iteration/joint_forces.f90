@@ -18,9 +18,9 @@ module joint_forces
     type(contact_multiplier) :: contact
     real(rk), allocatable :: jump(:, :) !< (3, points) where the laws were evaluated [m]
     real(rk), allocatable :: multiplier(:, :) !< (2, points) friction of the last iterate [Pa]
-    real(rk), allocatable :: scale(:) !< (points) r of the augmented form [Pa/m]
-    real(rk), allocatable :: own_scale(:) !< (points) r of a point that slides alone [Pa/m]
-    real(rk), allocatable :: shared_scale(:) !< (points) r of all points together [Pa/m]
+    real(rk), allocatable :: friction_scale(:) !< (points) r of the augmented form [Pa/m]
+    real(rk), allocatable :: own_friction_scale(:) !< (points) r of a point that slides alone [Pa/m]
+    real(rk), allocatable :: shared_friction_scale(:) !< (points) r of all points together [Pa/m]
     real(rk), allocatable :: traction(:, :) !< (3, points) the laws' own [Pa]
     real(rk), allocatable :: iterate(:, :) !< (3, points) of the augmented form [Pa]
     real(rk), allocatable :: tangent(:, :, :) !< (3, 3, points) [Pa/m]
@@ -71,7 +71,7 @@ contains
     end do
   end subroutine reference_stiffness
 
-  !> Evaluates all laws at `field%jump` with `field%multiplier` and `field%scale`.
+  !> Evaluates all laws at `field%jump` with `field%multiplier` and `field%friction_scale`.
   subroutine evaluate_joints(joints, operator, old, field, new)
     type(joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
@@ -84,8 +84,8 @@ contains
       last = operator%first_point(j + 1) - 1
       associate (jump => field%jump(:, first:last), multiplier => field%multiplier(:, first:last))
         new(j)%num_openings = field%num_openings(first:last)
-        call joints(j)%law%linearise(jump, old(j), multiplier, field%scale(first:last), new(j), &
-                                     field%iterate(:, first:last), &
+        call joints(j)%law%linearise(jump, old(j), multiplier, field%friction_scale(first:last), &
+                                     new(j), field%iterate(:, first:last), &
                                      field%tangent(:, :, first:last))
       end associate
       field%is_open(first:last) = new(j)%status == state_open

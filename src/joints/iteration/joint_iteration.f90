@@ -12,7 +12,7 @@ module joint_iteration
   use equilibrium, only: force_balance, balance_outcome
   implicit none
   private
-  public :: start_iteration, take_step, linearise_next, relief, closed_tangent
+  public :: start_iteration, take_step, linearise_next, excess_traction, closed_tangent
   public :: measure_residual, measure_correction, augment_contact
 
   !> Stiffness left to open and sliding points in the iteration matrix, over the closed joint's: a
@@ -21,15 +21,15 @@ module joint_iteration
   real(rk), parameter :: stiffness_floor = 1.0e-10_rk
   !> From this iteration on points that slide another way than their multiplier get a larger r, up
   !> to that of a point which slides alone: r for sliding together turns a single one too slowly.
-  integer, parameter :: patience_with_turns = 4
+  integer, parameter :: patience_with_direction = 4
   real(rk), parameter :: same_friction = 0.1_rk !< tractions that differ less go the same way
-  real(rk), parameter :: growth_of_scale = 10.0_rk
+  real(rk), parameter :: scale_growth = 10.0_rk
   !> From this iteration on friction does not follow the pressure of the next iterate. Where a block
   !> stands on an edge, sliding can press it on as fast as it is pushed up, and the iteration loses
   !> its way; with the pressure of the last iterate each one is well posed. Near a solution, below
-  !> the residual `near_by`, it does again.
+  !> the residual `near_solution`, it does again.
   integer, parameter :: patience_with_friction = 8
-  real(rk), parameter :: near_by = 1.0e-2_rk
+  real(rk), parameter :: near_solution = 1.0e-2_rk
   !> From this iteration on, one that has not brought the residual down by `sufficient_decrease` is
   !> linearised halfway: a cycle between two states of some points ends there.
   integer, parameter :: patience = 8
@@ -44,17 +44,17 @@ module joint_iteration
 
   !> An out-of-balance below this part of the joint forces is round-off: sums of some hundred
   !> products of full precision.
-  real(rk), parameter :: nothing_left = 1.0e-13_rk
+  real(rk), parameter :: smallest_residual = 1.0e-13_rk
 
 contains
 
   !> Linearises the laws about the guess: as they are, or all closed and sticking.
-  subroutine start_iteration(balance, joints, operator, reference, scale, old, field, new)
+  subroutine start_iteration(balance, joints, operator, k_ref, friction_scale, old, field, new)
     type(force_balance), intent(in) :: balance
     type(joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
-    real(rk), intent(in) :: reference(:, :) !< (3, points) stiffness of the closed joint [Pa/m]
-    real(rk), intent(in) :: scale(:, :) !< (2, points) r of the augmented form: together, alone
+    real(rk), intent(in) :: k_ref(:, :) !< (3, points) stiffness of the closed joint [Pa/m]
+    real(rk), intent(in) :: friction_scale(:, :) !< (2, points) all slide, one slides
     type(joint_state), intent(in) :: old(:)
     type(joint_field), intent(out) :: field
     type(joint_state), intent(inout) :: new(:)
@@ -65,37 +65,37 @@ contains
     allocate (field%start_jump(3, n))
     allocate (field%num_openings(n), source=0)
     allocate (field%is_open(n), source=.false.)
-    field%scale = scale(1, :)
-    field%own_scale = scale(2, :)
-    field%shared_scale = field%scale
-    field%bulk_force = balance%reference
+    field%friction_scale = friction_scale(1, :)
+    field%own_friction_scale = friction_scale(2, :)
+    field%shared_friction_scale = field%friction_scale
+    field%bulk_force = balance%reference_force
     field%jump = balance%guess
     field%response = balance%guess
     call gather_tractions(operator, old, field%traction)
     call gather_jumps(operator, old, field%start_jump)
-    field%start_spring = field%traction/reference
+    field%start_spring = field%traction/k_ref
     call start_multiplier(joints, old, new, field%contact)
     call gather_gaps(operator, new, field%gap)
     field%start_force = norm(spread(operator%area, 1, 3)*field%traction)
     field%multiplier = field%traction(2:3, :)
-    field%tangent = closed_tangent(reference)
-    if (.not. balance%starts_bonded) then
+    field%tangent = closed_tangent(k_ref)
+    if (.not. balance%starts_closed) then
       ! Points without pressure count as open: where they penetrate now, they come from there.
       field%is_open = field%traction(1, :) >= 0.0_rk
-      call linearise(joints, operator, old, reference, field, new)
-      call approach_contact(reference, field, is_moved)
-      if (is_moved) call linearise(joints, operator, old, reference, field, new)
+      call linearise(joints, operator, old, k_ref, field, new)
+      call approach_contact(k_ref, field, is_moved)
+      if (is_moved) call linearise(joints, operator, old, k_ref, field, new)
       return
     end if
-    field%iterate = reference*field%jump
+    field%iterate = k_ref*field%jump
   end subroutine start_iteration
 
   !> Evaluates the laws and leaves a floor of stiffness where a joint is open or slides.
-  subroutine linearise(joints, operator, old, reference, field, new)
+  subroutine linearise(joints, operator, old, k_ref, field, new)
     type(joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: old(:)
-    real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
+    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
     type(joint_field), intent(inout) :: field
     type(joint_state), intent(inout) :: new(:)
     integer :: p, i
@@ -104,19 +104,19 @@ contains
     where (field%is_open .and. .not. field%was_open) field%num_openings = field%num_openings + 1
     do p = 1, operator%num_points
       do i = 1, 3
-        if (field%tangent(i, i, p) < reference(i, p)) then
-          field%tangent(i, i, p) = field%tangent(i, i, p) + stiffness_floor*reference(i, p)
+        if (field%tangent(i, i, p) < k_ref(i, p)) then
+          field%tangent(i, i, p) = field%tangent(i, i, p) + stiffness_floor*k_ref(i, p)
         end if
       end do
     end do
   end subroutine linearise
 
   !> Goes to the solution of the linearised balance and evaluates the laws there.
-  subroutine take_step(joints, operator, old, reference, correction, linear, field, new)
+  subroutine take_step(joints, operator, old, k_ref, correction, linear, field, new)
     type(joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: old(:)
-    real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
+    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
     real(rk), intent(in) :: correction(:, :) !< (3, points) of the jumps [m]
     real(rk), intent(in) :: linear(:, :) !< (3, points) tractions of the solution [Pa]
     type(joint_field), intent(inout) :: field
@@ -126,55 +126,55 @@ contains
     field%response = field%jump + correction
     field%jump = field%response
     field%multiplier = linear(2:3, :)
-    call linearise(joints, operator, old, reference, field, new)
+    call linearise(joints, operator, old, k_ref, field, new)
   end subroutine take_step
 
   !> Where the next iteration linearises, which is not always where the last one has ended.
-  subroutine linearise_next(joints, operator, old, reference, outcome, field, new)
+  subroutine linearise_next(joints, operator, old, k_ref, outcome, field, new)
     type(joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: old(:)
-    real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
+    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
     type(balance_outcome), intent(in) :: outcome
     type(joint_field), intent(inout) :: field
     type(joint_state), intent(inout) :: new(:)
     logical :: is_halfway, is_nearer
     integer :: iterations
     iterations = outcome%iterations - outcome%pass_start
-    if (iterations >= patience_with_turns) call turn_faster(field)
+    if (iterations >= patience_with_direction) call raise_friction_scale(field)
     is_halfway = iterations >= patience .and. &
                  outcome%residual > sufficient_decrease*field%last_residual
     if (is_halfway) then
       field%jump = field%response - 0.5_rk*field%step
       field%multiplier = field%multiplier - 0.5_rk*field%multiplier_step
     end if
-    call approach_contact(reference, field, is_nearer)
-    if (is_halfway .or. is_nearer) call linearise(joints, operator, old, reference, field, new)
-    if (iterations >= patience_with_friction .and. outcome%residual > near_by) then
+    call approach_contact(k_ref, field, is_nearer)
+    if (is_halfway .or. is_nearer) call linearise(joints, operator, old, k_ref, field, new)
+    if (iterations >= patience_with_friction .and. outcome%residual > near_solution) then
       field%tangent(2:3, 1, :) = 0.0_rk
     end if
     field%last_residual = outcome%residual
   end subroutine linearise_next
 
   !> Gives a larger r to points whose friction by the law is not the multiplier (theory.md, 2.3).
-  pure subroutine turn_faster(field)
+  pure subroutine raise_friction_scale(field)
     type(joint_field), intent(inout) :: field
     integer :: p
-    do p = 1, size(field%scale)
+    do p = 1, size(field%friction_scale)
       associate (own => field%traction(2:3, p), last => field%multiplier(:, p))
         if (norm2(own - last) <= same_friction*max(norm2(own), norm2(last))) cycle
       end associate
-      field%scale(p) = min(growth_of_scale*field%scale(p), field%own_scale(p))
+      field%friction_scale(p) = min(scale_growth*field%friction_scale(p), field%own_friction_scale(p))
     end do
-  end subroutine turn_faster
+  end subroutine raise_friction_scale
 
   !> After a balance: where points in contact penetrate more than their law allows, their contact is
   !> augmented and the laws are linearised anew at the balance found; it is not converged then.
-  subroutine augment_contact(joints, operator, old, reference, field, new, outcome)
+  subroutine augment_contact(joints, operator, old, k_ref, field, new, outcome)
     type(joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: old(:)
-    real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
+    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
     type(joint_field), intent(inout) :: field
     type(joint_state), intent(inout) :: new(:)
     type(balance_outcome), intent(inout) :: outcome
@@ -190,17 +190,18 @@ contains
     if (outcome%augmentations == 1) outcome%first_pass = outcome%iterations
     outcome%pass_start = outcome%iterations
     field%last_residual = huge(1.0_rk)
-    call update_multiplier(joints, operator, field%shared_scale/reference(1, :), field%contact, new)
+    call update_multiplier(joints, operator, field%shared_friction_scale/k_ref(1, :), &
+                           field%contact, new)
     call gather_gaps(operator, new, field%gap)
-    call linearise(joints, operator, old, reference, field, new)
+    call linearise(joints, operator, old, k_ref, field, new)
   end subroutine augment_contact
 
   !> Goes nearer to the contact where a point that was open has run through it. Without the joint's
   !> resistance it went far too deep; friction would take that for pressure and stick. The point is
   !> put where the joint carries what the structure's own stiffness would give, r times the depth
   !> (the normal part of the augmented form).
-  pure subroutine approach_contact(reference, field, is_nearer)
-    real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
+  pure subroutine approach_contact(k_ref, field, is_nearer)
+    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
     type(joint_field), intent(inout) :: field
     logical, intent(out) :: is_nearer !< the laws have to be evaluated anew
     real(rk) :: depth
@@ -209,33 +210,33 @@ contains
     do p = 1, size(field%gap)
       depth = -opening_of(field%jump(1, p), field%gap(p))
       if (.not. field%was_open(p) .or. depth <= 0.0_rk) cycle
-      field%jump(1, p) = -field%gap(p) - depth*min(1.0_rk, field%scale(p)/reference(1, p))
+      field%jump(1, p) = -field%gap(p) - depth*min(1.0_rk, field%friction_scale(p)/k_ref(1, p))
       is_nearer = .true.
     end do
   end subroutine approach_contact
 
   !> Tangents of closed, sticking joints.
-  pure function closed_tangent(reference) result(tangent)
-    real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
-    real(rk) :: tangent(3, 3, size(reference, 2)) !< [Pa/m]
+  pure function closed_tangent(k_ref) result(tangent)
+    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
+    real(rk) :: tangent(3, 3, size(k_ref, 2)) !< [Pa/m]
     integer :: p, i
     tangent = 0.0_rk
-    do p = 1, size(reference, 2)
+    do p = 1, size(k_ref, 2)
       do i = 1, 3
-        tangent(i, i, p) = reference(i, p)
+        tangent(i, i, p) = k_ref(i, p)
       end do
     end do
   end function closed_tangent
 
   !> What the closed joint would carry beyond the law, k_ref (v - offset) - t: the traction that is
   !> moved to the right-hand side when k_ref stands on the left.
-  pure function relief(reference, jump, offset, traction) result(excess)
-    real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
+  pure function excess_traction(k_ref, jump, offset, traction) result(excess)
+    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
     real(rk), intent(in) :: jump(:, :), offset(:, :) !< (3, points) [m]
     real(rk), intent(in) :: traction(:, :) !< (3, points) [Pa]
     real(rk) :: excess(3, size(jump, 2)) !< [Pa]
-    excess = reference*(jump - offset) - traction
-  end function relief
+    excess = k_ref*(jump - offset) - traction
+  end function excess_traction
 
   !> Joint forces out of balance, laws against linearised, over the joint forces' own size.
   subroutine measure_residual(operator, field, linear, outcome)
@@ -259,18 +260,19 @@ contains
   !> The correction of the jumps that is still asked for, over their increment; decides convergence.
   !> Where contact takes the jumps away, the springs' lengths are still a measure. An out-of-balance
   !> of round-off asks for nothing, whatever it would move in a direction that nothing resists.
-  subroutine measure_correction(field, reference, correction, tolerance, outcome)
+  subroutine measure_correction(field, k_ref, correction, tolerance, outcome)
     type(joint_field), intent(in) :: field
-    real(rk), intent(in) :: reference(:, :) !< (3, points) [Pa/m]
+    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
     real(rk), intent(in) :: correction(:, :) !< (3, points) [m]
     real(rk), intent(in) :: tolerance
     type(balance_outcome), intent(inout) :: outcome
     real(rk) :: increment, spring(3, size(correction, 2))
-    spring = field%traction/reference
+    spring = field%traction/k_ref
     increment = max(distance(field%jump, field%start_jump), smallest_increment*norm(field%jump), &
                     distance(spring, field%start_spring), smallest_increment*norm(spring), &
                     tiny(1.0_rk))
     outcome%correction = norm(correction)/increment
-    outcome%has_converged = outcome%correction <= tolerance .or. outcome%residual <= nothing_left
+    outcome%has_converged = outcome%correction <= tolerance .or. &
+                            outcome%residual <= smallest_residual
   end subroutine measure_correction
 end module joint_iteration

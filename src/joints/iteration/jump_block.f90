@@ -10,33 +10,33 @@ module jump_block
   use dense_factor, only: gram, solve_lower, solve_lower_transposed
   implicit none
   private
-  public :: jump_factor, take_jump_factor, compliance_of_jumps
+  public :: jump_schur_block, extract_schur_block, schur_compliance
 
-  type :: jump_factor
+  type :: jump_schur_block
     logical :: is_there = .false.
     integer :: num_free = 0
     real(rk), allocatable :: lower(:, :) !< E (last unknowns, last unknowns)
     integer, allocatable :: unknown(:) !< (last unknowns) of each row of E
   contains
-    procedure :: show, add_forces
-  end type jump_factor
+    procedure :: store_jumps, add_jump_forces
+  end type jump_schur_block
 
 contains
 
   !> Takes E where the factor ends with all that the joints work in.
-  subroutine take_jump_factor(factor, operator, num_free, num_last, jumps)
+  subroutine extract_schur_block(factor, operator, num_free, num_last, jumps)
     class(equation_solver), intent(in) :: factor !< of K_0
     type(jump_operator), intent(in) :: operator
     integer, intent(in) :: num_free, num_last
-    type(jump_factor), intent(out) :: jumps
+    type(jump_schur_block), intent(out) :: jumps
     jumps%num_free = num_free
     if (any(operator%unknown <= num_free - num_last)) return
     call factor%take_schur_block(num_last, jumps%lower, jumps%unknown, jumps%is_there)
-  end subroutine take_jump_factor
+  end subroutine extract_schur_block
 
   !> G = B S^-1 B^T = Z^T Z with Z = E^-1 B^T.
-  subroutine compliance_of_jumps(jumps, operator, compliance)
-    type(jump_factor), intent(in) :: jumps
+  subroutine schur_compliance(jumps, operator, compliance)
+    type(jump_schur_block), intent(in) :: jumps
     type(jump_operator), intent(in) :: operator
     real(rk), allocatable, intent(out) :: compliance(:, :) !< (rows, rows) [m/N]
     real(rk), allocatable :: z(:, :)
@@ -53,22 +53,22 @@ contains
     call solve_lower(jumps%lower, z)
     allocate (compliance(size(z, 2), size(z, 2)))
     call gram(z, compliance)
-  end subroutine compliance_of_jumps
+  end subroutine schur_compliance
 
   !> Writes the jumps that follow from half a solve among the unknowns.
-  subroutine show(self, half, x)
-    class(jump_factor), intent(in) :: self
+  subroutine store_jumps(self, half, x)
+    class(jump_schur_block), intent(in) :: self
     real(rk), intent(in) :: half(:) !< (free unknowns) in the order of elimination
     real(rk), intent(inout) :: x(:) !< (all unknowns)
     real(rk) :: d(size(self%unknown), 1)
     d(:, 1) = half(size(half) - size(d, 1) + 1:)
     call solve_lower_transposed(self%lower, d)
     x(self%unknown) = d(:, 1)
-  end subroutine show
+  end subroutine store_jumps
 
   !> Adds forces on the jumps to half a solve.
-  subroutine add_forces(self, force, half)
-    class(jump_factor), intent(in) :: self
+  subroutine add_jump_forces(self, force, half)
+    class(jump_schur_block), intent(in) :: self
     real(rk), intent(in) :: force(:) !< (all unknowns) [N]
     real(rk), intent(inout) :: half(:) !< (free unknowns) in the order of elimination
     real(rk) :: f(size(self%unknown), 1)
@@ -77,5 +77,5 @@ contains
     associate (last => half(size(half) - size(f, 1) + 1:))
       last = last + f(:, 1)
     end associate
-  end subroutine add_forces
+  end subroutine add_jump_forces
 end module jump_block

@@ -19,13 +19,13 @@ module newton_condensed
   use step_plan, only: step_controls
   implicit none
   private
-  public :: condensed_joints, iterate
+  public :: condensed_joints, iterate_on_jumps
 
   type :: condensed_joints
     real(rk) :: weight = 1.0_rk !< of the joint forces in the balance
     real(rk), allocatable :: compliance(:, :) !< G (rows, rows) [m/N]
-    real(rk), allocatable :: reference(:, :) !< (3, points) k_ref [Pa/m]
-    real(rk), allocatable :: scale(:, :) !< (2, points) r of the augmented friction [Pa/m]
+    real(rk), allocatable :: k_ref(:, :) !< (3, points) k_ref [Pa/m]
+    real(rk), allocatable :: friction_scale(:, :) !< (2, points) r of the augmented friction [Pa/m]
   end type condensed_joints
 
   !> A tangent that differs from k_ref on some rows.
@@ -41,7 +41,7 @@ contains
 
   !> Iterates until the laws agree with the balance. On return `field%jump` and `field%iterate` hold
   !> the jumps and the tractions of the balance as solved, `new` the laws at these jumps.
-  subroutine iterate(self, controls, joints, operator, old, field, new, outcome)
+  subroutine iterate_on_jumps(self, controls, joints, operator, old, field, new, outcome)
     type(condensed_joints), intent(in) :: self
     type(step_controls), intent(in) :: controls
     type(joint), intent(in) :: joints(:)
@@ -54,24 +54,24 @@ contains
     real(rk), dimension(3, operator%num_points) :: correction, linear
     do while (outcome%iterations - outcome%pass_start < controls%max_iterations)
       outcome%iterations = outcome%iterations + 1
-      call change_tangent(self, operator%area, field%tangent, tangent)
+      call factorise_change(self, operator%area, field%tangent, tangent)
       if (tangent%factor%is_singular) return ! a smaller increment may pass by such an iterate
-      call correct(self, tangent, field%response - field%jump, correction)
+      call solve_correction(self, tangent, field%response - field%jump, correction)
       call linear_tractions(field, correction, linear)
-      call take_step(joints, operator, old, self%reference, correction, linear, field, new)
+      call take_step(joints, operator, old, self%k_ref, correction, linear, field, new)
       call measure_residual(operator, field, linear, outcome)
       if (outcome%residual <= controls%residual_tolerance) then
-        call correct(self, tangent, excess_jump(field%traction), correction)
-        call measure_correction(field, self%reference, correction, &
+        call solve_correction(self, tangent, excess_jump(field%traction), correction)
+        call measure_correction(field, self%k_ref, correction, &
                                 controls%increment_tolerance, outcome)
       end if
       if (outcome%has_converged) then
-        call augment_contact(joints, operator, old, self%reference, field, new, outcome)
+        call augment_contact(joints, operator, old, self%k_ref, field, new, outcome)
         if (outcome%has_converged .or. outcome%gives_up) exit
       end if
-      call linearise_next(joints, operator, old, self%reference, outcome, field, new)
+      call linearise_next(joints, operator, old, self%k_ref, outcome, field, new)
       field%response = field%response &
-                       + excess_jump(field%iterate - self%reference*(field%jump - field%response))
+                       + excess_jump(field%iterate - self%k_ref*(field%jump - field%response))
     end do
     field%iterate = linear
   contains
@@ -92,10 +92,10 @@ contains
       end do
       answer = reshape(flat, shape(answer))
     end function excess_jump
-  end subroutine iterate
+  end subroutine iterate_on_jumps
 
   !> Picks the rows whose tangent differs from k_ref and factors I - D G on them.
-  subroutine change_tangent(self, area, tangent, changed)
+  subroutine factorise_change(self, area, tangent, changed)
     type(condensed_joints), intent(in) :: self
     real(rk), intent(in) :: area(:) !< (points) [m2]
     real(rk), intent(in) :: tangent(:, :, :) !< (3, 3, points) [Pa/m]
@@ -108,7 +108,7 @@ contains
     do p = 1, size(area)
       changed%change(:, :, p) = -tangent(:, :, p)
       do i = 1, num_axes
-        changed%change(i, i, p) = changed%change(i, i, p) + self%reference(i, p)
+        changed%change(i, i, p) = changed%change(i, i, p) + self%k_ref(i, p)
         if (.not. any(abs(changed%change(i, :, p)) > 0.0_rk)) cycle
         num_rows = num_rows + 1
         changed%row(num_rows) = row_of(p, i)
@@ -128,10 +128,10 @@ contains
       matrix(l, l) = matrix(l, l) + 1.0_rk
     end do
     call factorise_dense(matrix, changed%factor)
-  end subroutine change_tangent
+  end subroutine factorise_change
 
   !> The correction d of the jumps: d = r + G z on the rows that differ from k_ref.
-  subroutine correct(self, changed, response, correction)
+  subroutine solve_correction(self, changed, response, correction)
     type(condensed_joints), intent(in) :: self
     type(changed_tangent), intent(in) :: changed
     real(rk), intent(in) :: response(:, :) !< (3, points) r [m]
@@ -149,5 +149,5 @@ contains
     do k = 1, size(changed%row)
       flat = flat + self%compliance(:, changed%row(k))*z(k, 1)
     end do
-  end subroutine correct
+  end subroutine solve_correction
 end module newton_condensed

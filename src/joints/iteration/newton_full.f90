@@ -11,7 +11,7 @@ module newton_full
   use joint_forces, only: joint_field, reference_stiffness, linear_tractions
   use joint_iteration, only: start_iteration, take_step, linearise_next, closed_tangent, &
                              measure_residual, measure_correction, augment_contact
-  use joint_compliance, only: find_compliance, friction_scale
+  use joint_compliance, only: find_compliance, find_friction_scale
   use linear_solver, only: equation_solver
   use matrix_condition, only: estimate_condition
   use solver_catalogue, only: make_solver, unsymmetric_solver
@@ -25,11 +25,11 @@ module newton_full
     type(pattern) :: full_matrix !< both triangles, once they were needed
     class(equation_solver), allocatable :: unsymmetric_factor
     real(rk), allocatable :: values(:) !< K_eff
-    real(rk), allocatable :: reference(:, :) !< (3, points) k_ref [Pa/m]
-    real(rk), allocatable :: scale(:, :) !< (2, points) r of the augmented friction [Pa/m]
+    real(rk), allocatable :: k_ref(:, :) !< (3, points) k_ref [Pa/m]
+    real(rk), allocatable :: friction_scale(:, :) !< (2, points) r of the augmented friction [Pa/m]
     logical :: is_unsymmetric = .false. !< the last tangent was
   contains
-    procedure :: prepare, solve
+    procedure :: prepare_matrix, solve_balance
     procedure, private :: factorise_tangent, back_substitute
   end type full_equilibrium
 
@@ -37,7 +37,7 @@ contains
 
   !> Keeps K_eff and finds r, with one factorisation for the closed joints. A tangent that is not
   !> symmetric comes later, and leaves r as it is.
-  subroutine prepare(self, matrix, values, weight, joints, operator, error)
+  subroutine prepare_matrix(self, matrix, values, weight, joints, operator, error)
     class(full_equilibrium), intent(inout) :: self
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: values(:) !< K_eff
@@ -51,12 +51,12 @@ contains
     self%matrix = matrix
     self%values = values
     if (.not. matrix%is_symmetric) return
-    call reference_stiffness(joints, operator, self%reference)
-    call self%factorise_tangent(operator, closed_tangent(self%reference), error)
+    call reference_stiffness(joints, operator, self%k_ref)
+    call self%factorise_tangent(operator, closed_tangent(self%k_ref), error)
     if (allocated(error)) return
     if (.not. self%condition > 0.0_rk) then
       allocate (closed, source=values)
-      call operator%add_stiffness(weight*closed_tangent(self%reference), matrix, closed)
+      call operator%add_stiffness(weight*closed_tangent(self%k_ref), matrix, closed)
       call self%costs%start('solve', 'condition number', 'solver')
       call estimate_condition(matrix, closed, self%factor, self%condition, error)
       call self%costs%stop()
@@ -65,13 +65,13 @@ contains
     call self%costs%start('condense', 'joints', 'joint')
     call find_compliance(self%factor, operator, matrix%num_free, compliance, error)
     if (.not. allocated(error)) then
-      call friction_scale(compliance, operator, self%reference, weight, self%scale)
+      call find_friction_scale(compliance, operator, self%k_ref, weight, self%friction_scale)
     end if
     call self%costs%stop()
-  end subroutine prepare
+  end subroutine prepare_matrix
 
   !> Iterates on all unknowns.
-  subroutine solve(self, balance, joints, old, new, x, outcome, error)
+  subroutine solve_balance(self, balance, joints, old, new, x, outcome, error)
     class(full_equilibrium), intent(inout) :: self
     type(force_balance), intent(in) :: balance
     type(joint), intent(in) :: joints(:)
@@ -83,8 +83,8 @@ contains
     type(joint_field) :: field
     real(rk), dimension(3, self%operator%num_points) :: correction, linear, answer
     real(rk) :: unused(size(x))
-    call start_iteration(balance, joints, self%operator, self%reference, self%scale, old, field, &
-                         new)
+    call start_iteration(balance, joints, self%operator, self%k_ref, self%friction_scale, old, &
+                         field, new)
     do while (outcome%iterations - outcome%pass_start < self%controls%max_iterations)
       outcome%iterations = outcome%iterations + 1
       call self%factorise_tangent(self%operator, field%tangent, error)
@@ -98,22 +98,22 @@ contains
       if (allocated(error)) return
       correction = balance%offset + answer - field%jump
       call linear_tractions(field, correction, linear)
-      call take_step(joints, self%operator, old, self%reference, correction, linear, field, new)
+      call take_step(joints, self%operator, old, self%k_ref, correction, linear, field, new)
       call measure_residual(self%operator, field, linear, outcome)
       if (outcome%residual <= self%controls%residual_tolerance) then
         call self%back_substitute(0.0_rk*balance%rhs, linear - field%traction, self%operator, &
                                   unused, answer, error)
         if (allocated(error)) return
-        call measure_correction(field, self%reference, answer, &
+        call measure_correction(field, self%k_ref, answer, &
                                 self%controls%increment_tolerance, outcome)
       end if
       if (outcome%has_converged) then
-        call augment_contact(joints, self%operator, old, self%reference, field, new, outcome)
+        call augment_contact(joints, self%operator, old, self%k_ref, field, new, outcome)
         if (outcome%has_converged .or. outcome%gives_up) return
       end if
-      call linearise_next(joints, self%operator, old, self%reference, outcome, field, new)
+      call linearise_next(joints, self%operator, old, self%k_ref, outcome, field, new)
     end do
-  end subroutine solve
+  end subroutine solve_balance
 
   !> Factors K_eff + weight*B^T area*tangent B.
   subroutine factorise_tangent(self, operator, tangent, error)

@@ -16,7 +16,8 @@ module joint_points
   use small_matrix, only: cross_product
   implicit none
   private
-  public :: joint, joint_cells, list_faces, apart, draw_elements, local_axes, share_a_plane
+  public :: joint, joint_cells, list_faces, relative_displacement, draw_elements, local_axes, &
+            share_a_plane
 
   !> Facets that share a node make one point of it unless their normals differ by more than 30
   !> degrees.
@@ -49,7 +50,7 @@ module joint_points
     real(rk), allocatable :: rotation(:, :, :) !< (3, 3, points); rows: normal, slip 1, slip 2
     real(rk), allocatable :: area(:) !< tributary area of each point [m2]
     real(rk), allocatable :: clearance(:) !< (points) as meshed, beside the law's gap [m]
-    real(rk), allocatable :: reach(:) !< (points) the slip that small sliding allows [m]
+    real(rk), allocatable :: admissible_slip(:) !< (points) limit of small sliding [m]
     type(joint_cells) :: cells
   contains
     procedure :: add_cells
@@ -86,21 +87,21 @@ contains
       built%weight(k:k + 2*n - 1) = [shape(:, p), -shape(:, p)]
     end do
     built%clearance = spread(0.0_rk, 1, built%num_points)
-    built%reach = spread(huge(1.0_rk), 1, built%num_points)
+    built%admissible_slip = spread(huge(1.0_rk), 1, built%num_points)
   end subroutine list_faces
 
   !> Slave minus master at a point, in global axes.
-  pure function apart(seam, p, u)
+  pure function relative_displacement(seam, p, u) result(difference)
     type(joint), intent(in) :: seam
     integer, intent(in) :: p !< point
     real(rk), intent(in) :: u(:, :) !< (3, nodes)
-    real(rk) :: apart(3)
+    real(rk) :: difference(3) !< slave minus master, in global axes
     integer :: k
-    apart = 0.0_rk
+    difference = 0.0_rk
     do k = seam%first(p), seam%first(p + 1) - 1
-      apart = apart + seam%weight(k)*u(:, seam%node(k))
+      difference = difference + seam%weight(k)*u(:, seam%node(k))
     end do
-  end function apart
+  end function relative_displacement
 
   !> Fills the cells of a joint of JOINT8 elements: one for each element, one corner for each slave
   !> node. A face with repeated nodes becomes a triangle.

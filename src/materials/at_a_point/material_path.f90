@@ -47,7 +47,7 @@ contains
     type(user_library), pointer, intent(in), optional :: umat !< null where there is none
     type(traveller) :: now
     integer :: i
-    call set_out(law, test, now)
+    call start_point(law, test, now)
     if (present(umat)) now%umat => umat
     call open_record(now, 1 + sum(test%legs%num_increments), record)
     call add_row(now, 0, 0, record)
@@ -59,7 +59,7 @@ contains
   end subroutine follow_path
 
   !> The point at rest: the middle of a cube.
-  subroutine set_out(law, test, now)
+  subroutine start_point(law, test, now)
     class(stress_law), intent(in) :: law
     type(material_test), intent(in) :: test
     type(traveller), intent(out) :: now
@@ -75,7 +75,7 @@ contains
       end do
     end associate
     call start_points(law, now%points, now%old)
-  end subroutine set_out
+  end subroutine start_point
 
   !> One leg, increment by increment.
   subroutine follow_leg(law, test, number, now, record, error)
@@ -97,10 +97,10 @@ contains
     now%time%increment = 0
     associate (leg => test%legs(number))
       do i = 1, leg%num_increments
-        call advance(law, test, start, [i - 1, i], now, outcome, error)
+        call advance_point(law, test, start, [i - 1, i], now, outcome, error)
         if (allocated(error)) return
         if (.not. outcome%has_converged) then
-          call tell_failure(test, number, i, outcome, now, error)
+          call describe_failure(test, number, i, outcome, now, error)
           return
         end if
         now%time%total_time = started_at + leg%duration*i/leg%num_increments
@@ -110,7 +110,7 @@ contains
   end subroutine follow_leg
 
   !> One increment of a leg, cut into smaller ones where it must be.
-  subroutine advance(law, test, start, bounds, now, outcome, error)
+  subroutine advance_point(law, test, start, bounds, now, outcome, error)
     class(stress_law), intent(in) :: law
     type(material_test), intent(in) :: test
     type(point_state), intent(in) :: start !< of the leg
@@ -132,7 +132,7 @@ contains
         now%time%total_time = leg_start + now%time%step_time
         now%time%size = leg%duration*part/leg%num_increments
         now%time%increment = now%time%increment + 1
-        call tell_user(at_increment_start, now, error)
+        call notify_user(at_increment_start, now, error)
         if (allocated(error)) return
         tangent = now%tangent
         call solve_increment(law, now%points, now%time, &
@@ -141,8 +141,8 @@ contains
                              now%old, new, tangent, outcome)
         now%iterations = now%iterations + outcome%iterations
         if (outcome%has_converged) then
-          call accept(new, tangent, now)
-          call tell_user(at_increment_end, now, error)
+          call accept_point(new, tangent, now)
+          call notify_user(at_increment_end, now, error)
           if (is_last .or. allocated(error)) return
           at = at + part
           part = 2.0_rk*part
@@ -153,10 +153,10 @@ contains
         end if
       end do
     end associate
-  end subroutine advance
+  end subroutine advance_point
 
   !> Tells a UMAT of a moment.
-  subroutine tell_user(moment, now, error)
+  subroutine notify_user(moment, now, error)
     integer, intent(in) :: moment
     type(traveller), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
@@ -165,7 +165,7 @@ contains
     passed = merge(now%time%size, 0.0_rk, moment == at_increment_end)
     call now%umat%call_external(moment, [now%time%step_time, now%time%total_time] + passed, &
                                 now%time%size, now%time%step, now%time%increment, error)
-  end subroutine tell_user
+  end subroutine notify_user
 
   !> What the components follow at a part of the leg.
   pure function control_at(test, leg, start, part, largest) result(control)
@@ -187,7 +187,7 @@ contains
   end function control_at
 
   !> The increment is done: the trial state becomes the converged one.
-  subroutine accept(new, tangent, now)
+  subroutine accept_point(new, tangent, now)
     type(point_state), intent(in) :: new
     real(rk), intent(in) :: tangent(6, 6, 1)
     type(traveller), intent(inout) :: now
@@ -195,10 +195,10 @@ contains
     now%largest = max(now%largest, maxval(abs(new%stress)))
     now%old = new
     now%tangent = tangent
-  end subroutine accept
+  end subroutine accept_point
 
   !> Says where the path ended and why.
-  subroutine tell_failure(test, number, increment, outcome, now, error)
+  subroutine describe_failure(test, number, increment, outcome, now, error)
     type(material_test), intent(in) :: test
     integer, intent(in) :: number, increment !< of the leg and in it
     type(increment_outcome), intent(in) :: outcome
@@ -219,7 +219,7 @@ contains
       end if
     end if
     call raise(error, text)
-  end subroutine tell_failure
+  end subroutine describe_failure
 
   subroutine open_record(now, num_rows, record)
     type(traveller), intent(in) :: now

@@ -58,7 +58,7 @@ contains
       tangent = first_tangent
       new = old
       where (.not. control%is_stress) new%strain(:, 1) = control%value
-      call iterate(law, points, now, control, old, new, tangent, outcome)
+      call iterate_on_strain(law, points, now, control, old, new, tangent, outcome)
       if (i > 1) tangent = first_tangent
       outcome%iterations = outcome%iterations + num_before
       num_before = outcome%iterations
@@ -68,7 +68,7 @@ contains
   end subroutine solve_increment
 
   !> Newton's method with a search along each correction.
-  subroutine iterate(law, points, time, control, old, new, tangent, outcome)
+  subroutine iterate_on_strain(law, points, time, control, old, new, tangent, outcome)
     class(stress_law), intent(in) :: law
     type(point_set), intent(in) :: points
     type(time_increment), intent(in) :: time
@@ -111,7 +111,7 @@ contains
       lack = stress_error(control, new%stress(:, 1))
       correction = correction_of(control, lack, matrix)
     end do
-  end subroutine iterate
+  end subroutine iterate_on_strain
 
   !> Calls the law and judges what it gives.
   subroutine try_strain(law, points, time, old, new, tangent, outcome, is_good)

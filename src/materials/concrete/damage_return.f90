@@ -78,35 +78,35 @@ contains
     flow%measure_rates = [flow%share*(flow%largest_flow + x*direction_rate*trial%shape(1)), &
                           (1.0_rk - flow%share)*(flow%smallest_flow + x*smallest_rate)] &
                          + x*share_rate*[flow%largest_flow, -flow%smallest_flow]
-    call judge(model, placed, flow)
+    call evaluate_residual(model, placed, flow)
   end subroutine flow_by
 
   !> q after flow by x. The left side of the equation for q is increasing and concave, so Newton's
   !> iteration climbs to the root from any value below it, and from above lands below it. The first
   !> guess takes q/sqrt(a^2 + q^2) from the last x: it hardly changes unless q is small.
-  pure subroutine reduce_deviator(rounding, q_trial, reach, flow)
+  pure subroutine reduce_deviator(rounding, q_trial, flow_modulus, flow)
     real(rk), intent(in) :: rounding, q_trial !< a, q_tr [Pa]
-    real(rk), intent(in) :: reach !< 3 mu x [Pa]
+    real(rk), intent(in) :: flow_modulus !< 3 mu x [Pa]
     type(flow_state), intent(inout) :: flow !< q, radius, stiffening come out
     real(rk) :: square, q, excess, inverse, least
     integer :: i
     square = rounding**2
-    least = max(q_trial - reach, q_trial*rounding/(rounding + reach))
+    least = max(q_trial - flow_modulus, q_trial*rounding/(rounding + flow_modulus))
     q = least
-    if (flow%radius > 0.0_rk) q = max(least, q_trial - reach*flow%q/flow%radius)
+    if (flow%radius > 0.0_rk) q = max(least, q_trial - flow_modulus*flow%q/flow%radius)
     do i = 1, max_inner
       flow%radius = sqrt(square + q**2)
       inverse = 1.0_rk/flow%radius
-      flow%stiffening = 1.0_rk + reach*square*inverse*inverse*inverse
+      flow%stiffening = 1.0_rk + flow_modulus*square*inverse*inverse*inverse
       flow%q = q
-      excess = q_trial - q*(1.0_rk + reach*inverse)
+      excess = q_trial - q*(1.0_rk + flow_modulus*inverse)
       if (excess <= roundoff*q_trial .and. (i > 1 .or. excess >= -roundoff*q_trial)) exit
       q = max(least, q + excess/flow%stiffening)
     end do
   end subroutine reduce_deviator
 
   !> F and its derivative by x.
-  pure subroutine judge(model, placed, flow)
+  pure subroutine evaluate_residual(model, placed, flow)
     type(concrete_model), intent(in) :: model
     type(placed_curves), intent(in) :: placed
     type(flow_state), intent(inout) :: flow
@@ -120,7 +120,7 @@ contains
                   + flow%f%by_largest*flow%s_rate(1) &
                   + flow%f%by_tension*flow%tension%strength_slope*flow%measure_rates(1) &
                   + flow%f%by_compression*flow%compression%strength_slope*flow%measure_rates(2)
-  end subroutine judge
+  end subroutine evaluate_residual
 
   !> The flow that ends on the yield surface.
   !>

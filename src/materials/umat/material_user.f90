@@ -12,10 +12,10 @@ module material_user
   use umat_guards, only: fault_of_call, guarded_state, has_cholesky_factor, largest_asymmetry, &
                          size_of_guard
   use umat_interface, only: keyway_umat_call, keyway_umat_hold_traps, &
-                            keyway_umat_release_traps, keyway_umat_start, reason_of_giving_up, &
+                            keyway_umat_release_traps, keyway_umat_start, failure_reason, &
                             umat_arguments
   use umat_loader, only: user_library
-  use umat_tangent, only: judge_tangent, num_probes, strain_probes
+  use umat_tangent, only: compare_tangent, num_probes, strain_probes
   use write_text, only: as_text
   implicit none
   private
@@ -23,7 +23,7 @@ module material_user
 
   integer, parameter :: num_energies_kept = 3 !< SSE, SPD, SCD behind the state variables
   !> As a UMAT expects it before it is called: what it asks for must be below 1 to count.
-  real(rk), parameter :: no_wish = 1.0e10_rk
+  real(rk), parameter :: no_request = 1.0e10_rk
   real(rk), parameter :: round_off = 1.0e-10_rk !< of a symmetric DDSDDE, over its largest entry
   real(rk), parameter :: unit_matrix(3, 3) = reshape([1.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 1.0_rk, &
                                                       0.0_rk, 0.0_rk, 0.0_rk, 1.0_rk], [3, 3])
@@ -143,13 +143,13 @@ contains
         report%size_ratio = now%pnewdt
         report%message = 'UMAT: it wants a smaller increment (PNEWDT = '//as_text(now%pnewdt)//')'
       end if
-      call keep_answer(self, p, now, variables, old, new)
+      call store_answer(self, p, now, variables, old, new)
       if (self%library%checks_tangent) then
         call check_tangent(self, place_of(self, points, p, time), old%stress(:, p), &
                            old%internal(:, p), now)
       end if
       if (time%tangent /= no_tangent) then
-        call give_tangent(self, place_of(self, points, p, time), time%tangent, now%ddsdde, &
+        call set_tangent(self, place_of(self, points, p, time), time%tangent, now%ddsdde, &
                           tangent(:, :, p))
       end if
     end do
@@ -186,12 +186,12 @@ contains
     now%dfgrd1 = unit_matrix + new%gradient(:, :, p)
     now%kstep(1) = int(time%step, c_int)
     now%kinc = int(time%increment, c_int)
-    now%pnewdt = no_wish
-    call tell_place(self, points, p, now)
+    now%pnewdt = no_request
+    call set_place(self, points, p, now)
   end subroutine prepare_call
 
   !> Who and where a point is.
-  pure subroutine tell_place(self, points, p, now)
+  pure subroutine set_place(self, points, p, now)
     class(user_law), intent(in) :: self
     type(point_set), intent(in) :: points
     integer, intent(in) :: p
@@ -206,7 +206,7 @@ contains
     do i = 1, min(size(now%cmname), len(self%constants%name))
       now%cmname(i) = self%constants%name(i:i)
     end do
-  end subroutine tell_place
+  end subroutine set_place
 
   !> One guarded call. The history is the converged one, so that each iteration starts from it.
   subroutine call_point(self, history, now, variables, fault)
@@ -228,7 +228,7 @@ contains
     if (allocated(self%library%found%bad_start)) then
       fault = self%library%found%bad_start
     else if (keyway_umat_call(self%library%umat, now) /= 0) then
-      fault = reason_of_giving_up()
+      fault = failure_reason()
     else
       fault = fault_of_call(now, variables)
     end if
@@ -237,7 +237,7 @@ contains
   !> Stress, history and energies of a sound answer. A UMAT that leaves SSE at zero keeps no
   !> account: then what the undamaged stiffness would give back is stored, and the rest of the work
   !> is dissipated.
-  pure subroutine keep_answer(self, p, now, variables, old, new)
+  pure subroutine store_answer(self, p, now, variables, old, new)
     class(user_law), intent(in) :: self
     integer, intent(in) :: p
     type(umat_arguments), intent(in) :: now
@@ -261,11 +261,11 @@ contains
                                                         matmul(self%compliance, now%stress))
       new%energy(fracture_energy, p) = work - new%energy(stored_energy, p)
     end if
-  end subroutine keep_answer
+  end subroutine store_answer
 
   !> The tangent wanted: as the UMAT gives it, symmetrised unless the deck says UNSYMM; a secant is
   !> always symmetric, and the stiffness of the start where DDSDDE is not positive definite.
-  subroutine give_tangent(self, place, kind, ddsdde, tangent)
+  subroutine set_tangent(self, place, kind, ddsdde, tangent)
     class(user_law), intent(in) :: self
     type(call_place), intent(in) :: place
     integer, intent(in) :: kind
@@ -282,7 +282,7 @@ contains
     end if
     if (kind /= secant_tangent) return
     if (.not. has_cholesky_factor(tangent)) tangent = self%stiffness
-  end subroutine give_tangent
+  end subroutine set_tangent
 
   !> Compares DDSDDE with differences of STRESS around the strain of a call.
   subroutine check_tangent(self, place, start, history, answer)
@@ -303,12 +303,12 @@ contains
       now%stress = start
       now%dstran = dstran(:, i)
       now%ddsdde = 0.0_rk
-      now%pnewdt = no_wish
+      now%pnewdt = no_request
       call call_point(self, history, now, variables, fault)
       is_sound(i) = len(fault) == 0
       stress(:, i) = now%stress
     end do
-    call judge_tangent(answer, place, stress, is_sound, check)
+    call compare_tangent(answer, place, stress, is_sound, check)
     call self%library%found%add_check(check)
   end subroutine check_tangent
 
@@ -327,11 +327,11 @@ contains
     n = self%constants%num_variables
     call keyway_umat_hold_traps()
     do p = 1, points%num_points
-      call tell_place(self, points, p, now)
+      call set_place(self, points, p, now)
       call variables%fill(state%internal(:n, p))
       now%statev = c_loc(variables%room(size_of_guard + 1))
       if (keyway_umat_start(self%library%sdvini, now) /= 0) then
-        fault = reason_of_giving_up()
+        fault = failure_reason()
       else
         fault = variables%fault()
       end if

@@ -8,7 +8,7 @@ module umat_interface
   public :: keyway_umat_open, keyway_umat_find, keyway_umat_set_job, keyway_umat_counts
   public :: keyway_umat_count, keyway_umat_give_up, keyway_umat_hold_traps
   public :: keyway_umat_release_traps, keyway_make_temporary, keyway_remove_temporary
-  public :: reason_of_giving_up, text_from_c
+  public :: failure_reason, text_from_c
 
   integer, parameter :: longest_message = 512
 
@@ -150,12 +150,12 @@ module umat_interface
 contains
 
   !> Why the last guarded call of this thread came back early: 'XIT was called'.
-  function reason_of_giving_up() result(text)
+  function failure_reason() result(text)
     character(:), allocatable :: text
     character(kind=c_char) :: message(longest_message)
     call keyway_umat_message(message, int(longest_message, c_size_t))
     text = text_from_c(message)
-  end function reason_of_giving_up
+  end function failure_reason
 
   !> The letters before the null.
   pure function text_from_c(letters) result(text)

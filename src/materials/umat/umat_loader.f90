@@ -10,7 +10,7 @@ module umat_loader
   use umat_interface, only: keyway_make_temporary, keyway_remove_temporary, keyway_umat_counts, &
                             keyway_umat_external, keyway_umat_find, keyway_umat_hold_traps, &
                             keyway_umat_open, keyway_umat_release_traps, keyway_umat_set_job, &
-                            reason_of_giving_up, text_from_c
+                            failure_reason, text_from_c
   use umat_services, only: message_unit
   use write_text, only: as_text
   implicit none
@@ -165,7 +165,7 @@ contains
     call keyway_umat_release_traps()
     if (status == 0) return
     call raise(error, 'UEXTERNALDB of the UMAT gave up (LOP '//as_text(moment)//', step '// &
-               as_text(step)//', increment '//as_text(increment)//'): '//reason_of_giving_up(), &
+               as_text(step)//', increment '//as_text(increment)//'): '//failure_reason(), &
                analysis_failed)
   end subroutine call_external
 

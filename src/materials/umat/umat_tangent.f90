@@ -5,7 +5,7 @@ module umat_tangent
   use umat_interface, only: umat_arguments
   implicit none
   private
-  public :: strain_probes, judge_tangent, num_probes
+  public :: strain_probes, compare_tangent, num_probes
 
   integer, parameter :: num_probes = 12 !< each component of the strain ahead and behind
 
@@ -38,7 +38,7 @@ contains
   !> Finds the entry that is farthest off. Each is compared with the forward, the backward and the
   !> central difference, and the nearest counts: at a corner of the law (first yield) each side has
   !> its own tangent. A probe that failed says nothing.
-  pure subroutine judge_tangent(answer, place, stress, is_sound, check)
+  pure subroutine compare_tangent(answer, place, stress, is_sound, check)
     type(umat_arguments), intent(in) :: answer !< of the UMAT, with its DDSDDE
     type(call_place), intent(in) :: place
     real(rk), intent(in) :: stress(6, num_probes) !< of the probes [Pa]
@@ -66,5 +66,5 @@ contains
         check%found = quotients(i, nearest)
       end do
     end do
-  end subroutine judge_tangent
+  end subroutine compare_tangent
 end module umat_tangent

@@ -96,7 +96,7 @@ contains
     ! The axes are the rows for a reader whose last index runs fastest.
     call file%put(group//'/rotation', reshape(item%rotation, shape(item%rotation), order=[2, 1, 3]))
     call file%put(group//'/clearance', item%clearance)
-    call file%put(group//'/reach', item%reach)
+    call file%put(group//'/reach', item%admissible_slip)
     call file%put(group//'/first', item%first)
     call file%put(group//'/first_master', item%first_master)
     call file%put(group//'/node', scene%mesh%node_id(item%node))

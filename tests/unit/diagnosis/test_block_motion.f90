@@ -13,7 +13,7 @@ program test_block_motion
   log%suite = 'block_motion'
   blocks%num_blocks = 1
   blocks%centre = reshape([1.0_rk, 2.0_rk, 3.0_rk], [3, 1])
-  blocks%reach = [2.0_rk]
+  blocks%radius = [2.0_rk]
   call check_text(log, motion_text(blocks, 1, [0.0_rk, -3.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 0.0_rk]), &
                   'move along -y', 'a translation')
   call check_text(log, motion_text(blocks, 1, [0.6_rk, 0.0_rk, 0.8_rk, 0.0_rk, 0.0_rk, 0.0_rk]), &

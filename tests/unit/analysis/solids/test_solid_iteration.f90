@@ -329,6 +329,6 @@ contains
     task%balance%rhs = 0.0_rk
     call add_moving_supports(system, system%stiffness, task%start, task%balance%rhs)
     task%counts_reactions = .true.
-    call solids%solve(scene, system, task, now, after, outcome, error)
+    call solids%solve_increment(scene, system, task, now, after, outcome, error)
   end subroutine solve_increment
 end program test_solid_iteration

@@ -173,7 +173,7 @@ contains
     call make_row([0.0_rk, 1.0_rk], 1.0_rk, 1.0_rk, [young], [density], scene)
     call put_on_ground(1, contraction_law(normal_stiffness=1.0e9_rk, tangent_stiffness=1.0e9_rk, &
                                           friction=0.1_rk), scene)
-    scene%joints(1)%reach = [1.0_rk, 1.0_rk, reach, 1.0_rk]
+    scene%joints(1)%admissible_slip = [1.0_rk, 1.0_rk, reach, 1.0_rk]
     call add_gravity(gravity, scene)
     call new_step('STATIC', 1.0_rk, 1.0_rk, scene)
     steady%name = 'STEADY'

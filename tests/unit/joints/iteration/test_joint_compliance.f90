@@ -2,7 +2,7 @@
 !> whose compliance is given.
 program test_joint_compliance
   use dense_factor, only: factorise_dense, lu_factor, solve_factored
-  use joint_compliance, only: friction_scale
+  use joint_compliance, only: find_friction_scale
   use joint_operator, only: jump_operator
   use kinds, only: rk
   use testing, only: check, check_close, test_log
@@ -71,6 +71,6 @@ contains
     operator%num_points = 2
     operator%area = [area, area]
     reference = stiffness
-    call friction_scale(closed, operator, reference, weight, scale)
+    call find_friction_scale(closed, operator, reference, weight, scale)
   end subroutine find_scales
 end program test_joint_compliance

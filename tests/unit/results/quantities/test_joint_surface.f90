@@ -236,7 +236,7 @@ contains
     end do
     item%area = [0.5_rk, 1.0_rk, 1.0_rk, 0.5_rk, 0.5_rk, 1.0_rk, 1.0_rk, 0.5_rk]
     item%clearance = spread(0.0_rk, 1, 8)
-    item%reach = spread(20.0_rk, 1, 8)
+    item%admissible_slip = spread(20.0_rk, 1, 8)
     item%rotation = spread(reshape(real([1, 0, 0, 0, 1, 0, 0, 0, 1], rk), [3, 3]), 3, 8)
   end subroutine lay_points
 

@@ -1,7 +1,7 @@
 !> Small sliding: segments between faces of different meshes are built once, on the faces as meshed.
 !> A point that slips farther than a facet faces another part of the other face; results would be
 !> those of another structure.
-module slip_reach
+module admissible_slip
   use kinds, only: rk
   use errors, only: error_type, raise
   use joint_law, only: joint_state
@@ -9,12 +9,12 @@ module slip_reach
   use write_text, only: as_text
   implicit none
   private
-  public :: check_reach
+  public :: check_slip
 
 contains
 
   !> Names the point that has gone farthest beyond its reach, closed or open.
-  subroutine check_reach(joints, states, time, error)
+  subroutine check_slip(joints, states, time, error)
     type(joint), intent(in) :: joints(:)
     type(joint_state), intent(in) :: states(:)
     real(rk), intent(in) :: time !< total time [s]
@@ -24,9 +24,9 @@ contains
     largest = 1.0_rk
     worst = 0
     do j = 1, size(joints)
-      if (.not. allocated(joints(j)%reach)) cycle
+      if (.not. allocated(joints(j)%admissible_slip)) cycle
       do p = 1, joints(j)%num_points
-        ratio = slip_at(states(j), p)/joints(j)%reach(p)
+        ratio = slip_at(states(j), p)/joints(j)%admissible_slip(p)
         if (ratio <= largest) cycle
         largest = ratio
         worst = [j, p]
@@ -38,9 +38,9 @@ contains
                  as_text(slip_at(states(worst(1)), p))//' m at ('//as_text(seam%x(1, p))//', '// &
                  as_text(seam%x(2, p))//', '//as_text(seam%x(3, p))//') by time '// &
                  as_text(time)//'; its faces are matched as they were meshed, which allows '// &
-                 as_text(seam%reach(p))//' m there (a facet)')
+                 as_text(seam%admissible_slip(p))//' m there (a facet)')
     end associate
-  end subroutine check_reach
+  end subroutine check_slip
 
   !> How far the two sides have moved along the joint [m].
   pure real(rk) function slip_at(now, p) result(slip)
@@ -48,4 +48,4 @@ contains
     integer, intent(in) :: p
     slip = hypot(now%jump(2, p), now%jump(3, p))
   end function slip_at
-end module slip_reach
+end module admissible_slip

@@ -1,5 +1,5 @@
 !> What holds nodes of a problem together besides its elements.
-module held_together
+module bonded_nodes
   use guest_list, only: guests_of_model, list_guest_cells
   use guest_type, only: guest_reference
   use problem_definition, only: problem
@@ -28,4 +28,4 @@ contains
     end do
     call groups%finish()
   end subroutine list_groups
-end module held_together
+end module bonded_nodes
