@@ -1,7 +1,7 @@
 !> Sums the matrices of the solid elements: stiffness, mass and damping.
 !>
-!> Threads take blocks of elements of one colour at a time, so that sums do not depend on the
-!> number of threads.
+!> Threads take blocks of elements of one colour at a time, so that sums do not depend on the number
+!> of threads.
 module assemble_elements
   use kinds, only: rk
   use errors, only: error_type, raise
@@ -34,7 +34,7 @@ contains
     call sum_elements(scene, numbers, one, zero, matrix, values, error)
   end subroutine assemble_stiffness
 
-  !> M of the elements, consistent or lumped as the problem says, without added mass.
+  !> M of the elements, consistent or lumped, without added mass.
   subroutine assemble_mass(scene, numbers, matrix, values, error)
     type(problem), intent(in) :: scene
     type(numbering), intent(in) :: numbers
@@ -46,8 +46,8 @@ contains
     call sum_elements(scene, numbers, zero, scene%materials%density, matrix, values, error)
   end subroutine assemble_mass
 
-  !> C = sum of alpha M + beta K of the elements: the materials' own Rayleigh damping and that of
-  !> the step together.
+  !> C = sum of alpha M + beta K of the elements: Rayleigh damping of the materials plus that of the
+  !> step.
   subroutine assemble_damping(scene, numbers, alpha, beta, matrix, values, error)
     type(problem), intent(in) :: scene
     type(numbering), intent(in) :: numbers

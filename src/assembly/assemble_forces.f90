@@ -1,4 +1,4 @@
-!> What the loads bring to the equations: reduced forces, added mass, acceleration of the base.
+!> Loads in the equations: reduced forces, added mass, acceleration of the base.
 module assemble_forces
   use kinds, only: rk
   use guest_type, only: guest
@@ -30,7 +30,7 @@ contains
     call numbers%reduce(nodal, force)
   end subroutine assemble_force
 
-  !> The unknowns when the whole model, supports included, moves by one in a direction: no jumps.
+  !> Unknowns of a unit translation of the whole model, supports included; jumps are zero.
   pure subroutine rigid_translation(numbers, direction, r)
     type(numbering), intent(in) :: numbers
     integer, intent(in) :: direction !< 1..3

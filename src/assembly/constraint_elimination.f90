@@ -1,4 +1,4 @@
-!> The dependent dofs of a step: where joints and ties, later equations, meet the numbering.
+!> Dependent dofs of a step: joints and ties in the numbering.
 module constraint_elimination
   use kinds, only: rk
   use errors, only: error_type
@@ -12,8 +12,8 @@ module constraint_elimination
   private
   public :: number_step
 
-  !> Most nodes that points without jumps may see to be ordered last: the end of the factor is
-  !> dense, 0.3 GB for the 6000 unknowns of so many.
+  !> Most nodes of points without jumps that are ordered last: the Schur block is dense, with 0.3 GB
+  !> for 6000 unknowns.
   integer, parameter :: most_last_nodes = 2000
 
 contains
@@ -52,7 +52,7 @@ contains
     call number_unknowns(dofs, is_used, is_fixed, links, numbers, error)
   end subroutine number_step
 
-  !> Nodes of interface quadrilaterals, which have no mass.
+  !> Nodes of interface quadrilaterals, which are without mass.
   pure function nodes_of_quads(model) result(is_there)
     type(mesh), intent(in) :: model
     logical :: is_there(model%num_nodes)
@@ -63,7 +63,7 @@ contains
     end do
   end function nodes_of_quads
 
-  !> The points of the joints that are integrated at nodes, joint by joint, point by point.
+  !> Points of the joints with nodal integration, joint by joint.
   subroutine list_points(joints, points)
     type(joint), intent(in) :: joints(:)
     type(nodal_points), intent(out) :: points
@@ -92,7 +92,7 @@ contains
     points%master = points%master(:points%first(n + 1) - 1)
   end subroutine list_points
 
-  !> Marks the nodes that points without jumps see.
+  !> Marks the nodes of points without jumps.
   pure subroutine mark_last(joints, first_jump, is_used, is_last)
     type(joint), intent(in) :: joints(:)
     integer, intent(in) :: first_jump(:) !< (points of nodal joints) 0 for none

@@ -1,7 +1,7 @@
 !> The solid elements of a problem in blocks of one kind, one material and one colour.
 !>
-!> Elements of one colour share no unknown, so that threads may add their matrices at the same time
-!> and every sum has one order, whatever the number of threads.
+!> Elements of one colour share no unknown. Threads may then add their matrices at the same time,
+!> and the order of every sum does not depend on the number of threads.
 module element_blocks
   use kinds, only: long
   use problem_definition, only: problem
@@ -13,7 +13,7 @@ module element_blocks
   public :: block_list, list_blocks
 
   integer, parameter :: largest_block = 48 !< elements; see element_matrices
-  integer, parameter :: most_colours = 62 !< bits of a word; who finds none goes into the last one
+  integer, parameter :: most_colours = 62 !< one bit a colour; elements left over share the last one
 
   type :: block_list
     integer :: num_blocks = 0
@@ -21,7 +21,7 @@ module element_blocks
     integer, allocatable :: element(:)
     integer :: num_colours = 0
     integer, allocatable :: first_block(:) !< (colours + 1) first block of each colour
-    logical :: last_is_serial = .false. !< elements of the last colour do share unknowns
+    logical :: last_is_serial = .false. !< elements of the last colour share unknowns
   end type block_list
 
 contains
@@ -51,7 +51,7 @@ contains
     call cut_blocks(colour, key, blocks)
   end subroutine list_blocks
 
-  !> The lowest colour that no element before has given to a common unknown; 0 for no solid.
+  !> The lowest colour that is free at all unknowns of an element; 0 for other elements.
   subroutine colour_elements(scene, numbers, colour)
     type(problem), intent(in) :: scene
     type(numbering), intent(in) :: numbers
@@ -101,7 +101,7 @@ contains
     end do
   end subroutine mark_around
 
-  !> Cuts the sorted elements where the key changes and where a block is full.
+  !> Starts a block where the key changes and where the last block is full.
   pure subroutine cut_blocks(colour, key, blocks)
     integer, intent(in) :: colour(:), key(:)
     type(block_list), intent(inout) :: blocks

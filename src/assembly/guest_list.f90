@@ -1,4 +1,4 @@
-!> The guests of a model and of a step, in the order in which they are asked.
+!> Guests of a model and of a step, in the order of the loops.
 module guest_list
   use kinds, only: rk
   use dof_numbering, only: numbering
@@ -15,8 +15,8 @@ module guest_list
 
 contains
 
-  !> Joints, and other guests that act in every step. The list points into `model`, which must be a
-  !> target where the list is used.
+  !> Joints, and other guests of every step. The list points into `model`, which must be a target
+  !> in the caller.
   subroutine guests_of_model(model, list)
     type(problem), intent(in), target :: model
     type(guest_reference), allocatable, intent(out) :: list(:)
@@ -31,7 +31,7 @@ contains
     end do
   end subroutine guests_of_model
 
-  !> The same with the loads at work at the end of a step, each once.
+  !> Guests of the model, and the loads of a step, each once.
   subroutine guests_of_step(model, plan, list)
     type(problem), intent(in), target :: model
     type(step), intent(in) :: plan
@@ -48,7 +48,7 @@ contains
     end do
   end subroutine guests_of_step
 
-  !> The cells of all guests: nodes that they couple with each other.
+  !> Cells of all guests: nodes that a guest couples.
   subroutine list_guest_cells(guests, cells)
     type(guest_reference), intent(in) :: guests(:)
     type(row_table), intent(inout) :: cells
@@ -69,7 +69,7 @@ contains
     end do
   end function any_has_matrix
 
-  !> Adds what the guests bring to a matrix of the step, booked on each of them.
+  !> Adds the matrices of the guests; the ledger books each of them.
   subroutine add_guest_matrices(guests, kind, model, numbers, matrix, values, costs)
     type(guest_reference), intent(in) :: guests(:)
     integer, intent(in) :: kind !< of guest_type
@@ -89,7 +89,7 @@ contains
     end do
   end subroutine add_guest_matrices
 
-  !> Displacements that *BOUNDARY or a guest hold in a step.
+  !> Displacements that *BOUNDARY or a guest prescribes in a step.
   subroutine supports_of_step(model, plan, node, direction)
     type(problem), intent(in), target :: model
     type(step), intent(in) :: plan

@@ -1,6 +1,6 @@
-!> The solid elements whose stress is not a constant stiffness times strain, in blocks of one kind
-!> and one material: the unit in which laws are called and histories are kept. Guests of a problem:
-!> a scene of elastic solids has none.
+!> Solid elements whose stress is not a constant stiffness times strain, in blocks of one kind and
+!> one material. Laws are called and histories are stored by block. Models of elastic solids have no
+!> such block.
 module inelastic_blocks
   use kinds, only: rk
   use dam_mesh, only: mesh
@@ -14,7 +14,7 @@ module inelastic_blocks
   private
   public :: inelastic_block, list_inelastic_blocks
 
-  integer, parameter :: largest_block = 16 !< elements whose points and operators fit a core's cache
+  integer, parameter :: largest_block = 16 !< elements; their points fit the cache of a core
 
   type :: inelastic_block
     integer :: material = 0 !< position in the problem's list
@@ -28,8 +28,8 @@ module inelastic_blocks
 
 contains
 
-  !> Sorts the elements with nonlinear laws into blocks; size 0 where there is none. Elements with
-  !> a Jacobian that is not positive must have been refused.
+  !> Sorts the elements with nonlinear laws into blocks; size 0 for none. The Jacobian of all
+  !> elements must be positive.
   subroutine list_inelastic_blocks(body, materials, blocks)
     type(mesh), intent(in) :: body
     type(material), intent(in) :: materials(:)
@@ -85,7 +85,7 @@ contains
     call place_points(body%element_id(elements), x, part)
   end subroutine build_block
 
-  !> Who and where the points are.
+  !> Numbers and places of the points.
   subroutine place_points(id, x, part)
     integer, intent(in) :: id(:) !< user's numbers of the elements
     real(rk), intent(in) :: x(:, :, :) !< (3, 8, elements) [m]

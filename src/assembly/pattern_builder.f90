@@ -1,4 +1,4 @@
-!> Builds the pattern of the matrices from what couples the nodes.
+!> Builds the pattern of the matrices from the couplings of the nodes.
 !>
 !> A cell is a list of nodes that are coupled with each other: a solid element, a point of a joint,
 !> or a segment of springs between faces. Unknowns are handled in groups (those of one node, one
@@ -19,7 +19,7 @@ module pattern_builder
 
 contains
 
-  !> The cells of a model: its solid elements, and what its guests couple.
+  !> Cells of a model: its solid elements and the cells of its guests.
   subroutine list_cells(model, guests, cells)
     type(mesh), intent(in) :: model
     type(guest_reference), intent(in) :: guests(:)
@@ -33,7 +33,7 @@ contains
     call cells%finish()
   end subroutine list_cells
 
-  !> The lower triangle of everything that the cells couple.
+  !> Lower triangle of the couplings by all cells.
   subroutine build_pattern(numbers, cells, matrix)
     type(numbering), intent(in) :: numbers
     type(row_table), intent(in) :: cells
@@ -50,7 +50,7 @@ contains
     call expand_groups(first_unknown, neighbours, matrix)
   end subroutine build_pattern
 
-  !> Unknowns that always come together: neighbours in number, of one node and one class.
+  !> Groups of unknowns with equal couplings: consecutive, of one node and one class.
   pure subroutine group_unknowns(numbers, group, first_unknown)
     type(numbering), intent(in) :: numbers
     integer, allocatable, intent(out) :: group(:) !< (unknowns)
@@ -80,7 +80,7 @@ contains
     end function starts_group
   end subroutine group_unknowns
 
-  !> The groups that each cell touches, each once, through T.
+  !> Groups of each cell through T, each once.
   subroutine list_groups(numbers, cells, group, num_groups, groups_of_cell)
     type(numbering), intent(in) :: numbers
     type(row_table), intent(in) :: cells
@@ -100,7 +100,7 @@ contains
       if (pass == 1) allocate (groups_of_cell%item(num_items))
     end do
   contains
-    !> The groups of the cell under way, counted in the first pass.
+    !> Adds the groups of the current cell; the first pass only counts.
     subroutine add_groups(nodes)
       integer, intent(in) :: nodes(:)
       integer :: n, k, g
@@ -116,7 +116,7 @@ contains
     end subroutine add_groups
   end subroutine list_groups
 
-  !> The groups with higher numbers that share a cell with each group, ascending.
+  !> Groups with higher numbers in a common cell, for each group, ascending.
   subroutine list_neighbours(groups_of_cell, cells_of_group, neighbours)
     type(row_table), intent(in) :: groups_of_cell, cells_of_group
     type(row_table), intent(out) :: neighbours
@@ -136,9 +136,9 @@ contains
       if (pass == 1) allocate (neighbours%item(num_items))
     end do
   contains
-    !> The neighbours of the group under way, counted in the first pass.
+    !> Adds the neighbours of the current group; the first pass only counts.
     subroutine add_neighbours(cells)
-      integer, intent(in) :: cells(:) !< that hold the group
+      integer, intent(in) :: cells(:) !< with this group
       integer :: c, k, other
       do c = 1, size(cells)
         do k = groups_of_cell%first(cells(c)), groups_of_cell%first(cells(c) + 1) - 1
@@ -196,7 +196,7 @@ contains
       if (pass == 1) allocate (matrix%row(num_entries))
     end do
   contains
-    !> A run of rows in the column under way.
+    !> Adds consecutive rows to the current column.
     subroutine add_rows(first, last)
       integer, intent(in) :: first, last
       integer :: row

@@ -1,4 +1,4 @@
-!> The problem: what the keywords fill and the solvers read. Effects are guests in its lists.
+!> The problem: filled by the keywords, read by the solvers. Effects are guests in its lists.
 module problem_definition
   use dam_mesh, only: mesh, named_set, node_tie, surface
   use amplitudes, only: amplitude
@@ -27,14 +27,14 @@ module problem_definition
     type(material_test), allocatable :: tests(:) !< of materials at one point
     logical :: has_lumped_mass = .false.
     type(joint), allocatable :: joints(:)
-    type(node_tie), allocatable :: ties(:) !< exact ones
-    type(guest_slot), allocatable :: guests(:) !< that act in every step, besides joints
-    type(named_cover), allocatable :: covers(:) !< how faces of different meshes cover each other
+    type(node_tie), allocatable :: ties(:) !< without springs
+    type(guest_slot), allocatable :: guests(:) !< of every step, without joints
+    type(named_cover), allocatable :: covers(:) !< cover of faces of different meshes
     type(inelastic_block), allocatable :: inelastic(:) !< solids whose law is not linear
     type(load_slot), allocatable :: loads(:)
     type(initial_value), allocatable :: initial_values(:)
     type(step), allocatable :: steps(:)
-    type(user_library), pointer :: umat => null() !< loaded code of the user, null for none
+    type(user_library), pointer :: umat => null() !< loaded library of the user, null for none
     integer :: upstream_surface = 0 !< surface of the first reservoir, 0 for none
   end type problem
 end module problem_definition

@@ -1,4 +1,4 @@
-!> The motion of a rigid block in words: 'move along x', 'turn about the axis y through (0, 0, 1)'.
+!> Motion of a rigid block in words: 'move along x', 'rotate about the axis y through (0, 0, 1)'.
 module block_motion
   use errors, only: error_type
   use kinds, only: rk
@@ -12,13 +12,13 @@ module block_motion
   private
   public :: block_name, motion_text, freedom_text
 
-  !> Below this part of the whole a turn, or a share of a direction, is not told.
+  !> Smaller rotations and components are not reported, as a fraction of the motion.
   real(rk), parameter :: negligible = 1.0e-3_rk
   character, parameter :: axis_name(3) = ['x', 'y', 'z']
 
 contains
 
-  !> 'the block with element 12 of set LEFT': its lowest element, the smallest set that holds it.
+  !> 'the block with element 12 of set LEFT': lowest element, smallest set with this element.
   function block_name(scene, blocks, b) result(text)
     type(problem), intent(in) :: scene
     type(block_set), intent(in) :: blocks
@@ -51,38 +51,38 @@ contains
       text = 'move along '//direction_text(v, .true.)
       return
     end if
-    text = 'turn about '//axis_text(blocks, b, v, w, .true.)
+    text = 'rotate about '//axis_text(blocks, b, v, w, .true.)
     along = dot_product(v, w)/norm2(w)
     if (abs(along) > negligible*norm2(motion)) text = text//' and move along it'
   end function motion_text
 
-  !> All motions of a space, without sense: 'move along x, y and turn about the axis z through ..'.
+  !> All motions of a space, without sense: 'move along x, y and rotate about the axis z ..'.
   function freedom_text(blocks, b, basis) result(text)
     type(block_set), intent(in) :: blocks
     integer, intent(in) :: b !< block
     real(rk), intent(in) :: basis(:, :) !< (6, motions) orthonormal
     character(:), allocatable :: text
-    real(rk), allocatable :: size_of_turn(:), mix(:, :), motion(:, :)
-    character(:), allocatable :: turns
+    real(rk), allocatable :: rotation_size(:), mix(:, :), motion(:, :)
+    character(:), allocatable :: rotations
     type(error_type), allocatable :: error
     integer :: k, num_moves
     text = 'move'
-    call find_modes(matmul(transpose(basis(4:6, :)), basis(4:6, :)), size_of_turn, mix, error)
+    call find_modes(matmul(transpose(basis(4:6, :)), basis(4:6, :)), rotation_size, mix, error)
     if (allocated(error)) return
     motion = matmul(basis, mix)
-    num_moves = count(sqrt(max(size_of_turn, 0.0_rk)) <= negligible)
+    num_moves = count(sqrt(max(rotation_size, 0.0_rk)) <= negligible)
     text = moves_text(motion(1:3, :num_moves))
-    turns = ''
+    rotations = ''
     do k = num_moves + 1, size(motion, 2)
-      turns = turns//', '//axis_text(blocks, b, motion(1:3, k), motion(4:6, k)/blocks%radius(b), &
-                                     .false.)
+      rotations = rotations//', '//axis_text(blocks, b, motion(1:3, k), &
+                                             motion(4:6, k)/blocks%radius(b), .false.)
     end do
-    if (len(turns) == 0) return
+    if (len(rotations) == 0) return
     if (text /= '') text = text//' and '
-    text = text//'turn about '//turns(3:)
+    text = text//'rotate about '//rotations(3:)
   end function freedom_text
 
-  !> 'move along x, y'; where two or more ways lie skew, along what they do not reach.
+  !> 'move along x, y'. Two skew directions are described by the direction across them.
   pure function moves_text(directions) result(text)
     real(rk), intent(in) :: directions(:, :) !< (3, directions) orthonormal
     character(:), allocatable :: text
@@ -110,13 +110,13 @@ contains
   end function moves_text
 
   !> 'x', '-x' or '(0.6, 0, 0.8)'.
-  pure function direction_text(way, has_sense) result(text)
-    real(rk), intent(in) :: way(3) !< of any length
-    logical, intent(in) :: has_sense !< it is told which way round
+  pure function direction_text(direction, has_sense) result(text)
+    real(rk), intent(in) :: direction(3) !< of any length
+    logical, intent(in) :: has_sense !< the sign is part of the text
     character(:), allocatable :: text
     real(rk) :: unit(3)
     integer :: i
-    unit = way/max(norm2(way), tiny(1.0_rk))
+    unit = direction/max(norm2(direction), tiny(1.0_rk))
     i = maxloc(abs(unit), 1)
     if (.not. has_sense .and. unit(i) < 0.0_rk) unit = -unit
     if (norm2(unit) - abs(unit(i)) < 0.5_rk*negligible**2) then
@@ -127,11 +127,11 @@ contains
     end if
   end function direction_text
 
-  !> 'the axis z through (1, 2, 0)': the place on the axis that is nearest to the block's centre.
+  !> 'the axis z through (1, 2, 0)': the point of the axis nearest to the centre of the block.
   pure function axis_text(blocks, b, v, w, has_sense) result(text)
     type(block_set), intent(in) :: blocks
     integer, intent(in) :: b !< block
-    real(rk), intent(in) :: v(3), w(3) !< motion of the centre, turn
+    real(rk), intent(in) :: v(3), w(3) !< velocity of the centre, rotation
     logical, intent(in) :: has_sense
     character(:), allocatable :: text
     real(rk) :: place(3), unit
@@ -143,7 +143,7 @@ contains
   !> '(1, 2.5, 0)'.
   pure function place_text(x, unit) result(text)
     real(rk), intent(in) :: x(3)
-    real(rk), intent(in) :: unit !< rounded to multiples of it
+    real(rk), intent(in) :: unit !< of rounding
     character(:), allocatable :: text
     real(rk) :: rounded
     integer :: i

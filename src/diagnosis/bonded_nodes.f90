@@ -1,4 +1,4 @@
-!> What holds nodes of a problem together besides its elements.
+!> Groups of nodes that guests and ties connect, in addition to the elements.
 module bonded_nodes
   use guest_list, only: guests_of_model, list_guest_cells
   use guest_type, only: guest_reference

@@ -1,9 +1,8 @@
-!> Says which block its joints cannot hold, when a static step finds no equilibrium.
+!> Reports the block that its joints cannot hold, when a static step finds no equilibrium.
 !>
-!> Rigid blocks and the strength of the joints alone decide (joint_capacity); nothing is said where
-!> they leave it open. The way the block goes is told by the joints that have reached their limit:
-!> of all motions that open points let go, points at the limit of friction let slide and the others
-!> do not resist, the one that the loads drive.
+!> The check takes rigid blocks and the strength of the joints (joint_capacity). It reports nothing
+!> where these do not decide. The motion of the block is the one that the loads drive, among the
+!> motions that open points and points at the limit of friction do not resist.
 module free_blocks
   use block_motion, only: block_name, freedom_text, motion_text
   use errors, only: error_type
@@ -26,38 +25,38 @@ module free_blocks
   private
   public :: name_free_block
 
-  !> Above so many numbers in the rows of the joints no block is looked for.
+  !> Most entries in the rows of the joints; larger models are not checked.
   integer, parameter :: most_entries = 20000000
   integer, parameter :: most_blocks = 100
-  !> Of the loads left unbalanced: more is beyond what the projections leave.
+  !> Smallest unbalanced fraction of the loads that proves a mechanism; projections leave less.
   real(rk), parameter :: certain = 1.0e-2_rk
-  !> Forces below this part of the largest count as none; a point so near to its limit slides.
+  !> Forces below `no_force` of the largest are zero. A point slides within `at_limit` of its limit.
   real(rk), parameter :: no_force = 1.0e-3_rk, at_limit = 1.0e-2_rk
-  !> A block that moves by more than this part of the one that moves most goes with it.
-  real(rk), parameter :: goes_along = 0.1_rk
+  !> Blocks that move more than this fraction of the largest motion belong to the mechanism.
+  real(rk), parameter :: smallest_motion = 0.1_rk
 
-  !> The blocks of a step between its supports.
+  !> The blocks of a step with its supports.
   type :: block_task
     type(block_set) :: blocks
-    real(rk), allocatable :: free(:, :) !< (6*blocks, motions) that supports leave, orthonormal
+    real(rk), allocatable :: free(:, :) !< (6*blocks, motions) with the supports, orthonormal
     real(rk), allocatable :: rows(:, :) !< (motions, rows) jumps of the joints
     type(point_limits), allocatable :: limits(:) !< (points)
   end type block_task
 
 contains
 
-  !> Adds to the message of an error what can be said of blocks.
+  !> Adds the block that moves to the message of an error.
   subroutine name_free_block(scene, plan, system, states, last, when, error)
     type(problem), intent(in) :: scene
     type(step), intent(in) :: plan
     type(dam_system), intent(in) :: system
     type(joint_state), intent(in) :: states(:) !< of the last equilibrium
-    type(joint_state), intent(in) :: last(:) !< where the iteration has ended
+    type(joint_state), intent(in) :: last(:) !< at the end of the iteration
     type(step_time), intent(in) :: when !< of the increment that failed
     type(error_type), allocatable, intent(inout) :: error
     type(error_type), allocatable :: failure
     type(block_task) :: task
-    type(step_time) :: asked
+    type(step_time) :: checked
     character(:), allocatable :: text
     logical :: is_known
     if (.not. allocated(error) .or. size(scene%joints) == 0) return
@@ -67,28 +66,28 @@ contains
     call open_task(scene, plan, states, task, failure)
     if (allocated(failure)) return ! the error is reported without the blocks
     if (size(task%rows, 1) == 0) return
-    asked = when
-    call find_driven_block(scene, system, task, asked, text, is_known)
+    checked = when
+    call find_driven_block(scene, system, task, checked, text, is_known)
     if (.not. is_known) return
     if (text == '') then
-      asked%now = when%duration
-      call find_driven_block(scene, system, task, asked, text, is_known)
+      checked%now = when%duration
+      call find_driven_block(scene, system, task, checked, text, is_known)
       if (.not. is_known) return
     end if
     if (text /= '') then
-      text = '; the joints cannot hold '//text//', with the loads at step time '//as_text(asked%now)
+      text = '; the joints cannot hold '//text
     else
       text = idle_motion(scene, task)
     end if
     if (text == '') then
-      text = '; as rigid blocks the model has an equilibrium, which may need a thrust that '// &
-             'these loads do not bring, smaller increments, or more ITERATIONS (*CONTROLS)'// &
+      text = '; the same model of rigid blocks has an equilibrium, which may need prestress; '// &
+             'use smaller increments, or more ITERATIONS (*CONTROLS)'// &
              separated_block(scene, task%blocks, last)
     end if
     error%message = error%message//text
   end subroutine name_free_block
 
-  !> Motions that supports leave, and what joints may do about them.
+  !> Motions that are possible with the supports, and the limits of the joints.
   subroutine open_task(scene, plan, states, task, error)
     type(problem), intent(in) :: scene
     type(step), intent(in) :: plan
@@ -128,14 +127,14 @@ contains
     end do
   end subroutine open_task
 
-  !> Which block goes where under the loads of a time; '' when the joints may hold them all.
+  !> The block that moves under the loads of a time, and its motion; '' where the joints hold all.
   subroutine find_driven_block(scene, system, task, when, text, is_known)
     type(problem), intent(in) :: scene
     type(dam_system), intent(in) :: system
     type(block_task), intent(in) :: task
     type(step_time), intent(in) :: when
     character(:), allocatable, intent(out) :: text
-    logical, intent(out) :: is_known !< whether they may
+    logical, intent(out) :: is_known !< the joints decide
     real(rk), allocatable :: load(:), motion(:, :), amount(:)
     type(best_forces) :: best
     integer :: b, others
@@ -150,13 +149,13 @@ contains
                      [6, task%blocks%num_blocks])
     amount = norm2(motion, dim=1)
     b = maxloc(amount, 1)
-    others = count(amount > goes_along*amount(b)) - 1
-    text = block_name(scene, task%blocks, b)//': it is free to '// &
-           motion_text(task%blocks, b, motion(:, b))
-    if (others > 0) text = text//' ('//as_text(others)//' more blocks move with it)'
+    others = count(amount > smallest_motion*amount(b)) - 1
+    text = block_name(scene, task%blocks, b)//' under the loads at step time '// &
+           as_text(when%now)//': the block can '//motion_text(task%blocks, b, motion(:, b))
+    if (others > 0) text = text//' ('//as_text(others)//' more blocks move too)'
   end subroutine find_driven_block
 
-  !> The loads on the motions of the blocks.
+  !> The loads as forces on the motions of the blocks.
   subroutine sum_loads(scene, system, task, when, load)
     type(problem), intent(in) :: scene
     type(dam_system), intent(in) :: system
@@ -201,7 +200,7 @@ contains
     end do
   end subroutine move_block
 
-  !> The first block that the iteration has left with open joints alone; '' when there is none.
+  !> The first block whose joints were all open at the end of the iteration; '' for none.
   function separated_block(scene, blocks, last) result(text)
     type(problem), intent(in) :: scene
     type(block_set), intent(in) :: blocks
@@ -223,10 +222,11 @@ contains
     text = ''
     b = findloc(has_joint(1:) .and. .not. is_touched(1:), .true., 1)
     if (b == 0) return
-    text = '; where the iteration ended all joints of '//block_name(scene, blocks, b)//' were open'
+    text = '; at the end of the iteration all joints of '//block_name(scene, blocks, b)// &
+           ' were open'
   end function separated_block
 
-  !> A motion that no joint resists and no load drives: '' when there is none.
+  !> A motion that no joint resists and no load drives; '' for none.
   function idle_motion(scene, task) result(text)
     type(problem), intent(in) :: scene
     type(block_task), intent(in) :: task
@@ -237,7 +237,7 @@ contains
     text = ''
     call null_space(matmul(task%rows, transpose(task%rows)), directions, error)
     if (allocated(error)) then
-      text = '; whether a block is free to move is not known: '//error%message
+      text = '; the check for blocks that are free to move failed: '//error%message
       return
     end if
     if (size(directions, 2) == 0) return
@@ -247,17 +247,15 @@ contains
     own = directions(6*b - 5:6*b, :)
     call find_modes(matmul(own, transpose(own)), shares, motion, error)
     if (allocated(error)) then
-      text = '; '//block_name(scene, task%blocks, b)//' is free to move: no load drives it and '// &
-             'nothing holds it'
+      text = '; '//block_name(scene, task%blocks, b)//' can move without resistance; add a support'
       return
     end if
     motion = motion(:, findloc(shares > no_force, .true., 1):)
-    text = '; '//block_name(scene, task%blocks, b)//' is free to '// &
-           freedom_text(task%blocks, b, motion)//': no load drives it and nothing holds it; a '// &
-           'support would'
+    text = '; '//block_name(scene, task%blocks, b)//' can '// &
+           freedom_text(task%blocks, b, motion)//' without resistance; add a support'
   end function idle_motion
 
-  !> The motion that joints at their limit do not resist and that the loads drive.
+  !> The motion that the loads drive and that joints at their limit do not resist.
   function driven_motion(task, best, load) result(motion)
     type(block_task), intent(in) :: task
     type(best_forces), intent(in) :: best

@@ -1,11 +1,10 @@
-!> Whether joints could balance given forces on rigid blocks at all: forces of joints that press, do
-!> not pull beyond what strength is left, and rub within mu p + c, whatever their stiffness.
+!> Whether joints of any stiffness could balance given forces on rigid blocks: with pressure, with
+!> tension up to the remaining strength, and with friction up to mu p + c.
 !>
-!> Of all such forces those are sought that leave least of the loads (different_meshes.md,
-!> 13.7): the nearest point of a convex set, by projections with Nesterov's acceleration. With the
-!> rows of the joints made orthonormal every step is as long as it may be. Where something is left
-!> no equilibrium exists, for none of the admissible forces has one (safe theorem of limit
-!> analysis); bonded points count with all that they may carry.
+!> The admissible forces with the smallest unbalanced load are the nearest point of a convex set
+!> (different_meshes.md, 13.7), found by projections with Nesterov's acceleration. Orthonormal rows
+!> of the joints allow the largest step. If a part of the loads remains, no equilibrium exists (safe
+!> theorem of limit analysis). Bonded points count with their full strength.
 module joint_capacity
   use errors, only: error_type
   use kinds, only: rk
@@ -15,35 +14,35 @@ module joint_capacity
   private
   public :: point_limits, best_forces, find_best_forces
 
-  !> What one point may carry.
+  !> Admissible forces of one point.
   type :: point_limits
     real(rk) :: friction = 0.0_rk !< mu
     real(rk) :: cohesion = 0.0_rk !< c times the area [N]
     real(rk) :: tension = 0.0_rk !< strength times the area [N]
-    logical :: is_bonded = .false. !< holds any shear
+    logical :: is_bonded = .false. !< no limit of shear
   end type point_limits
 
   type :: best_forces
     real(rk), allocatable :: force(:, :) !< (3, points) normal, positive pulls, and two tangents [N]
-    real(rk), allocatable :: mechanism(:) !< motion on which what is left of the loads works
-    !> What is not balanced, over the loads; 1 where it works in a direction that no joint resists.
+    real(rk), allocatable :: mechanism(:) !< motion driven by the unbalanced loads
+    !> Unbalanced part over the loads; 1 where it acts in a direction that no joint resists.
     real(rk) :: left = 0.0_rk
-    logical :: has_settled = .false. !< else the projections ended too early to say anything
+    logical :: has_settled = .false. !< else the projections ended too early for a result
   end type best_forces
 
-  !> Rows of joints below this part of the largest (squared) hold nothing.
+  !> Rows of joints below this fraction of the largest (squared) are zero.
   real(rk), parameter :: rank_tolerance = 1.0e-10_rk
-  !> Of the loads; more of them in directions that no joint resists has no balance.
+  !> Largest fraction of the loads in directions that no joint resists.
   real(rk), parameter :: roundoff = 1.0e-8_rk
   integer, parameter :: most_projections = 20000
-  real(rk), parameter :: most_work = 1.0e10_rk !< products of numbers: some seconds
-  integer, parameter :: watch_every = 100
-  !> Less than this left counts as balance; less progress in `watch_every` projections as the end.
+  real(rk), parameter :: most_work = 1.0e10_rk !< multiplications: some seconds
+  integer, parameter :: check_every = 100
+  !> A smaller unbalanced part is equilibrium; smaller progress in `check_every` steps is the end.
   real(rk), parameter :: balanced = 1.0e-3_rk, least_progress = 1.0e-5_rk
 
 contains
 
-  !> Balances `load` as far as the joints can: G t = load.
+  !> Balances `load` as far as the joints allow: G t = load.
   subroutine find_best_forces(rows, limits, load, best)
     real(rk), intent(in), contiguous :: rows(:, :) !< G (motions, rows)
     type(point_limits), intent(in) :: limits(:) !< (points)
@@ -56,7 +55,7 @@ contains
     allocate (best%force(num_axes, size(limits)), best%mechanism(n), source=0.0_rk)
     call find_modes(matmul(rows, transpose(rows)), values, modes, error)
     if (allocated(error)) then
-      best%left = 1.0_rk ! and has not settled: nothing can be said
+      best%left = 1.0_rk ! not settled: no result
       return
     end if
     first = n + 1
@@ -104,7 +103,7 @@ contains
       next = 0.5_rk*(1.0_rk + sqrt(1.0_rk + 4.0_rk*momentum**2))
       ahead = t + (momentum - 1.0_rk)/next*(t - before)
       momentum = next
-      if (mod(i, watch_every) /= 0) cycle
+      if (mod(i, check_every) /= 0) cycle
       left = target - matmul(white, t)
       if (norm2(left) <= balanced*norm2(target)) return
       if (norm2(left) > (1.0_rk - least_progress)*last) return

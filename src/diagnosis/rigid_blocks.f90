@@ -1,8 +1,8 @@
-!> Blocks: parts of the model that hang together without joints, as rigid bodies.
+!> Blocks: parts of the model that are connected without joints, as rigid bodies.
 !>
-!> Elements, ties and couplings hold a block together; joints and supports hold it in its place. Its
-!> six motions are v + w x (x - centre); as unknowns they are v and radius*w, reach the distance of
-!> its farthest node, so that all six are lengths (different_meshes.md, 13.7).
+!> Elements, ties and couplings connect the nodes of a block; joints and supports hold the block.
+!> Its motions are v + w x (x - centre). The six unknowns are v and radius*w, with the distance of
+!> the farthest node as radius, so that all are lengths (different_meshes.md, 13.7).
 module rigid_blocks
   use body_parts, only: root_of, unite
   use joint_points, only: joint
@@ -36,7 +36,7 @@ contains
     call measure_blocks(scene%mesh%x, blocks)
   end subroutine find_blocks
 
-  !> Elements but joints hold their nodes together.
+  !> Unites the nodes of each element except joints.
   subroutine unite_elements(scene, parent)
     type(problem), intent(in) :: scene
     integer, intent(inout) :: parent(:)
@@ -51,7 +51,7 @@ contains
     end do
   end subroutine unite_elements
 
-  !> So do ties and couplings.
+  !> Unites the nodes of ties and couplings.
   subroutine unite_bonds(scene, parent)
     type(problem), intent(in) :: scene
     integer, intent(inout) :: parent(:)
@@ -114,7 +114,7 @@ contains
     end associate
   end subroutine number_blocks
 
-  !> Centres and reaches.
+  !> Centres and radii.
   subroutine measure_blocks(x, blocks)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(block_set), intent(inout) :: blocks
@@ -139,7 +139,7 @@ contains
     end do
   end subroutine measure_blocks
 
-  !> Adds to a row what a node moves in a direction when the blocks move.
+  !> Adds the motion of a node in a direction, for unit motions of the blocks, to a row.
   pure subroutine add_node_motion(blocks, x, node, direction, row)
     type(block_set), intent(in) :: blocks
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
@@ -154,7 +154,7 @@ contains
                   + cross_product(x(:, node) - blocks%centre(:, b), direction)/blocks%radius(b)
   end subroutine add_node_motion
 
-  !> The jumps of a point of a joint, in its axes, when the blocks move.
+  !> Jumps of a joint point in its axes, for unit motions of the blocks.
   pure subroutine jump_rows(blocks, x, seam, p, rows)
     type(block_set), intent(in) :: blocks
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
@@ -171,7 +171,7 @@ contains
     end do
   end subroutine jump_rows
 
-  !> Adds what supports hold to the matrix sum row^T row.
+  !> Adds the supports to the matrix sum row^T row.
   pure subroutine add_supports(blocks, x, node, dof, matrix)
     type(block_set), intent(in) :: blocks
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]

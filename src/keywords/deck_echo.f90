@@ -1,4 +1,4 @@
-!> The effective deck: every card with the defaults it was read with.
+!> The effective deck: every card with its default values.
 module deck_echo
   use deck_card, only: card
   use field_text, only: text_or_nothing
@@ -17,7 +17,7 @@ module deck_echo
 
 contains
 
-  !> The deck as it was understood. Long data are counted, not repeated.
+  !> The deck with defaults. Long data are counted, not repeated.
   function echo_of_cards(cards) result(text)
     type(card), intent(in) :: cards(:)
     character(:), allocatable :: text !< lines with new_line between them
@@ -73,7 +73,7 @@ contains
     end associate
   end function parameter_text
 
-  !> The default of a field is a value, no explanation of where it comes from.
+  !> Whether the default of a field is a value, not an explanation.
   pure logical function is_value(described)
     type(field), intent(in) :: described
     character(:), allocatable :: default

@@ -1,4 +1,4 @@
-!> What can be said only when the whole deck is read: nothing is left open.
+!> Checks that need the whole deck.
 module finish_model
   use applied_load, only: load_slot
   use cover_checks, only: report_bare
@@ -92,7 +92,7 @@ contains
     integer :: i
     if (model%scene%mesh%num_elements == 0) return
     do i = 1, size(model%sections)
-      if (size(model%sections(i)%elements) == 0) return ! its fault is told
+      if (size(model%sections(i)%elements) == 0) return ! its fault is reported
     end do
     associate (mesh => model%scene%mesh)
       is_bare = is_solid(mesh%element_type) .and. mesh%section_of_element == 0

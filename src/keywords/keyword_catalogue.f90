@@ -1,4 +1,4 @@
-!> The single list of keywords: what each takes, and the procedure that understands it.
+!> The single list of keywords: specification and handler of each.
 module keyword_catalogue
   use keyword_handler, only: keyword_list, pass_definitions, pass_elements, pass_nodes, pass_rest
   use keywords_amplitude, only: describe_amplitude, read_amplitude

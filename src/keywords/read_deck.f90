@@ -1,4 +1,4 @@
-!> From a deck to the problem, in passes over its cards; all faults are collected.
+!> Reads a deck into the problem, in passes over its cards; all faults are collected.
 module read_deck
   use card_check, only: check_card, match_card
   use check_requests, only: warn_of_missing_fields
@@ -22,14 +22,14 @@ module read_deck
 
 contains
 
-  !> Reads and verifies a deck. The problem is fit to be solved when `faults` holds no error.
+  !> Reads and verifies a deck. The problem can be solved if `faults` has no error.
   subroutine read_problem(path, scene, faults, echo, for_tests, umat)
     character(*), intent(in) :: path !< of the deck
     type(problem), allocatable, intent(out) :: scene
     type(diagnostic_list), intent(inout) :: faults
-    character(:), allocatable, intent(out) :: echo !< the deck with every default made visible
-    logical, intent(in), optional :: for_tests !< of materials: the model need not be whole
-    type(user_library), pointer, intent(in), optional :: umat !< what --umat loaded
+    character(:), allocatable, intent(out) :: echo !< the deck with every default value
+    logical, intent(in), optional :: for_tests !< of materials: the model may be incomplete
+    type(user_library), pointer, intent(in), optional :: umat !< library of --umat
     type(keyword_list) :: list
     type(draft) :: model
     integer, allocatable :: keyword_of_card(:)
@@ -54,7 +54,7 @@ contains
     echo = echo_of_cards(model%cards)
   end subroutine read_problem
 
-  !> Turns the draft into a problem that can be analysed.
+  !> Completes and verifies the draft of the problem.
   subroutine complete_and_verify(model, faults)
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
@@ -84,11 +84,11 @@ contains
     allocate (model%interfaces(0))
   end subroutine open_draft
 
-  !> Finds the keyword of each card and checks that it stands where it may.
+  !> Finds the keyword of each card and checks its place.
   subroutine match_cards(list, model, keyword_of_card, faults)
     type(keyword_list), intent(in) :: list
     type(draft), intent(inout) :: model
-    integer, allocatable, intent(out) :: keyword_of_card(:) !< 0: nothing to do for it
+    integer, allocatable, intent(out) :: keyword_of_card(:) !< 0: without a handler
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable :: where_it_stands
     logical :: is_in_step, is_in_material
@@ -112,7 +112,7 @@ contains
     end do
   end subroutine match_cards
 
-  !> Step keywords stand in a step, properties in a material; `found` is set to 0 otherwise.
+  !> Step keywords must be in a step, properties in a material; else `found` is set to 0.
   subroutine check_place(model, i, place, is_in_step, is_in_material, faults, found)
     type(draft), intent(in) :: model
     integer, intent(in) :: i !< card
@@ -121,11 +121,11 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     integer, intent(inout) :: found
     if (place == 'step' .and. .not. is_in_step) then
-      call model%cards(i)%fault(faults, 'stands outside a step', &
+      call model%cards(i)%fault(faults, 'the keyword is outside a step', &
                                 'a place between *STEP and *END STEP')
       found = 0
     else if (place == 'material' .and. .not. is_in_material) then
-      call model%cards(i)%fault(faults, 'stands outside a material', &
+      call model%cards(i)%fault(faults, 'the keyword is outside a material', &
                                 'a place below *MATERIAL and its properties')
       found = 0
     end if
@@ -152,7 +152,7 @@ contains
 
   contains
 
-    !> Data lines of all cards of a pass.
+    !> Number of data lines of all cards of a pass.
     pure integer function count_lines(wanted) result(num_lines)
       integer, intent(in) :: wanted
       integer :: j
@@ -165,7 +165,7 @@ contains
     end function count_lines
   end subroutine handle_cards
 
-  !> A faulty card is handled, too, so that what it defines exists; its further faults are dropped.
+  !> A faulty card is handled too, so that its definition exists; its further faults are dropped.
   subroutine handle_card(list, number, model, faults)
     type(keyword_list), intent(in) :: list
     integer, intent(in) :: number !< of the keyword
@@ -180,7 +180,7 @@ contains
     end if
   end subroutine handle_card
 
-  !> What needs the number of nodes and elements.
+  !> Opens the tables by node and element.
   subroutine open_tables(model)
     type(draft), intent(inout) :: model
     call trim_mesh(model)

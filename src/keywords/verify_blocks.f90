@@ -1,8 +1,8 @@
-!> Blocks that only joints hold, and not in every direction: told when the deck is read.
+!> Warns of blocks that joints do not hold in every direction, when the deck is read.
 !>
-!> What is certain is told: a closed joint without friction, cohesion and strength lets its faces
-!> slide. A block that only such joints and the supports hold is free along them, in whatever state
-!> the joints are. It may stand all the same, when no load works that way: a warning, no error.
+!> A closed joint without friction, cohesion and strength does not resist sliding. A block with such
+!> joints and supports alone can slide along them in any state of the joints. The block may still be
+!> in equilibrium if no load acts in this direction: a warning, not an error.
 module verify_blocks
   use block_motion, only: block_name, freedom_text
   use diagnostics, only: diagnostic_list
@@ -17,11 +17,11 @@ module verify_blocks
   private
   public :: verify_free_blocks
 
-  integer, parameter :: most_blocks = 100 !< more are not looked at
+  integer, parameter :: most_blocks = 100 !< more are not checked
   integer, parameter :: most_reported = 5 !< blocks; the others are counted
-  !> A block's share in the motions that are left, squared: less is round-off.
+  !> A smaller share of a block in the free motions, squared, is round-off.
   real(rk), parameter :: no_share = 1.0e-6_rk
-  character(*), parameter :: no_check = 'whether joints leave blocks free is not known: '
+  character(*), parameter :: no_check = 'the check for blocks that are free to move failed: '
 
 contains
 
@@ -60,7 +60,7 @@ contains
     end do
   end subroutine verify_free_blocks
 
-  !> Adds sum row^T row of what the closed points of a joint hold.
+  !> Adds sum row^T row of the closed points of a joint.
   subroutine add_joint(x, blocks, seam, matrix)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(block_set), intent(in) :: blocks
@@ -84,7 +84,7 @@ contains
     end do
   end subroutine add_joint
 
-  !> One warning for each block that takes part in the motions that are left.
+  !> One warning for each block with a share in the free motions.
   subroutine warn_of_motions(model, number, blocks, directions, faults)
     type(draft), intent(in) :: model
     integer, intent(in) :: number !< of the step
@@ -93,8 +93,8 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(error_type), allocatable :: error
     real(rk), allocatable :: share(:), motion(:, :)
-    integer :: b, num_told
-    num_told = 0
+    integer :: b, num_free
+    num_free = 0
     do b = 1, blocks%num_blocks
       associate (own => directions(6*b - 5:6*b, :))
         call find_modes(matmul(own, transpose(own)), share, motion, error)
@@ -104,16 +104,15 @@ contains
         return
       end if
       if (share(6) <= no_share) cycle
-      num_told = num_told + 1
-      if (num_told > most_reported) cycle
+      num_free = num_free + 1
+      if (num_free > most_reported) cycle
       call model%cards(model%procedure_card(number))%warn( &
-        faults, block_name(model%scene, blocks, b)//' is free to '// &
+        faults, block_name(model%scene, blocks, b)//' can '// &
         freedom_text(blocks, b, motion(:, findloc(share > no_share, .true., 1):))// &
-        ': only joints hold it, and they do not resist that (no friction, no cohesion, no '// &
-        'strength)')
+        ': only joints hold the block, without friction, cohesion and strength')
     end do
-    if (num_told <= most_reported) return
+    if (num_free <= most_reported) return
     call model%cards(model%procedure_card(number))%warn( &
-      faults, 'more such blocks are free; these were the first')
+      faults, 'further blocks can move; only the first are listed')
   end subroutine warn_of_motions
 end module verify_blocks

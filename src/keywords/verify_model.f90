@@ -1,4 +1,4 @@
-!> What must hold before anything is solved: sound elements, mass where it is needed, supports.
+!> Checks before the analysis: shape of elements, mass where it is needed, supports.
 module verify_model
   use body_parts, only: find_bodies, free_motion
   use diagnostics, only: diagnostic_list
@@ -20,7 +20,7 @@ module verify_model
 
 contains
 
-  !> Tells every fault of the finished model.
+  !> Reports all faults of the complete model.
   subroutine verify(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
@@ -32,7 +32,7 @@ contains
     if (.not. faults%has_errors()) call verify_free_blocks(model, faults)
   end subroutine verify
 
-  !> The Jacobian is positive at the integration points; a bad corner alone is a warning.
+  !> The Jacobian must be positive at the integration points; at corners its sign is a warning.
   subroutine verify_elements(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
@@ -56,16 +56,16 @@ contains
     if (num_odd > 0) call warn_of_corners(model, first_odd, num_odd, faults)
   end subroutine verify_elements
 
-  !> One warning for all elements that are sound but for a corner.
+  !> One warning for all elements with a bad corner.
   subroutine warn_of_corners(model, e, num_odd, faults)
     type(draft), intent(in) :: model
-    integer, intent(in) :: e !< position of the first of them
+    integer, intent(in) :: e !< position of the first element
     integer, intent(in) :: num_odd !< how many there are
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable :: others
     integer :: corner
     others = ''
-    if (num_odd > 1) others = '; so have '//as_text(num_odd - 1)//' more elements at theirs'
+    if (num_odd > 1) others = '; also '//as_text(num_odd - 1)//' more elements'
     associate (spot => model%element_origin(e), mesh => model%scene%mesh)
       corner = corner_fault(mesh%x(:, mesh%nodes(:, e)))
       call model%cards(spot%card)%warn(faults, 'element '//as_text(mesh%element_id(e))// &
@@ -91,7 +91,7 @@ contains
     end associate
   end subroutine fault_jacobian
 
-  !> Dynamics and frequencies need a mass somewhere.
+  !> Dynamic and frequency steps need a mass.
   subroutine verify_mass(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
@@ -105,7 +105,7 @@ contains
     end do
   end subroutine verify_mass
 
-  !> Gravity without any mass to act on is told where it first acts.
+  !> Gravity on a model without mass is reported at its first card.
   subroutine verify_weight(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
@@ -141,7 +141,7 @@ contains
     end do
   end function has_mass
 
-  !> Initial velocities serve a first step that is dynamic.
+  !> Initial velocities need a dynamic first step.
   subroutine verify_velocities(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
@@ -151,12 +151,12 @@ contains
       if (model%scene%steps(i)%procedure%has_inertia) return
       if (.not. model%scene%steps(i)%procedure%is_static()) cycle
       call model%cards(model%procedure_card(i))%warn( &
-        faults, 'the initial velocities (*INITIAL CONDITIONS) end here: a static step is at rest')
+        faults, 'a static step sets the initial velocities (*INITIAL CONDITIONS) to zero')
       return
     end do
   end subroutine verify_velocities
 
-  !> In a static or frequency step every body is held against rigid motion.
+  !> In static and frequency steps supports must prevent all rigid motions of each body.
   subroutine verify_supports(model, faults)
     type(draft), intent(in), target :: model
     type(diagnostic_list), intent(inout) :: faults
@@ -195,8 +195,8 @@ contains
     if (motion == '') return
     call model%cards(model%procedure_card(number))%fault( &
       faults, 'the body with element '//as_text(model%scene%mesh%element_id(example))// &
-      set_of_element(model, example)//' is not held: it can '//motion, &
-      'supports (*BOUNDARY) or a joint to a body that is held')
+      set_of_element(model, example)//' is not held: the body can '//motion, &
+      'supports (*BOUNDARY), or a joint to a supported body')
   end subroutine verify_body
 
   !> ' of set DAM', or '' when the element is in no set.

@@ -1,7 +1,7 @@
 !> Frequencies and modes: K phi = (2 pi f)^2 M phi by shift-invert at zero.
 !>
-!> M may be singular (massless rock, jumps of light joints). With few unknowns that carry mass the
-!> problem is condensed onto them and solved as a dense one, else by Lanczos.
+!> M may be singular (massless rock, jumps of light joints). With few unknowns with mass the problem
+!> is condensed on them and solved as a dense one, else by the Lanczos method.
 module eigen_modes
   use kinds, only: rk
   use errors, only: error_type, raise
@@ -17,8 +17,8 @@ module eigen_modes
   private
   public :: find_modes
 
-  integer, parameter :: few = 200 !< unknowns with mass: dense
-  real(rk), parameter :: smallest_share = 1.0e-12_rk !< of the largest 1/f^2; below: no mode
+  integer, parameter :: few = 200 !< most unknowns with mass for the dense problem
+  real(rk), parameter :: smallest_share = 1.0e-12_rk !< smallest 1/f^2 of a mode, over the largest
   real(rk), parameter :: largest_residual = 1.0e-6_rk !< |K phi - w^2 M phi| over |K phi|
   real(rk), parameter :: two_pi = 2.0_rk*acos(-1.0_rk)
 
@@ -36,7 +36,7 @@ module eigen_modes
 
 contains
 
-  !> The lowest modes, ascending, of unit modal mass, with their effective masses.
+  !> Computes the lowest modes, ascending, with unit modal mass and their effective masses.
   subroutine find_modes(matrix, numbers, stiffness, mass, solver, num_modes, modes, error)
     type(pattern), intent(in) :: matrix
     type(numbering), intent(in) :: numbers
@@ -69,17 +69,17 @@ contains
     call describe_modes(matrix, numbers, mass, lambda, phi, modes)
   end subroutine find_modes
 
-  !> More modes were asked than there can be.
+  !> Error: more modes are requested than exist.
   subroutine refuse(num_modes, num_massive, error)
     integer, intent(in) :: num_modes, num_massive
     type(error_type), allocatable, intent(out) :: error
     character(120) :: text
-    write (text, '(2(i0,a))') num_modes, ' modes were asked for, but only ', num_massive, &
-      ' free degrees of freedom carry mass'
+    write (text, '(2(i0,a))') num_modes, ' modes are requested, but only ', num_massive, &
+      ' free degrees of freedom have mass'
     call raise(error, trim(text))
   end subroutine refuse
 
-  !> Dense: G M y = y/lambda with G the flexibility of the unknowns that carry mass.
+  !> Dense: G M y = y/lambda with G the flexibility of the unknowns with mass.
   subroutine condense(matrix, mass, solver, massive, lambda, phi, error)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: mass(:)
@@ -109,7 +109,7 @@ contains
     end do
   end subroutine condense
 
-  !> Flexibility and mass of the unknowns that carry mass.
+  !> Flexibility and mass of the unknowns with mass.
   subroutine condense_mass(matrix, mass, solver, massive, g, m, error)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: mass(:)
@@ -132,7 +132,7 @@ contains
     end do
   end subroutine condense_mass
 
-  !> The whole mode from its part with mass: phi = lambda K^-1 M phi.
+  !> All components of a mode from those with mass: phi = lambda K^-1 M phi.
   subroutine spread_mode(matrix, mass, solver, massive, part, lambda, phi, error)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: mass(:)
@@ -169,7 +169,7 @@ contains
     end do
   end subroutine sort_modes
 
-  !> Fails when a mode does not satisfy its equation.
+  !> Error if a mode does not satisfy its equation.
   subroutine check_residuals(matrix, stiffness, mass, lambda, phi, error)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: stiffness(:), mass(:), lambda(:), phi(:, :)

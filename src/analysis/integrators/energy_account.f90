@@ -1,10 +1,9 @@
 !> The energy balance of an increment (theory.md, 7.3).
 !>
-!> External work and damping are the work of the mean of their forces at the two ends of the
-!> increment; kinetic and stored energies are those of the end. `numerical` is what the formula of
-!> the stepping says that it takes: the damping of the time stepping, and the work of joints and
-!> inelastic solids along the increment beyond what they store and dissipate. What then is missing,
-!> `error`, shows a solution that does not satisfy the equations.
+!> External work and damping are the work of their mean forces over the increment; kinetic and
+!> stored energies are those at its end. `numerical` is the dissipation of the time stepping by its
+!> formula: numerical damping, and work of joints and inelastic solids beyond their stored and
+!> dissipated energies. The remainder, `error`, measures how far the equations are not satisfied.
 module energy_account
   use kinds, only: rk
   use global_vectors, only: dot, total, work
@@ -18,14 +17,14 @@ module energy_account
   private
   public :: open_account, add_static_work, add_dynamic_work
 
-  !> Floor of the largest energy, as a fraction of the sum of K_ii q_i^2: the energy that the last
-  !> digits of the motion make is no imbalance.
+  !> Floor of the largest energy, as a fraction of the sum of K_ii q_i^2: energies below it are
+  !> round-off of the motion.
   real(rk), parameter :: idle_share = 1.0e-11_rk
 
 contains
 
   !> Kinetic and strain energy at the start of a step. At the start of the analysis they are the
-  !> initial energy, with what initial displacements have dissipated.
+  !> initial energy, together with the dissipation by initial displacements.
   subroutine open_account(model, diagonal, now, is_first)
     type(problem), intent(in) :: model
     real(rk), intent(in) :: diagonal(:) !< (num_total) of K [N/m]
@@ -37,15 +36,15 @@ contains
       call set_stored(model, diagonal, now)
       if (is_first) then
         energy%initial = energy%kinetic + energy%strain + energy%friction + energy%fracture
-      else ! a step that does not take over the velocities loses their energy
+      else ! kinetic energy is lost where velocities are set to zero
         energy%numerical = energy%numerical + kinetic_before - energy%kinetic
       end if
       call find_error(energy)
     end associate
   end subroutine open_account
 
-  !> Adds the work of a static increment. Forces that had no balance at the start of the step do
-  !> work that is stored nowhere.
+  !> Adds the work of a static increment. Residual forces at the start of the step do work that is
+  !> not stored.
   subroutine add_static_work(model, system, before, after)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
@@ -88,7 +87,7 @@ contains
     call set_stored(model, system%diagonal, after)
   end subroutine add_dynamic_work
 
-  !> Work of the loads, and of the supports that move.
+  !> Work of the loads and of moving supports.
   subroutine add_external(du, num_free, old, new, energy)
     real(rk), intent(in) :: du(:)
     integer, intent(in) :: num_free
@@ -132,8 +131,7 @@ contains
     end associate
   end function newmark_excess
 
-  !> Change of what joints store and dissipate, and of what inelastic solids store beyond 1/2 q K q
-  !> and dissipate.
+  !> Change of stored and dissipated energy of joints and inelastic solids, beyond 1/2 q K q.
   real(rk) function change_of_stores(model, before, after) result(change)
     type(problem), intent(in) :: model
     type(state), intent(in) :: before, after
@@ -148,7 +146,7 @@ contains
              + (new_solids%stored - old_solids%stored + new_solids%fracture - old_solids%fracture)
   end function change_of_stores
 
-  !> Energies of the state itself.
+  !> Energies of the state.
   subroutine set_stored(model, diagonal, now)
     type(problem), intent(in) :: model
     real(rk), intent(in) :: diagonal(:) !< (num_total) of K [N/m]
@@ -169,7 +167,7 @@ contains
     end associate
   end subroutine set_stored
 
-  !> The imbalance over the largest energy so far.
+  !> The error over the largest energy so far.
   pure subroutine find_error(energy)
     type(energy_balance), intent(inout) :: energy
     real(rk) :: imbalance

@@ -14,14 +14,14 @@ module hht_scheme
     real(rk) :: acceleration_of_x = 0.0_rk !< 1/(beta dt^2) [1/s2]
     real(rk) :: velocity_of_x = 0.0_rk !< gamma/(beta dt) [1/s]
     real(rk) :: joint_weight = 1.0_rk !< of the joint forces at the end of the step
-    real(rk) :: old_joint_weight = 0.0_rk !< of those at its start
+    real(rk) :: old_joint_weight = 0.0_rk !< of the joint forces at the start
     logical :: carries_impulse = .false. !< joint forces by the implicit impulse (7.3)
   end type hht
 
 contains
 
-  !> The scheme for one increment size. Joint forces are 'IMPLICIT' (their impulse is dt times the
-  !> force at the end), 'HHT' (weighted like the bulk) or 'END' (those of the end alone).
+  !> The scheme for one increment size. Joint forces are 'IMPLICIT' (impulse dt times the force at
+  !> the end), 'HHT' (weighted as the bulk) or 'END' (force at the end).
   pure function make_scheme(alpha, dt, joint_forces) result(scheme)
     real(rk), intent(in) :: alpha !< -1/3..0
     real(rk), intent(in) :: dt !< [s]

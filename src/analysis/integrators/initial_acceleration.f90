@@ -1,10 +1,10 @@
-!> The acceleration that a dynamic step starts with: M a = r on the free unknowns.
+!> Initial acceleration of a dynamic step: M a = r on the free unknowns.
 !>
-!> M is well conditioned once scaled by its diagonal, so conjugate gradients need some tens of
-!> products and no factor. Unknowns without mass (a massless foundation) get no acceleration. Water
-!> that moves with a massless node along its normal only leaves directions without mass that are no
-!> unknowns. What pushes there has nothing to accelerate, and conjugate gradients would run away
-!> along it: the shortest least squares leave it out.
+!> M scaled by its diagonal is well conditioned, so conjugate gradients need some tens of products
+!> and no factor. Unknowns without mass (a massless foundation) have no acceleration. Added mass
+!> acts along the normal of a massless node; across the normal M is singular in directions that are
+!> not unknowns. There conjugate gradients would diverge, and the least-squares solution of
+!> smallest norm is taken.
 module initial_acceleration
   use kinds, only: rk
   use errors, only: error_type, raise
@@ -20,7 +20,7 @@ module initial_acceleration
 
 contains
 
-  !> Solves M a = r, in the directions that have a mass.
+  !> Solves M a = r in the directions with mass.
   subroutine find_acceleration(matrix, mass, node, r, a, error)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: mass(:) !< values of M
@@ -37,10 +37,10 @@ contains
       call solve_semidefinite(matrix, mass, scale, r, a, is_solved)
     end if
     if (is_solved) return
-    call raise(error, 'no acceleration to start with: the mass matrix is not positive definite')
+    call raise(error, 'no initial acceleration: the mass matrix is not positive definite')
   end subroutine find_acceleration
 
-  !> Conjugate gradients scaled with the diagonal; stops where it meets a direction without mass.
+  !> Conjugate gradients scaled by the diagonal; stops at a direction without mass.
   subroutine solve_definite(matrix, mass, scale, r, a, is_solved, is_semidefinite)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: mass(:), scale(:), r(:)
@@ -136,8 +136,8 @@ contains
     end do
   end subroutine invert_diagonal
 
-  !> 1/sqrt of the mass of a node, the same in its directions, so that what stands across a normal
-  !> still does when scaled; zero on nodes without mass and on prescribed unknowns.
+  !> 1/sqrt of the mass of a node, equal in all its directions, so that scaling keeps right angles;
+  !> zero on nodes without mass and on prescribed unknowns.
   subroutine scale_nodes(matrix, mass, node, scale)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: mass(:)

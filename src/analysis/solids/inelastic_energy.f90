@@ -1,4 +1,4 @@
-!> Energies of solids that are not elastic, beside 1/2 u K u of the elastic solid.
+!> Energies of inelastic solids in addition to 1/2 u K u of the elastic solid.
 module inelastic_energy
   use kinds, only: rk
   use problem_definition, only: problem
@@ -10,14 +10,14 @@ module inelastic_energy
 
   !> Energies of all inelastic solids [J].
   type :: solid_work
-    real(rk) :: stored = 0.0_rk !< beyond 1/2 eps D eps of the elastic solid: zero or less
+    real(rk) :: stored = 0.0_rk !< minus 1/2 eps D eps of the elastic solid; at most 0
     real(rk) :: fracture = 0.0_rk !< dissipated, crushing included
     real(rk) :: crushing = 0.0_rk !< dissipated in compression
   end type solid_work
 
 contains
 
-  !> Sums over the points; those that are elastic store 1/2 eps D eps and have dissipated nothing.
+  !> Sums over the points that have yielded or cracked; all others contribute nothing.
   subroutine sum_solid_work(scene, points, total)
     type(problem), intent(in) :: scene
     type(point_state), intent(in) :: points(:) !< (blocks)

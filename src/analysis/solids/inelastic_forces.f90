@@ -1,10 +1,10 @@
-!> The forces of solids whose stress is more than a constant stiffness times strain. Beside K u of
-!> the elastic solid they are its initial-stress force, the excess (theory.md, (12.1)):
+!> Forces of solids whose stress is not a constant stiffness times strain: K u of the elastic solid
+!> less the initial-stress force, here called excess (theory.md, (12.1)):
 !>
 !>   f = K u - excess,   excess = T^T sum w B^T (D eps - sigma)
 !>
-!> summed over the points that are not elastic. Threads take blocks of elements; the sums are made
-!> in the order of the blocks, so that they do not depend on the number of threads.
+!> summed over the points that are not elastic. Threads update blocks of elements; forces are
+!> summed in the order of the blocks, so that results do not depend on the number of threads.
 module inelastic_forces
   use kinds, only: rk
   use problem_definition, only: problem
@@ -21,10 +21,10 @@ module inelastic_forces
   public :: block_answer, open_answers, update_points, recall_points, sum_excess, find_failure
   public :: has_many_elements
 
-  !> Solids that one thread is done with before the others have woken up.
+  !> Fewer elements than this are faster on one thread.
   integer, parameter :: few_elements = 32
 
-  !> What the points of a block have answered.
+  !> Forces, tangents and report of the points of a block.
   type :: block_answer
     real(rk), allocatable :: force(:, :) !< (24, elements) sum w B^T (D eps - sigma) [N]
     real(rk), allocatable :: tangent(:, :, :) !< (6, 6, points) [Pa], or (6, 6, 0)
@@ -34,7 +34,7 @@ module inelastic_forces
 
 contains
 
-  !> Makes room for the answers of all blocks.
+  !> Allocates the answers of all blocks.
   subroutine open_answers(blocks, answers)
     type(inelastic_block), intent(in) :: blocks(:)
     type(block_answer), allocatable, intent(out) :: answers(:)
@@ -46,7 +46,7 @@ contains
     end do
   end subroutine open_answers
 
-  !> Strains from displacements, and the laws' answer to them, for all blocks.
+  !> Strains from displacements and stresses by the laws, for all blocks.
   subroutine update_points(scene, u, time, old, new, answers)
     type(problem), intent(in) :: scene
     real(rk), intent(in) :: u(:, :) !< (3, nodes) at the end of the increment [m]
@@ -68,7 +68,7 @@ contains
     end do
   end subroutine update_points
 
-  !> Threads are worth their while.
+  !> Whether several threads are faster than one.
   pure logical function has_many_elements(answers)
     type(block_answer), intent(in) :: answers(:)
     integer :: i, num_elements
@@ -79,7 +79,7 @@ contains
     has_many_elements = num_elements > few_elements
   end function has_many_elements
 
-  !> The answers that belong to states reached before; no law is called, tangents are left out.
+  !> Answers of stored states, without calls of the laws and without tangents.
   subroutine recall_points(scene, points, answers)
     type(problem), intent(in) :: scene
     type(point_state), intent(in) :: points(:) !< (blocks)
@@ -94,7 +94,7 @@ contains
     end do
   end subroutine recall_points
 
-  !> One block.
+  !> Updates one block.
   subroutine update_block(scene, part, u, time, old, new, answer)
     type(problem), intent(in) :: scene
     type(inelastic_block), intent(in) :: part
@@ -122,7 +122,7 @@ contains
     call sum_block(part, d, new, answer)
   end subroutine update_block
 
-  !> eps = B u, the points of all elements in one row.
+  !> eps = B u at the points of all elements.
   subroutine find_strains(part, moved, strain)
     type(inelastic_block), intent(in) :: part
     real(rk), intent(in) :: moved(:, :) !< (24, elements) [m]
@@ -130,7 +130,7 @@ contains
     call strains_at_points(part%b, moved, strain)
   end subroutine find_strains
 
-  !> du_i/dx_j: the rotation from the shape functions, the rest as the element's own strain has it.
+  !> du_i/dx_j: rotation from the shape functions, strain from the element.
   subroutine find_gradients(x, nodes, part, moved, new)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     integer, intent(in) :: nodes(:, :) !< (8, elements of the mesh)
@@ -183,7 +183,7 @@ contains
     end do
   end subroutine sum_block
 
-  !> The answers of all blocks in the unknowns of a step.
+  !> Initial-stress force of all blocks in the unknowns of a step.
   subroutine sum_excess(scene, numbers, answers, excess)
     type(problem), intent(in) :: scene
     type(numbering), intent(in) :: numbers
@@ -202,12 +202,12 @@ contains
     call numbers%reduce(nodal, excess)
   end subroutine sum_excess
 
-  !> Whether a law asks for a smaller increment: how much smaller, and why, with element and point.
+  !> Smallest increment that a law requests, and the reason with element and point.
   subroutine find_failure(scene, answers, size_ratio, why)
     type(problem), intent(in) :: scene
     type(block_answer), intent(in) :: answers(:)
-    real(rk), intent(out) :: size_ratio !< wanted over present size; 1: nothing is asked for
-    character(:), allocatable, intent(out) :: why !< unallocated where no law asks
+    real(rk), intent(out) :: size_ratio !< requested over present size; 1: no request
+    character(:), allocatable, intent(out) :: why !< unallocated without a request
     character(80) :: place
     integer :: i
     size_ratio = 1.0_rk
@@ -215,7 +215,7 @@ contains
       associate (report => answers(i)%report, part => scene%inelastic(i))
         size_ratio = min(size_ratio, report%size_ratio)
         if (allocated(why) .or. (report%failed_point == 0 .and. report%size_ratio >= 1.0_rk)) cycle
-        why = 'the law asks for a smaller increment'
+        why = 'the law requests a smaller increment'
         if (allocated(report%message)) why = report%message
         place = ''
         if (report%failed_point > 0) then

@@ -1,5 +1,5 @@
-!> The stiffness that points of solids have lost, A = sum w B^T (D - C) B with the tangents C of
-!> their laws: the tangent of the solids is K - A (theory.md, 12).
+!> Loss of stiffness of inelastic solids, A = sum w B^T (D - C) B with the tangents C of the laws.
+!> The tangent of the solids is K - A (theory.md, 12).
 module inelastic_stiffness
   use kinds, only: rk
   use problem_definition, only: problem
@@ -13,12 +13,12 @@ module inelastic_stiffness
   private
   public :: lost_stiffness
 
-  integer, parameter :: batch = 64 !< blocks whose element matrices are held at a time
+  integer, parameter :: batch = 64 !< blocks whose element matrices are stored at a time
 
 contains
 
-  !> A of the last update, which must have given tangents. A symmetric pattern takes the lower
-  !> triangle, so that the tangents must be symmetric; a full one takes any.
+  !> A from the tangents of the last update. A symmetric pattern takes the lower triangle and needs
+  !> symmetric tangents.
   subroutine lost_stiffness(scene, numbers, answers, matrix, values)
     type(problem), intent(in) :: scene
     type(numbering), intent(in) :: numbers
@@ -51,7 +51,7 @@ contains
     end do
   end subroutine lost_stiffness
 
-  !> The matrices of the elements of a block with an initial-stress force.
+  !> Matrices of the elements of a block, where they have an initial-stress force.
   subroutine integrate_block(scene, part, answer, ke)
     type(problem), intent(in) :: scene
     type(inelastic_block), intent(in) :: part

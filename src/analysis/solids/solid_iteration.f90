@@ -1,13 +1,12 @@
-!> The balance of an increment with inelastic solids (theory.md, 12):
+!> Equilibrium of an increment with inelastic solids (theory.md, 12):
 !>
 !>   K_eff x + joints(x) = rhs + w s(start + x)
 !>
-!> for the free unknowns x. The initial-stress force s is what K u overestimates of the internal
-!> force of the solids, s = K u - sum B^T sigma. With a matrix A of the stiffness that the points
-!> have lost, or none, each iteration solves (K_eff - w A) x + joints = rhs + w s exactly, joints
-!> included, and then evaluates the laws for s' = s(start + x) - A x. The residual is w (s' - s).
-!> Newton's method takes A and s anew from each iterate; with a fixed A the iteration on s is
-!> accelerated. Without inelastic solids one solve is all.
+!> for the free unknowns x. The initial-stress force is s = K u - sum B^T sigma. A is the loss of
+!> stiffness of the points, or zero. Each iteration solves (K_eff - w A) x + joints = rhs + w s,
+!> joints included, and evaluates the laws for s' = s(start + x) - A x. The residual is w (s' - s).
+!> Newton's method updates A and s in each iteration; with a fixed A the iteration on s is
+!> accelerated. Without inelastic solids one solve is enough.
 module solid_iteration
   use kinds, only: rk
   use errors, only: error_type, analysis_failed
@@ -31,18 +30,18 @@ module solid_iteration
   type :: increment_task
     type(force_balance) :: balance !< without the initial-stress force
     real(rk), allocatable :: start(:) !< (num_total) u at x = 0, supports in place [m]
-    real(rk), allocatable :: x(:) !< (num_total) the answer; zero on prescribed unknowns [m]
-    real(rk) :: reference_force = 0.0_rk !< largest force known beforehand [N]
-    logical :: counts_reactions = .false. !< reactions enter the reference force
+    real(rk), allocatable :: x(:) !< (num_total) solution; zero on prescribed unknowns [m]
+    real(rk) :: reference_force = 0.0_rk !< largest known force [N]
+    logical :: counts_reactions = .false. !< reactions are part of the reference force
   end type increment_task
 
-  !> Solves increments.
+  !> Solver of increments.
   type :: solid_solver
     class(equilibrium_solver), allocatable :: solver !< with a linear bulk
     real(rk), allocatable :: values(:) !< of K_eff, without joints
     real(rk) :: weight = 1.0_rk !< of the forces of the solids
-    type(tangent), allocatable :: choices(:) !< to try, one after the other
-    type(tangent) :: chosen !< of them
+    type(tangent), allocatable :: choices(:) !< tried one after the other
+    type(tangent) :: chosen !< the present one
     type(time_increment) :: time
     type(tangent_matrix) :: matrix
     type(block_answer), allocatable :: answers(:) !< (blocks)
@@ -56,28 +55,28 @@ module solid_iteration
     procedure, private :: choose_guess, linearise
   end type solid_solver
 
-  !> Where the iteration is.
+  !> State of the iteration.
   type :: iterate_state
     type(increment_task) :: task !< with the initial-stress force in its right-hand side
     real(rk), allocatable :: rhs(:) !< without it
     real(rk), allocatable :: guess(:), answer(:) !< (free unknowns) s and s' [N]
     real(rk), allocatable :: unbalance(:) !< s' - s at the last point of linearisation [N]
     real(rk), allocatable :: base(:) !< s' there [N]
-    real(rk) :: share = 1.0_rk !< fraction of the Newton step that is taken
+    real(rk) :: share = 1.0_rk !< fraction of the Newton step
     real(rk) :: force = huge(1.0_rk), last_force = huge(1.0_rk) !< norms of w (s' - s) [N]
     real(rk) :: base_force = huge(1.0_rk) !< the same at the last point of linearisation [N]
-    integer :: tries = 0 !< with the present matrix
+    integer :: tries = 0 !< iterations with the present matrix
     real(rk) :: moved = 0.0_rk !< norm of the last change of the displacements [m]
     logical :: is_lost = .false. !< the tangent is singular
   end type iterate_state
 
-  !> An iteration that keeps its matrix needs no factorisation: so many times more are allowed.
+  !> Iterations without factorisation are cheap: the limit is this many times higher.
   integer, parameter :: cheap_iterations = 5
-  !> An increment below this fraction of the displacements is measured against the displacements.
+  !> Floor of the increment of displacement, as a fraction of the displacements.
   real(rk), parameter :: smallest_increment = 1.0e-3_rk
-  !> A residual below this fraction of the reference force is round-off, whatever its correction.
+  !> A residual below this is round-off; the correction is then not checked.
   real(rk), parameter :: roundoff = 1.0e-12_rk
-  !> A matrix is renewed when its iterations have not reduced the residual to this fraction.
+  !> A matrix is updated unless its iterations reduce the residual to this fraction.
   real(rk), parameter :: sufficient_decrease = 0.1_rk
   !> A Newton step that increases the residual by more than this factor is halved.
   real(rk), parameter :: largest_growth = 1.0_rk
@@ -85,7 +84,7 @@ module solid_iteration
 
 contains
 
-  !> Prepares for a step: the internal forces of the state that it starts from.
+  !> Opens a step with the internal forces of its initial state.
   subroutine open_solids(self, model, system, choices, now)
     class(solid_solver), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -110,7 +109,7 @@ contains
     has_inelastic = allocated(self%answers)
   end function has_inelastic
 
-  !> The internal force sum of B^T sigma from K q, after the laws were evaluated at q.
+  !> Internal force, sum of B^T sigma, from K q and the laws evaluated at q.
   pure subroutine set_internal(self, moving)
     class(solid_solver), intent(in) :: self
     type(motion), intent(inout) :: moving
@@ -130,7 +129,7 @@ contains
     self%time%size = increment
   end subroutine open_increment
 
-  !> Iterations as they count for the size of increments: cheap ones count less.
+  !> Iterations for the control of the increment size; cheap ones count less.
   pure integer function effort(self, iterations)
     class(solid_solver), intent(in) :: self
     integer, intent(in) :: iterations
@@ -139,8 +138,8 @@ contains
     effort = (iterations + cheap_iterations - 1)/cheap_iterations
   end function effort
 
-  !> Solves the balance for `task%x`, with joints and points in `after`. No convergence is no error.
-  !> When a law requests a smaller increment no other tangent is tried.
+  !> Solves for `task%x`, joints and points of `after`. No convergence is not an error.
+  !> If a law requests a smaller increment, no other tangent is tried.
   subroutine solve_increment(self, model, system, task, before, after, outcome, error)
     class(solid_solver), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -171,7 +170,7 @@ contains
     end do
   end subroutine solve_increment
 
-  !> Iterates until the laws agree with the balance.
+  !> Iterates until residual and correction are within the tolerances.
   subroutine iterate_on_forces(self, model, system, task, before, after, outcome, error)
     class(solid_solver), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -199,7 +198,7 @@ contains
     task%x = now%task%x
   end subroutine iterate_on_forces
 
-  !> The first guess: the last matrix still holds.
+  !> The first guess of s, with the last matrix.
   subroutine start_iteration(self, system, before, now)
     class(solid_solver), intent(inout) :: self
     type(dam_system), intent(in) :: system
@@ -217,7 +216,7 @@ contains
     now%moved = norm(now%task%start - before%motion%q)
   end subroutine start_iteration
 
-  !> Solves with the guess and evaluates the laws; `now%is_lost` where the iteration cannot go on.
+  !> Solves with the guess and evaluates the laws; `now%is_lost` if the iteration must stop.
   subroutine solve_iterate(self, model, system, now, before, after, outcome, error)
     class(solid_solver), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -260,7 +259,7 @@ contains
     end associate
   end subroutine solve_iterate
 
-  !> The residual, and an estimate of the correction that remains, from the last correction.
+  !> Residual, and an estimate of the next correction from the last one.
   subroutine measure_iterate(self, system, before, now, outcome)
     class(solid_solver), intent(in) :: self
     type(dam_system), intent(in) :: system
@@ -290,7 +289,7 @@ contains
     end associate
   end subroutine measure_iterate
 
-  !> The next guess.
+  !> Chooses the next guess of s.
   subroutine choose_guess(self, model, system, after, now, error)
     class(solid_solver), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -317,7 +316,7 @@ contains
     is_slow = now%tries > patience .and. now%force > sufficient_decrease*now%base_force
   end function is_slow
 
-  !> Whether a Newton step has increased the residual, so that it is halved.
+  !> Whether a Newton step has increased the residual and must be halved.
   pure logical function has_grown(now)
     type(iterate_state), intent(in) :: now
     has_grown = now%force > largest_growth*now%base_force .and. now%share > smallest_share

@@ -1,5 +1,5 @@
-!> The matrix that the iteration on inelastic solids is linearised with: K_eff, or K_eff less what
-!> the points have lost (theory.md, 12).
+!> Matrix of the iteration on inelastic solids: K_eff, or K_eff less the loss of stiffness
+!> (theory.md, 12).
 module solid_tangent
   use kinds, only: rk
   use errors, only: error_type
@@ -16,8 +16,8 @@ module solid_tangent
 
   type :: tangent_matrix
     logical :: is_elastic = .true. !< the factor is that of K_eff
-    logical :: is_symmetric = .true. !< what has been lost is
-    type(pattern) :: full_matrix !< both triangles, once it was not
+    logical :: is_symmetric = .true. !< of A
+    type(pattern) :: full_matrix !< both triangles, built for the first unsymmetric A
     real(rk), allocatable :: lost(:) !< values of A, in the system's pattern or the full one [N/m]
   contains
     procedure :: factorise, factorise_elastic, multiply_lost
@@ -39,7 +39,7 @@ contains
   end subroutine factorise_elastic
 
   !> Factors K_eff - weight*A with the tangents of the last update. An error with `analysis_failed`
-  !> tells of a singular matrix: it belongs to this iterate, a smaller increment may pass by it.
+  !> means a singular matrix; a smaller increment may avoid it.
   subroutine factorise(self, scene, system, answers, values, weight, solver, error)
     class(tangent_matrix), intent(inout) :: self
     type(problem), intent(in) :: scene

@@ -1,5 +1,5 @@
-!> Which tangent of inelastic solids a step takes, by *CONTROLS, TANGENT; AUTO by what has been
-!> measured (docs/studies/tangents_of_solids).
+!> Tangents of inelastic solids in a step, by *CONTROLS, TANGENT. AUTO follows measurements
+!> (docs/studies/tangents_of_solids).
 module tangent_choice
   use problem_definition, only: problem
   use step_plan, only: step
@@ -8,11 +8,11 @@ module tangent_choice
   private
   public :: tangent, choose_tangents
 
-  !> A way to iterate.
+  !> Kind of tangent and its use in the iteration.
   type :: tangent
-    integer :: kind = no_tangent !< asked of the laws
-    integer :: patience = huge(1) !< iterations with one matrix before it is judged; 0: none is kept
-    logical :: holds_switches = .false. !< of the laws, for the increment
+    integer :: kind = no_tangent !< of the laws
+    integer :: patience = huge(1) !< iterations before a matrix may be updated; 0: each
+    logical :: holds_switches = .false. !< keeps the switches of the laws during the increment
   contains
     procedure :: is_symmetric
   end type tangent
@@ -23,9 +23,9 @@ module tangent_choice
 
 contains
 
-  !> The tangents of a step: the first one, and one to try where it does not converge. Measured,
-  !> many iterations with the elastic matrix cost less than a few with new factors, and do not
-  !> follow an unstable branch where a body could crack in many places.
+  !> Tangents of a step: the first, and one to try if the first does not converge. In measurements
+  !> many iterations with the elastic matrix cost less than a few with new factors. They also do not
+  !> follow unstable branches where a structure could crack in many places.
   pure function choose_tangents(scene, plan) result(choices)
     type(problem), intent(in) :: scene
     type(step), intent(in) :: plan
@@ -48,8 +48,8 @@ contains
     choices(size(choices))%holds_switches = .true.
   end function choose_tangents
 
-  !> A law jumps: there may be no equilibrium, a point goes to and fro for ever. Where nothing else
-  !> converges the switches keep for the increment what they were (theory.md, 12).
+  !> Whether the stress of a law is discontinuous in strain, so that Newton may cycle. If no tangent
+  !> converges the switches keep their values during the increment (theory.md, 12).
   pure logical function has_switches(scene)
     type(problem), intent(in) :: scene
     integer :: i
@@ -61,7 +61,7 @@ contains
     end do
   end function has_switches
 
-  !> The tangents of the laws are.
+  !> True unless the consistent tangent is used.
   elemental logical function is_symmetric(self)
     class(tangent), intent(in) :: self
     is_symmetric = self%kind /= consistent_tangent

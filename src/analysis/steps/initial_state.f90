@@ -1,4 +1,4 @@
-!> The state that an analysis begins with.
+!> Initial state of an analysis.
 module initial_state
   use kinds, only: rk
   use node_dofs, only: zero_vectors
@@ -18,8 +18,8 @@ module initial_state
 
 contains
 
-  !> At rest, but for the initial conditions of the deck; tied nodes follow their
-  !> masters, joints and inelastic solids the displacements given.
+  !> At rest except for the initial conditions of the deck. Tied nodes follow their masters; joints
+  !> and inelastic solids follow the initial displacements.
   subroutine start_analysis(scene, now, error)
     type(problem), intent(in) :: scene
     type(state), allocatable, intent(out) :: now
@@ -53,7 +53,7 @@ contains
     call strain_points(scene, now, error)
   end subroutine start_analysis
 
-  !> Points of inelastic solids, at rest and untouched.
+  !> Initial histories of the points of inelastic solids.
   subroutine start_histories(scene, now)
     type(problem), intent(in) :: scene
     type(state), intent(inout) :: now
@@ -68,7 +68,7 @@ contains
     end do
   end subroutine start_histories
 
-  !> The answer of inelastic solids to the displacements.
+  !> Updates inelastic solids for the initial displacements.
   subroutine strain_points(scene, now, error)
     type(problem), intent(in) :: scene
     type(state), intent(inout) :: now
@@ -85,7 +85,7 @@ contains
     if (allocated(why)) call raise(error, 'initial displacements: '//why)
   end subroutine strain_points
 
-  !> The joint's answer to the displacements.
+  !> Updates a joint for the initial displacements.
   subroutine move_joint(seam, u, history)
     type(joint), intent(in) :: seam
     real(rk), intent(in) :: u(:, :) !< (3, nodes) [m]

@@ -1,5 +1,5 @@
-!> Runs the steps of a problem one after the other. All procedures share this loop: it chooses sizes
-!> of increments, cuts, accepts and reports; the integrator of the step fills the trial state.
+!> Runs the steps of a problem one after the other. This loop serves all procedures: it chooses,
+!> cuts, accepts and reports increments. The integrator of the step computes the trial state.
 module step_loop
   use kinds, only: rk
   use errors, only: error_type, raise, system_failed
@@ -20,7 +20,7 @@ module step_loop
   private
   public :: run_all_steps
 
-  !> The increment under way.
+  !> The current increment.
   type :: attempt
     type(state), allocatable :: trial
     type(step_time) :: when !< its end
@@ -29,8 +29,8 @@ module step_loop
 
 contains
 
-  !> Runs all steps. A state that was loaded goes on where it was saved. On an error `now` is the
-  !> last state that converged; the listener has it.
+  !> Runs all steps. A loaded state continues where it was saved. On an error `now` is the last
+  !> converged state; the listener has it.
   subroutine run_all_steps(model, now, results, error)
     type(problem), intent(in) :: model
     type(state), allocatable, intent(inout) :: now !< as `start_analysis` makes it, or loaded
@@ -185,7 +185,7 @@ contains
     call close_increment(model, plan, next%when, next%outcome, now, results, error)
   end subroutine accept
 
-  !> A smaller increment, or the end of the run.
+  !> Cuts the increment, or ends the run.
   subroutine cut(model, plan, method, now, next, error)
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan

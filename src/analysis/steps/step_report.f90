@@ -1,4 +1,4 @@
-!> What a step reports at the end of an increment, and when it cannot go on.
+!> Reports of a step: end of an increment, and failure.
 module step_report
   use kinds, only: rk
   use errors, only: error_type, raise
@@ -18,7 +18,7 @@ module step_report
 
 contains
 
-  !> Counts an increment that has converged and reports it to the listener.
+  !> Counts a converged increment and reports it to the listener.
   subroutine close_increment(model, plan, when, outcome, now, results, error)
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan
@@ -44,12 +44,12 @@ contains
     call check_slip(model%joints, now%joints, now%total_time, error)
     if (allocated(error) .or. now%is_last_of_step) return
     if (now%increment >= plan%max_increments) then
-      call raise(error, "step '"//plan%name//"' has used its "//count_text(plan%max_increments)// &
-                 ' increments (*STEP, INC) before its end')
+      call raise(error, "step '"//plan%name//"' has not ended after "// &
+                 count_text(plan%max_increments)//' increments (*STEP, INC)')
     end if
   end subroutine close_increment
 
-  !> An error that names what did not converge, and where.
+  !> Error that names what did not converge, and where.
   subroutine report_failure(model, system, outcome, now, error)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
@@ -63,12 +63,12 @@ contains
       return
     end if
     if (outcome%gives_up) then
-      write (text, '(a,g0.3,a,i0,a,es8.1,a,es12.5)') 'contact penetrates ', outcome%penetration, &
-        ' times as far as *JOINT LAW, PENETRATION allows after ', outcome%augmentations, &
-        ' augmentations (a larger KN needs fewer) with an increment of ', now%control%last_size, &
-        ', last equilibrium at time ', now%total_time
+      write (text, '(a,g0.3,a,i0,a,es8.1,a,es12.5)') 'the penetration of a contact is ', &
+        outcome%penetration, ' times the limit of *JOINT LAW, PENETRATION after ', &
+        outcome%augmentations, ' augmentations (a larger KN needs fewer) with an increment of ', &
+        now%control%last_size, ', last equilibrium at time ', now%total_time
     else
-      write (text, '(a,es9.2,a,i0,a,es8.1,a,es12.5)') 'no equilibrium: out of balance by ', &
+      write (text, '(a,es8.2,a,i0,a,es8.1,a,es12.5)') 'no equilibrium: residual ', &
         outcome%residual, ' after ', outcome%iterations, ' iterations with an increment of ', &
         now%control%last_size, ', last equilibrium at time ', now%total_time
     end if
@@ -79,11 +79,11 @@ contains
     end if
     j = count(system%operator%first_point <= p)
     p = p - system%operator%first_point(j) + 1
-    call raise(error, trim(text)//'; worst in joint '//model%joints(j)%name//' at '// &
+    call raise(error, trim(text)//'; largest in joint '//model%joints(j)%name//' at '// &
                place_text(model%joints(j)%x(:, p)))
   end subroutine report_failure
 
-  !> Where inelastic solids are farthest from balance: '; worst at node 12 at (0., 1., 3.)'.
+  !> Largest residual of inelastic solids: '; largest at node 12 at (0., 1., 3.)'.
   pure function worst_node(model, system, outcome, step) result(text)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
@@ -94,14 +94,14 @@ contains
     text = ''
     if (outcome%worst_unknown == 0) return
     node = system%numbers%node(outcome%worst_unknown)
-    text = '; worst at node '//count_text(model%mesh%node_id(node))//' at '// &
+    text = '; largest at node '//count_text(model%mesh%node_id(node))//' at '// &
            place_text(model%mesh%x(:, node))
     if (.not. model%steps(step)%procedure%is_static()) return
-    text = text//' (past its largest load a structure that cracks can follow a displacement, '// &
-           'not a force; where it does, smaller increments or *CONTROLS, TANGENT=CONSISTENT)'
+    text = text//' (beyond its peak load a cracking structure needs prescribed displacements, '// &
+           'not forces; with these, smaller increments or *CONTROLS, TANGENT=CONSISTENT)'
   end function worst_node
 
-  !> A material, or water in a joint, that no increment is small enough for.
+  !> Failure of a material, or of uplift in a joint, in the smallest increment.
   pure function failure_text(outcome, now) result(text)
     type(balance_outcome), intent(in) :: outcome
     type(state), intent(in) :: now
@@ -121,7 +121,7 @@ contains
     text = trim(digits)
   end function count_text
 
-  !> A place as text.
+  !> Coordinates as text.
   pure function place_text(x) result(text)
     real(rk), intent(in) :: x(3) !< [m]
     character(:), allocatable :: text

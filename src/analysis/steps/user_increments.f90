@@ -1,4 +1,4 @@
-!> Tells the user's UEXTERNALDB where each increment starts and ends; without one, nothing is done.
+!> Calls the user's UEXTERNALDB at the start and end of each increment, if there is one.
 module user_increments
   use analysis_state, only: state
   use errors, only: error_type
@@ -12,10 +12,10 @@ module user_increments
 
 contains
 
-  !> An increment starts, or starts again with a smaller size.
+  !> Start of an increment, also after a cutback.
   subroutine begin_user_increment(scene, now, size, error)
     type(problem), intent(in) :: scene
-    type(state), intent(in) :: now !< the last that converged
+    type(state), intent(in) :: now !< last converged
     real(rk), intent(in) :: size !< of the increment [s]
     type(error_type), allocatable, intent(out) :: error
     if (.not. associated(scene%umat)) return
@@ -23,7 +23,7 @@ contains
                                   now%step, now%increment + 1, error)
   end subroutine begin_user_increment
 
-  !> An increment has converged. What was learnt of the UMAT in it goes to the log.
+  !> End of a converged increment. New notes about the UMAT go to the log.
   subroutine end_user_increment(scene, now, results, error)
     type(problem), intent(in) :: scene
     type(state), intent(in) :: now !< its end

@@ -1,8 +1,8 @@
-!> Water in joints during a step: which open points it reaches, and the pressure there.
+!> Uplift in joints during a step: wet points, and the pressure there.
 !>
-!> Where the profile is OPEN the forces are constant within an increment. In a static step the
-!> increment is solved again until the joints that it leaves open are those that were wet; in a
-!> dynamic step the water is where the joint was open at the end of the increment before.
+!> With PROFILE=OPEN the forces are constant in an increment. A static increment is solved again
+!> until the wet points are the open points. A dynamic increment takes the points that were open at
+!> the end of the previous increment.
 module joint_water
   use kinds, only: rk
   use joint_law, only: joint_state, state_open
@@ -17,7 +17,7 @@ module joint_water
 
 contains
 
-  !> Updates the forces of water that follows the opening of joints.
+  !> Updates the uplift for the open points of joints.
   subroutine update_uplift(scene, operator, states, groups, has_changed)
     type(problem), intent(in) :: scene
     type(jump_operator), intent(in) :: operator
@@ -43,7 +43,7 @@ contains
     end do
   end subroutine update_uplift
 
-  !> Forces B^T (area p) on the opening of the points of one joint.
+  !> Forces B^T (area p) that open one joint.
   subroutine push_faces(operator, seam, pressure, force)
     type(jump_operator), intent(in) :: operator
     integer, intent(in) :: seam !< joint
@@ -55,7 +55,7 @@ contains
     call operator%add_forces(traction, force)
   end subroutine push_faces
 
-  !> Records the pressure of the water at the points of joints, for the results.
+  !> Records the uplift pressure at the points of joints, for the results.
   subroutine record_uplift(scene, loads, groups, when, states, costs)
     type(problem), intent(in) :: scene
     type(step_load), intent(in) :: loads(:) !< of the step

@@ -1,4 +1,4 @@
-!> Chooses how the balance of a step is solved, and says in the user's words what is not held.
+!> Chooses the solver of equilibrium of a step and reports parts of the model without support.
 module step_equilibrium
   use kinds, only: rk, long
   use errors, only: error_type, raise, system_failed
@@ -16,19 +16,19 @@ module step_equilibrium
   private
   public :: make_equilibrium, prepare_equilibrium, add_moving_supports, check_bulk
 
-  !> Above so many points of joints the dense compliance takes too much memory (some 2 GB, for a
-  !> moment three times 8*(3*points)^2 bytes); full Newton then factors in every iteration. It
-  !> too takes the compliance, to find r, but does not keep it.
+  !> Most joint points for the dense compliance, which takes about 2 GB (three matrices of
+  !> 8*(3*points)^2 bytes). With more points full Newton factors in each iteration; it needs the
+  !> compliance only to compute r and does not keep it.
   integer, parameter :: most_condensed_points = 3000
 
-  !> Dense matrices of 8*(3*points)^2 bytes that stand at once: the compliance and two to find r
-  !> (friction_scale). The end of the factor comes on top, where jumps are unknowns of their own.
+  !> Dense matrices of 8*(3*points)^2 bytes at a time: the compliance and two to compute r. The
+  !> Schur block is extra, where jumps are unknowns.
   integer, parameter :: num_dense = 3
 
 contains
 
-  !> Linear without joints, else as *CONTROLS, JOINT SOLVER says. Only full Newton takes joints and
-  !> a tangent of the solids that is not symmetric together.
+  !> Linear without joints, else by *CONTROLS, JOINT SOLVER. Only full Newton combines joints with
+  !> an unsymmetric tangent of the solids.
   subroutine make_equilibrium(plan, system, is_symmetric, balance, error)
     type(step), intent(in) :: plan
     type(dam_system), intent(in) :: system
@@ -55,12 +55,12 @@ contains
     call balance%factor%analyse(system%matrix, error)
   end subroutine make_equilibrium
 
-  !> Whether the system grants the memory of the dense matrices of the joints. It is asked for in
-  !> one piece and given back; what it refuses no solver would get.
+  !> Checks that the memory of the dense matrices of the joints is available, by allocating and
+  !> freeing it.
   subroutine check_memory(num_points, error)
     integer, intent(in) :: num_points !< of all joints
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable, volatile :: room(:) ! volatile: else compilers leave it out
+    real(rk), allocatable, volatile :: room(:) ! volatile: compilers would omit it
     integer(long) :: most
     integer :: status
     most = num_dense*(3_long*num_points)**2
@@ -69,14 +69,14 @@ contains
       if (most > 0) room(1) = 0.0_rk
       deallocate (room)
     else
-      call raise(error, 'no memory for '//as_text(num_points)//' points of joints: their dense '// &
-                 'matrices take some '//as_text(max(1, nint(8.0e-9_rk*most)))//' GB, in any '// &
-                 'step and with either JOINT SOLVER; mesh the joints coarser, or between '// &
-                 'surfaces let the coarser face be the slave', system_failed)
+      call raise(error, 'not enough memory: the dense matrices of '//as_text(num_points)// &
+                 ' points of joints take '//as_text(max(1, nint(8.0e-9_rk*most)))//' GB, with '// &
+                 'either JOINT SOLVER; use a coarser mesh at the joints, or take the coarser '// &
+                 'surface as slave', system_failed)
     end if
   end subroutine check_memory
 
-  !> Factors K_eff; a singular matrix is told by node and direction.
+  !> Factors K_eff; a singular matrix is reported by node and direction.
   subroutine prepare_equilibrium(scene, system, values, weight, balance, error)
     type(problem), intent(in) :: scene
     type(dam_system), intent(in) :: system
@@ -88,20 +88,20 @@ contains
     call balance%prepare_matrix(system%matrix, values, weight, scene%joints, system%operator, cause)
     if (.not. allocated(cause)) return
     if (balance%factor%failed_unknown > 0) then
-      call raise(error, 'nothing holds the model at '// &
+      call raise(error, 'the stiffness matrix is singular at '// &
                  system%numbers%describe(balance%factor%failed_unknown, scene%mesh%node_id)// &
-                 ': a part of it is free to move; look for missing supports, or for parts that '// &
-                 'share no nodes and no joint', cause%exit_code)
+                 ': a part of the model is free to move; add supports, or connect the part by '// &
+                 'common nodes, a tie or a joint', cause%exit_code)
     else
       call move_alloc(cause, error)
     end if
   end subroutine prepare_equilibrium
 
-  !> Takes what moving supports ask of the free unknowns from the right-hand side.
+  !> Subtracts the forces of moving supports on the free unknowns from the right-hand side.
   subroutine add_moving_supports(system, values, x, rhs)
     type(dam_system), intent(in) :: system
     real(rk), intent(in) :: values(:) !< K_eff
-    real(rk), intent(in) :: x(:) !< (num_total) zero but for the supports
+    real(rk), intent(in) :: x(:) !< (num_total) zero except at the supports
     real(rk), intent(inout) :: rhs(:) !< (free unknowns)
     real(rk), allocatable :: product(:)
     if (.not. any(abs(x) > 0.0_rk)) return
@@ -110,8 +110,7 @@ contains
     rhs = rhs - product(:size(rhs))
   end subroutine add_moving_supports
 
-  !> The balance of the free unknowns as it came out, joints by their laws: the last word on
-  !> convergence.
+  !> Final check of convergence: residual of the free unknowns with the joint forces of the laws.
   subroutine check_bulk(unbalance, reference, tolerance, outcome)
     real(rk), intent(in) :: unbalance(:) !< (free unknowns) [N]
     real(rk), intent(in) :: reference !< [N]

@@ -1,6 +1,6 @@
-!> Loads and supports of a step in time: patterns over the unknowns and the factors that scale them.
+!> Loads and supports of a step: patterns over the unknowns and their factors in time.
 !>
-!> Loads that follow one rule of time are summed into one pattern, however many there are.
+!> Loads with equal factors at all times are summed into one pattern.
 module step_loads
   use kinds, only: rk
   use amplitudes, only: amplitude, amplitude_at
@@ -17,21 +17,21 @@ module step_loads
   public :: load_group, support, step_time, gather_loads, gather_supports
   public :: external_force, prescribed_values, factor_at
 
-  !> Where in time a factor is wanted.
+  !> Time at which a factor is evaluated.
   type :: step_time
     logical :: is_dynamic = .false.
     real(rk) :: now = 0.0_rk !< since the start of the step [s]
     real(rk) :: start = 0.0_rk !< total time at the start of the step [s]
     real(rk) :: duration = 1.0_rk !< of the step [s]
-    real(rk) :: increment = 0.0_rk !< that ends now [s]
+    real(rk) :: increment = 0.0_rk !< the one that ends now [s]
   contains
     procedure :: set_end
   end type step_time
 
-  !> Loads with one rule of time. Water that follows the opening of a joint has a group of its own.
+  !> Loads with equal factors. Uplift with PROFILE=OPEN has a group of its own.
   type :: load_group
     type(step_load) :: rule
-    integer :: uplift = 0 !< the load that is such water, 0 for none
+    integer :: uplift = 0 !< position of that uplift load, 0 for none
     real(rk), allocatable :: pressure(:) !< (points of its joint) now, at factor 1 [Pa]
     real(rk), allocatable :: force(:) !< (num_total) at factor 1 [N]
   end type load_group
@@ -40,13 +40,13 @@ module step_loads
   type :: support
     integer :: unknown = 0
     real(rk) :: reached = 0.0_rk !< at the start of the step [m]
-    real(rk) :: value = 0.0_rk !< asked for, times the amplitude [m]
+    real(rk) :: value = 0.0_rk !< prescribed, times the amplitude [m]
     integer :: amplitude = 0 !< 0 for none
   end type support
 
 contains
 
-  !> Goes to the end of an increment; what is left of the step by roundoff belongs to it.
+  !> Sets the end of an increment; a remainder of round-off size is added to it.
   pure subroutine set_end(self, from, increment)
     class(step_time), intent(inout) :: self
     real(rk), intent(in) :: from !< since the start of the step [s]
@@ -56,14 +56,14 @@ contains
     if (self%duration - self%now < 1.0e-9_rk*increment) self%now = self%duration
   end subroutine set_end
 
-  !> Sums the patterns of the loads of a step, base motion included, rule by rule, and the forces of
-  !> guests that act in every step.
+  !> Sums the patterns of the loads of a step and of the guests of every step, base motion included,
+  !> into groups of equal factors.
   subroutine gather_loads(scene, plan, numbers, matrix, mass, groups, costs)
     type(problem), intent(in), target :: scene
     type(step), intent(in) :: plan
     type(numbering), intent(in) :: numbers
     type(pattern), intent(in) :: matrix
-    real(rk), intent(in) :: mass(:) !< values; size 0 where inertia plays no part
+    real(rk), intent(in) :: mass(:) !< values; size 0 without inertia
     type(load_group), allocatable, intent(out) :: groups(:)
     type(ledger), intent(in) :: costs
     type(guest_reference), allocatable :: guests(:)
@@ -92,7 +92,7 @@ contains
     end do
   end subroutine gather_loads
 
-  !> Adds a pattern to the group with its rule.
+  !> Adds a pattern to the group with its factor.
   subroutine add_to_group(rule, force, groups)
     type(step_load), intent(in) :: rule
     real(rk), intent(in) :: force(:) !< (num_total) [N]
@@ -102,7 +102,7 @@ contains
     groups(group)%force = groups(group)%force + force
   end subroutine add_to_group
 
-  !> -M r of the acceleration that a load gives to the base.
+  !> -M r times the acceleration of the base by one load.
   subroutine add_base_motion(item, numbers, matrix, mass, force)
     class(guest), intent(in) :: item
     type(numbering), intent(in) :: numbers
@@ -120,7 +120,7 @@ contains
     end do
   end subroutine add_base_motion
 
-  !> The group with the rule of a load; made where there is none.
+  !> Finds the group with the factor of a load, or adds one.
   subroutine find_group(rule, num_unknowns, groups, found)
     type(step_load), intent(in) :: rule
     integer, intent(in) :: num_unknowns
@@ -153,7 +153,7 @@ contains
               .and. abs(a%end_factor - b%end_factor) <= 0.0_rk
   end function follows
 
-  !> The prescribed unknowns of a step and what they have reached.
+  !> Prescribed unknowns of a step, with their displacements at its start.
   subroutine gather_supports(plan, numbers, u, supports)
     type(step), intent(in) :: plan
     type(numbering), intent(in) :: numbers
@@ -191,7 +191,7 @@ contains
     end do
   end subroutine external_force
 
-  !> Displacements of the prescribed unknowns at one time; the others stay.
+  !> Sets the displacements of the prescribed unknowns at one time.
   subroutine prescribed_values(supports, histories, when, q)
     type(support), intent(in) :: supports(:)
     type(amplitude), intent(in) :: histories(:)
@@ -205,7 +205,7 @@ contains
     end do
   end subroutine prescribed_values
 
-  !> The rule of time: an amplitude, a ramp over a static step, at once in a dynamic one.
+  !> Factor at a time: by an amplitude, else a ramp in static and a jump in dynamic steps.
   pure real(rk) function factor_at(first, last, history, histories, when) result(factor)
     real(rk), intent(in) :: first, last !< at the start and at the end of the step
     integer, intent(in) :: history !< amplitude, 0 for none

@@ -62,7 +62,7 @@ contains
     call costs%stop('assemble structure')
   end subroutine build_structure
 
-  !> Mass of the solids and of what moves with them.
+  !> Mass of the solids and of the guests.
   subroutine build_inertia(model, plan, system, costs, error)
     type(problem), intent(in), target :: model
     type(step), intent(in) :: plan
@@ -80,7 +80,7 @@ contains
     call costs%stop('assemble mass')
   end subroutine build_inertia
 
-  !> Rayleigh damping of materials and step, and damping that guests bring, where there is any.
+  !> Rayleigh damping of materials and step, and damping of guests.
   subroutine build_damping(model, plan, system, costs, error)
     type(problem), intent(in), target :: model
     type(step), intent(in) :: plan
@@ -107,7 +107,7 @@ contains
     call costs%stop('assemble damping')
   end subroutine build_damping
 
-  !> Load patterns and supports; after the mass, which base motion needs.
+  !> Load patterns and supports. Base motion needs the mass, so `build_inertia` comes first.
   subroutine build_loads(model, plan, u, system, costs)
     type(problem), intent(in), target :: model
     type(step), intent(in) :: plan

@@ -152,7 +152,8 @@ contains
     allocate (built%first(num_points + 1), built%first_master(num_points), source=1)
     allocate (built%node(most_nodes), built%weight(most_nodes))
     allocate (built%rotation(3, 3, num_points), built%x(3, num_points))
-    allocate (built%area(num_points), built%clearance(num_points), built%admissible_slip(num_points))
+    allocate (built%area(num_points), built%clearance(num_points))
+    allocate (built%admissible_slip(num_points))
   end subroutine open_points
 
   !> Adds the nodes of point p, slave first; nodes without weight are left out.

@@ -1,5 +1,5 @@
-!> The balance condensed on the joints (theory.md, 8): K_0 = K_eff with all joints closed is
-!> factored once for an increment size, and Newton runs on the jumps alone.
+!> Equilibrium condensed on the joints (theory.md, 8): K_0 = K_eff with all joints closed is
+!> factored once for an increment size; Newton's method iterates on the jumps alone.
 module condensation
   use kinds, only: rk
   use errors, only: error_type
@@ -28,12 +28,12 @@ module condensation
     procedure, private :: solve_from, has_drifted, begin_solve, end_solve
   end type condensed_equilibrium
 
-  !> Part of the tolerance that the drift of jumps may use up.
+  !> Admissible drift of the jumps, as a fraction of the residual tolerance.
   real(rk), parameter :: allowed_drift = 0.1_rk
 
 contains
 
-  !> Factors K_0, finds its compliance on the joints and the scale of the friction iteration.
+  !> Factors K_0 and computes the compliance G and the friction scale r.
   subroutine prepare_matrix(self, matrix, values, weight, joints, operator, error)
     class(condensed_equilibrium), intent(inout) :: self
     type(pattern), intent(in) :: matrix
@@ -81,7 +81,7 @@ contains
     call self%costs%stop()
   end subroutine prepare_matrix
 
-  !> Solves, and once more from the jumps found where they have drifted from the balance.
+  !> Solves the equilibrium; solves again from the jumps found if they have drifted.
   subroutine solve_balance(self, balance, joints, old, new, x, outcome, error)
     class(condensed_equilibrium), intent(inout) :: self
     type(force_balance), intent(in) :: balance
@@ -104,8 +104,8 @@ contains
     outcome%iterations = outcome%iterations + iterations
   end subroutine solve_balance
 
-  !> Are the jumps of the solution others than those the laws were evaluated at? A block that
-  !> touched nothing for an iterate went so far that the digits of its way back are missing.
+  !> Whether the jumps of the solution differ from those at which the laws were evaluated. A block
+  !> without contact in one iterate moves far, and the way back loses digits.
   logical function has_drifted(self, balance, new, x)
     class(condensed_equilibrium), intent(in) :: self
     type(force_balance), intent(in) :: balance
@@ -123,8 +123,8 @@ contains
     end associate
   end function has_drifted
 
-  !> Newton on the jumps between the two halves of one solve; where the jumps are not at the end of
-  !> the factor, between two solves: one for the guess, one for what has changed.
+  !> Newton's method on the jumps between forward and backward substitution. Without the Schur block
+  !> it takes two full solves: one for the guess, one for the change.
   subroutine solve_from(self, balance, joints, old, new, x, outcome, error)
     class(condensed_equilibrium), intent(inout) :: self
     type(force_balance), intent(in) :: balance
@@ -155,12 +155,12 @@ contains
     call self%end_solve(excess - first_excess, half, x, error)
   end subroutine solve_from
 
-  !> The response to the guess: all unknowns, or the jumps alone and half a solve.
+  !> Response to the guess: forward substitution and jumps, or all unknowns.
   subroutine begin_solve(self, rhs, excess, half, x, error)
     class(condensed_equilibrium), intent(inout) :: self
     real(rk), intent(in) :: rhs(:) !< (free unknowns)
     real(rk), intent(in) :: excess(:, :) !< (3, points) [Pa]
-    real(rk), allocatable, intent(out) :: half(:) !< (free unknowns) in the order of elimination
+    real(rk), allocatable, intent(out) :: half(:) !< (free unknowns) after forward substitution
     real(rk), intent(out) :: x(:) !< (all unknowns)
     type(error_type), allocatable, intent(out) :: error
     if (.not. self%jumps%is_there) then
@@ -177,10 +177,10 @@ contains
     call self%costs%stop()
   end subroutine begin_solve
 
-  !> All unknowns, with what has changed since the guess.
+  !> All unknowns, with the change of the joint forces since the guess.
   subroutine end_solve(self, change, half, x, error)
     class(condensed_equilibrium), intent(inout) :: self
-    real(rk), intent(in) :: change(:, :) !< of the excess (3, points) [Pa]
+    real(rk), intent(in) :: change(:, :) !< (3, points) of the excess traction [Pa]
     real(rk), allocatable, intent(inout) :: half(:)
     real(rk), intent(inout) :: x(:) !< (all unknowns)
     type(error_type), allocatable, intent(out) :: error

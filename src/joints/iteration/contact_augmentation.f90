@@ -1,10 +1,10 @@
 !> Contact without penetration: the augmented Lagrangian of the normal law
 !> (different_meshes.md, 13.5).
 !>
-!> A point in contact carries t = min(0, lambda + k_n (v + g)). The multiplier lambda = k_n*shift is
-!> kept in the history of the joint. When the balance has been found, lambda <- t, and it is sought
-!> again, until no point in contact is farther from v + g = 0 than its law allows. Anderson's
-!> acceleration combines the multipliers of the last passes with the same points in contact.
+!> A point in contact carries t = min(0, lambda + k_n (v + g)). The history of the joint keeps the
+!> multiplier lambda = k_n*shift. After each equilibrium lambda <- t, and the equilibrium is solved
+!> again until |v + g| is admissible at all points in contact. Anderson's acceleration combines the
+!> multipliers of the last passes with the same points in contact.
 module contact_augmentation
   use kinds, only: rk
   use joint_law, only: joint_state, state_slip, state_stick
@@ -16,18 +16,18 @@ module contact_augmentation
   private
   public :: contact_multiplier, start_multiplier, measure_contact, update_multiplier
 
-  !> The multipliers of an increment, all points of all joints in one row.
+  !> Multipliers of an increment, all points of all joints in one row.
   type :: contact_multiplier
-    logical :: is_there = .false. !< a law asks for it
-    real(rk), allocatable :: change(:) !< (points) of the shift that the last balance asks for [m]
+    logical :: is_there = .false. !< a law limits the penetration
+    real(rk), allocatable :: change(:) !< (points) of the shift, from the last equilibrium [m]
     real(rk), allocatable :: shift(:) !< (points) [m]
-    logical, allocatable :: is_closed(:) !< (points) in the last balance
+    logical, allocatable :: is_closed(:) !< (points) in the last equilibrium
     type(mixer) :: mixer
   end type contact_multiplier
 
 contains
 
-  !> An increment starts with the multipliers that the last one has ended with, lambda = t.
+  !> Starts an increment with lambda = t of the last converged state.
   subroutine start_multiplier(joints, old, new, multiplier)
     type(joint), intent(in) :: joints(:)
     type(joint_state), intent(in) :: old(:) !< converged histories
@@ -42,7 +42,7 @@ contains
     end do
   end subroutine start_multiplier
 
-  !> The shift at which the traction of the state is its multiplier; 0 where nothing touches.
+  !> Shift for lambda = t of a state; 0 at open points.
   pure function wanted_shift(now) result(shift)
     type(joint_state), intent(in) :: now
     real(rk) :: shift(size(now%gap)) !< [m]
@@ -52,14 +52,13 @@ contains
     end where
   end function wanted_shift
 
-  !> How far the points in contact are from touching exactly, over what is allowed: the largest, and
-  !> where it is.
+  !> Largest ratio of |v + g| to its admissible value at points in contact, and its place.
   subroutine measure_contact(joints, operator, states, multiplier, excess, worst_point)
     type(joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: states(:) !< in balance
+    type(joint_state), intent(in) :: states(:) !< in equilibrium
     type(contact_multiplier), intent(inout) :: multiplier
-    real(rk), intent(out) :: excess !< <= 1: all points keep to what is allowed
+    real(rk), intent(out) :: excess !< at most 1 where all points are admissible
     integer, intent(out) :: worst_point
     logical :: is_closed(operator%num_points)
     real(rk) :: ratio
@@ -91,8 +90,8 @@ contains
     multiplier%is_closed = is_closed
   end subroutine measure_contact
 
-  !> The multipliers of the next pass: lambda <- t + r (v + g), r the structure's own stiffness
-  !> where all points move together, which never is too much. What has opened has none.
+  !> Multipliers of the next pass: lambda <- t + r (v + g); zero at open points. r is the stiffness
+  !> of the structure when all points move together, the smallest of all motions.
   subroutine update_multiplier(joints, operator, stiffness_ratio, multiplier, states)
     type(joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator

@@ -1,8 +1,8 @@
-!> The balance of forces of an implicit step, static or dynamic:
+!> Equilibrium of an implicit step, static or dynamic:
 !>
 !>   K_eff x + weight*B^T (area t(v)) = rhs,   v = offset + B x      (theory.md, 8)
 !>
-!> for the free unknowns x. Three ways solve it: linear (without joints), condensed and full Newton.
+!> for the free unknowns x. Solvers: linear (without joints), condensed and full Newton.
 module equilibrium
   use kinds, only: rk
   use errors, only: error_type
@@ -17,32 +17,32 @@ module equilibrium
   private
   public :: equilibrium_solver, force_balance, balance_outcome
 
-  !> The right-hand side and what is known beforehand.
+  !> Right-hand side and starting values.
   type :: force_balance
     real(rk), allocatable :: rhs(:) !< (free unknowns) [N]
     real(rk), allocatable :: offset(:, :) !< (3, points) jumps at x = 0 [m]
     real(rk), allocatable :: guess(:, :) !< (3, points) jumps near the solution [m]
-    logical :: starts_closed = .false. !< the first iterate takes every joint as closed and sticking
+    logical :: starts_closed = .false. !< all joints closed and sticking in the first iterate
     real(rk) :: reference_force = 0.0_rk !< largest force of the bulk so far [N]
   end type force_balance
 
-  !> How the iteration went.
+  !> Outcome of the iteration.
   type :: balance_outcome
     logical :: has_converged = .false.
     integer :: iterations = 0
-    integer :: augmentations = 0 !< of the contact, each a further pass of iterations
+    integer :: augmentations = 0 !< of the contact; each starts a pass of iterations
     integer :: first_pass = 0 !< iterations before the first augmentation, 0 for none
     integer :: pass_start = 0 !< iterations before the present pass
-    real(rk) :: penetration = 0.0_rk !< largest of points in contact, over what is allowed
-    logical :: gives_up = .false. !< the penetration does not come down
-    logical :: has_held_switches = .false. !< of laws whose stress jumps (theory.md, 12)
-    real(rk) :: residual = 0.0_rk !< out-of-balance over the reference force
-    real(rk) :: correction = 0.0_rk !< that the out-of-balance still asks for, over the increment
-    integer :: worst_point = 0 !< of the joints, where the out-of-balance is largest
-    integer :: worst_unknown = 0 !< where that of inelastic solids is largest, when joints agree
+    real(rk) :: penetration = 0.0_rk !< largest of points in contact, over the admissible one
+    logical :: gives_up = .false. !< the penetration does not decrease
+    logical :: has_held_switches = .false. !< of laws with discontinuous stress (theory.md, 12)
+    real(rk) :: residual = 0.0_rk !< norm of the residual forces over the reference force
+    real(rk) :: correction = 0.0_rk !< Newton correction for the residual, over the increment
+    integer :: worst_point = 0 !< joint point with the largest residual
+    integer :: worst_unknown = 0 !< of the largest residual of inelastic solids
     real(rk), allocatable :: history(:) !< residuals of the iterations on inelastic solids
-    real(rk) :: size_ratio = 1.0_rk !< of the increment that a material asks for, over this one
-    character(:), allocatable :: failure !< why a material, or water, asks for a smaller one
+    real(rk) :: size_ratio = 1.0_rk !< requested by a material, over this increment
+    character(:), allocatable :: failure !< why a material or uplift requests a smaller increment
   contains
     procedure :: own_iterations
   end type balance_outcome
@@ -53,16 +53,16 @@ module equilibrium
     type(jump_operator) :: operator !< of the joints
     real(rk) :: weight = 1.0_rk !< of the joint forces
     integer :: num_factorisations = 0
-    !> Of the first matrix with all joints closed (matrix_condition); 0 without joints
+    !> Condition number of the first matrix with all joints closed; 0 without joints
     real(rk) :: condition = 0.0_rk
-    type(ledger) :: costs !< a copy: it books in the ledger of the run
+    type(ledger) :: costs !< a copy that books in the ledger of the run
   contains
     procedure(prepare_matrix), deferred :: prepare_matrix
     procedure(solve_balance), deferred :: solve_balance
   end type equilibrium_solver
 
   abstract interface
-    !> Takes a new K_eff and weight: after a change of the increment's size.
+    !> Factors a new K_eff, after a change of the increment size.
     subroutine prepare_matrix(self, matrix, values, weight, joints, operator, error)
       import :: equilibrium_solver, pattern, rk, joint, jump_operator, error_type
       implicit none
@@ -75,7 +75,7 @@ module equilibrium
       type(error_type), allocatable, intent(out) :: error
     end subroutine prepare_matrix
 
-    !> Solves the balance. An iteration that does not converge is no error.
+    !> Solves the equilibrium. An iteration without convergence is not an error.
     subroutine solve_balance(self, balance, joints, old, new, x, outcome, error)
       import :: equilibrium_solver, force_balance, balance_outcome, rk, joint, joint_state, &
         error_type
@@ -93,7 +93,7 @@ module equilibrium
 
 contains
 
-  !> Iterations as they count for the size of increments: those of the first pass.
+  !> Iterations of the first pass, for the control of the increment size.
   pure integer function own_iterations(self) result(iterations)
     class(balance_outcome), intent(in) :: self
     iterations = self%iterations

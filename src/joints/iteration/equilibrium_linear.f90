@@ -1,5 +1,4 @@
-!> The balance without joints: one solve with the factor, no iteration. The matrix may be a tangent
-!> that is not symmetric.
+!> Equilibrium without joints: one solve, no iteration. The matrix may be unsymmetric.
 module equilibrium_linear
   use kinds, only: rk
   use errors, only: error_type
@@ -16,7 +15,7 @@ module equilibrium_linear
 
   type, extends(equilibrium_solver) :: linear_equilibrium
     class(equation_solver), allocatable :: unsymmetric_factor
-    logical :: is_unsymmetric = .false. !< the last matrix was
+    logical :: is_unsymmetric = .false. !< of the last matrix
   contains
     procedure :: prepare_matrix, solve_balance
   end type linear_equilibrium

@@ -1,5 +1,5 @@
-!> The compliance of a factored structure on the points of its joints, G = B K_0^-1 B^T, and the
-!> scale of the friction iteration that follows from it.
+!> Compliance of the structure at the points of its joints, G = B K_0^-1 B^T, and the friction
+!> scale r that follows from G.
 module joint_compliance
   use kinds, only: rk
   use errors, only: error_type
@@ -12,16 +12,16 @@ module joint_compliance
   public :: find_compliance, find_friction_scale
 
   integer, parameter :: block_size = 48 !< right-hand sides solved at once
-  !> r over the structure's own stiffness, for sliding together (theory.md, 2.3): from 1 on, a block
-  !> that turns round is thrown from slip to slip.
+  !> r over the stiffness of the structure for common sliding (theory.md, 2.3). From 1 on, the
+  !> iteration of a block that reverses its sliding oscillates.
   real(rk), parameter :: scale_factor = 0.8_rk
-  !> Part of the joint's stiffness that is kept when its own is taken out of G, so that a block held
-  !> by nothing but its joints has a stiffness too.
+  !> Fraction of k_ref that stays in G when k_ref is removed, so that a block held by joints alone
+  !> has a stiffness.
   real(rk), parameter :: kept_stiffness = 1.0e-6_rk
 
 contains
 
-  !> G by blocks of solves with the factor.
+  !> Computes G by solves with blocks of right-hand sides.
   subroutine find_compliance(factor, operator, num_free, compliance, error)
     class(equation_solver), intent(inout) :: factor !< of K_0
     type(jump_operator), intent(in) :: operator
@@ -73,9 +73,9 @@ contains
     end do
   end subroutine apply_rows
 
-  !> r of the augmented friction per area: a part of the structure's own tangential stiffness at
-  !> each point when all points slide at once, and alone; never more than the joint's own.
-  !> The structure alone, without joints, has the compliance G (I - W k_ref G)^-1, W = weight*area.
+  !> r of the augmented friction per area: a fraction of the tangential stiffness of the structure
+  !> when all points slide together, and when one slides alone; at most k_t of the joint.
+  !> Without joints the structure has the compliance G (I - W k_ref G)^-1, W = weight*area.
   subroutine find_friction_scale(compliance, operator, k_ref, weight, friction_scale)
     real(rk), intent(in) :: compliance(:, :) !< G with the closed joints [m/N]
     type(jump_operator), intent(in) :: operator
@@ -114,7 +114,7 @@ contains
     end do
   end subroutine find_friction_scale
 
-  !> r that goes with the compliance in two directions.
+  !> r for a compliance in two directions.
   pure real(rk) function scale_for(flexibility, most) result(friction_scale)
     real(rk), intent(in) :: flexibility !< [m/Pa]
     real(rk), intent(in) :: most !< [Pa/m]

@@ -12,7 +12,7 @@ module joint_forces
   public :: evaluate_joints, gather_tractions, gather_jumps, gather_gaps, linear_tractions
   public :: sum_joint_work
 
-  !> What the laws say at a trial jump, all points of all joints in one row.
+  !> Jumps, tractions and tangents of all points of all joints in one row.
   type :: joint_field
     real(rk), allocatable :: gap(:) !< (points) at the start, with the shift of the contact [m]
     type(contact_multiplier) :: contact
@@ -21,19 +21,19 @@ module joint_forces
     real(rk), allocatable :: friction_scale(:) !< (points) r of the augmented form [Pa/m]
     real(rk), allocatable :: own_friction_scale(:) !< (points) r of a point that slides alone [Pa/m]
     real(rk), allocatable :: shared_friction_scale(:) !< (points) r of all points together [Pa/m]
-    real(rk), allocatable :: traction(:, :) !< (3, points) the laws' own [Pa]
+    real(rk), allocatable :: traction(:, :) !< (3, points) of the laws [Pa]
     real(rk), allocatable :: iterate(:, :) !< (3, points) of the augmented form [Pa]
     real(rk), allocatable :: tangent(:, :, :) !< (3, 3, points) [Pa/m]
     logical, allocatable :: is_open(:) !< (points) as the laws report it
-    logical, allocatable :: was_open(:) !< (points) at the linearisation before
-    integer, allocatable :: num_openings(:) !< (points) within the increment's iteration
-    real(rk), allocatable :: response(:, :) !< (3, points) jumps by the balance as linearised [m]
-    real(rk), allocatable :: start_jump(:, :) !< (3, points) of the converged state before [m]
-    real(rk), allocatable :: start_spring(:, :) !< (3, points) its traction over k_ref [m]
+    logical, allocatable :: was_open(:) !< (points) at the previous linearisation
+    integer, allocatable :: num_openings(:) !< (points) transitions to open in this increment
+    real(rk), allocatable :: response(:, :) !< (3, points) jumps of the linearised equilibrium [m]
+    real(rk), allocatable :: start_jump(:, :) !< (3, points) of the last converged state [m]
+    real(rk), allocatable :: start_spring(:, :) !< (3, points) traction there over k_ref [m]
     real(rk), allocatable :: step(:, :) !< (3, points) of the jumps in the last iteration [m]
     real(rk), allocatable :: multiplier_step(:, :) !< (2, points) [Pa]
     real(rk) :: last_residual = huge(1.0_rk)
-    real(rk) :: start_force = 0.0_rk !< 2-norm of area*traction of the converged state [N]
+    real(rk) :: start_force = 0.0_rk !< 2-norm of area*traction in the last converged state [N]
     real(rk) :: bulk_force = 0.0_rk !< reference force of the bulk [N]
   end type joint_field
 
@@ -44,7 +44,7 @@ module joint_forces
 
 contains
 
-  !> Histories of joints that have not moved yet.
+  !> Initial histories of joints.
   subroutine start_joints(joints, states)
     type(joint), intent(in) :: joints(:)
     type(joint_state), allocatable, intent(out) :: states(:)
@@ -93,7 +93,7 @@ contains
     call gather_tractions(operator, new, field%traction)
   end subroutine evaluate_joints
 
-  !> The laws' tractions of all points.
+  !> Tractions of the laws at all points.
   subroutine gather_tractions(operator, states, traction)
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: states(:)
@@ -104,7 +104,7 @@ contains
     end do
   end subroutine gather_tractions
 
-  !> The gaps of all points, with the shifts of their contact.
+  !> Gaps of all points, with the shifts of the contact augmentation.
   subroutine gather_gaps(operator, states, gap)
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: states(:)
@@ -117,7 +117,7 @@ contains
     end do
   end subroutine gather_gaps
 
-  !> The jumps of all points.
+  !> Jumps of all points.
   subroutine gather_jumps(operator, states, jump)
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: states(:)
@@ -128,7 +128,7 @@ contains
     end do
   end subroutine gather_jumps
 
-  !> The tractions that a linearised iteration has solved for: iterate + tangent*correction.
+  !> Tractions of the linearised equilibrium: iterate + tangent*correction.
   pure subroutine linear_tractions(field, correction, traction)
     type(joint_field), intent(in) :: field
     real(rk), intent(in) :: correction(:, :) !< (3, points) of the jumps [m]

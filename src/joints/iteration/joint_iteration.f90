@@ -1,5 +1,5 @@
-!> What the iterations on joint forces share, condensed or full: the linearisation of the laws about
-!> a trial jump and the measure of what is still out of balance.
+!> Common parts of the condensed and the full iteration on joint forces: linearisation of the laws
+!> at a trial jump, residual and correction.
 module joint_iteration
   use kinds, only: rk
   use global_vectors, only: norm, distance, total
@@ -15,40 +15,38 @@ module joint_iteration
   public :: start_iteration, take_step, linearise_next, excess_traction, closed_tangent
   public :: measure_residual, measure_correction, augment_contact
 
-  !> Stiffness left to open and sliding points in the iteration matrix, over the closed joint's: a
-  !> block that touches nothing for an iterate moves far, but stays in reach. The balance itself is
-  !> judged without it.
+  !> Stiffness of open and sliding points in the iteration matrix, relative to k_ref. It limits the
+  !> motion of a block that has no contact in one iterate. The residual does not contain it.
   real(rk), parameter :: stiffness_floor = 1.0e-10_rk
-  !> From this iteration on points that slide another way than their multiplier get a larger r, up
-  !> to that of a point which slides alone: r for sliding together turns a single one too slowly.
+  !> From this iteration on r is raised where the friction traction and its multiplier differ in
+  !> direction, up to the r of a point that slides alone. The r of common sliding changes the
+  !> direction at a single point too slowly.
   integer, parameter :: patience_with_direction = 4
-  real(rk), parameter :: same_friction = 0.1_rk !< tractions that differ less go the same way
+  real(rk), parameter :: same_friction = 0.1_rk !< smaller differences are the same direction
   real(rk), parameter :: scale_growth = 10.0_rk
-  !> From this iteration on friction does not follow the pressure of the next iterate. Where a block
-  !> stands on an edge, sliding can press it on as fast as it is pushed up, and the iteration loses
-  !> its way; with the pressure of the last iterate each one is well posed. Near a solution, below
-  !> the residual `near_solution`, it does again.
+  !> From this iteration on the friction limit uses the pressure of the last iterate, unless the
+  !> residual is below `near_solution`. A block on its edge can generate its own contact pressure by
+  !> sliding; the coupled iteration then has no solution.
   integer, parameter :: patience_with_friction = 8
   real(rk), parameter :: near_solution = 1.0e-2_rk
-  !> From this iteration on, one that has not brought the residual down by `sufficient_decrease` is
-  !> linearised halfway: a cycle between two states of some points ends there.
+  !> From this iteration on the laws are linearised at half the step where the residual has not
+  !> decreased by `sufficient_decrease`. This ends cycles between two states of some points.
   integer, parameter :: patience = 8
   real(rk), parameter :: sufficient_decrease = 0.5_rk
-  !> Joint forces below this part of the bulk's largest force are measured against the latter.
+  !> Floor of the joint forces in the residual, as a fraction of the reference force of the bulk.
   real(rk), parameter :: smallest_share = 1.0e-6_rk
-  !> Passes of the augmented Lagrangian in an increment. It takes some 5 where the structure is as
-  !> stiff as the contact.
+  !> Most passes of the augmented Lagrangian in an increment. About 5 are needed where the structure
+  !> is as stiff as the contact.
   integer, parameter :: most_augmentations = 25
-  !> An increment of the jumps below this part of the jumps is measured against the latter.
+  !> Floor of the increment of the jumps, as a fraction of the jumps.
   real(rk), parameter :: smallest_increment = 1.0e-3_rk
 
-  !> An out-of-balance below this part of the joint forces is round-off: sums of some hundred
-  !> products of full precision.
+  !> A residual below this is round-off: sums of some hundred products in double precision.
   real(rk), parameter :: smallest_residual = 1.0e-13_rk
 
 contains
 
-  !> Linearises the laws about the guess: as they are, or all closed and sticking.
+  !> Linearises the laws at the guess, or takes all joints as closed and sticking.
   subroutine start_iteration(balance, joints, operator, k_ref, friction_scale, old, field, new)
     type(force_balance), intent(in) :: balance
     type(joint), intent(in) :: joints(:)
@@ -90,7 +88,7 @@ contains
     field%iterate = k_ref*field%jump
   end subroutine start_iteration
 
-  !> Evaluates the laws and leaves a floor of stiffness where a joint is open or slides.
+  !> Evaluates the laws and adds the smallest stiffness where a joint is open or slides.
   subroutine linearise(joints, operator, old, k_ref, field, new)
     type(joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
@@ -111,7 +109,7 @@ contains
     end do
   end subroutine linearise
 
-  !> Goes to the solution of the linearised balance and evaluates the laws there.
+  !> Moves to the solution of the linearised equilibrium and evaluates the laws there.
   subroutine take_step(joints, operator, old, k_ref, correction, linear, field, new)
     type(joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
@@ -129,7 +127,7 @@ contains
     call linearise(joints, operator, old, k_ref, field, new)
   end subroutine take_step
 
-  !> Where the next iteration linearises, which is not always where the last one has ended.
+  !> Chooses the jumps of the next linearisation, which may differ from those of the last solution.
   subroutine linearise_next(joints, operator, old, k_ref, outcome, field, new)
     type(joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
@@ -156,7 +154,7 @@ contains
     field%last_residual = outcome%residual
   end subroutine linearise_next
 
-  !> Gives a larger r to points whose friction by the law is not the multiplier (theory.md, 2.3).
+  !> Raises r where the friction of the law differs from the multiplier (theory.md, 2.3).
   pure subroutine raise_friction_scale(field)
     type(joint_field), intent(inout) :: field
     integer :: p
@@ -164,12 +162,13 @@ contains
       associate (own => field%traction(2:3, p), last => field%multiplier(:, p))
         if (norm2(own - last) <= same_friction*max(norm2(own), norm2(last))) cycle
       end associate
-      field%friction_scale(p) = min(scale_growth*field%friction_scale(p), field%own_friction_scale(p))
+      field%friction_scale(p) = min(scale_growth*field%friction_scale(p), &
+                                    field%own_friction_scale(p))
     end do
   end subroutine raise_friction_scale
 
-  !> After a balance: where points in contact penetrate more than their law allows, their contact is
-  !> augmented and the laws are linearised anew at the balance found; it is not converged then.
+  !> Augments the contact where points penetrate more than their law allows. The laws are then
+  !> linearised at the equilibrium found, and the iteration continues.
   subroutine augment_contact(joints, operator, old, k_ref, field, new, outcome)
     type(joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
@@ -196,14 +195,14 @@ contains
     call linearise(joints, operator, old, k_ref, field, new)
   end subroutine augment_contact
 
-  !> Goes nearer to the contact where a point that was open has run through it. Without the joint's
-  !> resistance it went far too deep; friction would take that for pressure and stick. The point is
-  !> put where the joint carries what the structure's own stiffness would give, r times the depth
-  !> (the normal part of the augmented form).
+  !> Reduces the penetration of points that were open in the last linearisation. Without the
+  !> stiffness of the joint they penetrate far too deep, and the large pressure would make them
+  !> stick. The reduced penetration gives a pressure of r times the depth (the normal part of the
+  !> augmented form).
   pure subroutine approach_contact(k_ref, field, is_nearer)
     real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
     type(joint_field), intent(inout) :: field
-    logical, intent(out) :: is_nearer !< the laws have to be evaluated anew
+    logical, intent(out) :: is_nearer !< the laws must be evaluated again
     real(rk) :: depth
     integer :: p
     is_nearer = .false.
@@ -228,8 +227,8 @@ contains
     end do
   end function closed_tangent
 
-  !> What the closed joint would carry beyond the law, k_ref (v - offset) - t: the traction that is
-  !> moved to the right-hand side when k_ref stands on the left.
+  !> Traction of the closed joint beyond that of the law, k_ref (v - offset) - t. It enters the
+  !> right-hand side because k_ref is part of the matrix.
   pure function excess_traction(k_ref, jump, offset, traction) result(excess)
     real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
     real(rk), intent(in) :: jump(:, :), offset(:, :) !< (3, points) [m]
@@ -238,7 +237,7 @@ contains
     excess = k_ref*(jump - offset) - traction
   end function excess_traction
 
-  !> Joint forces out of balance, laws against linearised, over the joint forces' own size.
+  !> Residual: forces of the laws minus linearised forces, over the norm of the joint forces.
   subroutine measure_residual(operator, field, linear, outcome)
     type(jump_operator), intent(in) :: operator
     type(joint_field), intent(in) :: field !< at the new jumps
@@ -257,9 +256,9 @@ contains
     outcome%worst_point = maxloc(unbalance, 1)
   end subroutine measure_residual
 
-  !> The correction of the jumps that is still asked for, over their increment; decides convergence.
-  !> Where contact takes the jumps away, the springs' lengths are still a measure. An out-of-balance
-  !> of round-off asks for nothing, whatever it would move in a direction that nothing resists.
+  !> Remaining correction of the jumps over their increment; decides convergence. Where contact
+  !> prevents jumps, the increment of traction/k_ref is the measure. A residual of round-off always
+  !> counts as converged: where nothing resists, round-off gives a large correction.
   subroutine measure_correction(field, k_ref, correction, tolerance, outcome)
     type(joint_field), intent(in) :: field
     real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]

@@ -1,5 +1,5 @@
-!> The joints as one operator on the unknowns: jumps v = B q in local axes, three rows per point,
-!> and forces B^T (area t). A point with jump unknowns sees them alone: v = d exactly.
+!> All joints as one operator on the unknowns: jumps v = B q in local axes, three rows per point,
+!> and forces B^T (area t). At a point with jump unknowns d the rows of B are those of v = d.
 module joint_operator
   use kinds, only: rk
   use joint_points, only: joint
@@ -12,7 +12,7 @@ module joint_operator
   private
   public :: jump_operator, build_jump_operator
 
-  !> B by rows. Points of all joints stand one after the other.
+  !> B by rows, points of all joints one after the other.
   type :: jump_operator
     integer :: num_points = 0
     integer, allocatable :: first_point(:) !< (joints + 1)
@@ -26,7 +26,7 @@ module joint_operator
 
 contains
 
-  !> Makes B from the points of the joints and T. Points are counted through all nodal
+  !> Builds B from the points of the joints and T. Points are counted through all nodal
   !> joints, as in the numbering's `first_jump`.
   subroutine build_jump_operator(numbers, joints, operator)
     type(numbering), intent(in) :: numbers

@@ -35,7 +35,7 @@ contains
     end do
   end subroutine add_joint_stiffness
 
-  !> The three rows of a point as a dense matrix on the unknowns that it touches.
+  !> The three rows of a point as a dense matrix over its unknowns.
   subroutine gather_rows(start, unknown, coefficient, column, b)
     integer, intent(in) :: start(num_axes + 1) !< of each row in the lists that follow
     integer, intent(in) :: unknown(:)

@@ -1,7 +1,7 @@
-!> The end of the factor of K_0 = L L^T: what the joints work in (jumps, and the nodes that points
-!> without jumps see) is eliminated last and sees the rest of the structure through the Schur
-!> complement S = E E^T alone, E the end of L. So the compliance needs no solves, and Newton on the
-!> jumps fits between the two halves of one solve.
+!> Schur block of the factor of K_0 = L L^T. The unknowns of the joints (jumps, and nodes of points
+!> without jumps) are eliminated last. E, the last block of L, gives their Schur complement
+!> S = E E^T. The compliance then needs no solves, and Newton's method on the jumps runs between
+!> forward and backward substitution.
 module jump_block
   use kinds, only: rk
   use joint_rows, only: num_rows
@@ -23,7 +23,7 @@ module jump_block
 
 contains
 
-  !> Takes E where the factor ends with all that the joints work in.
+  !> Extracts E where all unknowns of the joints are eliminated last.
   subroutine extract_schur_block(factor, operator, num_free, num_last, jumps)
     class(equation_solver), intent(in) :: factor !< of K_0
     type(jump_operator), intent(in) :: operator
@@ -55,10 +55,10 @@ contains
     call gram(z, compliance)
   end subroutine schur_compliance
 
-  !> Writes the jumps that follow from half a solve among the unknowns.
+  !> Stores the jumps that follow from a forward substitution.
   subroutine store_jumps(self, half, x)
     class(jump_schur_block), intent(in) :: self
-    real(rk), intent(in) :: half(:) !< (free unknowns) in the order of elimination
+    real(rk), intent(in) :: half(:) !< (free unknowns) after forward substitution
     real(rk), intent(inout) :: x(:) !< (all unknowns)
     real(rk) :: d(size(self%unknown), 1)
     d(:, 1) = half(size(half) - size(d, 1) + 1:)
@@ -66,11 +66,11 @@ contains
     x(self%unknown) = d(:, 1)
   end subroutine store_jumps
 
-  !> Adds forces on the jumps to half a solve.
+  !> Adds forces on the jumps to a forward substitution.
   subroutine add_jump_forces(self, force, half)
     class(jump_schur_block), intent(in) :: self
     real(rk), intent(in) :: force(:) !< (all unknowns) [N]
-    real(rk), intent(inout) :: half(:) !< (free unknowns) in the order of elimination
+    real(rk), intent(inout) :: half(:) !< (free unknowns) after forward substitution
     real(rk) :: f(size(self%unknown), 1)
     f(:, 1) = force(self%unknown)
     call solve_lower(self%lower, f)

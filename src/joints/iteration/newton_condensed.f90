@@ -1,9 +1,9 @@
 !> Newton's iteration on the jumps alone, through the compliance G = B K_0^-1 B^T of the structure
 !> with closed joints (theory.md, (8.1)).
 !>
-!> With D = weight*area*(k_ref - tangent) a correction d of the jumps answers to
-!>   d = r + G D d,   r = what the balance gives with the closed joint's stiffness.
-!> Only rows where D differs from zero ask for a solution: z = D d there, (I - D G) z = D r.
+!> With D = weight*area*(k_ref - tangent) a correction d of the jumps satisfies
+!>   d = r + G D d,   r the correction with closed joints.
+!> The equations are solved for z = D d on the rows where D is not zero: (I - D G) z = D r.
 !> The iterates are those of full Newton.
 module newton_condensed
   use kinds, only: rk
@@ -39,15 +39,15 @@ module newton_condensed
 
 contains
 
-  !> Iterates until the laws agree with the balance. On return `field%jump` and `field%iterate` hold
-  !> the jumps and the tractions of the balance as solved, `new` the laws at these jumps.
+  !> Iterates until residual and correction are within the tolerances. On return `field%jump` and
+  !> `field%iterate` hold the jumps and tractions of the solution, `new` the histories there.
   subroutine iterate_on_jumps(self, controls, joints, operator, old, field, new, outcome)
     type(condensed_joints), intent(in) :: self
     type(step_controls), intent(in) :: controls
     type(joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: old(:)
-    type(joint_field), intent(inout) :: field !< linearised; its response is that of k_ref
+    type(joint_field), intent(inout) :: field !< linearised; its response is for k_ref
     type(joint_state), intent(inout) :: new(:)
     type(balance_outcome), intent(out) :: outcome
     type(changed_tangent) :: tangent
@@ -55,7 +55,7 @@ contains
     do while (outcome%iterations - outcome%pass_start < controls%max_iterations)
       outcome%iterations = outcome%iterations + 1
       call factorise_change(self, operator%area, field%tangent, tangent)
-      if (tangent%factor%is_singular) return ! a smaller increment may pass by such an iterate
+      if (tangent%factor%is_singular) return ! a smaller increment may avoid it
       call solve_correction(self, tangent, field%response - field%jump, correction)
       call linear_tractions(field, correction, linear)
       call take_step(joints, operator, old, self%k_ref, correction, linear, field, new)
@@ -75,7 +75,7 @@ contains
     end do
     field%iterate = linear
   contains
-    !> Jumps that answer to tractions other than those the balance was solved with.
+    !> Jumps caused by tractions beyond those of the linearised equilibrium.
     function excess_jump(traction) result(answer)
       real(rk), intent(in) :: traction(:, :) !< (3, points) [Pa]
       real(rk) :: answer(3, size(traction, 2)) !< [m]
@@ -87,14 +87,14 @@ contains
         i = axis_of(row)
         force = linear(i, p) - traction(i, p)
         negligible = roundoff*(abs(linear(i, p)) + abs(traction(i, p)))
-        if (abs(force) <= negligible) cycle ! most points: their tangent is their law
+        if (abs(force) <= negligible) cycle ! most points are linear
         flat = flat + self%weight*operator%area(p)*force*self%compliance(:, row)
       end do
       answer = reshape(flat, shape(answer))
     end function excess_jump
   end subroutine iterate_on_jumps
 
-  !> Picks the rows whose tangent differs from k_ref and factors I - D G on them.
+  !> Selects the rows whose tangent differs from k_ref and factors I - D G on them.
   subroutine factorise_change(self, area, tangent, changed)
     type(condensed_joints), intent(in) :: self
     real(rk), intent(in) :: area(:) !< (points) [m2]

@@ -1,4 +1,4 @@
-!> The balance with joints by full Newton: the tangent of the joints is assembled and factored in
+!> Equilibrium with joints by full Newton: the tangent of the joints is assembled and factored in
 !> each iteration, by CHOLMOD when it is symmetric and by UMFPACK when friction slides or the
 !> tangent of the solids is not symmetric.
 module newton_full
@@ -22,12 +22,12 @@ module newton_full
 
   type, extends(equilibrium_solver) :: full_equilibrium
     type(pattern) :: matrix !< of K_eff: lower triangle, or both
-    type(pattern) :: full_matrix !< both triangles, once they were needed
+    type(pattern) :: full_matrix !< both triangles, built when first needed
     class(equation_solver), allocatable :: unsymmetric_factor
     real(rk), allocatable :: values(:) !< K_eff
     real(rk), allocatable :: k_ref(:, :) !< (3, points) k_ref [Pa/m]
     real(rk), allocatable :: friction_scale(:, :) !< (2, points) r of the augmented friction [Pa/m]
-    logical :: is_unsymmetric = .false. !< the last tangent was
+    logical :: is_unsymmetric = .false. !< of the last tangent
   contains
     procedure :: prepare_matrix, solve_balance
     procedure, private :: factorise_tangent, back_substitute
@@ -35,8 +35,8 @@ module newton_full
 
 contains
 
-  !> Keeps K_eff and finds r, with one factorisation for the closed joints. A tangent that is not
-  !> symmetric comes later, and leaves r as it is.
+  !> Stores K_eff and computes r, with one factorisation for the closed joints. An unsymmetric
+  !> tangent leaves r unchanged.
   subroutine prepare_matrix(self, matrix, values, weight, joints, operator, error)
     class(full_equilibrium), intent(inout) :: self
     type(pattern), intent(in) :: matrix
@@ -89,7 +89,7 @@ contains
       outcome%iterations = outcome%iterations + 1
       call self%factorise_tangent(self%operator, field%tangent, error)
       if (allocated(error)) then
-        ! A singular tangent belongs to this iterate: a smaller increment may pass by it.
+        ! A smaller increment may avoid a singular tangent.
         if (error%exit_code == analysis_failed) deallocate (error)
         return
       end if

@@ -1,6 +1,5 @@
-!> Small sliding: segments between faces of different meshes are built once, on the faces as meshed.
-!> A point that slips farther than a facet faces another part of the other face; results would be
-!> those of another structure.
+!> Small sliding: segments between faces of different meshes are built once, on the undeformed
+!> faces. A slip of more than a facet invalidates them, so that the analysis stops.
 module admissible_slip
   use kinds, only: rk
   use errors, only: error_type, raise
@@ -13,7 +12,7 @@ module admissible_slip
 
 contains
 
-  !> Names the point that has gone farthest beyond its reach, closed or open.
+  !> Reports the point with the largest ratio of slip to admissible slip, if above 1.
   subroutine check_slip(joints, states, time, error)
     type(joint), intent(in) :: joints(:)
     type(joint_state), intent(in) :: states(:)
@@ -42,7 +41,7 @@ contains
     end associate
   end subroutine check_slip
 
-  !> How far the two sides have moved along the joint [m].
+  !> Tangential relative displacement of the faces [m].
   pure real(rk) function slip_at(now, p) result(slip)
     type(joint_state), intent(in) :: now
     integer, intent(in) :: p

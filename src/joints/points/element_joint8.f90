@@ -1,9 +1,9 @@
-!> JOINT8: two faces of four nodes that lie on each other, nodes 1-4 master and 5-8 slave.
+!> JOINT8: two coincident faces of four nodes, nodes 1-4 master and 5-8 slave.
 !>
-!> The normal points from master to slave: out of the solid behind the master face, into the one
-!> behind the slave face; where neither has a solid, by the right-hand rule of nodes 1-2-3-4.
-!> Nodal integration (Lobatto) makes one point of each pair of nodes, with the area that belongs to
-!> it; it keeps the traction of stiff joints free of the oscillation that Gauss points bring.
+!> The normal points from master to slave, out of the solid of the master face and into the solid
+!> of the slave face. Without solids it follows the right-hand rule of nodes 1-2-3-4.
+!> Nodal integration (Lobatto) has one point for each pair of nodes, with its tributary area. It
+!> avoids the oscillation of tractions that Gauss points cause in stiff joints.
 module element_joint8
   use dam_mesh, only: mesh
   use element_catalogue, only: is_solid
@@ -17,10 +17,10 @@ module element_joint8
   private
   public :: build_joint_points, find_attached_solids
 
-  !> Two nodes of a pair may lie apart by this part of the facet's longer diagonal.
+  !> Largest distance of two nodes of a pair, over the longer diagonal of the facet.
   real(rk), parameter :: coincidence = 1.0e-4_rk
 
-  !> Points of two faces that coincide, while they are gathered.
+  !> Points of two coincident faces while they are collected.
   type :: face_points
     integer :: num_points = 0
     integer, allocatable :: master(:, :), slave(:, :) !< (nodes a side, capacity)
@@ -32,7 +32,7 @@ module element_joint8
 
 contains
 
-  !> Fills the geometry of a joint; its name and law are the caller's.
+  !> Sets the geometry of a joint; the caller sets its name and law.
   !> Fails when a pair of nodes does not coincide, a facet has no area, or the solids of both sides
   !> lie on one side.
   subroutine build_joint_points(model, elements, is_nodal, built, error)
@@ -58,7 +58,7 @@ contains
     call draw_elements(model, elements, side, built)
   end subroutine build_joint_points
 
-  !> The solids behind the faces of JOINT8 elements, and which way the normal goes.
+  !> The solids of the faces of JOINT8 elements, and the sense of their normals.
   subroutine find_attached_solids(model, elements, solid, side)
     type(mesh), intent(in) :: model
     integer, intent(in) :: elements(:) !< positions of JOINT8 elements
@@ -93,13 +93,13 @@ contains
     where (way(1, :) == 0 .and. way(2, :) == 0) side = 1
   end subroutine find_attached_solids
 
-  !> Notes that a solid's face lies on a joint's; a face between two solids tells nothing.
+  !> Records a solid whose face lies on that of a joint. A face between two solids gives no sense.
   subroutine attach(model, element, face, joint_element, solid, way)
     type(mesh), intent(in) :: model
     integer, intent(in) :: element, face !< the solid and its face
     integer, intent(in) :: joint_element
     integer, intent(inout) :: solid !< found before, 0 for none
-    integer, intent(inout) :: way !< 1: the solid's normal goes with nodes 1-2-3-4 of the joint
+    integer, intent(inout) :: way !< 1: along the normal by nodes 1-2-3-4, -1: against, 0: unknown
     real(rk) :: along
     along = dot_product(face_vector(model%x(:, face_nodes(model, element, face))), &
                         face_vector(model%x(:, model%nodes(1:4, joint_element))))
@@ -111,7 +111,7 @@ contains
     solid = element
   end subroutine attach
 
-  !> A sound facet has an area, pairs that coincide, and solids on its two sides.
+  !> Checks the area of a facet, the distance of its pairs, and the sides of its solids.
   subroutine check_facet(model, element, side, error)
     type(mesh), intent(in) :: model
     integer, intent(in) :: element !< position
@@ -156,7 +156,7 @@ contains
     length_text = trim(adjustl(buffer))
   end function length_text
 
-  !> One point for each pair of nodes and plane: areas add up, normals are averaged.
+  !> One point for each pair of nodes and plane: areas are summed, normals averaged.
   subroutine gather_pairs(model, elements, side, built)
     type(mesh), intent(in) :: model
     integer, intent(in) :: elements(:), side(:)
@@ -197,7 +197,7 @@ contains
     call close_points(points, built)
   end subroutine gather_pairs
 
-  !> Area vectors that belong to the corners of a facet: integrals of N_a n dA [m2].
+  !> Tributary area vectors of the corners of a facet: integrals of N_a n dA [m2].
   pure function corner_shares(x) result(share)
     real(rk), intent(in) :: x(3, 4) !< [m]
     real(rk) :: share(3, 4)
@@ -212,7 +212,7 @@ contains
     end do
   end function corner_shares
 
-  !> Four points an element, each seeing the four pairs.
+  !> Four points an element, each with the nodes of all four pairs.
   subroutine gather_gauss_points(model, elements, side, built)
     type(mesh), intent(in) :: model
     integer, intent(in) :: elements(:), side(:)
@@ -241,7 +241,7 @@ contains
     call close_points(points, built)
   end subroutine gather_gauss_points
 
-  !> Room for points.
+  !> Allocates points.
   subroutine open_points(nodes_a_side, capacity, points)
     integer, intent(in) :: nodes_a_side, capacity
     type(face_points), intent(out) :: points
@@ -251,7 +251,7 @@ contains
               source=0.0_rk)
   end subroutine open_points
 
-  !> Cuts the room to size and makes the local axes out of the normals.
+  !> Trims the lists and computes the local axes from the normals.
   subroutine close_points(points, built)
     type(face_points), intent(in) :: points
     type(joint), intent(inout) :: built

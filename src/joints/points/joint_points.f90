@@ -1,12 +1,12 @@
-!> The points of a joint: where its two faces lie on each other, and how they see the nodes.
+!> Points of a joint: their places, and their relative displacements from the nodes.
 !>
 !> The relative displacement of point p in local axes is
 !>   jump = rotation(:, :, p) * sum_k weight(k) * u(node(k)),   k = first(p) .. first(p + 1) - 1,
-!> nodes of the slave face first (their weights add up to 1), then, from first_master(p) on, those
-!> of the master face (their weights add up to -1). Integrated at the nodes a point belongs to one
-!> node of the slave face, the first of its list: the other end is a node (JOINT8) or a mortar
-!> projection of the master face (surfaces of different meshes). It sees no other slave node but
-!> those beside it that follow others of the face by a tie.
+!> with nodes of the slave face first (sum of weights 1), then nodes of the master face from
+!> first_master(p) on (sum of weights -1). With nodal integration a point belongs to one node of
+!> the slave face, the first of its list. Its other end is a node (JOINT8) or a mortar projection
+!> of the master face (different meshes). Further slave nodes occur only where neighbours of the
+!> node are tied to other nodes of the face.
 module joint_points
   use dam_mesh, only: mesh
   use guest_type, only: guest
@@ -19,31 +19,30 @@ module joint_points
   public :: joint, joint_cells, list_faces, relative_displacement, draw_elements, local_axes, &
             share_a_plane
 
-  !> Facets that share a node make one point of it unless their normals differ by more than 30
-  !> degrees.
+  !> Facets with a common node share its point unless their normals differ by more than 30 degrees.
   real(rk), parameter :: same_plane = 0.5_rk*sqrt(3.0_rk)
 
-  !> A normal this close to the vertical takes slip 1 along x.
+  !> A normal closer than this to the vertical has slip 1 along x.
   real(rk), parameter :: vertical = 1.0e-6_rk
 
-  !> What results draw of a joint: polygons on its face. A corner lies at, moves with and shows the
-  !> values of sum weight * node, over nodes that points of the joint belong to.
+  !> Polygons on the face of a joint for the results. Place, motion and values of a corner are sums
+  !> weight * node over nodes with points of the joint.
   type :: joint_cells
     integer, allocatable :: first(:) !< (cells + 1) corners of each cell
     integer, allocatable :: corner(:) !< numbers of corners, right-hand rule about the normal
     integer, allocatable :: element(:) !< (cells) JOINT8 or the solid behind the slave face
-    integer, allocatable :: first_node(:) !< (corners + 1)
+    integer, allocatable :: first_node(:) !< (corners + 1) nodes of each corner
     integer, allocatable :: node(:) !< positions in the mesh
     real(rk), allocatable :: weight(:) !< they add up to 1 at each corner
   end type joint_cells
 
   type, extends(guest) :: joint
     class(traction_law), allocatable :: law
-    logical :: is_nodal = .true. !< each point belongs to a slave node, else to a place between them
+    logical :: is_nodal = .true. !< points at the slave nodes, else at Gauss points
     logical :: is_matching = .true. !< made of JOINT8 elements, else of two surfaces
     integer :: num_points = 0
     integer, allocatable :: first(:) !< (points + 1) nodes of each point
-    integer, allocatable :: first_master(:) !< (points) the first of them on the master face
+    integer, allocatable :: first_master(:) !< (points) the first master node of each
     integer, allocatable :: node(:) !< positions in the mesh
     real(rk), allocatable :: weight(:) !< slave positive in sum, master negative
     real(rk), allocatable :: x(:, :) !< (3, points) [m]
@@ -68,8 +67,8 @@ contains
     end do
   end subroutine add_cells
 
-  !> Gives a joint points that see as many nodes on the slave as on the master face, with the same
-  !> weights: those of two faces that coincide.
+  !> Points of two coincident faces: as many slave as master nodes a point, with the same
+  !> weights.
   pure subroutine list_faces(slave, master, shape, built)
     integer, intent(in) :: slave(:, :), master(:, :) !< (nodes a side, points) positions
     real(rk), intent(in) :: shape(:, :) !< (nodes a side, points)
@@ -90,12 +89,12 @@ contains
     built%admissible_slip = spread(huge(1.0_rk), 1, built%num_points)
   end subroutine list_faces
 
-  !> Slave minus master at a point, in global axes.
+  !> Relative displacement of the faces at a point.
   pure function relative_displacement(seam, p, u) result(difference)
     type(joint), intent(in) :: seam
     integer, intent(in) :: p !< point
     real(rk), intent(in) :: u(:, :) !< (3, nodes)
-    real(rk) :: difference(3) !< slave minus master, in global axes
+    real(rk) :: difference(3) !< slave minus master, global axes
     integer :: k
     difference = 0.0_rk
     do k = seam%first(p), seam%first(p + 1) - 1
@@ -154,7 +153,7 @@ contains
     rotation(3, :) = cross_product(n, s)
   end function local_axes
 
-  !> Whether two normals, of any length, are at most 30 degrees apart.
+  !> Whether two normals, of any length, differ by at most 30 degrees.
   pure logical function share_a_plane(one, other)
     real(rk), intent(in) :: one(3), other(3)
     share_a_plane = dot_product(one, other) >= same_plane*norm2(one)*norm2(other)

@@ -1,4 +1,4 @@
-!> The procedure that understands a card, and the list of keywords it belongs to.
+!> The handler of a card, and the list of keywords.
 module keyword_handler
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
@@ -9,14 +9,14 @@ module keyword_handler
   public :: keyword_list, keyword_entry, card_handler, spec_maker
   public :: pass_nodes, pass_elements, pass_definitions, pass_rest
 
-  !> The deck is gone through in passes, so that nodes, elements and definitions (materials,
-  !> amplitudes, joint laws) may stand anywhere. Sets must stand above their use.
+  !> The cards are handled in passes, so that nodes, elements and definitions (materials,
+  !> amplitudes, joint laws) may be anywhere in the deck. Sets must be defined above their use.
   integer, parameter :: pass_nodes = 1, pass_elements = 2, pass_definitions = 3, pass_rest = 4
 
   !> How a keyword is handled.
   type :: keyword_entry
     integer :: pass = pass_rest
-    procedure(card_handler), pointer, nopass :: handle => null() !< null: no card of it is handled
+    procedure(card_handler), pointer, nopass :: handle => null() !< null: by the deck reader
   end type keyword_entry
 
   !> All keywords; `specs(i)` and `entries(i)` belong together.
@@ -30,7 +30,7 @@ module keyword_handler
   end type keyword_list
 
   abstract interface
-    !> Understands a card that agrees with its specification.
+    !> Handles a card that agrees with its specification.
     subroutine card_handler(this, model, faults)
       import :: card, draft, diagnostic_list
       implicit none
@@ -39,7 +39,7 @@ module keyword_handler
       type(diagnostic_list), intent(inout) :: faults
     end subroutine card_handler
 
-    !> Writes down what a keyword takes.
+    !> Sets the specification of a keyword.
     subroutine spec_maker(spec)
       import :: keyword
       implicit none
@@ -49,7 +49,7 @@ module keyword_handler
 
 contains
 
-  !> Adds a keyword to the list; without a handler where the reader of the text carries it out.
+  !> Adds a keyword to the list; without a handler if the deck reader handles its cards.
   subroutine add(self, describe, handle, pass)
     class(keyword_list), intent(inout) :: self
     procedure(spec_maker) :: describe

@@ -1,4 +1,4 @@
-!> The problem while the deck is read: what is known so far, and where it stood.
+!> The problem while the deck is read, with the places of its definitions.
 !>
 !> Handlers of keywords fill it one card after the other; `finish_model` turns it into the problem.
 module model_draft
@@ -20,7 +20,7 @@ module model_draft
   public :: section_request, law_request, joint_request, tie_request, interface_request
   public :: material_request, find_material_request, has_request
 
-  !> Where something stood: a card of the deck and one of its data lines (0: the keyword itself).
+  !> Place of a definition: a card of the deck and one of its data lines (0: the keyword line).
   type :: origin
     integer :: card = 0, line = 0
   end type origin
@@ -55,7 +55,7 @@ module model_draft
     character(:), allocatable :: name !< upper case
     integer :: slave = 0, master = 0 !< positions of surfaces
     real(rk) :: stiffness = 0.0_rk !< of springs, 0 for an exact tie [Pa/m]
-    logical :: adjusts = .false. !< slave nodes are moved onto what they follow
+    logical :: adjusts = .false. !< slave nodes are moved onto the master face
     type(origin) :: spot
   end type tie_request
 
@@ -63,7 +63,7 @@ module model_draft
   type :: interface_request
     character(:), allocatable :: name !< upper case
     integer, allocatable :: elements(:) !< positions of IFACE4 elements
-    integer :: surface = 0 !< position; 0: its fault is told
+    integer :: surface = 0 !< position; 0: its fault is reported
     real(rk) :: stiffness = 0.0_rk !< [Pa/m]; 0: from the solids behind the surface
     type(origin) :: spot
   end type interface_request
@@ -112,9 +112,9 @@ module model_draft
     integer, allocatable :: procedure_card(:) !< card of the procedure of each step
     integer :: current_procedure = 0 !< card of the procedure of the step being read
     real(rk) :: total_time = 0.0_rk !< at the start of the step [s]
-    logical :: has_new_output = .false. !< *NODE FILE and its like, given in this step
+    logical :: has_new_output = .false. !< *NODE FILE or a similar keyword in this step
     integer :: output_frequency = 1 !< of the last *OUTPUT
-    logical :: prints_given(3) = .false. !< *NODE, *EL, *JOINT PRINT stand in this step
+    logical :: prints_given(3) = .false. !< *NODE, *EL, *JOINT PRINT in this step
   contains
     procedure :: here
   end type draft
@@ -135,7 +135,7 @@ contains
   !> The place of a data line of the card being read.
   pure type(origin) function here(self, line)
     class(draft), intent(in) :: self
-    integer, intent(in) :: line !< 0: the keyword itself
+    integer, intent(in) :: line !< 0: the keyword line
     here%card = self%current
     here%line = line
   end function here
@@ -197,11 +197,11 @@ contains
     call move_alloc(longer, model%laws)
   end subroutine add_law
 
-  !> Puts a load into the problem's list, which grows by doubling; its position is `num_loads`.
+  !> Adds a load to the list of the problem, which grows by doubling, at position `num_loads`.
   subroutine add_load(model, item, name, family, target)
     type(draft), intent(inout) :: model
     class(load), allocatable, intent(inout) :: item !< moved into the list
-    character(*), intent(in) :: name !< for the log and the list of effects
+    character(*), intent(in) :: name !< in the log and the list of effects
     character(*), intent(in) :: family !< its keyword
     character(*), intent(in) :: target !< what it acts on
     type(load_slot), allocatable :: longer(:)

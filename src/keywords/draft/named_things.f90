@@ -1,5 +1,5 @@
-!> What a card refers to by id or name: nodes, elements, surfaces, amplitudes. Each asks for it at
-!> one place of the card and tells the fault there.
+!> References of a card by id or name: nodes, elements, surfaces, amplitudes. A fault is reported
+!> at the place of the reference.
 module named_things
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
@@ -13,7 +13,7 @@ module named_things
   public :: find_surface_name, find_surface_at, find_amplitude
   public :: set_names, surface_names, longest_name
 
-  integer, parameter :: longest_name = 80 !< letters of a name that are compared for 'did you mean'
+  integer, parameter :: longest_name = 80 !< letters of a name in the search for similar names
 
 contains
 
@@ -129,7 +129,7 @@ contains
     end do
   end function find_surface_name
 
-  !> Position of the surface named in a field, the first unless told; 0 after a fault.
+  !> Position of the surface named in a field, by default the first; 0 after a fault.
   subroutine find_surface_at(this, line, model, faults, found, field)
     type(card), intent(in) :: this
     integer, intent(in) :: line

@@ -1,4 +1,4 @@
-!> Opening and closing a step: what is carried over, and what a step at its end holds.
+!> Opens a step with the settings of the previous one, and closes it.
 module finish_step
   use kinds, only: rk
   use load_point, only: point_load
@@ -13,7 +13,7 @@ module finish_step
 
 contains
 
-  !> Begins a step with what stays from the one before: requests, controls, damping.
+  !> Opens a step with requests, controls and damping of the previous step.
   subroutine open_step(model)
     type(draft), intent(inout) :: model
     type(step) :: new
@@ -41,7 +41,7 @@ contains
     model%prints_given = .false.
   end subroutine open_step
 
-  !> Writes down all loads and supports at work and advances the books.
+  !> Stores all active loads and supports and advances the load book.
   subroutine close_step(model)
     type(draft), intent(inout) :: model
     logical :: is_perturbation
@@ -78,8 +78,9 @@ contains
     end do
   end subroutine collect_fixities
 
-  !> Point forces become at most two loads for a step without amplitude, the forces it starts with
-  !> (fading) and those it ends with (coming in), and one load for each amplitude.
+  !> Point forces without amplitude become two loads of the step: the initial forces, with a factor
+  !> that falls to 0, and the final forces, with a factor that rises to 1. Forces with an amplitude
+  !> become one load for each amplitude.
   subroutine collect_point_forces(model)
     type(draft), intent(inout) :: model
     real(rk), allocatable :: force(:, :)

@@ -12,11 +12,11 @@ module history_file
   character(*), parameter :: separators = ' ,;'//achar(9)//achar(13)
   integer, parameter :: num_at2_headers = 4 !< lines above the values of a PEER file
 
-  !> The numbers of a file in the order they stand.
+  !> Numbers of a file in their order.
   type :: number_file
     character(:), allocatable :: path
     real(rk), allocatable :: values(:)
-    integer, allocatable :: line(:) !< where each value stood
+    integer, allocatable :: line(:) !< line of each value
   end type number_file
 
 contains
@@ -25,7 +25,7 @@ contains
   subroutine read_numbers(path, num_headers, spot, faults, numbers)
     character(*), intent(in) :: path
     integer, intent(in) :: num_headers
-    type(place), intent(in) :: spot !< who names the file
+    type(place), intent(in) :: spot !< place of the file name in the deck
     type(diagnostic_list), intent(inout) :: faults
     type(number_file), intent(out) :: numbers
     character(:), allocatable :: line
@@ -99,13 +99,13 @@ contains
     end do
   end subroutine add_line
 
-  !> A word of a line of the file.
+  !> Place of a word in the file.
   pure function spot_in_file(path, number, first, last, line, named_at) result(spot)
     character(*), intent(in) :: path
     integer, intent(in) :: number !< of the line
     integer, intent(in) :: first, last !< letters
     character(*), intent(in) :: line
-    type(place), intent(in) :: named_at !< who names the file
+    type(place), intent(in) :: named_at !< place of the file name in the deck
     type(place) :: spot
     spot%file = path
     spot%line = number
@@ -119,7 +119,7 @@ contains
   !> 'NPTS= 1559, DT= .02000 SEC' or the older '1559 .0200 NPTS, DT'.
   subroutine read_at2_header(path, spot, faults, num_points, dt)
     character(*), intent(in) :: path
-    type(place), intent(in) :: spot !< who names the file
+    type(place), intent(in) :: spot !< place of the file name in the deck
     type(diagnostic_list), intent(inout) :: faults
     integer, intent(out) :: num_points
     real(rk), intent(out) :: dt !< [s]
@@ -128,7 +128,7 @@ contains
     num_points = 0
     dt = 0.0_rk
     open (newunit=unit, file=path, status='old', action='read', iostat=status)
-    if (status /= 0) return ! `read_numbers` tells it
+    if (status /= 0) return ! `read_numbers` reports it
     do i = 1, num_at2_headers
       call read_line(unit, line, status)
     end do
@@ -137,7 +137,8 @@ contains
     if (num_points > 0 .and. dt > 0.0_rk) return
     call faults%add(severity_error, &
                     spot_in_file(path, num_at2_headers, 1, len(line), line, spot), &
-                    'no PEER record', "'NPTS= <points>, DT= <seconds>' in the fourth line")
+                    'the file is not a PEER record', &
+                    "'NPTS= <points>, DT= <seconds>' in the fourth line")
   end subroutine read_at2_header
 
   !> The first integer and the number after it.

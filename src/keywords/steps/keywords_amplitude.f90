@@ -23,14 +23,14 @@ contains
     spec%name = 'AMPLITUDE'
     spec%family = 'load'
     spec%place = 'model'
-    spec%meaning = 'A history that scales loads, supports or the motion of the base. Straight '// &
-                   'between its points; outside them its end values hold. From data lines or '// &
+    spec%meaning = 'A history that scales loads, supports or the motion of the base. Linear '// &
+                   'between its points, constant outside them. From data lines or '// &
                    'from a file (INPUT, relative to the deck). VALUES and AT2 begin at time 0.'
     spec%example = '*AMPLITUDE, NAME=RAMP'//nl//'0., 0., 1., 1.'//nl// &
                    '*AMPLITUDE, NAME=QUAKE, INPUT=record.AT2, FORMAT=AT2, SCALE=9.81'
     allocate (spec%parameters, source=[ &
               field('NAME', kind_word, 'name of the history', is_required=.true.), &
-              field('TIME', kind_choice, 'what time counts', default='STEP TIME', &
+              field('TIME', kind_choice, 'clock of the history', default='STEP TIME', &
                     choices='STEP TIME | TOTAL TIME'), &
               field('INPUT', kind_text, 'file with the numbers, in place of data lines'), &
               field('FORMAT', kind_choice, 'time, value pairs; values DT apart; a PEER record', &
@@ -61,12 +61,12 @@ contains
     end do
     call collect_numbers(this, faults, numbers)
     if (faults%num_errors == num_before) call shape_history(this, numbers, faults, new)
-    if (.not. allocated(new%time)) new%time = [0.0_rk] ! the name exists, its faults are told
+    if (.not. allocated(new%time)) new%time = [0.0_rk] ! the name exists, its faults are reported
     if (.not. allocated(new%value)) new%value = [0.0_rk]
     model%scene%amplitudes = [model%scene%amplitudes, new]
   end subroutine read_amplitude
 
-  !> The numbers as they stand, from the card or from its file.
+  !> The numbers of the card or of its file.
   subroutine collect_numbers(this, faults, numbers)
     type(card), intent(in) :: this
     type(diagnostic_list), intent(inout) :: faults
@@ -76,7 +76,7 @@ contains
     if (this%has('INPUT')) then
       spot = this%place_of('INPUT')
       if (this%num_lines > 0) then
-        call this%fault_parameter(faults, 'INPUT', 'a file and data lines', 'one of them')
+        call this%fault_parameter(faults, 'INPUT', 'a file together with data lines', 'one of them')
         return
       end if
       num_headers = merge(num_at2_headers, 0, this%word('FORMAT') == 'AT2')
@@ -105,15 +105,15 @@ contains
     real(rk) :: dt
     integer :: i, num_points
     if (size(numbers%values) == 0 .and. this%has('INPUT')) then
-      call this%fault_parameter(faults, 'INPUT', 'no numbers in the file', 'a file of numbers')
+      call this%fault_parameter(faults, 'INPUT', 'the file has no numbers', 'a file of numbers')
       return
     else if (size(numbers%values) == 0) then
       call this%fault(faults, 'the amplitude is empty', 'data lines or a file with numbers')
       return
     end if
     if (this%has('DT') .and. this%word('FORMAT') /= 'VALUES') then
-      call this%fault_parameter(faults, 'DT', 'DT has no use for '//this%word('FORMAT'), &
-                                'FORMAT=VALUES with it')
+      call this%fault_parameter(faults, 'DT', 'DT has no effect with '//this%word('FORMAT'), &
+                                'DT only with FORMAT=VALUES')
     end if
     select case (this%word('FORMAT'))
     case ('PAIRS')
@@ -160,7 +160,7 @@ contains
     end do
   end subroutine shape_pairs
 
-  !> A time that does not ascend; `number` is its place among the numbers.
+  !> Fault of a time that does not ascend; `number` is its position among the numbers.
   subroutine fault_time(this, numbers, number, faults)
     type(card), intent(in) :: this
     type(number_file), intent(in) :: numbers

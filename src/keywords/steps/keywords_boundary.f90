@@ -31,7 +31,7 @@ contains
     spec%new_clears = .true.
     spec%checks_own_data = .true.
     allocate (spec%parameters, source=[ &
-              field('OP', kind_choice, 'keep what earlier steps have fixed, or clear it', &
+              field('OP', kind_choice, 'keep supports of earlier steps, or remove them', &
                     default='MOD', choices='MOD | NEW'), &
               field('AMPLITUDE', kind_word, 'history of the values')])
     allocate (spec%columns, source=[ &
@@ -90,7 +90,7 @@ contains
     last = first
     if (.not. this%is_empty_at(line, 3)) last = this%integer_at(line, 3)
     if (last < first) then
-      call this%fault_at(faults, line, 3, 'the last dof comes before the first', &
+      call this%fault_at(faults, line, 3, 'the last dof is below the first', &
                          'first dof <= last dof')
     end if
   end subroutine read_dofs
@@ -120,12 +120,12 @@ contains
       return
     end select
     if (this%num_fields(line) > 2) then
-      call this%fault_at(faults, line, 3, 'nothing follows the name of a support', &
+      call this%fault_at(faults, line, 3, 'a field after the name of a support', &
                          'node, '//this%word_at(line, 2))
     end if
   end subroutine read_support_name
 
-  !> The displacement; before the first step it is zero.
+  !> The displacement, which must be zero before the first step.
   subroutine read_value(this, line, is_in_step, faults, value)
     type(card), intent(in) :: this
     integer, intent(in) :: line

@@ -23,12 +23,12 @@ contains
     spec%example = '*CONTROLS, RESIDUAL=1e-8, ITERATIONS=25'
     spec%most_lines = 0
     allocate (spec%parameters, source=[ &
-              field('RESIDUAL', kind_real, 'out-of-balance over the reference force', '', &
+              field('RESIDUAL', kind_real, 'residual over the reference force', '', &
                     '1e-6', lowest=0.0_rk, highest=1.0_rk, excludes_lowest=.true.), &
               field('INCREMENT', kind_real, 'last correction over the increment', '', '1e-6', &
                     lowest=0.0_rk, highest=1.0_rk, excludes_lowest=.true.), &
-              field('ITERATIONS', kind_integer, 'most iterations before the increment is cut, '// &
-                    'five times as many with a matrix of the solids that is kept (TANGENT)', &
+              field('ITERATIONS', kind_integer, 'most iterations before the increment is cut; '// &
+                    'five times as many with a constant matrix of the solids (TANGENT)', &
                     default='15', lowest=1.0_rk), &
               field('JOINT SOLVER', kind_choice, 'iterate on the joints alone (condensed) or '// &
                     'on everything (full Newton)', default='AUTO', &
@@ -36,8 +36,8 @@ contains
               field('JOINT FORCES', kind_choice, 'weight of joint forces in time: the impulse '// &
                     'of the end of the step, as the bulk, or end of the step', &
                     default='IMPLICIT', choices='IMPLICIT | HHT | END'), &
-              field('TANGENT', kind_choice, 'of solids that crack or yield: consistent '// &
-                    '(unsymmetric), secant, or the elastic stiffness and many cheap '// &
+              field('TANGENT', kind_choice, 'tangent of inelastic solids: consistent '// &
+                    '(unsymmetric), secant, or elastic with many cheap '// &
                     'iterations', default='AUTO', &
                     choices='AUTO | CONSISTENT | SECANT | ELASTIC')])
   end subroutine describe_controls
@@ -47,7 +47,7 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     if (size(this%parameters) == 0) then
-      call this%warn(faults, 'changes nothing', 'at least one parameter')
+      call this%warn(faults, 'the keyword has no parameter and no effect', 'at least one parameter')
     end if
     associate (controls => model%now%controls)
       if (this%has('RESIDUAL')) controls%residual_tolerance = this%real('RESIDUAL')
@@ -64,8 +64,8 @@ contains
     spec%name = 'DAMPING'
     spec%family = 'step'
     spec%place = 'step'
-    spec%meaning = 'Rayleigh damping of the whole model from one ratio at two frequencies, '// &
-                   'besides that of the materials, from this step on.'
+    spec%meaning = 'Rayleigh damping of the whole model by one ratio at two frequencies, '// &
+                   'in addition to that of the materials, from this step on.'
     spec%example = '*DAMPING, RATIO=0.05, F1=2., F2=10.'
     spec%most_lines = 0
     allocate (spec%parameters, source=[ &

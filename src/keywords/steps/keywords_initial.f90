@@ -21,7 +21,7 @@ contains
     spec%family = 'step'
     spec%place = 'model'
     spec%meaning = 'Displacements or velocities at the start of the analysis. A static '// &
-                   'step ends the velocities.'
+                   'step sets velocities to zero.'
     spec%example = '*INITIAL CONDITIONS, TYPE=VELOCITY'//nl//'ALL, 1, -1.'
     spec%fewest_lines = 1
     allocate (spec%parameters, source=[ &

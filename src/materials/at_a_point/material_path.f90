@@ -1,4 +1,4 @@
-!> A material at one point, led through the path of a test; every increment leaves a row.
+!> A material at one point along the path of a test; every increment gives a row.
 module material_path
   use errors, only: error_type, raise
   use kinds, only: rk
@@ -12,16 +12,16 @@ module material_path
   private
   public :: path_record, follow_path
 
-  !> What happened, row by row. The state holds a row where that of a block holds a point.
+  !> Results row by row; each row takes the place of a point in the state.
   type :: path_record
-    integer :: num_rows = 0 !< in use; the first is the start
+    integer :: num_rows = 0 !< in use; the first is the initial state
     integer, allocatable :: leg(:), increment(:), iterations(:)
     real(rk), allocatable :: time(:) !< total [s]
     real(rk), allocatable :: work(:) !< of the stresses so far [J/m3]
     type(point_state) :: state
   end type path_record
 
-  !> The point on its way.
+  !> The point and its progress.
   type :: traveller
     type(point_set) :: points
     type(point_state) :: old !< converged
@@ -30,15 +30,15 @@ module material_path
     real(rk) :: largest = 0.0_rk !< stress so far [Pa]
     type(time_increment) :: time
     integer :: iterations = 0 !< calls of the law since the last row
-    type(user_library), pointer :: umat => null() !< whose UEXTERNALDB hears of the increments
+    type(user_library), pointer :: umat => null() !< its UEXTERNALDB is called in each increment
   end type traveller
 
-  real(rk), parameter :: smallest_part = 2.0_rk**(-14) !< of an increment, when it is cut
+  real(rk), parameter :: smallest_part = 2.0_rk**(-14) !< of an increment that is cut
   integer, parameter :: most_calls = 20000 !< of the law in an increment with all its parts
 
 contains
 
-  !> Leads the point through all legs. After an error the rows so far are kept.
+  !> Follows all legs. After an error the rows so far are kept.
   subroutine follow_path(law, test, record, error, umat)
     class(stress_law), intent(in) :: law
     type(material_test), intent(in) :: test
@@ -58,7 +58,7 @@ contains
     call trim_record(record)
   end subroutine follow_path
 
-  !> The point at rest: the middle of a cube.
+  !> Initial state of the point, in the middle of a cube.
   subroutine start_point(law, test, now)
     class(stress_law), intent(in) :: law
     type(material_test), intent(in) :: test
@@ -77,7 +77,7 @@ contains
     call start_points(law, now%points, now%old)
   end subroutine start_point
 
-  !> One leg, increment by increment.
+  !> Follows one leg, increment by increment.
   subroutine follow_leg(law, test, number, now, record, error)
     class(stress_law), intent(in) :: law
     type(material_test), intent(in) :: test
@@ -89,7 +89,7 @@ contains
     type(increment_outcome) :: outcome
     real(rk) :: started_at
     integer :: i
-    ! A leg may turn back: the tangent of a falling branch would lead a stress on down that branch.
+    ! A leg may reverse: with the tangent of a softening branch a stress would stay on that branch.
     call law%elastic_stiffness(now%tangent(:, :, 1))
     start = now%old
     started_at = now%time%total_time
@@ -109,15 +109,15 @@ contains
     end associate
   end subroutine follow_leg
 
-  !> One increment of a leg, cut into smaller ones where it must be.
+  !> One increment of a leg, cut where necessary.
   subroutine advance_point(law, test, start, bounds, now, outcome, error)
     class(stress_law), intent(in) :: law
     type(material_test), intent(in) :: test
     type(point_state), intent(in) :: start !< of the leg
-    integer, intent(in) :: bounds(2) !< increments of the leg that are done before and after it
+    integer, intent(in) :: bounds(2) !< numbers of finished increments before and after
     type(traveller), intent(inout) :: now
     type(increment_outcome), intent(out) :: outcome
-    type(error_type), allocatable, intent(out) :: error !< of a UMAT that gives up
+    type(error_type), allocatable, intent(out) :: error !< of a UMAT that stops
     type(point_state) :: new
     real(rk) :: tangent(6, 6, 1), at, part, leg_start
     logical :: is_last
@@ -155,7 +155,7 @@ contains
     end associate
   end subroutine advance_point
 
-  !> Tells a UMAT of a moment.
+  !> Calls UEXTERNALDB of a UMAT at a moment.
   subroutine notify_user(moment, now, error)
     integer, intent(in) :: moment
     type(traveller), intent(in) :: now
@@ -167,7 +167,7 @@ contains
                                 now%time%size, now%time%step, now%time%increment, error)
   end subroutine notify_user
 
-  !> What the components follow at a part of the leg.
+  !> Prescribed components at a part of the leg.
   pure function control_at(test, leg, start, part, largest) result(control)
     type(material_test), intent(in) :: test
     type(test_leg), intent(in) :: leg
@@ -186,7 +186,7 @@ contains
     control%largest = largest
   end function control_at
 
-  !> The increment is done: the trial state becomes the converged one.
+  !> Accepts the trial state as converged.
   subroutine accept_point(new, tangent, now)
     type(point_state), intent(in) :: new
     real(rk), intent(in) :: tangent(6, 6, 1)
@@ -197,7 +197,7 @@ contains
     now%tangent = tangent
   end subroutine accept_point
 
-  !> Says where the path ended and why.
+  !> Error that names the end of the path and its cause.
   subroutine describe_failure(test, number, increment, outcome, now, error)
     type(material_test), intent(in) :: test
     integer, intent(in) :: number, increment !< of the leg and in it
@@ -212,10 +212,10 @@ contains
     if (len(outcome%message) > 0) then
       text = text//outcome%message
     else
-      text = text//'the law gives no strains for the stresses that are asked for'
+      text = text//'no strains give the prescribed stresses'
       if (any(test%legs(number)%is_stress)) then
-        text = text//'; past a peak the test must follow a strain (CONTROL=STRAIN, or E in '// &
-               'place of S in the component that softens)'
+        text = text//'; beyond a peak prescribe a strain (CONTROL=STRAIN, or E in place of S '// &
+               'in the component that softens)'
       end if
     end if
     call raise(error, text)
@@ -235,7 +235,7 @@ contains
     end associate
   end subroutine open_record
 
-  !> Writes down where the point is.
+  !> Records the present state of the point.
   subroutine add_row(now, leg, increment, record)
     type(traveller), intent(inout) :: now
     integer, intent(in) :: leg, increment
@@ -256,7 +256,7 @@ contains
     now%iterations = 0
   end subroutine add_row
 
-  !> Gives back the unused rows.
+  !> Removes the unused rows.
   subroutine trim_record(record)
     type(path_record), intent(inout) :: record
     integer :: n

@@ -1,5 +1,5 @@
-!> One increment of a material at one point, of which some components follow strains and the others
-!> stresses: Newton's method on the strains that are free.
+!> One increment of a material at one point, with prescribed strains in some components and
+!> prescribed stresses in the others: Newton's method on the free strains.
 module point_increment
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use kinds, only: rk
@@ -11,11 +11,11 @@ module point_increment
   private
   public :: point_control, increment_outcome, solve_increment
 
-  !> What the components follow at the end of the increment.
+  !> Prescribed components at the end of the increment.
   type :: point_control
     logical :: is_stress(6) = .false. !< else a strain
     real(rk) :: value(6) = 0.0_rk !< strain, or stress [Pa]
-    real(rk) :: share(6) = 0.0_rk !< a stress is its value and this share of S11
+    real(rk) :: share(6) = 0.0_rk !< stress = value + share*S11
     real(rk) :: tolerance = 1.0e-9_rk !< error of a stress over the largest stress
     real(rk) :: largest = 0.0_rk !< stress so far [Pa]
   end type point_control
@@ -23,19 +23,19 @@ module point_increment
   type :: increment_outcome
     logical :: has_converged = .false.
     integer :: iterations = 0 !< calls of the law
-    real(rk) :: size_ratio = 0.5_rk !< of the increment to try next, over the present one
-    character(:), allocatable :: message !< of the law, '' where it had no trouble
+    real(rk) :: size_ratio = 0.5_rk !< of the next try, over the present increment
+    character(:), allocatable :: message !< of the law, '' for none
   end type increment_outcome
 
   integer, parameter :: most_iterations = 40 !< with one kind of tangent
-  integer, parameter :: most_halvings = 6 !< of a correction that makes the error larger
-  real(rk), parameter :: least_gain = 1.0e-4_rk !< part of the error that a correction must take
-  real(rk), parameter :: least_ratio = 0.1_rk !< no law may ask for less in one go
+  integer, parameter :: most_halvings = 6 !< of a correction that increases the error
+  real(rk), parameter :: least_gain = 1.0e-4_rk !< least decrease of the error, relative
+  real(rk), parameter :: least_ratio = 0.1_rk !< least ratio of one cut
 
 contains
 
-  !> Finds the strains at the end of the increment: with the consistent tangent, and where that does
-  !> not converge once more with Broyden's updates of the secant one, which trust stresses alone.
+  !> Finds the strains at the end of the increment with the consistent tangent. Without convergence
+  !> Broyden's updates of the secant tangent are tried, which depend on stresses alone.
   subroutine solve_increment(law, points, time, control, old, new, tangent, outcome)
     class(stress_law), intent(in) :: law
     type(point_set), intent(in) :: points !< one point
@@ -43,7 +43,7 @@ contains
     type(point_control), intent(in) :: control
     type(point_state), intent(in) :: old !< converged
     type(point_state), intent(inout) :: new
-    real(rk), intent(inout) :: tangent(6, 6, 1) !< comes with that of `old`
+    real(rk), intent(inout) :: tangent(6, 6, 1) !< on entry that of `old`
     type(increment_outcome), intent(out) :: outcome
     integer, parameter :: kinds(2) = [consistent_tangent, secant_tangent]
     type(time_increment) :: now
@@ -63,7 +63,7 @@ contains
       outcome%iterations = outcome%iterations + num_before
       num_before = outcome%iterations
       if (outcome%has_converged .or. .not. any(control%is_stress)) exit
-      if (outcome%size_ratio < 0.5_rk) exit ! the law itself asks for less
+      if (outcome%size_ratio < 0.5_rk) exit ! the law requests a smaller increment
     end do
   end subroutine solve_increment
 
@@ -74,7 +74,7 @@ contains
     type(time_increment), intent(in) :: time
     type(point_control), intent(in) :: control
     type(point_state), intent(in) :: old
-    type(point_state), intent(inout) :: new !< comes with the strains that are given
+    type(point_state), intent(inout) :: new !< on entry with the prescribed strains
     real(rk), intent(inout) :: tangent(6, 6, 1)
     type(increment_outcome), intent(out) :: outcome
     real(rk) :: correction(6), strain(6), lack(6), matrix(6, 6), error, allowed, largest
@@ -113,7 +113,7 @@ contains
     end do
   end subroutine iterate_on_strain
 
-  !> Calls the law and judges what it gives.
+  !> Calls the law and checks its results.
   subroutine try_strain(law, points, time, old, new, tangent, outcome, is_good)
     class(stress_law), intent(in) :: law
     type(point_set), intent(in) :: points
@@ -137,7 +137,7 @@ contains
     if (.not. is_good) outcome%message = 'the law returns NaN or infinity'
   end subroutine try_strain
 
-  !> What the stresses that are given lack of their values, zero for the other components [Pa].
+  !> Errors of the prescribed stresses, zero for the other components [Pa].
   pure function stress_error(control, stress) result(error)
     type(point_control), intent(in) :: control
     real(rk), intent(in) :: stress(6)
@@ -146,8 +146,8 @@ contains
     where (control%is_stress) error = stress - control%share*stress(1) - control%value
   end function stress_error
 
-  !> Derivative of the errors of the given stresses by the free strains, in the rows and columns of
-  !> those components; the unit matrix for the others.
+  !> Derivative of the errors of the prescribed stresses by the free strains; rows and columns of
+  !> the unit matrix for the other components.
   pure function matrix_of(control, tangent) result(matrix)
     type(point_control), intent(in) :: control
     real(rk), intent(in) :: tangent(6, 6) !< [Pa]
@@ -160,7 +160,7 @@ contains
     end do
   end function matrix_of
 
-  !> Broyden's update: the least change of the matrix that explains what the last step did.
+  !> Broyden's update: the smallest change of the matrix that reproduces the last step.
   pure subroutine update_matrix(change, gain, matrix)
     real(rk), intent(in) :: change(6) !< of the free strains, zero for the others
     real(rk), intent(in) :: gain(6) !< of the errors that came with it [Pa]
@@ -171,8 +171,7 @@ contains
     matrix = matrix + outer_product((gain - matmul(matrix, change))/size_squared, change)
   end subroutine update_matrix
 
-  !> Change of the free strains that takes the error of the stresses away; zero where the matrix is
-  !> singular.
+  !> Change of the free strains that removes the error of the stresses; zero for a singular matrix.
   pure function correction_of(control, error, matrix) result(correction)
     type(point_control), intent(in) :: control
     real(rk), intent(in) :: error(6), matrix(6, 6)

@@ -1,4 +1,4 @@
-!> The width of the band that a crack opens in, and how wide it may be (theory.md, 11.5).
+!> Width of the crack band of an element, and its limits (theory.md, 11.5).
 module crack_band
   use kinds, only: rk
   use tensor6, only: principal_values
@@ -8,16 +8,16 @@ module crack_band
 
 contains
 
-  !> Width of the band of a crack with the normal n: |J^T n|, theory.md, (11.11). A cube gives its
-  !> side in every direction, a brick that is longer one way its length across the crack.
+  !> Width of the band of a crack with the normal n: |J^T n|, theory.md, (11.11). For a cube this is
+  !> its side in every direction, for a brick its length across the crack.
   pure real(rk) function band_width(edges, normal)
     real(rk), intent(in) :: edges(3, 3) !< columns: the edges of the element at the point [m]
     real(rk), intent(in) :: normal(3) !< unit vector
     band_width = norm2(matmul(normal, edges))
   end function band_width
 
-  !> The widths for the worst and the best direction of the crack: the extreme singular values of
-  !> the edges.
+  !> Smallest and largest width over all directions of the crack: the extreme singular values of the
+  !> edges.
   pure subroutine extreme_widths(edges, smallest, largest)
     real(rk), intent(in) :: edges(3, 3) !< as in `band_width` [m]
     real(rk), intent(out) :: smallest, largest !< [m]

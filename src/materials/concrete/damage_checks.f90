@@ -1,4 +1,4 @@
-!> What is wrong with the tables of concrete, by table and row, for the keywords to print.
+!> Faults in the tables of concrete, by table and row.
 module damage_checks
   use damage_constants, only: concrete_constants
   use damage_curves, only: make_compression_curve, make_tension_curve, strength_curve
@@ -15,7 +15,7 @@ module damage_checks
   character(*), parameter :: hardening_table = 'CONCRETE COMPRESSION HARDENING'
   character(*), parameter :: compression_damage_table = 'CONCRETE COMPRESSION DAMAGE'
 
-  !> Slack of comparisons that follow from rounded numbers of a deck, relative.
+  !> Relative tolerance of comparisons, for rounded numbers in a deck.
   real(rk), parameter :: rounding = 1.0e-9_rk
 
   !> One fault of a table.
@@ -29,7 +29,7 @@ module damage_checks
 
 contains
 
-  !> All that forbids to make a law of the constants, whatever the size of the elements.
+  !> Finds all faults that do not depend on the size of the elements.
   subroutine find_table_faults(constants, faults)
     type(concrete_constants), intent(in) :: constants !< tension and compression allocated
     type(table_fault), allocatable, intent(out) :: faults(:) !< size 0: none
@@ -55,12 +55,12 @@ contains
                               constants%tension_damage, faults)
   end subroutine find_table_faults
 
-  !> The widest crack band that tables over openings admit, and the row that limits it; for tables
-  !> without faults. Tables over strain have no limit.
+  !> The widest crack band of tables over openings, and the row that limits it. The tables must be
+  !> free of faults. Tables over strain have no limit.
   subroutine find_longest_band(constants, longest, limit)
     type(concrete_constants), intent(in) :: constants
     real(rk), intent(out) :: longest !< [m]; huge: no limit
-    type(table_fault), intent(out) :: limit !< table and row, and in `expected` the rule in words
+    type(table_fault), intent(out) :: limit !< table, row, and the rule in `expected`
     type(strength_curve) :: curve
     call make_tension_curve(constants, curve)
     longest = curve%longest
@@ -119,7 +119,7 @@ contains
   !> d and its abscissa: starts at zero, below 1, not decreasing.
   subroutine check_damage(keyword, table, faults)
     character(*), intent(in) :: keyword
-    real(rk), allocatable, intent(in) :: table(:, :) !< none: no damage, no fault
+    real(rk), allocatable, intent(in) :: table(:, :) !< unallocated: no damage, no fault
     type(table_fault), allocatable, intent(inout) :: faults(:)
     integer :: i
     if (.not. allocated(table)) return
@@ -137,7 +137,7 @@ contains
     call check_abscissa(keyword, table(2, :), faults)
   end subroutine check_damage
 
-  !> Starts at zero and increases.
+  !> The abscissa must start at zero and increase.
   subroutine check_abscissa(keyword, abscissa, faults)
     character(*), intent(in) :: keyword
     real(rk), intent(in) :: abscissa(:)
@@ -145,7 +145,7 @@ contains
     integer :: i
     if (abs(abscissa(1)) > 0.0_rk) then
       call add_fault(keyword, 1, 2, 'found '//as_text(abscissa(1)), '0 in the first row: the '// &
-                     'table starts where the inelastic strain or the opening does', faults)
+                     'table starts at the onset of inelastic strain or opening', faults)
     end if
     do i = 2, size(abscissa)
       if (abscissa(i) > abscissa(i - 1)) cycle
@@ -154,7 +154,7 @@ contains
     end do
   end subroutine check_abscissa
 
-  !> Both tables of tension over strain, or both over openings.
+  !> Both tables of tension must be over strain, or both over openings.
   subroutine check_types(constants, faults)
     type(concrete_constants), intent(in) :: constants
     type(table_fault), allocatable, intent(inout) :: faults(:)
@@ -177,7 +177,7 @@ contains
                /constants%biaxial_ratio
     if (constants%compression(1, 1) >= smallest*(1.0_rk - rounding)) return
     call add_fault(hardening_table, 1, 1, 'found '//as_text(constants%compression(1, 1))// &
-                   ' beside the strength in tension '//as_text(constants%tension(1, 1)), &
+                   ' with a strength in tension of '//as_text(constants%tension(1, 1)), &
                    'at least '//as_text(smallest)//', where beta of Eq. 23 is 0', faults)
   end subroutine check_compression_strength
 
@@ -207,13 +207,13 @@ contains
     end do
   end subroutine check_plastic_strain
 
-  !> The line a knot comes from: that of the damage table where both have it.
+  !> The table row of a knot: that of the damage table where both have one.
   subroutine find_row(abscissa, strength_keyword, strength, damage_keyword, damage, place)
     real(rk), intent(in) :: abscissa
     character(*), intent(in) :: strength_keyword, damage_keyword
     real(rk), intent(in) :: strength(:, :)
     real(rk), allocatable, intent(in) :: damage(:, :)
-    type(table_fault), intent(inout) :: place !< keyword and row come out
+    type(table_fault), intent(inout) :: place !< its keyword and row are set
     place%keyword = strength_keyword
     place%row = row_of(strength, abscissa)
     if (.not. allocated(damage)) return
@@ -222,7 +222,7 @@ contains
     place%row = row_of(damage, abscissa)
   end subroutine find_row
 
-  !> The row at an abscissa; the next one where the table has none there, the last past its end.
+  !> The row at an abscissa, else the next one; the last row beyond the end.
   pure integer function row_of(table, abscissa)
     real(rk), intent(in) :: table(:, :)
     real(rk), intent(in) :: abscissa

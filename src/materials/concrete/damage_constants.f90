@@ -1,4 +1,4 @@
-!> The constants of plastic-damage concrete, as the deck or a UMAT's list gives them.
+!> Constants of plastic-damage concrete, from a deck or from PROPS of a UMAT.
 module damage_constants
   use kinds, only: rk
   implicit none
@@ -24,6 +24,6 @@ module damage_constants
     real(rk), allocatable :: compression_damage(:, :) !< d_c against inelastic strain
     real(rk) :: tension_recovery = 0.0_rk !< w_t of Eq. 16
     real(rk) :: compression_recovery = 1.0_rk !< w_c of Eq. 16
-    logical :: lowers_strength = .false. !< in elements too long for G_f, else they are an error
+    logical :: lowers_strength = .false. !< in elements too long for G_f; else an error
   end type concrete_constants
 end module damage_constants

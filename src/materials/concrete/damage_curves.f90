@@ -1,15 +1,15 @@
 !> Strength and damage of concrete over plastic strain, in tension and in compression.
 !>
 !> The deck gives them over inelastic strain, or over the opening w of a crack. The knots are the
-!> rows of both tables together; knot i sits at the plastic strain (paper_notes.md, 11)
+!> rows of both tables; knot i is at the plastic strain (paper_notes.md, 11)
 !>     w_i/l - c_i,  c_i = d_i/(1 - d_i) sigma_i/E,
-!> l the width of the crack band, 1 for tables over strain. Between knots the nominal strength and
-!> the damage are linear in plastic strain, past the last both stay as they are. The effective
-!> strength is the quotient sigma/(1 - d) (paper_notes.md, 9).
+!> with the width l of the crack band (1 for tables over strain). Between knots the nominal strength
+!> and the damage are linear in plastic strain, beyond the last knot constant. The effective
+!> strength is sigma/(1 - d) (paper_notes.md, 9).
 !>
-!> Linear in plastic strain is not linear in the opening where there is damage: c bends, and the
-!> energy of a crack would depend on l. Curves over openings have knots between the rows therefore,
-!> on straight lines over w.
+!> With damage c is nonlinear in w, so that a curve linear in plastic strain is not linear in the
+!> opening, and the energy of a crack would depend on l. Curves over openings therefore have knots
+!> between the rows, on straight lines over w.
 module damage_curves
   use damage_constants, only: concrete_constants
   use kinds, only: rk
@@ -18,31 +18,31 @@ module damage_curves
   public :: strength_curve, curve_value, make_tension_curve, make_compression_curve
   public :: place_knots, value_of_curve, smallest_strength
 
-  !> Share of the first strength below which no curve falls: with a strength of zero beta of Eq. 23
-  !> has no value and the yield surface no inside. A crack dissipates that much more energy, at most
-  !> a thousandth of f_t times its opening.
+  !> Smallest strength of a curve, as a fraction of the first. At zero strength beta of Eq. 23 is
+  !> undefined and the yield surface encloses nothing. The extra energy of a crack is at most a
+  !> thousandth of f_t times its opening.
   real(rk), parameter :: smallest_strength = 1.0e-3_rk
-  !> Share of an inelastic strain that is plastic at least. Tables of pure damage, all knots at
-  !> zero, stay curves that way; their rows are met to that share.
+  !> Smallest plastic part of an inelastic strain. Tables of pure damage, with all knots at zero,
+  !> remain functions of plastic strain; their rows are exact to this fraction.
   real(rk), parameter :: smallest_plastic_share = 1.0e-5_rk
-  real(rk), parameter :: same_row = 1.0e-9_rk !< abscissae that are nearer (relative) are one
-  !> Knots over a change of 1 in sigma/f_t or in damage, for curves over openings with damage.
-  !> Linear softening to zero with a damage of 0.9 at its end, in a band of half the longest,
-  !> dissipates 33 % too much with its two rows alone, 0.1 % with these knots.
+  real(rk), parameter :: same_row = 1.0e-9_rk !< closer abscissae (relative) are one row
+  !> Knots for a change of 1 in sigma/f_t or in damage, for curves over openings with damage. For
+  !> linear softening to zero with a final damage of 0.9, in half the widest band, the error of the
+  !> dissipated energy is 33 % with two rows alone, and 0.1 % with these knots.
   integer, parameter :: knots_over_unit = 32
 
-  !> Rows of the strength and the damage table together, over the deck's abscissa.
+  !> Rows of strength and damage tables, over the abscissa of the deck.
   type :: strength_curve
     real(rk), allocatable :: abscissa(:) !< inelastic strain, or opening [m]
-    real(rk), allocatable :: recoverable(:) !< c_i, what unloading gives back of it
+    real(rk), allocatable :: recoverable(:) !< c_i, its part recovered in unloading
     real(rk), allocatable :: strength(:) !< nominal [Pa]
     real(rk), allocatable :: damage(:)
-    real(rk) :: longest = huge(1.0_rk) !< widest band it fits [m]
-    integer :: steepest = 0 !< the row that limits it
-    logical :: turns_back = .false. !< in a wider one the strain itself would turn back
+    real(rk) :: longest = huge(1.0_rk) !< widest admissible band [m]
+    integer :: steepest = 0 !< the row that limits the band
+    logical :: turns_back = .false. !< in a wider band the strain would decrease
   end type strength_curve
 
-  !> The curve at one plastic strain, with derivatives by it.
+  !> The curve at a plastic strain, with derivatives.
   type :: curve_value
     real(rk) :: strength = 0.0_rk, strength_slope = 0.0_rk !< effective [Pa]
     real(rk) :: damage = 0.0_rk, damage_slope = 0.0_rk
@@ -76,12 +76,12 @@ contains
                     .false., curve)
   end subroutine make_compression_curve
 
-  !> The rows of two tables as one; what a table does not have at a row is linear between its own.
+  !> Unites the rows of two tables, with linear interpolation in each table.
   pure subroutine unite_rows(strength, damage, young, has_openings, curve)
     real(rk), intent(in) :: strength(:, :) !< (2, rows) sigma [Pa], abscissa
-    real(rk), intent(in), allocatable :: damage(:, :) !< (2, rows) d, abscissa; none: d = 0
+    real(rk), intent(in), allocatable :: damage(:, :) !< (2, rows) d, abscissa; unallocated: d = 0
     real(rk), intent(in) :: young !< E_0 [Pa]
-    logical, intent(in) :: has_openings !< straight between the rows over w
+    logical, intent(in) :: has_openings !< linear in w between the rows
     type(strength_curve), intent(out) :: curve
     integer :: i
     curve%abscissa = strength(2, :)
@@ -106,7 +106,7 @@ contains
     curve%recoverable = curve%damage/(1.0_rk - curve%damage)*curve%strength/young
   end subroutine find_recoverable
 
-  !> Adds what is new to a list that increases.
+  !> Adds new abscissae to an ascending list.
   pure subroutine merge_abscissae(new, list)
     real(rk), intent(in) :: new(:)
     real(rk), allocatable, intent(inout) :: list(:)
@@ -118,8 +118,8 @@ contains
     end do
   end subroutine merge_abscissae
 
-  !> Cuts the intervals between rows into equal parts of at most 1/knots_over_unit of the first
-  !> strength and of a whole damage.
+  !> Divides the intervals between rows equally, into changes of at most 1/knots_over_unit of the
+  !> first strength and of a damage of 1.
   pure subroutine add_knots(curve)
     type(strength_curve), intent(inout) :: curve
     integer :: parts(2:size(curve%abscissa)) !< of the interval before each row
@@ -153,9 +153,9 @@ contains
     end do
   end subroutine add_knots
 
-  !> Between two values.
+  !> Linear interpolation between two values.
   pure real(rk) function mix(ends, share)
-    real(rk), intent(in) :: ends(2), share !< 0: the first
+    real(rk), intent(in) :: ends(2), share !< 0: first, 1: second value
     mix = (1.0_rk - share)*ends(1) + share*ends(2)
   end function mix
 
@@ -176,11 +176,10 @@ contains
     end if
   end function value_of_table
 
-  !> Widest crack band of a curve over openings [m]: in a wider one the strain w/l + sigma/E would
-  !> turn back from one row to the next (snap-back), or the plastic strain decrease
-  !> (paper_notes.md, 11).
-  !> Linear softening without damage: 2 E G_f/f_t^2. Of the rows alone: knots between them do not
-  !> go beyond the next row.
+  !> Widest crack band of a curve over openings [m]. In a wider band the strain w/l + sigma/E would
+  !> decrease from one row to the next (snap-back), or the plastic strain would decrease
+  !> (paper_notes.md, 11). For linear softening without damage the limit is 2 E G_f/f_t^2. The rows
+  !> alone decide; the knots between are less restrictive.
   pure subroutine limit_band(curve, young)
     type(strength_curve), intent(inout) :: curve
     real(rk), intent(in) :: young !< E_0 [Pa]
@@ -198,14 +197,13 @@ contains
     end do
   end subroutine limit_band
 
-  !> Plastic strain of the knots in a band of width l. In a band wider than the curve's longest all
-  !> strengths are lowered by one factor f and all openings widened by 1/f, which keeps the energy:
-  !> f = sqrt(longest/l).
+  !> Plastic strain of the knots in a band of width l. If l exceeds the widest band, all strengths
+  !> are multiplied by f = sqrt(longest/l) and all openings by 1/f, which keeps the energy.
   pure subroutine place_knots(curve, length, knots, factor)
     type(strength_curve), intent(in) :: curve
     real(rk), intent(in) :: length !< l [m]; 1 for tables over strain
     real(rk), intent(out) :: knots(:) !< (knots)
-    real(rk), intent(out) :: factor !< f, 1 unless the band is too wide
+    real(rk), intent(out) :: factor !< f; 1 in admissible bands
     real(rk) :: width, scale, least
     integer :: i
     factor = 1.0_rk
@@ -227,9 +225,9 @@ contains
   !> Effective strength and damage at a plastic strain.
   pure subroutine value_of_curve(curve, knots, factor, plastic, row, value)
     type(strength_curve), intent(in) :: curve
-    real(rk), intent(in) :: knots(:), factor !< as placed
+    real(rk), intent(in) :: knots(:), factor !< from place_knots
     real(rk), intent(in) :: plastic !< strain, not negative
-    integer, intent(inout) :: row !< of the knot below; comes with a guess, 1 when there is none
+    integer, intent(inout) :: row !< of the knot below; on entry a guess, at least 1
     type(curve_value), intent(out) :: value
     real(rk) :: strength, strength_slope, step, inverse
     do while (row > 1)

@@ -1,4 +1,4 @@
-!> What a point of plastic-damage concrete dissipates in an increment (theory.md, (11.19)).
+!> Dissipation at a point of plastic-damage concrete in an increment (theory.md, (11.19)).
 module damage_energy
   use damage_curves, only: curve_value, value_of_curve
   use damage_increment, only: plastic_state
@@ -10,17 +10,17 @@ module damage_energy
   private
   public :: flow_path, onset_of_flow, dissipated_work, cracking_share
 
-  !> What flows in an increment.
+  !> Plastic flow and damage of an increment.
   type :: flow_path
     real(rk) :: onset(6) = 0.0_rk, finish(6) = 0.0_rk !< effective stresses [Pa]
     real(rk) :: flow(6) = 0.0_rk !< increment of plastic strain, engineering shear
-    real(rk) :: damages(2) = 0.0_rk !< d before and after, both with the weight r of the end
+    real(rk) :: damages(2) = 0.0_rk !< d at start and end, both with the final weight r
   end type flow_path
 
 contains
 
-  !> Effective stress where the straight path of an increment meets the yield surface: between its
-  !> start and its trial state, F taken as linear on the way.
+  !> Effective stress at first yield on the straight path from the start of an increment to its
+  !> trial state, with F linear on the path.
   pure function onset_of_flow(model, placed, start, old, trial, trial_excess) result(onset)
     type(concrete_model), intent(in) :: model
     type(placed_curves), intent(in) :: placed
@@ -46,9 +46,9 @@ contains
     end if
   end function onset_of_flow
 
-  !> Work of the plastic strain and energy set free by damage at constant weight of recovery. The
-  !> mean of onset and end stands for the stress on the way; where it would give energy back (a path
-  !> that turns within a large increment) the end does, whose work is not negative (see
+  !> Work of the plastic strain, and energy released by damage at constant weight of recovery. The
+  !> stress of the increment is the mean of onset and end. If its work is negative (reversal within
+  !> a large increment), the stress at the end is taken, whose work is not negative (see
   !> largest_safe_dilation).
   pure function dissipated_work(model, path) result(work)
     type(concrete_model), intent(in) :: model
@@ -64,8 +64,8 @@ contains
     end associate
   end function dissipated_work
 
-  !> What of the work of flow is cracking: that of the principal directions in tension. A crack that
-  !> opens under pressure along it is a crack, whatever the weight r of the state.
+  !> Share of cracking in the work of flow: the work in the principal directions in tension. A crack
+  !> that opens under pressure along its faces counts as cracking for any weight r.
   pure real(rk) function cracking_share(s, flow) result(share)
     real(rk), intent(in) :: s(3) !< principal effective stresses [Pa]
     real(rk), intent(in) :: flow(3) !< in their directions, of any size

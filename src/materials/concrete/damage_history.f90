@@ -1,14 +1,14 @@
-!> What a point of plastic-damage concrete remembers, as a list of numbers.
+!> Internal variables of a point of plastic-damage concrete as a list of numbers.
 !>
 !> Internal variables of a point:
 !>
-!> | number | is |
+!> | number | meaning |
 !> |---|---|
 !> | 1-6 | plastic strain 11 22 33 12 13 23, engineering shear |
 !> | 7, 8 | kappa_t, kappa_c: measures of cracking and crushing |
 !> | 9, 10 | d_t, d_c |
 !> | 11 | width of the crack band [m], 0 before the first crack |
-!> | 12-17 | with viscosity only: plastic strain as it would be without |
+!> | 12-17 | with viscosity only: plastic strain without viscosity |
 module damage_history
   use damage_point, only: point_history
   use kinds, only: rk
@@ -17,13 +17,13 @@ module damage_history
   public :: last_strain, last_measure, last_damage, width_row, last_backbone
   public :: unpack_history, pack_history
 
-  !> Where they stand.
+  !> Positions in the list.
   integer, parameter :: last_strain = 6, last_measure = 8, last_damage = 10, width_row = 11
   integer, parameter :: last_backbone = 17
 
 contains
 
-  !> The history of a point out of its internal variables.
+  !> Reads the history of a point from its internal variables.
   pure subroutine unpack_history(internal, history)
     real(rk), intent(in) :: internal(:)
     type(point_history), intent(out) :: history
@@ -35,7 +35,7 @@ contains
     if (size(internal) == last_backbone) history%backbone%strain = internal(width_row + 1:)
   end subroutine unpack_history
 
-  !> And back.
+  !> Writes the history of a point to its internal variables.
   pure subroutine pack_history(history, internal)
     type(point_history), intent(in) :: history
     real(rk), intent(inout) :: internal(:)

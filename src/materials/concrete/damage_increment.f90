@@ -1,5 +1,5 @@
-!> One increment of strain of plastic-damage concrete without viscosity: plastic strain, both
-!> measures of it and the effective stress.
+!> One increment of strain of plastic-damage concrete without viscosity: plastic strain, kappa_t,
+!> kappa_c and the effective stress.
 module damage_increment
   use crack_band, only: band_width
   use damage_model, only: concrete_model, place_curves, placed_curves
@@ -13,23 +13,23 @@ module damage_increment
   integer, parameter :: max_parts = 64
   real(rk), parameter :: yield_tolerance = 1.0e-11_rk !< of F over the strength in compression
 
-  !> What concrete without viscosity remembers.
+  !> History of concrete without viscosity.
   type :: plastic_state
     real(rk) :: strain(6) = 0.0_rk !< plastic, engineering shear
     real(rk) :: measures(2) = 0.0_rk !< kappa_t, kappa_c
     real(rk) :: width = 0.0_rk !< of the crack band [m]; 0 before the first crack
   end type plastic_state
 
-  !> The end of an increment, and for the tangent how it got there.
+  !> End of an increment, with the data for the tangent.
   type :: increment_result
     type(plastic_state) :: state
     real(rk) :: stress(6) = 0.0_rk !< effective [Pa]
     logical :: has_yielded = .false.
     logical :: has_converged = .true.
-    integer :: num_parts = 1 !< the increment was cut into
+    integer :: num_parts = 1 !< of the increment
     real(rk) :: trial_excess = 0.0_rk !< F of the trial state [Pa]
     real(rk) :: shape(6) = 0.0_rk !< S_tr/q_tr
-    real(rk) :: axes(3, 3) = 0.0_rk !< principal directions, if asked for
+    real(rk) :: axes(3, 3) = 0.0_rk !< principal directions, if requested
     type(trial_state) :: trial
     type(flow_state) :: flow
   end type increment_result
@@ -46,9 +46,9 @@ contains
     stress(4:6) = model%shear*strain(4:6)
   end function elastic_stress
 
-  !> The increment in one piece; where its return map fails, in 2, 4, ... equal parts of the strain.
-  !> The one equation always has a root (see damage_return); parts help where roundoff of a very
-  !> large trial stress hides it from a strength that is nearly gone.
+  !> Integrates the increment at once; if the return map fails, in 2, 4, ... equal parts of the
+  !> strain. A root always exists (see damage_return); smaller parts help where round-off of a very
+  !> large trial stress exceeds a strength near zero.
   pure subroutine integrate_increment(model, before, strain, edges, old, placed, end_state)
     type(concrete_model), intent(in) :: model
     real(rk), intent(in) :: before(6), strain(6) !< at both ends of the increment
@@ -74,7 +74,7 @@ contains
     end do
   end subroutine integrate_increment
 
-  !> A part of an increment.
+  !> Integrates a part of an increment.
   pure subroutine integrate_part(model, strain, edges, old, placed, end_state)
     type(concrete_model), intent(in) :: model
     real(rk), intent(in) :: strain(6) !< at the end of the part
@@ -109,8 +109,8 @@ contains
     end associate
   end subroutine integrate_part
 
-  !> The deviator, with a trace that is zero to roundoff of itself: in nearly hydrostatic states
-  !> what is left of the pressure would show in the volume of the flow.
+  !> The deviator, with a trace of zero to round-off of its own size. In nearly hydrostatic states
+  !> round-off of the pressure would otherwise change the volume of the flow.
   pure function deviator_of(stress) result(deviator)
     real(rk), intent(in) :: stress(6)
     real(rk) :: deviator(6)

@@ -1,4 +1,4 @@
-!> What the kernel of plastic-damage concrete works with, made of the deck's constants.
+!> Model of plastic-damage concrete: derived constants and curves.
 module damage_model
   use damage_constants, only: concrete_constants
   use damage_curves, only: make_compression_curve, make_tension_curve, place_knots, strength_curve
@@ -20,22 +20,22 @@ module damage_model
     real(rk) :: tension_recovery = 0.0_rk, compression_recovery = 1.0_rk !< w_t, w_c of Eq. 16
     logical :: recovers_by_sign = .false. !< r of Eq. 17
     real(rk) :: viscosity = 0.0_rk !< [s]
-    logical :: by_opening = .false. !< the curve in tension needs the width of the crack band
+    logical :: by_opening = .false. !< the curve in tension depends on the crack band
     type(strength_curve) :: tension, compression
   end type concrete_model
 
-  !> Plastic strains of the knots of both curves for one width of the crack band: room that a caller
-  !> keeps from point to point.
+  !> Plastic strains of the knots of both curves for one width of the crack band; the caller keeps
+  !> them from point to point.
   type :: placed_curves
     real(rk) :: width = -1.0_rk !< of the band [m]; negative: not placed yet
-    real(rk) :: factor = 1.0_rk !< on the strength in tension, below 1 in a band that is too wide
+    real(rk) :: factor = 1.0_rk !< of the strength in tension, below 1 in too wide a band
     real(rk) :: rounding = 0.0_rk !< a of Eq. 25 with that strength [Pa]
     real(rk), allocatable :: tension(:), compression(:)
   end type placed_curves
 
 contains
 
-  !> The model of constants whose tables are free of faults.
+  !> Makes the model from constants whose tables are free of faults.
   pure subroutine make_concrete_model(constants, model)
     type(concrete_constants), intent(in) :: constants
     type(concrete_model), intent(out) :: model
@@ -59,7 +59,7 @@ contains
     model%rounding = rounding_of(model, constants%offset)
   end subroutine make_concrete_model
 
-  !> Places the curves for a width of the crack band, unless they are there already.
+  !> Places the curves for a width of the crack band, if it has changed.
   pure subroutine place_curves(model, width, placed)
     type(concrete_model), intent(in) :: model
     real(rk), intent(in) :: width !< [m]; any positive number for tables over strain
@@ -91,11 +91,10 @@ contains
     end do
   end subroutine stiffness_of
 
-  !> a of Eq. 25, xi sigma_10 tan psi, but no larger than what the work of flow,
-  !> q^2/sqrt(a^2 + q^2) - p tan psi, admits without turning negative where the curves end: flow at
-  !> an apex rounded wider than the surface would give energy back. That is less only where an
-  !> effective strength falls below a third of xi sigma_10 or so, and then it matters little: a
-  !> shapes the flow near the hydrostatic axis alone.
+  !> a of Eq. 25, xi sigma_10 tan psi, limited so that the work of flow, q^2/sqrt(a^2 + q^2) - p tan
+  !> psi, is not negative at the end of the curves: with a larger a the flow at the apex would
+  !> generate energy. The limit is active only where an effective strength is below about a third of
+  !> xi sigma_10. Its effect is small: a changes the flow near the hydrostatic axis alone.
   !>
   !> With a principal tension under pressure q >= 3/2 p, and q >= (1 + alpha) t by Eq. 19, or
   !> (1 - alpha) c where beta is kept at zero. Without a principal tension q exceeds p tan psi by
@@ -115,10 +114,10 @@ contains
                    *min((1.0_rk + model%alpha)*tension, (1.0_rk - model%alpha)*compression))
   end function rounding_of
 
-  !> Largest tan psi for which flow never gives energy back: the slope q/p of the yield surface
-  !> under high pressure where it is flattest, on the tensile meridian (s_1 = -p + 2 q/3 in Eq. 19),
-  !> and 3/2, the least q/p of states with a principal tension. The work of flow is
-  !> q^2/sqrt(a^2 + q^2) - p tan psi, not negative with this and the a of rounding_of.
+  !> Largest tan psi for which flow never generates energy: the smaller of 3/2, the least q/p of
+  !> states with a principal tension, and the least slope q/p of the yield surface under high
+  !> pressure, on the tensile meridian (s_1 = -p + 2 q/3 in Eq. 19). With this limit and the a of
+  !> rounding_of the work of flow, q^2/sqrt(a^2 + q^2) - p tan psi, is not negative.
   pure real(rk) function largest_safe_dilation(biaxial_ratio, meridian_ratio) result(tangent)
     real(rk), intent(in) :: biaxial_ratio !< f_b0/f_c0
     real(rk), intent(in) :: meridian_ratio !< K_c

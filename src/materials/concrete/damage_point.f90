@@ -1,5 +1,5 @@
-!> A point of plastic-damage concrete: all that one increment does to it. The kernel of the material
-!> of the deck and of the user subroutine for other programs.
+!> One increment at a point of plastic-damage concrete: kernel of the material of the deck and of
+!> the user subroutine for other programs.
 module damage_point
   use damage_energy, only: cracking_share, dissipated_work, flow_path, onset_of_flow
   use damage_increment, only: elastic_stress, increment_result, integrate_increment, plastic_state
@@ -12,27 +12,27 @@ module damage_point
   private
   public :: point_history, point_motion, point_answer, update_point
 
-  !> What a point remembers.
+  !> History of a point.
   type :: point_history
-    type(plastic_state) :: backbone !< plastic strain as without viscosity, kappa_t, kappa_c, width
-    real(rk) :: plastic_strain(6) = 0.0_rk !< that of the stress; the backbone's without viscosity
+    type(plastic_state) :: backbone !< without viscosity: plastic strain, kappa_t, kappa_c, width
+    real(rk) :: plastic_strain(6) = 0.0_rk !< with viscosity
     real(rk) :: damage(2) = 0.0_rk !< d_t, d_c of the stress
   end type point_history
 
-  !> What happens to it.
+  !> Strains, element and time of an increment.
   type :: point_motion
     real(rk) :: before(6) = 0.0_rk, strain(6) = 0.0_rk !< strains at both ends, engineering shear
     real(rk) :: edges(3, 3) = 0.0_rk !< columns: edges of its element [m]; an isotropic length l as
     !! l times the unit matrix
-    real(rk) :: time = 0.0_rk !< the increment takes [s]; for viscosity
+    real(rk) :: time = 0.0_rk !< of the increment, for viscosity [s]
     logical :: wants_tangent = .true.
-    !> The symmetric (1 - d) D instead of the consistent tangent. It also stands in where that does
-    !> not exist: see has_regular_flow.
+    !> The symmetric (1 - d) D instead of the consistent tangent. It also replaces a consistent
+    !> tangent that does not exist: see has_regular_flow.
     logical :: is_secant = .false.
-    logical :: holds_switch = .false. !< r of Eq. 17 stays as it was at the start of the increment
+    logical :: holds_switch = .false. !< r of Eq. 17 keeps its value from the start of the increment
   end type point_motion
 
-  !> What it answers.
+  !> Result of an increment.
   type :: point_answer
     real(rk) :: stress(6) = 0.0_rk !< [Pa]
     real(rk) :: tangent(6, 6) = 0.0_rk !< d stress/d strain [Pa]
@@ -42,11 +42,11 @@ module damage_point
     logical :: has_converged = .true.
   end type point_answer
 
-  !> The stress of the end of an increment and its damage.
+  !> Stress and damage at the end of an increment.
   type :: end_state
     real(rk) :: stress(6) = 0.0_rk !< effective [Pa]
-    real(rk) :: principal(3) = 0.0_rk, axes(3, 3) = 0.0_rk !< of it
-    real(rk) :: lag = 0.0_rk !< share of the history before in what viscosity relaxes
+    real(rk) :: principal(3) = 0.0_rk, axes(3, 3) = 0.0_rk !< of the stress
+    real(rk) :: lag = 0.0_rk !< share of the previous history after relaxation
     real(rk) :: share = 0.0_rk, share_by(3) = 0.0_rk !< r of the stiffness, dr/ds_i
     type(damage_gradient) :: d
   end type end_state
@@ -58,7 +58,7 @@ contains
     type(concrete_model), intent(in) :: model
     type(point_motion), intent(in) :: motion
     type(point_history), intent(in) :: old
-    type(placed_curves), intent(inout) :: placed !< room for curves, kept by the caller
+    type(placed_curves), intent(inout) :: placed !< curves, kept by the caller
     type(point_history), intent(out) :: new
     type(point_answer), intent(out) :: answer
     type(increment_result) :: backbone
@@ -89,13 +89,13 @@ contains
     end if
   end subroutine update_point
 
-  !> Plastic strain and damage that lag behind (Duvaut and Lions; theory.md, (11.17)), by the
-  !> implicit rule. The weight of recovery does not lag: cracks close at once.
+  !> Relaxes plastic strain and damage (Duvaut and Lions; theory.md, (11.17)) by the implicit rule.
+  !> The weight of recovery is not relaxed: cracks close at once.
   pure subroutine relax(model, motion, old, new, finish)
     type(concrete_model), intent(in) :: model
     type(point_motion), intent(in) :: motion
     type(point_history), intent(in) :: old
-    type(point_history), intent(inout) :: new !< comes as without viscosity
+    type(point_history), intent(inout) :: new !< on entry without viscosity
     type(end_state), intent(inout) :: finish
     finish%lag = model%viscosity/(model%viscosity + motion%time)
     new%plastic_strain = new%plastic_strain + finish%lag*(old%plastic_strain - new%plastic_strain)
@@ -104,8 +104,8 @@ contains
     call principal_axes(finish%stress, finish%principal, finish%axes)
   end subroutine relax
 
-  !> r of the stiffness, Eq. 17 or paper_notes.md, 8, and d. A switch that is held is that of the
-  !> start, unless the point was sound then.
+  !> r of the stiffness, Eq. 17 or paper_notes.md, 8, and d. A held switch keeps its initial value,
+  !> unless the point was undamaged.
   pure subroutine recover(model, motion, old, damage, finish)
     type(concrete_model), intent(in) :: model
     type(point_motion), intent(in) :: motion
@@ -150,8 +150,8 @@ contains
     end do
   end subroutine differentiate_stress
 
-  !> What the increment dissipates: by flow, cracking in the principal directions in tension and
-  !> crushing in those in compression; by damage, each by its own.
+  !> Dissipation of the increment. Work of flow is cracking in principal directions in tension and
+  !> crushing in those in compression. Work of damage is cracking by d_t and crushing by d_c.
   pure subroutine dissipate(model, motion, old, placed, backbone, finish, new, answer)
     type(concrete_model), intent(in) :: model
     type(point_motion), intent(in) :: motion
@@ -160,7 +160,7 @@ contains
     type(increment_result), intent(in) :: backbone
     type(end_state), intent(in) :: finish
     type(point_history), intent(in) :: new
-    type(point_answer), intent(inout) :: answer !< fracture and crushing come out
+    type(point_answer), intent(inout) :: answer !< its fracture and crushing are set
     type(damage_gradient) :: before
     type(flow_path) :: path
     real(rk) :: trial(6), work(2), share(2), losses(2)

@@ -4,9 +4,9 @@
 !> end of the increment follows from the trial state (theory.md, (11.13)): q from
 !>     q (1 + 3 mu x/sqrt(a^2 + q^2)) = q_tr,
 !> S = S_tr q/q_tr, p = p_tr + K tan(psi) x, the weight r, both measures of plastic strain, both
-!> strengths. F(x) = 0 is what is left. F(0) > 0, and F < 0 for large x whenever tan(psi) > 0 and
-!> a > 0: p grows without limit and q vanishes. So there is a root, apex and hydrostatic tension
-!> included. The smallest is wanted: the path from 0 to it does not leave the softening branch.
+!> strengths. F(x) = 0 remains. F(0) > 0, and F < 0 for large x if tan(psi) > 0 and a > 0, because p
+!> increases without limit and q vanishes. A root therefore exists, also at the apex and in
+!> hydrostatic tension. The smallest root is taken: up to it the path stays on the softening branch.
 module damage_return
   use damage_curves, only: curve_value, value_of_curve
   use damage_model, only: concrete_model, placed_curves
@@ -17,13 +17,13 @@ module damage_return
   public :: trial_state, flow_state, flow_by, find_flow
 
   real(rk), parameter :: tolerance = 1.0e-13_rk !< |F| over the strength in compression
-  real(rk), parameter :: acceptable = 1.0e-9_rk !< the same, where roundoff forbids more
+  real(rk), parameter :: acceptable = 1.0e-9_rk !< the same, where round-off prevents more
   integer, parameter :: max_steps = 400 !< a table of 100 rows, and bisection to roundoff
   integer, parameter :: max_inner = 60
   real(rk), parameter :: roundoff = 2.0_rk*epsilon(1.0_rk) !< of the equation for q
-  real(rk), parameter :: overshoot = 1.0e-6_rk !< past a knot, to be on the next branch
+  real(rk), parameter :: overshoot = 1.0e-6_rk !< beyond a knot, onto the next branch
 
-  !> The state that elasticity alone would lead to.
+  !> Elastic trial state.
   type :: trial_state
     real(rk) :: q = 0.0_rk, p = 0.0_rk !< [Pa]
     real(rk) :: shape(3) = 0.0_rk !< principal deviator over q, largest first; 0 where q is 0
@@ -54,7 +54,7 @@ contains
     type(placed_curves), intent(in) :: placed
     type(trial_state), intent(in) :: trial
     real(rk), intent(in) :: x !< multiplier, >= 0
-    type(flow_state), intent(inout) :: flow !< comes with guesses of its rows
+    type(flow_state), intent(inout) :: flow !< on entry with guesses of its rows
     real(rk) :: inverse, slope, direction, direction_rate, share_rate, smallest, smallest_rate
     flow%x = x
     call reduce_deviator(placed%rounding, trial%q, 3.0_rk*model%shear*x, flow)
@@ -82,12 +82,12 @@ contains
   end subroutine flow_by
 
   !> q after flow by x. The left side of the equation for q is increasing and concave, so Newton's
-  !> iteration climbs to the root from any value below it, and from above lands below it. The first
-  !> guess takes q/sqrt(a^2 + q^2) from the last x: it hardly changes unless q is small.
+  !> iterates increase to the root from below; from above the first step goes below the root. The
+  !> first guess takes q/sqrt(a^2 + q^2) of the last x, which hardly changes unless q is small.
   pure subroutine reduce_deviator(rounding, q_trial, flow_modulus, flow)
     real(rk), intent(in) :: rounding, q_trial !< a, q_tr [Pa]
     real(rk), intent(in) :: flow_modulus !< 3 mu x [Pa]
-    type(flow_state), intent(inout) :: flow !< q, radius, stiffening come out
+    type(flow_state), intent(inout) :: flow !< q, radius and stiffening are set
     real(rk) :: square, q, excess, inverse, least
     integer :: i
     square = rounding**2
@@ -105,7 +105,7 @@ contains
     end do
   end subroutine reduce_deviator
 
-  !> F and its derivative by x.
+  !> Evaluates F and its derivative by x.
   pure subroutine evaluate_residual(model, placed, flow)
     type(concrete_model), intent(in) :: model
     type(placed_curves), intent(in) :: placed
@@ -122,15 +122,15 @@ contains
                   + flow%f%by_compression*flow%compression%strength_slope*flow%measure_rates(2)
   end subroutine evaluate_residual
 
-  !> The flow that ends on the yield surface.
+  !> Finds the flow that ends on the yield surface.
   !>
-  !> From x = 0 upward by Newton's steps, never further than the next knot of a curve, until F turns
-  !> negative; from then on in the bracket, by Newton or, where that is slow, bisection.
+  !> Newton's steps from x = 0 upward, at most to the next knot of a curve, until F is negative;
+  !> then within the bracket by Newton's method, or by bisection where it is slow.
   pure subroutine find_flow(model, placed, trial, flow, has_converged)
     type(concrete_model), intent(in) :: model
     type(placed_curves), intent(in) :: placed
     type(trial_state), intent(in) :: trial
-    type(flow_state), intent(inout) :: flow !< comes as flow_by(0)
+    type(flow_state), intent(inout) :: flow !< on entry flow_by(0)
     logical, intent(out) :: has_converged
     real(rk) :: low, high, x, f_before
     integer :: i
@@ -161,8 +161,8 @@ contains
     has_converged = abs(flow%f%value) <= acceptable*flow%compression%strength
   end subroutine find_flow
 
-  !> What |F| may be: a share of the strength in compression, or what roundoff of the trial state
-  !> makes of it, but never more than what is acceptable.
+  !> Admissible |F|: a fraction of the strength in compression, or round-off of the trial state, but
+  !> at most the acceptable value.
   pure real(rk) function residual_limit(trial, flow) result(limit)
     type(trial_state), intent(in) :: trial
     type(flow_state), intent(in) :: flow
@@ -171,7 +171,7 @@ contains
                 acceptable*flow%compression%strength)
   end function residual_limit
 
-  !> The next multiplier on the way to a first negative F.
+  !> The next multiplier in the search for a negative F.
   pure real(rk) function next_step(model, placed, flow) result(x)
     type(concrete_model), intent(in) :: model
     type(placed_curves), intent(in) :: placed
@@ -185,8 +185,8 @@ contains
     x = 2.0_rk*flow%x + flow%f%value/(3.0_rk*model%shear + model%bulk*model%tan_dilation)
   end function next_step
 
-  !> Newton's next multiplier, F falling. Under tension F is c/t s_1 - c in the main, a hyperbola
-  !> of a strength t that falls; F t/c is nearly straight and has the same roots.
+  !> Newton's next multiplier for decreasing F. In tension F is approximately c/t s_1 - c, a
+  !> hyperbola in the decreasing strength t; F t/c is nearly linear and has the same roots.
   pure real(rk) function newton_point(flow) result(x)
     type(flow_state), intent(in) :: flow
     real(rk) :: rate, scaled
@@ -201,7 +201,7 @@ contains
     x = flow%x - flow%f%value/rate
   end function newton_point
 
-  !> How much further the multiplier takes a measure to its next knot; huge without one.
+  !> Increment of the multiplier to the next knot of a measure; huge without one.
   pure real(rk) function step_to_knot(knots, flow, measure) result(step)
     real(rk), intent(in) :: knots(:)
     type(flow_state), intent(in) :: flow

@@ -1,7 +1,7 @@
-!> A cheap look at points of concrete that have never yielded: most of a dam, most of the time.
+!> Cheap elastic check of concrete points that have never yielded, which are most points of a dam.
 !>
-!> Principal stresses cost more than all the rest of an elastic point. A bound of the largest one
-!> does instead: s_1 = -p + 2/3 q cos(theta), cos(3 theta) = x = 27/2 J_3/q^3, and
+!> Principal stresses cost more than all other operations at an elastic point. An upper bound of the
+!> largest one is enough: s_1 = -p + 2/3 q cos(theta), cos(3 theta) = x = 27/2 J_3/q^3, and
 !> cos(acos(x)/3) <= min(1, 1/2 + sqrt((1 + x)/6)), exact in uniaxial tension and compression.
 module damage_screen
   use damage_model, only: concrete_model
@@ -12,21 +12,21 @@ module damage_screen
 
 contains
 
-  !> Stress and energy of virgin points as long as they are elastic, and whether they surely are.
+  !> Elastic stress and energy of virgin points, and whether they are certainly elastic.
   pure subroutine screen_points(model, factor, strain, stress, energy, is_within)
     type(concrete_model), intent(in) :: model
-    real(rk), intent(in) :: factor !< least one on the strength in tension (see place_knots)
+    real(rk), intent(in) :: factor !< the least one of the strength in tension (see place_knots)
     real(rk), intent(in), contiguous :: strain(:, :) !< (6, points)
     real(rk), intent(inout), contiguous :: stress(:, :) !< (6, points) [Pa]
     real(rk), intent(out) :: energy(:) !< (points) stored [J/m3]
-    logical, intent(out) :: is_within(:) !< (points) inside the virgin surface; false: not known
+    logical, intent(out) :: is_within(:) !< (points) inside the virgin surface; false: unknown
     real(rk) :: lame, shear, volume, p, s1, s2, s3, square, third, q, largest, excess
     real(rk) :: slope, limit
     integer :: i
     lame = model%bulk - 2.0_rk/3.0_rk*model%shear
     shear = model%shear
     limit = (1.0_rk - model%alpha)*model%compression%strength(1)
-    ! beta of Eq. 23, which the checks of the tables keep from being negative.
+    ! beta of Eq. 23, not negative by the checks of the tables.
     slope = limit/(factor*model%tension%strength(1)) - (1.0_rk + model%alpha)
     !$omp simd private(volume, p, s1, s2, s3, square, third, q, largest, excess)
     do i = 1, size(strain, 2)

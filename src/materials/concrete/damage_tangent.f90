@@ -1,12 +1,12 @@
 !> Consistent tangent of plastic-damage concrete (theory.md, 11.7): derivative of the stress at the
 !> end of an increment by the strain there.
 !>
-!> The return map at constant multiplier x is differentiated in closed form, x itself by F(x) = 0.
-!> Principal values enter through their directions alone, S being parallel to its trial value, so
-!> values that coincide need no care. Rows are derivatives of one quantity by the six strains.
+!> The return map at constant multiplier x is differentiated in closed form, and x by F(x) = 0. S is
+!> parallel to its trial value, so that principal values enter by their directions alone; equal
+!> values need no special case. Rows are derivatives of one quantity by the six strains.
 !>
-!> The width of the crack band counts as constant: in the increment of the first crack it turns with
-!> the crack in an element that is not a cube.
+!> The width of the crack band is taken as constant. In the increment of the first crack, in an
+!> element that is not a cube, it depends on the direction of the crack.
 module damage_tangent
   use damage_increment, only: increment_result
   use damage_model, only: concrete_model, stiffness_of
@@ -15,12 +15,13 @@ module damage_tangent
   private
   public :: has_regular_flow, effective_tangent, share_row
 
-  !> dF/dx over its value in perfect plasticity, below which the branch is too steep for a tangent.
+  !> Least dF/dx for a tangent, over its value in perfect plasticity; below, the branch is too
+  !> steep.
   real(rk), parameter :: smallest_rate = 1.0e-6_rk
 
 contains
 
-  !> Whether the increment has a consistent tangent: in one part, F falling where it ends.
+  !> Whether a consistent tangent exists: increment in one part, F decreasing at its end.
   pure logical function has_regular_flow(model, increment)
     type(concrete_model), intent(in) :: model
     type(increment_result), intent(in) :: increment

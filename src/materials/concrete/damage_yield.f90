@@ -1,4 +1,4 @@
-!> Yield surface, damage and the share of tension of plastic-damage concrete, in principal effective
+!> Yield surface, damage and share of tension of plastic-damage concrete, in principal effective
 !> stresses s_1 >= s_2 >= s_3 (tension positive; p positive in compression).
 module damage_yield
   use damage_model, only: concrete_model
@@ -22,9 +22,9 @@ module damage_yield
 
 contains
 
-  !> F of Eqs. 19-23. beta stays at zero where Eq. 23 gives less: concrete that is crushed so far
-  !> that its strength c in compression falls below (1 + alpha)/(1 - alpha) t keeps less than t in
-  !> tension. With a negative beta the surface would be open towards tension.
+  !> F of Eqs. 19-23, with beta at least zero: a negative beta would open the surface towards
+  !> tension. Crushed concrete, with c below (1 + alpha)/(1 - alpha) t, then has a strength in
+  !> tension below t.
   pure elemental function yield_at(model, q, p, largest, tension, compression) result(f)
     type(concrete_model), intent(in) :: model
     real(rk), intent(in) :: q, p, largest !< Eqs. 20-21 and s_1 [Pa]
@@ -49,7 +49,7 @@ contains
     f%value = f%value + f%by_largest*largest
   end function yield_at
 
-  !> r, how much of a state is tension, sum <s_i>/sum |s_i| (paper_notes.md, 8), and dr/ds_i.
+  !> r, the share of tension in a state, sum <s_i>/sum |s_i| (paper_notes.md, 8), and dr/ds_i.
   pure subroutine tension_share(s, share, gradient)
     real(rk), intent(in) :: s(3)
     real(rk), intent(out) :: share, gradient(3)

@@ -1,6 +1,5 @@
-!> Plastic-damage concrete (paper, section 3; theory.md, 11) as a material of the deck; its internal
-!> variables are those of damage_history.
-!>
+!> Plastic-damage concrete (paper, section 3; theory.md, 11) as a material of the deck, with the
+!> internal variables of damage_history.
 module material_damage_plasticity
   use damage_checks, only: find_table_faults, table_fault
   use damage_constants, only: concrete_constants
@@ -30,7 +29,7 @@ module material_damage_plasticity
 
 contains
 
-  !> The law of constants; an error where their tables are at fault.
+  !> Makes the law from constants; an error if their tables have faults.
   subroutine make_concrete_law(constants, law, error)
     type(concrete_constants), intent(in) :: constants
     type(concrete_law), intent(out) :: law
@@ -48,20 +47,20 @@ contains
     law%num_state = num_state_of(constants%viscosity)
   end subroutine make_concrete_law
 
-  !> Internal variables of a point.
+  !> Number of internal variables of a point.
   pure integer function num_state_of(viscosity)
     real(rk), intent(in) :: viscosity !< [s]
     num_state_of = merge(last_backbone, width_row, viscosity > 0.0_rk)
   end function num_state_of
 
-  !> Undamaged.
+  !> Undamaged stiffness.
   pure subroutine elastic_stiffness(self, d)
     class(concrete_law), intent(in) :: self
     real(rk), intent(out) :: d(6, 6)
     call stiffness_of(self%model, d)
   end subroutine elastic_stiffness
 
-  !> Virgin points that surely stay elastic in one sweep, the others one after the other.
+  !> Updates virgin points that are certainly elastic at once, the others one by one.
   subroutine update(self, points, time, old, new, tangent, report)
     class(concrete_law), intent(in) :: self
     type(point_set), intent(in) :: points
@@ -94,15 +93,15 @@ contains
         if (motion%wants_tangent) tangent(:, :, i) = answer%tangent
         if (answer%has_converged .or. report%failed_point > 0) cycle
         report%failed_point = i
-        report%message = 'concrete cannot follow a strain that changes by '// &
+        report%message = 'no convergence of concrete at a point, for a change of strain of '// &
                          as_text(maxval(abs(new%strain(:, i) - old%strain(:, i))))// &
                          ' in the increment'
       end if
     end do
   end subroutine update
 
-  !> The least factor on the strength in tension of any band in the block: where the sum of squares
-  !> of the edges, not below any width, is within the longest band there is none.
+  !> The least factor of the strength in tension of all bands in the block. It is 1 where the norm
+  !> of the edges, an upper bound of the width, is within the widest band.
   pure real(rk) function least_factor(model, points) result(factor)
     type(concrete_model), intent(in) :: model
     type(point_set), intent(in) :: points
@@ -117,10 +116,10 @@ contains
     if (sqrt(widest) > model%tension%longest) factor = sqrt(model%tension%longest/sqrt(widest))
   end function least_factor
 
-  !> A point that may yield or has yielded.
+  !> Updates a point that may yield or has yielded.
   pure subroutine yield_point(model, motion, i, old, placed, new, answer)
     type(concrete_model), intent(in) :: model
-    type(point_motion), intent(inout) :: motion !< comes without strains
+    type(point_motion), intent(inout) :: motion !< on entry without strains
     integer, intent(in) :: i !< point
     type(point_state), intent(in) :: old
     type(placed_curves), intent(inout) :: placed

@@ -1,4 +1,4 @@
-!> A material whose law is a UMAT of the user: his routine, called point by point.
+!> A material whose law is a UMAT of the user, called point by point.
 module material_user
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_loc
   use errors, only: deck_is_wrong, error_type, raise
@@ -22,18 +22,18 @@ module material_user
   public :: user_law, user_constants, make_user_law, find_stiffness
 
   integer, parameter :: num_energies_kept = 3 !< SSE, SPD, SCD behind the state variables
-  !> As a UMAT expects it before it is called: what it asks for must be below 1 to count.
+  !> PNEWDT before a call; a request is a value below 1.
   real(rk), parameter :: no_request = 1.0e10_rk
-  real(rk), parameter :: round_off = 1.0e-10_rk !< of a symmetric DDSDDE, over its largest entry
+  real(rk), parameter :: round_off = 1.0e-10_rk !< asymmetry of DDSDDE, over its largest entry
   real(rk), parameter :: unit_matrix(3, 3) = reshape([1.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 1.0_rk, &
                                                       0.0_rk, 0.0_rk, 0.0_rk, 1.0_rk], [3, 3])
 
-  !> What the deck says of one material.
+  !> Constants of one material from the deck.
   type :: user_constants
     character(:), allocatable :: name !< upper case
     real(rk), allocatable :: values(:) !< PROPS
     integer :: num_variables = 0 !< NSTATV
-    logical :: is_unsymmetric = .false. !< DDSDDE is used as it comes
+    logical :: is_unsymmetric = .false. !< DDSDDE is not symmetrised
   end type user_constants
 
   type, extends(stress_law) :: user_law
@@ -50,7 +50,7 @@ module material_user
 
 contains
 
-  !> A law without stiffness so far: `find_stiffness` must follow.
+  !> Makes a law without stiffness; `find_stiffness` must follow.
   subroutine make_user_law(library, constants, law)
     type(user_library), pointer, intent(in) :: library
     type(user_constants), intent(in) :: constants
@@ -63,7 +63,7 @@ contains
     law%wants_gradient = .true.
   end subroutine make_user_law
 
-  !> The stiffness of the structure at rest, from a call without strain at the first of the points.
+  !> Initial stiffness, from a call without strain at the first point.
   subroutine find_stiffness(law, points, time, error)
     type(user_law), intent(inout) :: law
     type(point_set), intent(in) :: points
@@ -78,15 +78,16 @@ contains
     new = old
     call law%update(points, time, old, new, tangent, report)
     if (report%failed_point > 0) then
-      call raise(error, 'without strain, at element '//as_text(points%element(1))//': '// &
+      call raise(error, 'call without strain at element '//as_text(points%element(1))//': '// &
                  report%message, deck_is_wrong)
       return
     end if
     law%stiffness = 0.5_rk*(tangent(:, :, 1) + transpose(tangent(:, :, 1)))
     if (.not. has_cholesky_factor(law%stiffness)) then
-      call raise(error, 'the UMAT gives no stiffness for material '//law%constants%name// &
-                 ' at the start: DDSDDE without strain is not positive definite (its '// &
-                 'diagonal: '//diagonal_text(law%stiffness)//')', deck_is_wrong)
+      call raise(error, 'DDSDDE of the UMAT without strain is not positive definite for '// &
+                 'material '//law%constants%name//' (diagonal: '// &
+                 diagonal_text(law%stiffness)//'): there is no initial stiffness', &
+                 deck_is_wrong)
       return
     end if
     identity = 0.0_rk
@@ -106,16 +107,16 @@ contains
     end do
   end function diagonal_text
 
-  !> What `find_stiffness` found.
+  !> Stiffness by `find_stiffness`.
   pure subroutine elastic_stiffness(self, d)
     class(user_law), intent(in) :: self
     real(rk), intent(out) :: d(6, 6)
     d = self%stiffness
   end subroutine elastic_stiffness
 
-  !> Calls the UMAT at each point. A routine that gives up, leaves what is no number or writes past
-  !> its state variables fails the point; one that wants a smaller increment is asked at all points,
-  !> and the smallest wish counts.
+  !> Calls the UMAT at each point. A point fails if the routine stops, returns NaN or writes past
+  !> its state variables. If it requests a smaller increment all points are called, and the smallest
+  !> request counts.
   subroutine update(self, points, time, old, new, tangent, report)
     class(user_law), intent(in) :: self
     type(point_set), intent(in) :: points
@@ -141,7 +142,8 @@ contains
       if (now%pnewdt < report%size_ratio) then
         report%failed_point = p
         report%size_ratio = now%pnewdt
-        report%message = 'UMAT: it wants a smaller increment (PNEWDT = '//as_text(now%pnewdt)//')'
+        report%message = 'the UMAT requests a smaller increment (PNEWDT = '// &
+                         as_text(now%pnewdt)//')'
       end if
       call store_answer(self, p, now, variables, old, new)
       if (self%library%checks_tangent) then
@@ -150,7 +152,7 @@ contains
       end if
       if (time%tangent /= no_tangent) then
         call set_tangent(self, place_of(self, points, p, time), time%tangent, now%ddsdde, &
-                          tangent(:, :, p))
+                         tangent(:, :, p))
       end if
     end do
     call keyway_umat_release_traps()
@@ -168,8 +170,8 @@ contains
     place%increment = time%increment
   end function place_of
 
-  !> Everything a call is told, but for the state variables and the constants. DFGRD is I + grad u:
-  !> strains are small, and DROT is no rotation.
+  !> Arguments of a call except state variables and constants. Strains are small: DFGRD is I + grad
+  !> u, DROT the unit matrix.
   pure subroutine prepare_call(self, points, p, time, old, new, now)
     class(user_law), intent(in) :: self
     type(point_set), intent(in) :: points
@@ -190,7 +192,7 @@ contains
     call set_place(self, points, p, now)
   end subroutine prepare_call
 
-  !> Who and where a point is.
+  !> Sets number and place of a point.
   pure subroutine set_place(self, points, p, now)
     class(user_law), intent(in) :: self
     type(point_set), intent(in) :: points
@@ -208,13 +210,13 @@ contains
     end do
   end subroutine set_place
 
-  !> One guarded call. The history is the converged one, so that each iteration starts from it.
+  !> One guarded call, from the converged history in each iteration.
   subroutine call_point(self, history, now, variables, fault)
     class(user_law), intent(in) :: self
     real(rk), intent(in) :: history(:) !< of the point: state variables, SSE, SPD, SCD
     type(umat_arguments), intent(inout) :: now
     type(guarded_state), intent(inout), target :: variables
-    character(:), allocatable, intent(out) :: fault !< '' for a sound answer
+    character(:), allocatable, intent(out) :: fault !< '' for a valid result
     real(rk), target :: constants(size(self%constants%values) + 1)
     integer :: n
     n = self%constants%num_variables
@@ -234,9 +236,9 @@ contains
     end if
   end subroutine call_point
 
-  !> Stress, history and energies of a sound answer. A UMAT that leaves SSE at zero keeps no
-  !> account: then what the undamaged stiffness would give back is stored, and the rest of the work
-  !> is dissipated.
+  !> Stores stress, history and energies of a valid result. If the UMAT leaves SSE at zero, the
+  !> stored energy is the elastic energy of the undamaged stiffness, and the rest of the work is
+  !> dissipated.
   pure subroutine store_answer(self, p, now, variables, old, new)
     class(user_law), intent(in) :: self
     integer, intent(in) :: p
@@ -263,8 +265,8 @@ contains
     end if
   end subroutine store_answer
 
-  !> The tangent wanted: as the UMAT gives it, symmetrised unless the deck says UNSYMM; a secant is
-  !> always symmetric, and the stiffness of the start where DDSDDE is not positive definite.
+  !> Sets the requested tangent: DDSDDE, symmetrised unless the deck has UNSYMM. A secant is always
+  !> symmetric, and is the initial stiffness where DDSDDE is not positive definite.
   subroutine set_tangent(self, place, kind, ddsdde, tangent)
     class(user_law), intent(in) :: self
     type(call_place), intent(in) :: place
@@ -312,7 +314,7 @@ contains
     call self%library%found%add_check(check)
   end subroutine check_tangent
 
-  !> State variables start as zero, or as SDVINI leaves them.
+  !> Initial state variables: zero, or by SDVINI.
   subroutine set_start(self, points, state)
     class(user_law), intent(in) :: self
     type(point_set), intent(in) :: points

@@ -1,6 +1,6 @@
-/* Others' UMATs: loading their library, calling it under guard, and what it may ask the process
- * for. A UMAT that gives up (XIT, STDB_ABQERR with -3, STOP) jumps back to the call that guards it;
- * the message waits there. Fortran knows the arguments as umat_interface's type. */
+/* UMATs of users: loads their library, guards their calls and provides services of the process.
+ * A UMAT that stops (XIT, STDB_ABQERR with -3, STOP) jumps back to the guarded call, which keeps
+ * the message. The type in umat_interface holds the arguments in Fortran. */
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <dlfcn.h>
@@ -39,7 +39,7 @@ enum { last_mutex = 100 };
 static pthread_mutex_t mutexes[last_mutex + 1] = {
   [0 ... last_mutex] = PTHREAD_MUTEX_INITIALIZER};
 
-/* Where a routine of the user comes back to when it gives up, one for each thread. */
+/* Return point of a user routine that stops, one for each thread. */
 static _Thread_local struct {
   jmp_buf place;
   int is_set;
@@ -56,11 +56,11 @@ static void let_go_of_mutexes(void)
   }
 }
 
-/* Gives up the guarded call; without one (a thread that the UMAT made itself) the process. */
+/* Ends the guarded call; without one (in a thread made by the UMAT) the process. */
 static _Noreturn void give_up(void)
 {
   if (guard.is_set) longjmp(guard.place, 1);
-  fprintf(stderr, "keyway: the UMAT gave up outside of its call: %s\n", guard.message);
+  fprintf(stderr, "keyway: the UMAT stopped outside of a call by Keyway: %s\n", guard.message);
   exit(1);
 }
 
@@ -79,10 +79,10 @@ static _Noreturn void give_up_saying(const char *format, ...)
   give_up();
 }
 
-/* Why the last guarded call of this thread came back early; at most `size` bytes with the null. */
+/* Reason of the last stop in this thread; at most `size` bytes with the null. */
 void keyway_umat_message(char *message, size_t size) { snprintf(message, size, "%s", guard.message); }
 
-/* Runs a call and yields 1 from the function when the routine gave up. */
+/* Runs a call; the function returns 1 if the routine stops. */
 #define GUARDED(call)             \
   do {                            \
     if (setjmp(guard.place)) {    \
@@ -120,12 +120,12 @@ int keyway_umat_external(uexternaldb_routine *uexternaldb, int lop, int restart,
   return 0;
 }
 
-/* A UMAT may divide by zero on its way; the program's own traps sleep meanwhile. */
+/* A UMAT may divide by zero; the traps of the program are disabled during its calls. */
 static _Thread_local fenv_t traps;
 void keyway_umat_hold_traps(void) { feholdexcept(&traps); }
 void keyway_umat_release_traps(void) { fesetenv(&traps); }
 
-/* Loads a library, its own symbols before those of the program. NULL with a message on failure. */
+/* Loads a library; its symbols precede those of the program. NULL and a message on failure. */
 void *keyway_umat_open(const char *path, char *message, size_t size)
 {
   void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND);
@@ -135,7 +135,7 @@ void *keyway_umat_open(const char *path, char *message, size_t size)
 
 void *keyway_umat_find(void *handle, const char *name) { return dlsym(handle, name); }
 
-/* A new folder among the temporary ones; its path with a null, or an empty text. */
+/* Makes a temporary folder; its path with a null, or an empty text. */
 void keyway_make_temporary(char *path, size_t size)
 {
   const char *parent = getenv("TMPDIR");
@@ -159,7 +159,7 @@ void keyway_remove_temporary(const char *path)
   rmdir(path);
 }
 
-/* The job, for GETJOBNAME and GETOUTDIR; how often the UMAT wrote a warning or an error. */
+/* The job, for GETJOBNAME and GETOUTDIR; number of warnings and errors of the UMAT. */
 static char job_name[257], job_folder[4097];
 static int num_warnings, num_errors;
 
@@ -171,7 +171,7 @@ void keyway_umat_set_job(const char *name, const char *folder)
   free(full);
 }
 
-/* A text of C into one of Fortran: blanks behind it. */
+/* Copies a text of C into one of Fortran, padded with blanks. */
 static void fill(char *text, size_t size, const char *from, int *length)
 {
   size_t used = strnlen(from, size);
@@ -219,14 +219,14 @@ void mutexunlock_(const int *number)
   pthread_mutex_unlock(mutex);
 }
 
-/* Nothing of the program calls these; a loaded library does, so the linker must keep them. */
+/* Only a loaded library calls these, so the linker must keep them. */
 void rotsig_(void), sinv_(void), sprinc_(void), sprind_(void);
 void (*const keyway_umat_kept[])(void) = {rotsig_, sinv_, sprinc_, sprind_};
 
 void keyway_umat_warn(const char *text, size_t length);
 static void warn(const char *text) { keyway_umat_warn(text, strlen(text)); }
 
-/* Values of other points and names of parts: 1 says that there is no answer. */
+/* Values of other points and names of parts: not available, status 1. */
 void getvrm_(const char *var, double *array, int *jarray, char *flgray, int *jrcd)
 {
   (void)var, (void)array, (void)jarray, (void)flgray;

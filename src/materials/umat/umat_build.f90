@@ -1,4 +1,4 @@
-!> Makes a shared library out of the sources of a UMAT, with the flags that real files need.
+!> Builds a shared library from the sources of a UMAT.
 module umat_build
   use build_info, only: compiler_path
   use deck_file, only: load_file
@@ -15,14 +15,14 @@ module umat_build
   end type umat_file
 
   character, parameter :: nl = new_line('a')
-  !> Arguments of one type where another is declared, tabs and D lines, locals that start as zero:
-  !> what code of forty years takes for granted.
-  character(*), parameter :: flags_of_real_files = '-fPIC -O2 -std=legacy -fdec '// &
+  !> Old code relies on arguments of other types, tabs, D lines and local variables that are zero at
+  !> the start.
+  character(*), parameter :: flags_of_old_code = '-fPIC -O2 -std=legacy -fdec '// &
                              '-fallow-argument-mismatch -finit-local-zero'
   character(*), parameter :: flags_of_free_form = '-x f95 -ffree-form -ffree-line-length-none'
   character(*), parameter :: flags_of_fixed_form = '-x f77 -ffixed-form '// &
                              '-ffixed-line-length-none'
-  !> What would end the process comes back as a status instead (umat_bridge.c).
+  !> Calls that would end the process return a status instead (umat_bridge.c).
   character(*), parameter :: flags_of_linker = '-shared '// &
                              '-Wl,--wrap=_gfortran_stop_string '// &
                              '-Wl,--wrap=_gfortran_stop_numeric '// &
@@ -30,28 +30,28 @@ module umat_build
                              '-Wl,--wrap=_gfortran_error_stop_numeric '// &
                              '-Wl,--wrap=_gfortran_exit_i4 '// &
                              '-Wl,--wrap=_gfortran_runtime_error_at'
-  !> The file that UMATs include: implicit typing and the precision of the interface.
+  !> The include file of UMATs: implicit typing and precision of the interface.
   character(*), parameter :: include_file = &
                              '      IMPLICIT REAL*8(A-H,O-Z)'//nl// &
                              '      PARAMETER (NPRECD=2)'//nl
-  integer, parameter :: most_letters = 4000 !< of the compiler's words that are shown
-  integer, parameter :: command_not_found = 127 !< what a shell returns
+  integer, parameter :: most_letters = 4000 !< of the compiler's output in a message
+  integer, parameter :: command_not_found = 127 !< status of the shell
 
 contains
 
-  !> A library that is loaded as it is.
+  !> Whether a file is a library, which needs no build.
   pure logical function is_library(path)
     character(*), intent(in) :: path
     is_library = index(path, '.so', back=.true.) > 0 .and. &
                  index(path, '.so', back=.true.) == len(path) - 2
   end function is_library
 
-  !> Compiles and links; the compiler's words are the message when it refuses.
+  !> Compiles and links; on failure the message is the output of the compiler.
   subroutine build_library(files, user_flags, folder, library, error)
     type(umat_file), intent(in) :: files(:)
     character(*), intent(in) :: user_flags !< of the compiler, for all sources
-    character(*), intent(in) :: folder !< for what is needed in between
-    character(*), intent(in) :: library !< path of what is made
+    character(*), intent(in) :: folder !< for intermediate files
+    character(*), intent(in) :: library !< path of the result
     type(error_type), allocatable, intent(out) :: error
     character(:), allocatable :: objects, object
     integer :: i
@@ -89,7 +89,7 @@ contains
     form = form_of_source(text)
     flags = flags_of_fixed_form
     if (form%is_free) flags = flags_of_free_form
-    flags = flags_of_real_files//' '//flags
+    flags = flags_of_old_code//' '//flags
     if (form%has_directives) flags = flags//' -cpp'
     call run('-c '//flags//' -I'//quoted(folder_of(path))//' -I'//quoted(folder)//' -J'// &
              quoted(folder)//' '//user_flags//' -o '//object//' '//quoted(path), folder, &
@@ -97,7 +97,7 @@ contains
              trim(merge('free ', 'fixed', form%is_free))//' form', error)
   end subroutine compile
 
-  !> Runs the compiler; its words become the message of an error.
+  !> Runs the compiler; on failure the message is its output.
   subroutine run(arguments, folder, what_fails, error)
     character(*), intent(in) :: arguments, folder, what_fails
     type(error_type), allocatable, intent(out) :: error
@@ -119,7 +119,7 @@ contains
     call raise(error, 'keyway: '//what_fails//nl//words, deck_is_wrong)
   end subroutine run
 
-  !> The compiler of this program where it stands, else the one of the path.
+  !> The compiler of this program if it exists, else the one of PATH.
   function compiler() result(command)
     character(:), allocatable :: command
     logical :: exists
@@ -128,7 +128,7 @@ contains
     if (exists) command = quoted(compiler_path)
   end function compiler
 
-  !> Goes to the linker as it is.
+  !> Whether a file goes to the linker without compilation.
   pure logical function is_object(path)
     character(*), intent(in) :: path
     character(:), allocatable :: ending
@@ -143,14 +143,14 @@ contains
     if (folder == '') folder = '.'
   end function folder_of
 
-  !> One word for the shell, whatever it holds.
+  !> A text as one word of the shell.
   pure function quoted(word) result(text)
     character(*), intent(in) :: word
     character(:), allocatable :: text
     integer :: i
     text = ''''
     do i = 1, len(word)
-      if (word(i:i) == '''') text = text//'''\''' ! close, a quote of its own, open again
+      if (word(i:i) == '''') text = text//'''\''' ! close, quoted quote, open
       text = text//word(i:i)
     end do
     text = text//''''

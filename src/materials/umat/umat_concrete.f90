@@ -1,5 +1,5 @@
-!> The constants and the state of plastic-damage concrete as a UMAT's lists of numbers: which is
-!> which stands in umat_damage_plasticity.f90.
+!> Constants and state of plastic-damage concrete as PROPS and STATEV of a UMAT; the numbers are
+!> explained in umat_damage_plasticity.f90.
 module umat_concrete
   use damage_checks, only: find_longest_band, find_table_faults, table_fault
   use damage_constants, only: concrete_constants
@@ -12,12 +12,12 @@ module umat_concrete
 
   integer, parameter :: num_scalars = 18 !< constants before the tables
   integer, parameter :: own_width = 14 !< in place of CELENT
-  integer, parameter :: first_count = 15 !< of the four numbers of rows
+  integer, parameter :: first_count = 15 !< position of the first of four numbers of rows
   character(12), parameter :: kinds_of_table(0:2) = ['STRAIN      ', 'DISPLACEMENT', 'GFI         ']
 
 contains
 
-  !> PROPS by name; `fault` tells what is wrong, '' when nothing is.
+  !> Reads PROPS; `fault` is a message, '' without a fault.
   subroutine read_constants(props, constants, fault)
     real(rk), intent(in) :: props(:)
     type(concrete_constants), intent(out) :: constants
@@ -51,7 +51,7 @@ contains
     call take_table(props, num_rows(4), first, constants%compression_damage)
   end subroutine read_constants
 
-  !> The next table, row by row; none stays unallocated.
+  !> Reads the next table, row by row; unallocated without rows.
   pure subroutine take_table(props, num_rows, first, table)
     real(rk), intent(in) :: props(:)
     integer, intent(in) :: num_rows
@@ -62,28 +62,28 @@ contains
     first = first + 2*num_rows
   end subroutine take_table
 
-  !> Ranges of what is not a table.
+  !> Checks the ranges of the scalars.
   subroutine check_scalars(props, num_rows, fault)
     real(rk), intent(in) :: props(:)
     integer, intent(in) :: num_rows(4)
     character(:), allocatable, intent(inout) :: fault
     integer :: i
-    call want(props(1) > 0.0_rk, 1, 'E_0 > 0')
-    call want(abs(props(2)) < 0.5_rk, 2, 'nu between -0.5 and 0.5')
-    call want(props(3) > 0.0_rk .and. props(3) < 56.3_rk, 3, 'degrees between 0 and 56.3')
-    call want(props(4) > 0.0_rk, 4, 'an offset > 0')
-    call want(props(5) >= 1.0_rk, 5, 'f_b0/f_c0 >= 1')
-    call want(props(6) > 0.5_rk .and. props(6) <= 1.0_rk, 6, 'K_c above 0.5, at most 1')
-    call want(props(7) >= 0.0_rk, 7, 'a viscosity >= 0')
-    call want(any(nint(props(8)) == [0, 1]), 8, 'recovery 0 or 1')
-    call want(abs(props(9) - 0.5_rk) <= 0.5_rk, 9, 'w_t between 0 and 1')
-    call want(abs(props(10) - 0.5_rk) <= 0.5_rk, 10, 'w_c between 0 and 1')
-    call want(any(nint(props(11)) == [0, 1, 2]), 11, 'tension against 0, 1 or 2')
-    call want(any(nint(props(12)) == [0, 1]), 12, 'tension damage against 0 or 1')
-    call want(any(nint(props(13)) == [0, 1]), 13, 'long elements 0 or 1')
-    call want(props(14) >= 0.0_rk, 14, 'a width >= 0')
+    call require(props(1) > 0.0_rk, 1, 'E_0 > 0')
+    call require(abs(props(2)) < 0.5_rk, 2, 'nu between -0.5 and 0.5')
+    call require(props(3) > 0.0_rk .and. props(3) < 56.3_rk, 3, 'degrees between 0 and 56.3')
+    call require(props(4) > 0.0_rk, 4, 'an offset > 0')
+    call require(props(5) >= 1.0_rk, 5, 'f_b0/f_c0 >= 1')
+    call require(props(6) > 0.5_rk .and. props(6) <= 1.0_rk, 6, 'K_c above 0.5, at most 1')
+    call require(props(7) >= 0.0_rk, 7, 'a viscosity >= 0')
+    call require(any(nint(props(8)) == [0, 1]), 8, 'recovery 0 or 1')
+    call require(abs(props(9) - 0.5_rk) <= 0.5_rk, 9, 'w_t between 0 and 1')
+    call require(abs(props(10) - 0.5_rk) <= 0.5_rk, 10, 'w_c between 0 and 1')
+    call require(any(nint(props(11)) == [0, 1, 2]), 11, 'tension against 0, 1 or 2')
+    call require(any(nint(props(12)) == [0, 1]), 12, 'tension damage against 0 or 1')
+    call require(any(nint(props(13)) == [0, 1]), 13, 'long elements 0 or 1')
+    call require(props(14) >= 0.0_rk, 14, 'a width >= 0')
     do i = 1, 4
-      call want(num_rows(i) >= mod(i, 2), first_count + i - 1, 'a number of rows')
+      call require(num_rows(i) >= mod(i, 2), first_count + i - 1, 'a number of rows')
     end do
     if (len(fault) > 0) return
     if (size(props) /= num_scalars + 2*sum(num_rows)) then
@@ -93,8 +93,8 @@ contains
 
   contains
 
-    !> Keeps the first fault.
-    subroutine want(is_so, number, expected)
+    !> Records the first fault.
+    subroutine require(is_so, number, expected)
       logical, intent(in) :: is_so
       integer, intent(in) :: number !< of the constant
       character(*), intent(in) :: expected
@@ -103,10 +103,10 @@ contains
     end subroutine want
   end subroutine check_scalars
 
-  !> The model and the width of its crack band; `fault` as above.
+  !> Makes the model and the width of its crack band; `fault` as above.
   !>
-  !> The tables are looked at where the caller asks for it, the rest in every call. Faults of the
-  !> tables are those of the first increment: a caller does not come further with them.
+  !> Scalars are checked in every call, tables on request. A check of tables in the first increment
+  !> is enough, because an analysis stops there on a fault.
   subroutine make_model(props, celent, checks_tables, model, width, fault)
     real(rk), intent(in) :: props(:)
     real(rk), intent(in) :: celent !< of the caller [m]
@@ -132,7 +132,7 @@ contains
     if (model%by_opening) call check_width(constants, model, width, fault)
   end subroutine make_model
 
-  !> For tables over openings.
+  !> Checks the width for tables over openings.
   subroutine check_width(constants, model, width, fault)
     type(concrete_constants), intent(in) :: constants
     type(concrete_model), intent(in) :: model

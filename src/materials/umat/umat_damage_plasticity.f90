@@ -18,7 +18,7 @@
 !>    9 w_t           10 w_c
 !>   11 tension against: 0 cracking strain, 1 opening, 2 one row f_t, G_f
 !>   12 tension damage against: 0 cracking strain, 1 opening
-!>   13 an element too long for its fracture energy: 0 is refused, 1 gets a lower strength
+!>   13 an element too long for its fracture energy: 0 is an error, 1 has a lower strength
 !>   14 width of the crack band in place of CELENT, 0: CELENT
 !>   15-18 rows of the tables: tension, tension damage, compression, compression damage
 !>   19.. the tables one after the other, row by row: stress or damage, then its abscissa
@@ -26,13 +26,13 @@
 !> State, STATEV: 17 variables, zero at the start:
 !>    1-6 plastic strain, engineering shear    7, 8 kappa_t, kappa_c    9, 10 d_t, d_c
 !>   11 width of the crack band, 0 before the first crack
-!>   12-17 plastic strain as it would be without viscosity
+!>   12-17 plastic strain without viscosity
 !>
-!> For solids of six stress components and small strains. The tangent is unsymmetric. SSE is what
-!> unloading would give back, SPD what has been dissipated. Constants at fault are told on the
-!> standard output, and the stress becomes NaN: nothing goes on with that in silence; the tables
-!> are looked at in the first increment of the first step. A point that cannot be integrated asks
-!> for a quarter of the increment.
+!> For solids with six stress components and small strains. The tangent is unsymmetric. SSE is the
+!> elastic energy, SPD the dissipated energy. Faults of constants are reported on the standard
+!> output, and the stress is set to NaN so that the analysis stops. Tables are checked in the first
+!> increment of the first step. A point that cannot be integrated requests a quarter of the
+!> increment.
 module umat_damage_plasticity
   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int
@@ -50,8 +50,8 @@ module umat_damage_plasticity
 
 contains
 
-  !> The interface of user subroutines. What it does not use: RPL, SCD and the rest of temperature,
-  !> PREDEF, COORDS, DROT, DFGRD0, DFGRD1, LAYER, KSPT. KSTEP and KINC tell the first increment,
+  !> The interface of user subroutines. Not used: RPL, SCD and other arguments of temperature,
+  !> PREDEF, COORDS, DROT, DFGRD0, DFGRD1, LAYER, KSPT. KSTEP and KINC identify the first increment,
   !> in which the tables are checked.
   subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, &
                   dstran, time, dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, &

@@ -1,5 +1,5 @@
-!> What is learnt about a UMAT while it runs: tangents that are not symmetric, and the worst entry
-!> of a check of its tangents.
+!> Findings about a UMAT during a run: unsymmetric tangents, and the largest error in a check of the
+!> tangents.
 module umat_findings
   use kinds, only: long, rk
   use write_text, only: as_text
@@ -7,13 +7,13 @@ module umat_findings
   private
   public :: findings, tangent_check, call_place, place_text, text_of_check
 
-  !> Where a UMAT is called.
+  !> Place of a call of a UMAT.
   type :: call_place
     character(:), allocatable :: material
     integer :: element = 0, point = 0, step = 0, increment = 0
   end type call_place
 
-  !> DDSDDE against differences of STRESS: the entry that is farthest off.
+  !> DDSDDE compared with differences of STRESS: the entry with the largest error.
   type :: tangent_check
     integer(long) :: num_tangents = 0 !< compared so far
     real(rk) :: error = -1.0_rk !< |given - found| over the largest entry of DDSDDE
@@ -43,20 +43,20 @@ contains
            as_text(place%increment)
   end function place_text
 
-  !> A line for people.
+  !> Text of a check.
   pure function text_of_check(check) result(text)
     type(tangent_check), intent(in) :: check
     character(:), allocatable :: text
     text = 'UMAT: DDSDDE compared with differences of STRESS in '//as_text(check%num_tangents)// &
            ' calls'
     if (check%error < 0.0_rk) return
-    text = text//'; farthest apart by '//as_text(check%error)//' of its largest entry, at '// &
+    text = text//'; largest error '//as_text(check%error)//' of its largest entry, at '// &
            place_text(check%place)//': DDSDDE('//as_text(check%row)//','// &
            as_text(check%column)//') = '//as_text(check%given)//', difference quotient '// &
            as_text(check%found)
   end function text_of_check
 
-  !> Counts a comparison and keeps the worst; safe among threads.
+  !> Counts a comparison and keeps the largest error; thread-safe.
   subroutine add_check(self, new)
     class(findings), intent(inout) :: self
     type(tangent_check), intent(in) :: new
@@ -68,7 +68,7 @@ contains
     !$omp end critical (umat_findings)
   end subroutine add_check
 
-  !> Keeps the first tangent that is not symmetric.
+  !> Keeps the first unsymmetric tangent.
   subroutine add_asymmetry(self, place, share)
     class(findings), intent(inout) :: self
     type(call_place), intent(in) :: place
@@ -76,8 +76,8 @@ contains
     !$omp critical (umat_findings)
     if (.not. allocated(self%asymmetry)) then
       self%asymmetry = 'DDSDDE of the UMAT is not symmetric ('//place_text(place)//': by '// &
-                       as_text(share)//' of its largest entry); it is symmetrised unless '// &
-                       '*USER MATERIAL says UNSYMM'
+                       as_text(share)//' of its largest entry) and is symmetrised; '// &
+                       '*USER MATERIAL, UNSYMM keeps it unsymmetric'
     end if
     !$omp end critical (umat_findings)
   end subroutine add_asymmetry

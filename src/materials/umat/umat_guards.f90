@@ -1,5 +1,4 @@
-!> What is looked at after a call of a UMAT: every number is one, and nothing was written past the
-!> state variables.
+!> Checks after a call of a UMAT: results are finite, and nothing was written past STATEV.
 module umat_guards
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use kinds, only: long, rk
@@ -10,7 +9,7 @@ module umat_guards
   public :: guarded_state, fault_of_call, has_cholesky_factor, largest_asymmetry, size_of_guard
 
   integer, parameter :: size_of_guard = 8 !< words before and behind the state variables
-  !> No number that a law leaves behind by chance.
+  !> A number that no law writes by chance.
   real(rk), parameter :: guard_word = -7.236514893620175e183_rk
 
   !> State variables between guard words.
@@ -43,7 +42,7 @@ contains
     variables = self%room(size_of_guard + 1:size(self%room) - size_of_guard)
   end function values
 
-  !> '' where all state variables are numbers and the guard words stand.
+  !> '' if all state variables are finite and the guard words are unchanged.
   pure function fault_of_state(self) result(fault)
     class(guarded_state), intent(in) :: self
     character(:), allocatable :: fault
@@ -52,8 +51,8 @@ contains
     fault = ''
     do i = 1, size_of_guard
       if (.not. is_guard(self%room(i)) .or. .not. is_guard(self%room(size_of_guard + n + i))) then
-        fault = 'it writes outside of its '//as_text(n)//' state variables (STATEV; *DEPVAR '// &
-                'says how many there are)'
+        fault = 'the routine writes outside of its '//as_text(n)//' state variables (STATEV); '// &
+                'set their number by *DEPVAR'
         return
       end if
     end do
@@ -61,13 +60,13 @@ contains
     if (i > 0) fault = 'STATEV('//as_text(i)//') is not a number'
   end function fault_of_state
 
-  !> Compared by bits: a NaN in its place equals nothing and would trap.
+  !> Compares bits: a comparison with NaN would trap.
   pure elemental logical function is_guard(word)
     real(rk), intent(in) :: word
     is_guard = transfer(word, 0_long) == transfer(guard_word, 0_long)
   end function is_guard
 
-  !> '' for a sound answer.
+  !> '' for a valid result.
   pure function fault_of_call(now, variables) result(fault)
     type(umat_arguments), intent(in) :: now
     type(guarded_state), intent(in) :: variables
@@ -91,7 +90,7 @@ contains
     end if
   end function fault_of_call
 
-  !> Position of the first value that is NaN or infinite, 0 where there is none.
+  !> Position of the first NaN or infinite value, 0 for none.
   pure integer function first_not_finite(values) result(position)
     real(rk), intent(in) :: values(:)
     position = findloc(ieee_is_finite(values), .false., 1)
@@ -106,7 +105,7 @@ contains
     if (largest > 0.0_rk) share = maxval(abs(matrix - transpose(matrix)))/largest
   end function largest_asymmetry
 
-  !> A symmetric matrix is positive definite.
+  !> Whether a symmetric matrix is positive definite.
   pure logical function has_cholesky_factor(matrix) result(is_positive)
     real(rk), intent(in) :: matrix(6, 6)
     real(rk) :: lower(6, 6), pivot

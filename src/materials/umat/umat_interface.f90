@@ -12,7 +12,7 @@ module umat_interface
 
   integer, parameter :: longest_message = 512
 
-  !> What one call hands over, in the order of the bridge; names are those of the interface.
+  !> Arguments of one call, in the order of the bridge, with the names of the interface.
   type, bind(c) :: umat_arguments
     real(c_double) :: stress(6) = 0, ddsdde(6, 6) = 0, sse = 0, spd = 0, scd = 0
     real(c_double) :: rpl = 0, ddsddt(6) = 0, drplde(6) = 0, drpldt = 0
@@ -24,13 +24,13 @@ module umat_interface
     type(c_ptr) :: statev = c_null_ptr, props = c_null_ptr
     integer(c_int) :: ndi = 3, nshr = 3, ntens = 6, nstatv = 0, nprops = 0
     integer(c_int) :: noel = 0, npt = 0, layer = 1, kspt = 1
-    integer(c_int) :: kstep(4) = 0 !< the step; what else a routine may look for is not told
+    integer(c_int) :: kstep(4) = 0 !< the step; the other entries are 0
     integer(c_int) :: kinc = 0
     character(kind=c_char) :: cmname(80) = ' '
   end type umat_arguments
 
   interface
-    !> Calls UMAT; 0, or 1 when it gave up.
+    !> Calls UMAT; 1 if it stops, else 0.
     function keyway_umat_call(routine, arguments) result(status) bind(c)
       import :: c_funptr, c_int, umat_arguments
       implicit none
@@ -61,7 +61,7 @@ module umat_interface
       integer(c_int) :: status
     end function keyway_umat_external
 
-    !> Why the last call of this thread gave up.
+    !> Reason of the last stop in this thread.
     subroutine keyway_umat_message(message, size) bind(c)
       import :: c_char, c_size_t
       implicit none
@@ -80,7 +80,7 @@ module umat_interface
       type(c_ptr) :: handle
     end function keyway_umat_open
 
-    !> A routine of a library by its symbol; null where it has none.
+    !> A routine of a library by its symbol; null if missing.
     function keyway_umat_find(handle, name) result(routine) bind(c)
       import :: c_char, c_funptr, c_ptr
       implicit none
@@ -90,7 +90,7 @@ module umat_interface
       type(c_funptr) :: routine
     end function keyway_umat_find
 
-    !> What GETJOBNAME and GETOUTDIR answer.
+    !> Sets the results of GETJOBNAME and GETOUTDIR.
     subroutine keyway_umat_set_job(name, folder) bind(c)
       import :: c_char
       implicit none
@@ -105,14 +105,14 @@ module umat_interface
       integer(c_int), value :: is_error
     end subroutine keyway_umat_count
 
-    !> How many there are.
+    !> Numbers of warnings and errors.
     subroutine keyway_umat_counts(warnings, errors) bind(c)
       import :: c_int
       implicit none
       integer(c_int), intent(out) :: warnings, errors
     end subroutine keyway_umat_counts
 
-    !> Goes back to the call that guards the UMAT; never returns.
+    !> Jumps back to the guarded call; never returns.
     subroutine keyway_umat_give_up(message, length) bind(c)
       import :: c_char, c_size_t
       implicit none
@@ -121,7 +121,7 @@ module umat_interface
       integer(c_size_t), value :: length
     end subroutine keyway_umat_give_up
 
-    !> Traps of floating-point exceptions sleep until they are released.
+    !> Disables traps of floating-point exceptions until keyway_umat_release_traps.
     subroutine keyway_umat_hold_traps() bind(c)
       implicit none
     end subroutine keyway_umat_hold_traps
@@ -130,7 +130,7 @@ module umat_interface
       implicit none
     end subroutine keyway_umat_release_traps
 
-    !> Makes a folder for files that nobody keeps; an empty path on failure.
+    !> Makes a temporary folder; an empty path on failure.
     subroutine keyway_make_temporary(path, size) bind(c)
       import :: c_char, c_size_t
       implicit none
@@ -149,7 +149,7 @@ module umat_interface
 
 contains
 
-  !> Why the last guarded call of this thread came back early: 'XIT was called'.
+  !> Reason of the last stop in this thread: 'XIT was called'.
   function failure_reason() result(text)
     character(:), allocatable :: text
     character(kind=c_char) :: message(longest_message)
@@ -157,7 +157,7 @@ contains
     text = text_from_c(message)
   end function failure_reason
 
-  !> The letters before the null.
+  !> The text before the null.
   pure function text_from_c(letters) result(text)
     character(kind=c_char), intent(in) :: letters(:)
     character(:), allocatable :: text

@@ -1,5 +1,4 @@
-!> The library of a user: opened once for a run, with the routines it holds and what is learnt of
-!> them.
+!> The library of a user: opened once for a run, with its routines and the findings about them.
 module umat_loader
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_funptr, c_int
   use, intrinsic :: iso_c_binding, only: c_null_char, c_null_funptr, c_null_ptr, c_ptr, c_size_t
@@ -20,15 +19,15 @@ module umat_loader
 
   !> When UEXTERNALDB is called: its argument LOP.
   integer, parameter :: at_start = 0, at_increment_start = 1, at_increment_end = 2, at_end = 3
-  integer, parameter :: at_restart = 4 !< in place of `at_start` where an analysis goes on
+  integer, parameter :: at_restart = 4 !< in place of `at_start` after a restart
 
   integer, parameter :: longest_message = 2000, longest_path = 4000
 
-  !> What the command line says of UMATs.
+  !> Options of the command line for UMATs.
   type :: umat_request
-    type(umat_file), allocatable :: files(:) !< sources, or one shared library; none: not given
+    type(umat_file), allocatable :: files(:) !< sources, or one library; unallocated: not given
     character(:), allocatable :: flags !< of the compiler
-    character(:), allocatable :: target !< path of the library that is kept, '' for none
+    character(:), allocatable :: target !< path to keep the library, '' for none
     logical :: is_threadsafe = .false. !< may be called by several threads at once
     logical :: checks_tangent = .false. !< compare DDSDDE with differences of STRESS
   end type umat_request
@@ -36,8 +35,8 @@ module umat_loader
   type :: user_library
     type(c_ptr) :: handle = c_null_ptr
     type(c_funptr) :: umat = c_null_funptr
-    type(c_funptr) :: sdvini = c_null_funptr, uexternaldb = c_null_funptr !< null: it has none
-    type(umat_file), allocatable :: files(:) !< what it was made of
+    type(c_funptr) :: sdvini = c_null_funptr, uexternaldb = c_null_funptr !< null: missing
+    type(umat_file), allocatable :: files(:) !< sources of the library
     logical :: is_threadsafe = .false., checks_tangent = .false.
     type(findings) :: found
   contains
@@ -49,7 +48,7 @@ module umat_loader
 
 contains
 
-  !> Builds and loads what the user brings, and opens unit 7. UEXTERNALDB hears of the start.
+  !> Builds and loads the library, opens unit 7 and calls UEXTERNALDB for the start.
   subroutine open_library(request, job, folder, library, error)
     type(umat_request), intent(in) :: request
     character(*), intent(in) :: job !< name of the job
@@ -82,7 +81,7 @@ contains
     end if
   end subroutine open_library
 
-  !> Builds the library of the request and keeps it, for runs to come.
+  !> Builds the library of the request and keeps it for later runs.
   subroutine keep_library(request, error)
     type(umat_request), intent(in) :: request
     type(error_type), allocatable, intent(out) :: error
@@ -100,7 +99,7 @@ contains
     call keyway_make_temporary(room, size(room, kind=c_size_t))
     path = text_from_c(room)
     if (path /= '') return
-    call raise(error, 'keyway: there is no folder for temporary files (TMPDIR)', system_failed)
+    call raise(error, 'keyway: no folder for temporary files; set TMPDIR', system_failed)
   end subroutine open_temporary
 
   !> Loads a library and finds its routines.
@@ -119,12 +118,12 @@ contains
     library%sdvini = keyway_umat_find(library%handle, 'sdvini_'//c_null_char)
     library%uexternaldb = keyway_umat_find(library%handle, 'uexternaldb_'//c_null_char)
     if (has_routine('umatht_') .or. has_routine('hetval_')) then
-      call raise(error, 'keyway: the UMAT comes with UMATHT or HETVAL: an analysis coupled '// &
-                 'with temperature is not done here', deck_is_wrong)
+      call raise(error, 'keyway: the library has UMATHT or HETVAL; analyses coupled with '// &
+                 'temperature are not supported', deck_is_wrong)
     else if (.not. c_associated(library%umat)) then
       hint = ''
       if (has_routine('vumat_')) hint = ' (VUMAT is the interface of an explicit program)'
-      call raise(error, 'keyway: there is no SUBROUTINE UMAT in what --umat names'//hint, &
+      call raise(error, 'keyway: the files of --umat have no SUBROUTINE UMAT'//hint, &
                  deck_is_wrong)
     end if
 
@@ -138,7 +137,7 @@ contains
     end function has_routine
   end subroutine load
 
-  !> Unit 7, for what the UMAT writes and what its messages say. Unit 6 is the standard output.
+  !> Opens unit 7 for output and messages of the UMAT. Unit 6 is the standard output.
   subroutine open_message_file(path, error)
     character(*), intent(in) :: path
     type(error_type), allocatable, intent(out) :: error
@@ -147,10 +146,10 @@ contains
     if (status /= 0) call raise(error, "keyway: cannot write '"//path//"'", system_failed)
   end subroutine open_message_file
 
-  !> Tells UEXTERNALDB, where there is one, of a moment of the analysis.
+  !> Calls UEXTERNALDB, if present, at a moment of the analysis.
   subroutine call_external(self, moment, time, size, step, increment, error)
     class(user_library), intent(in) :: self
-    integer, intent(in) :: moment !< one of those above
+    integer, intent(in) :: moment !< one of the constants above
     real(rk), intent(in) :: time(2) !< of the step, of the analysis [s]
     real(rk), intent(in) :: size !< of the increment [s]
     integer, intent(in) :: step, increment !< from 1; 0 before the first
@@ -164,12 +163,12 @@ contains
                                   int(increment, c_int))
     call keyway_umat_release_traps()
     if (status == 0) return
-    call raise(error, 'UEXTERNALDB of the UMAT gave up (LOP '//as_text(moment)//', step '// &
+    call raise(error, 'UEXTERNALDB of the UMAT stopped (LOP '//as_text(moment)//', step '// &
                as_text(step)//', increment '//as_text(increment)//'): '//failure_reason(), &
                analysis_failed)
   end subroutine call_external
 
-  !> What the user should know and has not been told; '' where there is nothing new.
+  !> Findings that have not been reported yet; '' for none.
   function new_notes(self) result(text)
     class(user_library), intent(inout) :: self
     character(:), allocatable :: text
@@ -179,7 +178,7 @@ contains
     self%found%is_asymmetry_told = .true.
   end function new_notes
 
-  !> What the check of the tangents says; '' without one.
+  !> Result of the check of the tangents; '' without a check.
   function check_text(self) result(text)
     class(user_library), intent(in) :: self
     character(:), allocatable :: text
@@ -188,11 +187,11 @@ contains
     text = text_of_check(self%found%check)
   end function check_text
 
-  !> Closes unit 7, and takes the file away when nothing stands in it. The library stays loaded:
-  !> its units and threads may outlive it. Tells how many warnings and errors the UMAT wrote.
+  !> Closes unit 7 and removes an empty file. The library remains loaded, because its units and
+  !> threads may still be in use. Reports the numbers of warnings and errors of the UMAT.
   subroutine close_library(self, note)
     class(user_library), intent(in) :: self
-    character(:), allocatable, intent(out) :: note !< '' where it wrote none
+    character(:), allocatable, intent(out) :: note !< '' for none
     integer(c_int) :: num_warnings, num_errors
     integer :: num_bytes
     logical :: is_open

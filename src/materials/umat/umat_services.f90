@@ -1,4 +1,4 @@
-!> What a UMAT asks of the program that runs it, by the names of its interface: XIT, STDB_ABQERR,
+!> Services for a UMAT by the names of its interface: XIT, STDB_ABQERR,
 !> GETNUMCPUS, GETRANK, GET_THREAD_ID. GETJOBNAME, GETOUTDIR, GETVRM, GETPARTINFO and the mutexes
 !> are in umat_bridge.c.
 module umat_services
@@ -10,23 +10,23 @@ module umat_services
   public :: xit, stdb_abqerr, getnumcpus, getrank, get_thread_id, warn
   public :: message_unit
 
-  integer, parameter :: message_unit = 7 !< what a UMAT writes for its user: JOB.msg
+  integer, parameter :: message_unit = 7 !< JOB.msg, for output of a UMAT
   integer, parameter :: letters_of_word = 8 !< of an entry of CHARV
   integer(c_int), parameter :: information = 1, warning = -1, fault = -2, fatal_fault = -3
 
 contains
 
-  !> Gives up the increment.
+  !> Ends the call and cuts the increment.
   subroutine xit() bind(c, name='xit_')
     call give_up('XIT was called')
   end subroutine xit
 
-  !> Writes a message with numbers and words in it: %I, %R and %S stand for the next of each. The
-  !> kind -3 gives up the increment.
+  !> Writes a message; %I, %R and %S are replaced by the next integer, real and text. The kind -3
+  !> ends the call and cuts the increment.
   subroutine stdb_abqerr(lop, text, intv, realv, charv, num_letters) &
     bind(c, name='stdb_abqerr_')
     integer(c_int), intent(in) :: lop !< 1 information, -1 warning, -2 error, -3 fatal error
-    integer(c_size_t), intent(in), value :: num_letters !< of the text, handed over unseen
+    integer(c_size_t), intent(in), value :: num_letters !< of the text, a hidden argument
     character(kind=c_char), intent(in) :: text(num_letters)
     ! allow(assumed-size)
     integer(c_int), intent(in) :: intv(*)
@@ -64,7 +64,7 @@ contains
     call pass_on(lop, trim(message))
   end subroutine stdb_abqerr
 
-  !> The letter behind '%', a blank where there is no such mark.
+  !> The letter after '%', a blank for other marks.
   pure character function mark_at(text, i)
     character(kind=c_char), intent(in) :: text(:)
     integer, intent(in) :: i
@@ -102,7 +102,7 @@ contains
     end select
   end subroutine pass_on
 
-  !> One line of the message file, where there is one.
+  !> Writes a line to the message file, if there is one.
   subroutine write_message(line)
     character(*), intent(in) :: line
     logical :: is_open
@@ -115,7 +115,7 @@ contains
     call keyway_umat_give_up(message, len(message, c_size_t))
   end subroutine give_up
 
-  !> Processes of the analysis: one; its threads are told by GET_THREAD_ID.
+  !> Number of processes: 1; GET_THREAD_ID identifies threads.
   subroutine getnumcpus(num_processes) bind(c, name='getnumcpus_')
     integer(c_int), intent(out) :: num_processes
     num_processes = 1
@@ -132,7 +132,7 @@ contains
     thread = int(omp_get_thread_num(), c_int)
   end function get_thread_id
 
-  !> A warning of the bridge.
+  !> Writes a warning of the bridge.
   subroutine warn(text, num_letters) bind(c, name='keyway_umat_warn')
     integer(c_size_t), intent(in), value :: num_letters
     character(kind=c_char), intent(in) :: text(num_letters)

@@ -1,11 +1,11 @@
-!> Free or fixed form of a Fortran source, from what it holds: the ending of its name says little.
+!> Free or fixed form of a Fortran source, from its content: the extension is not reliable.
 module umat_source_form
   use parse_text, only: upper_case
   implicit none
   private
   public :: source_form, form_of_source
 
-  !> What the compiler must be told.
+  !> Properties of a source for the compiler.
   type :: source_form
     logical :: is_free = .false.
     logical :: has_directives = .false. !< of the preprocessor: #include, #define, ..
@@ -16,9 +16,9 @@ module umat_source_form
 
 contains
 
-  !> In this order: a directive FREEFORM or FIXEDFORM; a line that goes on with a trailing '&'; a
-  !> comment or continuation of the fixed form; a statement in columns 1-5. Without any of them
-  !> either form will do, and fixed is taken.
+  !> Tests in this order: a directive FREEFORM or FIXEDFORM; a trailing '&'; a comment or
+  !> continuation of the fixed form; a statement in columns 1-5. Else both forms are valid, and
+  !> fixed is taken.
   pure function form_of_source(text) result(form)
     character(*), intent(in) :: text !< the whole file, lines ended by LF or CRLF
     type(source_form) :: form
@@ -57,7 +57,7 @@ contains
     if (line(len(line):) == return) clean = line(:len(line) - 1)
   end function without_return
 
-  !> '#include' and its like, in column 1 or behind blanks.
+  !> '#include' or similar, in column 1 or after blanks.
   pure logical function is_for_preprocessor(line)
     character(*), intent(in) :: line
     is_for_preprocessor = index(adjustl(line), '#') == 1
@@ -73,14 +73,14 @@ contains
                  (index(upper, 'FREEFORM') > 0 .or. index(upper, 'FIXEDFORM') > 0)
   end function names_form
 
-  !> A comment of either form. A statement of the free form that starts with C in column 1 is taken
-  !> for one, too: other lines will tell.
+  !> Whether a line is a comment in either form. A statement of the free form with C in column 1
+  !> counts as a comment too; other lines then decide.
   pure logical function is_comment(line)
     character(*), intent(in) :: line
     is_comment = scan(line(:min(1, len(line))), 'Cc*!#dD') == 1 .or. index(adjustl(line), '!') == 1
   end function is_comment
 
-  !> '*' in column 1, or a mark in column 6 behind five blanks that starts no statement.
+  !> '*' in column 1, or a continuation mark in column 6 after five blanks.
   pure logical function is_of_fixed_form(line)
     character(*), intent(in) :: line
     is_of_fixed_form = index(line, '*') == 1
@@ -90,7 +90,7 @@ contains
                        == 1 .and. index(line, tab) == 0
   end function is_of_fixed_form
 
-  !> A statement begins in columns 1 to 5, where the fixed form has labels only.
+  !> Whether a statement starts in columns 1 to 5, where the fixed form has labels only.
   pure logical function starts_at_left(line)
     character(*), intent(in) :: line
     integer :: first
@@ -100,7 +100,7 @@ contains
     starts_at_left = line(first:first) /= tab
   end function starts_at_left
 
-  !> The last letter before a comment is '&'. A '!' in a text does not begin a comment.
+  !> Whether '&' precedes the comment or the end. A '!' in a text does not start a comment.
   pure logical function ends_in_ampersand(line)
     character(*), intent(in) :: line
     character :: quote

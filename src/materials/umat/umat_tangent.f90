@@ -1,4 +1,4 @@
-!> DDSDDE against differences of STRESS: where to probe, and what the answers say.
+!> Comparison of DDSDDE with differences of STRESS: probes and result.
 module umat_tangent
   use kinds, only: rk
   use umat_findings, only: call_place, tangent_check
@@ -7,12 +7,12 @@ module umat_tangent
   private
   public :: strain_probes, compare_tangent, num_probes
 
-  integer, parameter :: num_probes = 12 !< each component of the strain ahead and behind
+  integer, parameter :: num_probes = 12 !< forward and backward for each strain component
 
-  !> Step of the differences over the largest strain of the point: the cube root of the round-off
-  !> of a double balances it against the curvature in central differences.
+  !> Step of the differences over the largest strain of the point: the cube root of round-off
+  !> balances round-off and curvature in central differences.
   real(rk), parameter :: relative_step = 6.0e-6_rk
-  real(rk), parameter :: smallest_strain = 1.0e-6_rk !< that the step is measured by
+  real(rk), parameter :: smallest_strain = 1.0e-6_rk !< floor of the largest strain
 
 contains
 
@@ -22,7 +22,7 @@ contains
                              maxval(abs(answer%dstran)))
   end function step_of
 
-  !> Strain increments around that of a call: columns 2j-1 and 2j have component j ahead and behind.
+  !> Strain increments around that of a call: columns 2j-1 and 2j change component j up and down.
   pure function strain_probes(answer) result(dstran)
     type(umat_arguments), intent(in) :: answer !< of the UMAT
     real(rk) :: dstran(6, num_probes), step
@@ -35,9 +35,9 @@ contains
     end do
   end function strain_probes
 
-  !> Finds the entry that is farthest off. Each is compared with the forward, the backward and the
-  !> central difference, and the nearest counts: at a corner of the law (first yield) each side has
-  !> its own tangent. A probe that failed says nothing.
+  !> Finds the entry with the largest error. The error is that to the nearest of forward, backward
+  !> and central difference, because at a kink of the law (first yield) each side has its own
+  !> tangent. Failed probes are skipped.
   pure subroutine compare_tangent(answer, place, stress, is_sound, check)
     type(umat_arguments), intent(in) :: answer !< of the UMAT, with its DDSDDE
     type(call_place), intent(in) :: place

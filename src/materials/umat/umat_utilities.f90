@@ -1,4 +1,4 @@
-!> Tensor utilities that UMATs call by the names and meanings of their interface: ROTSIG, SINV,
+!> Tensor utilities for UMATs, with names and meanings of their interface: ROTSIG, SINV,
 !> SPRINC, SPRIND. Direct components come first, then 12, 13, 23; a kind of 1 means stress (tensor
 !> shear), 2 strain (engineering shear).
 module umat_utilities
@@ -13,7 +13,7 @@ module umat_utilities
 
 contains
 
-  !> The tensor turned by R: R T R^T.
+  !> The tensor rotated by R: R T R^T.
   subroutine rotsig(s, r, sprime, lstr, ndi, nshr) bind(c, name='rotsig_')
     integer(c_int), intent(in) :: lstr !< 1 stress, 2 strain
     integer(c_int), intent(in) :: ndi, nshr !< direct and shear components
@@ -62,7 +62,7 @@ contains
     an = transpose(axes)
   end subroutine sprind
 
-  !> The tensor as a matrix; components that are not given are zero.
+  !> The tensor as a matrix; missing components are zero.
   pure function matrix_of(s, lstr, ndi) result(matrix)
     real(c_double), intent(in) :: s(:)
     integer, intent(in) :: lstr, ndi

@@ -80,7 +80,7 @@ contains
     integer, intent(in) :: number
     real(rk), allocatable, intent(out) :: values(:, :) !< (1, points)
     integer :: p
-    associate (jump => now%joints(number)%jump, reach => scene%joints(number)%reach)
+    associate (jump => now%joints(number)%jump, reach => scene%joints(number)%admissible_slip)
       allocate (values(1, size(reach)), source=0.0_rk)
       do p = 1, size(reach)
         if (reach(p) < huge(1.0_rk)) values(1, p) = hypot(jump(2, p), jump(3, p))/reach(p)

@@ -65,7 +65,8 @@ contains
     call check_close(log, sum(built%area), 1.0_rk, round_off, 'whole area')
     call check(log, all(abs(built%clearance) <= 0.0_rk), 'faces count as touching')
     call check(log, count(is_bare) == 0, 'all covered')
-    call check_close(log, maxval(built%admissible_slip), 0.25_rk, round_off, 'reach: the masters are shorter')
+    call check_close(log, maxval(built%admissible_slip), 0.25_rk, round_off, &
+                     'admissible slip: the master facets are shorter')
     call lay_node_points(pair%x, pair%slave, pair%master, pair%segments, none(pair), &
                          .true., measured, is_bare)
     call check_close(log, maxval(abs(measured%clearance - 0.01_rk)), 0.0_rk, round_off, &
