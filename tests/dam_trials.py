@@ -38,7 +38,7 @@ FULL_MATRIX = tuple(product((1.0, 2.0), (1e10, 1e11, 1e12, 1e13), (0.01, 0.005, 
 
 @dataclass(frozen=True)
 class Trial:
-    """What differs from trial to trial."""
+    """Parameters of a trial."""
 
     size: float = 1.0  # of the motion
     components: tuple[bool, bool, bool] = (True, True, True)  # across, stream, vertical
@@ -53,7 +53,7 @@ class Trial:
 
     @property
     def mesh_key(self) -> tuple[int, bool, bool, ArchShape, BlockOptions | None]:
-        """What its mesh depends on."""
+        """Parameters of the mesh of a trial."""
         return self.num_joints, self.has_rock, self.is_coarse, self.shape, self.blocks
 
 
@@ -117,7 +117,7 @@ def run_trial(program: Program, trial: Trial, *options: str, name: str = "dam", 
 
 @dataclass(frozen=True)
 class Robustness:
-    """How hard a run was, and whether its energy grew once the motion was over."""
+    """Effort of a run, and growth of its energy after the motion."""
 
     most_iterations: int
     mean_iterations: float  # of the dynamic increments
@@ -143,10 +143,10 @@ def increments_of(run: Run) -> dict[str, np.ndarray]:
 
 
 def growth_of_energy(run: Run, end_of_motion: float) -> float:
-    """Largest rise of the energy once the motion is over, over the largest kinetic energy then.
+    """Largest growth of the energy after the motion, over the largest kinetic energy then.
 
-    The energy is kinetic and strain (with the joints' springs) less the work of the loads: weight
-    and water alone from then on, so that it can only fall.
+    The energy is kinetic and strain (with the joints' springs) less the work of the loads: of
+    weight and water alone after the motion. It can only decrease.
     """
     table = run.csv("energy")
     is_free = table["time"] >= end_of_motion - 1e-9

@@ -23,7 +23,7 @@ EARLIER = "  "  # begins a line such as 'first defined here:', which ends with i
 
 @dataclass(frozen=True)
 class Case:
-    """A bad deck, the files beside it, and what the program says about it."""
+    """A bad deck, its files, and the messages of the program."""
 
     name: str
     table: Path
@@ -87,7 +87,7 @@ def make_case(name: str, table: Path, content: dict[str, Any]) -> Case:
 
 
 def apply(text: str, edit: list[str]) -> str:
-    """The deck with lines inserted (+) and removed (-); others ( ) say where."""
+    """The deck with lines inserted (+) and removed (-); other lines ( ) give the place."""
     lines, done, made = text.splitlines(), 0, []
     for step in edit:
         sign, line = step[:1], step[1:]

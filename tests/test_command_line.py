@@ -77,7 +77,7 @@ def steps_of(text: str) -> dict[str, list[str]]:
     return steps
 
 
-def test_check_tells_what_stays_from_step_to_step(program_path: Path, tmp_path: Path) -> None:
+def test_check_lists_what_each_step_inherits(program_path: Path, tmp_path: Path) -> None:
     (tmp_path / "block.inp").write_text(BLOCK)
     done = run(program_path, tmp_path, "--check", "block.inp")
     assert done.returncode == 0, done.stderr

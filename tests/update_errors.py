@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes what the program says now into the tables of tests/errors.
+"""Writes the present messages of the program into the tables of tests/errors.
 
 usage: tests/update_errors.py [--program FILE] [CASE...]
 
@@ -20,7 +20,7 @@ PROGRAM = Path(__file__).resolve().parent.parent / "build" / "release" / "keyway
 
 
 def update(case: Case, program: Path) -> str:
-    """Brings one case up to date and says what has happened; empty when nothing has."""
+    """Updates one case and returns a report; empty without a change."""
     with tempfile.TemporaryDirectory() as folder:
         done = case.run(program, Path(folder))
     if done.returncode != case.code:

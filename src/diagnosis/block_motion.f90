@@ -97,7 +97,7 @@ contains
     case (2)
       held = cross_product(directions(:, 1), directions(:, 2))
       if (maxval(abs(held)) < 1.0_rk - negligible**2) then
-        text = 'move in all directions across '//direction_text(held, .false.)
+        text = 'move in the plane normal to '//direction_text(held, .false.)
         return
       end if
       do i = 1, 3

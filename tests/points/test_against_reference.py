@@ -91,7 +91,7 @@ def differences(curves: list[Curve], increments, expected: np.ndarray) -> np.nda
 
 @pytest.mark.parametrize("name", ALL_PATHS)
 def test_path(keyway, name):
-    """Of first order towards the reference, and energy is lost and never gained.
+    """First-order convergence to the reference; energy is never gained.
 
     A difference of 1/3 over the number of increments is what backward Euler leaves where half the
     strength goes in a leg. Extrapolated, what is left is of second order: 3e-6, a few times
@@ -114,7 +114,7 @@ def test_path(keyway, name):
 @pytest.mark.full
 @pytest.mark.parametrize("name", SHARP)
 def test_sharp_path(keyway, name):
-    """Near the apex, with increments short enough for their order."""
+    """Near the apex, with increments in the range of convergence."""
     material, legs = ALL_PATHS[name]
     increments = (6400, 12800)
     history = path.run(material.law(), legs, rows=1)

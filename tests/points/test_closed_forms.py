@@ -1,4 +1,4 @@
-"""The law in the program against closed forms, one point led by the driver."""
+"""The law in the program against closed forms, at one point by the driver."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def led(keyway, material: Material, legs: list[Leg], increments: int = 1):
 
 @pytest.mark.parametrize("increments", [1, 7])
 def test_rows_of_table_1(keyway, increments):
-    """A uniaxial test returns each row, however many increments lead to it.
+    """A uniaxial test returns each row for any number of increments.
 
     The tensile plastic strain is the axial one (r = 1), hence the end of an increment is exact.
     The issue asks for 0.2 %.
@@ -108,7 +108,7 @@ def test_recovery_of_stiffness(keyway, compression_recovery, tension_recovery, r
 
 @pytest.mark.parametrize("ratio", [1.05, 1.125, 1.16, 1.2])
 def test_biaxial_strength(keyway, ratio):
-    """A constant strength: the stress stays at f_b0 however far the plate is pressed."""
+    """With a constant strength the stress stays at f_b0 for all strains."""
     material = Material(biaxial_ratio=ratio)
     law = material.law()
     # Both axes by one strain, the third free.
@@ -152,7 +152,7 @@ def test_meridians(keyway, ratio):
 
 
 def test_hydrostatic_tension(keyway):
-    """To the apex and on along the axis: the stress softens as the closed form says."""
+    """Beyond the apex along the axis the stress softens by the closed form."""
     law = JINPING.law()
     plastic = np.array([2e-5, 1e-4, 1.5577866e-4, 4e-4, 1.2e-3])
     strain, stress = exact.hydrostatic_tension(law, plastic)
@@ -163,7 +163,7 @@ def test_hydrostatic_tension(keyway):
 
 
 def test_a_hundred_cycles(keyway):
-    """Between a crack and a closed crack nothing more happens after the first cycle."""
+    """Cycles between an open and a closed crack repeat from the second on."""
     ends = [3e-4, -8e-4] * 100
     curve = led(keyway, JINPING, uniaxial(*ends), 5)
     for values, size in ((curve.stress[:, 0], 2.48e6), (curve.plastic[:, 0], 1e-4)):
@@ -173,7 +173,7 @@ def test_a_hundred_cycles(keyway):
 
 
 def test_cycles_that_crack_and_crush(keyway):
-    """A hundred cycles that crack and crush in each: what is lost never comes back."""
+    """A hundred cycles that crack and crush in each: lost stiffness is never recovered."""
     ends = np.ravel([[2e-4 - 2e-5 * k, -1.5e-3 - 2e-5 * k] for k in range(100)])
     curve = led(keyway, Material(**CRUSHING, tension_recovery=0.5), uniaxial(*ends), 10)
     assert np.min(np.diff(curve.dissipated)) >= -1e-9 * curve.dissipated[-1]

@@ -31,7 +31,7 @@ def curves(program_path, tmp_path_factory):
     [("T", published.BLACKBEAR_TENSION), ("C", published.BLACKBEAR_COMPRESSION)],
 )
 def test_blackbear(curves, sign, points):
-    """Its laws taken in its increments; the issue asks for 3 %, tables of 51 rows give 1e-5."""
+    """Its laws in its increments; 3 % is allowed, tables of 51 rows give 1e-5."""
     assert at(curves[f"STEPS{sign}"], points[:, 0]) == pytest.approx(points[:, 1], rel=1e-5)
 
 

@@ -1,4 +1,4 @@
-"""One element of concrete in a structure: what its points do is what the point driver's do."""
+"""One element of concrete in a structure: the points agree with the point driver."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def stresses(run, increments: int) -> np.ndarray:
 
 @pytest.mark.parametrize("element", ["C3D8", "C3D8B", "C3D8I", "C3D8R"])
 def test_table_1(keyway, element):
-    """Each row of Table 1, in all points; 0.2 % is asked, the iteration allows 1e-6."""
+    """Each row of Table 1, in all points; 0.2 % is allowed, the iteration gives 1e-6."""
     strain, stress = exact.uniaxial_rows(JINPING.law(), JINPING.tension_curve)
     run = keyway(cube_deck(JINPING, strain, 4, element))
     found = stresses(run, 4)

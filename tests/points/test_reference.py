@@ -1,4 +1,4 @@
-"""The reference against closed forms, so that it may judge the program."""
+"""The reference against closed forms."""
 
 from __future__ import annotations
 
@@ -206,7 +206,7 @@ def test_hydrostatic_tension():
 
 
 def test_frame_does_not_matter():
-    """A path turned in space gives the turned stresses: six components, no principal axes."""
+    """A path rotated in space gives the rotated stresses: six components, no principal axes."""
     law = Material(**CRUSHING).law()
     rng = np.random.default_rng(5)
     turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
@@ -227,7 +227,7 @@ def test_frame_does_not_matter():
 
 
 def test_dissipation_grows():
-    """Along random cycles energy is lost and never gained."""
+    """Along random cycles the dissipated energy never decreases."""
     law = Material(**CRUSHING, tension_recovery=0.5).law()
     rng = np.random.default_rng(3)
     history = run(law, [Leg.of("EEEEEE", rng.normal(size=6) * 7e-4) for _ in range(3)], rows=20)

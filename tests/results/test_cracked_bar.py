@@ -1,4 +1,4 @@
-"""A bar pulled until its middle layer cracks: what every file tells of the damage agrees."""
+"""A bar pulled until its middle layer cracks: the damage in all files agrees."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Faces and joints of an arch dam whose middle block has a mesh of its own, tied to the rock.
 
-The same dam by joints on surfaces and by the paper's chain. What is asked here does not depend on
-how good its numbers are: which nodes and points lie on which face, and what is drawn of the joints.
+The same dam by joints on surfaces and by the paper's chain. The checks do not depend on the
+accuracy: nodes and points of faces, and polygons of joints.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Damage in all files of the results, from histories that a unit test sets by hand."""
+"""Damage in all files of the results, from histories set by a unit test."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""What is drawn and told of a joint between different meshes: two columns, 3:2 and 6:4 facets.
+"""Results of a joint between different meshes: two columns, 3:2 and 6:4 facets.
 
 The columns stand side by side, x from -4 to 4 m with the joint at x = 0, y = 0 upstream and y = 6 m
-downstream, 12 m high. First the right one, the slave, is pressed against the left one, then it
-is drawn off and turned as a rigid body, so that every value is known; at last it gets its weight.
+downstream, 12 m high. First the right one, the slave, is pressed against the left one, then it is
+pulled off and rotated as a rigid body, so that every value is known; at last its weight acts.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def two_columns() -> BrickMesh:
 
 
 def rigid(x: np.ndarray) -> np.ndarray:
-    """The slave's displacements when it is turned: opening along x grows with z and y."""
+    """Displacements of the slave in a rotation: the opening along x grows with z and y."""
     u = np.zeros_like(x)
     u[:, 0] = AWAY + x[:, 1:] @ TURN[::-1]
     u[:, 1], u[:, 2] = -TURN[1] * x[:, 0], -TURN[0] * x[:, 0]
@@ -154,7 +154,7 @@ def test_series_holds_every_frame_and_few_points(run: Run):
         assert np.cross(corner[2] - corner[0], corner[3] - corner[1])[0] > 0.0
 
 
-def test_polygons_know_their_joint_and_their_solid(run: Run):
+def test_polygons_have_the_numbers_of_joint_and_solid(run: Run):
     surface = frame(run, 2)
     assert set(surface["JOINT"]) == {1}
     mesh = two_columns()

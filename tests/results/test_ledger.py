@@ -1,4 +1,4 @@
-"""The ledger: its parts add up in every run, job.h5 holds it too, and the log ends with it."""
+"""The ledger: the parts add up in every run, job.h5 has the ledger, and the log ends with it."""
 
 from __future__ import annotations
 

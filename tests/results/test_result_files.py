@@ -1,4 +1,4 @@
-"""The files of the results layer, made by a hand-driven unit test whose fields are known."""
+"""The files of results, written by a unit test with known fields."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def test_frame_holds_solids_and_fields(folder: Path):
     assert grid["U"][:, 0] == pytest.approx(1e-3 * grid.points[:, :2].sum(axis=1))
 
 
-def test_opening_lives_on_both_sides_of_a_joint(folder: Path):
+def test_opening_is_written_on_both_sides_of_a_joint(folder: Path):
     grid = read_grid(folder, "0004")
     expected = np.zeros(22)
     expected[[6, 7, 8, 9]] = -0.9e-3

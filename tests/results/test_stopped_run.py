@@ -1,4 +1,4 @@
-"""A run that stops or is killed leaves whole files that hold what it had reached."""
+"""A run that stops or is killed leaves complete files with its results so far."""
 
 from __future__ import annotations
 

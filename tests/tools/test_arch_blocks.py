@@ -34,7 +34,7 @@ def volume_of(mesh, name):
     return volumes(mesh)[mesh.brick_sets[name]].sum()
 
 
-def test_mesh_is_sound(case):
+def test_mesh_is_valid(case):
     _, mesh = case
     assert find_faults(mesh) == []
     assert np.nanmin(corner_jacobians(mesh)) > 0.0
@@ -63,7 +63,7 @@ def test_faces_lie_on_each_other(case):
         assert found.largest_distance < (0.2 if cuts_kinks else 1e-9)
 
 
-def test_faces_look_at_each_other(case):
+def test_faces_have_opposite_normals(case):
     """Outward normals of slave and master are opposite."""
     _, mesh = case
 

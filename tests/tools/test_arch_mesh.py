@@ -1,4 +1,4 @@
-"""The arch dam's mesh: sound bricks, fit of neighbours, symmetry, joints, volume."""
+"""The arch dam's mesh: valid bricks, fit of neighbours, symmetry, joints, volume."""
 
 from math import radians
 
@@ -123,7 +123,7 @@ def test_joint_normals_point_from_master_to_slave(mesh):
             assert sides[0] < 0.0 < sides[1]
 
 
-def test_upstream_and_downstream_faces_look_away_from_the_dam(mesh):
+def test_upstream_and_downstream_normals_point_outwards(mesh):
     for name, sign in (("UPSTREAM", -1.0), ("DOWNSTREAM", 1.0)):
         for brick, face in mesh.surfaces[name]:
             nodes = mesh.x[mesh.face_nodes(brick, face)]
@@ -131,7 +131,7 @@ def test_upstream_and_downstream_faces_look_away_from_the_dam(mesh):
             assert outward[1] * sign > 0.0
 
 
-def test_dam_has_the_heights_and_thicknesses_asked_for():
+def test_dam_has_the_specified_heights_and_thicknesses():
     shape, options = CASES["default"]
     mesh = build_arch_dam(shape, options)
     crown = mesh.x[mesh.node_sets["CROWN"]]

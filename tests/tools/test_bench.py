@@ -1,4 +1,4 @@
-"""The bench measures what it says; its limits are those of large models and are not held here."""
+"""The bench measures correctly; its limits, for large models, are not checked here."""
 
 import json
 import subprocess

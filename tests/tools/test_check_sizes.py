@@ -1,4 +1,4 @@
-"""The size check measures procedures, arguments, nesting and leftovers as a reader would."""
+"""The size check measures procedures, arguments, nesting and leftovers."""
 
 from pathlib import Path
 

@@ -50,7 +50,7 @@ def test_another_name_and_another_order_of_rows_are_equal(capsys, tmp_path, a):
     assert run(capsys, a, b)[0] == 0
 
 
-def test_place_of_the_largest_difference_is_told(capsys, tmp_path, a):
+def test_place_of_the_largest_difference_is_reported(capsys, tmp_path, a):
     rows = [ROWS[0].replace("1.0e-3", "1.1e-3"), ROWS[1].replace("-4.0", "-5.0"), ROWS[2]]
     code, text = run(capsys, a, make_results(tmp_path / "b", rows=rows))
     assert code == 1

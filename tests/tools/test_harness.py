@@ -1,4 +1,4 @@
-"""The harness of the deck tests: which values pass, and what a case must say."""
+"""The harness of the deck tests: which values pass, and which keys a case must have."""
 
 import json
 

@@ -53,7 +53,7 @@ def test_variants_of_a_keyword_have_a_text_of_their_own() -> None:
     assert "**With TYPE=SOFT**\n\nIt gives.\n\n- `G`: energy" in make_keywords.section(keyword)
 
 
-def test_keyword_of_two_places_gives_two() -> None:
+def test_keyword_with_two_places_has_two_sections() -> None:
     later = HELP.replace("LAW  (in the model)", "LAW (not available yet)  (in a step)")
     first, second = make_keywords.read_keywords(HELP + "\n" + later)
     assert (first.remark, first.place) == ("", "in the model")

@@ -20,7 +20,7 @@ def data_of(text, keyword):
     return lines[start:stop]
 
 
-def test_deck_and_mesh_hold_what_was_asked(tmp_path):
+def test_deck_and_mesh_have_the_specified_properties(tmp_path):
     deck, mesh = write_deck(tmp_path, "--joints", "2")
     assert "*INCLUDE, INPUT=dam_mesh.inp" in deck
     assert deck.count("*JOINT, NAME=JOINT") == 2
@@ -67,7 +67,7 @@ def test_bad_shape_is_refused_with_a_message(tmp_path, capsys):
         (["--motion", "nowhere.txt"], "there is no motion file 'nowhere.txt'"),
     ],
 )
-def test_options_out_of_range_are_told(tmp_path, capsys, options, message):
+def test_options_out_of_range_are_reported(tmp_path, capsys, options, message):
     assert make_dam.main(["-o", str(tmp_path / "x.inp"), *options]) == 2
     assert message in capsys.readouterr().err
 
@@ -104,6 +104,6 @@ def test_chain_of_the_paper(tmp_path):
     assert ids == list(range(1, len(ids) + 1))
 
 
-def test_blocks_that_cannot_be_are_told(tmp_path, capsys):
+def test_impossible_blocks_are_reported(tmp_path, capsys):
     assert make_dam.main(["-o", str(tmp_path / "x.inp"), *BLOCKS[:2], "--fine", "7"]) == 2
     assert "fine blocks must lie in 1..3" in capsys.readouterr().err

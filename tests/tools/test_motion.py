@@ -69,7 +69,7 @@ def test_record_fits_its_target(motion):
     assert np.abs(motion.misfit).max() < 0.25
 
 
-def test_peak_is_the_one_asked_for(motion):
+def test_peak_is_the_specified_one(motion):
     assert np.abs(motion.acceleration).max() == pytest.approx(1.0, rel=1e-14)
 
 

@@ -67,7 +67,7 @@ def test_damage_is_the_mean_of_an_elements_points(dam_results):
     assert Results(dam_results, "job").damage("DAMAGEC") is None
 
 
-def test_dam_is_told_from_rock(dam_results):
+def test_dam_and_rock_are_distinguished(dam_results):
     results = Results(dam_results, "job")
     types = results.element_types[results.dam]
     assert set(types) == {"C3D8"}

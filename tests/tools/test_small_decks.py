@@ -1,4 +1,4 @@
-"""The small decks of input/ are what the tool writes, and their meshes are sound."""
+"""The small decks of input/ are what the tool writes, and their meshes are valid."""
 
 import make_input
 import pytest
@@ -14,7 +14,7 @@ DECKS = [name for name in SMALL_DECKS if name.endswith(".inp") and not name.star
 
 
 @pytest.mark.parametrize("name", DECKS)
-def test_header_says_what_it_shows_assumes_and_expects(name):
+def test_header_gives_purpose_assumptions_and_results(name):
     header = "\n".join(line for line in SMALL_DECKS[name]().splitlines() if line.startswith("**"))
     for word in ("** Shows:", "** Assumes:", "** Expect"):
         assert word in header

@@ -1,4 +1,4 @@
-"""The UMAT of concrete in a program that is not Keyway: this one."""
+"""The UMAT of concrete called without Keyway."""
 
 from __future__ import annotations
 
@@ -39,7 +39,8 @@ OPENING = constants("dam_concrete.inp", "DAM")
 
 @pytest.mark.parametrize("increments", [1, 7])
 def test_rows_of_table_1(library, increments):
-    """At the strain sigma/E + inelastic strain each row comes back, in any number of increments."""
+    """At the strain sigma/E + inelastic strain each row is returned, in any number of
+    increments."""
     point = Point(library, JINPING)
     for strength, inelastic, damage in TABLE_1:
         end = inelastic + strength / YOUNG
@@ -104,10 +105,10 @@ def slopes(point: Point, strain: np.ndarray, step: float) -> np.ndarray:
 @pytest.mark.parametrize("viscosity", [0.0, 0.3])
 @pytest.mark.parametrize("recovery", [0.0, 1.0])
 def test_tangent(library, viscosity, recovery):
-    """DDSDDE along turning paths against differences: 1e-6 of the largest entry.
+    """DDSDDE along paths with reversals against differences: 1e-6 of the largest entry.
 
     The step of 2e-9 reaches over no more than a hundred-thousandth of the strains at which curves
-    bend (1e-4); of a corner within it the tangent is that of one side: few, and left out.
+    bend (1e-4); the tangent at a kink is that of one side: few points, which are skipped.
     """
     numbers = [*CRUSHING[:6], viscosity, recovery, *CRUSHING[8:]]
     random = np.random.default_rng(3)
@@ -156,15 +157,15 @@ FAULTS = [
 
 
 @pytest.mark.parametrize("case", range(len(FAULTS)))
-def test_wrong_constants_are_told(library, capfd, case):
-    """A message that names the constant or the row, and a stress that is no number."""
+def test_wrong_constants_are_reported(library, capfd, case):
+    """A message that names the constant or the row, and NaN as stress."""
     numbers, word = FAULTS[case]
     answer = Point(library, numbers).call(np.zeros(6))
-    told = capfd.readouterr().out
+    reported = capfd.readouterr().out
     assert np.isnan(answer.stress).all()
-    assert re.search(word, " ".join(told.split())), told
-    assert "element 7, point 3" in told
-    assert told.startswith("CONCRETE ")
+    assert re.search(word, " ".join(reported.split())), reported
+    assert "element 7, point 3" in reported
+    assert reported.startswith("CONCRETE ")
 
 
 @pytest.mark.parametrize(
@@ -175,7 +176,7 @@ def test_wrong_constants_are_told(library, capfd, case):
         ({"num_direct": 2, "num_shear": 1}, "without six stress components"),
     ],
 )
-def test_what_it_is_not_made_for_is_told(library, capfd, changes, word):
+def test_unsupported_elements_are_reported(library, capfd, changes, word):
     answer = Point(library, JINPING, **changes).call(np.zeros(6))
     assert np.isnan(answer.stress).all()
     assert word in capfd.readouterr().out
@@ -184,16 +185,16 @@ def test_what_it_is_not_made_for_is_told(library, capfd, changes, word):
 @pytest.mark.parametrize(
     ("length", "word"), [(2.0, "a crack band of 2; expected at most 1.6"), (0.0, "no width")]
 )
-def test_a_length_that_does_not_fit_is_told(library, capfd, length, word):
-    """2 E G_f/f_t^2 = 1.6 m; 1.6 is written with what rounding leaves of it."""
+def test_a_length_above_the_limit_is_reported(library, capfd, length, word):
+    """2 E G_f/f_t^2 = 1.6 m; 1.6 may be written as 1.5999."""
     answer = Point(library, OPENING, length=length).call(np.zeros(6))
-    told = capfd.readouterr().out
+    reported = capfd.readouterr().out
     assert np.isnan(answer.stress).all()
-    assert word in told or word.replace("1.6", "1.5") in told, told
+    assert word in reported or word.replace("1.6", "1.5") in reported, reported
 
 
-def test_what_cannot_be_integrated_wants_a_smaller_increment(library):
-    """A quarter, and nothing is changed."""
+def test_a_failed_point_requests_a_smaller_increment(library):
+    """A quarter of the increment, and an unchanged state."""
     point = Point(library, JINPING)
     point.keep_uniaxial(0.2e-3)
     before = point.last

@@ -1,7 +1,7 @@
 """UMATs in solids: the guards cut the increment and name the place, histories follow the steps.
 
 Two cubes of 1 m in a row, pulled by a strain of 1e-3 in a static step of one second; the UMATs of
-this folder lose their heads beyond 0.5e-3. E = 200 GPa, nu = 0.25.
+this folder fail beyond 0.5e-3. E = 200 GPa, nu = 0.25.
 """
 
 from __future__ import annotations
@@ -71,15 +71,15 @@ def all_numbers(run) -> np.ndarray:
         ("gives_nan.for", f"{YOUNG}, 0.25, 1", 2, "STRESS(2) is not a number"),
         ("gives_nan.for", f"{YOUNG}, 0.25, 2", 2, "DDSDDE(3,2) is not a number"),
         ("gives_nan.for", f"{YOUNG}, 0.25, 3", 2, "STATEV(2) is not a number"),
-        ("writes_past.for", f"{YOUNG}, 0.25", 0, "it writes outside of its 0 state variables"),
+        ("writes_past.for", f"{YOUNG}, 0.25", 0, "writes outside of its 0 state variables"),
         ("gives_up.for", f"{YOUNG}, 0.25, 1", 0, "XIT was called"),
         ("gives_up.for", f"{YOUNG}, 0.25, 3", 0, "STOP here"),
     ],
 )
 def test_a_fault_cuts_the_increment_and_ends_the_run(keyway, source, constants, depvar, word):
     run = start(keyway, source, deck(constants, depvar), code=1)
-    told = re.escape(f": UMAT: {word}")
-    assert re.search(r"material PLAIN, element (101|205), point [1-8]" + told, run.stderr)
+    reported = r": UMAT: .*" + re.escape(word)
+    assert re.search(r"material PLAIN, element (101|205), point [1-8]" + reported, run.stderr)
     assert run.json["status"] == "stopped"
     assert word in run.json["message"]
     assert run.json["steps"][0]["cutbacks"] > 3
@@ -90,7 +90,7 @@ def test_a_fault_cuts_the_increment_and_ends_the_run(keyway, source, constants, 
     assert not re.search(r"[:\[,]\s*-?(nan|inf|null)", summary, re.IGNORECASE)
 
 
-def test_pnewdt_cuts_to_what_is_wanted(keyway):
+def test_pnewdt_gives_the_requested_increment(keyway):
     text = deck(f"{YOUNG}, 0.25", 1, steps=pull(0.4))
     run = start(keyway, "wants_less.for", text)
     table = run.csv("el_BAR")
@@ -102,40 +102,40 @@ def test_pnewdt_cuts_to_what_is_wanted(keyway):
     assert set(table["SDV1"][table["time"] == times[-1]]) == {float(len(times))}
 
 
-def test_the_user_hears_of_increments_and_steps(keyway):
+def test_uexternaldb_is_called_for_increments_and_steps(keyway):
     second = pull(0.5).replace("PULL", "HOLD")
     text = deck(f"{YOUNG}, 0.25", 3, steps=pull(0.25) + "\n" + second)
     run = start(keyway, "history.for", text)
     table = run.csv("el_BAR")
     assert list(table["SDV1"]) == list(10 * table["element"] + table["point"])
-    told = [
+    reported = [
         [float(word) for word in line.split()[1:]]
         for line in (run.folder / "job.msg").read_text().splitlines()
         if line.startswith("moment")
     ]
-    moments = [line[0] for line in told]
+    moments = [line[0] for line in reported]
     assert moments == [0] + [1, 2] * 6 + [3]
     # LOP, restart, step, increment, step time, total time, size.
-    assert told[3] == [1, 0, 1, 2, 0.25, 0.25, 0.25]
-    assert told[4] == [2, 0, 1, 2, 0.5, 0.5, 0.25]
-    assert told[9] == [1, 0, 2, 1, 0, 1, 0.5]
-    assert told[-1][:2] == [3, 0]
+    assert reported[3] == [1, 0, 1, 2, 0.25, 0.25, 0.25]
+    assert reported[4] == [2, 0, 1, 2, 0.5, 0.5, 0.25]
+    assert reported[9] == [1, 0, 2, 1, 0, 1, 0.5]
+    assert reported[-1][:2] == [3, 0]
 
 
-def test_points_are_told_who_they_are(keyway):
+def test_umats_get_number_and_place_of_the_point(keyway):
     run = start(keyway, "tells_arguments.for", deck(f"{YOUNG}, 0.25", 2, steps=pull(1.0)))
-    told: dict[str, list[list[float]]] = {}
+    reported: dict[str, list[list[float]]] = {}
     for line in (run.folder / "job.msg").read_text().splitlines():
         word, *rest = line.split()
-        told.setdefault(word, []).append([float(x) for x in rest if x[0] in "-.0123456789"])
-    assert {tuple(line[:2]) for line in told["who"][1:]} == {
+        reported.setdefault(word, []).append([float(x) for x in rest if x[0] in "-.0123456789"])
+    assert {tuple(line[:2]) for line in reported["who"][1:]} == {
         (e, q) for e in (101, 205) for q in range(1, 9)
     }
     gauss = 0.5 * (1 - 1 / np.sqrt(3))
-    place = {tuple(w[:2]): x for w, x in zip(told["who"], told["where"], strict=True)}
+    place = {tuple(w[:2]): x for w, x in zip(reported["who"], reported["where"], strict=True)}
     assert place[205, 1] == pytest.approx([1 + gauss, gauss, gauss, 1.0], abs=1e-6)
     # du/dx = strain where nothing turns: 1e-3, and -nu 1e-3 across.
-    assert told["dfgrd"][-1][9:] == pytest.approx(
+    assert reported["dfgrd"][-1][9:] == pytest.approx(
         [1.001, 0, 0, 0, 0.99975, 0, 0, 0, 0.99975], abs=1e-5
     )
 
@@ -172,7 +172,7 @@ def test_the_check_is_in_the_summary(keyway):
     assert check["found"] == pytest.approx(0.8e11, rel=1e-6)
     assert check["error"] == pytest.approx(0.4 / 2.4, rel=1e-6)
     assert check["element"] in (101, 205)
-    assert "farthest apart" in run.stderr
+    assert "largest error" in run.stderr
 
 
 def test_a_vibration_is_that_of_elastic(keyway):

@@ -18,7 +18,7 @@ NUM_STATE = 17
 
 
 def compile_alone(folder: Path) -> ctypes.CDLL:
-    """Nothing else is linked, and nothing may be missing."""
+    """Links these files alone."""
     header = (SOURCE / INTERFACE).read_text().split("\nmodule ")[0]
     parts = re.findall(r"\b[a-z]+/[\w/]+\.f90", header.split("Needs")[1].split("and this file")[0])
     sources = [SOURCE / part for part in [*parts, INTERFACE]]
@@ -42,7 +42,7 @@ def compile_alone(folder: Path) -> ctypes.CDLL:
 
 @dataclass
 class Answer:
-    """What a call leaves."""
+    """Result of a call."""
 
     stress: np.ndarray
     state: np.ndarray

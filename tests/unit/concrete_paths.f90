@@ -1,4 +1,4 @@
-!> Random strain paths of one point of concrete, and what must never happen on them.
+!> Random strain paths of one point of concrete, and the faults that must not occur on them.
 !>
 !> A path starts from a virgin point or from one that is cracked, crushed or both to the end of its
 !> curves (damage 0.99). It has five increments, each of a random size between 1e-6 and 1e-2, of
@@ -25,10 +25,10 @@ module concrete_paths
   !> Work that roundoff makes, over the product of stress and increment of strain.
   real(rk), parameter :: roundoff = 1.0e-10_rk
 
-  !> What was seen.
+  !> Results of the paths.
   type :: path_counts
     integer :: paths = 0, updates = 0, yielding = 0
-    integer :: failures = 0 !< the law gave up
+    integer :: failures = 0 !< without convergence of the law
     integer :: not_numbers = 0 !< NaN or infinity in stress, history, energy or tangent
     integer :: off_surface = 0 !< F above 1e-8 of the strength at the end
     integer :: energy_gains = 0 !< a reported dissipation below zero

@@ -14,7 +14,7 @@ module metal_law
     real(rk) :: shear = 80.0e9_rk, bulk = 160.0e9_rk !< [Pa]
     real(rk) :: yield = 200.0e6_rk !< first yield stress [Pa]
     real(rk) :: slope = 10.0e9_rk !< of the yield stress over the equivalent plastic strain [Pa]
-    real(rk) :: largest_change = huge(1.0_rk) !< of a strain: beyond it asks for a smaller increment
+    real(rk) :: largest_change = huge(1.0_rk) !< of a strain; above it a cut is requested
   contains
     procedure :: elastic_stiffness
     procedure :: update
@@ -82,7 +82,7 @@ contains
 
   contains
 
-    !> What yielding takes from the stiffness.
+    !> Loss of stiffness by yielding.
     pure subroutine add_plastic_part(matrix)
       real(rk), intent(inout) :: matrix(6, 6)
       real(rk) :: project(6, 6), g

@@ -1,5 +1,5 @@
 !> A row of boxes along x that share their faces, on joints that rest on fixed ground; and a
-!> listener that remembers what a run did.
+!> listener that records a run.
 module row_scene
   use integrator_catalogue, only: procedure_named
   use kinds, only: rk
@@ -189,7 +189,7 @@ contains
     end do
   end subroutine kick
 
-  !> Notes what the tests look at.
+  !> Records the results for the tests.
   subroutine increment_done(self, scene, now, error)
     class(recorder), intent(inout) :: self
     type(problem), intent(in) :: scene

@@ -1,6 +1,6 @@
-!> A law for tests of what is around laws: isotropic damage, d = 1 - e0/e exp(-(e - e0)/ef), where
-!> e is the largest value so far of sqrt(sum of squares of positive normal strains). Its tangent is
-!> not symmetric, its energies are exact, and it can be told to fail.
+!> A law for tests of the procedures that use laws: isotropic damage, d = 1 - e0/e exp(-(e -
+!> e0)/ef), where e is the largest value so far of sqrt(sum of squares of positive normal strains).
+!> Its tangent is not symmetric, its energies are exact, and it can be told to fail.
 module softening_law
   use kinds, only: rk
   use material_law, only: stress_law
@@ -18,7 +18,7 @@ module softening_law
     real(rk) :: threshold = 1.0e-4_rk !< e0
     real(rk) :: slope = 1.0e-3_rk !< ef
     real(rk) :: largest_strain = huge(1.0_rk) !< more cannot be integrated
-    real(rk) :: largest_change = huge(1.0_rk) !< of e in an increment: more asks for a smaller one
+    real(rk) :: largest_change = huge(1.0_rk) !< of e in an increment; above it a cut is requested
   contains
     procedure :: elastic_stiffness, update, set_start
   end type damage_law

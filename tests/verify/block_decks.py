@@ -14,7 +14,7 @@ from uplift_decks import facets, joined
 
 @dataclass
 class Pair:
-    """A block on a base, the joint in the plane z = 0; the whole turned about the y axis.
+    """A block on a base, the joint in the plane z = 0; the whole rotated about the y axis.
 
     The same counts on both sides make JOINT8 elements, others a joint between two surfaces.
     """
@@ -88,7 +88,8 @@ MESHES = {"JOINT8": MATCHING, "2:3": TWO_TO_THREE, "3:2": THREE_TO_TWO}
 
 
 def joint_state(run, step: int = 1, name: str = "SEAM") -> dict[str, np.ndarray]:
-    """What job.h5 holds of a joint at the end of a step, and its resultant in the joint's axes."""
+    """Fields of a joint in job.h5 at the end of a step, and its resultant in the axes of the
+    joint."""
     with h5py.File(run.folder / f"{run.job}.h5") as file:
         increments = file[f"steps/{step:04d}/increments"]
         last = increments[sorted(increments)[-1]][f"joints/{name}"]

@@ -1,4 +1,4 @@
-"""What the checks of solids share: decks of mapped boxes, and the last state of a set of nodes."""
+"""Common parts of the checks of solids: decks of mapped boxes, last state of a set of nodes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Runs CalculiX on the deck of a Keyway test and reads what it prints."""
+"""Runs CalculiX on the deck of a Keyway test and reads its output."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Petersson's beam by another method: two elastic halves and a cohesive crack between them.
 
-Half of the beam is elastic (plane, four-node quadrilaterals with incompatible modes); the ligament
-at mid-span holds by a traction that depends on the opening. The elastic half is condensed to the
-ligament, which leaves one nonlinear equation for each of its nodes. Nothing here is the program's.
+Half of the beam is elastic (plane, four-node quadrilaterals with incompatible modes); the traction
+of the ligament at mid-span depends on the opening. The elastic half is condensed to the ligament,
+which leaves one nonlinear equation for each of its nodes. No part of the program is used.
 """
 
 from __future__ import annotations

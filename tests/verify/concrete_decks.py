@@ -1,4 +1,4 @@
-"""What the checks of cracking structures share: concrete as cards, bars in tension, curves."""
+"""Common parts of the checks of cracking structures: cards of concrete, bars in tension, curves."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Rows = tuple[tuple[float, ...], ...]
 
 @dataclass(frozen=True)
 class Concrete:
-    """The constants of *CONCRETE DAMAGED PLASTICITY; the paper's where nothing else is said."""
+    """The constants of *CONCRETE DAMAGED PLASTICITY, by default those of the paper."""
 
     young: float = 25e9  # [Pa]
     poisson: float = 0.167

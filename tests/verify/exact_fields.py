@@ -20,7 +20,7 @@ class Field:
 
 
 def uniform(stress: np.ndarray, pair: Pair, give: np.ndarray) -> Field:
-    """One stress everywhere; the faces part by `give` [m/Pa] (along a, b, c) times the traction."""
+    """One stress everywhere; the opening is `give` [m/Pa] (along a, b, c) times the traction."""
     strain = (1.0 + pair.poisson) * stress - pair.poisson * np.trace(stress) * np.eye(3)
     return Field(
         lambda x: x @ (strain / pair.young),
@@ -30,8 +30,8 @@ def uniform(stress: np.ndarray, pair: Pair, give: np.ndarray) -> Field:
 
 
 def bending(pair: Pair, largest: float, give: float = 0.0) -> Field:
-    """Pure bending about b of the pair as a beam along c; the interface gives way by `give`
-    [m/Pa] times the traction, so that the upper block turns as a whole. Exact in three dimensions.
+    """Pure bending about b of the pair as a beam along c; the jump of the interface is `give`
+    [m/Pa] times the traction, so that the upper block rotates rigidly. Exact in three dimensions.
     """
     curvature = 2.0 * largest / (pair.young * pair.size[0])
     poisson = pair.poisson

@@ -1,4 +1,4 @@
-"""Decks with joints that the verification runs: blocks, bars and columns on a rigid base."""
+"""Decks with joints for the verification: blocks, bars and columns on a rigid base."""
 
 from __future__ import annotations
 

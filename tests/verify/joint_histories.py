@@ -1,4 +1,4 @@
-"""What a run with joints leaves: the energies, looked at for soundness, and points of the joint."""
+"""Results of a run with joints: checked energies, and points of the joint."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from harness import Run
 
 
 def sound_energy(run: Run) -> dict[str, np.ndarray]:
-    """Table of the energies, after a look at its soundness: closed, and never fed.
+    """Checked table of the energies: the balance closes, and the scheme adds no energy.
 
     The balance is an identity but for the tolerance of the iteration (1e-6 of the forces); 0.1 % is
-    what the issue asks for. What the scheme takes may swing by what HHT itself gives back, 1e-3.
+    allowed. The numerical dissipation of HHT may decrease temporarily by 1e-3.
     """
     table = run.csv("energy")
     largest = max(np.max(np.abs(table[name])) for name in ("kinetic", "strain", "external"))

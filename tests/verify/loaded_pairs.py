@@ -1,4 +1,4 @@
-"""Pairs of blocks under exact solutions: their loads, and how far a run is off."""
+"""Pairs of blocks under exact solutions: loads and errors of a run."""
 
 from __future__ import annotations
 

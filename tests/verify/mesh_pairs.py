@@ -2,8 +2,8 @@
 
 In axes of its own a pair fills 0..a, 0..b and -c0..c1; the lower and the upper block meet on a
 surface c = shape(a, b), mostly c = 0. `turn` then puts the pair into space at an angle, so that no
-axis of the model lies in the interface. Each block has its own divisions and its own way to lay
-nodes over the interface; away from it they even out.
+axis of the model lies in the interface. Each block has its own divisions and its own places of
+nodes on the interface; away from the interface the places become regular.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def skewed(size: float) -> Callable[..., Shares]:
 
 
 def scattered(size: float, seed: int) -> Callable[..., Shares]:
-    """Each node moved by lot, by up to `size` of a facet; those of the outline along it."""
+    """Each node moved at random, by up to `size` of a facet; those of the outline along it."""
 
     def place(s, t):
         lot = np.random.default_rng(seed)
@@ -151,7 +151,7 @@ class Pair:
         }
 
     def block(self, side: Side, is_upper: bool) -> tuple[BrickMesh, np.ndarray]:
-        """Mesh of one block, not rounded: faces in a plane stay in it to the last digit."""
+        """Mesh of one block, not rounded: plane faces are exact to the last digit."""
         mesh, number = box_mesh(side.counts, lambda *shares: np.stack(shares, axis=-1))
         na, nb, nc = (count + 1 for count in side.counts)
         s, t = np.meshgrid(np.linspace(0, 1, na), np.linspace(0, 1, nb), indexing="ij")

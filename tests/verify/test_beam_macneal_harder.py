@@ -71,7 +71,7 @@ def share_of_target(keyway, shape: str, element: str, load: str) -> float:
 
 @pytest.mark.parametrize("load", TARGETS)
 @pytest.mark.parametrize("shape", PUBLISHED)
-def test_incompatible_modes_reach_what_is_published(keyway, shape, load):
+def test_incompatible_modes_give_the_published_values(keyway, shape, load):
     """0.001: the published ratios have three digits."""
     found = share_of_target(keyway, shape, "C3D8I", load)
     assert found == pytest.approx(PUBLISHED[shape][load], abs=0.001)

@@ -1,7 +1,7 @@
 """OPENBLAS_CORETYPE chooses the kernels of numpy, scipy and the program alike.
 
 tools/test runs the numerical tests with two kinds of kernels: their sums differ in the last digits,
-which shows a test, or a program, whose outcome depends on round-off.
+which reveals tests and procedures that depend on round-off.
 """
 
 import os

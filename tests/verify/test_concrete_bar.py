@@ -1,4 +1,4 @@
-"""A bar breaks in its weak element: the same curve and energy, however many elements it has."""
+"""A bar breaks in its weak element: curve and energy do not depend on the number of elements."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_the_mesh_does_not_matter(keyway, num_rest, element):
 @pytest.mark.parametrize("num_rest", [1, 5, 20])
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_damage_keeps_the_energy(keyway, num_rest, damage):
-    """The same with damage that grows with the opening: it changes unloading alone."""
+    """The same with damage that grows with the opening: damage affects unloading alone."""
     table = ((0.0, 0.0), (damage, LAST_OPENING))
     run = broken_bar(keyway, num_rest, poisson=0.0, flow=STRAIGHT, damage=table)
     apart, work, dissipated = measure(run)
@@ -72,9 +72,9 @@ def test_damage_keeps_the_energy(keyway, num_rest, damage):
 
 
 @pytest.mark.parametrize("num_rest", [1, 5, 20])
-def test_sides_that_are_held(keyway, num_rest):
-    """The paper's dilation (32.5 deg): the cracked element wants to shrink sideways, the sound ones
-    hold it, and it is torn in all directions at once. There Eq. 19 has the strength
+def test_fixed_sides(keyway, num_rest):
+    """The paper's dilation (32.5 deg): the cracked element contracts laterally, the undamaged
+    elements prevent this, and it cracks in all directions at once. There Eq. 19 has the strength
 
         (1 - alpha) c / ((c / t) (1 - alpha) - 1 + 2 alpha) = 1.079 t      (30 MPa, 2.48 MPa)
 
@@ -87,8 +87,8 @@ def test_sides_that_are_held(keyway, num_rest):
 
 
 def test_more_load_than_strength(keyway):
-    """Led by its load a bar has no equilibrium past its strength: the run stops there, within 1e-4,
-    with a message, and what it has computed is kept.
+    """Under a prescribed force a bar has no equilibrium beyond its strength: the run stops there,
+    within 1e-4, with a message, and keeps its results.
     """
     load = 1.5 * STRENGTH * AREA / 4.0
     bar = Bar(paper_concrete(), None, LENGTH, SIDE, num_rest=3)
@@ -102,11 +102,11 @@ def test_more_load_than_strength(keyway):
 
 
 def test_bar_that_snaps_back(keyway):
-    """5 m are more than 2 E G_f / f_t^2 = 1.219 m: at rest nothing near balances the bar once it
-    cracks, and a warning tells of the jump to the bar that has parted. In motion it breaks
-    with G_f A. The halves part with 2 f_t / (rho c) = 0.64 m/s, so that the crack opens in
-    0.19 ms: increments of 10 us follow it, larger ones dissipate more. The thousandth
-    of f_t that stays works over 1 mm of opening besides: 2 % of G_f A.
+    """5 m are more than 2 E G_f / f_t^2 = 1.219 m: in statics the cracked bar has no near
+    equilibrium, and a warning reports the jump to the broken bar. In motion it breaks with G_f A.
+    The halves separate with 2 f_t / (rho c) = 0.64 m/s, so that the crack opens in 0.19 ms:
+    increments of 10 us follow it, larger ones dissipate more. The residual strength of f_t/1000
+    adds its work over an opening of 1 mm: 2 % of G_f A.
     """
     weak = Concrete(
         young=YOUNG,

@@ -13,10 +13,10 @@ SIDE = 1.0  # [m]
 
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_table_1(keyway, element):
-    """The rows of Table 1 come back: sigma at eps = eps_ck + sigma / E_0 (paper_notes.md, 11).
+    """The rows of Table 1 are returned: sigma at eps = eps_ck + sigma / E_0 (paper_notes.md, 11).
 
     The curve is exact at the rows, where an increment ends; what is left is the iteration (1e-6 of
-    the forces). The issue of the project asks for 0.2 %.
+    the forces). 0.2 % is allowed.
     """
     strain = TABLE_1[:, 1] + TABLE_1[:, 0] / YOUNG
     bar = Bar(paper_concrete(), length=SIDE, side=SIDE, element=element)
@@ -31,7 +31,7 @@ def test_table_1(keyway, element):
 
 
 def slope(displacement, force, first, last) -> float:
-    """Stiffness [Pa] between two strains on the way that passes them."""
+    """Stiffness [Pa] between two strains of a curve."""
     inside = [k for k, u in enumerate(displacement) if min(first, last) <= u <= max(first, last)]
     return float(np.polyfit(displacement[inside], force[inside], 1)[0]) / SIDE
 

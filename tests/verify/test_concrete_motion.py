@@ -29,11 +29,11 @@ def shaken_monolith(
 
 
 def check_energies(run, given_back: float = 1e-12) -> dict[str, np.ndarray]:
-    """The balance closes and what is dissipated never comes back.
+    """The balance closes and the dissipated energy never decreases.
 
-    The balance is an identity but for the tolerance of the iteration (1e-6 of the forces); 0.1 %
-    is what the issue on joints asks for. With viscosity plastic strain still lags for a while after
-    the stress has turned, which gives back a little: 1e-5 of all.
+    The balance is an identity but for the tolerance of the iteration (1e-6 of the forces); 0.1 % is
+    allowed. With viscosity plastic strain still lags after a reversal of the stress, which recovers
+    1e-5 of the energy.
     """
     table = run.csv("energy")
     assert table["error"].max() < 1e-3
@@ -44,7 +44,7 @@ def check_energies(run, given_back: float = 1e-12) -> dict[str, np.ndarray]:
 
 
 def test_energies_of_a_cracking_monolith(keyway):
-    """The monolith cracks; job.json says where, and its sums agree with the table."""
+    """The monolith cracks; job.json has the place, and its sums agree with the table."""
     run = shaken_monolith(keyway, size=3.0)
     table = check_energies(run)
     assert table["fracture"][-1] > 0.0
@@ -93,7 +93,7 @@ QUICK = {"six times the motion", "the switch of the paper"}
     "name", [pytest.param(n, marks=[] if n in QUICK else [pytest.mark.full]) for n in HARD]
 )
 def test_hard_motion_runs(keyway, name):
-    """Finishes, and its energies add up; a switch that had to be held is told of."""
+    """The run ends, its energies add up, and held switches are reported."""
     given_back = 1e-5 if name == "viscosity" else 1e-12
     run = shaken_monolith(keyway, **HARD[name])
     check_energies(run, given_back)
@@ -103,7 +103,7 @@ def test_hard_motion_runs(keyway, name):
 
 @pytest.mark.parametrize("recovery", ["LEE-FENVES", pytest.param("SIGN", marks=pytest.mark.full)])
 def test_jointed_dam_cracks(keyway, recovery):
-    """Joints that open beside concrete that cracks: the coarse arch dam at twice the motion."""
+    """Opening joints and cracking concrete: the coarse arch dam at twice the motion."""
     concrete = paper_concrete(young=22e9, density=2400.0, recovery=recovery).cards("CONCRETE")
     plain = "*MATERIAL, NAME=CONCRETE\n*DENSITY\n2400.0\n*ELASTIC\n2.2e+10, 0.167\n"
     trial = Trial(

@@ -1,7 +1,7 @@
 """A million random strain paths of one point of concrete: no failure, no NaN, no energy gained.
 
-The paths are those of tests/unit/concrete_paths.f90. The unit test walks 20 000 of them with all
-run-time checks; here the optimised program walks them.
+The paths are those of tests/unit/concrete_paths.f90. The unit test runs 20 000 of them with all
+run-time checks; here the optimised program runs them.
 """
 
 import re

@@ -1,4 +1,4 @@
-"""Contact without penetration (*JOINT LAW, PENETRATION), and what job.json tells of joints."""
+"""Contact without penetration (*JOINT LAW, PENETRATION), and the joints in job.json."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def column(law: str, **changes) -> Block:
 @pytest.mark.parametrize("solver", ["CONDENSED", "FULL"])
 @pytest.mark.parametrize("allowed", [1e-6, 1e-9])
 def test_a_column_does_not_sink(keyway, solver, allowed):
-    """A soft bed, 1e8 Pa/m: 0.94 mm by its stiffness, no more than allowed with PENETRATION.
+    """A soft bed, 1e8 Pa/m: 0.94 mm by its stiffness, at most the limit with PENETRATION.
 
     The pressure is that of the weight in both, to the tolerance of the iteration.
     """
@@ -36,20 +36,20 @@ def test_a_column_does_not_sink(keyway, solver, allowed):
         table = runs[name].csv("joint_BED")
         assert np.mean(table["tn"]) == pytest.approx(-PRESSURE, rel=1e-2)  # by points, not areas
         assert runs[name].csv("energy")["error"].max() < 1e-6
-    told = {name: run.json["accuracy"] for name, run in runs.items()}
-    sunk = told["soft"]["joints"]["BED"]["largest_penetration"]
+    reported = {name: run.json["accuracy"] for name, run in runs.items()}
+    sunk = reported["soft"]["joints"]["BED"]["largest_penetration"]
     assert sunk == pytest.approx(PRESSURE / 1e8, rel=0.05)
-    assert told["soft"]["augmentations"] == 0
-    assert told["exact"]["joints"]["BED"]["largest_penetration"] <= allowed
+    assert reported["soft"]["augmentations"] == 0
+    assert reported["exact"]["joints"]["BED"]["largest_penetration"] <= allowed
     assert np.max(np.abs(runs["exact"].csv("joint_BED")["opening"])) <= allowed
-    assert 1 <= told["exact"]["most_augmentations"] <= 6
+    assert 1 <= reported["exact"]["most_augmentations"] <= 6
 
 
 @BOTH_MESHES
 def test_stiffness_by_default_is_that_of_a_layer(keyway, meshes):
-    """PENETRATION alone: KN = E/h, h = 4/6 m the depth of the elements. With 1 m allowed nothing is
-    repeated, and the bed sinks by p h/E (Poisson 0: uniform to 1e-6). The base of other mesh has
-    1e10 Pa and 0.1 m: it is the stiffer side."""
+    """PENETRATION alone: KN = E/h, h = 4/6 m the depth of the elements. With a limit of 1 m there
+    is no augmentation, and the bed sinks by p h/E (Poisson 0: uniform to 1e-6). The base of other
+    mesh has 1e10 Pa and 0.1 m: it is the stiffer side."""
     run = keyway(column("PENETRATION=1.", meshes=meshes).deck(static(weight() + PRINT)))
     assert run.json["accuracy"]["augmentations"] == 0
     opening = run.csv("joint_BED")["opening"]
@@ -66,10 +66,11 @@ def test_a_bonded_joint_keeps_its_stiffness(keyway):
 
 
 def test_a_bar_bounces_off_a_rigid_wall(keyway):
-    """The bar of test_joint_motion on a joint of KN = E/h that lets nothing through (closed form).
+    """The bar of test_joint_motion on a joint of KN = E/h without penetration (closed form).
 
-    Tolerances as there: contact time three elements, pressure 0.1 %, energy what HHT takes. Without
-    a spring between them the last element rings against the wall: 0.3 % of ripple (0.00 % there).
+    Tolerances as there: contact time three elements, pressure 0.1 %, energy by the dissipation of
+    HHT. Without a spring between them the last element rings against the wall: 0.3 % of ripple
+    (0.00 % there).
     """
     length, young, speed, elements = 10.0, 25e9, 1.0, 50
     wave = np.sqrt(young / DENSITY)
@@ -99,16 +100,16 @@ def test_a_bar_bounces_off_a_rigid_wall(keyway):
     assert left + balance["numerical"][-1] / start == pytest.approx(1.0, abs=1e-6)
 
 
-def test_a_tolerance_out_of_reach_is_told(keyway):
-    """Penetration below the last digits of the displacements is refused with what it asks for."""
+def test_an_unattainable_penetration_is_reported(keyway):
+    """A penetration below the last digits of the displacements is an error that gives its size."""
     run = keyway(
         column("KN=1e9, KT=1e10, FRICTION=0.6, PENETRATION=1e-24").deck(static(weight())),
         name="lost",
         code=1,
     )
-    assert "times as far as *JOINT LAW, PENETRATION allows after" in run.json["message"]
+    assert "times the limit of *JOINT LAW, PENETRATION after" in run.json["message"]
     assert "a larger KN needs fewer" in run.json["message"]
-    assert "worst in joint BED at (" in run.json["message"]
+    assert "largest in joint BED at (" in run.json["message"]
 
 
 # --- small sliding ------------------------------------------------------------------------------
@@ -118,8 +119,8 @@ def test_a_tolerance_out_of_reach_is_told(keyway):
 def test_a_slip_beyond_a_facet_ends_the_run(keyway, is_open):
     """A mass on a base of other mesh that moves off with 4 m/s2, friction 0.1 (or none, and open).
 
-    Slip from rest is (4 - mu g) t^2 / 2; the run ends within the increment that passes what the
-    message names, which is of the size of a facet (1 m or a third of it), and keeps what it has.
+    Slip from rest is (4 - mu g) t^2 / 2; the run ends in the increment that exceeds the admissible
+    slip of the message, the size of a facet (1 m or a third of it), and keeps its results.
     """
     dt, mu = 0.005, 0.0 if is_open else 0.1
     steady = amplitude("STEADY", np.array([0.0, 10.0]), np.array([4.0, 4.0]))
@@ -128,13 +129,13 @@ def test_a_slip_beyond_a_facet_ends_the_run(keyway, is_open):
     motion = "*BASE MOTION, DOF=1, AMPLITUDE=STEADY\n" + PRINT
     steps = ("" if is_open else static(weight(10.0))) + dynamic(motion, dt, 2.0)
     run = keyway(block.deck(steps), code=1)
-    told = re.fullmatch(
-        r"joint BED has slipped (\S+) m at \((\S+), (\S+), 0\) by time (\S+); its faces are "
-        r"matched as they were meshed, which allows (\S+) m there \(a facet\)",
+    reported = re.fullmatch(
+        r"joint BED has slipped (\S+) m at \((\S+), (\S+), 0\) at time (\S+); joints between "
+        r"different meshes allow small sliding only, (\S+) m at this point \(size of a facet\)",
         run.json["message"],
     )
-    assert told
-    slipped, x, y, time, allowed = (float(text) for text in told.groups())
+    assert reported
+    slipped, x, y, time, allowed = (float(text) for text in reported.groups())
     start = 0.0 if is_open else 1.0
     assert {x, y} <= {0.0, 1.0}
     assert 0.3 < allowed < 1.5
@@ -182,7 +183,7 @@ def test_condition_of_the_equations_against_numpy(keyway, solver, stiffness):
 
     Two bricks on a joint with a rigid base: the jumps are the displacements of the bottom nodes in
     another order, so that numpy needs no more than K with the springs at these nodes. Hager's
-    estimate is a lower bound, as a rule exact (Higham 1988); a factor of 3 is what it may miss.
+    estimate is a lower bound, as a rule exact (Higham 1988); a factor of 3 is allowed.
     """
     young, poisson = 2e10, 0.2
     block = Block((2.0, 1.0, 1.0), (2, 1, 1), young=young, poisson=poisson)
@@ -203,5 +204,5 @@ def test_condition_of_the_equations_against_numpy(keyway, solver, stiffness):
             )
     root = np.sqrt(np.diag(k))
     exact = np.linalg.cond(k / np.outer(root, root), 1)
-    told = run.json["accuracy"]["joint_condition"]
-    assert exact / 3.0 <= told <= exact * (1.0 + 1e-6)
+    reported = run.json["accuracy"]["joint_condition"]
+    assert exact / 3.0 <= reported <= exact * (1.0 + 1e-6)

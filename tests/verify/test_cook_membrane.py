@@ -48,12 +48,12 @@ def deflection(keyway, element: str, count: int) -> float:
     ],
 )
 def test_deflection_reaches_the_target(keyway, element, count, allowed):
-    """0.2 %: the spread of refined solutions; 1 and 2 %: what is left of the mesh, see below."""
+    """0.2 %: the spread of refined solutions; 1 and 2 %: error of the mesh, see below."""
     assert deflection(keyway, element, count) == pytest.approx(TARGET, rel=allowed)
 
 
 @pytest.mark.parametrize("element", ["C3D8", "C3D8B", "C3D8I"])
 def test_refinement_approaches_from_below(keyway, element):
-    """A stiff element softens with the mesh: each halving takes more than half of the error."""
+    """A stiff element softens with the mesh: each halving more than halves the error."""
     errors = [TARGET - deflection(keyway, element, count) for count in (4, 8, 16)]
     assert 0.0 < errors[2] < 0.5 * errors[1] < 0.25 * errors[0]

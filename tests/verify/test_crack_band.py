@@ -1,8 +1,8 @@
-"""A brick that is torn takes G_f times its area, along its long side and across it.
+"""The fracture energy of a brick is G_f times its area, along its long side and across it.
 
-Exact but for the strength that stays, a thousandth of f_t (theory.md, 11.4): after the opening w
-the energy is G_f (1 - 1e-6) + 1e-3 f_t (w - w_u). The cube root of the volume as the width of the
-band would give 1/2.9 and 1.7 times as much in a brick of 1 x 1 x 5.
+Exact except for the residual strength of f_t/1000 (theory.md, 11.4): after the opening w the energy
+is G_f (1 - 1e-6) + 1e-3 f_t (w - w_u). The cube root of the volume as the width of the band would
+give 1/2.9 and 1.7 times as much in a brick of 1 x 1 x 5.
 """
 
 import numpy as np
@@ -67,7 +67,7 @@ def test_strength_of_a_brick_that_is_too_long(keyway):
     run = keyway(deck)
     assert max(run.csv("el_BRICK")["S33"]) == pytest.approx(0.5 * STRENGTH, rel=0.02)
     assert energy_of_crack(run) == pytest.approx(ENERGY, rel=0.01)
-    # The jump of the brick to its broken state is told beside it.
+    # The jump of the brick to its broken state is reported too.
     (warning,) = [w for w in run.json["warnings"] if "elements are longer" in w]
     assert "1 of 1 elements are longer" in warning
     assert warning.endswith("elements 1")

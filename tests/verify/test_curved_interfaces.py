@@ -66,7 +66,7 @@ def test_stress_passes_where_faces_coincide(keyway, connection, shape, counts, p
 @pytest.mark.parametrize("slave", ["LOWER", "UPPER"])
 def test_error_falls_where_faces_do_not_coincide(keyway, slave):
     """Facets of 2n and 3n chords of one arch: first order in the largest stress (the normals of the
-    two faces differ by the turn of a facet), second in displacement. Measured orders 1.1 to 1.8
+    two faces differ by the angle of a facet), second in displacement. Measured orders 1.1 to 1.8
     and 1.9 to 2.1."""
     found = [errors(keyway, TIE, cylinder, ((2 * n, 2 * n), (3 * n, 3 * n)), slave)
              for n in (2, 4)]  # fmt: skip

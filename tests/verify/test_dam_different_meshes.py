@@ -97,7 +97,8 @@ def work(run) -> float:
 
 
 def displacements(run, trial: Trial) -> dict[tuple, np.ndarray]:
-    """Static displacements of the dam's nodes by place; nodes in one place are told apart."""
+    """Static displacements of the nodes of the dam by place; nodes in one place are kept
+    distinct."""
     mesh = mesh_of(trial.mesh_key)
     with h5py.File(run.folder / f"{run.job}.h5") as file:
         increments = file["steps/0001/increments"]
@@ -133,12 +134,12 @@ def test_equal_meshes_on_surfaces_move_as_the_classical_joint(runs):
     ("mesh", "fine"),
     [("3:2", "three"), ("2:1", "four"), ("2:1 swapped", "four"), ("upper third", "four")],
 )
-def test_bonded_dam_is_as_soft_as_its_mesh(runs, mesh, fine):
+def test_stiffness_of_bonded_dam_is_between_those_of_both_meshes(runs, mesh, fine):
     """The work of the loads grows with the space of displacements (Galerkin).
 
     With the fine side as slave of a nested face, 2:1, the spaces are nested: the work lies between
-    those of the matching meshes. Elsewhere the coupling may add or take a thousandth of what these
-    are apart, which is less than any of them is off.
+    those of the matching meshes. Elsewhere the coupling may change the work by a thousandth of
+    their difference, which is less than their errors.
     """
     bonded = {"has_joint_law": False}
     low, value, high = (work(runs(m, **bonded)) for m in ("coarse", mesh, fine))
@@ -159,7 +160,7 @@ DYNAMIC = [("1:1 shifted", "shifted"), ("3:2", "three"), ("2:1", "four")]
     ("mesh", "fine"),
     [pytest.param(*case, marks=[] if case[0] in QUICK else [pytest.mark.full]) for case in DYNAMIC],
 )
-def test_shaken_dam_lies_between_matching_meshes(runs, mesh, fine):
+def test_response_of_shaken_dam_is_between_matching_meshes(runs, mesh, fine):
     low, value, high = (extremes(runs(m, MOVING)) for m in ("coarse", mesh, fine))
     for name, found in value.items():
         ends = sorted((low[name], high[name]))
@@ -168,12 +169,12 @@ def test_shaken_dam_lies_between_matching_meshes(runs, mesh, fine):
         assert outside < (0.005 if "OPENING" in name else 0.01) + OF_GAIN * gain, name
 
 
-def test_chain_gives_way_as_its_penalty_does(runs):
+def test_chain_is_as_compliant_as_its_penalty(runs):
     """Eq. 8 with k = 22e9 Pa/m: the dam moves as with joints of 1 / (1/k_n + 1/k), k_t alike.
 
-    Such a joint is integrated at Gauss points, as the penalty is: with two elements through the
-    thickness springs at nodes are half as stiff again in bending. Bonded, so that all is linear;
-    the joint's own springs stay at nodes, hence the part in a thousand.
+    Such a joint is integrated at Gauss points, as the penalty: with two elements through the
+    thickness springs at nodes are 1.5 times as stiff in bending. The joint is bonded, so that the
+    problem is linear; its own springs are at nodes, hence the difference of a thousandth.
     """
     normal, penalty = 22e9 / 0.02, 22e9
     shear = normal / (2.0 * (1.0 + 0.167))
@@ -204,7 +205,7 @@ HARD = [
 
 @pytest.mark.parametrize(("mesh", "size", "stiffness", "dt"), HARD)
 def test_hard_motions_run_through(keyway, mesh, size, stiffness, dt):
-    """As test_dam_robustness.py: no increment cut back, no energy that grows; no damping at all."""
+    """As test_dam_robustness.py: no cutback, no growth of energy, without damping."""
     case = trial_of(size, stiffness, dt, is_coarse=True, duration=3.5, blocks=MESHES[mesh])
     result = measure(run_trial(keyway, case))
     assert result.most_iterations <= MOST_ITERATIONS

@@ -1,7 +1,7 @@
-"""What contraction joints change in an arch dam: they open at the crest and let go of the arch.
+"""Effect of contraction joints in an arch dam: they open at the crest and release the arch tension.
 
 The same dam, mesh and motion with joints (q_on = 0), with joints that never open, and without
-joints. The margins leave room for another record; the numbers of this one stand beside them.
+joints. The margins allow for other records; the numbers of this one are given.
 """
 
 import dataclasses
@@ -109,7 +109,7 @@ def test_arch_tension_drops_at_the_crown_of_the_crest(stress):
     assert crown["jointed"] < 0.75 * crown["monolithic"]
 
 
-def test_bonded_joints_are_as_good_as_none(stress):
+def test_bonded_joints_equal_no_joints(stress):
     # joints of 1.1e12 Pa/m are as flexible as 2 cm of concrete each: 1e-4 of the arch
     one, other = (stress[name] for name in ("bonded", "monolithic"))
     nodes = [s.near(0.0, 1e-6) for s in (one, other)]

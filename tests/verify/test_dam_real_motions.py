@@ -1,4 +1,4 @@
-"""The jointed dam under ground motions of others, as trials: it runs, and nothing is cut back.
+"""The jointed dam under recorded ground motions: all runs end without cutback.
 
 The motions lie outside the project, in ../shared/data; the tests skip where they are absent.
 """
@@ -16,7 +16,7 @@ TAPER = 0.5  # at both ends [s]
 
 
 def tapered(values: np.ndarray, dt: float) -> np.ndarray:
-    """The record with cosine ends: some begin with a jump."""
+    """The record with cosine tapers, because some records begin with a jump."""
     length = max(2, round(TAPER / dt))
     ramp = 0.5 * (1.0 - np.cos(np.pi * np.arange(length) / length))
     shape = np.ones(len(values))

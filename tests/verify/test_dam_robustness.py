@@ -46,8 +46,8 @@ MESHES = {
 def test_different_meshes(keyway, meshes, size, stiffness, friction):
     """A dam whose blocks have meshes of their own, its base held.
 
-    The second case stops with the fine slave unless points whose slip turns alone take an r of
-    their own (theory.md, 2.3).
+    Without an r of their own for points that change their direction of slip, the second case has no
+    equilibrium (theory.md, 2.3).
     """
     trial = trial_of(size, stiffness, 0.01, is_coarse=True, duration=3.0, has_rock=False)
     options = dataclasses.replace(trial.options, friction=friction)

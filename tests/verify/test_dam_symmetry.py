@@ -1,4 +1,4 @@
-"""A left-right symmetric dam under symmetric loads answers symmetrically, joints included.
+"""A left-right symmetric dam under symmetric loads responds symmetrically, joints included.
 
 Weight, water, then motion along the stream and up. The mesh is symmetric to the last bit; the
 order in which the factorisation eliminates the unknowns is not, and round-off (1e-16) could grow

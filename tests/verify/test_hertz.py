@@ -8,7 +8,7 @@ Hertz's d is the approach of points far from a contact that is small. Whole sphe
 equators are not far: by Y. Tatara (J. Eng. Mater. Technol. 113 (1991) 285-291) the same 4 mm give
 them 7 % less room. So a quarter of each body is cut out around the contact, 40 mm wide and deep,
 and its outer faces move as Hertz's pressure moves them in a half-space (Boussinesq, Johnson eq.
-3.19), plus 2 mm. What is computed is the contact: where, and how hard, they press.
+3.19), plus 2 mm. The computed result is the contact: its radius and pressure.
 
 By symmetry one sphere on a rigid plane, moved by 2 mm, is the same problem; its normal is that of
 the plane, as it is between the two spheres once they touch. Between spheres as meshed the normals
@@ -39,7 +39,7 @@ def knots(fine: int, coarse: int, edge: float) -> np.ndarray:
 
 
 def drop(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """How far the sphere lies below its pole; beyond 1.6 a of the contact it goes on flat."""
+    """Depth of the sphere below its pole; plane beyond 1.6 a."""
     r = np.minimum(np.hypot(a, b), 1.6 * CONTACT)
     return RADIUS - np.sqrt(RADIUS**2 - r**2)
 
@@ -180,8 +180,8 @@ def test_pressure_and_radius(keyway, fine):
 def test_two_spheres_as_meshed(keyway):
     """Both bodies: pressure within 2 %, radius 3.2 % too small (bound 4 %).
 
-    Small displacements hold the normals as they were meshed. With a / R = 0.1, 0.05, 0.0125 on the
-    same meshes the radius is 0.993, 0.996, 0.997, the pressure 1.001, 0.999, 1.000 of Hertz's.
+    With small displacements the normals are those of the mesh. With a / R = 0.1, 0.05, 0.0125 on
+    the same meshes the radius is 0.993, 0.996, 0.997, the pressure 1.001, 0.999, 1.000 of Hertz's.
     """
     found = contact(keyway, (9, 11), "LOWER", mirrored=False)
     radius, _ = size_and_pressure(found)

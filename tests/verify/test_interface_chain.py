@@ -33,7 +33,7 @@ def chain(pair: Pair, coarse: str, more: str = "") -> str:
 
 @pytest.mark.parametrize("coarse", ["UPPER", "LOWER"])
 @pytest.mark.parametrize("meshes", MESHES)
-def test_faces_part_by_traction_over_stiffness(keyway, meshes, coarse):
+def test_opening_is_traction_over_stiffness(keyway, meshes, coarse):
     """Uniform stress crosses any two flat meshes, tension and compression; the faces part by
     t / k across the springs and t / k_n, t / k_t across the joint: 1e-10, round-off."""
     pair = Pair(*(MESHES[meshes] if coarse == "UPPER" else MESHES[meshes][::-1]))
@@ -98,9 +98,9 @@ def test_frequencies_of_a_block_on_the_chain(keyway):
     assert np.abs(np.array(found) / exact - 1.0).max() < 1e-5
 
 
-def test_block_thrown_up_from_the_chain_keeps_the_balance(keyway):
-    """The base shakes with 2.5 g; the upper block leaves the joint and falls back.
-    Nothing dissipates but the stepping, which is told; the rest is round-off and iteration."""
+def test_energy_balance_of_a_block_thrown_up_from_the_chain(keyway):
+    """The base shakes with 2.5 g; the upper block leaves the joint and falls back. Only the time
+    stepping dissipates, which is reported; the rest is round-off and iteration."""
     pair = Pair(Side((6, 3, 2)), Side((4, 2, 2)), heights=(2.0, 4.0), turn=np.eye(3))
     quads = pair.add_chain("UPPER")
     pair.mesh.node_sets |= {"SIDEWAYS": pair.high.ravel(), "MIDDLE": pair.high[2, 1, -1:]}
@@ -118,8 +118,8 @@ def test_block_thrown_up_from_the_chain_keeps_the_balance(keyway):
     assert run.json["steps"][1]["cutbacks"] == 0
 
 
-def test_what_has_no_partner_is_told(keyway):
-    """The coarse block stands 1 m over the edge of the fine one, 2 cm above it."""
+def test_nodes_without_a_partner_are_reported(keyway):
+    """The coarse block projects 1 m over the edge of the fine one, 2 cm above it."""
     pair = Pair(Side((4, 2, 1)), Side((4, 1, 1)), (4.0, 1.0), shift=(1.0, 0.0), apart=0.02)
     cards = chain(pair, "UPPER", ", TENSILE STRENGTH=1e12")
     step = static("*BOUNDARY\nFAR, 1, 3\n*DSLOAD\nTOP, P, 1e5\n")

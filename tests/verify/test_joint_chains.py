@@ -115,7 +115,7 @@ PRINT = "*JOINT PRINT, JOINT=JX\n*JOINT PRINT, JOINT=JY\n*NODE PRINT, NSET=FAR\n
 )
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_blocks_around_an_edge_pass_on_pressure(keyway, layout, integration, meshes):
-    """Pressed along x and y: every point carries just that; displacements by springs in series.
+    """Pressed along x and y: every point carries this pressure; displacements by springs in series.
 
     Exact for these elements: no Poisson, uniform stress. The T has no joint across x in its lower
     row, whose upper face then shears against the blocks above: only Y is uniform there.
@@ -142,10 +142,11 @@ def test_blocks_around_an_edge_pass_on_pressure(keyway, layout, integration, mes
 @BOTH_MESHES
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_condensed_and_full_newton_agree(keyway, layout, meshes):
-    """Pressed and shaken so that joints open, hit and, in the T, slide: openings to 1e-8.
+    """Pressed and shaken so that joints open, close with impact and, in the T, slide: openings to
+    1e-8.
 
-    Both iterate to 1e-10 here. A hit takes the difference of two runs times 3 to 30, as bouncing
-    bodies do; 0.25 s hold few enough (measured: 3e-12 of the largest opening in the loop).
+    Both iterate to 1e-10 here. An impact multiplies the difference of two runs by 3 to 30; 0.25 s
+    have few impacts (measured: 3e-12 of the largest opening in the loop).
     """
     time = np.linspace(0.0, 0.5, 501)
     shake = 30.0 * np.sin(2.0 * np.pi * 12.0 * time) * np.minimum(time / 0.1, 1.0)

@@ -1,7 +1,7 @@
 """Where a joint is integrated: at the nodes its traction is smooth, at Gauss points it oscillates.
 
 A strip of 16 cubes on a stiff bonded joint (k_n = k_t = 1e13 Pa/m, 400 times E/L of a cube) is
-pulled up at one end; the traction should fade from there (docs/studies/joint_integration.md).
+pulled up at one end; the traction should decay from there (docs/studies/joint_integration.md).
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ def strip_traction(keyway, integration: str) -> dict[str, np.ndarray]:
 
 
 def ripple(traction: np.ndarray) -> float:
-    """What the traction goes back against its fading, in all, over its largest value."""
+    """Sum of the increases in the decay of the traction, over its largest value."""
     size = np.abs(traction)
     return np.sum(np.maximum(np.diff(size), 0.0)) / size.max()
 
 
-def test_nodes_keep_the_traction_smooth_and_gauss_points_do_not(keyway):
+def test_traction_is_smooth_at_nodes_and_oscillates_at_gauss_points(keyway):
     """Measured 1e-9 and 0.060; the unit test finds the same with a matrix of its own."""
     nodes = strip_traction(keyway, "NODES")
     gauss = strip_traction(keyway, "GAUSS")

@@ -36,7 +36,7 @@ def first_point(run) -> dict[str, np.ndarray]:
 
 
 @pytest.mark.parametrize("integration", ["NODES", "GAUSS"])
-def test_strength_is_lost_for_good(keyway, integration):
+def test_strength_is_lost_permanently(keyway, integration):
     """Eq. 9; paper_notes.md, 4: linear to q_on, zero for good when open, k_n v when closed again.
 
     The cube (E/L = 2 k_n) shares its top's displacement u with the joint while that carries:
@@ -66,7 +66,7 @@ def test_strength_is_lost_for_good(keyway, integration):
 
 
 def test_gap_closes(keyway):
-    """A gap of 1 mm: nothing until the cube has come down by it, then the two springs in series."""
+    """A gap of 1 mm: no force until the gap is closed, then two springs in series."""
     gap = 1e-3
     run = keyway(moved_cube(f", GAP={gap!r}", 3, [0.0, -3.0 * gap, 0.0]))
     point = first_point(run)
@@ -83,8 +83,8 @@ def test_gap_closes(keyway):
 def test_shear_strength(keyway, friction, cohesion):
     """|t_t| <= mu p + c: a cube pressed by 1 MPa whose top is pushed along and back.
 
-    It sticks with 1/k_t + L/G in series up to the limit; then the joint slides by all the rest.
-    Sliding bends the cube, which would press one edge more: its nodes go up and down together.
+    It sticks with 1/k_t + L/G in series up to the limit; then the joint slides by the remainder.
+    Sliding bends the cube and would load one edge more: its nodes move up and down together.
     """
     pressure = 1e6
     limit = friction * pressure + cohesion

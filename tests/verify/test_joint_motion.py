@@ -80,8 +80,8 @@ def test_mass_below_the_limit_never_slides(keyway, meshes):
 def test_fixed_side_may_be_master_or_slave(keyway, meshes):
     """The base as slave instead of master: the same motion to round-off.
 
-    With different meshes the points are other ones, and so is the way a bed of springs gives way to
-    the tilt of the mass: 1e-8 m of tilt for a slip of 2e-2 m.
+    With different meshes the points are other ones, and so is the tilt of the mass on a bed of
+    springs: 1e-8 m of tilt for a slip of 2e-2 m.
     """
     allowed = 1e-9 if meshes is None else 1e-5
     runs = [
@@ -98,7 +98,7 @@ def test_fixed_side_may_be_master_or_slave(keyway, meshes):
 @BOTH_MESHES
 @pytest.mark.parametrize("elements", [1, 4])
 def test_friction_decay(keyway, elements, meshes):
-    """k 1e4 N/m, m 1 kg, g 10, mu 0.1, released at 0.85 mm (closed form; SDND100).
+    """k 1e4 N/m, m 1 kg, g 10, mu 0.1, free from 0.85 mm on (closed form; SDND100).
 
     Tolerance 2e-6 m: one increment off an extreme misses w^2 u dt^2 / 2 = 1e-6 m;
     the joint gives way by mu m g / (k_t A) = 1e-9 m.
@@ -166,11 +166,11 @@ def bar_on_wall(keyway, elements: int, courant: float, meshes) -> dict[str, floa
 def test_bar_on_a_wall(keyway, meshes):
     """Contact for 6.19677 ms at 7.74597 MPa, then all energy is the bar's again (closed form).
 
-    Tolerances. Time: the front that releases the bar is spread over some elements, three of which
-    take 1.5/n of the contact. Impulse: 2 m v less what turns into vibration. Pressure: 0.1 %, what
-    the ringing at the fronts leaves in its middle. Energy: HHT takes the waves that the mesh cannot
-    carry, a share that falls with the mesh (measured: 2.2, 1.3, 0.7 % at half a Courant number);
-    by the balance it is 'numerical', all of it.
+    Tolerances. Time: the unloading front is spread over some elements; three elements are 1.5/n of
+    the contact. Impulse: 2 m v less what turns into vibration. Pressure: 0.1 %, the ringing of the
+    fronts in the middle. Energy: HHT dissipates the waves that the mesh does not resolve, a share
+    that falls with the mesh (measured: 2.2, 1.3, 0.7 % at half a Courant number); by the balance it
+    is 'numerical', all of it.
     """
     assert pytest.approx(6.19677e-3, rel=1e-6) == CONTACT
     assert pytest.approx(7.74597e6, rel=1e-6) == PRESSURE

@@ -1,7 +1,7 @@
 """Friction, strength, gap and cohesion of joints between different meshes, against closed forms.
 
-A stiff block (k_n height / E = 1e-4) on a base; its top is moved, the joint answers. Matching
-meshes with JOINT8 elements go the same way.
+A stiff block (k_n height / E = 1e-4) on a base; its top is moved. Matching meshes with JOINT8
+elements have the same tests.
 """
 
 import numpy as np
@@ -17,7 +17,7 @@ base_is_slave = pytest.mark.parametrize("base_is_slave", [False, True])
 
 
 def moved(*motions: tuple[float, float, float]) -> str:
-    """Static steps that lead the whole block to one place after the other."""
+    """Static steps that move the whole block from place to place."""
     steps = []
     for number, motion in enumerate(motions):
         data = "".join(f"BODY, {i}, {i}, {u!r}\n" for i, u in enumerate(motion, start=1))
@@ -28,7 +28,7 @@ def moved(*motions: tuple[float, float, float]) -> str:
 @meshes
 @base_is_slave
 def test_friction(keyway, mesh, base_is_slave) -> None:
-    """Pressed, then slid to and fro along a skew way: stick, slip, stick back, slip back.
+    """Pressed, then slid to and fro in a skew direction: stick, slip, stick back, slip back.
 
     p = 1e6 Pa, mu = 0.5: slips at 5e-4 m, from there on with 5e5 Pa. The work of friction is what
     slides times mu p.
@@ -54,7 +54,7 @@ def test_friction(keyway, mesh, base_is_slave) -> None:
 @meshes
 @base_is_slave
 def test_tensile_strength(keyway, mesh, base_is_slave) -> None:
-    """Bonded up to 1e5 Pa at 1e-4 m, then free; closed again it presses, and pulls no more."""
+    """Bonded up to 1e5 Pa at 1e-4 m, then free; closed again, compression without tension."""
     law = f"KN={K}, KT={K}, FRICTION=0.5, TENSILE STRENGTH=1e5"
     pair = Pair(law=law, base_is_slave=base_is_slave, **mesh)
     run = keyway(pair.deck(moved(*[(0.0, 0.0, u) for u in (9.9e-5, 1.5e-4, -1e-4, 5e-5)])))
@@ -68,7 +68,7 @@ def test_tensile_strength(keyway, mesh, base_is_slave) -> None:
 
 @meshes
 def test_strength_point_by_point(keyway, mesh) -> None:
-    """Turned about one edge the joint breaks as far as it opens by more than q/k."""
+    """Rotated about one edge the joint breaks where its opening exceeds q/k."""
     pair = Pair(law=f"KN={K}, KT={K}, TENSILE STRENGTH=1e5", **mesh)
     turn = 1.0e-4  # opens 2e-4 m at x = 2: points beyond x = 1 break
     x = [(i, j, k) for i in (0.0, 1.0, 2.0) for j in (0.0, 0.5, 1.0) for k in (0.0, 1.0)]
@@ -91,7 +91,7 @@ def test_strength_point_by_point(keyway, mesh) -> None:
 @meshes
 @base_is_slave
 def test_gap(keyway, mesh, base_is_slave) -> None:
-    """Nothing until it is closed, then k (u - g); friction begins there."""
+    """No force until the gap is closed, then k (u - g) and friction."""
     pair = Pair(law=f"KN={K}, KT={K}, FRICTION=0.5, GAP=1e-3", base_is_slave=base_is_slave, **mesh)
     run = keyway(pair.deck(moved((3e-4, 0.0, -9e-4), (3e-4, 0.0, -1.4e-3), (4e-4, 0.0, -1.4e-3))))
     shears = (0.0, 0.0, 1e5)  # 1e-4 m sticking; 2e5 Pa would slip
@@ -107,7 +107,7 @@ def test_gap(keyway, mesh, base_is_slave) -> None:
 def test_block_falls_through_its_gap(keyway, mesh, base_is_slave) -> None:
     """Nothing but the joint holds the block up; a hundred times its weight closes the gap.
 
-    In between it touches nothing and goes far; that must cost no digits of the balance (1e-6).
+    In between the block has no contact and moves far, which must not increase the residual (1e-6).
     """
     pair = Pair(
         size=(1.0, 1.0, 1.0),
@@ -124,7 +124,7 @@ def test_block_falls_through_its_gap(keyway, mesh, base_is_slave) -> None:
 
 @meshes
 def test_cohesion(keyway, mesh) -> None:
-    """mu p + c: 0.5 * 2e5 + 3e5 Pa; without pressure c alone; open nothing."""
+    """mu p + c: 0.5 * 2e5 + 3e5 Pa; without pressure c alone; open: zero."""
     pair = Pair(law=f"KN={K}, KT={K}, FRICTION=0.5, COHESION=3e5", **mesh)
     run = keyway(
         pair.deck(

@@ -37,7 +37,7 @@ def tall_block(law: str, cards: str, base_is_slave: bool = False, meshes=None) -
 
 @BOTH_MESHES
 def test_quarter_period_of_rocking(keyway, meshes):
-    """Released at a tilt of 0.01: quarter period sqrt(2 theta I / (W b)), I = 4/3 m (b^2 + h^2).
+    """Free from a tilt of 0.01 on: quarter period sqrt(2 theta I / (W b)), I = 4/3 m (b^2 + h^2).
 
     Tolerance 0.1 %: the edge gives way by W / (k_n A/2) = 2e-6 m, 2e-4 of the lift, and rings.
     """
@@ -68,9 +68,9 @@ def test_quarter_period_of_rocking(keyway, meshes):
 def test_rocking_starts_at_a_quarter_of_gravity(keyway, base_is_slave, meshes):
     """Base acceleration that grows to 0.3 g in 10 s: the edge lifts at g b / h = 0.25 g.
 
-    The weight is then on the other edge, and the last line of points before that edge lets go; a
-    base of three facets as slave has lines at thirds, whose farthest opens sooner.
-    Tolerance 0.1 % of g: one increment of 0.005 s is 1.5e-4 g, and the block follows within some.
+    The weight is then on the other edge, and the last line of points before that edge opens; a base
+    of three facets as slave has lines at thirds, whose farthest opens sooner. Tolerance 0.1 % of g:
+    one increment of 0.005 s is 1.5e-4 g, and the block follows within some.
     """
     last_line = 1.0 / 3.0 if meshes and base_is_slave else 1.0
     ramp = amplitude("RAMP", np.array([0.0, 10.0]), np.array([0.0, 0.3 * GRAVITY]))
@@ -86,8 +86,8 @@ def test_rocking_starts_at_a_quarter_of_gravity(keyway, base_is_slave, meshes):
 
 @BOTH_MESHES
 @pytest.mark.parametrize(("forces", "is_fed"), [("IMPLICIT", False), ("HHT", True)])
-def test_a_motion_that_the_stepping_drives_is_told(keyway, forces, is_fed, meshes):
-    """A column shaken at 2 Hz that lifts. Joint forces weighted like the bulk feed 58 % of the
+def test_energy_generated_by_the_time_stepping_is_reported(keyway, forces, is_fed, meshes):
+    """A column shaken at 2 Hz that lifts. Joint forces weighted as the bulk generate 58 % of the
     largest energy here, the implicit impulse 0.6 %; the balance closes in both, to 1e-7."""
     time = np.linspace(0.0, 1.0, 201)
     shake = amplitude("SHAKE", time, 6.0 * np.sin(4.0 * np.pi * time))
@@ -110,7 +110,7 @@ def test_a_motion_that_the_stepping_drives_is_told(keyway, forces, is_fed, meshe
 @pytest.mark.parametrize("friction", [0.7, 2.0])
 @pytest.mark.parametrize(("stiffness", "dt"), [(1e10, 0.01), (1e11, 0.002), (1e13, 0.01)])
 def test_shaken_block_lands_on_its_edges(keyway, request, friction, stiffness, dt, meshes):
-    """A block that rocks at 0.6 g, 1.5 Hz, lands and slides: every increment of it converges.
+    """A block that rocks at 0.6 g, 1.5 Hz, lands and slides: every increment converges.
 
     With friction above 5/3 the edge of a rigid box of this slenderness wedges when it slides; some
     landings then take more than the 15 iterations that are the default.

@@ -66,7 +66,7 @@ def plane() -> tuple[str, str, str]:
 
 
 @pytest.mark.parametrize("make", [cross, tied, plane])
-def test_joints_alone_and_all_unknowns(keyway, make):
+def test_condensed_and_full_iteration_agree(keyway, make):
     model, static, dynamic = make()
     runs = [
         keyway(model + steps(static, dynamic, solver), name=solver)
@@ -89,7 +89,7 @@ def test_joints_alone_and_all_unknowns(keyway, make):
 
 @pytest.mark.parametrize("make", [cross, tied, plane])
 def test_forces_on_supports(keyway, make):
-    """What the loads push, supports carry, whatever nodes follow on the way."""
+    """Reactions balance the loads, also through tied nodes."""
     model, static, dynamic = make()
     run = keyway(model + steps(static, dynamic, "AUTO").split("*STEP\n*DYNAMIC")[0])
     total = state_of(run, "ALL", "RF", 1).sum(axis=0)
@@ -97,8 +97,8 @@ def test_forces_on_supports(keyway, make):
     assert np.abs(total + applied).max() < 1e-7 * 4e5
 
 
-def test_memory_that_cannot_be_had_is_told(program_path, tmp_path):
-    """Three dense matrices of 8 (3 * 3721)^2 bytes are 2.99 GB; the system grants 1.5 GB."""
+def test_missing_memory_is_reported(program_path, tmp_path):
+    """Three dense matrices of 8 (3 * 3721)^2 bytes are 2.99 GB; the system allows 1.5 GB."""
     pair = Pair(Side((60, 60, 1)), Side((12, 12, 1)))
     joint = "*JOINT LAW, NAME=L, KN=1e12\n*JOINT, NAME=J, LAW=L\nLOWER, UPPER\n"
     step = static("*BOUNDARY\nFAR, 1, 3\n*DSLOAD\nTOP, P, 1e5\n")
@@ -106,4 +106,4 @@ def test_memory_that_cannot_be_had_is_told(program_path, tmp_path):
     command = f"ulimit -v 1500000; exec '{program_path}' large.inp"
     run = subprocess.run(["sh", "-c", command], capture_output=True, text=True, cwd=tmp_path)
     assert run.returncode == 3
-    assert "3721 points of joints: their dense matrices take some 3 GB" in run.stderr
+    assert "the dense matrices of 3721 points of joints take 3 GB" in run.stderr

@@ -54,7 +54,8 @@ def test_named_tests(keyway, test, last):
 
 
 def test_components_by_themselves(keyway):
-    """Stress on all sides, then one strain; an empty field stays, an empty control is kept."""
+    """Stress on all sides, then one strain; an empty field and an empty control keep their
+    values."""
     legs = (
         "SSSEES, -1e6, -2e6, -3e6, 1e-5, 0., 1e5, 4\nESSEEE, -1e-3, , , , 2e-5, , 5\n"
         ", 0., , , , , , 2, 3.\n"
@@ -104,7 +105,7 @@ def test_summary_and_several_materials(keyway):
 
 
 def test_deck_of_an_analysis_may_hold_tests(keyway):
-    """--material asks for no sound model: this one has no section and no support."""
+    """--material needs no complete model: this one has no section and no support."""
     deck = "*NODE\n1, 0., 0., 0.\n" + MATERIAL + "*MATERIAL TEST, NAME=T\n1e-4\n*STEP\n*STATIC\n"
     run = keyway(deck + "*END STEP\n", "--material")
     assert run.csv("material_T")["S11"][-1] == pytest.approx(1e-4 * E)

@@ -79,7 +79,7 @@ def test_facets_that_lie_in_one_surface(keyway, way, slave):
     [("cylinder", JOINT, "LOWER"), ("cylinder", TIE, "UPPER"), ("bulge", JOINT, "UPPER")],
     ids=["cylinder, joint", "cylinder, tie", "bulge, joint"],
 )
-def test_facets_that_lie_apart(keyway, shape, way, slave):
+def test_facets_with_a_distance(keyway, shape, way, slave):
     """Forces balance to round-off. Moments do to the order h^2 of the distance, uniform stresses
     with an order above 1.4; a rotation leaves stresses of order h.
     """

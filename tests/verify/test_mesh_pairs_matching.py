@@ -1,6 +1,6 @@
 """The pairs of blocks that the checks of different meshes use, where the meshes still match.
 
-One welded mesh and pairs of JOINT8 show what the elements do by themselves: uniform stresses are
+One welded mesh and pairs of JOINT8 show the accuracy of the elements alone: uniform stresses are
 exact, beams converge with the orders that the theory of trilinear bricks gives.
 """
 
@@ -17,7 +17,8 @@ from mesh_pairs import Pair, Side, scattered
 
 @pytest.mark.parametrize("element", ["C3D8", "C3D8I", "C3D8B", "C3D8R"])
 def test_joint8_passes_on_uniform_stress(keyway, element):
-    """Inner nodes by lot, the pair at an angle: 1e-10, round-off and the digits of the tables."""
+    """Inner nodes at random, the pair at an angle: 1e-10, round-off and the digits of the
+    tables."""
     side = Side((3, 4, 2), scattered(0.25, 1))
     pair = Pair(side, side, element=element)
     faces = (pair.low[:, :, -1], pair.high[:, :, 0])

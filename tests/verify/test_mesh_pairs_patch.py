@@ -1,4 +1,5 @@
-"""Constant stress crosses faces of different meshes: ties, joints and the paper's chain.
+"""Constant stress is transferred between faces of different meshes: ties, joints and the paper's
+chain.
 
 Two blocks at an angle in space, loaded on all outer faces by the tractions of a uniform stress and
 held at the far face by its displacements. Six states, each with the full size of one stress in the
@@ -81,7 +82,7 @@ def worst_errors(keyway, pair: Pair, cards: str, give: np.ndarray, pressed: floa
 @pytest.mark.parametrize("slave", ["LOWER", "UPPER"])
 @pytest.mark.parametrize("mesh", MESHES)
 @pytest.mark.parametrize("way", ["tie", "joint"])
-def test_stress_crosses_any_two_meshes(keyway, way, mesh, slave):
+def test_stress_is_transferred_between_any_two_meshes(keyway, way, mesh, slave):
     """1e-10: round-off and the digits of the tables (measured: 8e-14 and 3e-13 at most)."""
     cards, give = JOINED[way]
     assert max(worst_errors(keyway, Pair(*MESHES[mesh]), cards(slave), give)) < 1e-10
@@ -89,7 +90,7 @@ def test_stress_crosses_any_two_meshes(keyway, way, mesh, slave):
 
 @pytest.mark.parametrize("mesh", ["nested 1:2", "by lot", "wedges"])
 @pytest.mark.parametrize("way", ["springs", "joint at segments"])
-def test_stress_crosses_points_of_segments(keyway, way, mesh):
+def test_stress_is_transferred_at_points_of_segments(keyway, way, mesh):
     """Springs and joint laws at the points of the segments: the jump is t / k to 1e-10."""
     cards, give = JOINED[way]
     assert max(worst_errors(keyway, Pair(*MESHES[mesh]), cards("UPPER"), give)) < 1e-10
@@ -97,7 +98,7 @@ def test_stress_crosses_points_of_segments(keyway, way, mesh):
 
 @pytest.mark.parametrize("coarse", ["LOWER", "UPPER"])
 @pytest.mark.parametrize("mesh", ["3:7", "by lot"])
-def test_the_chain_of_the_paper_gives_way_by_t_over_k(keyway, mesh, coarse):
+def test_jump_of_the_chain_of_the_paper_is_t_over_k(keyway, mesh, coarse):
     """Eq. 8 and JOINT8 in a row: the jump is t / k of the coupling and t / k of the joint."""
     pair = Pair(*MESHES[mesh])
     fine = "UPPER" if coarse == "LOWER" else "LOWER"
@@ -112,7 +113,7 @@ def test_the_chain_of_the_paper_gives_way_by_t_over_k(keyway, mesh, coarse):
 
 @pytest.mark.parametrize("element", ["C3D8I", "C3D8B", "C3D8R"])
 @pytest.mark.parametrize("way", ["tie", "joint"])
-def test_stress_crosses_all_elements(keyway, way, element):
+def test_stress_is_transferred_between_all_elements(keyway, way, element):
     """As C3D8: the traces of all four on a facet are the same."""
     cards, give = JOINED[way]
     pair = Pair(*MESHES["by lot"], element=element)
@@ -121,7 +122,7 @@ def test_stress_crosses_all_elements(keyway, way, element):
 
 @pytest.mark.parametrize("slave", ["LOWER", "UPPER"])
 @pytest.mark.parametrize("way", ["joint", "joint at segments"])
-def test_faces_that_only_press(keyway, way, slave):
+def test_faces_without_tension(keyway, way, slave):
     """No tensile strength; pressed by three times the stress, which friction of 0.8 holds."""
     cards, give = JOINED[way]
     text = cards(slave).replace(BONDED, PRESSED)
@@ -131,8 +132,8 @@ def test_faces_that_only_press(keyway, way, slave):
 
 @pytest.mark.parametrize("slave", ["LOWER", "UPPER"])
 @pytest.mark.parametrize("way", ["tie", "joint"])
-def test_faces_that_lie_upon_each_other_in_part(keyway, way, slave):
-    """The upper block is shifted by 0.37 and 0.21 m; bare parts of facets bear the tractions."""
+def test_faces_with_partial_overlap(keyway, way, slave):
+    """The upper block is shifted by 0.37 and 0.21 m; tractions act on the bare parts of facets."""
     cards, give = JOINED[way]
     pair = Pair(Side((3, 4, 1)), Side((5, 3, 1), graded(2.0)), shift=(0.37, -0.21))
     assert max(worst_errors(keyway, pair, cards(slave), give)) < 1e-10

@@ -55,7 +55,7 @@ def traction_along(
 
 
 def traction(keyway, *of) -> Traction:
-    """How far the tractions are from the exact ones; arguments of traction_along."""
+    """Errors of the tractions; arguments of traction_along."""
     _, normal, shear = traction_along(keyway, *of)
     return Traction(
         np.abs(normal).max(), np.abs(shear - SHEAR / STRESS).max(), np.abs(np.diff(normal)).sum()
@@ -96,10 +96,10 @@ def test_the_finer_face_as_slave_shows_the_kinks_of_the_coarser(keyway):
 
 @pytest.mark.parametrize("slave", ["LOWER", "UPPER"])
 def test_nodes_are_smooth_where_points_of_segments_are_not(keyway, slave):
-    """2 against 3 facets; the normal traction over the bending stress, which should be 0.
+    """2 against 3 facets; the normal traction over the bending stress, with exact value 0.
 
-    Measured 0.008 and 0.016 at nodes, 1.22 and 0.71 at the points of segments, which lock: there
-    are more of them than nodes can follow.
+    Measured 0.008 and 0.016 at nodes, 1.22 and 0.71 at the points of segments, which lock: they are
+    too many for the nodes.
     """
     nodes = traction(keyway, 2, (2, 3), slave)
     points = traction(keyway, 2, (2, 3), slave, "GAUSS")

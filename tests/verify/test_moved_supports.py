@@ -1,11 +1,11 @@
-"""A body strained by its supports alone: no load gives the scale of the forces, reactions do."""
+"""A body strained by its supports alone: the reference force is that of the reactions."""
 
 import numpy as np
 from brick_decks import brick_deck, elastic, last_state
 from keyway_tools.box_mesh import box_mesh, stretched
 
 
-def test_a_strained_block_rests_in_statics_and_dynamics(keyway):
+def test_a_strained_block_is_at_rest_in_statics_and_dynamics(keyway):
     """A cube between a fixed and a lowered face, sides held: linear; 1e-12 of it is round-off."""
     mesh, number = box_mesh((2, 2, 2), stretched((1.0, 1.0, 1.0)))
     mesh.node_sets["ALL"] = number.ravel()

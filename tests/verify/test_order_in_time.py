@@ -1,8 +1,9 @@
-"""HHT is of second order in time, from a consistent start: a damped column let go.
+"""HHT is of second order in time, from a consistent start: a damped column after removal of its
+load.
 
 One brick held sideways is an oscillator: stiffness E A / l (nu = 0), mass rho A l / 3. It stands
-deformed under its weight in a static step; then the weight is gone. Exact: u = u0 exp(-z w t)
-(cos wd t + z w / wd sin wd t), and a0 = -w^2 u0 at the start, which the step has to find itself.
+deformed under its weight in a static step; then the weight is gone. Exact: u = u0 exp(-z w t) (cos
+wd t + z w / wd sin wd t), and a0 = -w^2 u0 at the start, which the step must compute.
 """
 
 import math

@@ -76,8 +76,8 @@ def test_published_points(keyway, mesh, element):
 def test_cohesive_crack(keyway, name, mesh):
     """The whole curve within 3 % of the largest load of a cohesive crack with the same softening.
 
-    With ten times the strength in compression: a crack whose sides are held by sound concrete is
-    torn in all directions at once, where Eq. 19 has more strength than in one, here by 10 % with 33
+    With ten times the strength in compression: concrete in a crack between undamaged elements
+    cracks in all directions at once; there the strength by Eq. 19 is higher, here by 10 % with 33
     MPa and by 1 % with 330 MPa (theory.md, 11.2). A crack band of bricks of 1 cm, a tenth of the
     ligament, stands for a line.
     """
@@ -90,8 +90,8 @@ def test_cohesive_crack(keyway, name, mesh):
 
 @pytest.mark.parametrize("recovery", ["LEE-FENVES", pytest.param("SIGN", marks=pytest.mark.full)])
 def test_crack_opens_and_closes(keyway, recovery):
-    """Pressed, lifted until the crack closes, three times over: never cut back more than once, and
-    going on where the crack had come to: the largest load of each way is on the first curve.
+    """Pressed, lifted until the crack closes, three times over: at most one cutback in a row; the
+    largest load of each cycle is on the first curve.
     """
     path = (0.0, -0.45e-3, 0.1e-3, -0.6e-3, 0.1e-3, -0.8e-3)
     ramp = "".join(f"{float(t)}, {u!r}\n" for t, u in enumerate(path))

@@ -1,9 +1,9 @@
 """The water on Koyna's monolith: resultant of the pressure, mass that moves with the dam.
 
-The base moves with a(t) so slowly that the dam goes with it: what holds the base is then the mass
-of everything that moves, times a. Taking the run without water away leaves the water's mass.
-Westergaard (paper_notes.md, 17): 7/8 rho sqrt(H y) per area, so 7/12 rho H^2 per metre of width:
-4.9105e6 kg at H = 91.75 m, and 7/8 rho H = 8.028e4 kg/m2 at the bed.
+The base moves with a(t) so slowly that the dam follows rigidly: the reaction is the mass of all
+moving parts times a. Taking the run without water away leaves the water's mass. Westergaard
+(paper_notes.md, 17): 7/8 rho sqrt(H y) per area, so 7/12 rho H^2 per metre of width: 4.9105e6 kg at
+H = 91.75 m, and 7/8 rho H = 8.028e4 kg/m2 at the bed.
 """
 
 import numpy as np
@@ -66,7 +66,7 @@ TOTAL = 7.0 / 12.0 * WATER * DEPTH**2  # per metre of height [kg/m]
 
 @pytest.mark.parametrize("direction", ["DIAGONAL", "NORMAL"])
 def test_total_added_mass_in_base_motion(keyway, direction):
-    """1e-6: what is left of the slow motion's own oscillation."""
+    """1e-6: residual oscillation of the slow motion."""
     found = added_mass(keyway, monolith(LEVELS), DIRECTION=direction)
     assert found[0] == pytest.approx(TOTAL, rel=1e-6)
     assert pytest.approx(4.9105e6, rel=1e-5) == TOTAL  # five printed digits
@@ -111,9 +111,10 @@ def test_hydrostatic_resultant_and_moment(keyway, slope):
     assert arm @ reaction[:, 2] == pytest.approx(moment, rel=1e-9)
 
 
-def test_modes_know_the_water(keyway):
-    """A dam of next to no mass: the modes hold all water but that at the fixed base. There
-    are as many as wet nodes above it. 1e-9: round-off; 5 Gauss points integrate to 1e-12."""
+def test_modes_have_the_added_mass(keyway):
+    """A dam of next to no mass: the effective masses are that of the water except at the fixed
+    base. There are as many as wet nodes above it. 1e-9: round-off; 5 Gauss points integrate to
+    1e-12."""
     mesh = monolith(np.linspace(0.0, HEIGHT, 9))
     wet = mesh.surface_nodes("UPSTREAM")
     num_wet = np.count_nonzero(mesh.x[wet, 2] > 0.0)

@@ -1,4 +1,4 @@
-"""What goes from step to step: motion, forces and damping, seen on a brick that swings at 1 Hz.
+"""Continuity from step to step: motion, forces and damping of a brick that oscillates at 1 Hz.
 
 The brick of test_order_in_time.py: held sideways, nu = 0, so one oscillator of stiffness E A / l
 and mass rho A l / 3. It stands deformed under its weight; then the weight is gone.
@@ -63,7 +63,7 @@ def test_a_motion_goes_on_in_a_second_step(keyway):
 
 
 def test_a_static_step_ends_the_motion(keyway):
-    """Back under its weight it rests where it began, and nothing moves: to round-off."""
+    """Back under its weight the brick is at rest in its first position, to round-off."""
     back = "*STEP\n*STATIC\n" + WEIGHT.format("", 1.0) + "*END STEP\n"
     table = swinging(keyway, dynamic(0.2, WEIGHT.format(", OP=NEW", 0.0)) + back)
     start, end = table["U3"][0], table["U3"][-1]

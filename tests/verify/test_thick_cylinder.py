@@ -50,7 +50,7 @@ def share_at_the_bore(keyway, element: str, poisson: float) -> float:
 @pytest.mark.parametrize("element", ["C3D8B", "C3D8I", "C3D8R"])
 @pytest.mark.parametrize("poisson", [0.49, 0.499, 0.4999])
 def test_nearly_incompressible_does_not_lock(keyway, element, poisson):
-    """2 %: what the paper grades as A. The mesh of straight sides alone leaves 1 %."""
+    """2 %: grade A of the paper. The mesh of straight sides alone leaves 1 %."""
     assert share_at_the_bore(keyway, element, poisson) == pytest.approx(1.0, abs=0.02)
 
 

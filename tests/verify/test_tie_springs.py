@@ -14,7 +14,7 @@ STRESS = 1e6 * np.array([[1.0, 0.4, -0.3], [0.4, -2.0, 0.5], [-0.3, 0.5, 1.5]]) 
 
 @pytest.mark.parametrize("names", ["LOWER, UPPER", "UPPER, LOWER"])
 @pytest.mark.parametrize("wedges", [False, True])
-def test_faces_part_by_traction_over_stiffness(keyway, names, wedges):
+def test_opening_is_traction_over_stiffness(keyway, names, wedges):
     """Uniform stress crosses bricks or wedges against lots; 1e-10, round-off."""
     pair = Pair(Side((7, 6, 1), graded(10.0), wedges=wedges), Side((4, 5, 1), scattered(0.25, 5)))
     loaded = Loaded(pair, {"ALL": uniform(STRESS, pair, np.full(3, 1.0 / SPRINGS))})

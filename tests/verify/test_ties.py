@@ -140,7 +140,7 @@ def test_nodes_that_a_later_step_holds(keyway, swapped):
         assert np.abs(u - exact).max() < EXACT * np.abs(exact).max()
 
 
-def test_springs_part_by_traction_over_stiffness(keyway):
+def test_opening_of_springs_is_traction_over_stiffness(keyway):
     """*TIE with STIFFNESS on a bar in tension: its faces part by t / k, everywhere."""
     blocks = Blocks()
     blocks.add("A", (2, 0, 1), (3, 0, 1), (2, 0, 1))
@@ -156,7 +156,7 @@ def test_springs_part_by_traction_over_stiffness(keyway):
     assert np.abs(u - exact).max() < EXACT * np.abs(exact).max()
 
 
-def test_a_curved_tie_can_turn(keyway):
+def test_a_curved_tie_can_rotate(keyway):
     """Two rings of facets that are chords of one cylinder: with ADJUST a rotation of the outside
     turns the inside without stress; without, stresses are of the order of the chords' gaps.
     """

@@ -76,7 +76,7 @@ def test_tied_beam_of_equal_meshes_is_one_beam(keyway):
 @pytest.mark.parametrize("meshes", [(2, 3), (3, 2), (4, 2), (2, 4)])
 def test_modes_of_a_tied_beam(keyway, meshes):
     """Between those of one beam with the coarser and with the finer mesh, which are 5 % apart; a
-    tie that let go, or that locked, would leave this range.
+    tie that fails or locks would leave this range.
     """
     slave, master = meshes
     blocks = beam(master, slave)
@@ -129,8 +129,8 @@ def test_reactions_of_a_block_on_held_rock(keyway, slave_above):
 
 
 def test_tied_blocks_follow_a_moving_support(keyway):
-    """Both ends of the face stand on supports, of which one end belongs to the slave. Given the
-    same motion, step by step, everything moves as one.
+    """Both ends of the face have supports, one end on the slave. With equal motions of the supports
+    the model moves rigidly.
     """
     blocks = Blocks()
     blocks.add("A", (2, 0, 1), (2, 0, 1), (3, 0, 1))
@@ -147,9 +147,9 @@ def test_tied_blocks_follow_a_moving_support(keyway):
         assert np.abs(state_of(run, "ALL", "RF", step)).max() < 1e-9 * 1e9 * 3e-3
 
 
-def test_support_of_one_direction_leaves_the_others_tied(keyway):
-    """A plane state: every node is held along y. A rod in tension is as long as one without a
-    seam, sigma (1 - nu^2) / E.
+def test_support_of_one_direction_keeps_the_others_tied(keyway):
+    """A plane state: every node is held along y. A rod in tension is as long as one without a tie,
+    sigma (1 - nu^2) / E.
     """
     blocks = Blocks()
     blocks.add("A", (2, 0, 1), (1, 0, 1), (2, 0, 1))
@@ -186,7 +186,7 @@ def test_free_fall_and_flight(keyway):
 
 def test_joint_between_tied_blocks(keyway):
     """Two blocks that stand on rock, tied to it or with its nodes, and a joint between them that
-    opens and slides: its lowest pairs are tied at both ends, where it can do neither.
+    opens and slides: its lowest pairs are tied at both ends, where it cannot.
     """
 
     def deck(is_tied: bool) -> str:

@@ -123,8 +123,8 @@ def test_open_uplift_under_a_rigid_block(keyway, increments, ground_counts) -> N
     assert run.json["steps"][0]["energy"]["error"] < 1e-6
 
 
-def test_water_stays_out_of_a_crack_without_a_way_in(keyway) -> None:
-    """Open at the toe only: no water with PROFILE=OPEN, although the joint is open there."""
+def test_closed_crack_mouth_keeps_water_out(keyway) -> None:
+    """Open at the toe only: no uplift with PROFILE=OPEN, although the joint is open there."""
     section = Section(law="KN=1e8, KT=1e8, FRICTION=2., UPLIFT=LAKE, PROFILE=OPEN")
     push = "*DSLOAD\nDOWNSTREAM, P, 40000.\n"
     run = keyway(section.deck(static(weight() + push + lake(1.0) + OUTPUT)))
@@ -135,7 +135,8 @@ def test_water_stays_out_of_a_crack_without_a_way_in(keyway) -> None:
 
 
 def test_water_comes_and_goes_with_its_reservoir(keyway) -> None:
-    """A dry step, a full one, half the level, and full again: the joint is back where it was."""
+    """A dry step, a full one, half the level, and full again: the joint returns to its first
+    state."""
     section = Section(law="KN=1e8, KT=1e8, TENSILE STRENGTH=1e9, UPLIFT=LAKE")
     steps = [
         static(weight() + OUTPUT, "0.5, 1.", "DRY"),
@@ -156,7 +157,7 @@ def test_water_comes_and_goes_with_its_reservoir(keyway) -> None:
 @pytest.mark.parametrize("profile", ["LINEAR", "OPEN"])
 @pytest.mark.parametrize("ground_counts", [0, 13], ids=["JOINT8", "3:2"])
 def test_energy_with_water_in_a_shaken_joint(keyway, profile, ground_counts) -> None:
-    """The dam rocks on its joint, water follows the opening: the books still balance."""
+    """The dam rocks on its joint, water follows the opening: the energy balance closes."""
     section = Section(
         counts=(20, 10),
         ground_counts=ground_counts,

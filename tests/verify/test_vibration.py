@@ -65,16 +65,16 @@ def test_effective_masses(keyway):
 
 @pytest.mark.parametrize(("mass", "share"), [("CONSISTENT", 6.0 / 7.0), ("LUMPED", 3.0 / 4.0)])
 def test_effective_masses_add_up(keyway, mass, share):
-    """All modes of two bricks hold what the base sets in motion, (M r)^T M_ff^-1 (M r) over the
-    free nodes: with m = MASS / 2, M_ff = m/6 [4 1; 1 2] and M r = m (1, 1/2) that is 12/7 m; with
-    lumped mass all but the half brick at the base, 3/2 m. 1e-12: round-off."""
+    """The effective masses of all modes of two bricks are the mass moved by the base, (M r)^T
+    M_ff^-1 (M r) over the free nodes: with m = MASS / 2, M_ff = m/6 [4 1; 1 2] and M r = m (1, 1/2)
+    that is 12/7 m; with lumped mass all but the half brick at the base, 3/2 m. 1e-12: round-off."""
     _, masses = bar_modes(keyway, 2, 7, mass=mass)
     assert masses.sum(axis=0)[2] == pytest.approx(share * MASS, rel=1e-12)
 
 
 def test_many_modes_hold_the_total_mass(keyway):
-    """The first n modes along the bar hold all but 2 / (pi^2 n); modes in which the edges of the
-    bar move against each other lie among them and hold nothing. 0.3 %: the mesh of 60 bricks."""
+    """The first n modes along the bar have all mass except 2 / (pi^2 n); modes with opposite
+    motions of the edges are among them and have no effective mass. 0.3 %: the mesh of 60 bricks."""
     _, masses = bar_modes(keyway, 60, 30)
     along = masses[masses[:, 2] > 1e-9 * MASS, 2]
     expected = sum(8.0 / (math.pi * (2 * k + 1)) ** 2 for k in range(len(along)))

@@ -1,4 +1,4 @@
-"""Blocks with meshes of their own, to be tied: their decks, and what their nodes do."""
+"""Tied blocks with meshes of their own: decks and motions of nodes."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ module step_loads
   !> A prescribed unknown.
   type :: support
     integer :: unknown = 0
-    real(rk) :: reached = 0.0_rk !< at the start of the step [m]
+    real(rk) :: start_value = 0.0_rk !< at the start of the step [m]
     real(rk) :: value = 0.0_rk !< prescribed, times the amplitude [m]
     integer :: amplitude = 0 !< 0 for none
   end type support
@@ -200,7 +200,7 @@ contains
     integer :: i
     do i = 1, size(supports)
       associate (item => supports(i))
-        q(item%unknown) = factor_at(item%reached, item%value, item%amplitude, histories, when)
+        q(item%unknown) = factor_at(item%start_value, item%value, item%amplitude, histories, when)
       end associate
     end do
   end subroutine prescribed_values

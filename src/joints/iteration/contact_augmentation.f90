@@ -38,19 +38,19 @@ contains
       new(j)%shift = old(j)%shift
       if (.not. joints(j)%law%penetration > 0.0_rk) cycle
       multiplier%is_there = .true.
-      new(j)%shift = wanted_shift(old(j))
+      new(j)%shift = traction_shift(old(j))
     end do
   end subroutine start_multiplier
 
   !> Shift for lambda = t of a state; 0 at open points.
-  pure function wanted_shift(now) result(shift)
+  pure function traction_shift(now) result(shift)
     type(joint_state), intent(in) :: now
     real(rk) :: shift(size(now%gap)) !< [m]
     shift = 0.0_rk
     where (now%status == state_stick .or. now%status == state_slip)
       shift = min(0.0_rk, opening_of(now%jump(1, :), now%gap) + now%shift)
     end where
-  end function wanted_shift
+  end function traction_shift
 
   !> Largest ratio of |v + g| to its admissible value at points in contact, and its place.
   subroutine measure_contact(joints, operator, states, multiplier, excess, worst_point)
@@ -72,7 +72,7 @@ contains
       if (.not. joints(j)%law%penetration > 0.0_rk) cycle
       associate (first => operator%first_point(j), last => operator%first_point(j + 1) - 1)
         multiplier%shift(first:last) = states(j)%shift
-        multiplier%change(first:last) = wanted_shift(states(j)) - states(j)%shift
+        multiplier%change(first:last) = traction_shift(states(j)) - states(j)%shift
       end associate
       do p = 1, joints(j)%num_points
         if (states(j)%status(p) /= state_stick .and. states(j)%status(p) /= state_slip) cycle

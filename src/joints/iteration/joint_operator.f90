@@ -106,7 +106,7 @@ contains
       end do
     end subroutine add_dof
 
-    !> Adds to the row under way.
+    !> Adds to the current row.
     subroutine add_term(column, value)
       integer, intent(in) :: column
       real(rk), intent(in) :: value

@@ -35,9 +35,9 @@ contains
     associate (seam => joints(worst(1)), p => worst(2))
       call raise(error, 'joint '//seam%name//' has slipped '// &
                  as_text(slip_at(states(worst(1)), p))//' m at ('//as_text(seam%x(1, p))//', '// &
-                 as_text(seam%x(2, p))//', '//as_text(seam%x(3, p))//') by time '// &
-                 as_text(time)//'; its faces are matched as they were meshed, which allows '// &
-                 as_text(seam%admissible_slip(p))//' m there (a facet)')
+                 as_text(seam%x(2, p))//', '//as_text(seam%x(3, p))//') at time '// &
+                 as_text(time)//'; joints between different meshes allow small sliding only, '// &
+                 as_text(seam%admissible_slip(p))//' m at this point (size of a facet)')
     end associate
   end subroutine check_slip
 

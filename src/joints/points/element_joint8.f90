@@ -65,10 +65,10 @@ contains
     integer, allocatable, intent(out) :: solid(:, :) !< (2, elements) behind master, slave; 0: none
     integer, intent(out) :: side(:) !< 1: normal by nodes 1-2-3-4, -1: against it, 0: contradiction
     type(face_table) :: table
-    integer, allocatable :: way(:, :)
+    integer, allocatable :: sense(:, :)
     integer :: e, i, face, number, nodes(4)
 
-    allocate (solid(2, size(elements)), way(2, size(elements)), source=0)
+    allocate (solid(2, size(elements)), sense(2, size(elements)), source=0)
     call open_table(model%num_nodes, 2*size(elements), table)
     do e = 1, size(elements)
       call insert_face(table, model%nodes(1:4, elements(e)), number)
@@ -82,31 +82,31 @@ contains
         do while (number > 0)
           i = (number + 1)/2
           call attach(model, e, face, elements(i), solid(2 - mod(number, 2), i), &
-                      way(2 - mod(number, 2), i))
+                      sense(2 - mod(number, 2), i))
           number = find_face(table, nodes, number)
         end do
       end do
     end do
-    side = way(1, :)
-    where (side == 0) side = -way(2, :)
-    where (way(1, :)*way(2, :) > 0) side = 0
-    where (way(1, :) == 0 .and. way(2, :) == 0) side = 1
+    side = sense(1, :)
+    where (side == 0) side = -sense(2, :)
+    where (sense(1, :)*sense(2, :) > 0) side = 0
+    where (sense(1, :) == 0 .and. sense(2, :) == 0) side = 1
   end subroutine find_attached_solids
 
   !> Records a solid whose face lies on that of a joint. A face between two solids gives no sense.
-  subroutine attach(model, element, face, joint_element, solid, way)
+  subroutine attach(model, element, face, joint_element, solid, sense)
     type(mesh), intent(in) :: model
     integer, intent(in) :: element, face !< the solid and its face
     integer, intent(in) :: joint_element
     integer, intent(inout) :: solid !< found before, 0 for none
-    integer, intent(inout) :: way !< 1: along the normal by nodes 1-2-3-4, -1: against, 0: unknown
+    integer, intent(inout) :: sense !< 1: along the normal by nodes 1-2-3-4, -1: against, 0: unknown
     real(rk) :: along
     along = dot_product(face_vector(model%x(:, face_nodes(model, element, face))), &
                         face_vector(model%x(:, model%nodes(1:4, joint_element))))
     if (solid == 0) then
-      way = merge(1, -1, along > 0.0_rk)
+      sense = merge(1, -1, along > 0.0_rk)
     else
-      way = 0
+      sense = 0
     end if
     solid = element
   end subroutine attach

@@ -1,6 +1,6 @@
 !> The problem while the deck is read, with the places of its definitions.
 !>
-!> Handlers of keywords fill it one card after the other; `finish_model` turns it into the problem.
+!> Handlers fill the draft card by card; `finish_model` makes the problem from the draft.
 module model_draft
   use applied_load, only: load, load_slot
   use deck_card, only: card
@@ -203,7 +203,7 @@ contains
     class(load), allocatable, intent(inout) :: item !< moved into the list
     character(*), intent(in) :: name !< in the log and the list of effects
     character(*), intent(in) :: family !< its keyword
-    character(*), intent(in) :: target !< what it acts on
+    character(*), intent(in) :: target !< place of the load
     type(load_slot), allocatable :: longer(:)
     integer :: i
     item%name = name

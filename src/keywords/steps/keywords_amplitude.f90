@@ -33,7 +33,7 @@ contains
               field('TIME', kind_choice, 'clock of the history', default='STEP TIME', &
                     choices='STEP TIME | TOTAL TIME'), &
               field('INPUT', kind_text, 'file with the numbers, in place of data lines'), &
-              field('FORMAT', kind_choice, 'time, value pairs; values DT apart; a PEER record', &
+              field('FORMAT', kind_choice, 'time, value pairs; values every DT; a PEER record', &
                     default='PAIRS', choices='PAIRS | VALUES | AT2'), &
               field('DT', kind_real, 'time between VALUES', 's', lowest=0.0_rk, &
                     excludes_lowest=.true.), &

@@ -25,7 +25,7 @@ contains
     spec%example = '*INITIAL CONDITIONS, TYPE=VELOCITY'//nl//'ALL, 1, -1.'
     spec%fewest_lines = 1
     allocate (spec%parameters, source=[ &
-              field('TYPE', kind_choice, 'what is given', is_required=.true., &
+              field('TYPE', kind_choice, 'kind of the values', is_required=.true., &
                     choices='DISPLACEMENT | VELOCITY')])
     allocate (spec%columns, source=[ &
               field('node', kind_reference, 'the nodes', &

@@ -23,8 +23,8 @@ module damage_checks
     character(:), allocatable :: keyword !< of the table, upper case, without the star
     integer :: row = 0 !< line of its data, 0: the keyword line
     integer :: field = 0 !< of that line: 1 ordinate, 2 abscissa, 0 both
-    character(:), allocatable :: problem !< what is wrong
-    character(:), allocatable :: expected !< what was expected
+    character(:), allocatable :: problem !< cause
+    character(:), allocatable :: expected !< the admissible value
   end type table_fault
 
 contains
@@ -78,7 +78,8 @@ contains
     else
       limit%keyword = tension_damage_table
       limit%row = row_of(constants%tension_damage, curve%abscissa(curve%steepest))
-      limit%expected = 'E times the opening over what d/(1 - d) sigma gains from the row before'
+      limit%expected = 'E times the opening over the increase of d/(1 - d) sigma from the row '// &
+                       'before'
     end if
   end subroutine find_longest_band
 

@@ -11,8 +11,8 @@ module material_user
   use umat_findings, only: call_place, tangent_check
   use umat_guards, only: fault_of_call, guarded_state, has_cholesky_factor, largest_asymmetry, &
                          size_of_guard
-  use umat_interface, only: keyway_umat_call, keyway_umat_hold_traps, &
-                            keyway_umat_release_traps, keyway_umat_start, failure_reason, &
+  use umat_interface, only: keyway_umat_call, keyway_umat_disable_traps, &
+                            keyway_umat_restore_traps, keyway_umat_start, failure_reason, &
                             umat_arguments
   use umat_loader, only: user_library
   use umat_tangent, only: compare_tangent, num_probes, strain_probes
@@ -129,7 +129,7 @@ contains
     type(guarded_state) :: variables
     character(:), allocatable :: fault
     integer :: p
-    call keyway_umat_hold_traps()
+    call keyway_umat_disable_traps()
     do p = 1, points%num_points
       call prepare_call(self, points, p, time, old, new, now)
       call call_point(self, old%internal(:, p), now, variables, fault)
@@ -155,7 +155,7 @@ contains
                          tangent(:, :, p))
       end if
     end do
-    call keyway_umat_release_traps()
+    call keyway_umat_restore_traps()
   end subroutine update
 
   pure type(call_place) function place_of(self, points, p, time) result(place)
@@ -327,7 +327,7 @@ contains
     state%is_elastic = .false.
     if (.not. c_associated(self%library%sdvini)) return
     n = self%constants%num_variables
-    call keyway_umat_hold_traps()
+    call keyway_umat_disable_traps()
     do p = 1, points%num_points
       call set_place(self, points, p, now)
       call variables%fill(state%internal(:n, p))
@@ -344,7 +344,7 @@ contains
       end if
       state%internal(:n, p) = variables%values()
     end do
-    call keyway_umat_release_traps()
+    call keyway_umat_restore_traps()
   end subroutine set_start
 
   !> 'SDV': all state variables.

@@ -64,13 +64,13 @@ static _Noreturn void give_up(void)
   exit(1);
 }
 
-_Noreturn void keyway_umat_give_up(const char *message, size_t length)
+_Noreturn void keyway_umat_stop(const char *message, size_t length)
 {
   snprintf(guard.message, sizeof guard.message, "%.*s", (int)length, message);
   give_up();
 }
 
-static _Noreturn void give_up_saying(const char *format, ...)
+static _Noreturn void stop_with_message(const char *format, ...)
 {
   va_list rest;
   va_start(rest, format);
@@ -122,8 +122,8 @@ int keyway_umat_external(uexternaldb_routine *uexternaldb, int lop, int restart,
 
 /* A UMAT may divide by zero; the traps of the program are disabled during its calls. */
 static _Thread_local fenv_t traps;
-void keyway_umat_hold_traps(void) { feholdexcept(&traps); }
-void keyway_umat_release_traps(void) { fesetenv(&traps); }
+void keyway_umat_disable_traps(void) { feholdexcept(&traps); }
+void keyway_umat_restore_traps(void) { fesetenv(&traps); }
 
 /* Loads a library; its symbols precede those of the program. NULL and a message on failure. */
 void *keyway_umat_open(const char *path, char *message, size_t size)
@@ -197,7 +197,7 @@ void keyway_umat_counts(int *warnings, int *errors)
 static pthread_mutex_t *mutex_of(int number, const char *routine)
 {
   if (number < 1 || number > last_mutex)
-    give_up_saying("%s was called with %d; mutexes are numbered 1 to %d", routine, number,
+    stop_with_message("%s was called with %d; mutexes are numbered 1 to %d", routine, number,
                    last_mutex);
   return &mutexes[number];
 }
@@ -246,30 +246,30 @@ void getpartinfo_(const int *intnum, const int *jtyp, char *cpname, int *locnum,
 _Noreturn void __wrap__gfortran_stop_string(const char *text, size_t length, _Bool quiet)
 {
   (void)quiet;
-  give_up_saying("STOP %.*s", (int)length, text ? text : "");
+  stop_with_message("STOP %.*s", (int)length, text ? text : "");
 }
 
 _Noreturn void __wrap__gfortran_error_stop_string(const char *text, size_t length, _Bool quiet)
 {
   (void)quiet;
-  give_up_saying("ERROR STOP %.*s", (int)length, text ? text : "");
+  stop_with_message("ERROR STOP %.*s", (int)length, text ? text : "");
 }
 
 _Noreturn void __wrap__gfortran_stop_numeric(int code, _Bool quiet)
 {
   (void)quiet;
-  give_up_saying("STOP %d", code);
+  stop_with_message("STOP %d", code);
 }
 
 _Noreturn void __wrap__gfortran_error_stop_numeric(int code, _Bool quiet)
 {
   (void)quiet;
-  give_up_saying("ERROR STOP %d", code);
+  stop_with_message("ERROR STOP %d", code);
 }
 
 _Noreturn void __wrap__gfortran_exit_i4(const int *code)
 {
-  give_up_saying("CALL EXIT(%d)", code ? *code : 0);
+  stop_with_message("CALL EXIT(%d)", code ? *code : 0);
 }
 
 _Noreturn void __wrap__gfortran_runtime_error_at(const char *place, const char *format, ...)
@@ -279,5 +279,5 @@ _Noreturn void __wrap__gfortran_runtime_error_at(const char *place, const char *
   va_start(rest, format);
   vsnprintf(text, sizeof text, format, rest);
   va_end(rest);
-  give_up_saying("%s: %s", place, text);
+  stop_with_message("%s: %s", place, text);
 }

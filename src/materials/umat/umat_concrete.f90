@@ -100,7 +100,7 @@ contains
       character(*), intent(in) :: expected
       if (is_so .or. len(fault) > 0) return
       fault = 'constant '//as_text(number)//' is '//as_text(props(number))//'; expected '//expected
-    end subroutine want
+    end subroutine require
   end subroutine check_scalars
 
   !> Makes the model and the width of its crack band; `fault` as above.

@@ -6,8 +6,8 @@ module umat_interface
   private
   public :: umat_arguments, keyway_umat_call, keyway_umat_start, keyway_umat_external
   public :: keyway_umat_open, keyway_umat_find, keyway_umat_set_job, keyway_umat_counts
-  public :: keyway_umat_count, keyway_umat_give_up, keyway_umat_hold_traps
-  public :: keyway_umat_release_traps, keyway_make_temporary, keyway_remove_temporary
+  public :: keyway_umat_count, keyway_umat_stop, keyway_umat_disable_traps
+  public :: keyway_umat_restore_traps, keyway_make_temporary, keyway_remove_temporary
   public :: failure_reason, text_from_c
 
   integer, parameter :: longest_message = 512
@@ -113,22 +113,22 @@ module umat_interface
     end subroutine keyway_umat_counts
 
     !> Jumps back to the guarded call; never returns.
-    subroutine keyway_umat_give_up(message, length) bind(c)
+    subroutine keyway_umat_stop(message, length) bind(c)
       import :: c_char, c_size_t
       implicit none
       ! allow(assumed-size)
       character(kind=c_char), intent(in) :: message(*)
       integer(c_size_t), value :: length
-    end subroutine keyway_umat_give_up
+    end subroutine keyway_umat_stop
 
-    !> Disables traps of floating-point exceptions until keyway_umat_release_traps.
-    subroutine keyway_umat_hold_traps() bind(c)
+    !> Disables traps of floating-point exceptions until keyway_umat_restore_traps.
+    subroutine keyway_umat_disable_traps() bind(c)
       implicit none
-    end subroutine keyway_umat_hold_traps
+    end subroutine keyway_umat_disable_traps
 
-    subroutine keyway_umat_release_traps() bind(c)
+    subroutine keyway_umat_restore_traps() bind(c)
       implicit none
-    end subroutine keyway_umat_release_traps
+    end subroutine keyway_umat_restore_traps
 
     !> Makes a temporary folder; an empty path on failure.
     subroutine keyway_make_temporary(path, size) bind(c)

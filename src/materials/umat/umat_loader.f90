@@ -7,8 +7,8 @@ module umat_loader
   use umat_build, only: build_library, is_library, umat_file
   use umat_findings, only: findings, text_of_check
   use umat_interface, only: keyway_make_temporary, keyway_remove_temporary, keyway_umat_counts, &
-                            keyway_umat_external, keyway_umat_find, keyway_umat_hold_traps, &
-                            keyway_umat_open, keyway_umat_release_traps, keyway_umat_set_job, &
+                            keyway_umat_external, keyway_umat_find, keyway_umat_disable_traps, &
+                            keyway_umat_open, keyway_umat_restore_traps, keyway_umat_set_job, &
                             failure_reason, text_from_c
   use umat_services, only: message_unit
   use write_text, only: as_text
@@ -156,12 +156,12 @@ contains
     type(error_type), allocatable, intent(out) :: error
     integer(c_int) :: status
     if (.not. c_associated(self%uexternaldb)) return
-    call keyway_umat_hold_traps()
+    call keyway_umat_disable_traps()
     status = keyway_umat_external(self%uexternaldb, int(moment, c_int), &
                                   merge(1_c_int, 0_c_int, moment == at_restart), &
                                   real(time, c_double), real(size, c_double), int(step, c_int), &
                                   int(increment, c_int))
-    call keyway_umat_release_traps()
+    call keyway_umat_restore_traps()
     if (status == 0) return
     call raise(error, 'UEXTERNALDB of the UMAT stopped (LOP '//as_text(moment)//', step '// &
                as_text(step)//', increment '//as_text(increment)//'): '//failure_reason(), &

@@ -4,7 +4,7 @@
 module umat_services
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_size_t
   use omp_lib, only: omp_get_thread_num
-  use umat_interface, only: keyway_umat_count, keyway_umat_give_up
+  use umat_interface, only: keyway_umat_count, keyway_umat_stop
   implicit none
   private
   public :: xit, stdb_abqerr, getnumcpus, getrank, get_thread_id, warn
@@ -112,7 +112,7 @@ contains
 
   subroutine give_up(message)
     character(*), intent(in) :: message
-    call keyway_umat_give_up(message, len(message, c_size_t))
+    call keyway_umat_stop(message, len(message, c_size_t))
   end subroutine give_up
 
   !> Number of processes: 1; GET_THREAD_ID identifies threads.

@@ -1,4 +1,4 @@
-"""What plastic-damage concrete does where no integration is needed."""
+"""Closed forms of plastic-damage concrete."""
 
 from __future__ import annotations
 

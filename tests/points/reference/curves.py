@@ -55,7 +55,7 @@ class Curve:
         return strength / (1.0 - damage)
 
     def slopes(self, plastic: float) -> tuple[float, float]:
-        """How effective strength [Pa] and damage change with growing plastic strain."""
+        """Derivatives of effective strength [Pa] and damage by plastic strain."""
         row = self.segment_at(plastic) if self.segment is None else self.segment
         if plastic > self.plastic[row] + self._longest(row):
             return 0.0, 0.0
@@ -92,8 +92,8 @@ def curve_of_tables(young: float, strengths, damages=((0.0, 0.0),), length: floa
     """A curve from rows (strength, inelastic strain) and (damage, inelastic strain).
 
     `length` divides the abscissas of tables given against an opening. The rows of both tables
-    become rows of the curve; inelastic strain eps - sigma/E becomes plastic strain by taking off
-    what the damage adds to the elastic strain, d/(1-d) sigma/E (paper_notes.md, 11).
+    become rows of the curve; inelastic strain eps - sigma/E becomes plastic strain by subtraction
+    of d/(1-d) sigma/E, the part of damage in the elastic strain (paper_notes.md, 11).
     """
     strengths, damages = np.array(strengths, dtype=float), np.array(damages, dtype=float)
     inelastic = np.union1d(strengths[:, 1], damages[:, 1]) / length

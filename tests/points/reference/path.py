@@ -1,9 +1,9 @@
-"""A point led along a path: legs of given strains and nominal stresses, any mixture of the two.
+"""A point on a path: legs of given strains and nominal stresses, in any combination.
 
 The rates jump where flow begins or ends, and at each row of the tables. The integration stops there
-and starts again with the rates of the other side. No evaluation of the rates looks across the jump:
-a phase knows whether the point flows, and uses one segment of each table, extended. An integration
-that steps over a jump would depend on round-off: LSODA can then go to and fro for ever.
+and starts again with the rates of the other side. No evaluation of the rates crosses the jump: a
+phase is elastic or plastic, and uses one segment of each table, extended. An integration that steps
+over a jump would depend on round-off: LSODA may then never end.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ SIZE = 16
 
 @dataclass(frozen=True)
 class Leg:
-    """Ends of six components, reached linearly from where they are; strains where `is_strain`."""
+    """Final values of six components, linear in time; strains where `is_strain`."""
 
     is_strain: np.ndarray
     end: np.ndarray
@@ -44,7 +44,7 @@ class Leg:
 
 @dataclass(frozen=True)
 class History:
-    """What a point went through; one row per moment in all arrays."""
+    """History of a point; one row per time in all arrays."""
 
     strain: np.ndarray
     stress: np.ndarray  # nominal [Pa]
@@ -57,7 +57,7 @@ class History:
 
 @dataclass
 class Effort:
-    """Phases and evaluations of a leg, with a limit: an integration fails where it does not end."""
+    """Phases and evaluations of a leg, with a limit: an endless integration is an error."""
 
     phases: int = 0
     evaluations: int = 0
@@ -131,7 +131,7 @@ class Point:
         return np.vstack(found)
 
     def _advance(self, attained: Sequence[bool]) -> None:
-        """Goes to the next segments of tables whose row is attained; never to segments before."""
+        """Selects the next segments of tables at an attained row; never previous segments."""
         segments = [s + a for s, a in zip(self._segments, attained, strict=True)]
         for sign, curve in enumerate((self.law.tension, self.law.compression)):
             while self.state[HISTORY][sign] >= (1.0 - AT_ROW) * curve.end_of(segments[sign]):
@@ -231,7 +231,7 @@ def damages(law: Concrete, state: np.ndarray) -> tuple[float, float]:
 
 
 def run(law: Concrete, legs: Sequence[Leg], rows: int = 50) -> History:
-    """Leads a virgin point along legs, with `rows` moments in each; the first row is the start."""
+    """Moves a virgin point along legs, with `rows` times in each; the first row is the start."""
     point = Point(law)
     moments = np.arange(1, rows + 1) / rows
     states = np.vstack([point.state, *(point.follow(leg, moments) for leg in legs)])

@@ -1,4 +1,4 @@
-"""Rates of a point: as F stays zero, plastic flow is an ordinary differential equation.
+"""Rates of a point: with F = 0 plastic flow is an ordinary differential equation.
 
 With n = dF/ds, m = dG/ds and growth h of the plastic strains k, all at the present state,
 
@@ -23,7 +23,7 @@ MOVES = np.vstack([np.eye(8), -np.eye(8), np.zeros(8)])  # of six stresses and t
 
 @dataclass(frozen=True)
 class Gradients:
-    """F and r at a state, and how F changes with stress and plastic strains, r with stress."""
+    """F and r at a state, gradients of F by stress and plastic strains, of r by stress."""
 
     value: float
     share: float

@@ -1,4 +1,4 @@
-"""Duvaut and Lions' viscosity: the point lags behind what it would do without.
+"""Duvaut and Lions' viscosity: plastic strain and damage lag behind the inviscid values.
 
 Plastic strain and both damages lag; the share r of tension is that of the lagging effective stress,
 so that a crack closes at once.
@@ -16,7 +16,7 @@ from .path import History
 
 @dataclass(frozen=True)
 class Lagging:
-    """Lagging plastic strain and damage, and the stress they leave [Pa]."""
+    """Lagging plastic strain and damage, and their stress [Pa]."""
 
     plastic: np.ndarray
     damage: np.ndarray  # d_t, d_c (rows, 2)

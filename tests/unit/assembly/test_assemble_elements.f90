@@ -76,7 +76,7 @@ contains
     end do
   end subroutine rigid_motion
 
-  !> The jumps only change the names of the motions: the energy is that of the blocks apart.
+  !> Jumps are other unknowns of the same motions: the energy is that of the separate blocks.
   subroutine energy_of_blocks()
     real(rk), allocatable :: q(:), y(:), u(:, :)
     integer :: k
@@ -88,7 +88,7 @@ contains
                      'q K q is the energy of the elements')
   end subroutine energy_of_blocks
 
-  !> Sum of u K_e u without joints: the same blocks, numbered apart.
+  !> Sum of u K_e u without joints: the same blocks, numbered separately.
   real(rk) function energy(u)
     real(rk), intent(in) :: u(:, :)
     type(problem) :: apart

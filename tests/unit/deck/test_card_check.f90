@@ -212,7 +212,7 @@ contains
                 'a "="; expected a comma between the keyword and its parameters')
   end subroutine names_of_keywords
 
-  !> All faults are told, at most twenty in full.
+  !> All faults are reported, at most twenty in full.
   subroutine many_faults()
     type(card), allocatable :: cards(:)
     type(diagnostic_list) :: faults

@@ -188,7 +188,7 @@ contains
     call check(log, size(cards) == 1 .and. faults%num_errors == 1, 'data above the first keyword')
   end subroutine bytes_of_other_worlds
 
-  !> Every word knows where it stands.
+  !> Every word has its place.
   subroutine places()
     type(card), allocatable :: cards(:)
     type(diagnostic_list) :: faults
@@ -212,7 +212,7 @@ contains
     call check_text(log, cards(1)%file_and_line(0), 'lexer_test.inp:2', 'of the card')
   end subroutine places
 
-  !> The second of two equal parameters is told, with the place of the first.
+  !> The second of two equal parameters is reported, with the place of the first.
   subroutine repeated_parameters()
     type(card), allocatable :: cards(:)
     type(diagnostic_list) :: faults

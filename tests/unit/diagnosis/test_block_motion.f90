@@ -20,14 +20,14 @@ program test_block_motion
                   'move along (0.6, 0, 0.8)', 'a skew one')
   ! w = (0, 0, 1), v = w x (centre - place) with the place (1, 1, 0).
   call check_text(log, motion_text(blocks, 1, [-1.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 2.0_rk]), &
-                  'turn about the axis z through (1, 1, 3)', 'a turn')
+                  'rotate about the axis z through (1, 1, 3)', 'a rotation')
   call check_text(log, motion_text(blocks, 1, [-1.0_rk, 0.0_rk, 1.0_rk, 0.0_rk, 0.0_rk, 2.0_rk]), &
-                  'turn about the axis z through (1, 1, 3) and move along it', 'a screw')
+                  'rotate about the axis z through (1, 1, 3) and move along it', 'a screw')
   call check_text(log, freedom_text(blocks, 1, unit_vectors([1, 2, 6])), &
-                  'move along x, y and turn about the axis z through (1, 2, 3)', 'sliding on a bed')
+                  'move along x, y and rotate about the axis z through (1, 2, 3)', 'sliding')
   call check_text(log, freedom_text(blocks, 1, unit_vectors([3])), 'move along z', 'one way')
   call check_text(log, freedom_text(blocks, 1, unit_vectors([1, 2, 3])), 'move along x, y, z', &
-                  'all ways')
+                  'all directions')
   skew = unit_vectors([1, 2])
   skew([1, 3], 1) = s
   call check_text(log, freedom_text(blocks, 1, skew), &

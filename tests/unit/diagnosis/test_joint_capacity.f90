@@ -18,8 +18,8 @@ program test_joint_capacity
 
 contains
 
-  !> Jumps at points (x, 0) of a block in the plane x-z, when it moves (x, z) or turns about y: the
-  !> normal is z, the first tangent x.
+  !> Jumps at points (x, 0) of a block in the plane x-z, when it moves (x, z) or rotates about y:
+  !> the normal is z, the first tangent x.
   function rows_of(x) result(rows)
     real(rk), intent(in) :: x(:)
     real(rk) :: rows(3, 3*size(x))

@@ -45,8 +45,8 @@ contains
     end do
   end subroutine solutions
 
-  !> A solve that halts before the jumps: they follow from the end of the factor alone, and forces
-  !> on them that come later are those of one solve with all forces.
+  !> Forward substitution, jumps from the Schur block, forces on the jumps, backward substitution:
+  !> the result is that of one solve with all forces.
   subroutine halves()
     integer, parameter :: num_jumps = 30
     type(pattern) :: matrix

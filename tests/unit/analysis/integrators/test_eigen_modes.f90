@@ -79,8 +79,8 @@ contains
                      1.0e-7_rk*maxval(abs(modes(3)%shape)), 'shapes')
     call find_modes(matrix, numbers, stiffness, mass, solver, 1000, modes, error)
     call check(log, allocated(error), 'more modes than unknowns is an error')
-    if (allocated(error)) call check_text(log, error%message, '1000 modes were asked for, but '// &
-                                          'only 288 free degrees of freedom carry mass', 'message')
+    if (allocated(error)) call check_text(log, error%message, '1000 modes are requested, but '// &
+                                          'only 288 free degrees of freedom have mass', 'message')
   end subroutine arch_modes
 
   !> One node of a massless arch carries all the mass: f from its flexibility.

@@ -232,7 +232,7 @@ contains
                      0.03_rk*results%total(1), 'energy after the contact')
   end subroutine bar_hits_wall
 
-  !> A bar on its way to a wall 0.1 mm off: no force but round-off is there to measure against.
+  !> A bar in free flight, 0.1 mm from a wall: all forces are round-off.
   subroutine bar_flies(log)
     type(test_log), intent(inout) :: log
     type(problem) :: scene
@@ -253,7 +253,7 @@ contains
     call check_close(log, results%u(size(results%u)), -7.75e-5_rk, 1.0e-15_rk, 'free flight')
   end subroutine bar_flies
 
-  !> A block of 1 x 4 m released at a tilt of 0.01 about one edge: the restoring moment is constant,
+  !> A block of 1 x 4 m, free from a tilt of 0.01 about one edge: the restoring moment is constant,
   !> the quarter period sqrt(2 theta I/(W b)) = 0.15201 s (closed form, small tilt).
   subroutine block_rocks(log)
     type(test_log), intent(inout) :: log

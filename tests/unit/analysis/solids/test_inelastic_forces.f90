@@ -79,7 +79,7 @@ contains
     q = size_of_strain*[(cos(11.0_rk*i), i=1, numbers%num_total)]
   end function field
 
-  !> What the points release at q, from the state `old`.
+  !> Initial-stress force at q, from the state `old`.
   subroutine find_excess(q, tangent, excess)
     real(rk), intent(in) :: q(:)
     integer, intent(in) :: tangent

@@ -1,5 +1,5 @@
 !> Solids that soften in steps: bars against closed forms, the order of Newton's method, energies,
-!> joints beside them, and a law that gives up.
+!> joints, and a law that fails.
 program test_solid_iteration
   use kinds, only: rk
   use errors, only: error_type
@@ -47,8 +47,8 @@ program test_solid_iteration
 
 contains
 
-  !> A row of boxes of 1 m x 0.5 m x 0.5 m, Poisson's ratio 0, held at the left end and led at the
-  !> right one.
+  !> A row of boxes of 1 m x 0.5 m x 0.5 m, Poisson's ratio 0, fixed at the left end, with a
+  !> prescribed motion of the right end.
   subroutine make_bar(num_boxes, pull, increment, tangent, scene)
     integer, intent(in) :: num_boxes
     real(rk), intent(in) :: pull !< of the right end in one static step [m]

@@ -361,7 +361,7 @@ contains
     call grid_face(even_lines(3, 0.0_rk, 1.0_rk), even_lines(3, 0.0_rk, 1.0_rk), 0.0_rk, .true., &
                    x, master)
     call find_segments(x, slave, master, segments, cover)
-    call check(log, segments%num_segments == 0, 'facets that look the same way')
+    call check(log, segments%num_segments == 0, 'facets with equal normals')
     master%node = master%node(:, [1, 2, 3, 4, 5, 6, 7, 8, 9])
     master%node = master%node([4, 3, 2, 1], :)
     call turn(rotation_about([0.0_rk, 1.0_rk, 0.0_rk], 1.2_rk), [0.5_rk, 0.5_rk, 0.0_rk], x(:, 10:))
@@ -369,7 +369,7 @@ contains
     call check(log, segments%num_segments == 0, 'facets 69 degrees from each other')
   end subroutine facets_that_look_away
 
-  !> Quads without a solid behind may look either way; their normal is told out of the other side.
+  !> Quads without a solid may have either normal; the other side gives the sense.
   subroutine interface_quads(log)
     type(test_log), intent(inout) :: log
     real(rk), allocatable :: x(:, :)

@@ -1,4 +1,4 @@
-!> The condensed balance against full Newton on a jointed arch: the same iterates, with jumps as
+!> The condensed solver against full Newton on a jointed arch: the same iterates, with jumps as
 !> unknowns of all points and without them where both ends are held in one direction.
 program test_condensation
   use kinds, only: rk
@@ -26,7 +26,7 @@ program test_condensation
 
 contains
 
-  !> Both ways of solving.
+  !> Compares both solvers.
   subroutine compare(is_held)
     logical, intent(in) :: is_held !< the first joint's nodes, in one direction
     type(recorder) :: condensed, full

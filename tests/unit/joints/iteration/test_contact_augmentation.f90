@@ -137,7 +137,7 @@ contains
     call check(log,.not. allocated(error), joint_solver//' runs to the end')
   end subroutine shake_arch
 
-  !> Whatever a trial has left, an increment begins with lambda = t of the converged history.
+  !> An increment starts with lambda = t of the converged history after any trial.
   subroutine multipliers_start_from_the_last_balance(log)
     type(test_log), intent(inout) :: log
     type(problem) :: scene
@@ -153,9 +153,9 @@ contains
     new = old
     new(1)%shift = 1.0_rk
     call start_multiplier(scene%joints, old, new, multiplier)
-    call check(log, multiplier%is_there, 'asked for')
+    call check(log, multiplier%is_there, 'penetration is limited')
     call check_close(log, new(1)%shift(1), -2.0001e-3_rk, 1.0e-15_rk, 'pressed in')
-    call check_close(log, new(1)%shift(2), -0.9998e-3_rk, 1.0e-15_rk, 'pressed apart')
+    call check_close(log, new(1)%shift(2), -0.9998e-3_rk, 1.0e-15_rk, 'shift under pressure')
     call check_close(log, new(1)%shift(3), 0.0_rk, 0.0_rk, 'open')
     call check_close(log, new(1)%shift(4), 0.0_rk, 0.0_rk, 'nothing carried')
   end subroutine multipliers_start_from_the_last_balance
@@ -194,6 +194,6 @@ contains
                      'when it has gone that far')
     call check(log, results%num_increments > 10, 'what came before is kept')
     call check_close(log, results%time(size(results%time)), now%total_time, 1.0e-12_rk, &
-                     'the last increment is told')
+                     'the last increment is reported')
   end subroutine slip_beyond_reach_ends_the_run
 end program test_contact_augmentation

@@ -1,5 +1,5 @@
-!> The scale of the friction iteration for points that slide together and alone, from a structure
-!> whose compliance is given.
+!> The friction scale r for points that slide together and alone, for a structure with a given
+!> compliance.
 program test_joint_compliance
   use dense_factor, only: factorise_dense, lu_factor, solve_factored
   use joint_compliance, only: find_friction_scale
@@ -44,7 +44,7 @@ contains
     call check_close(log, maxval(abs(scale - 1.0e6_rk)), 0.0_rk, 1.0e-3_rk, 'the joint''s own')
   end subroutine scale_is_never_above_the_joint
 
-  !> Closes the joint on the structure, G = (I + G_0 W k)^-1 G_0, and asks for r.
+  !> Closes the joint on the structure, G = (I + G_0 W k)^-1 G_0, and computes r.
   subroutine find_scales(stiffness, scale)
     real(rk), intent(in) :: stiffness !< in all directions [Pa/m]
     real(rk), allocatable, intent(out) :: scale(:, :)

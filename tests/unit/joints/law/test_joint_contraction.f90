@@ -97,8 +97,8 @@ contains
     call check_close(log, state%traction(1, 1), -1.0e6_rk, 1.0e-3_rk, 'closed after the gap')
   end subroutine gap_closes_first
 
-  !> A multiplier of 1 MPa, shift 1 um: contact presses before the faces touch, friction feels what
-  !> it carries, and the springs store half the pressure times what really penetrates.
+  !> A multiplier of 1 MPa, shift 1 um: contact pressure starts before the faces touch, friction has
+  !> this pressure, and the springs store half the pressure times the penetration.
   subroutine shifted_contact(log)
     type(test_log), intent(inout) :: log
     type(contraction_law) :: law
@@ -108,7 +108,7 @@ contains
     call law%start_state([0.0_rk], state)
     state%shift = -1.0e-6_rk
     call go(law, [-1.0e-3_rk + 0.2e-6_rk, 0.0_rk, 0.0_rk], state)
-    call check_close(log, state%traction(1, 1), -0.8e6_rk, 1.0e-3_rk, 'presses while apart')
+    call check_close(log, state%traction(1, 1), -0.8e6_rk, 1.0e-3_rk, 'pressure at open faces')
     call go(law, [-1.0e-3_rk - 0.1e-6_rk, 0.0_rk, 0.0_rk], state)
     call check_close(log, state%traction(1, 1), -1.1e6_rk, 1.0e-3_rk, 'multiplier and spring')
     call law%stored_energy(state, energy)
@@ -157,7 +157,7 @@ contains
     call check_close(log, norm2(state%traction(2:3, 1)), 0.0_rk, 1.0e-9_rk, 'closes without shear')
   end subroutine slip_restarts_after_opening
 
-  !> A point that has parted within the increment slides at mu p; in the next one it has c again.
+  !> A point that separates in the increment slides at mu p; in the next increment it has c again.
   subroutine parted_point_has_no_cohesion(log)
     type(test_log), intent(inout) :: log
     type(contraction_law) :: law
@@ -166,7 +166,7 @@ contains
     call law%start_state([0.0_rk], state)
     state%num_openings = 2
     call go(law, [-1.0e-6_rk, 8.0e-6_rk, 0.0_rk], state)
-    call check_close(log, state%traction(2, 1), 5.0e5_rk, 1.0e-6_rk, 'parted: mu p')
+    call check_close(log, state%traction(2, 1), 5.0e5_rk, 1.0e-6_rk, 'separated: mu p')
     state%num_openings = 0
     call go(law, [-1.0e-6_rk, 16.0e-6_rk, 0.0_rk], state)
     call check_close(log, state%traction(2, 1), 6.0e5_rk, 1.0e-6_rk, 'whole: mu p + c')
@@ -174,8 +174,8 @@ contains
     call law%start_state([0.0_rk], state)
     state%num_openings = 2
     call go(law, [0.5e-6_rk, 0.0_rk, 0.0_rk], state)
-    call check(log, state%status(1) == state_open .and. state%is_broken(1), 'parted: broken')
-    call check_close(log, state%traction(1, 1), 0.0_rk, 0.0_rk, 'parted: no tension')
+    call check(log, state%status(1) == state_open .and. state%is_broken(1), 'separated: broken')
+    call check_close(log, state%traction(1, 1), 0.0_rk, 0.0_rk, 'separated: no tension')
     call check_close(log, state%fracture_work(1), 0.0_rk, 0.0_rk, 'nothing was stored')
   end subroutine parted_point_has_no_cohesion
 
@@ -219,7 +219,7 @@ contains
     call check(log, coarse%friction_work(1) > 1.0_rk, 'work is done')
   end subroutine friction_work_is_that_of_the_path
 
-  !> With the jump held, the multiplier runs into the law's own traction; the tangent then is the
+  !> At a constant jump the multiplier converges to the traction of the law; the tangent then is the
   !> derivative of the return map.
   subroutine iteration_ends_at_the_return_map(log)
     type(test_log), intent(inout) :: log

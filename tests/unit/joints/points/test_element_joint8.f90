@@ -85,7 +85,7 @@ contains
     call two_blocks(model)
     model%nodes(:, 5) = model%nodes([4, 3, 2, 1, 8, 7, 6, 5], 5)
     call build_joint_points(model, [5], .true., built, error)
-    call check_close(log, built%rotation(1, 1, 1), 1.0_rk, 1.0e-14_rk, 'turned numbering')
+    call check_close(log, built%rotation(1, 1, 1), 1.0_rk, 1.0e-14_rk, 'reversed numbering')
     call find_attached_solids(model, [5], solid, side)
     call check(log, all(solid(:, 1) == [1, 3]), 'solids behind both faces')
     call check(log, side(1) == -1, 'against the numbering')
@@ -167,7 +167,7 @@ contains
     call two_blocks(model)
     model%x(3, 13) = 0.25_rk
     call build_joint_points(model, [5, 6], .true., built, error)
-    call check(log, allocated(error), 'pair apart')
+    call check(log, allocated(error), 'nodes of a pair do not coincide')
     call check(log, index(error%message, 'nodes 102 and 113 lie 2.500E-01 m apart') > 0, &
                error%message)
   end subroutine bad_pairs_are_named

@@ -1,7 +1,7 @@
 !> Why joints are integrated at their nodes: the traction of a stiff joint must not oscillate.
 !>
 !> A strip of 16 solids lies on a joint (k_n 1e13 Pa/m) on rigid ground and is pulled up at one end.
-!> The traction under it should fade smoothly. With Gauss points its sign alternates from point
+!> The traction should decay smoothly. With Gauss points its sign alternates from point
 !> to point, the old finding of Schellekens & de Borst (Int. J. Num. Meth. Engng 36 (1993) 43).
 program test_joint_integration
   use dam_mesh, only: mesh
@@ -150,7 +150,7 @@ contains
     weights = built%weight(built%first(p):built%first_master(p) - 1)
   end function slave_weights
 
-  !> How far the traction goes back against its fading, in all, over its largest value.
+  !> Sum of the increases in the decay of the traction, over its largest value.
   function reversals(x, traction) result(ripple)
     real(rk), intent(in) :: x(:), traction(:)
     real(rk) :: ripple

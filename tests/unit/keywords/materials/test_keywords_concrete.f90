@@ -81,7 +81,7 @@ contains
     integer :: i
     real(rk), parameter :: energy(3) = [150.0_rk, 200.0_rk, 300.0_rk]
     real(rk), parameter :: longest(3) = [1.219_rk, 1.626_rk, 2.439_rk]
-    character(*), parameter :: told(3) = ['1.2194', '1.6259', '2.4388']
+    character(*), parameter :: limits(3) = ['1.2194', '1.6259', '2.4388']
     do i = 1, 3
       call read_brick(number(longest(i) - 1.0e-3_rk), cracking_by(energy(i), ''), scene, faults, &
                       echo)
@@ -92,7 +92,7 @@ contains
       if (faults%num_errors /= 1) cycle
       call check(log, index(faults%errors(1)%problem, 'element 17 ') > 0, 'names the element')
       associate (said => faults%errors(1)%expected)
-        call check(log, index(said, 'at most '//told(i)) > 0, said)
+        call check(log, index(said, 'at most '//limits(i)) > 0, said)
       end associate
     end do
   end subroutine longest_elements
@@ -117,7 +117,7 @@ contains
             '*CONCRETE TENSION STIFFENING, TYPE=GFI'//option//nl//'2.48e6, '//trim(room)//nl
   end function cracking_by
 
-  !> Four times too long: half the strength, told in a warning that lists the element.
+  !> Four times too long: half the strength, and a warning that lists the element.
   subroutine lowers_strength(log)
     type(test_log), intent(inout) :: log
     type(problem), allocatable :: scene
@@ -134,7 +134,7 @@ contains
     end associate
   end subroutine lowers_strength
 
-  !> What is missing is told all at once.
+  !> All missing data are reported at once.
   subroutine wants_its_parts(log)
     type(test_log), intent(inout) :: log
     type(problem), allocatable :: scene

@@ -70,7 +70,7 @@ contains
                      1.0e-8_rk, 'the ratio')
   end subroutine stress_ratio
 
-  !> A held strain and a held stress stay where they are when others move.
+  !> A constant strain and a constant stress keep their values when others change.
   subroutine held_components(log)
     type(test_log), intent(inout) :: log
     type(material_test) :: test
@@ -136,7 +136,7 @@ contains
     call check_close(log, record%state%stress(1, 5)/expected, 1.0_rk, 1.0e-7_rk, 'softening')
   end subroutine softening_bar
 
-  !> No strain gives a stress above the peak: the rows so far stay, the message tells the way out.
+  !> No strain gives a stress above the peak: the rows so far are kept, the message has the way out.
   subroutine stress_beyond_peak(log)
     type(test_log), intent(inout) :: log
     type(material_test) :: test
@@ -156,7 +156,7 @@ contains
     call check(log, index(error%message, 'CONTROL=STRAIN') > 0, 'the way out')
   end subroutine stress_beyond_peak
 
-  !> A law that asks for smaller increments gets them; the rows stay those that were asked for.
+  !> Increments are cut on request of a law; the rows are those of the test.
   subroutine small_increments(log)
     type(test_log), intent(inout) :: log
     type(material_test) :: test

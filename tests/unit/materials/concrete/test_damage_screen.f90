@@ -1,5 +1,5 @@
-!> The cheap look at virgin concrete never takes a point for elastic that is not, sees nearly all
-!> that are, and gives their stress and energy.
+!> The elastic check of virgin concrete never accepts an inelastic point, accepts nearly all elastic
+!> points, and gives their stress and energy.
 program test_damage_screen
   use concrete_scene, only: repeat_chance, table_one
   use damage_model, only: concrete_model, make_concrete_model, stiffness_of

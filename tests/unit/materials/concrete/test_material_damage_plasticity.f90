@@ -338,8 +338,8 @@ contains
   end subroutine what_it_tells
 
   !> Cracked, then pressed in one go: with w_c = 1 the switch of Eq. 17 gives back E_0 at once;
-  !> held, it leaves (1 - d_t) of the same effective stress for this increment. A sound point does
-  !> not hold it.
+  !> held, it leaves (1 - d_t) of the same effective stress for this increment. An undamaged point
+  !> does not hold it.
   subroutine held_switch()
     type(concrete_constants) :: concrete
     type(specimen) :: body
@@ -350,7 +350,7 @@ contains
     concrete = table_one()
     concrete%recovers_by_sign = .true.
     call make_point(concrete, one, body)
-    call check(log, body%law%has_switch, 'the law tells of its switch')
+    call check(log, body%law%has_switch, 'the law has a switch')
     cracked = [4.0e-4_rk, 0.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 0.0_rk]
     pressed = -0.25_rk*cracked
     time%tangent = no_tangent
@@ -359,7 +359,8 @@ contains
     held%strain(:, 1) = cracked
     call body%law%update(body%points, time, body%state, held, tangent, report)
     call move(body, cracked)
-    call check_close(log, held%stress(1, 1), body%state%stress(1, 1), 0.0_rk, 'sound at the start')
+    call check_close(log, held%stress(1, 1), body%state%stress(1, 1), 0.0_rk, &
+                     'undamaged at the start')
     left = 1.0_rk - body%state%internal(9, 1)
     held = body%state
     held%strain(:, 1) = pressed

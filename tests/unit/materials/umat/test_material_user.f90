@@ -157,11 +157,11 @@ contains
     new%stress = 0.0_rk
     call law%update(points, time_increment(tangent=consistent_tangent), old, new, tangent, report)
     call check(log, report%failed_point == 2, 'a NaN fails its point')
-    call check_text(log, report%message, 'UMAT: STRESS(3) is not a number', 'what is told')
+    call check_text(log, report%message, 'UMAT: STRESS(3) is not a number', 'message')
     call check_close(log, maxval(abs(new%stress(:, 2))), 0.0_rk, 0.0_rk, 'and goes nowhere')
   end subroutine wishes_and_faults
 
-  !> Results see the state variables, not what the law keeps behind them.
+  !> Results have the state variables without the energies stored after them.
   subroutine fields(log)
     type(test_log), intent(inout) :: log
     type(point_state) :: state

@@ -15,15 +15,15 @@ program test_umat_source_form
   call fixed(log, '      X = ''a b! '//more//''''//nl//'     '//more//' // ''c''', 'more in texts')
   call fixed(log, '   10 CONTINUE'//return//nl//'  100 FORMAT (A)'//return, 'labels, CRLF')
   call fixed(log, '      X = 1 ! goes on '//more//nl//'      Y = 2', 'more behind a !')
-  call fixed(log, '!DIR$ NOFREEFORM'//nl//'x = 1 + '//more//nl//'2', 'told by NOFREEFORM')
+  call fixed(log, '!DIR$ NOFREEFORM'//nl//'x = 1 + '//more//nl//'2', 'by NOFREEFORM')
   call fixed(log, '', 'nothing')
   call free(log, 'subroutine umat(a, '//more//nl//'  b)', 'a line that goes on')
   call free(log, '      subroutine umat(a,'//repeat(' ', 50)//more//nl//'     '//more//'b)', &
             'a line of both forms')
   call free(log, '! text'//nl//'module laws'//nl//'end module', 'statements at the left')
   call free(log, '  x = 1'//return//nl//'  y = 2 '//more//'  ! and'//return//nl//'    + 3', 'CRLF')
-  call free(log, '!DIR$ FREEFORM'//nl//'      x = 1', 'told by FREEFORM')
-  call free(log, '!DEC$ FREEFORM'//nl//'*'//nl, 'told, whatever follows')
+  call free(log, '!DIR$ FREEFORM'//nl//'      x = 1', 'by FREEFORM')
+  call free(log, '!DEC$ FREEFORM'//nl//'*'//nl, 'by the directive alone')
   call free(log, '  s = ''it''''s'' // '//more//nl//' ''x''', 'a quote in a text')
   call preprocessed(log)
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'

@@ -139,7 +139,7 @@ contains
       end do
     end do
     call check(log, is_right, 'each corner shows the point of its node in the plane of its cell')
-    call check(log, all(abs(values(7, :)) <= 0.0_rk), 'JOINT8 has no reach to use up')
+    call check(log, all(abs(values(7, :)) <= 0.0_rk), 'JOINT8 has no admissible slip')
     scene%mesh%x(3, [5, 6, 11, 12]) = 6.0_rk
     call remake(scene)
     call find_drawn_joints(scene, drawn)
@@ -285,7 +285,7 @@ contains
       call check_close(log, x(2, middle), 3.0_rk, rough, 'place between nodes 2 and 3')
       call check_close(log, values(1, middle), 2.5_rk, rough, 'opening there')
       call check_close(log, values(4, middle), -2.5_rk, rough, 'normal traction there')
-      call check_close(log, values(7, middle), 25.0_rk/20.0_rk, rough, 'part of the reach')
+      call check_close(log, values(7, middle), 25.0_rk/20.0_rk, rough, 'share of slip')
     end associate
   end subroutine segments_lie_between_slave_nodes
 

@@ -156,7 +156,7 @@ contains
     call check(log, seen > 0, 'the last element has a free corner')
   end subroutine check_near_points
 
-  !> The stress that a run finds when it asks for the `times`-th time; the third makes the operator.
+  !> The stress of the `times`-th request in a run; the third request makes the operator.
   subroutine stress_on_nodes(body, times, stress)
     type(problem), intent(in) :: body
     integer, intent(in) :: times
