@@ -182,7 +182,7 @@ def test_volume_converges_to_the_closed_form():
         ({}, {"num_arc": 12}, "at least 28 are needed"),
         ({}, {"num_arc": 29}, "must be even"),
         ({}, {"num_joints": 40}, "do not fit"),
-        ({"bottom_width": 0.0}, {}, "come together"),
+        ({"bottom_width": 0.0}, {}, "need a bottom width"),
     ],
 )
 def test_impossible_dams_are_refused(shape, options, words):

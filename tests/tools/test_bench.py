@@ -22,7 +22,7 @@ def test_bench_measures_a_small_dam(program_path: Path, tmp_path: Path):
         "linear increment / solve",
         "linear increment with envelopes / solve",
         "increment with two joints / solve",
-        "increment of sound concrete / without its laws",
+        "increment of undamaged concrete / without its laws",
     }
     assert all(value > 0.0 for value in found.values())
     assert found["linear increment / solve"] > 1.0

@@ -56,7 +56,7 @@ def test_right_tree_has_no_faults(tmp_path):
         ({"model/mesh/dam.f90": module("dam", "spillway")}, "there is no module 'spillway'"),
         (
             {"model/mesh/dam.f90": module("wall")},
-            "src/model/mesh/dam.f90: holds 'wall'; file and module bear the same name",
+            "src/model/mesh/dam.f90: holds 'wall'; file and module must have the same name",
         ),
         ({"roof/tiles.f90": module("tiles")}, "src/roof/tiles.f90: 'roof' is no room"),
     ],
