@@ -207,7 +207,7 @@ contains
     call expect('*ELASTIK'//lf//'1', at//"1: *ELASTIK: unknown keyword; did you mean '*ELASTIC'?")
     call expect('*XYZ'//lf//'1', at//'1: *XYZ: unknown keyword')
     call expect('*RESTART, WRITE', at//'1: *RESTART: not available yet')
-    call expect('*', at//"1: no keyword behind the '*'; expected a keyword, or '**' for a comment")
+    call expect('*', at//"1: no keyword after the '*'; expected a keyword, or '**' for a comment")
     call expect('*ELASTIC TYPE=ISO'//lf//'1', at//'1: *ELASTIC TYPE=ISO: unknown keyword with '// &
                 'a "="; expected a comma between the keyword and its parameters')
   end subroutine names_of_keywords

@@ -31,7 +31,7 @@ program test_block_motion
   skew = unit_vectors([1, 2])
   skew([1, 3], 1) = s
   call check_text(log, freedom_text(blocks, 1, skew), &
-                  'move in all directions across (0.707, 0, -0.707)', 'a skew plane')
+                  'move in the plane normal to (0.707, 0, -0.707)', 'a skew plane')
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
 
