@@ -1,4 +1,5 @@
 set(sources
+  integrators/dynamic_step.f90
   integrators/eigen_modes.f90
   integrators/energy_account.f90
   integrators/frequency_integrator.f90

@@ -12,7 +12,6 @@ module energy_account
   use joint_forces, only: joint_work, sum_joint_work
   use analysis_state, only: energy_balance, motion, state
   use step_system, only: dam_system
-  use hht_scheme, only: hht
   implicit none
   private
   public :: open_account, add_static_work, add_dynamic_work
@@ -62,13 +61,14 @@ contains
     call set_stored(model, system%diagonal, after)
   end subroutine add_static_work
 
-  !> Adds the work of a dynamic increment.
-  subroutine add_dynamic_work(scheme, model, system, before, after)
-    type(hht), intent(in) :: scheme
+  !> Adds the work of a dynamic increment, or of a part of it.
+  subroutine add_dynamic_work(model, system, before, after, excess)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     type(state), intent(in) :: before
     type(state), intent(inout) :: after
+    !> Change of the kinetic energy beyond du . M a_mean, from the formulas of the scheme [J]
+    real(rk), intent(in) :: excess
     real(rk), allocatable :: du(:)
     real(rk) :: taken
     associate (old => before%motion, new => after%motion, n => system%matrix%num_free)
@@ -81,7 +81,7 @@ contains
               - work(du(:n), old%balanced(:n), new%balanced(:n)) &
               + work(du(n + 1:), old%contact(n + 1:), new%contact(n + 1:)) &
               + inelastic_work(du(n + 1:), old, new, n) &
-              - change_of_stores(model, before, after) - newmark_excess(scheme, du, old, new)
+              - change_of_stores(model, before, after) - excess
     end associate
     after%energy%numerical = after%energy%numerical + taken
     call set_stored(model, system%diagonal, after)
@@ -116,20 +116,6 @@ contains
     taken = work(du, old%internal(first:) - old%elastic(first:), &
                  new%internal(first:) - new%elastic(first:))
   end function inelastic_work
-
-  !> Change of the kinetic energy beyond du . M a_mean (7.4).
-  real(rk) function newmark_excess(scheme, du, old, new) result(excess)
-    type(hht), intent(in) :: scheme
-    real(rk), intent(in) :: du(:)
-    type(motion), intent(in) :: old, new
-    real(rk) :: du_dma, da_ma, da_dma
-    du_dma = dot(du, new%inertia - old%inertia)
-    da_ma = work(new%a - old%a, old%inertia, new%inertia)
-    da_dma = dot(new%a - old%a, new%inertia - old%inertia)
-    associate (g => scheme%gamma - 0.5_rk, b => scheme%beta - 0.5_rk*scheme%gamma)
-      excess = g*du_dma - b*scheme%dt**2*(da_ma + g*da_dma)
-    end associate
-  end function newmark_excess
 
   !> Change of stored and dissipated energy of joints and inelastic solids, beyond 1/2 q K q.
   real(rk) function change_of_stores(model, before, after) result(change)

@@ -18,7 +18,7 @@ module frequency_integrator
   use integrator_type, only: integrator
   implicit none
   private
-  public :: frequency_method
+  public :: make_frequency
 
   type, extends(integrator) :: frequency_method
   contains
@@ -28,6 +28,12 @@ module frequency_integrator
   end type frequency_method
 
 contains
+
+  !> The method, before it has a step.
+  subroutine make_frequency(method)
+    class(integrator), allocatable, intent(out) :: method
+    allocate (frequency_method :: method)
+  end subroutine make_frequency
 
   !> Stiffness with closed joints, and mass.
   subroutine open_step(self, model, plan, now, results, error)

@@ -9,16 +9,12 @@
 !> K u^, C v and M v follow from the forces of the increment before.
 submodule(hht_integrator) hht_increment
   use global_vectors, only: length
+  use dynamic_step, only: largest_force
   use joint_forces, only: gather_jumps
   use equilibrium, only: force_balance
-  use analysis_state, only: motion
   use solid_iteration, only: increment_task
   use step_equilibrium, only: add_moving_supports, check_bulk
   implicit none
-
-  !> In free flight all forces are round-off: the residual is then measured against this fraction of
-  !> the force that would stop the dam within the increment.
-  real(rk), parameter :: stopping_share = 1.0e-3_rk
 
 contains
 
@@ -45,7 +41,7 @@ contains
       call add_moving_supports(system, solids%values, moved, task%balance%rhs)
       task%start = new%q + moved
       call set_jumps(system, scheme, before, task%start, task%balance)
-      task%balance%reference_force = largest_force(scheme, old, n)
+      task%balance%reference_force = largest_force(old, n, scheme%joint_weight, scheme%dt)
       allocate (task%x(system%matrix%num_total))
       if (solids%has_inelastic()) then
         task%reference_force = max(task%balance%reference_force, before%largest_force, &
@@ -56,7 +52,8 @@ contains
       call correct(system, scheme, solids, task%x + moved, before, after, rhs)
       ! Reactions count: displaced supports alone may be what strains the dam.
       after%largest_force = max(task%balance%reference_force, length(new%internal), &
-                                largest_force(scheme, new, n), task%reference_force)
+                                task%reference_force, &
+                                largest_force(new, n, scheme%joint_weight, scheme%dt))
       call check_bulk(rhs(:n), after%largest_force, solids%solver%controls%residual_tolerance, &
                       outcome)
     end associate
@@ -183,15 +180,4 @@ contains
       new%carried = scheme%joint_weight*traction + scheme%old_joint_weight*old%carried
     end associate
   end subroutine carry_joints
-
-  !> The largest of the forces in the balance.
-  real(rk) function largest_force(scheme, moving, num_free) result(force)
-    type(hht), intent(in) :: scheme
-    type(motion), intent(in) :: moving
-    integer, intent(in) :: num_free
-    force = max(length(moving%external(:num_free)), length(moving%internal(:num_free)), &
-                length(moving%inertia(:num_free)), length(moving%viscous(:num_free)), &
-                scheme%joint_weight*length(moving%contact(:num_free)), &
-                stopping_share*length(moving%momentum(:num_free))/scheme%dt)
-  end function largest_force
 end submodule hht_increment

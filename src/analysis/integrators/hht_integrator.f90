@@ -3,28 +3,26 @@
 module hht_integrator
   use kinds, only: rk
   use errors, only: error_type
-  use global_vectors, only: multiply
+  use global_vectors, only: dot, multiply, work
   use problem_definition, only: problem
   use step_plan, only: step
-  use analysis_state, only: state
-  use state_transfer, only: start_motion, store_motion, sum_contact
+  use analysis_state, only: motion, state
+  use state_transfer, only: sum_contact
   use increment_listener, only: listener
   use joint_forces, only: gather_tractions
   use joint_water, only: update_uplift
   use equilibrium, only: balance_outcome
-  use step_equilibrium, only: make_equilibrium, prepare_equilibrium
-  use step_system, only: dam_system, build_structure, build_inertia, build_damping, &
-                         build_loads
+  use step_equilibrium, only: prepare_equilibrium
+  use step_system, only: dam_system
   use step_loads, only: step_time, external_force, prescribed_values
-  use initial_acceleration, only: find_acceleration
+  use dynamic_step, only: open_dynamic_step
   use hht_scheme, only: hht, make_scheme
-  use tangent_choice, only: choose_tangents
-  use energy_account, only: open_account, add_dynamic_work
+  use energy_account, only: add_dynamic_work
   use solid_iteration, only: solid_solver
   use integrator_type, only: integrator
   implicit none
   private
-  public :: hht_method
+  public :: make_hht
 
   type, extends(integrator) :: hht_method
     type(hht) :: scheme !< of the present increment size
@@ -51,6 +49,12 @@ module hht_integrator
 
 contains
 
+  !> The method, before it has a step.
+  subroutine make_hht(method)
+    class(integrator), allocatable, intent(out) :: method
+    allocate (hht_method :: method)
+  end subroutine make_hht
+
   subroutine open_step(self, model, plan, now, results, error)
     class(hht_method), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -58,101 +62,36 @@ contains
     type(state), intent(inout) :: now
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
-    associate (costs => results%costs)
-      call build_structure(model, plan, self%system, costs, error)
-      if (.not. allocated(error)) call build_inertia(model, plan, self%system, costs, error)
-      if (.not. allocated(error)) call build_damping(model, plan, self%system, costs, error)
-      if (allocated(error)) return
-    end associate
-    call build_loads(model, plan, now%u, self%system, results%costs)
-    now%num_unknowns = self%system%matrix%num_free
-    call start_motion(self%system%numbers, model%joints, now, has_inertia=.true.)
-    call self%solids%open(model, self%system, choose_tangents(model, plan), now)
-    call results%costs%start('solve', 'initial acceleration', 'solver')
-    call start_dynamic(self%system, model, plan, now, error)
-    call results%costs%stop()
-    if (allocated(error)) return
-    call results%costs%start('recover', 'energy', 'solver')
-    call open_account(model, self%system%diagonal, now, now%total_time <= 0.0_rk)
-    call results%costs%stop()
-    if (now%increment == 0) then ! not where a loaded state goes on in the middle of the step
-      call store_motion(self%system%numbers, now)
-      call results%increment_done(model, now, error)
-      if (allocated(error)) return
-    end if
-    call results%costs%start('analyse', 'structure', 'solver')
-    call make_equilibrium(plan, self%system, all(self%solids%choices%is_symmetric()), &
-                          self%solids%solver, error)
-    call results%costs%stop()
-    if (.not. allocated(error)) self%solids%solver%costs = results%costs
+    call open_dynamic_step(model, plan, self%system, self%solids, now, results, error)
+    if (.not. allocated(error)) call start_rates(self%system, now)
   end subroutine open_step
 
-  !> Forces at the start of the step and the acceleration that balances them. Supports that follow
-  !> an amplitude start with its velocity.
-  subroutine start_dynamic(system, model, plan, now, error)
-    type(dam_system), intent(inout) :: system
-    type(problem), intent(in) :: model
-    type(step), intent(in) :: plan
+  !> The vectors that HHT takes from one increment to the next, at the start of a step.
+  subroutine start_rates(system, now)
+    type(dam_system), intent(in) :: system
     type(state), intent(inout) :: now
-    type(error_type), allocatable, intent(out) :: error
-    type(step_time) :: when
-    logical :: has_changed
-    when = step_time(is_dynamic=.true., start=now%total_time, duration=plan%duration)
-    associate (own => now%motion)
-      call update_uplift(model, system%operator, now%joints, system%groups, has_changed)
-      call external_force(system%groups, model%amplitudes, when, own%external)
-      call start_supports(model, system, when, 1.0e-3_rk*plan%first_increment, own%v)
-      call multiply(system%matrix, system%mass, own%v, own%momentum)
-      if (size(system%damping) > 0) then
-        call multiply(system%matrix, system%damping, own%v, own%viscous)
-      end if
-      call sum_contact(system%operator, now)
+    associate (own => now%motion, n => system%matrix%num_total, p => system%operator%num_points)
+      allocate (own%elastic_rate(n), own%elastic_jerk(n), own%viscous_rate(n), source=0.0_rk)
+      allocate (own%carried(3, p), own%jump_rate(3, p), source=0.0_rk)
       call gather_tractions(system%operator, now%joints, own%carried)
-      call find_acceleration(system%matrix, system%mass, system%numbers%node, &
-                             own%external - own%internal - own%viscous - own%contact, own%a, error)
-      call multiply(system%matrix, system%mass, own%a, own%inertia)
-      own%balanced = own%inertia
       call multiply(system%matrix, system%stiffness, own%v, own%elastic_rate)
       call multiply(system%matrix, system%stiffness, own%a, own%elastic_jerk)
       if (size(system%damping) > 0) then
         call multiply(system%matrix, system%damping, own%a, own%viscous_rate)
       end if
     end associate
-  end subroutine start_dynamic
-
-  !> Velocities of supports that follow an amplitude; the others stand still.
-  subroutine start_supports(model, system, when, instant, v)
-    type(problem), intent(in) :: model
-    type(dam_system), intent(in) :: system
-    type(step_time), intent(in) :: when
-    real(rk), intent(in) :: instant !< a small part of the increment [s]
-    real(rk), intent(inout) :: v(:)
-    real(rk) :: first(size(v)), last(size(v))
-    type(step_time) :: later
-    integer :: i
-    first = 0.0_rk
-    last = 0.0_rk
-    later = when
-    later%now = when%now + instant
-    call prescribed_values(system%supports, model%amplitudes, when, first)
-    call prescribed_values(system%supports, model%amplitudes, later, last)
-    do i = 1, size(system%supports)
-      associate (k => system%supports(i)%unknown)
-        v(k) = (last(k) - first(k))/instant
-      end associate
-    end do
-  end subroutine start_supports
+  end subroutine start_rates
 
   !> Factors the effective matrix when the size of the increment is a new one.
-  subroutine start_increment(self, model, plan, size, results, error)
+  subroutine start_increment(self, model, plan, dt, results, error)
     class(hht_method), intent(inout) :: self
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan
-    real(rk), intent(in) :: size
+    real(rk), intent(in) :: dt
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
-    if (abs(size - self%scheme%dt) <= 1.0e-12_rk*size) return
-    self%scheme = make_scheme(plan%alpha, size, plan%controls%joint_forces)
+    if (abs(dt - self%scheme%dt) <= 1.0e-12_rk*dt) return
+    self%scheme = make_scheme(plan%alpha, dt, plan%controls%joint_forces)
     call effective_values(self%system, self%scheme, self%solids%values)
     self%solids%weight = 1.0_rk + plan%alpha
     self%solids%matrix%is_elastic = .true.
@@ -193,7 +132,21 @@ contains
     if (allocated(error) .or. .not. outcome%has_converged) return
     after%joint_condition = max(after%joint_condition, self%solids%solver%condition)
     call results%costs%start('recover', 'energy', 'solver')
-    call add_dynamic_work(self%scheme, model, self%system, before, after)
+    call add_dynamic_work(model, self%system, before, after, &
+                          newmark_excess(self%scheme, before%motion, after%motion))
     call results%costs%stop()
   end subroutine advance
+
+  !> Change of the kinetic energy beyond du . M a_mean (7.4).
+  real(rk) function newmark_excess(scheme, old, new) result(excess)
+    type(hht), intent(in) :: scheme
+    type(motion), intent(in) :: old, new
+    real(rk) :: du_dma, da_ma, da_dma
+    du_dma = dot(new%q - old%q, new%inertia - old%inertia)
+    da_ma = work(new%a - old%a, old%inertia, new%inertia)
+    da_dma = dot(new%a - old%a, new%inertia - old%inertia)
+    associate (g => scheme%gamma - 0.5_rk, b => scheme%beta - 0.5_rk*scheme%gamma)
+      excess = g*du_dma - b*scheme%dt**2*(da_ma + g*da_dma)
+    end associate
+  end function newmark_excess
 end module hht_integrator

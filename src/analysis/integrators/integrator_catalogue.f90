@@ -1,11 +1,12 @@
 !> The integrators, the only list of them: the procedure of the deck, the scheme, what such a step
-!> does and who makes it. Keywords, help and the step loop read this list.
+!> does and who makes it. Keywords, help and the step loop read this list. A new integrator is a
+!> file of its own, and here its `use` and its line in `all_integrators`.
 module integrator_catalogue
   use step_plan, only: step_procedure
   use integrator_type, only: integrator
-  use static_integrator, only: static_method
-  use hht_integrator, only: hht_method
-  use frequency_integrator, only: frequency_method
+  use static_integrator, only: make_static
+  use hht_integrator, only: make_hht
+  use frequency_integrator, only: make_frequency
   implicit none
   private
   public :: procedure_named, list_schemes, list_procedures, make_integrator
@@ -32,7 +33,8 @@ contains
     type(entry), allocatable :: list(:)
     list = [ &
            entry(step_procedure('STATIC', 'NEWTON'), make_static), &
-           entry(step_procedure('DYNAMIC', 'HHT', has_inertia=.true.), make_hht), &
+           entry(step_procedure('DYNAMIC', 'HHT', has_inertia=.true., uses_alpha=.true.), &
+                 make_hht), &
            entry(step_procedure('FREQUENCY', 'ARPACK', finds_modes=.true.), make_frequency)]
   end function all_integrators
 
@@ -55,17 +57,17 @@ contains
     end do
   end function procedure_named
 
-  !> The schemes of a procedure, as choices of a keyword: 'HHT,..'.
+  !> The schemes of a procedure, as choices of a keyword; the first is the default.
   function list_schemes(name) result(text)
-    character(*), intent(in) :: name
-    character(:), allocatable :: text
+    character(*), intent(in) :: name !< keyword without its star
+    character(:), allocatable :: text !< 'A | B'
     type(entry), allocatable :: list(:)
     integer :: i
     list = all_integrators()
     text = ''
     do i = 1, size(list)
       if (list(i)%procedure%name /= name) cycle
-      if (len(text) > 0) text = text//','
+      if (len(text) > 0) text = text//' | '
       text = text//trim(list(i)%procedure%scheme)
     end do
   end function list_schemes
@@ -101,19 +103,4 @@ contains
       if (list(i)%procedure%scheme == procedure%scheme) call list(i)%make(method)
     end do
   end subroutine make_integrator
-
-  subroutine make_static(method)
-    class(integrator), allocatable, intent(out) :: method
-    allocate (static_method :: method)
-  end subroutine make_static
-
-  subroutine make_hht(method)
-    class(integrator), allocatable, intent(out) :: method
-    allocate (hht_method :: method)
-  end subroutine make_hht
-
-  subroutine make_frequency(method)
-    class(integrator), allocatable, intent(out) :: method
-    allocate (frequency_method :: method)
-  end subroutine make_frequency
 end module integrator_catalogue

@@ -61,11 +61,11 @@ module integrator_type
 contains
 
   !> Prepares for an increment of this size.
-  subroutine no_preparation(self, model, plan, size, results, error)
+  subroutine no_preparation(self, model, plan, dt, results, error)
     class(integrator), intent(inout) :: self
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan
-    real(rk), intent(in) :: size !< [s]
+    real(rk), intent(in) :: dt !< [s]
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
   end subroutine no_preparation

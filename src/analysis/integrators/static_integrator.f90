@@ -21,7 +21,7 @@ module static_integrator
   use static_increment, only: take_static_increment
   implicit none
   private
-  public :: static_method
+  public :: make_static
 
   type, extends(integrator) :: static_method
   contains
@@ -34,6 +34,12 @@ module static_integrator
   integer, parameter :: most_passes = 50
 
 contains
+
+  !> The method, before it has a step.
+  subroutine make_static(method)
+    class(integrator), allocatable, intent(out) :: method
+    allocate (static_method :: method)
+  end subroutine make_static
 
   subroutine open_step(self, model, plan, now, results, error)
     class(static_method), intent(inout) :: self

@@ -40,17 +40,14 @@ contains
     type(joint), intent(in) :: joints(:)
     type(state), intent(inout) :: now
     type(motion), intent(inout) :: fresh
-    integer :: n, num_points
+    integer :: n
     n = numbers%num_total
-    num_points = sum(joints%num_points)
     if (.not. allocated(now%v)) allocate (now%v(3, size(now%u, 2)), source=0.0_rk)
     if (.not. allocated(now%a)) allocate (now%a(3, size(now%u, 2)), source=0.0_rk)
     allocate (fresh%v(n), fresh%a(n))
     call restrict(numbers, joints, now%v, fresh%v)
     call restrict(numbers, joints, now%a, fresh%a)
-    allocate (fresh%elastic_rate(n), fresh%elastic_jerk(n), fresh%viscous(n), &
-              fresh%viscous_rate(n), fresh%momentum(n), fresh%inertia(n), source=0.0_rk)
-    allocate (fresh%carried(3, num_points), fresh%jump_rate(3, num_points), source=0.0_rk)
+    allocate (fresh%viscous(n), fresh%momentum(n), fresh%inertia(n), source=0.0_rk)
   end subroutine start_rates
 
   !> The unknowns of a nodal field: q with T q = u.

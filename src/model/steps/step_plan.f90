@@ -69,6 +69,8 @@ module step_plan
     character(16) :: scheme = '' !< of the time integration
     logical :: has_inertia = .false. !< inertia acts; loads without amplitude act at once
     logical :: finds_modes = .false. !< takes no time
+    !> *DYNAMIC, ALPHA and *CONTROLS, JOINT FORCES weight the forces in time
+    logical :: uses_alpha = .false.
   contains
     procedure :: is_static
   end type step_procedure
@@ -81,7 +83,7 @@ module step_plan
     real(rk) :: smallest_increment = 0.0_rk, largest_increment = huge(1.0_rk) !< [s]
     logical :: is_direct = .false. !< increments of fixed size
     integer :: max_increments = 100000 !< *STEP, INC
-    real(rk) :: alpha = -0.05_rk !< HHT
+    real(rk) :: alpha = -0.05_rk !< of a scheme with `uses_alpha`
     integer :: num_modes = 0 !< *FREQUENCY
     real(rk) :: damping_ratio = 0.0_rk !< *DAMPING in a step; 0 for none
     real(rk) :: damping_f1 = 0.0_rk, damping_f2 = 0.0_rk !< [Hz]

@@ -260,11 +260,11 @@ contains
                     lf//'    4 | *INCLUDE, FILE=x, INPUT=lexer_test.inp'//lf// &
                     '      |           ^^^^'//lf// &
                     'lexer_test.inp:4: *INCLUDE: the file includes itself; expected files '// &
-                    'that do not name each other in a circle'//lf// &
+                    'that do not include each other'//lf// &
                     '    4 | *INCLUDE, FILE=x, INPUT=lexer_test.inp'//lf// &
                     '      |                         ^^^^^^^^^^^^^^'//lf// &
                     'lexer_test.inp:5: *INCLUDE: the file includes itself; expected files '// &
-                    'that do not name each other in a circle'//lf// &
+                    'that do not include each other'//lf// &
                     '    5 | *INCLUDE, INPUT=./lexer_test.inp'//lf// &
                     '      |                 ^^^^^^^^^^^^^^^^', 'their text')
     call check(log, size(cards) == 1, 'the rest is read')

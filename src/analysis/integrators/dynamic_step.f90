@@ -1,0 +1,129 @@
+!> What dynamic steps share, whatever their scheme: the start of a step and the size of the forces.
+module dynamic_step
+  use kinds, only: rk
+  use errors, only: error_type
+  use global_vectors, only: length, multiply
+  use problem_definition, only: problem
+  use step_plan, only: step
+  use analysis_state, only: motion, state
+  use state_transfer, only: start_motion, store_motion, sum_contact
+  use increment_listener, only: listener
+  use joint_water, only: update_uplift
+  use step_equilibrium, only: make_equilibrium
+  use step_system, only: dam_system, build_structure, build_inertia, build_damping, &
+                         build_loads
+  use step_loads, only: step_time, external_force, prescribed_values
+  use initial_acceleration, only: find_acceleration
+  use tangent_choice, only: choose_tangents
+  use energy_account, only: open_account
+  use solid_iteration, only: solid_solver
+  implicit none
+  private
+  public :: open_dynamic_step, largest_force
+
+  !> In free flight all forces are round-off: the residual is then measured against this fraction of
+  !> the force that would stop the dam within the increment.
+  real(rk), parameter :: stopping_share = 1.0e-3_rk
+
+contains
+
+  !> Builds the equations of a step, finds the acceleration that it starts with, opens the energy
+  !> balance, reports the start to the listener and prepares the solver. K_eff is still missing.
+  subroutine open_dynamic_step(model, plan, system, solids, now, results, error)
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(dam_system), intent(inout) :: system
+    type(solid_solver), intent(inout) :: solids
+    type(state), intent(inout) :: now !< at the start of the step
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    associate (costs => results%costs)
+      call build_structure(model, plan, system, costs, error)
+      if (.not. allocated(error)) call build_inertia(model, plan, system, costs, error)
+      if (.not. allocated(error)) call build_damping(model, plan, system, costs, error)
+      if (allocated(error)) return
+    end associate
+    call build_loads(model, plan, now%u, system, results%costs)
+    now%num_unknowns = system%matrix%num_free
+    call start_motion(system%numbers, model%joints, now, has_inertia=.true.)
+    call solids%open(model, system, choose_tangents(model, plan), now)
+    call results%costs%start('solve', 'initial acceleration', 'solver')
+    call start_forces(system, model, plan, now, error)
+    call results%costs%stop()
+    if (allocated(error)) return
+    call results%costs%start('recover', 'energy', 'solver')
+    call open_account(model, system%diagonal, now, now%total_time <= 0.0_rk)
+    call results%costs%stop()
+    if (now%increment == 0) then ! not where a loaded state goes on in the middle of the step
+      call store_motion(system%numbers, now)
+      call results%increment_done(model, now, error)
+      if (allocated(error)) return
+    end if
+    call results%costs%start('analyse', 'structure', 'solver')
+    call make_equilibrium(plan, system, all(solids%choices%is_symmetric()), solids%solver, error)
+    call results%costs%stop()
+    if (.not. allocated(error)) solids%solver%costs = results%costs
+  end subroutine open_dynamic_step
+
+  !> Forces at the start of the step and the acceleration that balances them. Supports that follow
+  !> an amplitude start with its velocity.
+  subroutine start_forces(system, model, plan, now, error)
+    type(dam_system), intent(inout) :: system
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(state), intent(inout) :: now
+    type(error_type), allocatable, intent(out) :: error
+    type(step_time) :: when
+    logical :: has_changed
+    when = step_time(is_dynamic=.true., start=now%total_time, duration=plan%duration)
+    associate (own => now%motion)
+      call update_uplift(model, system%operator, now%joints, system%groups, has_changed)
+      call external_force(system%groups, model%amplitudes, when, own%external)
+      call start_supports(model, system, when, 1.0e-3_rk*plan%first_increment, own%v)
+      call multiply(system%matrix, system%mass, own%v, own%momentum)
+      if (size(system%damping) > 0) then
+        call multiply(system%matrix, system%damping, own%v, own%viscous)
+      end if
+      call sum_contact(system%operator, now)
+      call find_acceleration(system%matrix, system%mass, system%numbers%node, &
+                             own%external - own%internal - own%viscous - own%contact, own%a, error)
+      call multiply(system%matrix, system%mass, own%a, own%inertia)
+      own%balanced = own%inertia
+    end associate
+  end subroutine start_forces
+
+  !> Velocities of supports that follow an amplitude; the others stand still.
+  subroutine start_supports(model, system, when, instant, v)
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    type(step_time), intent(in) :: when
+    real(rk), intent(in) :: instant !< a small part of the increment [s]
+    real(rk), intent(inout) :: v(:)
+    real(rk) :: first(size(v)), last(size(v))
+    type(step_time) :: later
+    integer :: i
+    first = 0.0_rk
+    last = 0.0_rk
+    later = when
+    later%now = when%now + instant
+    call prescribed_values(system%supports, model%amplitudes, when, first)
+    call prescribed_values(system%supports, model%amplitudes, later, last)
+    do i = 1, size(system%supports)
+      associate (k => system%supports(i)%unknown)
+        v(k) = (last(k) - first(k))/instant
+      end associate
+    end do
+  end subroutine start_supports
+
+  !> The largest of the forces in the balance: what a residual is measured against [N].
+  real(rk) function largest_force(moving, num_free, joint_weight, dt) result(force)
+    type(motion), intent(in) :: moving
+    integer, intent(in) :: num_free
+    real(rk), intent(in) :: joint_weight !< of the joint forces in the balance
+    real(rk), intent(in) :: dt !< [s]
+    force = max(length(moving%external(:num_free)), length(moving%internal(:num_free)), &
+                length(moving%inertia(:num_free)), length(moving%viscous(:num_free)), &
+                joint_weight*length(moving%contact(:num_free)), &
+                stopping_share*length(moving%momentum(:num_free))/dt)
+  end function largest_force
+end module dynamic_step
