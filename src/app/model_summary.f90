@@ -268,7 +268,8 @@ contains
                as_text(now%first_increment)//' s ('//as_text(now%smallest_increment)//' to '// &
                as_text(now%largest_increment)//')')
     if (now%is_direct) text = text//', fixed'
-    if (now%procedure%has_inertia) text = text//', ALPHA '//as_text(now%alpha)
+    if (now%procedure%has_inertia) text = text//', SCHEME '//trim(now%procedure%scheme)
+    if (now%procedure%uses_alpha) text = text//', ALPHA '//as_text(now%alpha)
     text = text//nl//row('controls', 'RESIDUAL '//as_text(now%controls%residual_tolerance)// &
                          ', INCREMENT '//as_text(now%controls%increment_tolerance)// &
                          ', ITERATIONS '//as_text(now%controls%max_iterations)// &

@@ -74,3 +74,15 @@ def test_start_is_consistent(keyway):
     table = keyway(deck(1.0e-3, -0.05)).csv("node_TOP")
     first = table["A3"][table["step"] == 2][0]
     assert first == pytest.approx(exact(1.0e-3)[2], rel=1e-3)
+
+
+def test_scheme_of_a_dynamic_step(keyway):
+    """HHT is the default: named or not, the motion is the same to the last digit."""
+    named = deck(0.05, -0.05).replace("*DYNAMIC, ", "*DYNAMIC, SCHEME=HHT, ")
+    tables = [
+        keyway(text, name=name).csv("node_TOP")
+        for name, text in (("named", named), ("unnamed", deck(0.05, -0.05)))
+    ]
+    assert "SCHEME=HHT" in named
+    for field in "UVA":
+        assert np.array_equal(tables[0][f"{field}3"], tables[1][f"{field}3"])

@@ -3,10 +3,11 @@ module keywords_step
   use deck_card, only: card
   use diagnostics, only: diagnostic_list, place
   use finish_step, only: close_step, open_step
-  use integrator_catalogue, only: list_procedures, procedure_named
+  use integrator_catalogue, only: list_procedures, list_schemes, procedure_named
   use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, kind_real, kind_word
   use kinds, only: rk
   use model_draft, only: draft
+  use step_plan, only: step_procedure
   use write_text, only: as_text
   implicit none
   private
@@ -71,6 +72,7 @@ contains
       call this%fault(faults, 'the step does nothing', list_procedures()//' in it')
     end if
     call check_base_motion(model, faults)
+    call check_joint_forces(model, faults)
     call close_step(model)
   end subroutine read_end_step
 
@@ -87,6 +89,19 @@ contains
                                 trim(model%now%procedure%name), 'a step *DYNAMIC')
     end do
   end subroutine check_base_motion
+
+  !> *CONTROLS may stand before the procedure; here the scheme is known.
+  subroutine check_joint_forces(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i
+    if (model%now%procedure%uses_alpha .or. .not. model%now%procedure%has_inertia) return
+    do i = model%step_origin%card, model%current
+      if (.not. model%cards(i)%has('JOINT FORCES')) cycle
+      call model%cards(i)%warn(faults, 'JOINT FORCES has no effect with SCHEME='// &
+                               trim(model%now%procedure%scheme))
+    end do
+  end subroutine check_joint_forces
 
   subroutine describe_static(spec)
     type(keyword), intent(out) :: spec
@@ -129,17 +144,23 @@ contains
 
   subroutine describe_dynamic(spec)
     type(keyword), intent(out) :: spec
+    character(:), allocatable :: schemes, first
     spec%name = 'DYNAMIC'
     spec%family = 'step'
     spec%place = 'step'
-    spec%meaning = 'Dynamic analysis by HHT; loads act at once. The first one starts from the '// &
-                   'last static state with the acceleration that balances it. ALPHA=0 is '// &
-                   'Newmark''s trapezoidal rule, which can feed energy into stiff joints.'
+    spec%meaning = 'Dynamic analysis; loads act at once. The first one starts from the last '// &
+                   'static state with the acceleration that balances it. HHT is the method of '// &
+                   'Hilber, Hughes & Taylor; with ALPHA=0 it is Newmark''s trapezoidal rule, '// &
+                   'which can feed energy into stiff joints.'
     spec%example = '*DYNAMIC, ALPHA=-0.05'//nl//'0.01, 10.'
     spec%fewest_lines = 1
     spec%most_lines = 1
+    schemes = list_schemes('DYNAMIC')
+    first = schemes(:index(schemes//' ', ' ') - 1)
     allocate (spec%parameters, source=[ &
               field('DIRECT', kind_flag, 'increments of fixed size'), &
+              field('SCHEME', kind_choice, 'method of time integration', &
+                    default=first, choices=schemes), &
               field('ALPHA', kind_real, 'numerical damping of HHT', default='-0.05', &
                     lowest=-1.0_rk/3.0_rk, highest=0.0_rk)])
     allocate (spec%columns, source=[ &
@@ -156,12 +177,27 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     call begin_procedure(this, 'DYNAMIC', model, faults)
+    call choose_scheme(this, model, faults)
     model%now%alpha = this%real('ALPHA')
     model%now%first_increment = this%real_at(1, 1)
     model%now%duration = this%real_at(1, 2)
     model%now%largest_increment = model%now%first_increment
     call read_limits(this, model, faults)
   end subroutine read_dynamic
+
+  !> The scheme that the card names. An unknown one has been reported as a wrong choice.
+  subroutine choose_scheme(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(step_procedure) :: found
+    found = procedure_named('DYNAMIC', this%word('SCHEME'))
+    if (found%name == '') return
+    model%now%procedure = found
+    if (found%uses_alpha .or. .not. this%has('ALPHA')) return
+    call this%fault_parameter(faults, 'ALPHA', 'has no effect with SCHEME='//trim(found%scheme), &
+                              'ALPHA with SCHEME=HHT only')
+  end subroutine choose_scheme
 
   subroutine describe_frequency(spec)
     type(keyword), intent(out) :: spec

@@ -102,7 +102,9 @@ contains
     type(state), intent(in) :: now
     integer :: j, i
     call self%stresses%forget()
-    if (scene%steps(now%step)%procedure%has_inertia) call self%watch_stepping(now)
+    if (scene%steps(now%step)%procedure%has_inertia) then
+      call self%watch_stepping(now, scene%steps(now%step)%procedure%uses_alpha)
+    end if
     if (self%damage%is_present) call self%watch_release(scene, now)
     if (now%has_held_switches) then
       call self%warn_once('step '//scene%steps(now%step)%name//': where the jump of '// &
@@ -119,14 +121,18 @@ contains
   end subroutine note
 
   !> Warns of a motion that the time stepping drives: the balance of energy closes all the same.
-  subroutine watch_stepping(self, now)
+  subroutine watch_stepping(self, now, uses_alpha)
     class(run_record), intent(inout) :: self
     type(state), intent(in) :: now
+    logical, intent(in) :: uses_alpha !< the scheme has numerical damping to choose
+    character(:), allocatable :: advice
     self%most_taken = max(self%most_taken, now%energy%numerical)
     if (self%most_taken - now%energy%numerical <= largest_gain*now%energy%largest) return
+    advice = 'smaller increments'
+    if (uses_alpha) advice = advice//', or an ALPHA further below 0'
     call self%warn_once('the time stepping has fed more than a tenth of the energy '// &
                         '("numerical" in the energy balance): do not trust this motion; try '// &
-                        'smaller increments, or an ALPHA further below 0')
+                        advice)
   end subroutine watch_stepping
 
   !> Warns of a static increment in which cracks took much of the energy that was stored: it has
