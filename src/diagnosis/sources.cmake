@@ -1,7 +1,7 @@
 set(sources
   block_motion.f90
-  free_blocks.f90
   bonded_nodes.f90
+  free_blocks.f90
   joint_capacity.f90
   rigid_blocks.f90
 )

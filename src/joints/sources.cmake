@@ -19,7 +19,7 @@ set(sources
   law/joint_law.f90
   law/joint_opening.f90
   law/slip_dissipation.f90
+  points/admissible_slip.f90
   points/element_joint8.f90
   points/joint_points.f90
-  points/admissible_slip.f90
 )
