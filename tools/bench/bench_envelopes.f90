@@ -12,6 +12,8 @@ program bench_envelopes
   use dof_numbering, only: numbering
   use constraint_elimination, only: number_step
   use matrix_pattern, only: pattern
+  use guest_list, only: guests_of_model
+  use guest_type, only: guest_reference
   use pattern_builder, only: list_cells, build_pattern
   use assemble_elements, only: assemble_stiffness
   use blas_threads, only: restart_with_fast_libraries
@@ -22,7 +24,7 @@ program bench_envelopes
   implicit none
   real(rk), parameter :: shares(5) = [0.0_rk, 0.01_rk, 0.05_rk, 0.3_rk, 1.0_rk]
   integer, parameter :: repeats = 20, warm_up = 4 !< increments; the operator is made in the third
-  type(problem) :: scene
+  type(problem), target :: scene
   type(step_fixity), allocatable :: fixities(:)
   type(state) :: now
   real(rk) :: solve
@@ -47,6 +49,7 @@ contains
   !> Seconds of one solve with the stiffness of the model.
   real(rk) function time_of_solve() result(seconds)
     type(numbering) :: numbers
+    type(guest_reference), allocatable :: guests(:)
     type(row_table) :: cells
     type(pattern) :: matrix
     type(cholmod_solver) :: solver
@@ -57,7 +60,8 @@ contains
     deallocate (scene%joints)
     allocate (scene%joints(0))
     call number_step(scene%mesh, scene%joints, scene%ties, fixities, numbers, error)
-    call list_cells(scene%mesh, scene%joints, scene%couplings, cells)
+    call guests_of_model(scene, guests)
+    call list_cells(scene%mesh, guests, cells)
     call build_pattern(numbers, cells, matrix)
     call assemble_stiffness(scene, numbers, matrix, stiffness, error)
     call solver%analyse(matrix, error)

@@ -9,6 +9,8 @@ program bench_linear
   use dof_numbering, only: numbering
   use constraint_elimination, only: number_step
   use matrix_pattern, only: pattern, multiply, position_of
+  use guest_list, only: guests_of_model
+  use guest_type, only: guest_reference
   use pattern_builder, only: list_cells, build_pattern
   use assemble_elements, only: assemble_stiffness, assemble_mass
   use blas_threads, only: restart_with_fast_libraries
@@ -17,9 +19,10 @@ program bench_linear
   use eigen_modes, only: find_modes
   use arch_scene, only: make_arch
   implicit none
-  type(problem) :: scene
+  type(problem), target :: scene
   type(step_fixity), allocatable :: fixities(:)
   type(numbering) :: numbers
+  type(guest_reference), allocatable :: guests(:)
   type(row_table) :: cells
   type(pattern) :: matrix
   type(error_type), allocatable :: error
@@ -40,7 +43,8 @@ program bench_linear
   call begin()
   call number_step(scene%mesh, scene%joints, scene%ties, fixities, numbers, error)
   call note('number')
-  call list_cells(scene%mesh, scene%joints, scene%couplings, cells)
+  call guests_of_model(scene, guests)
+  call list_cells(scene%mesh, guests, cells)
   call build_pattern(numbers, cells, matrix)
   call note('pattern')
   write (*, '(a,3(1x,i0))') 'free, jumps, entries:', numbers%num_free, numbers%num_jumps, &

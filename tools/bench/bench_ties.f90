@@ -7,15 +7,18 @@ program bench_ties
   use dof_numbering, only: numbering
   use constraint_elimination, only: number_step
   use matrix_pattern, only: pattern
+  use guest_list, only: guests_of_model
+  use guest_type, only: guest_reference
   use pattern_builder, only: list_cells, build_pattern
   use joint_operator, only: jump_operator, build_jump_operator
   use assemble_elements, only: assemble_stiffness
   use read_deck, only: read_problem
   use row_tables, only: row_table
   implicit none
-  type(problem), allocatable :: scene
+  type(problem), allocatable, target :: scene
   type(diagnostic_list) :: faults
   type(numbering) :: numbers
+  type(guest_reference), allocatable :: guests(:)
   type(row_table) :: cells
   type(pattern) :: matrix
   type(jump_operator) :: operator
@@ -32,7 +35,8 @@ program bench_ties
   call number_step(scene%mesh, scene%joints, scene%ties, scene%steps(1)%fixities, numbers, error)
   if (allocated(error)) error stop 'numbering'
   call note('number')
-  call list_cells(scene%mesh, scene%joints, scene%couplings, cells)
+  call guests_of_model(scene, guests)
+  call list_cells(scene%mesh, guests, cells)
   call build_pattern(numbers, cells, matrix)
   call note('pattern')
   call build_jump_operator(numbers, scene%joints, operator)
