@@ -221,7 +221,7 @@ def test_flags_of_the_user_and_several_sources(keyway, tmp_path):
     [
         ("does_not_compile.for", "Error: Syntax error"),
         ("is_not_there.for", "cannot read the UMAT"),
-        ("no_umat.for", "there is no SUBROUTINE UMAT"),
+        ("no_umat.for", "have no SUBROUTINE UMAT"),
         ("with_heat.for", "coupled with temperature"),
         ("no_stiffness.for", "not positive definite for material PLAIN"),
     ],
