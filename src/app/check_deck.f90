@@ -17,9 +17,9 @@ module check_deck
 contains
 
   !> Reads and verifies the deck; faults become an error, warnings go to stderr.
-  subroutine load_deck(given, scene, faults, echo, error)
+  subroutine load_deck(given, model, faults, echo, error)
     type(command_line), intent(in) :: given
-    type(problem), allocatable, intent(out) :: scene
+    type(problem), allocatable, intent(out) :: model
     type(diagnostic_list), intent(out) :: faults !< warnings, for the summary of the run
     character(:), allocatable, intent(out) :: echo !< the deck with its defaults
     type(error_type), allocatable, intent(out) :: error
@@ -27,7 +27,7 @@ contains
     character(:), allocatable :: note
     call load_user_routines(given, umat, error)
     if (allocated(error)) return
-    call read_problem(given%deck, scene, faults, echo, given%is_material, umat)
+    call read_problem(given%deck, model, faults, echo, given%is_material, umat)
     if (faults%num_warnings > 0 .and. .not. given%is_quiet) then
       write (error_unit, '(a)') text_of_warnings(faults)
     end if
@@ -36,15 +36,15 @@ contains
   end subroutine load_deck
 
   !> Prints the deck with its defaults and a summary of the model.
-  subroutine report_model(given, scene, echo)
+  subroutine report_model(given, model, echo)
     type(command_line), intent(in) :: given
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     character(*), intent(in) :: echo
     write (output_unit, '(a)') 'The deck with its defaults', echo, ''
     if (given%is_material) then
-      write (output_unit, '(a)') summary_of_tests(scene)
+      write (output_unit, '(a)') summary_of_tests(model)
     else
-      write (output_unit, '(a)') summary_of(scene)
+      write (output_unit, '(a)') summary_of(model)
     end if
   end subroutine report_model
 end module check_deck

@@ -27,7 +27,7 @@ program keyway
 
   type(command_line) :: options
   type(error_type), allocatable :: error
-  type(problem), allocatable :: scene
+  type(problem), allocatable :: model
   type(diagnostic_list) :: remarks
   character(:), allocatable :: echo
   type(ledger) :: costs
@@ -50,15 +50,15 @@ program keyway
   call restart_with_fast_libraries()
   call costs%stop()
   call costs%start('read', 'deck', 'deck')
-  call load_deck(options, scene, remarks, echo, error)
+  call load_deck(options, model, remarks, echo, error)
   call costs%stop()
   call end_on(error)
   if (options%is_check) then
-    call report_model(options, scene, echo)
+    call report_model(options, model, echo)
   else if (options%is_material) then
-    call run_tests(scene, options, echo, started_at, error)
+    call run_tests(model, options, echo, started_at, error)
   else
-    call run_problem(scene, options, remarks, echo, costs, started_at, error)
+    call run_problem(model, options, remarks, echo, costs, started_at, error)
   end if
   call end_on(error)
 

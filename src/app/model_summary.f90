@@ -1,7 +1,7 @@
 !> The summary of a model as text.
 module model_summary
   use dam_mesh, only: named_set
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use kinds, only: rk
   use material_law, only: material
   use problem_definition, only: problem
@@ -18,24 +18,24 @@ module model_summary
 contains
 
   !> Counts, sets, materials, joints, loads and steps.
-  function summary_of(scene) result(text)
-    type(problem), intent(in) :: scene
+  function summary_of(model) result(text)
+    type(problem), intent(in) :: model
     character(:), allocatable :: text !< lines with new_line between them
-    text = 'Model'//nl//row('nodes', as_text(scene%mesh%num_nodes))//nl// &
-           row('elements', as_text(scene%mesh%num_elements)//types_of(scene))//nl// &
-           row('mass', trim(merge('lumped    ', 'consistent', scene%has_lumped_mass)))
-    text = text//sets_of('Node sets', 'nodes', scene%node_sets)
-    text = text//sets_of('Element sets', 'elements', scene%element_sets)
-    text = text//surfaces_of(scene)//materials_of(scene)//joints_of(scene)//ties_of(scene)// &
-           covers_of(scene)//amplitudes_of(scene)
-    text = text//loads_of(scene)//steps_of(scene)//tests_of(scene)
+    text = 'Model'//nl//row('nodes', as_text(model%mesh%num_nodes))//nl// &
+           row('elements', as_text(model%mesh%num_elements)//types_of(model))//nl// &
+           row('mass', trim(merge('lumped    ', 'consistent', model%has_lumped_mass)))
+    text = text//sets_of('Node sets', 'nodes', model%node_sets)
+    text = text//sets_of('Element sets', 'elements', model%element_sets)
+    text = text//surfaces_of(model)//materials_of(model)//joints_of(model)//ties_of(model)// &
+           covers_of(model)//amplitudes_of(model)
+    text = text//loads_of(model)//steps_of(model)//tests_of(model)
   end function summary_of
 
   !> The materials and tests of `keyway --material`.
-  function summary_of_tests(scene) result(text)
-    type(problem), intent(in) :: scene
+  function summary_of_tests(model) result(text)
+    type(problem), intent(in) :: model
     character(:), allocatable :: text !< lines with new_line between them
-    text = materials_of(scene)//tests_of(scene)
+    text = materials_of(model)//tests_of(model)
     text = text(len(nl) + 1:)
   end function summary_of_tests
 
@@ -47,17 +47,17 @@ contains
   end function row
 
   !> Number of elements of each type.
-  pure function types_of(scene) result(text)
-    type(problem), intent(in) :: scene
+  pure function types_of(model) result(text)
+    type(problem), intent(in) :: model
     character(:), allocatable :: text
     character(8) :: kind
     logical, allocatable :: is_left(:)
-    allocate (is_left(scene%mesh%num_elements), source=.true.)
+    allocate (is_left(model%mesh%num_elements), source=.true.)
     text = ''
     do while (any(is_left))
-      kind = scene%mesh%element_type(findloc(is_left, .true., dim=1))
-      text = text//', '//trim(kind)//' '//as_text(count(scene%mesh%element_type == kind))
-      is_left = is_left .and. scene%mesh%element_type /= kind
+      kind = model%mesh%element_type(findloc(is_left, .true., dim=1))
+      text = text//', '//trim(kind)//' '//as_text(count(model%mesh%element_type == kind))
+      is_left = is_left .and. model%mesh%element_type /= kind
     end do
   end function types_of
 
@@ -74,31 +74,31 @@ contains
     text = lines%contents()
   end function sets_of
 
-  pure function surfaces_of(scene) result(text)
-    type(problem), intent(in) :: scene
+  pure function surfaces_of(model) result(text)
+    type(problem), intent(in) :: model
     character(:), allocatable :: text
     type(text_buffer) :: lines
     integer :: i
-    if (size(scene%surfaces) > 0) call lines%add(nl//'Surfaces')
-    do i = 1, size(scene%surfaces)
-      call lines%add(nl//row(scene%surfaces(i)%name, as_text(size(scene%surfaces(i)%face))// &
+    if (size(model%surfaces) > 0) call lines%add(nl//'Surfaces')
+    do i = 1, size(model%surfaces)
+      call lines%add(nl//row(model%surfaces(i)%name, as_text(size(model%surfaces(i)%face))// &
                              ' faces'))
     end do
     text = lines%contents()
   end function surfaces_of
 
-  pure function materials_of(scene) result(text)
-    type(problem), intent(in) :: scene
+  pure function materials_of(model) result(text)
+    type(problem), intent(in) :: model
     character(:), allocatable :: text
     integer :: i
     text = ''
-    if (size(scene%materials) > 0) text = nl//'Materials'
-    do i = 1, size(scene%materials)
-      associate (now => scene%materials(i))
+    if (size(model%materials) > 0) text = nl//'Materials'
+    do i = 1, size(model%materials)
+      associate (now => model%materials(i))
         text = text//nl//row(now%name, elastic_text(now)//', density '//as_text(now%density)// &
                              ' kg/m3, damping ALPHA '//as_text(now%alpha)//' 1/s, BETA '// &
                              as_text(now%beta)//' s'// &
-                             elements_of(scene, i))
+                             elements_of(model, i))
         if (allocated(now%remark)) text = text//nl//row('', now%remark)
       end associate
     end do
@@ -113,24 +113,24 @@ contains
   end function elastic_text
 
   !> '; 12 elements', '' without elements.
-  pure function elements_of(scene, material) result(text)
-    type(problem), intent(in) :: scene
+  pure function elements_of(model, material) result(text)
+    type(problem), intent(in) :: model
     integer, intent(in) :: material
     character(:), allocatable :: text
     text = ''
-    if (scene%mesh%num_elements == 0) return
-    text = '; '//as_text(count(scene%mesh%material_of_element == material))//' elements'
+    if (model%mesh%num_elements == 0) return
+    text = '; '//as_text(count(model%mesh%material_of_element == material))//' elements'
   end function elements_of
 
-  pure function tests_of(scene) result(text)
-    type(problem), intent(in) :: scene
+  pure function tests_of(model) result(text)
+    type(problem), intent(in) :: model
     character(:), allocatable :: text
     integer :: i
     text = ''
-    if (size(scene%tests) > 0) text = nl//'Material tests'
-    do i = 1, size(scene%tests)
-      associate (now => scene%tests(i))
-        text = text//nl//row(now%name, now%kind//' of '//scene%materials(now%material)%name// &
+    if (size(model%tests) > 0) text = nl//'Material tests'
+    do i = 1, size(model%tests)
+      associate (now => model%tests(i))
+        text = text//nl//row(now%name, now%kind//' of '//model%materials(now%material)%name// &
                              ', length '//as_text(now%length)//' m, '// &
                              as_text(size(now%legs))//' legs, '// &
                              as_text(sum(now%legs%num_increments))//' increments')
@@ -138,58 +138,58 @@ contains
     end do
   end function tests_of
 
-  pure function joints_of(scene) result(text)
-    type(problem), intent(in) :: scene
+  pure function joints_of(model) result(text)
+    type(problem), intent(in) :: model
     character(:), allocatable :: text
     real(rk) :: k(3)
     integer :: i
     text = ''
-    if (size(scene%joints) > 0) text = nl//'Joints'
-    do i = 1, size(scene%joints)
-      call scene%joints(i)%law%reference_stiffness(k)
-      text = text//nl//row(scene%joints(i)%name, make_of(scene%joints(i))//', '// &
-                           as_text(scene%joints(i)%num_points)// &
-                           ' points, '//as_text(sum(scene%joints(i)%area))//' m2, KN '// &
+    if (size(model%joints) > 0) text = nl//'Joints'
+    do i = 1, size(model%joints)
+      call model%joints(i)%law%reference_stiffness(k)
+      text = text//nl//row(model%joints(i)%name, make_of(model%joints(i))//', '// &
+                           as_text(model%joints(i)%num_points)// &
+                           ' points, '//as_text(sum(model%joints(i)%area))//' m2, KN '// &
                            as_text(k(1))//' Pa/m, KT '//as_text(k(2))//' Pa/m, law '// &
-                           scene%joints(i)%law%name)
+                           model%joints(i)%law%name)
     end do
   end function joints_of
 
   !> What a joint is made of, and where its law is evaluated.
-  pure function make_of(item) result(text)
-    type(joint), intent(in) :: item
+  pure function make_of(joint) result(text)
+    type(dam_joint), intent(in) :: joint
     character(:), allocatable :: text
     text = 'surfaces'
-    if (item%is_matching) text = 'JOINT8'
-    if (.not. item%is_nodal) text = text//' with Gauss points'
+    if (joint%is_matching) text = 'JOINT8'
+    if (.not. joint%is_nodal) text = text//' with Gauss points'
   end function make_of
 
   !> Guests without a law: exact ties, springs.
-  function ties_of(scene) result(text)
-    type(problem), intent(in) :: scene
+  function ties_of(model) result(text)
+    type(problem), intent(in) :: model
     character(:), allocatable :: text
     integer :: i
     text = ''
-    if (size(scene%ties) + size(scene%guests) > 0) text = nl//'Ties and interfaces'
-    do i = 1, size(scene%ties)
-      text = text//nl//row(scene%ties(i)%name, 'TIE, exact: '// &
-                           as_text(size(scene%ties(i)%node))//' nodes follow')
+    if (size(model%ties) + size(model%guests) > 0) text = nl//'Ties and interfaces'
+    do i = 1, size(model%ties)
+      text = text//nl//row(model%ties(i)%name, 'TIE, exact: '// &
+                           as_text(size(model%ties(i)%node))//' nodes follow')
     end do
-    do i = 1, size(scene%guests)
-      text = text//nl//row(scene%guests(i)%item%name, scene%guests(i)%item%describe())
+    do i = 1, size(model%guests)
+      text = text//nl//row(model%guests(i)%item%name, model%guests(i)%item%describe())
     end do
   end function ties_of
 
   !> How well faces of different meshes cover each other.
-  pure function covers_of(scene) result(text)
-    type(problem), intent(in) :: scene
+  pure function covers_of(model) result(text)
+    type(problem), intent(in) :: model
     character(:), allocatable :: text
     integer :: i
     text = ''
-    if (size(scene%covers) > 0) text = nl//'Faces of different meshes'
-    do i = 1, size(scene%covers)
-      associate (now => scene%covers(i)%cover)
-        text = text//nl//row(scene%covers(i)%name, '*'//scene%covers(i)%kind//': '// &
+    if (size(model%covers) > 0) text = nl//'Faces of different meshes'
+    do i = 1, size(model%covers)
+      associate (now => model%covers(i)%cover)
+        text = text//nl//row(model%covers(i)%name, '*'//model%covers(i)%kind//': '// &
                              as_text(now%covered_area)//' of '//as_text(now%slave_area)// &
                              ' m2 of the slave face covered, largest gap '// &
                              as_text(now%largest_gap)//' m, largest overlap '// &
@@ -198,14 +198,14 @@ contains
     end do
   end function covers_of
 
-  pure function amplitudes_of(scene) result(text)
-    type(problem), intent(in) :: scene
+  pure function amplitudes_of(model) result(text)
+    type(problem), intent(in) :: model
     character(:), allocatable :: text
     integer :: i
     text = ''
-    if (size(scene%amplitudes) > 0) text = nl//'Amplitudes'
-    do i = 1, size(scene%amplitudes)
-      associate (now => scene%amplitudes(i))
+    if (size(model%amplitudes) > 0) text = nl//'Amplitudes'
+    do i = 1, size(model%amplitudes)
+      associate (now => model%amplitudes(i))
         text = text//nl//row(now%name, as_text(size(now%time))//' points, '// &
                              as_text(now%time(1))//' to '//as_text(now%time(size(now%time)))// &
                              ' s, values '//as_text(minval(now%value))//' to '// &
@@ -214,29 +214,29 @@ contains
     end do
   end function amplitudes_of
 
-  pure function loads_of(scene) result(text)
-    type(problem), intent(in) :: scene
+  pure function loads_of(model) result(text)
+    type(problem), intent(in) :: model
     character(:), allocatable :: text
     type(text_buffer) :: lines
     integer :: i
-    if (size(scene%loads) > 0) call lines%add(nl//'Loads')
-    do i = 1, size(scene%loads)
-      call lines%add(nl//row(as_text(i), scene%loads(i)%item%name))
+    if (size(model%loads) > 0) call lines%add(nl//'Loads')
+    do i = 1, size(model%loads)
+      call lines%add(nl//row(as_text(i), model%loads(i)%item%name))
     end do
     text = lines%contents()
   end function loads_of
 
-  pure function steps_of(scene) result(text)
-    type(problem), intent(in) :: scene
+  pure function steps_of(model) result(text)
+    type(problem), intent(in) :: model
     character(:), allocatable :: text
     type(text_buffer) :: lines
     integer :: i, j
-    do i = 1, size(scene%steps)
-      associate (now => scene%steps(i))
+    do i = 1, size(model%steps)
+      associate (now => model%steps(i))
         call lines%add(nl//'Step '//as_text(i)//' '//now%name//nl//procedure_of(now)//nl// &
                        row('supports', as_text(size(now%fixities))//' degrees of freedom'))
         do j = 1, size(now%loads)
-          call lines%add(nl//work_of(scene, now%loads(j)))
+          call lines%add(nl//work_of(model, now%loads(j)))
         end do
         call lines%add(requests_of(now))
       end associate
@@ -245,14 +245,14 @@ contains
   end function steps_of
 
   !> A load that is active in a step.
-  pure function work_of(scene, work) result(text)
-    type(problem), intent(in) :: scene
+  pure function work_of(model, work) result(text)
+    type(problem), intent(in) :: model
     type(step_load), intent(in) :: work
     character(:), allocatable :: text
-    text = row('load '//as_text(work%load), scene%loads(work%load)%item%name//': factor '// &
+    text = row('load '//as_text(work%load), model%loads(work%load)%item%name//': factor '// &
                as_text(work%start_factor)//' to '//as_text(work%end_factor))
     if (work%amplitude > 0) then
-      text = text//', amplitude '//scene%amplitudes(work%amplitude)%name
+      text = text//', amplitude '//model%amplitudes(work%amplitude)%name
     end if
   end function work_of
 

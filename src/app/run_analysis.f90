@@ -24,8 +24,8 @@ module run_analysis
 contains
 
   !> Runs a problem with the options of the command line. After an error the results are readable.
-  subroutine run_problem(scene, given, remarks, echo, costs, started_at, error)
-    type(problem), intent(in) :: scene
+  subroutine run_problem(model, given, remarks, echo, costs, started_at, error)
+    type(problem), intent(in) :: model
     type(command_line), intent(in) :: given
     type(diagnostic_list), intent(in) :: remarks !< warnings of the deck
     character(*), intent(in) :: echo !< the deck with its defaults, for the log
@@ -39,26 +39,26 @@ contains
     call make_folder(given%folder, error)
     if (allocated(error)) return
     call results%log%open(given%is_quiet, error, &
-                          given%folder//'/'//base_name(scene%deck_file)//'.log')
+                          given%folder//'/'//base_name(model%deck_file)//'.log')
     if (allocated(error)) return
     call results%log%note(echo)
     results%costs = costs
-    call share_costs(scene, costs)
-    call results%open(scene, given%folder, remarks, error)
+    call share_costs(model, costs)
+    call results%open(model, given%folder, remarks, error)
     if (allocated(error)) return
     call costs%start('assemble', 'initial state', 'solver')
-    call start_analysis(scene, now, error)
+    call start_analysis(model, now, error)
     call costs%stop()
-    if (.not. allocated(error)) call run_all_steps(scene, now, results, error)
-    call end_user_routines(scene, now%total_time, results%log, failure)
+    if (.not. allocated(error)) call run_all_steps(model, now, results, error)
+    call end_user_routines(model, now%total_time, results%log, failure)
     if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
     call costs%stop_all()
     if (allocated(error)) then
       call results%log%note(error%message)
-      call results%finish(scene, now, 'stopped', error%message, failure)
+      call results%finish(model, now, 'stopped', error%message, failure)
       call results%log%note(text_of_ledger(costs))
     else
-      call results%finish(scene, now, 'finished', '', failure)
+      call results%finish(model, now, 'finished', '', failure)
       call results%log%say('finished in '//as_text(wall_clock() - started_at)//' s, '// &
                            as_text(peak_memory())//' MB')
       call results%log%say(text_of_ledger(costs))

@@ -21,8 +21,8 @@ module run_material
 contains
 
   !> Runs all tests of the deck. After an error the rows computed so far are in the files.
-  subroutine run_tests(scene, given, echo, started_at, error)
-    type(problem), intent(in) :: scene
+  subroutine run_tests(model, given, echo, started_at, error)
+    type(problem), intent(in) :: model
     type(command_line), intent(in) :: given
     character(*), intent(in) :: echo !< the deck with its defaults, for the log
     real(rk), intent(in) :: started_at !< wall clock [s]
@@ -34,21 +34,21 @@ contains
     integer :: i
     call make_folder(given%folder, error)
     if (allocated(error)) return
-    stem = given%folder//'/'//base_name(scene%deck_file)//'_material'
+    stem = given%folder//'/'//base_name(model%deck_file)//'_material'
     call log%open(given%is_quiet, error, stem//'.log')
     if (allocated(error)) return
     call log%note(echo)
-    allocate (summaries(size(scene%tests)))
-    do i = 1, size(scene%tests)
-      call run_test(scene, scene%tests(i), stem, log, summaries(i), failure)
+    allocate (summaries(size(model%tests)))
+    do i = 1, size(model%tests)
+      call run_test(model, model%tests(i), stem, log, summaries(i), failure)
       if (.not. allocated(failure)) cycle
       if (allocated(error)) failure%message = error%message//new_line('a')//failure%message
       call move_alloc(failure, error)
       if (error%exit_code == system_failed) return
     end do
-    call end_user_routines(scene, maxval(summaries%time), log, failure)
+    call end_user_routines(model, maxval(summaries%time), log, failure)
     if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
-    call write_test_summary(stem//'.json', scene%deck_file, summaries, failure)
+    call write_test_summary(stem//'.json', model%deck_file, summaries, failure)
     call log%say(table_of_tests(summaries))
     if (.not. allocated(error)) then
       call log%say('finished in '//as_text(wall_clock() - started_at)//' s')
@@ -60,8 +60,8 @@ contains
   end subroutine run_tests
 
   !> One test and its file.
-  subroutine run_test(scene, test, stem, log, summary, error)
-    type(problem), intent(in) :: scene
+  subroutine run_test(model, test, stem, log, summary, error)
+    type(problem), intent(in) :: model
     type(material_test), intent(in) :: test
     character(*), intent(in) :: stem !< folder and name of the job
     type(run_log), intent(inout) :: log
@@ -69,8 +69,8 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(path_record) :: record
     type(error_type), allocatable :: failure
-    associate (material => scene%materials(test%material))
-      call follow_path(material%law, test, record, error, scene%umat)
+    associate (material => model%materials(test%material))
+      call follow_path(material%law, test, record, error, model%umat)
       call summarise_test(test, material%name, record, summary)
       summary%has_finished = .not. allocated(error)
       if (allocated(error)) summary%message = error%message

@@ -11,23 +11,23 @@ contains
 
   !> Divides the work on all joints among the joints, and the work on all inelastic solids among
   !> their materials.
-  subroutine share_costs(scene, costs)
-    type(problem), intent(in) :: scene
+  subroutine share_costs(model, costs)
+    type(problem), intent(in) :: model
     type(ledger), intent(in) :: costs
-    real(rk) :: num_points(size(scene%materials))
+    real(rk) :: num_points(size(model%materials))
     integer :: b, i, width
-    width = maxval([(len(scene%joints(i)%name), i=1, size(scene%joints)), &
-                    (len(scene%materials(i)%name), i=1, size(scene%materials)), 1])
+    width = maxval([(len(model%joints(i)%name), i=1, size(model%joints)), &
+                    (len(model%materials(i)%name), i=1, size(model%materials)), 1])
     num_points = 0.0_rk
-    if (allocated(scene%inelastic)) then
-      do b = 1, size(scene%inelastic)
-        associate (solids => scene%inelastic(b))
+    if (allocated(model%inelastic)) then
+      do b = 1, size(model%inelastic)
+        associate (solids => model%inelastic(b))
           num_points(solids%material) = num_points(solids%material) &
                                         + real(size(solids%weight), rk)
         end associate
       end do
     end if
-    call costs%share('joints', 'joint', joint_names(), real(scene%joints%num_points, rk))
+    call costs%share('joints', 'joint', joint_names(), real(model%joints%num_points, rk))
     call costs%share('inelastic solids', 'inelastic', &
                      pack(material_names(), num_points > 0.0_rk), &
                      pack(num_points, num_points > 0.0_rk))
@@ -36,19 +36,19 @@ contains
 
     !> Names of the joints.
     function joint_names() result(names)
-      character(width) :: names(size(scene%joints))
+      character(width) :: names(size(model%joints))
       integer :: j
       do j = 1, size(names)
-        names(j) = scene%joints(j)%name
+        names(j) = model%joints(j)%name
       end do
     end function joint_names
 
     !> Names of the materials.
     function material_names() result(names)
-      character(width) :: names(size(scene%materials))
+      character(width) :: names(size(model%materials))
       integer :: m
       do m = 1, size(names)
-        names(m) = scene%materials(m)%name
+        names(m) = model%materials(m)%name
       end do
     end function material_names
   end subroutine share_costs

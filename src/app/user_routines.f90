@@ -27,19 +27,19 @@ contains
   end subroutine load_user_routines
 
   !> Calls UEXTERNALDB at the end of the run, and writes the checks of the UMAT to the log.
-  subroutine end_user_routines(scene, time, log, error)
-    type(problem), intent(in) :: scene
+  subroutine end_user_routines(model, time, log, error)
+    type(problem), intent(in) :: model
     real(rk), intent(in) :: time !< total [s]
     type(run_log), intent(inout) :: log
     type(error_type), allocatable, intent(out) :: error
     character(:), allocatable :: note
-    if (.not. associated(scene%umat)) return
-    call scene%umat%call_external(at_end, [0.0_rk, time], 0.0_rk, size(scene%steps), 0, error)
-    note = scene%umat%new_notes()
+    if (.not. associated(model%umat)) return
+    call model%umat%call_external(at_end, [0.0_rk, time], 0.0_rk, size(model%steps), 0, error)
+    note = model%umat%new_notes()
     if (len(note) > 0) call log%say(note)
-    note = scene%umat%check_text()
+    note = model%umat%check_text()
     if (len(note) > 0) call log%say(note)
-    call scene%umat%close(note)
+    call model%umat%close(note)
     if (len(note) > 0) call log%say(note)
   end subroutine end_user_routines
 end module user_routines

@@ -22,47 +22,47 @@ module assemble_elements
 contains
 
   !> K of the elements, elastic, without joints.
-  subroutine assemble_stiffness(scene, numbers, matrix, values, error)
-    type(problem), intent(in) :: scene
+  subroutine assemble_stiffness(model, numbers, matrix, values, error)
+    type(problem), intent(in) :: model
     type(numbering), intent(in) :: numbers
     type(pattern), intent(in) :: matrix
     real(rk), allocatable, intent(out) :: values(:) !< [N/m]
     type(error_type), allocatable, intent(out) :: error
-    real(rk) :: one(size(scene%materials)), zero(size(scene%materials))
+    real(rk) :: one(size(model%materials)), zero(size(model%materials))
     one = 1.0_rk
     zero = 0.0_rk
-    call sum_elements(scene, numbers, one, zero, matrix, values, error)
+    call sum_elements(model, numbers, one, zero, matrix, values, error)
   end subroutine assemble_stiffness
 
   !> M of the elements, consistent or lumped, without added mass.
-  subroutine assemble_mass(scene, numbers, matrix, values, error)
-    type(problem), intent(in) :: scene
+  subroutine assemble_mass(model, numbers, matrix, values, error)
+    type(problem), intent(in) :: model
     type(numbering), intent(in) :: numbers
     type(pattern), intent(in) :: matrix
     real(rk), allocatable, intent(out) :: values(:) !< [kg]
     type(error_type), allocatable, intent(out) :: error
-    real(rk) :: zero(size(scene%materials))
+    real(rk) :: zero(size(model%materials))
     zero = 0.0_rk
-    call sum_elements(scene, numbers, zero, scene%materials%density, matrix, values, error)
+    call sum_elements(model, numbers, zero, model%materials%density, matrix, values, error)
   end subroutine assemble_mass
 
   !> C = sum of alpha M + beta K of the elements: Rayleigh damping of the materials plus that of the
   !> step.
-  subroutine assemble_damping(scene, numbers, alpha, beta, matrix, values, error)
-    type(problem), intent(in) :: scene
+  subroutine assemble_damping(model, numbers, alpha, beta, matrix, values, error)
+    type(problem), intent(in) :: model
     type(numbering), intent(in) :: numbers
     real(rk), intent(in) :: alpha, beta !< of the step [1/s], [s]
     type(pattern), intent(in) :: matrix
     real(rk), allocatable, intent(out) :: values(:) !< [N s/m]
     type(error_type), allocatable, intent(out) :: error
-    call sum_elements(scene, numbers, scene%materials%beta + beta, &
-                      (scene%materials%alpha + alpha)*scene%materials%density, matrix, values, &
+    call sum_elements(model, numbers, model%materials%beta + beta, &
+                      (model%materials%alpha + alpha)*model%materials%density, matrix, values, &
                       error)
   end subroutine assemble_damping
 
   !> Sum of stiffness*K_e + density*M_e (M_e of unit density).
-  subroutine sum_elements(scene, numbers, stiffness, density, matrix, values, error)
-    type(problem), intent(in) :: scene
+  subroutine sum_elements(model, numbers, stiffness, density, matrix, values, error)
+    type(problem), intent(in) :: model
     type(numbering), intent(in) :: numbers
     real(rk), intent(in) :: stiffness(:), density(:) !< (materials)
     type(pattern), intent(in) :: matrix
@@ -74,23 +74,23 @@ contains
     allocate (values(size(matrix%row)))
     values = 0.0_rk
     bad = 0
-    call list_blocks(scene, numbers, blocks)
+    call list_blocks(model, numbers, blocks)
     do colour = 1, blocks%num_colours
       is_parallel = colour < blocks%num_colours .or. .not. blocks%last_is_serial
       !$omp parallel do schedule(dynamic) default(none) if (is_parallel) &
-      !$omp shared(scene, numbers, stiffness, density, matrix, values, blocks, colour, bad)
+      !$omp shared(model, numbers, stiffness, density, matrix, values, blocks, colour, bad)
       do i = blocks%first_block(colour), blocks%first_block(colour + 1) - 1
-        call add_elements(scene, numbers, blocks%element(blocks%first(i):blocks%first(i + 1) - 1), &
+        call add_elements(model, numbers, blocks%element(blocks%first(i):blocks%first(i + 1) - 1), &
                           stiffness, density, matrix, values, bad)
       end do
       !$omp end parallel do
     end do
-    if (bad(1) > 0) call report_jacobian(scene%mesh%element_id(bad(1)), bad(2), error)
+    if (bad(1) > 0) call report_jacobian(model%mesh%element_id(bad(1)), bad(2), error)
   end subroutine sum_elements
 
   !> Adds the matrices of one block.
-  subroutine add_elements(scene, numbers, elements, stiffness, density, matrix, values, bad)
-    type(problem), intent(in) :: scene
+  subroutine add_elements(model, numbers, elements, stiffness, density, matrix, values, bad)
+    type(problem), intent(in) :: model
     type(numbering), intent(in) :: numbers
     integer, intent(in) :: elements(:)
     real(rk), intent(in) :: stiffness(:), density(:) !< (materials)
@@ -99,15 +99,15 @@ contains
     integer, intent(inout) :: bad(2) !< element and corner, shared by the threads
     real(rk), allocatable :: ke(:, :, :)
     integer :: e
-    call integrate_block(scene, elements, stiffness, density, ke, bad)
+    call integrate_block(model, elements, stiffness, density, ke, bad)
     do e = 1, size(elements)
-      call scatter_nodes(numbers, scene%mesh%nodes(:, elements(e)), ke(:, :, e), matrix, values)
+      call scatter_nodes(numbers, model%mesh%nodes(:, elements(e)), ke(:, :, e), matrix, values)
     end do
   end subroutine add_elements
 
   !> The matrices of a block; names an element whose Jacobian is not positive.
-  subroutine integrate_block(scene, elements, stiffness, density, ke, bad)
-    type(problem), intent(in) :: scene
+  subroutine integrate_block(model, elements, stiffness, density, ke, bad)
+    type(problem), intent(in) :: model
     integer, intent(in) :: elements(:) !< of one kind and one material
     real(rk), intent(in) :: stiffness(:), density(:) !< (materials)
     real(rk), allocatable, intent(out) :: ke(:, :, :) !< (24, 24, elements)
@@ -116,14 +116,14 @@ contains
     real(rk), allocatable :: x(:, :, :)
     real(rk) :: d(6, 6)
     integer :: status(size(elements)), e, material
-    material = scene%mesh%material_of_element(elements(1))
+    material = model%mesh%material_of_element(elements(1))
     allocate (x(3, 8, size(elements)), ke(hex8_dofs, hex8_dofs, size(elements)))
     do e = 1, size(elements)
-      x(:, :, e) = scene%mesh%x(:, scene%mesh%nodes(:, elements(e)))
+      x(:, :, e) = model%mesh%x(:, model%mesh%nodes(:, elements(e)))
     end do
     if (abs(stiffness(material)) > 0.0_rk) then
-      call make_solid(scene%mesh%element_type(elements(1)), element)
-      call scene%materials(material)%law%elastic_stiffness(d)
+      call make_solid(model%mesh%element_type(elements(1)), element)
+      call model%materials(material)%law%elastic_stiffness(d)
       call stiffness_matrices(element, x, stiffness(material)*d, ke, status)
       if (any(status /= 0)) then
         e = findloc(status /= 0, .true., 1)
@@ -135,7 +135,7 @@ contains
       ke = 0.0_rk
     end if
     if (abs(density(material)) > 0.0_rk) then
-      call add_masses(x, density(material), scene%has_lumped_mass, ke)
+      call add_masses(x, density(material), model%has_lumped_mass, ke)
     end if
   end subroutine integrate_block
 

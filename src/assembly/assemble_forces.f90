@@ -14,19 +14,19 @@ module assemble_forces
 contains
 
   !> T^T f of one guest at factor 1.
-  subroutine assemble_force(scene, item, numbers, force)
-    type(problem), intent(in) :: scene
+  subroutine assemble_force(model, item, numbers, force)
+    type(problem), intent(in) :: model
     class(guest), intent(in) :: item
     type(numbering), intent(in) :: numbers
     real(rk), intent(out) :: force(:) !< (num_total) [N]
     real(rk), allocatable :: nodal(:, :), density(:)
-    nodal = zero_vectors(scene%mesh%num_nodes)
-    allocate (density(scene%mesh%num_elements))
+    nodal = zero_vectors(model%mesh%num_nodes)
+    allocate (density(model%mesh%num_elements))
     density = 0.0_rk
-    where (scene%mesh%material_of_element > 0)
-      density = scene%materials(max(scene%mesh%material_of_element, 1))%density
+    where (model%mesh%material_of_element > 0)
+      density = model%materials(max(model%mesh%material_of_element, 1))%density
     end where
-    call item%add_force(scene%mesh, density, nodal)
+    call item%add_force(model%mesh, density, nodal)
     call numbers%reduce(nodal, force)
   end subroutine assemble_force
 

@@ -2,8 +2,8 @@
 module constraint_elimination
   use kinds, only: rk
   use errors, only: error_type
-  use dam_mesh, only: mesh, node_tie
-  use joint_points, only: joint
+  use dam_mesh, only: fe_mesh, node_tie
+  use joint_points, only: dam_joint
   use step_plan, only: step_fixity
   use node_dofs, only: dof_map, displacement_dofs
   use dof_numbering, only: numbering, linear_links, number_unknowns
@@ -19,9 +19,9 @@ module constraint_elimination
 contains
 
   !> Numbers the unknowns of a step from its elements, its joints, its ties and its supports.
-  subroutine number_step(model, joints, ties, fixities, numbers, error)
-    type(mesh), intent(in) :: model
-    type(joint), intent(in) :: joints(:)
+  subroutine number_step(mesh, joints, ties, fixities, numbers, error)
+    type(fe_mesh), intent(in) :: mesh
+    type(dam_joint), intent(in) :: joints(:)
     type(node_tie), intent(in) :: ties(:)
     type(step_fixity), intent(in) :: fixities(:)
     type(numbering), intent(out) :: numbers
@@ -31,13 +31,13 @@ contains
     type(linear_links) :: links
     type(dof_map) :: dofs
     integer :: e, k
-    dofs = displacement_dofs(model%num_nodes)
-    allocate (is_used(model%num_nodes), is_fixed(size(dofs%components), model%num_nodes))
+    dofs = displacement_dofs(mesh%num_nodes)
+    allocate (is_used(mesh%num_nodes), is_fixed(size(dofs%components), mesh%num_nodes))
     is_used = .false.
-    do e = 1, model%num_elements
-      if (model%material_of_element(e) == 0 .and. model%element_type(e) /= 'IFACE4') cycle
-      do k = 1, size(model%nodes, 1)
-        if (model%nodes(k, e) > 0) is_used(model%nodes(k, e)) = .true.
+    do e = 1, mesh%num_elements
+      if (mesh%material_of_element(e) == 0 .and. mesh%element_type(e) /= 'IFACE4') cycle
+      do k = 1, size(mesh%nodes, 1)
+        if (mesh%nodes(k, e) > 0) is_used(mesh%nodes(k, e)) = .true.
       end do
     end do
     is_fixed = .false.
@@ -45,7 +45,7 @@ contains
       is_fixed(fixities(k)%dof, fixities(k)%node) = .true.
     end do
     call list_points(joints, points)
-    points%is_light = nodes_of_quads(model)
+    points%is_light = nodes_of_quads(mesh)
     call link_nodes(dofs, points, ties, is_used, is_fixed, links, error)
     if (allocated(error)) return
     call mark_last(joints, links%first_jump, is_used, links%is_last)
@@ -53,19 +53,19 @@ contains
   end subroutine number_step
 
   !> Nodes of interface quadrilaterals, which are without mass.
-  pure function nodes_of_quads(model) result(is_there)
-    type(mesh), intent(in) :: model
-    logical :: is_there(model%num_nodes)
+  pure function nodes_of_quads(mesh) result(is_there)
+    type(fe_mesh), intent(in) :: mesh
+    logical :: is_there(mesh%num_nodes)
     integer :: e
     is_there = .false.
-    do e = 1, model%num_elements
-      if (model%element_type(e) == 'IFACE4') is_there(model%nodes(1:4, e)) = .true.
+    do e = 1, mesh%num_elements
+      if (mesh%element_type(e) == 'IFACE4') is_there(mesh%nodes(1:4, e)) = .true.
     end do
   end function nodes_of_quads
 
   !> Points of the joints with nodal integration, joint by joint.
   subroutine list_points(joints, points)
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(nodal_points), intent(out) :: points
     integer :: j, p, n, t, length
     n = sum(joints%num_points, mask=joints%is_nodal)
@@ -94,7 +94,7 @@ contains
 
   !> Marks the nodes of points without jumps.
   pure subroutine mark_last(joints, first_jump, is_used, is_last)
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     integer, intent(in) :: first_jump(:) !< (points of nodal joints) 0 for none
     logical, intent(in) :: is_used(:) !< (nodes)
     logical, allocatable, intent(out) :: is_last(:) !< (nodes)

@@ -27,24 +27,24 @@ module element_blocks
 contains
 
   !> Sorts the elements that have a material by colour, kind and material.
-  subroutine list_blocks(scene, numbers, blocks)
-    type(problem), intent(in) :: scene
+  subroutine list_blocks(model, numbers, blocks)
+    type(problem), intent(in) :: model
     type(numbering), intent(in) :: numbers
     type(block_list), intent(out) :: blocks
     integer, allocatable :: colour(:), key(:)
     type(row_table) :: by_key
     integer :: e, num_keys
-    call colour_elements(scene, numbers, colour)
+    call colour_elements(model, numbers, colour)
     blocks%num_colours = maxval([0, colour])
     blocks%last_is_serial = blocks%num_colours > most_colours
-    num_keys = size(element_kinds)*size(scene%materials)
-    allocate (key(scene%mesh%num_elements))
+    num_keys = size(element_kinds)*size(model%materials)
+    allocate (key(model%mesh%num_elements))
     key = 0
-    do e = 1, scene%mesh%num_elements
+    do e = 1, model%mesh%num_elements
       if (colour(e) == 0) cycle
       key(e) = (colour(e) - 1)*num_keys &
-               + (find_element_kind(scene%mesh%element_type(e)) - 1)*size(scene%materials) &
-               + scene%mesh%material_of_element(e)
+               + (find_element_kind(model%mesh%element_type(e)) - 1)*size(model%materials) &
+               + model%mesh%material_of_element(e)
     end do
     call group_by_key(key, blocks%num_colours*num_keys, by_key)
     call move_alloc(by_key%item, blocks%element)
@@ -52,24 +52,24 @@ contains
   end subroutine list_blocks
 
   !> The lowest colour that is free at all unknowns of an element; 0 for other elements.
-  subroutine colour_elements(scene, numbers, colour)
-    type(problem), intent(in) :: scene
+  subroutine colour_elements(model, numbers, colour)
+    type(problem), intent(in) :: model
     type(numbering), intent(in) :: numbers
     integer, allocatable, intent(out) :: colour(:) !< (elements)
     integer(long), allocatable :: used(:)
     integer(long) :: taken
     integer :: e
-    allocate (colour(scene%mesh%num_elements), used(numbers%num_total))
+    allocate (colour(model%mesh%num_elements), used(numbers%num_total))
     colour = 0
     used = 0_long
-    do e = 1, scene%mesh%num_elements
-      if (scene%mesh%material_of_element(e) == 0) cycle
-      taken = colours_around(numbers, used, scene%mesh%nodes(:, e))
+    do e = 1, model%mesh%num_elements
+      if (model%mesh%material_of_element(e) == 0) cycle
+      taken = colours_around(numbers, used, model%mesh%nodes(:, e))
       colour(e) = trailz(not(taken)) + 1
       if (colour(e) > most_colours) then
         colour(e) = most_colours + 1
       else
-        call mark_around(numbers, scene%mesh%nodes(:, e), colour(e) - 1, used)
+        call mark_around(numbers, model%mesh%nodes(:, e), colour(e) - 1, used)
       end if
     end do
   end subroutine colour_elements

@@ -3,7 +3,7 @@
 !> such block.
 module inelastic_blocks
   use kinds, only: rk
-  use dam_mesh, only: mesh
+  use dam_mesh, only: fe_mesh
   use element_catalogue, only: is_solid, make_solid
   use element_formulation, only: solid_element
   use gauss_rules, only: hex_point
@@ -30,59 +30,59 @@ contains
 
   !> Sorts the elements with nonlinear laws into blocks; size 0 for none. The Jacobian of all
   !> elements must be positive.
-  subroutine list_inelastic_blocks(body, materials, blocks)
-    type(mesh), intent(in) :: body
+  subroutine list_inelastic_blocks(mesh, materials, blocks)
+    type(fe_mesh), intent(in) :: mesh
     type(material), intent(in) :: materials(:)
     type(inelastic_block), allocatable, intent(out) :: blocks(:)
     integer, allocatable :: group(:)
     logical, allocatable :: is_pending(:)
     integer :: e, m, first, last, num_blocks
-    allocate (is_pending(body%num_elements), source=.false.)
+    allocate (is_pending(mesh%num_elements), source=.false.)
     do m = 1, size(materials)
       if (.not. allocated(materials(m)%law)) cycle
       if (.not. materials(m)%law%is_nonlinear) cycle
       is_pending = is_pending .or. &
-                   (is_solid(body%element_type) .and. body%material_of_element == m)
+                   (is_solid(mesh%element_type) .and. mesh%material_of_element == m)
     end do
     allocate (blocks(count(is_pending)))
     num_blocks = 0
     do while (any(is_pending))
       first = findloc(is_pending, .true., 1)
-      group = pack([(e, e=1, body%num_elements)], is_pending .and. &
-                   body%material_of_element == body%material_of_element(first) .and. &
-                   body%element_type == body%element_type(first))
+      group = pack([(e, e=1, mesh%num_elements)], is_pending .and. &
+                   mesh%material_of_element == mesh%material_of_element(first) .and. &
+                   mesh%element_type == mesh%element_type(first))
       is_pending(group) = .false.
       do first = 1, size(group), largest_block
         last = min(size(group), first + largest_block - 1)
         num_blocks = num_blocks + 1
-        call build_block(body, materials, group(first:last), blocks(num_blocks))
+        call build_block(mesh, materials, group(first:last), blocks(num_blocks))
       end do
     end do
     blocks = blocks(:num_blocks)
   end subroutine list_inelastic_blocks
 
   !> Operators and points of some elements of one kind and one material.
-  subroutine build_block(body, materials, elements, part)
-    type(mesh), intent(in) :: body
+  subroutine build_block(mesh, materials, elements, part)
+    type(fe_mesh), intent(in) :: mesh
     type(material), intent(in) :: materials(:)
     integer, intent(in) :: elements(:)
     type(inelastic_block), intent(out) :: part
     class(solid_element), allocatable :: formulation
     real(rk) :: x(3, 8, size(elements)), d(6, 6)
     integer :: status(size(elements)), e
-    part%material = body%material_of_element(elements(1))
-    part%kind = body%element_type(elements(1))
+    part%material = mesh%material_of_element(elements(1))
+    part%kind = mesh%element_type(elements(1))
     part%elements = elements
     call make_solid(part%kind, formulation)
     part%points_of_element = formulation%num_points
     do e = 1, size(elements)
-      x(:, :, e) = body%x(:, body%nodes(:, elements(e)))
+      x(:, :, e) = mesh%x(:, mesh%nodes(:, elements(e)))
     end do
     allocate (part%b(6, hex8_dofs, part%points_of_element, size(elements)), &
               part%weight(part%points_of_element, size(elements)))
     call materials(part%material)%law%elastic_stiffness(d)
     call formulation%strain_operator(x, d, part%b, part%weight, status)
-    call place_points(body%element_id(elements), x, part)
+    call place_points(mesh%element_id(elements), x, part)
   end subroutine build_block
 
   !> Numbers and places of the points.

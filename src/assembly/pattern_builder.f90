@@ -4,7 +4,7 @@
 !> or a segment of springs between faces. Unknowns are handled in groups (those of one node, one
 !> jump), which keeps this fast.
 module pattern_builder
-  use dam_mesh, only: mesh
+  use dam_mesh, only: fe_mesh
   use guest_list, only: list_guest_cells
   use guest_type, only: guest_reference
   use dof_numbering, only: numbering
@@ -20,14 +20,14 @@ module pattern_builder
 contains
 
   !> Cells of a model: its solid elements and the cells of its guests.
-  subroutine list_cells(model, guests, cells)
-    type(mesh), intent(in) :: model
+  subroutine list_cells(mesh, guests, cells)
+    type(fe_mesh), intent(in) :: mesh
     type(guest_reference), intent(in) :: guests(:)
     type(row_table), intent(out) :: cells
     integer :: e
-    do e = 1, model%num_elements
-      if (model%material_of_element(e) == 0) cycle
-      call cells%append(pack(model%nodes(:, e), model%nodes(:, e) > 0))
+    do e = 1, mesh%num_elements
+      if (mesh%material_of_element(e) == 0) cycle
+      call cells%append(pack(mesh%nodes(:, e), mesh%nodes(:, e) > 0))
     end do
     call list_guest_cells(guests, cells)
     call cells%finish()

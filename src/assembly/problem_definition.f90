@@ -1,11 +1,11 @@
 !> The problem: filled by the keywords, read by the solvers. Effects are guests in its lists.
 module problem_definition
-  use dam_mesh, only: mesh, named_set, node_tie, surface
+  use dam_mesh, only: fe_mesh, named_set, node_tie, surface
   use amplitudes, only: amplitude
   use step_plan, only: step, initial_value
   use material_law, only: material
   use material_tests, only: material_test
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use guest_type, only: guest_slot
   use surface_segments, only: named_cover
   use applied_load, only: load_slot
@@ -19,14 +19,14 @@ module problem_definition
   type :: problem
     character(:), allocatable :: deck_file !< as given on the command line
     character(:), allocatable :: heading
-    type(mesh) :: mesh
+    type(fe_mesh) :: mesh
     type(named_set), allocatable :: node_sets(:), element_sets(:)
     type(surface), allocatable :: surfaces(:)
     type(amplitude), allocatable :: amplitudes(:)
     type(material), allocatable :: materials(:)
     type(material_test), allocatable :: tests(:) !< of materials at one point
     logical :: has_lumped_mass = .false.
-    type(joint), allocatable :: joints(:)
+    type(dam_joint), allocatable :: joints(:)
     type(node_tie), allocatable :: ties(:) !< without springs
     type(guest_slot), allocatable :: guests(:) !< of every step, without joints
     type(named_cover), allocatable :: covers(:) !< cover of faces of different meshes

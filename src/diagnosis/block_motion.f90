@@ -19,16 +19,16 @@ module block_motion
 contains
 
   !> 'the block with element 12 of set LEFT': lowest element, smallest set with this element.
-  function block_name(scene, blocks, b) result(text)
-    type(problem), intent(in) :: scene
+  function block_name(model, blocks, b) result(text)
+    type(problem), intent(in) :: model
     type(block_set), intent(in) :: blocks
     integer, intent(in) :: b !< block
     character(:), allocatable :: text
     integer :: i, best
-    text = 'the block with element '//as_text(scene%mesh%element_id(blocks%example(b)))
-    if (.not. allocated(scene%element_sets)) return
+    text = 'the block with element '//as_text(model%mesh%element_id(blocks%example(b)))
+    if (.not. allocated(model%element_sets)) return
     best = 0
-    associate (sets => scene%element_sets)
+    associate (sets => model%element_sets)
       do i = 1, size(sets)
         if (.not. contains_position(sets(i)%members, blocks%example(b))) cycle
         if (best == 0) best = i

@@ -12,15 +12,15 @@ contains
 
   !> The cells of the guests (points of joints, segments of springs), and each node of a tie with
   !> the nodes that it follows.
-  subroutine list_groups(scene, groups)
-    type(problem), intent(in), target :: scene
+  subroutine list_groups(model, groups)
+    type(problem), intent(in), target :: model
     type(row_table), intent(out) :: groups
     type(guest_reference), allocatable :: guests(:)
     integer :: j, k
-    call guests_of_model(scene, guests)
+    call guests_of_model(model, guests)
     call list_guest_cells(guests, groups)
-    do j = 1, size(scene%ties)
-      associate (tie => scene%ties(j))
+    do j = 1, size(model%ties)
+      associate (tie => model%ties(j))
         do k = 1, size(tie%node)
           call groups%append([tie%node(k), tie%master(tie%first(k):tie%first(k + 1) - 1)])
         end do

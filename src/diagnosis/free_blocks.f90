@@ -46,8 +46,8 @@ module free_blocks
 contains
 
   !> Adds the block that moves to the message of an error.
-  subroutine name_free_block(scene, plan, system, states, last, when, error)
-    type(problem), intent(in) :: scene
+  subroutine name_free_block(model, plan, system, states, last, when, error)
+    type(problem), intent(in) :: model
     type(step), intent(in) :: plan
     type(dam_system), intent(in) :: system
     type(joint_state), intent(in) :: states(:) !< of the last equilibrium
@@ -59,37 +59,37 @@ contains
     type(step_time) :: checked
     character(:), allocatable :: text
     logical :: is_known
-    if (.not. allocated(error) .or. size(scene%joints) == 0) return
-    call find_blocks(scene, task%blocks)
+    if (.not. allocated(error) .or. size(model%joints) == 0) return
+    call find_blocks(model, task%blocks)
     if (task%blocks%num_blocks > most_blocks) return
     if (6*task%blocks%num_blocks*num_rows(system%operator%num_points) > most_entries) return
-    call open_task(scene, plan, states, task, failure)
+    call open_task(model, plan, states, task, failure)
     if (allocated(failure)) return ! the error is reported without the blocks
     if (size(task%rows, 1) == 0) return
     checked = when
-    call find_driven_block(scene, system, task, checked, text, is_known)
+    call find_driven_block(model, system, task, checked, text, is_known)
     if (.not. is_known) return
     if (text == '') then
       checked%now = when%duration
-      call find_driven_block(scene, system, task, checked, text, is_known)
+      call find_driven_block(model, system, task, checked, text, is_known)
       if (.not. is_known) return
     end if
     if (text /= '') then
       text = '; the joints cannot hold '//text
     else
-      text = idle_motion(scene, task)
+      text = idle_motion(model, task)
     end if
     if (text == '') then
       text = '; the same model of rigid blocks has an equilibrium, which may need prestress; '// &
              'use smaller increments, or more ITERATIONS (*CONTROLS)'// &
-             separated_block(scene, task%blocks, last)
+             separated_block(model, task%blocks, last)
     end if
     error%message = error%message//text
   end subroutine name_free_block
 
   !> Motions that are possible with the supports, and the limits of the joints.
-  subroutine open_task(scene, plan, states, task, error)
-    type(problem), intent(in) :: scene
+  subroutine open_task(model, plan, states, task, error)
+    type(problem), intent(in) :: model
     type(step), intent(in) :: plan
     type(joint_state), intent(in) :: states(:)
     type(block_task), intent(inout) :: task
@@ -99,20 +99,20 @@ contains
     integer :: j, p, i, n, point
     n = 6*task%blocks%num_blocks
     allocate (matrix(n, n), source=0.0_rk)
-    call supports_of_step(scene, plan, node, direction)
-    call add_supports(task%blocks, scene%mesh%x, node, direction, matrix)
+    call supports_of_step(model, plan, node, direction)
+    call add_supports(task%blocks, model%mesh%x, node, direction, matrix)
     call null_space(matrix, task%free, error)
     if (allocated(error)) return
-    allocate (task%rows(size(task%free, 2), num_rows(sum(scene%joints%num_points))))
-    allocate (task%limits(sum(scene%joints%num_points)))
+    allocate (task%rows(size(task%free, 2), num_rows(sum(model%joints%num_points))))
+    allocate (task%limits(sum(model%joints%num_points)))
     allocate (rows(6, task%blocks%num_blocks, 3))
     point = 0
-    do j = 1, size(scene%joints)
-      do p = 1, scene%joints(j)%num_points
+    do j = 1, size(model%joints)
+      do p = 1, model%joints(j)%num_points
         point = point + 1
-        call jump_rows(task%blocks, scene%mesh%x, scene%joints(j), p, rows)
-        associate (now => task%limits(point), area => scene%joints(j)%area(p))
-          call scene%joints(j)%law%limits(now%friction, now%cohesion, now%tension)
+        call jump_rows(task%blocks, model%mesh%x, model%joints(j), p, rows)
+        associate (now => task%limits(point), area => model%joints(j)%area(p))
+          call model%joints(j)%law%limits(now%friction, now%cohesion, now%tension)
           now%cohesion = area*now%cohesion
           now%tension = area*now%tension
           now%is_bonded = .not. states(j)%is_broken(p)
@@ -128,8 +128,8 @@ contains
   end subroutine open_task
 
   !> The block that moves under the loads of a time, and its motion; '' where the joints hold all.
-  subroutine find_driven_block(scene, system, task, when, text, is_known)
-    type(problem), intent(in) :: scene
+  subroutine find_driven_block(model, system, task, when, text, is_known)
+    type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     type(block_task), intent(in) :: task
     type(step_time), intent(in) :: when
@@ -138,7 +138,7 @@ contains
     real(rk), allocatable :: load(:), motion(:, :), amount(:)
     type(best_forces) :: best
     integer :: b, others
-    call sum_loads(scene, system, task, when, load)
+    call sum_loads(model, system, task, when, load)
     text = ''
     is_known = .true.
     if (.not. norm2(load) > 0.0_rk) return
@@ -150,14 +150,14 @@ contains
     amount = norm2(motion, dim=1)
     b = maxloc(amount, 1)
     others = count(amount > smallest_motion*amount(b)) - 1
-    text = block_name(scene, task%blocks, b)//' under the loads at step time '// &
+    text = block_name(model, task%blocks, b)//' under the loads at step time '// &
            as_text(when%now)//': the block can '//motion_text(task%blocks, b, motion(:, b))
     if (others > 0) text = text//' ('//as_text(others)//' more blocks move too)'
   end subroutine find_driven_block
 
   !> The loads as forces on the motions of the blocks.
-  subroutine sum_loads(scene, system, task, when, load)
-    type(problem), intent(in) :: scene
+  subroutine sum_loads(model, system, task, when, load)
+    type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     type(block_task), intent(in) :: task
     type(step_time), intent(in) :: when
@@ -166,15 +166,15 @@ contains
     real(rk) :: motion(6)
     integer :: b, k
     allocate (force(system%numbers%num_total), q(system%numbers%num_total))
-    u = zero_vectors(scene%mesh%num_nodes)
+    u = zero_vectors(model%mesh%num_nodes)
     allocate (on_blocks(6*task%blocks%num_blocks))
-    call external_force(system%groups, scene%amplitudes, when, force)
+    call external_force(system%groups, model%amplitudes, when, force)
     do b = 1, task%blocks%num_blocks
       do k = 1, 6
         motion = 0.0_rk
         motion(k) = 1.0_rk
-        call move_block(scene, task%blocks, b, motion, u)
-        call restrict(system%numbers, scene%joints, u, q)
+        call move_block(model, task%blocks, b, motion, u)
+        call restrict(system%numbers, model%joints, u, q)
         on_blocks(6*(b - 1) + k) = dot(force, q)
       end do
     end do
@@ -182,8 +182,8 @@ contains
   end subroutine sum_loads
 
   !> Displacements when one block moves.
-  subroutine move_block(scene, blocks, b, motion, u)
-    type(problem), intent(in) :: scene
+  subroutine move_block(model, blocks, b, motion, u)
+    type(problem), intent(in) :: model
     type(block_set), intent(in) :: blocks
     integer, intent(in) :: b
     real(rk), intent(in) :: motion(6) !< v, radius*w
@@ -193,7 +193,7 @@ contains
     u = 0.0_rk
     do node = 1, size(u, 2)
       if (blocks%block_of(node) /= b) cycle
-      r = (scene%mesh%x(:, node) - blocks%centre(:, b))/blocks%radius(b)
+      r = (model%mesh%x(:, node) - blocks%centre(:, b))/blocks%radius(b)
       u(:, node) = motion(1:3) + [motion(5)*r(3) - motion(6)*r(2), &
                                   motion(6)*r(1) - motion(4)*r(3), &
                                   motion(4)*r(2) - motion(5)*r(1)]
@@ -201,8 +201,8 @@ contains
   end subroutine move_block
 
   !> The first block whose joints were all open at the end of the iteration; '' for none.
-  function separated_block(scene, blocks, last) result(text)
-    type(problem), intent(in) :: scene
+  function separated_block(model, blocks, last) result(text)
+    type(problem), intent(in) :: model
     type(block_set), intent(in) :: blocks
     type(joint_state), intent(in) :: last(:)
     character(:), allocatable :: text
@@ -210,10 +210,10 @@ contains
     integer :: j, p, k, b
     has_joint = .false.
     is_touched = .false.
-    do j = 1, size(scene%joints)
-      do p = 1, scene%joints(j)%num_points
-        do k = scene%joints(j)%first(p), scene%joints(j)%first(p + 1) - 1
-          b = blocks%block_of(scene%joints(j)%node(k))
+    do j = 1, size(model%joints)
+      do p = 1, model%joints(j)%num_points
+        do k = model%joints(j)%first(p), model%joints(j)%first(p + 1) - 1
+          b = blocks%block_of(model%joints(j)%node(k))
           has_joint(b) = .true.
           if (last(j)%status(p) /= state_open) is_touched(b) = .true.
         end do
@@ -222,13 +222,13 @@ contains
     text = ''
     b = findloc(has_joint(1:) .and. .not. is_touched(1:), .true., 1)
     if (b == 0) return
-    text = '; at the end of the iteration all joints of '//block_name(scene, blocks, b)// &
+    text = '; at the end of the iteration all joints of '//block_name(model, blocks, b)// &
            ' were open'
   end function separated_block
 
   !> A motion that no joint resists and no load drives; '' for none.
-  function idle_motion(scene, task) result(text)
-    type(problem), intent(in) :: scene
+  function idle_motion(model, task) result(text)
+    type(problem), intent(in) :: model
     type(block_task), intent(in) :: task
     character(:), allocatable :: text
     real(rk), allocatable :: directions(:, :), shares(:), own(:, :), motion(:, :)
@@ -247,11 +247,11 @@ contains
     own = directions(6*b - 5:6*b, :)
     call find_modes(matmul(own, transpose(own)), shares, motion, error)
     if (allocated(error)) then
-      text = '; '//block_name(scene, task%blocks, b)//' can move without resistance; add a support'
+      text = '; '//block_name(model, task%blocks, b)//' can move without resistance; add a support'
       return
     end if
     motion = motion(:, findloc(shares > no_force, .true., 1):)
-    text = '; '//block_name(scene, task%blocks, b)//' can '// &
+    text = '; '//block_name(model, task%blocks, b)//' can '// &
            freedom_text(task%blocks, b, motion)//' without resistance; add a support'
   end function idle_motion
 

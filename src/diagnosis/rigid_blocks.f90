@@ -5,7 +5,7 @@
 !> the farthest node as radius, so that all are lengths (different_meshes.md, 13.7).
 module rigid_blocks
   use body_parts, only: root_of, unite
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use kinds, only: rk
   use problem_definition, only: problem
   use row_tables, only: row_table
@@ -25,40 +25,40 @@ module rigid_blocks
 contains
 
   !> Finds the blocks of a model.
-  subroutine find_blocks(scene, blocks)
-    type(problem), intent(in) :: scene
+  subroutine find_blocks(model, blocks)
+    type(problem), intent(in) :: model
     type(block_set), intent(out) :: blocks
     integer, allocatable :: parent(:)
-    allocate (parent(scene%mesh%num_nodes), source=0)
-    call unite_elements(scene, parent)
-    call unite_bonds(scene, parent)
-    call number_blocks(scene, parent, blocks)
-    call measure_blocks(scene%mesh%x, blocks)
+    allocate (parent(model%mesh%num_nodes), source=0)
+    call unite_elements(model, parent)
+    call unite_bonds(model, parent)
+    call number_blocks(model, parent, blocks)
+    call measure_blocks(model%mesh%x, blocks)
   end subroutine find_blocks
 
   !> Unites the nodes of each element except joints.
-  subroutine unite_elements(scene, parent)
-    type(problem), intent(in) :: scene
+  subroutine unite_elements(model, parent)
+    type(problem), intent(in) :: model
     integer, intent(inout) :: parent(:)
     integer :: e, a, node
-    do e = 1, scene%mesh%num_elements
-      if (scene%mesh%element_type(e) == 'JOINT8') cycle
-      do a = 1, count(scene%mesh%nodes(:, e) > 0)
-        node = scene%mesh%nodes(a, e)
+    do e = 1, model%mesh%num_elements
+      if (model%mesh%element_type(e) == 'JOINT8') cycle
+      do a = 1, count(model%mesh%nodes(:, e) > 0)
+        node = model%mesh%nodes(a, e)
         if (parent(node) == 0) parent(node) = node
-        call unite(parent, scene%mesh%nodes(1, e), node)
+        call unite(parent, model%mesh%nodes(1, e), node)
       end do
     end do
   end subroutine unite_elements
 
   !> Unites the nodes of ties and couplings.
-  subroutine unite_bonds(scene, parent)
-    type(problem), intent(in) :: scene
+  subroutine unite_bonds(model, parent)
+    type(problem), intent(in) :: model
     integer, intent(inout) :: parent(:)
     type(row_table) :: cells
     integer :: i, p, k
-    do i = 1, size(scene%ties)
-      associate (tie => scene%ties(i))
+    do i = 1, size(model%ties)
+      associate (tie => model%ties(i))
         do p = 1, size(tie%node)
           do k = tie%first(p), tie%first(p + 1) - 1
             call unite_nodes(tie%node(p), tie%master(k))
@@ -66,8 +66,8 @@ contains
         end do
       end associate
     end do
-    do i = 1, size(scene%guests)
-      call scene%guests(i)%item%add_cells(cells)
+    do i = 1, size(model%guests)
+      call model%guests(i)%item%add_cells(cells)
     end do
     call cells%finish()
     do i = 1, cells%num_rows()
@@ -86,13 +86,13 @@ contains
   end subroutine unite_bonds
 
   !> Numbers the blocks in the order of their elements.
-  subroutine number_blocks(scene, parent, blocks)
-    type(problem), intent(in) :: scene
+  subroutine number_blocks(model, parent, blocks)
+    type(problem), intent(in) :: model
     integer, intent(in) :: parent(:)
     type(block_set), intent(inout) :: blocks
     integer, allocatable :: number(:)
     integer :: e, node, root
-    associate (mesh => scene%mesh)
+    associate (mesh => model%mesh)
       allocate (number(mesh%num_nodes), blocks%block_of(mesh%num_nodes), source=0)
       allocate (blocks%example(mesh%num_elements))
       do e = 1, mesh%num_elements
@@ -155,17 +155,17 @@ contains
   end subroutine add_node_motion
 
   !> Jumps of a joint point in its axes, for unit motions of the blocks.
-  pure subroutine jump_rows(blocks, x, seam, p, rows)
+  pure subroutine jump_rows(blocks, x, joint, p, rows)
     type(block_set), intent(in) :: blocks
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
-    type(joint), intent(in) :: seam
+    type(dam_joint), intent(in) :: joint
     integer, intent(in) :: p !< point
     real(rk), intent(out) :: rows(:, :, :) !< (6, blocks, 3)
     integer :: i, k
     rows = 0.0_rk
     do i = 1, 3
-      do k = seam%first(p), seam%first(p + 1) - 1
-        call add_node_motion(blocks, x, seam%node(k), seam%weight(k)*seam%rotation(i, :, p), &
+      do k = joint%first(p), joint%first(p + 1) - 1
+        call add_node_motion(blocks, x, joint%node(k), joint%weight(k)*joint%rotation(i, :, p), &
                              rows(:, :, i))
       end do
     end do

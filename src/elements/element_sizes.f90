@@ -1,7 +1,7 @@
 !> Lengths of solid elements: the depth behind a face, and the widths of crack bands.
 module element_sizes
   use crack_band, only: extreme_widths
-  use dam_mesh, only: mesh
+  use dam_mesh, only: fe_mesh
   use element_catalogue, only: make_solid
   use element_formulation, only: solid_element
   use gauss_rules, only: hex_point
@@ -17,29 +17,29 @@ contains
 
   !> Depth of a solid element behind one of its faces: volume over area [m]; exact for a
   !> parallelepiped, huge for a face without area.
-  pure real(rk) function depth_behind(body, element, facet) result(depth)
-    type(mesh), intent(in) :: body
+  pure real(rk) function depth_behind(mesh, element, facet) result(depth)
+    type(fe_mesh), intent(in) :: mesh
     integer, intent(in) :: element !< position of the solid
     integer, intent(in) :: facet(4) !< its nodes
     real(rk) :: volume, area
-    volume = determinant3(edges_at(body%x(:, body%nodes(:, element)), [0.0_rk, 0.0_rk, 0.0_rk]))
-    area = norm2(face_vector(body%x(:, facet)))
+    volume = determinant3(edges_at(mesh%x(:, mesh%nodes(:, element)), [0.0_rk, 0.0_rk, 0.0_rk]))
+    area = norm2(face_vector(mesh%x(:, facet)))
     depth = huge(1.0_rk)
     if (area > 0.0_rk) depth = abs(volume)/area
   end function depth_behind
 
   !> Smallest and largest width of a crack band at the integration points of solid elements, over
   !> all directions of the crack.
-  subroutine measure_widths(body, elements, smallest, largest)
-    type(mesh), intent(in) :: body
+  subroutine measure_widths(mesh, elements, smallest, largest)
+    type(fe_mesh), intent(in) :: mesh
     integer, intent(in) :: elements(:) !< positions
     real(rk), intent(out) :: smallest(:), largest(:) !< (elements) [m]
     class(solid_element), allocatable :: formulation
     real(rk) :: x(3, 8), least, most
     integer :: i, q
     do i = 1, size(elements)
-      call choose_formulation(body%element_type(elements(i)), formulation)
-      x = body%x(:, body%nodes(:, elements(i)))
+      call choose_formulation(mesh%element_type(elements(i)), formulation)
+      x = mesh%x(:, mesh%nodes(:, elements(i)))
       smallest(i) = huge(1.0_rk)
       largest(i) = 0.0_rk
       do q = 1, formulation%num_points

@@ -6,7 +6,7 @@
 !> present. Arrays that no guest needs are not allocated.
 module guest_type
   use kinds, only: rk
-  use dam_mesh, only: mesh
+  use dam_mesh, only: fe_mesh
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
   use row_tables, only: row_table
@@ -60,10 +60,10 @@ contains
   end function has_matrix
 
   !> Adds the guest's constant matrix of a kind, T^T k T (scatter_matrix).
-  subroutine add_matrix(self, kind, model, numbers, matrix, values)
+  subroutine add_matrix(self, kind, mesh, numbers, matrix, values)
     class(guest), intent(in) :: self
     integer, intent(in) :: kind !< stiffness_matrix, damping_matrix or mass_matrix
-    type(mesh), intent(in) :: model
+    type(fe_mesh), intent(in) :: mesh
     type(numbering), intent(in) :: numbers
     type(pattern), intent(in) :: matrix
     real(rk), intent(inout) :: values(:) !< of the pattern
@@ -76,9 +76,9 @@ contains
   end function has_force
 
   !> Adds the nodal forces of the guest at factor 1.
-  subroutine add_force(self, model, density, force)
+  subroutine add_force(self, mesh, density, force)
     class(guest), intent(in) :: self
-    type(mesh), intent(in) :: model
+    type(fe_mesh), intent(in) :: mesh
     real(rk), intent(in) :: density(:) !< (elements) [kg/m3]
     real(rk), intent(inout) :: force(:, :) !< (3, nodes) [N]
   end subroutine add_force

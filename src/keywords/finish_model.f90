@@ -24,8 +24,8 @@ contains
     if (model%is_in_step) then
       call model%cards(model%step_origin%card)%fault(faults, 'the step is not closed', '*END STEP')
     end if
-    model%scene%node_sets = model%node_sets%trimmed()
-    model%scene%element_sets = model%element_sets%trimmed()
+    model%problem%node_sets = model%node_sets%trimmed()
+    model%problem%element_sets = model%element_sets%trimmed()
     call check_contents(model, faults)
     call complete_materials(model, faults)
     call check_materials(model, faults)
@@ -45,9 +45,9 @@ contains
     integer :: i
     allocate (shorter(model%num_loads))
     do i = 1, model%num_loads
-      call move_alloc(model%scene%loads(i)%item, shorter(i)%item)
+      call move_alloc(model%problem%loads(i)%item, shorter(i)%item)
     end do
-    call move_alloc(shorter, model%scene%loads)
+    call move_alloc(shorter, model%problem%loads)
   end subroutine trim_loads
 
   !> A model has nodes, elements and a step.
@@ -57,14 +57,14 @@ contains
     if (faults%has_errors()) return
     if (size(model%cards) == 0) return
     associate (last => model%cards(size(model%cards)))
-      if (model%scene%mesh%num_nodes == 0 .and. size(model%scene%tests) > 0) then
+      if (model%problem%mesh%num_nodes == 0 .and. size(model%problem%tests) > 0) then
         call last%fault(faults, 'the deck ends without nodes', &
                         '*NODE; keyway --material runs the tests of materials')
-      else if (model%scene%mesh%num_nodes == 0) then
+      else if (model%problem%mesh%num_nodes == 0) then
         call last%fault(faults, 'the deck ends without nodes', '*NODE')
-      else if (model%scene%mesh%num_elements == 0) then
+      else if (model%problem%mesh%num_elements == 0) then
         call last%fault(faults, 'the deck ends without elements', '*ELEMENT')
-      else if (size(model%scene%steps) == 0) then
+      else if (size(model%problem%steps) == 0) then
         call last%fault(faults, 'the deck ends without a step', '*STEP')
       end if
     end associate
@@ -75,12 +75,13 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer :: i
-    do i = 1, size(model%scene%materials)
-      if (allocated(model%scene%materials(i)%law)) cycle
+    do i = 1, size(model%problem%materials)
+      if (allocated(model%problem%materials(i)%law)) cycle
       if (has_request(model, i)) cycle ! reported by the request
-      if (.not. any(model%scene%mesh%material_of_element == i)) cycle
+      if (.not. any(model%problem%mesh%material_of_element == i)) cycle
       call model%cards(model%material_origin(i)%card)%fault( &
-        faults, "material '"//model%scene%materials(i)%name//"' has no stiffness", names_of_laws())
+        faults, "material '"//model%problem%materials(i)%name//"' has no stiffness", &
+        names_of_laws())
     end do
   end subroutine check_materials
 
@@ -90,11 +91,11 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     logical, allocatable :: is_bare(:)
     integer :: i
-    if (model%scene%mesh%num_elements == 0) return
+    if (model%problem%mesh%num_elements == 0) return
     do i = 1, size(model%sections)
       if (size(model%sections(i)%elements) == 0) return ! its fault is reported
     end do
-    associate (mesh => model%scene%mesh)
+    associate (mesh => model%problem%mesh)
       is_bare = is_solid(mesh%element_type) .and. mesh%section_of_element == 0
     end associate
     call report_bare(is_bare, 'no section', 'a *SOLID SECTION for each solid element', model, &

@@ -23,9 +23,9 @@ module read_deck
 contains
 
   !> Reads and verifies a deck. The problem can be solved if `faults` has no error.
-  subroutine read_problem(path, scene, faults, echo, for_tests, umat)
+  subroutine read_problem(path, full_problem, faults, echo, for_tests, umat)
     character(*), intent(in) :: path !< of the deck
-    type(problem), allocatable, intent(out) :: scene
+    type(problem), allocatable, intent(out) :: full_problem
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable, intent(out) :: echo !< the deck with every default value
     logical, intent(in), optional :: for_tests !< of materials: the model may be incomplete
@@ -41,16 +41,16 @@ contains
     end if
     call open_draft(path, model)
     if (present(for_tests)) model%runs_tests = for_tests
-    if (present(umat)) model%scene%umat => umat
+    if (present(umat)) model%problem%umat => umat
     call match_cards(list, model, keyword_of_card, faults)
     call handle_cards(list, keyword_of_card, model, faults)
-    model%scene%steps = model%scene%steps(:model%num_steps)
+    model%problem%steps = model%problem%steps(:model%num_steps)
     if (model%runs_tests) then
       call complete_tests(model, faults)
     else
       call complete_and_verify(model, faults)
     end if
-    call move_alloc(model%scene, scene)
+    call move_alloc(model%problem, full_problem)
     echo = echo_of_cards(model%cards)
   end subroutine read_problem
 
@@ -61,7 +61,7 @@ contains
     call complete_model(model, faults)
     if (.not. faults%has_errors()) call verify(model, faults)
     if (faults%has_errors()) return
-    call list_inelastic_blocks(model%scene%mesh, model%scene%materials, model%scene%inelastic)
+    call list_inelastic_blocks(model%problem%mesh, model%problem%materials, model%problem%inelastic)
     call warn_of_missing_fields(model, faults)
   end subroutine complete_and_verify
 
@@ -69,14 +69,14 @@ contains
     character(*), intent(in) :: path
     type(draft), intent(inout) :: model
     integer :: i
-    allocate (model%scene)
-    associate (scene => model%scene)
-      scene%deck_file = path
-      scene%heading = ''
-      allocate (scene%surfaces(0), scene%amplitudes(0), scene%materials(0), scene%joints(0))
-      allocate (scene%ties(0), scene%guests(0), scene%covers(0))
-      allocate (scene%loads(0), scene%initial_values(0), scene%tests(0))
-      allocate (scene%steps(count([(model%cards(i)%keyword == 'STEP', i=1, size(model%cards))])))
+    allocate (model%problem)
+    associate (problem => model%problem)
+      problem%deck_file = path
+      problem%heading = ''
+      allocate (problem%surfaces(0), problem%amplitudes(0), problem%materials(0), problem%joints(0))
+      allocate (problem%ties(0), problem%guests(0), problem%covers(0))
+      allocate (problem%loads(0), problem%initial_values(0), problem%tests(0))
+      allocate (problem%steps(count([(model%cards(i)%keyword == 'STEP', i=1, size(model%cards))])))
     end associate
     allocate (model%surface_origin(0), model%material_origin(0), model%test_origin(0))
     allocate (model%sections(0), model%laws(0), model%joints(0))
@@ -184,9 +184,9 @@ contains
   subroutine open_tables(model)
     type(draft), intent(inout) :: model
     call trim_mesh(model)
-    call model%supports%prepare(model%scene%mesh%num_nodes)
-    call model%point_forces%prepare(model%scene%mesh%num_nodes)
-    allocate (model%joint_of_element(model%scene%mesh%num_elements), source=0)
-    allocate (model%interface_of_element(model%scene%mesh%num_elements), source=0)
+    call model%supports%prepare(model%problem%mesh%num_nodes)
+    call model%point_forces%prepare(model%problem%mesh%num_nodes)
+    allocate (model%joint_of_element(model%problem%mesh%num_elements), source=0)
+    allocate (model%interface_of_element(model%problem%mesh%num_elements), source=0)
   end subroutine open_tables
 end module read_deck

@@ -7,7 +7,7 @@ module verify_blocks
   use block_motion, only: block_name, freedom_text
   use diagnostics, only: diagnostic_list
   use errors, only: error_type
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use guest_list, only: supports_of_step
   use kinds, only: rk
   use model_draft, only: draft
@@ -34,20 +34,20 @@ contains
     real(rk), allocatable :: by_joints(:, :), matrix(:, :), directions(:, :)
     integer, allocatable :: node(:), direction(:)
     integer :: i, n
-    if (size(model%scene%joints) == 0) return
-    call find_blocks(model%scene, blocks)
+    if (size(model%problem%joints) == 0) return
+    call find_blocks(model%problem, blocks)
     if (blocks%num_blocks > most_blocks) return
     n = 6*blocks%num_blocks
     allocate (by_joints(n, n), source=0.0_rk)
-    do i = 1, size(model%scene%joints)
-      call add_joint(model%scene%mesh%x, blocks, model%scene%joints(i), by_joints)
+    do i = 1, size(model%problem%joints)
+      call add_joint(model%problem%mesh%x, blocks, model%problem%joints(i), by_joints)
     end do
-    do i = 1, size(model%scene%steps)
-      associate (step => model%scene%steps(i))
+    do i = 1, size(model%problem%steps)
+      associate (step => model%problem%steps(i))
         if (.not. step%procedure%is_static()) cycle
         matrix = by_joints
-        call supports_of_step(model%scene, step, node, direction)
-        call add_supports(blocks, model%scene%mesh%x, node, direction, matrix)
+        call supports_of_step(model%problem, step, node, direction)
+        call add_supports(blocks, model%problem%mesh%x, node, direction, matrix)
         call null_space(matrix, directions, error)
         if (allocated(error)) then
           call model%cards(model%procedure_card(i))%warn(faults, no_check//error%message)
@@ -61,19 +61,19 @@ contains
   end subroutine verify_free_blocks
 
   !> Adds sum row^T row of the closed points of a joint.
-  subroutine add_joint(x, blocks, seam, matrix)
+  subroutine add_joint(x, blocks, joint, matrix)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(block_set), intent(in) :: blocks
-    type(joint), intent(in) :: seam
+    type(dam_joint), intent(in) :: joint
     real(rk), intent(inout) :: matrix(:, :) !< (6*blocks, 6*blocks)
     real(rk) :: rows(6, blocks%num_blocks, 3), row(6*blocks%num_blocks)
     real(rk) :: friction, cohesion, strength
     integer, allocatable :: used(:)
     integer :: p, i, k, num_held
-    call seam%law%limits(friction, cohesion, strength)
+    call joint%law%limits(friction, cohesion, strength)
     num_held = merge(3, 1, max(friction, cohesion, strength) > 0.0_rk)
-    do p = 1, seam%num_points
-      call jump_rows(blocks, x, seam, p, rows)
+    do p = 1, joint%num_points
+      call jump_rows(blocks, x, joint, p, rows)
       do i = 1, num_held
         row = reshape(rows(:, :, i), [size(row)])
         used = pack([(k, k=1, size(row))], abs(row) > 0.0_rk)
@@ -107,7 +107,7 @@ contains
       num_free = num_free + 1
       if (num_free > most_reported) cycle
       call model%cards(model%procedure_card(number))%warn( &
-        faults, block_name(model%scene, blocks, b)//' can '// &
+        faults, block_name(model%problem, blocks, b)//' can '// &
         freedom_text(blocks, b, motion(:, findloc(share > no_share, .true., 1):))// &
         ': only joints hold the block, without friction, cohesion and strength')
     end do

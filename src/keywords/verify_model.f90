@@ -40,7 +40,7 @@ contains
     integer :: e, corner, num_odd, first_odd
     num_odd = 0
     first_odd = 0
-    associate (mesh => model%scene%mesh)
+    associate (mesh => model%problem%mesh)
       do e = 1, mesh%num_elements
         if (.not. is_solid(mesh%element_type(e))) cycle
         x = mesh%x(:, mesh%nodes(:, e))
@@ -66,7 +66,7 @@ contains
     integer :: corner
     others = ''
     if (num_odd > 1) others = '; also '//as_text(num_odd - 1)//' more elements'
-    associate (spot => model%element_origin(e), mesh => model%scene%mesh)
+    associate (spot => model%element_origin(e), mesh => model%problem%mesh)
       corner = corner_fault(mesh%x(:, mesh%nodes(:, e)))
       call model%cards(spot%card)%warn(faults, 'element '//as_text(mesh%element_id(e))// &
                                        ' has a Jacobian that is zero or negative at corner '// &
@@ -80,7 +80,7 @@ contains
     integer, intent(in) :: e !< position of the element
     integer, intent(in) :: corner !< 1..8
     type(diagnostic_list), intent(inout) :: faults
-    associate (spot => model%element_origin(e), mesh => model%scene%mesh)
+    associate (spot => model%element_origin(e), mesh => model%problem%mesh)
       call model%cards(spot%card)%fault_at(faults, spot%line, 1, 'element '// &
                                            as_text(mesh%element_id(e))// &
                                            ' is inverted or flat at corner '//as_text(corner)// &
@@ -96,9 +96,9 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer :: i
-    if (any(model%scene%materials%density > 0.0_rk)) return
-    do i = 1, size(model%scene%steps)
-      if (model%scene%steps(i)%procedure%is_static()) cycle
+    if (any(model%problem%materials%density > 0.0_rk)) return
+    do i = 1, size(model%problem%steps)
+      if (model%problem%steps(i)%procedure%is_static()) cycle
       call model%cards(model%procedure_card(i))%fault( &
         faults, 'no material has a mass', '*DENSITY in a *MATERIAL')
       return
@@ -109,15 +109,15 @@ contains
   subroutine verify_weight(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    logical :: is_told(size(model%scene%loads))
+    logical :: is_told(size(model%problem%loads))
     integer :: s, i
     is_told = .false.
-    do s = 1, size(model%scene%steps)
-      do i = 1, size(model%scene%steps(s)%loads)
-        associate (number => model%scene%steps(s)%loads(i)%load)
+    do s = 1, size(model%problem%steps)
+      do i = 1, size(model%problem%steps(s)%loads)
+        associate (number => model%problem%steps(s)%loads(i)%load)
           if (is_told(number)) cycle
           is_told(number) = .true.
-          select type (weight => model%scene%loads(number)%item)
+          select type (weight => model%problem%loads(number)%item)
           type is (gravity_load)
             if (has_mass(model, weight%elements)) cycle
             call model%cards(model%procedure_card(s))%warn( &
@@ -134,9 +134,9 @@ contains
     integer :: i, number
     has_mass = .false.
     do i = 1, size(elements)
-      number = model%scene%mesh%material_of_element(elements(i))
+      number = model%problem%mesh%material_of_element(elements(i))
       if (number == 0) cycle
-      has_mass = model%scene%materials(number)%density > 0.0_rk
+      has_mass = model%problem%materials(number)%density > 0.0_rk
       if (has_mass) return
     end do
   end function has_mass
@@ -146,10 +146,10 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer :: i
-    if (.not. any(model%scene%initial_values%is_velocity)) return
-    do i = 1, size(model%scene%steps)
-      if (model%scene%steps(i)%procedure%has_inertia) return
-      if (.not. model%scene%steps(i)%procedure%is_static()) cycle
+    if (.not. any(model%problem%initial_values%is_velocity)) return
+    do i = 1, size(model%problem%steps)
+      if (model%problem%steps(i)%procedure%has_inertia) return
+      if (.not. model%problem%steps(i)%procedure%is_static()) cycle
       call model%cards(model%procedure_card(i))%warn( &
         faults, 'a static step sets the initial velocities (*INITIAL CONDITIONS) to zero')
       return
@@ -164,13 +164,13 @@ contains
     integer, allocatable :: body(:), example(:), node(:), direction(:)
     integer :: i, b
     integer :: num_before
-    call list_groups(model%scene, groups)
-    call find_bodies(model%scene%mesh, groups, body, example)
+    call list_groups(model%problem, groups)
+    call find_bodies(model%problem%mesh, groups, body, example)
     num_before = faults%num_errors
-    do i = 1, size(model%scene%steps)
-      associate (step => model%scene%steps(i), place => model%cards(model%procedure_card(i)))
+    do i = 1, size(model%problem%steps)
+      associate (step => model%problem%steps(i), place => model%cards(model%procedure_card(i)))
         if (step%procedure%has_inertia) cycle
-        call supports_of_step(model%scene, step, node, direction)
+        call supports_of_step(model%problem, step, node, direction)
         if (size(node) == 0) then
           call place%fault(faults, 'the model has no supports in this step', '*BOUNDARY')
         else
@@ -191,10 +191,10 @@ contains
     integer, intent(in) :: example !< an element of it
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable :: motion
-    motion = free_motion(model%scene%mesh%x(:, nodes), dofs)
+    motion = free_motion(model%problem%mesh%x(:, nodes), dofs)
     if (motion == '') return
     call model%cards(model%procedure_card(number))%fault( &
-      faults, 'the body with element '//as_text(model%scene%mesh%element_id(example))// &
+      faults, 'the body with element '//as_text(model%problem%mesh%element_id(example))// &
       set_of_element(model, example)//' is not held: the body can '//motion, &
       'supports (*BOUNDARY), or a joint to a supported body')
   end subroutine verify_body
@@ -206,9 +206,9 @@ contains
     character(:), allocatable :: text
     integer :: i
     text = ''
-    do i = 1, size(model%scene%element_sets)
-      if (.not. contains_position(model%scene%element_sets(i)%members, element)) cycle
-      text = ' of set '//model%scene%element_sets(i)%name
+    do i = 1, size(model%problem%element_sets)
+      if (.not. contains_position(model%problem%element_sets(i)%members, element)) cycle
+      text = ' of set '//model%problem%element_sets(i)%name
       return
     end do
   end function set_of_element

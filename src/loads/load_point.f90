@@ -1,7 +1,7 @@
 !> *CLOAD: forces on nodes.
 module load_point
   use applied_load, only: load
-  use dam_mesh, only: mesh
+  use dam_mesh, only: fe_mesh
   use kinds, only: rk
   implicit none
   private
@@ -17,9 +17,9 @@ module load_point
 contains
 
   !> The force on each node; a node named twice is loaded twice.
-  subroutine add_force(self, model, density, force)
+  subroutine add_force(self, mesh, density, force)
     class(point_load), intent(in) :: self
-    type(mesh), intent(in) :: model
+    type(fe_mesh), intent(in) :: mesh
     real(rk), intent(in) :: density(:)
     real(rk), intent(inout) :: force(:, :)
     integer :: i

@@ -1,7 +1,7 @@
 !> *DLOAD P1..P6 and HP1..HP6, *DSLOAD P: pressure on faces of solids, uniform or hydrostatic.
 module load_pressure
   use applied_load, only: load
-  use dam_mesh, only: mesh, surface
+  use dam_mesh, only: fe_mesh, surface
   use kinds, only: rk
   use mesh_faces, only: face_nodes
   use shape_quad4, only: facet_point
@@ -22,16 +22,16 @@ module load_pressure
 contains
 
   !> Minus the integral of N_a p n over each face.
-  subroutine add_force(self, model, density, force)
+  subroutine add_force(self, mesh, density, force)
     class(pressure_load), intent(in) :: self
-    type(mesh), intent(in) :: model
+    type(fe_mesh), intent(in) :: mesh
     real(rk), intent(in) :: density(:)
     real(rk), intent(inout) :: force(:, :)
     real(rk) :: share(3, 4)
     integer :: i, a, nodes(4)
     do i = 1, size(self%faces%element)
-      nodes = face_nodes(model, self%faces%element(i), self%faces%face(i))
-      share = face_force(self, model%x(:, nodes))
+      nodes = face_nodes(mesh, self%faces%element(i), self%faces%face(i))
+      share = face_force(self, mesh%x(:, nodes))
       do a = 1, 4
         force(:, nodes(a)) = force(:, nodes(a)) + share(:, a)
       end do

@@ -7,7 +7,7 @@
 !> diagonal.
 module load_reservoir
   use applied_load, only: load
-  use dam_mesh, only: mesh, surface
+  use dam_mesh, only: fe_mesh, surface
   use dof_numbering, only: numbering
   use guest_type, only: mass_matrix
   use kinds, only: rk
@@ -39,17 +39,17 @@ module load_reservoir
 contains
 
   !> Minus rho g times the integral of y N_a n.
-  subroutine add_force(self, model, density, force)
+  subroutine add_force(self, mesh, density, force)
     class(reservoir_load), intent(in) :: self
-    type(mesh), intent(in) :: model
+    type(fe_mesh), intent(in) :: mesh
     real(rk), intent(in) :: density(:)
     real(rk), intent(inout) :: force(:, :)
     type(wet_facet) :: wet
     integer :: i, a, nodes(4)
     if (.not. self%is_hydrostatic) return
     do i = 1, size(self%faces%element)
-      nodes = face_nodes(model, self%faces%element(i), self%faces%face(i))
-      call integrate_wet_part(model%x(:, nodes), self%water, wet)
+      nodes = face_nodes(mesh, self%faces%element(i), self%faces%face(i))
+      call integrate_wet_part(mesh%x(:, nodes), self%water, wet)
       do a = 1, 4
         force(:, nodes(a)) = force(:, nodes(a)) - self%density*self%gravity*wet%head(:, a)
       end do
@@ -63,30 +63,30 @@ contains
   end function has_matrix
 
   !> Adds the added mass of the water. The nodes are not coupled.
-  subroutine add_matrix(self, kind, model, numbers, matrix, values)
+  subroutine add_matrix(self, kind, mesh, numbers, matrix, values)
     class(reservoir_load), intent(in) :: self
     integer, intent(in) :: kind
-    type(mesh), intent(in) :: model
+    type(fe_mesh), intent(in) :: mesh
     type(numbering), intent(in) :: numbers
     type(pattern), intent(in) :: matrix
     real(rk), intent(inout) :: values(:)
     real(rk), allocatable :: blocks(:, :, :)
-    allocate (blocks(3, 3, model%num_nodes), source=0.0_rk)
-    call self%add_added_mass(model, blocks)
+    allocate (blocks(3, 3, mesh%num_nodes), source=0.0_rk)
+    call self%add_added_mass(mesh, blocks)
     call scatter_blocks(numbers, blocks, matrix, values)
   end subroutine add_matrix
 
   !> Blocks m n n^T or their diagonal at the wetted nodes.
-  subroutine add_added_mass(self, model, blocks)
+  subroutine add_added_mass(self, mesh, blocks)
     class(reservoir_load), intent(in) :: self
-    type(mesh), intent(in) :: model
+    type(fe_mesh), intent(in) :: mesh
     real(rk), intent(inout) :: blocks(:, :, :) !< (3, 3, nodes) [kg]
     real(rk), allocatable :: normal(:, :), mass(:)
     real(rk) :: n(3)
     integer :: node, i, j
     if (.not. self%has_added_mass) return
-    call gather_water(self, model, normal, mass)
-    do node = 1, model%num_nodes
+    call gather_water(self, mesh, normal, mass)
+    do node = 1, mesh%num_nodes
       if (mass(node) <= 0.0_rk) cycle
       n = normal(:, node)/norm2(normal(:, node))
       do j = 1, 3
@@ -99,19 +99,19 @@ contains
   end subroutine add_added_mass
 
   !> Area vector and mass of the water at each node.
-  subroutine gather_water(self, model, normal, mass)
+  subroutine gather_water(self, mesh, normal, mass)
     class(reservoir_load), intent(in) :: self
-    type(mesh), intent(in) :: model
+    type(fe_mesh), intent(in) :: mesh
     real(rk), allocatable, intent(out) :: normal(:, :) !< (3, nodes) of any length
     real(rk), allocatable, intent(out) :: mass(:) !< (nodes) [kg]
     type(wet_facet) :: wet
     real(rk) :: factor
     integer :: i, a, nodes(4)
-    allocate (normal(3, model%num_nodes), mass(model%num_nodes), source=0.0_rk)
+    allocate (normal(3, mesh%num_nodes), mass(mesh%num_nodes), source=0.0_rk)
     factor = westergaard*self%density*sqrt(self%water%level - self%water%bed)
     do i = 1, size(self%faces%element)
-      nodes = face_nodes(model, self%faces%element(i), self%faces%face(i))
-      call integrate_wet_part(model%x(:, nodes), self%water, wet)
+      nodes = face_nodes(mesh, self%faces%element(i), self%faces%face(i))
+      call integrate_wet_part(mesh%x(:, nodes), self%water, wet)
       do a = 1, 4
         normal(:, nodes(a)) = normal(:, nodes(a)) + wet%area(:, a)
         mass(nodes(a)) = mass(nodes(a)) + factor*wet%root(a)
@@ -120,15 +120,15 @@ contains
   end subroutine gather_water
 
   !> Area of the wetted part of the surface [m2]; 0 if the surface is dry.
-  pure real(rk) function wetted_area(self, model) result(area)
+  pure real(rk) function wetted_area(self, mesh) result(area)
     type(reservoir_load), intent(in) :: self
-    type(mesh), intent(in) :: model
+    type(fe_mesh), intent(in) :: mesh
     type(wet_facet) :: wet
     integer :: i, nodes(4)
     area = 0.0_rk
     do i = 1, size(self%faces%element)
-      nodes = face_nodes(model, self%faces%element(i), self%faces%face(i))
-      call integrate_wet_part(model%x(:, nodes), self%water, wet)
+      nodes = face_nodes(mesh, self%faces%element(i), self%faces%face(i))
+      call integrate_wet_part(mesh%x(:, nodes), self%water, wet)
       area = area + norm2(sum(wet%area, 2))
     end do
   end function wetted_area

@@ -6,8 +6,8 @@
 !> that open points connect with the upstream edge; the solver determines these points.
 module load_uplift
   use applied_load, only: load
-  use dam_mesh, only: mesh
-  use joint_points, only: joint
+  use dam_mesh, only: fe_mesh
+  use joint_points, only: dam_joint
   use joint_rim, only: distance_to_edges, face_rim
   use kinds, only: rk
   use load_reservoir, only: reservoir_load
@@ -29,43 +29,43 @@ module load_uplift
 contains
 
   !> Hydrostatic pressure of a reservoir at the points of a joint [Pa].
-  pure function hydrostatic_pressure(lake, seam) result(pressure)
+  pure function hydrostatic_pressure(lake, joint) result(pressure)
     type(reservoir_load), intent(in) :: lake
-    type(joint), intent(in) :: seam
-    real(rk) :: pressure(seam%num_points)
+    type(dam_joint), intent(in) :: joint
+    real(rk) :: pressure(joint%num_points)
     pressure = 0.0_rk
     if (lake%is_hydrostatic) then
-      pressure = lake%density*lake%gravity*max(0.0_rk, lake%water%level - seam%x(lake%water%up, :))
+      pressure = lake%density*lake%gravity*max(0.0_rk, lake%water%level - joint%x(lake%water%up, :))
     end if
   end function hydrostatic_pressure
 
   !> The classical diagram: full head at one edge, falling to zero at the other.
-  subroutine fill_linear(model, seam, rim, lake, is_tail, self)
-    type(mesh), intent(in) :: model
-    type(joint), intent(in) :: seam
+  subroutine fill_linear(mesh, joint, rim, lake, is_tail, self)
+    type(fe_mesh), intent(in) :: mesh
+    type(dam_joint), intent(in) :: joint
     type(face_rim), intent(in) :: rim
     type(reservoir_load), intent(in) :: lake
     logical, intent(in) :: is_tail !< the water stands at the downstream edge
     type(uplift_load), intent(inout) :: self
     real(rk) :: a, b
     integer :: p
-    self%pressure = hydrostatic_pressure(lake, seam)
-    do p = 1, seam%num_points
-      a = distance_to_edges(model%x, rim%upstream, seam%x(:, p))
-      b = distance_to_edges(model%x, rim%downstream, seam%x(:, p))
+    self%pressure = hydrostatic_pressure(lake, joint)
+    do p = 1, joint%num_points
+      a = distance_to_edges(mesh%x, rim%upstream, joint%x(:, p))
+      b = distance_to_edges(mesh%x, rim%downstream, joint%x(:, p))
       if (is_tail) then
         self%pressure(p) = self%pressure(p)*a/(a + b)
       else
         self%pressure(p) = self%pressure(p)*b/(a + b)
       end if
     end do
-    call list_forces(seam, self)
+    call list_forces(joint, self)
   end subroutine fill_linear
 
   !> Full head, and the paths of the water.
-  subroutine fill_open(model, seam, rim, facets, lake, self)
-    type(mesh), intent(in) :: model
-    type(joint), intent(in) :: seam
+  subroutine fill_open(mesh, joint, rim, facets, lake, self)
+    type(fe_mesh), intent(in) :: mesh
+    type(dam_joint), intent(in) :: joint
     type(face_rim), intent(in) :: rim
     integer, intent(in) :: facets(:, :) !< (4, facets) of the slave face
     type(reservoir_load), intent(in) :: lake
@@ -73,32 +73,32 @@ contains
     real(rk), allocatable :: distance(:)
     integer :: p
     self%follows_opening = .true.
-    self%pressure = hydrostatic_pressure(lake, seam)
-    allocate (distance(seam%num_points), self%node(0), self%force(3, 0))
-    do p = 1, seam%num_points
-      distance(p) = distance_to_edges(model%x, rim%upstream, seam%x(:, p))
+    self%pressure = hydrostatic_pressure(lake, joint)
+    allocate (distance(joint%num_points), self%node(0), self%force(3, 0))
+    do p = 1, joint%num_points
+      distance(p) = distance_to_edges(mesh%x, rim%upstream, joint%x(:, p))
     end do
-    call build_paths(model%num_nodes, seam, facets, distance, self%paths)
+    call build_paths(mesh%num_nodes, joint, facets, distance, self%paths)
   end subroutine fill_open
 
   !> Forces area*pressure along the normal on the slave face, and opposite on the master face.
-  subroutine list_forces(seam, self)
-    type(joint), intent(in) :: seam
+  subroutine list_forces(joint, self)
+    type(dam_joint), intent(in) :: joint
     type(uplift_load), intent(inout) :: self
     integer :: p, k
-    self%node = seam%node
-    allocate (self%force(3, size(seam%node)))
-    do p = 1, seam%num_points
-      do k = seam%first(p), seam%first(p + 1) - 1
-        self%force(:, k) = seam%weight(k)*seam%area(p)*self%pressure(p)*seam%rotation(1, :, p)
+    self%node = joint%node
+    allocate (self%force(3, size(joint%node)))
+    do p = 1, joint%num_points
+      do k = joint%first(p), joint%first(p + 1) - 1
+        self%force(:, k) = joint%weight(k)*joint%area(p)*self%pressure(p)*joint%rotation(1, :, p)
       end do
     end do
   end subroutine list_forces
 
   !> Adds the forces of a constant profile; does nothing for profile OPEN.
-  subroutine add_force(self, model, density, force)
+  subroutine add_force(self, mesh, density, force)
     class(uplift_load), intent(in) :: self
-    type(mesh), intent(in) :: model
+    type(fe_mesh), intent(in) :: mesh
     real(rk), intent(in) :: density(:)
     real(rk), intent(inout) :: force(:, :)
     integer :: k

@@ -3,7 +3,7 @@
 !> Points are connected if they belong to nodes of one slave facet (points at nodes) or have a
 !> common slave node (points between nodes).
 module water_paths
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use kinds, only: rk
   use row_tables, only: row_table, transpose_rows
   implicit none
@@ -23,16 +23,16 @@ module water_paths
 contains
 
   !> Groups the points of a joint and finds the inlets.
-  subroutine build_paths(num_nodes, seam, facets, distance, net)
+  subroutine build_paths(num_nodes, joint, facets, distance, net)
     integer, intent(in) :: num_nodes !< of the mesh
-    type(joint), intent(in) :: seam
+    type(dam_joint), intent(in) :: joint
     integer, intent(in) :: facets(:, :) !< (4, facets) of the slave face
     real(rk), intent(in) :: distance(:) !< (points) to the upstream edge [m]
     type(path_net), intent(out) :: net
     type(row_table) :: points_of_node
     integer :: f
-    call list_points_of_nodes(num_nodes, seam, points_of_node)
-    if (seam%is_nodal) then
+    call list_points_of_nodes(num_nodes, joint, points_of_node)
+    if (joint%is_nodal) then
       do f = 1, size(facets, 2)
         associate (a => points_of_node%row(facets(1, f)), b => points_of_node%row(facets(2, f)), &
                    c => points_of_node%row(facets(3, f)), d => points_of_node%row(facets(4, f)))
@@ -47,14 +47,14 @@ contains
   end subroutine build_paths
 
   !> Points by their slave nodes.
-  subroutine list_points_of_nodes(num_nodes, seam, points_of_node)
+  subroutine list_points_of_nodes(num_nodes, joint, points_of_node)
     integer, intent(in) :: num_nodes
-    type(joint), intent(in) :: seam
+    type(dam_joint), intent(in) :: joint
     type(row_table), intent(out) :: points_of_node
     type(row_table) :: nodes_of_point
     integer :: p
-    do p = 1, seam%num_points
-      call nodes_of_point%append(seam%node(seam%first(p):seam%first_master(p) - 1))
+    do p = 1, joint%num_points
+      call nodes_of_point%append(joint%node(joint%first(p):joint%first_master(p) - 1))
     end do
     call nodes_of_point%finish()
     call transpose_rows(nodes_of_point, num_nodes, points_of_node)

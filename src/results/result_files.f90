@@ -50,69 +50,69 @@ module result_files
 contains
 
   !> Opens all files. `remarks` are the warnings of the deck.
-  subroutine open_results(self, scene, folder, remarks, error)
+  subroutine open_results(self, model, folder, remarks, error)
     class(result_folder), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     character(*), intent(in) :: folder !< made when it is not there
     type(diagnostic_list), intent(in) :: remarks
     type(error_type), allocatable, intent(out) :: error
     call self%costs%start('open', 'results', 'output')
     self%summary%remarks = remarks
     self%summary%message = ''
-    self%summary%deck_digest = digest_of_file(scene%deck_file)
+    self%summary%deck_digest = digest_of_file(model%deck_file)
     allocate (self%summary%steps(0))
-    self%stem = folder//'/'//base_name(scene%deck_file)
-    call self%record%open(scene)
+    self%stem = folder//'/'//base_name(model%deck_file)
+    call self%record%open(model)
     call make_folder(folder, error)
     if (.not. allocated(error)) call remove_earlier_files(self%stem)
-    if (.not. allocated(error)) call self%open_writers(scene, error)
+    if (.not. allocated(error)) call self%open_writers(model, error)
     self%is_open = .not. allocated(error)
     call self%costs%stop()
-    if (self%is_open) call self%summarise(scene, error)
+    if (self%is_open) call self%summarise(model, error)
   end subroutine open_results
 
   !> One writer after the other.
-  subroutine open_writers(self, scene, error)
+  subroutine open_writers(self, model, error)
     class(result_folder), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(error_type), allocatable, intent(out) :: error
     integer :: w
     call list_writers(self%writers)
     do w = 1, size(self%writers)
-      call self%writers(w)%item%open(scene, self%stem, self%record, error)
+      call self%writers(w)%item%open(model, self%stem, self%record, error)
       if (allocated(error)) return
     end do
   end subroutine open_writers
 
   !> An increment has converged: maxima, files, log.
-  subroutine increment_done(self, scene, now, error)
+  subroutine increment_done(self, model, now, error)
     class(result_folder), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
-    if (now%step /= self%record%step) call self%enter_step(scene, now%step)
+    if (now%step /= self%record%step) call self%enter_step(model, now%step)
     call self%costs%start('recover', 'envelopes', 'output')
-    call self%record%note(scene, now)
+    call self%record%note(model, now)
     self%has_unwritten_envelopes = size(self%record%active) > 0
     call self%summary%note(now)
     call self%costs%stop()
-    call self%write_increment(scene, now, error)
+    call self%write_increment(model, now, error)
     if (allocated(error)) return
-    if (now%is_last_of_step) call self%write_envelopes(scene, error)
+    if (now%is_last_of_step) call self%write_envelopes(model, error)
     if (allocated(error)) return
     call self%costs%start('write', 'log', 'output')
     if (now%increment > 0 .or. starts_analysis(now)) call self%log%progress(line_of(now))
     call self%say_warnings()
     call self%costs%stop()
     if (wall_clock() - self%summarised_at > seconds_between_summaries) then
-      call self%summarise(scene, error)
+      call self%summarise(model, error)
     end if
   end subroutine increment_done
 
   !> Every writer in turn, each with its line in the ledger.
-  subroutine write_increment(self, scene, now, error)
+  subroutine write_increment(self, model, now, error)
     class(result_folder), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
     integer :: w
@@ -120,7 +120,7 @@ contains
       associate (part => self%writers(w))
         if (part%item%is_idle) cycle
         call self%costs%start('write', part%label, 'output')
-        call part%item%write_increment(scene, now, self%record, error)
+        call part%item%write_increment(model, now, self%record, error)
         call self%costs%stop()
       end associate
       if (allocated(error)) return
@@ -128,27 +128,27 @@ contains
   end subroutine write_increment
 
   !> The run stops within a step: what was not due at its last increment is written now.
-  subroutine write_last(self, scene, now, error)
+  subroutine write_last(self, model, now, error)
     class(result_folder), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
     type(state) :: last
     if (now%step /= self%record%step .or. now%increment == 0 .or. now%is_last_of_step) return
     last = now
     last%is_stop = .true.
-    call self%write_increment(scene, last, error)
+    call self%write_increment(model, last, error)
   end subroutine write_last
 
   !> A *FREQUENCY step has found its modes.
-  subroutine modes_found(self, scene, step, modes, error)
+  subroutine modes_found(self, model, step, modes, error)
     class(result_folder), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     integer, intent(in) :: step
     type(vibration_mode), intent(in) :: modes(:)
     type(error_type), allocatable, intent(out) :: error
     integer :: i, w
-    call self%enter_step(scene, step)
+    call self%enter_step(model, step)
     call self%summary%note_modes(modes)
     do i = 1, size(modes)
       call self%log%say('step '//as_text(step)//'  mode '//as_text(i)//'  '// &
@@ -157,28 +157,28 @@ contains
     do w = 1, size(self%writers)
       if (self%writers(w)%item%is_idle) cycle
       call self%costs%start('write', self%writers(w)%label, 'output')
-      call self%writers(w)%item%write_modes(scene, step, modes, self%record, error)
+      call self%writers(w)%item%write_modes(model, step, modes, self%record, error)
       call self%costs%stop()
       if (allocated(error)) return
     end do
-    call self%summarise(scene, error)
+    call self%summarise(model, error)
   end subroutine modes_found
 
   !> A step begins.
-  subroutine enter_step(self, scene, step)
+  subroutine enter_step(self, model, step)
     class(result_folder), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     integer, intent(in) :: step
     call self%costs%start('open', 'results', 'output')
-    call self%record%begin_step(scene, step)
-    call self%summary%begin_step(scene, step)
+    call self%record%begin_step(model, step)
+    call self%summary%begin_step(model, step)
     call self%costs%stop()
   end subroutine enter_step
 
   !> The envelopes of the step, once.
-  subroutine write_envelopes(self, scene, error)
+  subroutine write_envelopes(self, model, error)
     class(result_folder), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(error_type), allocatable, intent(out) :: error
     integer :: w
     if (.not. self%has_unwritten_envelopes) return
@@ -186,16 +186,16 @@ contains
     do w = 1, size(self%writers)
       if (self%writers(w)%item%is_idle) cycle
       call self%costs%start('write', self%writers(w)%label, 'output')
-      call self%writers(w)%item%write_envelopes(scene, self%record, error)
+      call self%writers(w)%item%write_envelopes(model, self%record, error)
       call self%costs%stop()
       if (allocated(error)) return
     end do
   end subroutine write_envelopes
 
   !> The run has ended. Everything that can still be written is; the first failure is reported.
-  subroutine finish(self, scene, now, status, message, error)
+  subroutine finish(self, model, now, status, message, error)
     class(result_folder), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now !< the last state reached
     character(*), intent(in) :: status !< 'finished' or 'stopped'
     character(*), intent(in) :: message !< why it stopped; '' when it finished
@@ -206,8 +206,8 @@ contains
     self%is_open = .false.
     self%summary%status = status
     self%summary%message = message
-    if (status == 'stopped') call self%write_last(scene, now, error)
-    call self%write_envelopes(scene, failure)
+    if (status == 'stopped') call self%write_last(model, now, error)
+    call self%write_envelopes(model, failure)
     call keep_first(error, failure)
     do w = 1, size(self%writers)
       if (self%writers(w)%item%is_idle) cycle
@@ -218,7 +218,7 @@ contains
       call self%costs%stop()
     end do
     call self%say_warnings()
-    call self%summarise(scene, failure)
+    call self%summarise(model, failure)
     call keep_first(error, failure)
   end subroutine finish
 
@@ -239,12 +239,12 @@ contains
   end subroutine say_warnings
 
   !> Writes job.json.
-  subroutine summarise(self, scene, error)
+  subroutine summarise(self, model, error)
     class(result_folder), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(error_type), allocatable, intent(out) :: error
     call self%costs%start('write', 'JSON', 'output')
-    call write_summary(self%stem//'.json', scene, self%summary, self%record, self%costs, error)
+    call write_summary(self%stem//'.json', model, self%summary, self%record, self%costs, error)
     call self%costs%stop()
     self%summarised_at = wall_clock()
   end subroutine summarise

@@ -67,16 +67,16 @@ contains
   end subroutine read_field
 
   !> Strain of the displacements and elastic stress at all points.
-  subroutine set_elastic(scene, now)
-    type(problem), intent(in) :: scene
+  subroutine set_elastic(model, now)
+    type(problem), intent(in) :: model
     type(state), intent(inout) :: now !< with displacements and points at rest
     real(rk) :: d(6, 6), moved(24)
     integer :: i, e, q, p
-    do i = 1, size(scene%inelastic)
-      associate (part => scene%inelastic(i))
-        call scene%materials(part%material)%law%elastic_stiffness(d)
+    do i = 1, size(model%inelastic)
+      associate (part => model%inelastic(i))
+        call model%materials(part%material)%law%elastic_stiffness(d)
         do e = 1, size(part%elements)
-          moved = reshape(now%u(:, scene%mesh%nodes(:, part%elements(e))), [24])
+          moved = reshape(now%u(:, model%mesh%nodes(:, part%elements(e))), [24])
           do q = 1, part%points_of_element
             p = (e - 1)*part%points_of_element + q
             now%points(i)%strain(:, p) = matmul(part%b(:, :, q, e), moved)

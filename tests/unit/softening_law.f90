@@ -25,22 +25,22 @@ module softening_law
 
 contains
 
-  !> Gives some boxes of a scene the law, and lists them.
-  subroutine put_law(law, boxes, scene)
+  !> Gives some boxes of a model the law, and lists them.
+  subroutine put_law(law, boxes, model)
     type(damage_law), intent(in) :: law
     integer, intent(in) :: boxes(:) !< materials
-    type(problem), intent(inout) :: scene
+    type(problem), intent(inout) :: model
     type(damage_law) :: own
     integer :: i
     own = law
     own%is_nonlinear = .true.
     own%num_state = 1
     do i = 1, size(boxes)
-      deallocate (scene%materials(boxes(i))%law)
-      allocate (scene%materials(boxes(i))%law, source=own)
-      scene%materials(boxes(i))%name = 'SOFT'
+      deallocate (model%materials(boxes(i))%law)
+      allocate (model%materials(boxes(i))%law, source=own)
+      model%materials(boxes(i))%name = 'SOFT'
     end do
-    call list_inelastic_blocks(scene%mesh, scene%materials, scene%inelastic)
+    call list_inelastic_blocks(model%mesh, model%materials, model%inelastic)
   end subroutine put_law
 
   pure subroutine elastic_stiffness(self, d)

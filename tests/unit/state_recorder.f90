@@ -3,7 +3,7 @@ module state_recorder
   use errors, only: error_type
   use problem_definition, only: problem
   use analysis_state, only: state
-  use row_scene, only: recorder
+  use row_model, only: recorder
   implicit none
   private
   public :: recorder_of_states
@@ -18,9 +18,9 @@ module state_recorder
 contains
 
   !> Keeps a copy.
-  subroutine keep_state(self, scene, now, error)
+  subroutine keep_state(self, model, now, error)
     class(recorder_of_states), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
     type(state), allocatable :: longer(:)
@@ -31,6 +31,6 @@ contains
     if (n > 0) longer(:n) = self%states
     longer(n + 1) = now
     call move_alloc(longer, self%states)
-    if (size(scene%steps) == 0) allocate (error)
+    if (size(model%steps) == 0) allocate (error)
   end subroutine keep_state
 end module state_recorder

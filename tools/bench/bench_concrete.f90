@@ -1,6 +1,6 @@
 !> Time of the law of concrete per point, in blocks as in an analysis, on one thread.
 program bench_concrete
-  use concrete_scene, only: lee_fenves, repeat_chance, table_one
+  use concrete_model, only: lee_fenves, repeat_chance, table_one
   use damage_constants, only: concrete_constants
   use errors, only: error_type
   use kinds, only: rk

@@ -1,6 +1,7 @@
 !> Time of the envelopes S1 and DAMAGET of an increment over one solve, for shares of cracked
 !> elements: bench_envelopes ACROSS ALONG OVER BLOCKS. The bench sets the state of the points.
 program bench_envelopes
+  use integrator_catalogue, only: procedure_named
   use kinds, only: rk, long
   use errors, only: error_type
   use problem_definition, only: problem
@@ -19,12 +20,12 @@ program bench_envelopes
   use blas_threads, only: restart_with_fast_libraries
   use solver_cholmod, only: cholmod_solver
   use run_records, only: run_record
-  use arch_scene, only: make_arch
+  use arch_model, only: make_arch
   use hand_law, only: by_hand, set_elastic
   implicit none
   real(rk), parameter :: shares(5) = [0.0_rk, 0.01_rk, 0.05_rk, 0.3_rk, 1.0_rk]
   integer, parameter :: repeats = 20, warm_up = 4 !< increments; the operator is made in the third
-  type(problem), target :: scene
+  type(problem), target :: model
   type(step_fixity), allocatable :: fixities(:)
   type(state) :: now
   real(rk) :: solve
@@ -35,9 +36,9 @@ program bench_envelopes
     call get_command_argument(k, word)
     read (word, *) sizes(k)
   end do
-  call make_arch(sizes(1), sizes(2), sizes(3), sizes(4), scene, fixities)
+  call make_arch(sizes(1), sizes(2), sizes(3), sizes(4), model, fixities)
   solve = time_of_solve()
-  write (*, '(i0,a,f8.4,a)') scene%mesh%num_elements, ' elements, one solve ', solve, ' s'
+  write (*, '(i0,a,f8.4,a)') model%mesh%num_elements, ' elements, one solve ', solve, ' s'
   call prepare()
   do k = 1, size(shares)
     call crack(shares(k))
@@ -57,13 +58,13 @@ contains
     real(rk), allocatable :: stiffness(:), q(:, :)
     real(rk) :: start
     integer :: i
-    deallocate (scene%joints)
-    allocate (scene%joints(0))
-    call number_step(scene%mesh, scene%joints, scene%ties, fixities, numbers, error)
-    call guests_of_model(scene, guests)
-    call list_cells(scene%mesh, guests, cells)
+    deallocate (model%joints)
+    allocate (model%joints(0))
+    call number_step(model%mesh, model%joints, model%ties, fixities, numbers, error)
+    call guests_of_model(model, guests)
+    call list_cells(model%mesh, guests, cells)
     call build_pattern(numbers, cells, matrix)
-    call assemble_stiffness(scene, numbers, matrix, stiffness, error)
+    call assemble_stiffness(model, numbers, matrix, stiffness, error)
     call solver%analyse(matrix, error)
     call solver%factorise(matrix, stiffness, error)
     if (allocated(error)) error stop 'factor'
@@ -83,24 +84,24 @@ contains
     integer :: i
     law%num_state = 11
     law%is_nonlinear = .true.
-    deallocate (scene%materials(1)%law)
-    allocate (scene%materials(1)%law, source=law)
-    scene%mesh%section_of_element = 1
-    allocate (scene%surfaces(0))
-    call list_inelastic_blocks(scene%mesh, scene%materials, scene%inelastic)
+    deallocate (model%materials(1)%law)
+    allocate (model%materials(1)%law, source=law)
+    model%mesh%section_of_element = 1
+    allocate (model%surfaces(0))
+    call list_inelastic_blocks(model%mesh, model%materials, model%inelastic)
     plan%name = 'bench'
-    plan%procedure = 'STATIC'
+    plan%procedure = procedure_named('STATIC')
     plan%envelope = ['S1      ', 'DAMAGET ']
-    allocate (scene%steps(1))
-    scene%steps(1) = plan
-    allocate (now%u(3, scene%mesh%num_nodes), now%points(size(scene%inelastic)))
+    allocate (model%steps(1))
+    model%steps(1) = plan
+    allocate (now%u(3, model%mesh%num_nodes), now%points(size(model%inelastic)))
     allocate (now%joints(0))
     call random_number(now%u)
     now%step = 1
-    do i = 1, size(scene%inelastic)
-      call start_points(law, scene%inelastic(i)%points, now%points(i))
+    do i = 1, size(model%inelastic)
+      call start_points(law, model%inelastic(i)%points, now%points(i))
     end do
-    call set_elastic(scene, now)
+    call set_elastic(model, now)
   end subroutine prepare
 
   !> Cracks whole blocks of 16 elements, since neighbours of cracked elements crack.
@@ -120,14 +121,14 @@ contains
     type(run_record) :: record
     real(rk) :: start, seconds
     integer :: i
-    call record%open(scene)
-    call record%begin_step(scene, 1)
+    call record%open(model)
+    call record%begin_step(model, 1)
     do i = 1, warm_up
-      call record%note(scene, now)
+      call record%note(model, now)
     end do
     start = wall()
     do i = 1, repeats
-      call record%note(scene, now)
+      call record%note(model, now)
     end do
     seconds = (wall() - start)/repeats
     write (*, '(a,f5.0,a,f8.4,a,f6.2,a)') 'cracked ', 100.0_rk*share, ' %: ', seconds, ' s, ', &

@@ -17,9 +17,9 @@ program bench_linear
   use nested_dissection, only: dissect
   use solver_cholmod, only: cholmod_solver
   use eigen_modes, only: find_modes
-  use arch_scene, only: make_arch
+  use arch_model, only: make_arch
   implicit none
-  type(problem), target :: scene
+  type(problem), target :: model
   type(step_fixity), allocatable :: fixities(:)
   type(numbering) :: numbers
   type(guest_reference), allocatable :: guests(:)
@@ -39,23 +39,23 @@ program bench_linear
     call get_command_argument(k, word)
     read (word, *) sizes(k)
   end do
-  call make_arch(sizes(1), sizes(2), sizes(3), sizes(4), scene, fixities)
+  call make_arch(sizes(1), sizes(2), sizes(3), sizes(4), model, fixities)
   call begin()
-  call number_step(scene%mesh, scene%joints, scene%ties, fixities, numbers, error)
+  call number_step(model%mesh, model%joints, model%ties, fixities, numbers, error)
   call note('number')
-  call guests_of_model(scene, guests)
-  call list_cells(scene%mesh, guests, cells)
+  call guests_of_model(model, guests)
+  call list_cells(model%mesh, guests, cells)
   call build_pattern(numbers, cells, matrix)
   call note('pattern')
   write (*, '(a,3(1x,i0))') 'free, jumps, entries:', numbers%num_free, numbers%num_jumps, &
     size(matrix%row)
-  call assemble_stiffness(scene, numbers, matrix, stiffness, error)
+  call assemble_stiffness(model, numbers, matrix, stiffness, error)
   call note('stiffness')
   do j = numbers%num_free - numbers%num_jumps + 1, numbers%num_free
     k = position_of(matrix, j, j)
     stiffness(k) = stiffness(k) + 1.0e11_rk
   end do
-  call assemble_mass(scene, numbers, matrix, mass, error)
+  call assemble_mass(model, numbers, matrix, mass, error)
   call note('mass')
   call dissect(matrix, order, error)
   call note('dissect')

@@ -15,7 +15,7 @@ program bench_ties
   use read_deck, only: read_problem
   use row_tables, only: row_table
   implicit none
-  type(problem), allocatable, target :: scene
+  type(problem), allocatable, target :: model
   type(diagnostic_list) :: faults
   type(numbering) :: numbers
   type(guest_reference), allocatable :: guests(:)
@@ -29,19 +29,19 @@ program bench_ties
   integer(long) :: start
   call get_command_argument(1, path)
   call system_clock(start)
-  call read_problem(trim(path), scene, faults, echo)
+  call read_problem(trim(path), model, faults, echo)
   if (faults%has_errors()) error stop 'the deck has faults'
   call note('read')
-  call number_step(scene%mesh, scene%joints, scene%ties, scene%steps(1)%fixities, numbers, error)
+  call number_step(model%mesh, model%joints, model%ties, model%steps(1)%fixities, numbers, error)
   if (allocated(error)) error stop 'numbering'
   call note('number')
-  call guests_of_model(scene, guests)
-  call list_cells(scene%mesh, guests, cells)
+  call guests_of_model(model, guests)
+  call list_cells(model%mesh, guests, cells)
   call build_pattern(numbers, cells, matrix)
   call note('pattern')
-  call build_jump_operator(numbers, scene%joints, operator)
+  call build_jump_operator(numbers, model%joints, operator)
   call note('joints')
-  call assemble_stiffness(scene, numbers, matrix, stiffness, error)
+  call assemble_stiffness(model, numbers, matrix, stiffness, error)
   call note('stiffness')
   write (*, '(a,4(1x,i0))') 'free, jumps, terms of T, entries:', numbers%num_free, &
     numbers%num_jumps, size(numbers%unknown), size(matrix%row)

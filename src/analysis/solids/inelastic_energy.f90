@@ -18,15 +18,15 @@ module inelastic_energy
 contains
 
   !> Sums over the points that have yielded or cracked; all others contribute nothing.
-  subroutine sum_solid_work(scene, points, total)
-    type(problem), intent(in) :: scene
+  subroutine sum_solid_work(model, points, total)
+    type(problem), intent(in) :: model
     type(point_state), intent(in) :: points(:) !< (blocks)
     type(solid_work), intent(out) :: total
     type(solid_work) :: own
     integer :: i
     do i = 1, size(points)
       if (all(points(i)%is_elastic)) cycle
-      call sum_block(scene, scene%inelastic(i), points(i), own)
+      call sum_block(model, model%inelastic(i), points(i), own)
       total%stored = total%stored + own%stored
       total%fracture = total%fracture + own%fracture
       total%crushing = total%crushing + own%crushing
@@ -34,14 +34,14 @@ contains
   end subroutine sum_solid_work
 
   !> One block.
-  subroutine sum_block(scene, part, points, total)
-    type(problem), intent(in) :: scene
+  subroutine sum_block(model, part, points, total)
+    type(problem), intent(in) :: model
     type(inelastic_block), intent(in) :: part
     type(point_state), intent(in) :: points
     type(solid_work), intent(out) :: total
     real(rk) :: d(6, 6)
     integer :: e, q, p
-    call scene%materials(part%material)%law%elastic_stiffness(d)
+    call model%materials(part%material)%law%elastic_stiffness(d)
     do e = 1, size(part%elements)
       do q = 1, part%points_of_element
         p = (e - 1)*part%points_of_element + q

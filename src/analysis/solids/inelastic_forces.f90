@@ -47,24 +47,24 @@ contains
   end subroutine open_answers
 
   !> Strains from displacements and stresses by the laws, for all blocks.
-  subroutine update_points(scene, u, time, old, new, answers)
-    type(problem), intent(in) :: scene
+  subroutine update_points(model, u, time, old, new, answers)
+    type(problem), intent(in) :: model
     real(rk), intent(in) :: u(:, :) !< (3, nodes) at the end of the increment [m]
     type(time_increment), intent(in) :: time
     type(point_state), intent(in) :: old(:) !< (blocks) converged
     type(point_state), intent(inout) :: new(:) !< (blocks)
     type(block_answer), intent(inout) :: answers(:) !< (blocks)
     integer :: i
-    !$omp parallel do schedule(dynamic) default(none) shared(scene, u, time, old, new, answers) &
+    !$omp parallel do schedule(dynamic) default(none) shared(model, u, time, old, new, answers) &
     !$omp if (has_many_elements(answers))
     do i = 1, size(answers)
-      if (scene%materials(scene%inelastic(i)%material)%law%is_serial) cycle
-      call update_block(scene, scene%inelastic(i), u, time, old(i), new(i), answers(i))
+      if (model%materials(model%inelastic(i)%material)%law%is_serial) cycle
+      call update_block(model, model%inelastic(i), u, time, old(i), new(i), answers(i))
     end do
     !$omp end parallel do
     do i = 1, size(answers)
-      if (.not. scene%materials(scene%inelastic(i)%material)%law%is_serial) cycle
-      call update_block(scene, scene%inelastic(i), u, time, old(i), new(i), answers(i))
+      if (.not. model%materials(model%inelastic(i)%material)%law%is_serial) cycle
+      call update_block(model, model%inelastic(i), u, time, old(i), new(i), answers(i))
     end do
   end subroutine update_points
 
@@ -80,23 +80,23 @@ contains
   end function has_many_elements
 
   !> Answers of stored states, without calls of the laws and without tangents.
-  subroutine recall_points(scene, points, answers)
-    type(problem), intent(in) :: scene
+  subroutine recall_points(model, points, answers)
+    type(problem), intent(in) :: model
     type(point_state), intent(in) :: points(:) !< (blocks)
     type(block_answer), intent(inout) :: answers(:) !< (blocks)
     real(rk) :: d(6, 6)
     integer :: i
     do i = 1, size(answers)
-      associate (part => scene%inelastic(i))
-        call scene%materials(part%material)%law%elastic_stiffness(d)
+      associate (part => model%inelastic(i))
+        call model%materials(part%material)%law%elastic_stiffness(d)
         call sum_block(part, d, points(i), answers(i))
       end associate
     end do
   end subroutine recall_points
 
   !> Updates one block.
-  subroutine update_block(scene, part, u, time, old, new, answer)
-    type(problem), intent(in) :: scene
+  subroutine update_block(model, part, u, time, old, new, answer)
+    type(problem), intent(in) :: model
     type(inelastic_block), intent(in) :: part
     real(rk), intent(in) :: u(:, :) !< (3, nodes) [m]
     type(time_increment), intent(in) :: time
@@ -111,11 +111,11 @@ contains
       allocate (answer%tangent(6, 6, num_tangents))
     end if
     do e = 1, size(part%elements)
-      moved(:, e) = gather_vectors(u, scene%mesh%nodes(:, part%elements(e)))
+      moved(:, e) = gather_vectors(u, model%mesh%nodes(:, part%elements(e)))
     end do
-    associate (law => scene%materials(part%material)%law)
+    associate (law => model%materials(part%material)%law)
       call find_strains(part, moved, new%strain)
-      if (law%wants_gradient) call find_gradients(scene%mesh%x, scene%mesh%nodes, part, moved, new)
+      if (law%wants_gradient) call find_gradients(model%mesh%x, model%mesh%nodes, part, moved, new)
       call law%update(part%points, time, old, new, answer%tangent, answer%report)
       call law%elastic_stiffness(d)
     end associate
@@ -184,27 +184,27 @@ contains
   end subroutine sum_block
 
   !> Initial-stress force of all blocks in the unknowns of a step.
-  subroutine sum_excess(scene, numbers, answers, excess)
-    type(problem), intent(in) :: scene
+  subroutine sum_excess(model, numbers, answers, excess)
+    type(problem), intent(in) :: model
     type(numbering), intent(in) :: numbers
     type(block_answer), intent(in) :: answers(:)
     real(rk), intent(out) :: excess(:) !< (num_total) [N]
     real(rk), allocatable :: nodal(:, :)
     integer :: i, e
-    nodal = zero_vectors(scene%mesh%num_nodes)
+    nodal = zero_vectors(model%mesh%num_nodes)
     do i = 1, size(answers)
       do e = 1, size(answers(i)%has_excess)
         if (.not. answers(i)%has_excess(e)) cycle
         call add_vectors(answers(i)%force(:, e), &
-                         scene%mesh%nodes(:, scene%inelastic(i)%elements(e)), nodal)
+                         model%mesh%nodes(:, model%inelastic(i)%elements(e)), nodal)
       end do
     end do
     call numbers%reduce(nodal, excess)
   end subroutine sum_excess
 
   !> Smallest increment that a law requests, and the reason with element and point.
-  subroutine find_failure(scene, answers, size_ratio, why)
-    type(problem), intent(in) :: scene
+  subroutine find_failure(model, answers, size_ratio, why)
+    type(problem), intent(in) :: model
     type(block_answer), intent(in) :: answers(:)
     real(rk), intent(out) :: size_ratio !< requested over present size; 1: no request
     character(:), allocatable, intent(out) :: why !< unallocated without a request
@@ -212,7 +212,7 @@ contains
     integer :: i
     size_ratio = 1.0_rk
     do i = 1, size(answers)
-      associate (report => answers(i)%report, part => scene%inelastic(i))
+      associate (report => answers(i)%report, part => model%inelastic(i))
         size_ratio = min(size_ratio, report%size_ratio)
         if (allocated(why) .or. (report%failed_point == 0 .and. report%size_ratio >= 1.0_rk)) cycle
         why = 'the law requests a smaller increment'
@@ -222,7 +222,7 @@ contains
           write (place, '(a,i0,a,i0)') ', element ', part%points%element(report%failed_point), &
             ', point ', part%points%number(report%failed_point)
         end if
-        why = 'material '//scene%materials(part%material)%name//trim(place)//': '//why
+        why = 'material '//model%materials(part%material)%name//trim(place)//': '//why
       end associate
     end do
   end subroutine find_failure

@@ -19,8 +19,8 @@ contains
 
   !> A from the tangents of the last update. A symmetric pattern takes the lower triangle and needs
   !> symmetric tangents.
-  subroutine lost_stiffness(scene, numbers, answers, matrix, values)
-    type(problem), intent(in) :: scene
+  subroutine lost_stiffness(model, numbers, answers, matrix, values)
+    type(problem), intent(in) :: model
     type(numbering), intent(in) :: numbers
     type(block_answer), intent(in) :: answers(:)
     type(pattern), intent(in) :: matrix
@@ -35,16 +35,16 @@ contains
     allocate (ke(hex8_dofs, hex8_dofs, largest, batch))
     do first = 1, size(answers), batch
       last = min(first + batch - 1, size(answers))
-      !$omp parallel do schedule(dynamic) default(none) shared(scene, answers, ke, first, last) &
+      !$omp parallel do schedule(dynamic) default(none) shared(model, answers, ke, first, last) &
       !$omp if (has_many_elements(answers))
       do i = first, last
-        call integrate_block(scene, scene%inelastic(i), answers(i), ke(:, :, :, i - first + 1))
+        call integrate_block(model, model%inelastic(i), answers(i), ke(:, :, :, i - first + 1))
       end do
       !$omp end parallel do
       do i = first, last
         do e = 1, size(answers(i)%has_excess)
           if (.not. answers(i)%has_excess(e)) cycle
-          call scatter_nodes(numbers, scene%mesh%nodes(:, scene%inelastic(i)%elements(e)), &
+          call scatter_nodes(numbers, model%mesh%nodes(:, model%inelastic(i)%elements(e)), &
                              ke(:, :, e, i - first + 1), matrix, values)
         end do
       end do
@@ -52,14 +52,14 @@ contains
   end subroutine lost_stiffness
 
   !> Matrices of the elements of a block, where they have an initial-stress force.
-  subroutine integrate_block(scene, part, answer, ke)
-    type(problem), intent(in) :: scene
+  subroutine integrate_block(model, part, answer, ke)
+    type(problem), intent(in) :: model
     type(inelastic_block), intent(in) :: part
     type(block_answer), intent(in) :: answer
     real(rk), intent(inout) :: ke(:, :, :) !< (24, 24, elements)
     real(rk) :: d(6, 6), lost(6, 6)
     integer :: e, q
-    call scene%materials(part%material)%law%elastic_stiffness(d)
+    call model%materials(part%material)%law%elastic_stiffness(d)
     do e = 1, size(part%elements)
       if (.not. answer%has_excess(e)) cycle
       ke(:, :, e) = 0.0_rk

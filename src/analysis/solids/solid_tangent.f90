@@ -26,23 +26,23 @@ module solid_tangent
 contains
 
   !> Factors K_eff.
-  subroutine factorise_elastic(self, scene, system, values, solver, error)
+  subroutine factorise_elastic(self, model, system, values, solver, error)
     class(tangent_matrix), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     real(rk), intent(in) :: values(:) !< K_eff
     class(equilibrium_solver), intent(inout) :: solver
     type(error_type), allocatable, intent(out) :: error
     self%is_elastic = .true.
-    call solver%prepare_matrix(system%matrix, values, solver%weight, scene%joints, &
+    call solver%prepare_matrix(system%matrix, values, solver%weight, model%joints, &
                                system%operator, error)
   end subroutine factorise_elastic
 
   !> Factors K_eff - weight*A with the tangents of the last update. An error with `analysis_failed`
   !> means a singular matrix; a smaller increment may avoid it.
-  subroutine factorise(self, scene, system, answers, values, weight, solver, error)
+  subroutine factorise(self, model, system, answers, values, weight, solver, error)
     class(tangent_matrix), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     type(block_answer), intent(in) :: answers(:)
     real(rk), intent(in) :: values(:) !< K_eff
@@ -55,22 +55,22 @@ contains
     if (allocated(self%lost)) deallocate (self%lost)
     if (self%is_symmetric) then
       allocate (self%lost(size(values)))
-      call lost_stiffness(scene, system%numbers, answers, system%matrix, self%lost)
+      call lost_stiffness(model, system%numbers, answers, system%matrix, self%lost)
       tangent = values - weight*self%lost
     else
       if (.not. allocated(self%full_matrix%row)) call full_pattern(system%matrix, self%full_matrix)
       allocate (self%lost(size(self%full_matrix%row)))
-      call lost_stiffness(scene, system%numbers, answers, self%full_matrix, self%lost)
+      call lost_stiffness(model, system%numbers, answers, self%full_matrix, self%lost)
       allocate (tangent(size(self%lost)))
       call spread_values(system%matrix, values, self%full_matrix, tangent)
       tangent = tangent - weight*self%lost
     end if
     call solver%costs%stop()
     if (self%is_symmetric) then
-      call solver%prepare_matrix(system%matrix, tangent, solver%weight, scene%joints, &
+      call solver%prepare_matrix(system%matrix, tangent, solver%weight, model%joints, &
                                  system%operator, error)
     else
-      call solver%prepare_matrix(self%full_matrix, tangent, solver%weight, scene%joints, &
+      call solver%prepare_matrix(self%full_matrix, tangent, solver%weight, model%joints, &
                                  system%operator, error)
     end if
   end subroutine factorise

@@ -26,13 +26,13 @@ contains
   !> Tangents of a step: the first, and one to try if the first does not converge. In measurements
   !> many iterations with the elastic matrix cost less than a few with new factors. They also do not
   !> follow unstable branches where a structure could crack in many places.
-  pure function choose_tangents(scene, plan) result(choices)
-    type(problem), intent(in) :: scene
+  pure function choose_tangents(model, plan) result(choices)
+    type(problem), intent(in) :: model
     type(step), intent(in) :: plan
     type(tangent), allocatable :: choices(:)
     choices = [elastic]
-    if (.not. allocated(scene%inelastic)) return
-    if (size(scene%inelastic) == 0) return
+    if (.not. allocated(model%inelastic)) return
+    if (size(model%inelastic) == 0) return
     select case (plan%controls%tangent)
     case ('CONSISTENT')
       choices = [consistent]
@@ -43,19 +43,19 @@ contains
     case default
       choices = [elastic, secant]
     end select
-    if (.not. has_switches(scene)) return
+    if (.not. has_switches(model)) return
     if (size(choices) == 1) choices = [choices, choices(1)]
     choices(size(choices))%holds_switches = .true.
   end function choose_tangents
 
   !> Whether the stress of a law is discontinuous in strain, so that Newton may cycle. If no tangent
   !> converges the switches keep their values during the increment (theory.md, 12).
-  pure logical function has_switches(scene)
-    type(problem), intent(in) :: scene
+  pure logical function has_switches(model)
+    type(problem), intent(in) :: model
     integer :: i
     has_switches = .false.
-    do i = 1, size(scene%inelastic)
-      associate (law => scene%materials(scene%inelastic(i)%material)%law)
+    do i = 1, size(model%inelastic)
+      associate (law => model%materials(model%inelastic(i)%material)%law)
         has_switches = has_switches .or. law%has_switch
       end associate
     end do

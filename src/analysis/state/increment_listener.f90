@@ -20,21 +20,21 @@ module increment_listener
 
   abstract interface
     !> An increment has converged; increment 0 is the state at the start of a dynamic step.
-    subroutine increment_done(self, scene, now, error)
+    subroutine increment_done(self, model, now, error)
       import :: listener, problem, state, error_type
       implicit none
       class(listener), intent(inout) :: self
-      type(problem), intent(in) :: scene
+      type(problem), intent(in) :: model
       type(state), intent(in) :: now
       type(error_type), allocatable, intent(out) :: error
     end subroutine increment_done
 
     !> A *FREQUENCY step has found its modes.
-    subroutine modes_found(self, scene, step, modes, error)
+    subroutine modes_found(self, model, step, modes, error)
       import :: listener, problem, vibration_mode, error_type
       implicit none
       class(listener), intent(inout) :: self
-      type(problem), intent(in) :: scene
+      type(problem), intent(in) :: model
       integer, intent(in) :: step
       type(vibration_mode), intent(in) :: modes(:)
       type(error_type), allocatable, intent(out) :: error

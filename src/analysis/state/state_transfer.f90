@@ -2,7 +2,7 @@
 module state_transfer
   use kinds, only: rk
   use joint_law, only: joint_state
-  use joint_points, only: joint, relative_displacement
+  use joint_points, only: dam_joint, relative_displacement
   use dof_numbering, only: numbering
   use analysis_state, only: state, motion
   use joint_operator, only: jump_operator
@@ -16,7 +16,7 @@ contains
   !> The motion of the nodes in the unknowns of a step. Forces are zero.
   subroutine start_motion(numbers, joints, now, has_inertia)
     type(numbering), intent(in) :: numbers
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(state), intent(inout) :: now
     logical, intent(in) :: has_inertia !< velocities, accelerations and their forces take part
     type(motion) :: fresh
@@ -37,7 +37,7 @@ contains
   !> Velocities and accelerations; zero after a static step.
   subroutine start_rates(numbers, joints, now, fresh)
     type(numbering), intent(in) :: numbers
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(state), intent(inout) :: now
     type(motion), intent(inout) :: fresh
     integer :: n
@@ -53,7 +53,7 @@ contains
   !> The unknowns of a nodal field: q with T q = u.
   subroutine restrict(numbers, joints, u, q)
     type(numbering), intent(in) :: numbers
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     real(rk), intent(in) :: u(:, :) !< (3, nodes)
     real(rk), intent(out) :: q(:) !< (num_total)
     integer :: j, p, pair, first
@@ -74,7 +74,7 @@ contains
   !> Jumps from the states of the joints: the difference of two nodes loses digits.
   subroutine set_exact_jumps(numbers, joints, states, q)
     type(numbering), intent(in) :: numbers
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(joint_state), intent(in) :: states(:)
     real(rk), intent(inout) :: q(:) !< (num_total) [m]
     integer :: j, p, pair, first

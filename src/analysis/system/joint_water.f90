@@ -18,8 +18,8 @@ module joint_water
 contains
 
   !> Updates the uplift for the open points of joints.
-  subroutine update_uplift(scene, operator, states, groups, has_changed)
-    type(problem), intent(in) :: scene
+  subroutine update_uplift(model, operator, states, groups, has_changed)
+    type(problem), intent(in) :: model
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: states(:)
     type(load_group), intent(inout) :: groups(:)
@@ -29,7 +29,7 @@ contains
     has_changed = .false.
     do g = 1, size(groups)
       if (groups(g)%uplift == 0) cycle
-      associate (water => scene%loads(groups(g)%uplift)%item)
+      associate (water => model%loads(groups(g)%uplift)%item)
         allocate (pressure(size(states(water%wet_joint)%status)))
         call water%joint_pressure(states(water%wet_joint)%status == state_open, pressure)
         if (.not. allocated(groups(g)%pressure)) groups(g)%pressure = 0.0_rk*pressure
@@ -44,20 +44,20 @@ contains
   end subroutine update_uplift
 
   !> Forces B^T (area p) that open one joint.
-  subroutine push_faces(operator, seam, pressure, force)
+  subroutine push_faces(operator, joint, pressure, force)
     type(jump_operator), intent(in) :: operator
-    integer, intent(in) :: seam !< joint
+    integer, intent(in) :: joint !< joint
     real(rk), intent(in) :: pressure(:) !< (points of the joint) [Pa]
     real(rk), intent(inout) :: force(:) !< (num_total) [N]
     real(rk) :: traction(3, operator%num_points)
     traction = 0.0_rk
-    traction(1, operator%first_point(seam):operator%first_point(seam + 1) - 1) = pressure
+    traction(1, operator%first_point(joint):operator%first_point(joint + 1) - 1) = pressure
     call operator%add_forces(traction, force)
   end subroutine push_faces
 
   !> Records the uplift pressure at the points of joints, for the results.
-  subroutine record_uplift(scene, loads, groups, when, states, costs)
-    type(problem), intent(in) :: scene
+  subroutine record_uplift(model, loads, groups, when, states, costs)
+    type(problem), intent(in) :: model
     type(step_load), intent(in) :: loads(:) !< of the step
     type(load_group), intent(in) :: groups(:)
     type(step_time), intent(in) :: when
@@ -68,30 +68,30 @@ contains
       if (allocated(states(j)%water)) deallocate (states(j)%water)
     end do
     do i = 1, size(loads)
-      associate (water => scene%loads(loads(i)%load)%item)
+      associate (water => model%loads(loads(i)%load)%item)
         if (water%wet_joint == 0) cycle
         call costs%start('recover', water%name, water%kind)
-        call add_pressure(scene, loads(i), groups, when, states(water%wet_joint))
+        call add_pressure(model, loads(i), groups, when, states(water%wet_joint))
         call costs%stop()
       end associate
     end do
   end subroutine record_uplift
 
   !> Adds the pressure that one load brings to its joint.
-  subroutine add_pressure(scene, rule, groups, when, now)
-    type(problem), intent(in) :: scene
+  subroutine add_pressure(model, rule, groups, when, now)
+    type(problem), intent(in) :: model
     type(step_load), intent(in) :: rule
     type(load_group), intent(in) :: groups(:)
     type(step_time), intent(in) :: when
     type(joint_state), intent(inout) :: now
     real(rk) :: pressure(size(now%status)), factor
     integer :: g
-    factor = factor_at(rule%start_factor, rule%end_factor, rule%amplitude, scene%amplitudes, when)
+    factor = factor_at(rule%start_factor, rule%end_factor, rule%amplitude, model%amplitudes, when)
     g = findloc(groups%uplift, rule%load, dim=1)
     if (g > 0) then
       pressure = groups(g)%pressure
     else
-      call scene%loads(rule%load)%item%joint_pressure(now%status == state_open, pressure)
+      call model%loads(rule%load)%item%joint_pressure(now%status == state_open, pressure)
     end if
     if (.not. allocated(now%water)) now%water = 0.0_rk*pressure
     now%water = now%water + factor*pressure

@@ -2,7 +2,7 @@
 module step_equilibrium
   use kinds, only: rk, long
   use errors, only: error_type, raise, system_failed
-  use dam_mesh, only: mesh
+  use dam_mesh, only: fe_mesh
   use problem_definition, only: problem
   use step_plan, only: step
   use global_vectors, only: norm, multiply
@@ -77,19 +77,19 @@ contains
   end subroutine check_memory
 
   !> Factors K_eff; a singular matrix is reported by node and direction.
-  subroutine prepare_equilibrium(scene, system, values, weight, balance, error)
-    type(problem), intent(in) :: scene
+  subroutine prepare_equilibrium(model, system, values, weight, balance, error)
+    type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     real(rk), intent(in) :: values(:) !< K_eff
     real(rk), intent(in) :: weight !< of the joint forces
     class(equilibrium_solver), intent(inout) :: balance
     type(error_type), allocatable, intent(out) :: error
     type(error_type), allocatable :: cause
-    call balance%prepare_matrix(system%matrix, values, weight, scene%joints, system%operator, cause)
+    call balance%prepare_matrix(system%matrix, values, weight, model%joints, system%operator, cause)
     if (.not. allocated(cause)) return
     if (balance%factor%failed_unknown > 0) then
       call raise(error, 'the stiffness matrix is singular at '// &
-                 system%numbers%describe(balance%factor%failed_unknown, scene%mesh%node_id)// &
+                 system%numbers%describe(balance%factor%failed_unknown, model%mesh%node_id)// &
                  ': a part of the model is free to move; add supports, or connect the part by '// &
                  'common nodes, a tie or a joint', cause%exit_code)
     else

@@ -58,8 +58,8 @@ contains
 
   !> Sums the patterns of the loads of a step and of the guests of every step, base motion included,
   !> into groups of equal factors.
-  subroutine gather_loads(scene, plan, numbers, matrix, mass, groups, costs)
-    type(problem), intent(in), target :: scene
+  subroutine gather_loads(model, plan, numbers, matrix, mass, groups, costs)
+    type(problem), intent(in), target :: model
     type(step), intent(in) :: plan
     type(numbering), intent(in) :: numbers
     type(pattern), intent(in) :: matrix
@@ -71,23 +71,23 @@ contains
     integer :: i, group
     allocate (groups(0))
     do i = 1, size(plan%loads)
-      associate (item => scene%loads(plan%loads(i)%load)%item)
+      associate (item => model%loads(plan%loads(i)%load)%item)
         call costs%start('assemble', item%name, item%kind)
         if (item%follows_opening) then
           call open_group(plan%loads(i), numbers%num_total, groups, group)
           groups(group)%uplift = plan%loads(i)%load
         else
-          call assemble_force(scene, item, numbers, force)
+          call assemble_force(model, item, numbers, force)
           if (size(mass) > 0) call add_base_motion(item, numbers, matrix, mass, force)
           call add_to_group(plan%loads(i), force, groups)
         end if
         call costs%stop()
       end associate
     end do
-    call guests_of_model(scene, guests)
+    call guests_of_model(model, guests)
     do i = 1, size(guests)
       if (.not. guests(i)%item%has_force()) cycle
-      call assemble_force(scene, guests(i)%item, numbers, force)
+      call assemble_force(model, guests(i)%item, numbers, force)
       call add_to_group(step_load(start_factor=1.0_rk), force, groups)
     end do
   end subroutine gather_loads

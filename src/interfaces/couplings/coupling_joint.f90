@@ -6,7 +6,7 @@
 !> penalty whose tractions oscillate. The normal points out of the master's solid, from master to
 !> slave.
 module coupling_joint
-  use joint_points, only: joint, joint_cells, local_axes
+  use joint_points, only: dam_joint, joint_cells, local_axes
   use kinds, only: rk
   use mortar_facet, only: facet_extent
   use mortar_projection, only: project
@@ -38,7 +38,7 @@ contains
     type(segment_set), intent(in) :: segments
     logical, intent(in) :: is_tied(:) !< (nodes) follows others of the slave face by a tie
     logical, intent(in) :: is_measured !< the distance as meshed counts, else the faces touch
-    type(joint), intent(inout) :: built
+    type(dam_joint), intent(inout) :: built
     logical, allocatable, intent(out) :: is_bare(:) !< (slave facets) too little covered
     type(mortar_rows) :: rows
     logical :: is_shared(size(x, 2)), is_neighbour(size(x, 2))
@@ -71,7 +71,7 @@ contains
     integer, intent(in) :: masters(:)
     real(rk), intent(in) :: weights(:) !< of the row; negative at tied neighbours
     logical, intent(in) :: is_neighbour(:) !< (nodes)
-    type(joint), intent(inout) :: built
+    type(dam_joint), intent(inout) :: built
     logical :: is_slave(size(masters))
     real(rk) :: whole
     is_slave = is_neighbour(masters)
@@ -88,7 +88,7 @@ contains
     type(facet_set), intent(in) :: slave, master
     type(segment_set), intent(in) :: segments
     logical, intent(in) :: is_measured
-    type(joint), intent(inout) :: built
+    type(dam_joint), intent(inout) :: built
     type(segment_points) :: points
     type(quarter) :: quarters(4)
     integer :: s, q, p
@@ -147,7 +147,7 @@ contains
   !> Allocates the points and their nodes.
   subroutine open_points(num_points, most_nodes, built)
     integer, intent(in) :: num_points, most_nodes
-    type(joint), intent(inout) :: built
+    type(dam_joint), intent(inout) :: built
     built%is_matching = .false.
     allocate (built%first(num_points + 1), built%first_master(num_points), source=1)
     allocate (built%node(most_nodes), built%weight(most_nodes))
@@ -161,7 +161,7 @@ contains
     integer, intent(in) :: p !< point; the previous point has its nodes
     integer, intent(in) :: slave(:), master(:) !< positions in the mesh
     real(rk), intent(in) :: slave_weight(:), master_weight(:) !< each adds up to 1
-    type(joint), intent(inout) :: built
+    type(dam_joint), intent(inout) :: built
     integer :: next
     next = built%first(p)
     call add_side(slave, slave_weight)
@@ -186,7 +186,7 @@ contains
   !> Cuts all arrays to size.
   subroutine close_points(num_points, built)
     integer, intent(in) :: num_points
-    type(joint), intent(inout) :: built
+    type(dam_joint), intent(inout) :: built
     integer :: used
     used = built%first(num_points + 1) - 1
     built%num_points = num_points

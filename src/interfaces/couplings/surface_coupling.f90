@@ -6,7 +6,7 @@
 !>   K = k int N^T N dA.
 module surface_coupling
   use facet_segments, only: find_segments
-  use dam_mesh, only: mesh
+  use dam_mesh, only: fe_mesh
   use dof_numbering, only: numbering
   use guest_type, only: guest, stiffness_matrix
   use kinds, only: rk
@@ -81,10 +81,10 @@ contains
   end function has_matrix
 
   !> K = K + k int N^T N dA, segment by segment, equal in the three directions.
-  subroutine add_matrix(self, kind, model, numbers, matrix, values)
+  subroutine add_matrix(self, kind, mesh, numbers, matrix, values)
     class(coupling), intent(in) :: self
     integer, intent(in) :: kind
-    type(mesh), intent(in) :: model
+    type(fe_mesh), intent(in) :: mesh
     type(numbering), intent(in) :: numbers
     type(pattern), intent(in) :: matrix
     real(rk), intent(inout) :: values(:)

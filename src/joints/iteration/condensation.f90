@@ -6,7 +6,7 @@ module condensation
   use matrix_pattern, only: pattern
   use global_vectors, only: norm
   use joint_law, only: joint_state
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, reference_stiffness, gather_jumps, gather_tractions
   use joint_iteration, only: start_iteration, excess_traction, closed_tangent
@@ -39,7 +39,7 @@ contains
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: values(:) !< K_eff
     real(rk), intent(in) :: weight
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: closed(:)
@@ -85,7 +85,7 @@ contains
   subroutine solve_balance(self, balance, joints, old, new, x, outcome, error)
     class(condensed_equilibrium), intent(inout) :: self
     type(force_balance), intent(in) :: balance
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(joint_state), intent(in) :: old(:)
     type(joint_state), intent(inout) :: new(:)
     real(rk), intent(out) :: x(:)
@@ -128,7 +128,7 @@ contains
   subroutine solve_from(self, balance, joints, old, new, x, outcome, error)
     class(condensed_equilibrium), intent(inout) :: self
     type(force_balance), intent(in) :: balance
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(joint_state), intent(in) :: old(:)
     type(joint_state), intent(inout) :: new(:)
     real(rk), intent(out) :: x(:)

@@ -9,7 +9,7 @@ module contact_augmentation
   use kinds, only: rk
   use joint_law, only: joint_state, state_slip, state_stick
   use joint_opening, only: opening_of
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use anderson_mixing, only: mixer
   implicit none
@@ -29,7 +29,7 @@ contains
 
   !> Starts an increment with lambda = t of the last converged state.
   subroutine start_multiplier(joints, old, new, multiplier)
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(joint_state), intent(in) :: old(:) !< converged histories
     type(joint_state), intent(inout) :: new(:)
     type(contact_multiplier), intent(out) :: multiplier
@@ -54,7 +54,7 @@ contains
 
   !> Largest ratio of |v + g| to its admissible value at points in contact, and its place.
   subroutine measure_contact(joints, operator, states, multiplier, excess, worst_point)
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: states(:) !< in equilibrium
     type(contact_multiplier), intent(inout) :: multiplier
@@ -93,7 +93,7 @@ contains
   !> Multipliers of the next pass: lambda <- t + r (v + g); zero at open points. r is the stiffness
   !> of the structure when all points move together, the smallest of all motions.
   subroutine update_multiplier(joints, operator, stiffness_ratio, multiplier, states)
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     real(rk), intent(in) :: stiffness_ratio(:) !< (points) r over k_n
     type(contact_multiplier), intent(inout) :: multiplier

@@ -8,7 +8,7 @@ module equilibrium
   use errors, only: error_type
   use matrix_pattern, only: pattern
   use joint_law, only: joint_state
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use linear_solver, only: equation_solver
   use run_ledger, only: ledger
@@ -64,25 +64,25 @@ module equilibrium
   abstract interface
     !> Factors a new K_eff, after a change of the increment size.
     subroutine prepare_matrix(self, matrix, values, weight, joints, operator, error)
-      import :: equilibrium_solver, pattern, rk, joint, jump_operator, error_type
+      import :: equilibrium_solver, pattern, rk, dam_joint, jump_operator, error_type
       implicit none
       class(equilibrium_solver), intent(inout) :: self
       type(pattern), intent(in) :: matrix
       real(rk), intent(in) :: values(:) !< K_eff without joints
       real(rk), intent(in) :: weight
-      type(joint), intent(in) :: joints(:)
+      type(dam_joint), intent(in) :: joints(:)
       type(jump_operator), intent(in) :: operator
       type(error_type), allocatable, intent(out) :: error
     end subroutine prepare_matrix
 
     !> Solves the equilibrium. An iteration without convergence is not an error.
     subroutine solve_balance(self, balance, joints, old, new, x, outcome, error)
-      import :: equilibrium_solver, force_balance, balance_outcome, rk, joint, joint_state, &
+      import :: equilibrium_solver, force_balance, balance_outcome, rk, dam_joint, joint_state, &
         error_type
       implicit none
       class(equilibrium_solver), intent(inout) :: self
       type(force_balance), intent(in) :: balance
-      type(joint), intent(in) :: joints(:)
+      type(dam_joint), intent(in) :: joints(:)
       type(joint_state), intent(in) :: old(:) !< converged histories
       type(joint_state), intent(inout) :: new(:) !< histories at the solution
       real(rk), intent(out) :: x(:) !< (all unknowns) prescribed ones return as zero

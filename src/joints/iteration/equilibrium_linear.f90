@@ -4,7 +4,7 @@ module equilibrium_linear
   use errors, only: error_type
   use matrix_pattern, only: pattern
   use joint_law, only: joint_state
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use linear_solver, only: equation_solver
   use solver_catalogue, only: make_solver, unsymmetric_solver
@@ -28,7 +28,7 @@ contains
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: values(:) !< K_eff
     real(rk), intent(in) :: weight
-    type(joint), intent(in) :: joints(:) !< none
+    type(dam_joint), intent(in) :: joints(:) !< none
     type(jump_operator), intent(in) :: operator
     type(error_type), allocatable, intent(out) :: error
     self%weight = weight
@@ -55,7 +55,7 @@ contains
   subroutine solve_balance(self, balance, joints, old, new, x, outcome, error)
     class(linear_equilibrium), intent(inout) :: self
     type(force_balance), intent(in) :: balance
-    type(joint), intent(in) :: joints(:) !< none
+    type(dam_joint), intent(in) :: joints(:) !< none
     type(joint_state), intent(in) :: old(:)
     type(joint_state), intent(inout) :: new(:)
     real(rk), intent(out) :: x(:)

@@ -3,7 +3,7 @@ module joint_forces
   use kinds, only: rk
   use global_vectors, only: dot
   use joint_law, only: joint_state, state_open
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use contact_augmentation, only: contact_multiplier
   implicit none
@@ -46,7 +46,7 @@ contains
 
   !> Initial histories of joints.
   subroutine start_joints(joints, states)
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(joint_state), allocatable, intent(out) :: states(:)
     integer :: j
     allocate (states(size(joints)))
@@ -57,7 +57,7 @@ contains
 
   !> Stiffness of the closed, sticking joint at every point.
   subroutine reference_stiffness(joints, operator, stiffness)
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     real(rk), allocatable, intent(out) :: stiffness(:, :) !< (3, points) [Pa/m]
     real(rk) :: k(3)
@@ -73,7 +73,7 @@ contains
 
   !> Evaluates all laws at `field%jump` with `field%multiplier` and `field%friction_scale`.
   subroutine evaluate_joints(joints, operator, old, field, new)
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: old(:) !< converged histories
     type(joint_field), intent(inout) :: field
@@ -141,7 +141,7 @@ contains
 
   !> Energies stored and dissipated in all joints.
   subroutine sum_joint_work(joints, states, work)
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(joint_state), intent(in) :: states(:)
     type(joint_work), intent(out) :: work
     real(rk), allocatable :: stored(:)

@@ -5,7 +5,7 @@ module joint_iteration
   use global_vectors, only: norm, distance, total
   use joint_law, only: joint_state
   use joint_opening, only: opening_of
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, evaluate_joints, gather_tractions, gather_jumps, gather_gaps
   use contact_augmentation, only: start_multiplier, measure_contact, update_multiplier
@@ -49,7 +49,7 @@ contains
   !> Linearises the laws at the guess, or takes all joints as closed and sticking.
   subroutine start_iteration(balance, joints, operator, k_ref, friction_scale, old, field, new)
     type(force_balance), intent(in) :: balance
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     real(rk), intent(in) :: k_ref(:, :) !< (3, points) stiffness of the closed joint [Pa/m]
     real(rk), intent(in) :: friction_scale(:, :) !< (2, points) all slide, one slides
@@ -90,7 +90,7 @@ contains
 
   !> Evaluates the laws and adds the smallest stiffness where a joint is open or slides.
   subroutine linearise(joints, operator, old, k_ref, field, new)
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: old(:)
     real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
@@ -111,7 +111,7 @@ contains
 
   !> Moves to the solution of the linearised equilibrium and evaluates the laws there.
   subroutine take_step(joints, operator, old, k_ref, correction, linear, field, new)
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: old(:)
     real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
@@ -129,7 +129,7 @@ contains
 
   !> Chooses the jumps of the next linearisation, which may differ from those of the last solution.
   subroutine linearise_next(joints, operator, old, k_ref, outcome, field, new)
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: old(:)
     real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
@@ -170,7 +170,7 @@ contains
   !> Augments the contact where points penetrate more than their law allows. The laws are then
   !> linearised at the equilibrium found, and the iteration continues.
   subroutine augment_contact(joints, operator, old, k_ref, field, new, outcome)
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: old(:)
     real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]

@@ -2,7 +2,7 @@
 !> and forces B^T (area t). At a point with jump unknowns d the rows of B are those of v = d.
 module joint_operator
   use kinds, only: rk
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use node_dofs, only: num_directions
   use joint_rows, only: num_axes, num_rows, row_of
   use dof_numbering, only: numbering
@@ -30,7 +30,7 @@ contains
   !> joints, as in the numbering's `first_jump`.
   subroutine build_jump_operator(numbers, joints, operator)
     type(numbering), intent(in) :: numbers
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(out) :: operator
     integer, allocatable :: place(:)
     integer :: j, p, pair, point, last_row
@@ -60,8 +60,8 @@ contains
   end subroutine build_jump_operator
 
   !> The three rows of B of one point.
-  subroutine add_rows(seam, p, pair, numbers, point, place, operator)
-    type(joint), intent(in) :: seam
+  subroutine add_rows(joint, p, pair, numbers, point, place, operator)
+    type(dam_joint), intent(in) :: joint
     integer, intent(in) :: p !< point of the joint
     integer, intent(in) :: pair !< among the points of nodal joints, 0 for none
     type(numbering), intent(in) :: numbers
@@ -77,7 +77,7 @@ contains
       if (jump > 0) then
         call add_term(jump + i - 1, 1.0_rk)
       else
-        call add_faces(seam%rotation(i, :, p))
+        call add_faces(joint%rotation(i, :, p))
       end if
       operator%row_start(row + 1) = next
       place(operator%unknown(operator%row_start(row):next - 1)) = 0
@@ -87,9 +87,9 @@ contains
     subroutine add_faces(axis)
       real(rk), intent(in) :: axis(3)
       integer :: k, direction
-      do k = seam%first(p), seam%first(p + 1) - 1
+      do k = joint%first(p), joint%first(p + 1) - 1
         do direction = 1, num_directions
-          call add_dof(seam%node(k), direction, axis(direction)*seam%weight(k))
+          call add_dof(joint%node(k), direction, axis(direction)*joint%weight(k))
         end do
       end do
     end subroutine add_faces

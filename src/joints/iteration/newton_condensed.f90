@@ -9,7 +9,7 @@ module newton_condensed
   use kinds, only: rk
   use joint_rows, only: num_axes, row_of, point_of, axis_of
   use joint_law, only: joint_state
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, linear_tractions
   use joint_iteration, only: measure_residual, measure_correction, take_step, &
@@ -44,7 +44,7 @@ contains
   subroutine iterate_on_jumps(self, controls, joints, operator, old, field, new, outcome)
     type(condensed_joints), intent(in) :: self
     type(step_controls), intent(in) :: controls
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: old(:)
     type(joint_field), intent(inout) :: field !< linearised; its response is for k_ref

@@ -6,7 +6,7 @@ module newton_full
   use errors, only: error_type, analysis_failed
   use matrix_pattern, only: pattern, full_pattern, spread_values
   use joint_law, only: joint_state
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, reference_stiffness, linear_tractions
   use joint_iteration, only: start_iteration, take_step, linearise_next, closed_tangent, &
@@ -42,7 +42,7 @@ contains
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: values(:) !< K_eff
     real(rk), intent(in) :: weight
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: compliance(:, :), closed(:)
@@ -74,7 +74,7 @@ contains
   subroutine solve_balance(self, balance, joints, old, new, x, outcome, error)
     class(full_equilibrium), intent(inout) :: self
     type(force_balance), intent(in) :: balance
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(joint_state), intent(in) :: old(:)
     type(joint_state), intent(inout) :: new(:)
     real(rk), intent(out) :: x(:)

@@ -4,7 +4,7 @@ module admissible_slip
   use kinds, only: rk
   use errors, only: error_type, raise
   use joint_law, only: joint_state
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use write_text, only: as_text
   implicit none
   private
@@ -14,7 +14,7 @@ contains
 
   !> Reports the point with the largest ratio of slip to admissible slip, if above 1.
   subroutine check_slip(joints, states, time, error)
-    type(joint), intent(in) :: joints(:)
+    type(dam_joint), intent(in) :: joints(:)
     type(joint_state), intent(in) :: states(:)
     real(rk), intent(in) :: time !< total time [s]
     type(error_type), allocatable, intent(out) :: error
@@ -32,12 +32,12 @@ contains
       end do
     end do
     if (worst(1) == 0) return
-    associate (seam => joints(worst(1)), p => worst(2))
-      call raise(error, 'joint '//seam%name//' has slipped '// &
-                 as_text(slip_at(states(worst(1)), p))//' m at ('//as_text(seam%x(1, p))//', '// &
-                 as_text(seam%x(2, p))//', '//as_text(seam%x(3, p))//') at time '// &
+    associate (joint => joints(worst(1)), p => worst(2))
+      call raise(error, 'joint '//joint%name//' has slipped '// &
+                 as_text(slip_at(states(worst(1)), p))//' m at ('//as_text(joint%x(1, p))//', '// &
+                 as_text(joint%x(2, p))//', '//as_text(joint%x(3, p))//') at time '// &
                  as_text(time)//'; joints between different meshes allow small sliding only, '// &
-                 as_text(seam%admissible_slip(p))//' m at this point (size of a facet)')
+                 as_text(joint%admissible_slip(p))//' m at this point (size of a facet)')
     end associate
   end subroutine check_slip
 

@@ -5,11 +5,11 @@
 !> Nodal integration (Lobatto) has one point for each pair of nodes, with its tributary area. It
 !> avoids the oscillation of tractions that Gauss points cause in stiff joints.
 module element_joint8
-  use dam_mesh, only: mesh
+  use dam_mesh, only: fe_mesh
   use element_catalogue, only: is_solid
   use errors, only: error_type, raise
   use gauss_rules, only: quad_point
-  use joint_points, only: draw_elements, joint, list_faces, local_axes, share_a_plane
+  use joint_points, only: draw_elements, dam_joint, list_faces, local_axes, share_a_plane
   use kinds, only: rk
   use mesh_faces, only: face_nodes, face_table, face_vector, find_face, insert_face, open_table
   use shape_quad4, only: facet_point
@@ -35,32 +35,32 @@ contains
   !> Sets the geometry of a joint; the caller sets its name and law.
   !> Fails when a pair of nodes does not coincide, a facet has no area, or the solids of both sides
   !> lie on one side.
-  subroutine build_joint_points(model, elements, is_nodal, built, error)
-    type(mesh), intent(in) :: model
+  subroutine build_joint_points(mesh, elements, is_nodal, built, error)
+    type(fe_mesh), intent(in) :: mesh
     integer, intent(in) :: elements(:) !< positions of JOINT8 elements
     logical, intent(in) :: is_nodal !< pairs of nodes, else 2 x 2 Gauss points
-    type(joint), intent(inout) :: built
+    type(dam_joint), intent(inout) :: built
     type(error_type), allocatable, intent(out) :: error
     integer, allocatable :: solid(:, :), side(:)
     integer :: e
     allocate (side(size(elements)))
-    call find_attached_solids(model, elements, solid, side)
+    call find_attached_solids(mesh, elements, solid, side)
     do e = 1, size(elements)
-      call check_facet(model, elements(e), side(e), error)
+      call check_facet(mesh, elements(e), side(e), error)
       if (allocated(error)) return
     end do
     built%is_nodal = is_nodal
     if (is_nodal) then
-      call gather_pairs(model, elements, side, built)
+      call gather_pairs(mesh, elements, side, built)
     else
-      call gather_gauss_points(model, elements, side, built)
+      call gather_gauss_points(mesh, elements, side, built)
     end if
-    call draw_elements(model, elements, side, built)
+    call draw_elements(mesh, elements, side, built)
   end subroutine build_joint_points
 
   !> The solids of the faces of JOINT8 elements, and the sense of their normals.
-  subroutine find_attached_solids(model, elements, solid, side)
-    type(mesh), intent(in) :: model
+  subroutine find_attached_solids(mesh, elements, solid, side)
+    type(fe_mesh), intent(in) :: mesh
     integer, intent(in) :: elements(:) !< positions of JOINT8 elements
     integer, allocatable, intent(out) :: solid(:, :) !< (2, elements) behind master, slave; 0: none
     integer, intent(out) :: side(:) !< 1: normal by nodes 1-2-3-4, -1: against it, 0: contradiction
@@ -69,19 +69,19 @@ contains
     integer :: e, i, face, number, nodes(4)
 
     allocate (solid(2, size(elements)), sense(2, size(elements)), source=0)
-    call open_table(model%num_nodes, 2*size(elements), table)
+    call open_table(mesh%num_nodes, 2*size(elements), table)
     do e = 1, size(elements)
-      call insert_face(table, model%nodes(1:4, elements(e)), number)
-      call insert_face(table, model%nodes(5:8, elements(e)), number)
+      call insert_face(table, mesh%nodes(1:4, elements(e)), number)
+      call insert_face(table, mesh%nodes(5:8, elements(e)), number)
     end do
-    do e = 1, model%num_elements
-      if (.not. is_solid(model%element_type(e))) cycle
+    do e = 1, mesh%num_elements
+      if (.not. is_solid(mesh%element_type(e))) cycle
       do face = 1, 6
-        nodes = face_nodes(model, e, face)
+        nodes = face_nodes(mesh, e, face)
         number = find_face(table, nodes)
         do while (number > 0)
           i = (number + 1)/2
-          call attach(model, e, face, elements(i), solid(2 - mod(number, 2), i), &
+          call attach(mesh, e, face, elements(i), solid(2 - mod(number, 2), i), &
                       sense(2 - mod(number, 2), i))
           number = find_face(table, nodes, number)
         end do
@@ -94,15 +94,15 @@ contains
   end subroutine find_attached_solids
 
   !> Records a solid whose face lies on that of a joint. A face between two solids gives no sense.
-  subroutine attach(model, element, face, joint_element, solid, sense)
-    type(mesh), intent(in) :: model
+  subroutine attach(mesh, element, face, joint_element, solid, sense)
+    type(fe_mesh), intent(in) :: mesh
     integer, intent(in) :: element, face !< the solid and its face
     integer, intent(in) :: joint_element
     integer, intent(inout) :: solid !< found before, 0 for none
     integer, intent(inout) :: sense !< 1: along the normal by nodes 1-2-3-4, -1: against, 0: unknown
     real(rk) :: along
-    along = dot_product(face_vector(model%x(:, face_nodes(model, element, face))), &
-                        face_vector(model%x(:, model%nodes(1:4, joint_element))))
+    along = dot_product(face_vector(mesh%x(:, face_nodes(mesh, element, face))), &
+                        face_vector(mesh%x(:, mesh%nodes(1:4, joint_element))))
     if (solid == 0) then
       sense = merge(1, -1, along > 0.0_rk)
     else
@@ -112,28 +112,28 @@ contains
   end subroutine attach
 
   !> Checks the area of a facet, the distance of its pairs, and the sides of its solids.
-  subroutine check_facet(model, element, side, error)
-    type(mesh), intent(in) :: model
+  subroutine check_facet(mesh, element, side, error)
+    type(fe_mesh), intent(in) :: mesh
     integer, intent(in) :: element !< position
     integer, intent(in) :: side !< 0: contradiction
     type(error_type), allocatable, intent(out) :: error
     real(rk) :: x(3, 8), diagonal, distance
     integer :: a
-    x = model%x(:, model%nodes(:, element))
+    x = mesh%x(:, mesh%nodes(:, element))
     diagonal = max(norm2(x(:, 3) - x(:, 1)), norm2(x(:, 4) - x(:, 2)))
     do a = 1, 4
       distance = norm2(x(:, a + 4) - x(:, a))
       if (distance <= coincidence*diagonal) cycle
-      call raise(error, 'JOINT8 element '//text(model%element_id(element))//': nodes ' &
-                 //text(model%node_id(model%nodes(a, element)))//' and ' &
-                 //text(model%node_id(model%nodes(a + 4, element)))//' lie ' &
+      call raise(error, 'JOINT8 element '//text(mesh%element_id(element))//': nodes ' &
+                 //text(mesh%node_id(mesh%nodes(a, element)))//' and ' &
+                 //text(mesh%node_id(mesh%nodes(a + 4, element)))//' lie ' &
                  //length_text(distance)//' m apart; its two faces must coincide')
       return
     end do
     if (norm2(face_vector(x(:, 1:4))) <= coincidence*diagonal**2) then
-      call raise(error, 'JOINT8 element '//text(model%element_id(element))//' has no area')
+      call raise(error, 'JOINT8 element '//text(mesh%element_id(element))//' has no area')
     else if (side == 0) then
-      call raise(error, 'JOINT8 element '//text(model%element_id(element)) &
+      call raise(error, 'JOINT8 element '//text(mesh%element_id(element)) &
                  //': the solids of its master and slave face lie on the same side')
     end if
   end subroutine check_facet
@@ -157,22 +157,22 @@ contains
   end function length_text
 
   !> One point for each pair of nodes and plane: areas are summed, normals averaged.
-  subroutine gather_pairs(model, elements, side, built)
-    type(mesh), intent(in) :: model
+  subroutine gather_pairs(mesh, elements, side, built)
+    type(fe_mesh), intent(in) :: mesh
     integer, intent(in) :: elements(:), side(:)
-    type(joint), intent(inout) :: built
+    type(dam_joint), intent(inout) :: built
     integer, allocatable :: newest(:), next(:)
     type(face_points) :: points
     real(rk) :: share(3, 4)
     integer :: e, a, p, master, slave
 
     call open_points(1, 4*size(elements), points)
-    allocate (newest(model%num_nodes), next(4*size(elements)), source=0)
+    allocate (newest(mesh%num_nodes), next(4*size(elements)), source=0)
     do e = 1, size(elements)
-      share = side(e)*corner_shares(model%x(:, model%nodes(1:4, elements(e))))
+      share = side(e)*corner_shares(mesh%x(:, mesh%nodes(1:4, elements(e))))
       do a = 1, 4
-        master = model%nodes(a, elements(e))
-        slave = model%nodes(a + 4, elements(e))
+        master = mesh%nodes(a, elements(e))
+        slave = mesh%nodes(a + 4, elements(e))
         if (master == slave) cycle
         p = newest(master)
         do while (p > 0)
@@ -187,7 +187,7 @@ contains
           newest(master) = p
           points%master(1, p) = master
           points%slave(1, p) = slave
-          points%x(:, p) = model%x(:, master)
+          points%x(:, p) = mesh%x(:, master)
         end if
         points%normal(:, p) = points%normal(:, p) + share(:, a)
         points%area(p) = points%area(p) + norm2(share(:, a))
@@ -213,19 +213,19 @@ contains
   end function corner_shares
 
   !> Four points an element, each with the nodes of all four pairs.
-  subroutine gather_gauss_points(model, elements, side, built)
-    type(mesh), intent(in) :: model
+  subroutine gather_gauss_points(mesh, elements, side, built)
+    type(fe_mesh), intent(in) :: mesh
     integer, intent(in) :: elements(:), side(:)
-    type(joint), intent(inout) :: built
+    type(dam_joint), intent(inout) :: built
     type(face_points) :: points
     real(rk) :: x(3, 4), n(4), area(3)
     integer :: e, q, p, nodes(8)
 
     call open_points(4, 4*size(elements), points)
     do e = 1, size(elements)
-      nodes = model%nodes(:, elements(e))
+      nodes = mesh%nodes(:, elements(e))
       if (all(nodes(:4) == nodes(5:))) cycle
-      x = model%x(:, nodes(:4))
+      x = mesh%x(:, nodes(:4))
       do q = 1, 4
         call facet_point(x, q, n, area)
         points%num_points = points%num_points + 1
@@ -254,7 +254,7 @@ contains
   !> Trims the lists and computes the local axes from the normals.
   subroutine close_points(points, built)
     type(face_points), intent(in) :: points
-    type(joint), intent(inout) :: built
+    type(dam_joint), intent(inout) :: built
     integer :: p, n
     n = points%num_points
     call list_faces(points%slave(:, :n), points%master(:, :n), points%shape(:, :n), built)

@@ -8,7 +8,7 @@
 !> of the master face (different meshes). Further slave nodes occur only where neighbours of the
 !> node are tied to other nodes of the face.
 module joint_points
-  use dam_mesh, only: mesh
+  use dam_mesh, only: fe_mesh
   use guest_type, only: guest
   use kinds, only: rk
   use joint_law, only: traction_law
@@ -16,7 +16,7 @@ module joint_points
   use small_matrix, only: cross_product
   implicit none
   private
-  public :: joint, joint_cells, list_faces, relative_displacement, draw_elements, local_axes, &
+  public :: dam_joint, joint_cells, list_faces, relative_displacement, draw_elements, local_axes, &
             share_a_plane
 
   !> Facets with a common node share its point unless their normals differ by more than 30 degrees.
@@ -36,7 +36,7 @@ module joint_points
     real(rk), allocatable :: weight(:) !< they add up to 1 at each corner
   end type joint_cells
 
-  type, extends(guest) :: joint
+  type, extends(guest) :: dam_joint
     class(traction_law), allocatable :: law
     logical :: is_nodal = .true. !< points at the slave nodes, else at Gauss points
     logical :: is_matching = .true. !< made of JOINT8 elements, else of two surfaces
@@ -53,13 +53,13 @@ module joint_points
     type(joint_cells) :: cells
   contains
     procedure :: add_cells
-  end type joint
+  end type dam_joint
 
 contains
 
   !> The nodes of each point.
   subroutine add_cells(self, cells)
-    class(joint), intent(in) :: self
+    class(dam_joint), intent(in) :: self
     type(row_table), intent(inout) :: cells
     integer :: p
     do p = 1, self%num_points
@@ -72,7 +72,7 @@ contains
   pure subroutine list_faces(slave, master, shape, built)
     integer, intent(in) :: slave(:, :), master(:, :) !< (nodes a side, points) positions
     real(rk), intent(in) :: shape(:, :) !< (nodes a side, points)
-    type(joint), intent(inout) :: built
+    type(dam_joint), intent(inout) :: built
     integer :: p, n, k
     n = size(slave, 1)
     built%num_points = size(slave, 2)
@@ -90,33 +90,33 @@ contains
   end subroutine list_faces
 
   !> Relative displacement of the faces at a point.
-  pure function relative_displacement(seam, p, u) result(difference)
-    type(joint), intent(in) :: seam
+  pure function relative_displacement(joint, p, u) result(difference)
+    type(dam_joint), intent(in) :: joint
     integer, intent(in) :: p !< point
     real(rk), intent(in) :: u(:, :) !< (3, nodes)
     real(rk) :: difference(3) !< slave minus master, global axes
     integer :: k
     difference = 0.0_rk
-    do k = seam%first(p), seam%first(p + 1) - 1
-      difference = difference + seam%weight(k)*u(:, seam%node(k))
+    do k = joint%first(p), joint%first(p + 1) - 1
+      difference = difference + joint%weight(k)*u(:, joint%node(k))
     end do
   end function relative_displacement
 
   !> Fills the cells of a joint of JOINT8 elements: one for each element, one corner for each slave
   !> node. A face with repeated nodes becomes a triangle.
-  pure subroutine draw_elements(model, elements, side, built)
-    type(mesh), intent(in) :: model
+  pure subroutine draw_elements(mesh, elements, side, built)
+    type(fe_mesh), intent(in) :: mesh
     integer, intent(in) :: elements(:) !< positions of JOINT8 elements
     integer, intent(in) :: side(:) !< 1: normal by nodes 5-6-7-8, -1: against it
-    type(joint), intent(inout) :: built
+    type(dam_joint), intent(inout) :: built
     integer, allocatable :: corner_of_node(:), node_of_corner(:), first(:), corner(:)
     integer :: ring(4), e, a, k, num_corners, last, node
-    allocate (corner_of_node(model%num_nodes), node_of_corner(4*size(elements)), source=0)
+    allocate (corner_of_node(mesh%num_nodes), node_of_corner(4*size(elements)), source=0)
     allocate (first(size(elements) + 1), corner(4*size(elements)), source=1)
     num_corners = 0
     last = 0
     do e = 1, size(elements)
-      ring = model%nodes(5:8, elements(e))
+      ring = mesh%nodes(5:8, elements(e))
       if (side(e) < 0) ring = ring([1, 4, 3, 2])
       do a = 1, 4
         node = ring(a)

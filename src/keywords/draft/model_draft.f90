@@ -83,7 +83,7 @@ module model_draft
 
   type :: draft
     type(card), allocatable :: cards(:) !< the whole deck
-    type(problem), allocatable :: scene
+    type(problem), allocatable :: problem
     type(position_table) :: node_position, element_position !< by the user's ids
     type(origin), allocatable :: node_origin(:), element_origin(:)
     type(set_list) :: node_sets, element_sets
@@ -98,7 +98,7 @@ module model_draft
     integer, allocatable :: joint_of_element(:) !< position in `joints`, 0 for none
     integer, allocatable :: interface_of_element(:) !< position in `interfaces`, 0 for none
     character(:), allocatable :: mass_kind !< MASS of *SOLID SECTION once it is given
-    integer :: num_loads = 0 !< in use of scene%loads, which grows by doubling
+    integer :: num_loads = 0 !< in use of model%loads, which grows by doubling
     type(load_book) :: active_loads
     type(dof_table) :: supports, point_forces
     ! The card being read.
@@ -108,7 +108,7 @@ module model_draft
     ! The step being read.
     type(step) :: now
     type(origin) :: step_origin
-    integer :: num_steps = 0 !< closed so far; scene%steps has room for all
+    integer :: num_steps = 0 !< closed so far; model%steps has room for all
     integer, allocatable :: procedure_card(:) !< card of the procedure of each step
     integer :: current_procedure = 0 !< card of the procedure of the step being read
     real(rk) :: total_time = 0.0_rk !< at the start of the step [s]
@@ -156,7 +156,7 @@ contains
     integer, intent(out) :: found
     type(request_slot), allocatable :: longer(:)
     integer :: material, num, i
-    material = size(model%scene%materials)
+    material = size(model%problem%materials)
     num = size(model%material_requests)
     do found = 1, num
       associate (item => model%material_requests(found)%item)
@@ -209,15 +209,15 @@ contains
     item%name = name
     item%family = family
     item%target = target
-    if (model%num_loads == size(model%scene%loads)) then
+    if (model%num_loads == size(model%problem%loads)) then
       allocate (longer(max(8, 2*model%num_loads)))
       do i = 1, model%num_loads
-        call move_alloc(model%scene%loads(i)%item, longer(i)%item)
+        call move_alloc(model%problem%loads(i)%item, longer(i)%item)
       end do
-      call move_alloc(longer, model%scene%loads)
+      call move_alloc(longer, model%problem%loads)
     end if
     model%num_loads = model%num_loads + 1
-    call move_alloc(item, model%scene%loads(model%num_loads)%item)
+    call move_alloc(item, model%problem%loads(model%num_loads)%item)
   end subroutine add_load
 
   !> Adds a guest that acts in every step.
@@ -226,13 +226,13 @@ contains
     class(guest), allocatable, intent(inout) :: item !< with name and kind; moved into the list
     type(guest_slot), allocatable :: longer(:)
     integer :: i
-    associate (num => size(model%scene%guests))
+    associate (num => size(model%problem%guests))
       allocate (longer(num + 1))
       do i = 1, num
-        call move_alloc(model%scene%guests(i)%item, longer(i)%item)
+        call move_alloc(model%problem%guests(i)%item, longer(i)%item)
       end do
       call move_alloc(item, longer(num + 1)%item)
     end associate
-    call move_alloc(longer, model%scene%guests)
+    call move_alloc(longer, model%problem%guests)
   end subroutine add_guest
 end module model_draft

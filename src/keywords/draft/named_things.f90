@@ -124,8 +124,8 @@ contains
     character(*), intent(in) :: name !< upper case
     integer :: i
     found = 0
-    do i = 1, size(model%scene%surfaces)
-      if (model%scene%surfaces(i)%name == name) found = i
+    do i = 1, size(model%problem%surfaces)
+      if (model%problem%surfaces(i)%name == name) found = i
     end do
   end function find_surface_name
 
@@ -150,10 +150,10 @@ contains
   !> Names of surfaces, to find the nearest among them.
   pure function surface_names(model) result(names)
     type(draft), intent(in) :: model
-    character(longest_name) :: names(size(model%scene%surfaces))
+    character(longest_name) :: names(size(model%problem%surfaces))
     integer :: i
     do i = 1, size(names)
-      names(i) = model%scene%surfaces(i)%name
+      names(i) = model%problem%surfaces(i)%name
     end do
   end function surface_names
 
@@ -163,13 +163,13 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer, intent(out) :: found
-    character(longest_name) :: known(size(model%scene%amplitudes))
+    character(longest_name) :: known(size(model%problem%amplitudes))
     integer :: i
     found = 0
     if (.not. this%has('AMPLITUDE')) return
-    do i = 1, size(model%scene%amplitudes)
-      if (model%scene%amplitudes(i)%name == this%word('AMPLITUDE')) found = i
-      known(i) = model%scene%amplitudes(i)%name
+    do i = 1, size(model%problem%amplitudes)
+      if (model%problem%amplitudes(i)%name == this%word('AMPLITUDE')) found = i
+      known(i) = model%problem%amplitudes(i)%name
     end do
     if (found == 0) then
       call this%fault_parameter(faults, 'AMPLITUDE', "there is no amplitude '"// &

@@ -12,8 +12,8 @@ contains
 
   !> E/h of the softest layer of elements on either side, h their depth behind the joint [Pa/m]; 0
   !> where no solid has an E.
-  pure real(rk) function softest_layer(scene, solid, facet) result(stiffness)
-    type(problem), intent(in) :: scene
+  pure real(rk) function softest_layer(model, solid, facet) result(stiffness)
+    type(problem), intent(in) :: model
     integer, intent(in) :: solid(:) !< (facets) position of the element behind each, 0 for none
     integer, intent(in) :: facet(:, :) !< (4, facets) nodes of both sides
     real(rk) :: young, depth, softest
@@ -21,9 +21,9 @@ contains
     softest = huge(1.0_rk)
     do i = 1, size(solid)
       if (solid(i) == 0) cycle
-      young = scene%materials(scene%mesh%material_of_element(solid(i)))%young
+      young = model%materials(model%mesh%material_of_element(solid(i)))%young
       if (young <= 0.0_rk) cycle
-      depth = depth_behind(scene%mesh, solid(i), facet(:, i))
+      depth = depth_behind(model%mesh, solid(i), facet(:, i))
       if (depth > 0.0_rk) softest = min(softest, young/depth)
     end do
     stiffness = 0.0_rk

@@ -49,7 +49,7 @@ contains
     if (count(is_bare) > 1) others = ', as '//as_text(count(is_bare) - 1)//' more'
     associate (spot => model%element_origin(e))
       call model%cards(spot%card)%fault_at(faults, spot%line, 1, 'element '// &
-                                           as_text(model%scene%mesh%element_id(e))//' has '// &
+                                           as_text(model%problem%mesh%element_id(e))//' has '// &
                                            lack//others, expected)
     end associate
   end subroutine report_bare
@@ -69,10 +69,10 @@ contains
     new%name = name
     new%kind = kind
     new%cover = cover
-    least = round_off*maxval(abs(model%scene%mesh%x))
+    least = round_off*maxval(abs(model%problem%mesh%x))
     if (cover%largest_gap <= least) new%cover%largest_gap = 0.0_rk
     if (cover%largest_overlap <= least) new%cover%largest_overlap = 0.0_rk
-    model%scene%covers = [model%scene%covers, new]
+    model%problem%covers = [model%problem%covers, new]
     if (cover%covered_area <= 0.0_rk) then
       call place%fault(faults, 'no facet of one face lies opposite a facet of the other', &
                        'faces that lie on each other, with opposite normals')

@@ -26,8 +26,8 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer :: i
-    if (model%scene%mesh%num_elements == 0) return
-    if (.not. any(model%scene%mesh%element_type == 'IFACE4')) return
+    if (model%problem%mesh%num_elements == 0) return
+    if (.not. any(model%problem%mesh%element_type == 'IFACE4')) return
     call check_quads(model, faults)
     if (faults%has_errors()) return
     do i = 1, size(model%interfaces)
@@ -44,8 +44,8 @@ contains
     do i = 1, size(model%interfaces)
       if (size(model%interfaces(i)%elements) == 0) return ! reported already
     end do
-    allocate (is_of_solid(model%scene%mesh%num_nodes), source=.false.)
-    associate (mesh => model%scene%mesh)
+    allocate (is_of_solid(model%problem%mesh%num_nodes), source=.false.)
+    associate (mesh => model%problem%mesh)
       do e = 1, mesh%num_elements
         if (is_solid(mesh%element_type(e))) is_of_solid(mesh%nodes(:, e)) = .true.
       end do
@@ -100,7 +100,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     associate (spot => model%element_origin(e))
       call model%cards(spot%card)%fault_at(faults, spot%line, 1, 'element '// &
-                                           as_text(model%scene%mesh%element_id(e))//' '// &
+                                           as_text(model%problem%mesh%element_id(e))//' '// &
                                            problem, expected)
     end associate
   end subroutine fault_quad
@@ -117,8 +117,8 @@ contains
     associate (request => model%interfaces(number), &
                place => model%cards(model%interfaces(number)%spot%card))
       if (size(request%elements) == 0 .or. request%surface == 0) return
-      call list_interface_facets(model%scene%mesh, request%elements, quads)
-      call list_surface_facets(model%scene%mesh, model%scene%surfaces(request%surface), faces)
+      call list_interface_facets(model%problem%mesh, request%elements, quads)
+      call list_surface_facets(model%problem%mesh, model%problem%surfaces(request%surface), faces)
       stiffness = request%stiffness
       if (stiffness <= 0.0_rk) then
         stiffness = softest(model, faces)
@@ -129,7 +129,8 @@ contains
         end if
       end if
       allocate (new)
-      call build_coupling(model%scene%mesh%x, quads, faces, stiffness, request%name, 'INTERFACE', &
+      call build_coupling(model%problem%mesh%x, quads, faces, stiffness, request%name, &
+                          'INTERFACE', &
                           new, cover)
       cover%element = request%elements
       call keep_cover(place, request%name, 'INTERFACE', cover, .false., model, faults)
@@ -144,8 +145,8 @@ contains
     integer :: f, material
     young = huge(young)
     do f = 1, size(facets%element)
-      material = model%scene%mesh%material_of_element(facets%element(f))
-      young = min(young, model%scene%materials(material)%young)
+      material = model%problem%mesh%material_of_element(facets%element(f))
+      young = min(young, model%problem%materials(material)%young)
     end do
     if (size(facets%element) == 0) young = 0.0_rk
   end function softest

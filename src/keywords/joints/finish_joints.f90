@@ -9,7 +9,7 @@ module finish_joints
   use errors, only: error_type
   use facet_segments, only: find_segments, leave_bare
   use joint_law, only: solid_behind, traction_law
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use kinds, only: rk
   use model_draft, only: draft
   use named_things, only: longest_name
@@ -33,11 +33,11 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(claims) :: taken
     class(traction_law), allocatable :: law
-    type(joint), allocatable :: joints(:)
+    type(dam_joint), allocatable :: joints(:)
     integer :: i
     logical :: is_fit
     call check_joint_elements(model, faults)
-    call open_claims(model%scene%mesh%num_nodes, count_slave_faces(model), taken)
+    call open_claims(model%problem%mesh%num_nodes, count_slave_faces(model), taken)
     allocate (joints(size(model%joints)))
     do i = 1, size(model%joints)
       call find_law(i, model, faults, law, is_fit)
@@ -48,7 +48,7 @@ contains
         call build_from_surfaces(i, model, law, taken, faults, joints(i))
       end if
     end do
-    if (.not. faults%has_errors()) call move_alloc(joints, model%scene%joints)
+    if (.not. faults%has_errors()) call move_alloc(joints, model%problem%joints)
   end subroutine complete_joints
 
   !> Every JOINT8 element belongs to a joint.
@@ -57,11 +57,11 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     logical, allocatable :: is_bare(:)
     integer :: i
-    if (model%scene%mesh%num_elements == 0) return
+    if (model%problem%mesh%num_elements == 0) return
     do i = 1, size(model%joints)
       if (size(model%joints(i)%elements) + model%joints(i)%slave == 0) return ! its fault is told
     end do
-    is_bare = model%scene%mesh%element_type == 'JOINT8' .and. model%joint_of_element == 0
+    is_bare = model%problem%mesh%element_type == 'JOINT8' .and. model%joint_of_element == 0
     call report_bare(is_bare, 'no joint', 'a *JOINT for each JOINT8 element', model, faults)
   end subroutine check_joint_elements
 
@@ -72,7 +72,7 @@ contains
     num = 0
     do i = 1, size(model%joints)
       if (model%joints(i)%slave == 0) cycle
-      num = num + size(model%scene%surfaces(model%joints(i)%slave)%element)
+      num = num + size(model%problem%surfaces(model%joints(i)%slave)%element)
     end do
   end function count_slave_faces
 
@@ -105,7 +105,7 @@ contains
     type(draft), intent(in) :: model
     class(traction_law), intent(inout) :: law
     type(diagnostic_list), intent(inout) :: faults
-    type(joint), intent(out) :: new
+    type(dam_joint), intent(out) :: new
     type(error_type), allocatable :: error
     integer, allocatable :: solid(:, :), side(:)
     integer :: i
@@ -114,8 +114,8 @@ contains
       if (size(request%elements) == 0) return ! its fault is told
       if (law%needs_solid()) then
         allocate (side(size(request%elements)))
-        call find_attached_solids(model%scene%mesh, request%elements, solid, side)
-        associate (nodes => model%scene%mesh%nodes(:, request%elements))
+        call find_attached_solids(model%problem%mesh, request%elements, solid, side)
+        associate (nodes => model%problem%mesh%nodes(:, request%elements))
           i = merge(2, 1, any(solid(2, :) > 0))
           call complete_law(place, pack(solid(i, :), solid(i, :) > 0), &
                             [solid(1, :), solid(2, :)], [nodes(1:4, :), nodes(5:8, :)], model, &
@@ -125,7 +125,7 @@ contains
       new%name = request%name
       new%kind = 'joint'
       allocate (new%law, source=law)
-      call build_joint_points(model%scene%mesh, request%elements, request%is_nodal, new, error)
+      call build_joint_points(model%problem%mesh, request%elements, request%is_nodal, new, error)
       if (allocated(error)) then
         call place%fault(faults, error%message)
       else if (new%num_points == 0) then
@@ -141,15 +141,15 @@ contains
     class(traction_law), intent(inout) :: law
     type(claims), intent(inout) :: taken
     type(diagnostic_list), intent(inout) :: faults
-    type(joint), intent(out) :: new
+    type(dam_joint), intent(out) :: new
     type(facet_set) :: slave, master
     type(segment_set) :: segments
     type(surface_cover) :: cover
     logical, allocatable :: is_bare(:)
-    associate (request => model%joints(number), mesh => model%scene%mesh, &
+    associate (request => model%joints(number), mesh => model%problem%mesh, &
                place => model%cards(model%joints(number)%spot%card))
-      call list_surface_facets(mesh, model%scene%surfaces(request%slave), slave)
-      call list_surface_facets(mesh, model%scene%surfaces(request%master), master)
+      call list_surface_facets(mesh, model%problem%surfaces(request%slave), slave)
+      call list_surface_facets(mesh, model%problem%surfaces(request%master), master)
       if (law%needs_solid()) then
         call complete_law(place, slave%element, [slave%element, master%element], &
                           [slave%node, master%node], model, law, faults)
@@ -188,10 +188,10 @@ contains
     logical, allocatable :: is_tied(:)
     logical, allocatable :: is_there(:)
     integer :: i, k
-    allocate (is_tied(model%scene%mesh%num_nodes), source=.false.)
-    is_there = mark_corners(model%scene%mesh%num_nodes, face)
-    do i = 1, size(model%scene%ties)
-      associate (tie => model%scene%ties(i))
+    allocate (is_tied(model%problem%mesh%num_nodes), source=.false.)
+    is_there = mark_corners(model%problem%mesh%num_nodes, face)
+    do i = 1, size(model%problem%ties)
+      associate (tie => model%problem%ties(i))
         do k = 1, size(tie%node)
           is_tied(tie%node(k)) = is_tied(tie%node(k)) .or. &
                                  any(is_there(tie%master(tie%first(k):tie%first(k + 1) - 1)))
@@ -213,7 +213,7 @@ contains
     if (facet == 0) return
     associate (place => model%cards(model%joints(number)%spot%card))
       call place%fault_at(faults, 1, 1, 'a face of element '// &
-                          as_text(model%scene%mesh%element_id(slave%element(facet)))// &
+                          as_text(model%problem%mesh%element_id(slave%element(facet)))// &
                           " is a slave of joint '"//model%joints(earlier)%name//"' already", &
                           'faces that joints cover once', &
                           first=model%cards(model%joints(earlier)%spot%card)%place())
@@ -231,23 +231,23 @@ contains
     class(traction_law), intent(inout) :: law
     type(diagnostic_list), intent(inout) :: faults
     integer :: materials(size(solids))
-    materials = model%scene%mesh%material_of_element(solids)
+    materials = model%problem%mesh%material_of_element(solids)
     if (size(materials) == 0) then
       call place%fault(faults, 'no solid behind the joint gives KN and KT', &
                        'KN and KT in the *JOINT LAW')
       return
-    else if (model%scene%materials(materials(1))%young <= 0.0_rk) then
+    else if (model%problem%materials(materials(1))%young <= 0.0_rk) then
       call place%fault(faults, "the material of the slave side, '"// &
-                       model%scene%materials(materials(1))%name//"', has no E (a UMAT) to "// &
+                       model%problem%materials(materials(1))%name//"', has no E (a UMAT) to "// &
                        'make KN and KT of', 'KN and KT in the *JOINT LAW')
       return
     else if (any(materials /= materials(1))) then
       call place%warn(faults, "the slave side has several materials; KN and KT are made of '"// &
-                      model%scene%materials(materials(1))%name//"'")
+                      model%problem%materials(materials(1))%name//"'")
     end if
-    associate (slave => model%scene%materials(materials(1)))
+    associate (slave => model%problem%materials(materials(1)))
       call law%complete(solid_behind(slave%young, slave%poisson, &
-                                     softest_layer(model%scene, behind, &
+                                     softest_layer(model%problem, behind, &
                                                    reshape(corners, [4, size(behind)]))))
     end associate
   end subroutine complete_law

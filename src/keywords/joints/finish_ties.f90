@@ -44,7 +44,8 @@ contains
     do i = 1, size(model%ties)
       call build_tie(model%ties(i), is_fixed, is_always, model, faults)
       if (faults%has_errors()) return
-      if (model%ties(i)%adjusts) adjusting = [adjusting, model%scene%ties(size(model%scene%ties))]
+      if (.not. model%ties(i)%adjusts) cycle
+      adjusting = [adjusting, model%problem%ties(size(model%problem%ties))]
     end do
     call adjust_nodes(adjusting, model, faults)
     call check_initial_values(.false., model, faults)
@@ -58,7 +59,7 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(error_type), allocatable :: error
-    call follow_ties(ties, model%scene%mesh%x, error)
+    call follow_ties(ties, model%problem%mesh%x, error)
     if (.not. allocated(error)) return
     call model%cards(model%ties(1)%spot%card)%fault(faults, 'the ties: '//error%message)
   end subroutine adjust_nodes
@@ -71,12 +72,12 @@ contains
     logical, allocatable, intent(out) :: is_always(:, :) !< (3, nodes) in all steps
     logical, allocatable :: is_now(:, :)
     integer :: s, k
-    allocate (is_fixed(num_directions, model%scene%mesh%num_nodes), source=.false.)
-    allocate (is_always(num_directions, model%scene%mesh%num_nodes), source=.true.)
-    allocate (is_now(num_directions, model%scene%mesh%num_nodes))
-    do s = 1, size(model%scene%steps)
+    allocate (is_fixed(num_directions, model%problem%mesh%num_nodes), source=.false.)
+    allocate (is_always(num_directions, model%problem%mesh%num_nodes), source=.true.)
+    allocate (is_now(num_directions, model%problem%mesh%num_nodes))
+    do s = 1, size(model%problem%steps)
       is_now = .false.
-      associate (fixities => model%scene%steps(s)%fixities)
+      associate (fixities => model%problem%steps(s)%fixities)
         do k = 1, size(fixities)
           is_now(fixities(k)%dof, fixities(k)%node) = .true.
         end do
@@ -98,16 +99,16 @@ contains
     type(node_tie) :: tie
     type(coupling), allocatable :: springs
     logical, allocatable :: is_idle(:, :)
-    associate (scene => model%scene, place => model%cards(request%spot%card))
-      call list_surface_facets(scene%mesh, scene%surfaces(request%slave), slave)
-      call list_surface_facets(scene%mesh, scene%surfaces(request%master), master)
+    associate (problem => model%problem, place => model%cards(request%spot%card))
+      call list_surface_facets(problem%mesh, problem%surfaces(request%slave), slave)
+      call list_surface_facets(problem%mesh, problem%surfaces(request%master), master)
       if (request%stiffness > 0.0_rk) then
         allocate (springs)
-        call build_coupling(scene%mesh%x, slave, master, request%stiffness, request%name, 'TIE', &
+        call build_coupling(problem%mesh%x, slave, master, request%stiffness, request%name, 'TIE', &
                             springs, cover)
         call append_coupling(model, springs)
       else
-        call find_segments(scene%mesh%x, slave, master, segments, cover)
+        call find_segments(problem%mesh%x, slave, master, segments, cover)
       end if
       if (cover%covered_area <= 0.0_rk) then
         call place%fault_at(faults, request%spot%line, 1, 'the surfaces do not lie on each other', &
@@ -117,7 +118,8 @@ contains
       call keep_cover(place, request%name, 'TIE', cover, .false., model, faults)
       if (request%stiffness > 0.0_rk) return
       tie%name = request%name
-      call build_tie_rows(scene%mesh%x, slave, master, segments, is_fixed, scene%ties, tie, is_idle)
+      call build_tie_rows(problem%mesh%x, slave, master, segments, is_fixed, problem%ties, tie, &
+                          is_idle)
       if (size(tie%node) == 0) then
         call place%fault_at(faults, request%spot%line, 1, 'the tie constrains no node: '// &
                             'supports or earlier ties hold every node of the slave surface', &
@@ -130,7 +132,7 @@ contains
                         'makes large and dense equations', 'the finer surface as slave')
       end if
       call report_idle(place, slave%node, is_idle, is_always, model, faults)
-      scene%ties = [scene%ties, tie]
+      problem%ties = [problem%ties, tie]
     end associate
   end subroutine build_tie
 
@@ -156,7 +158,7 @@ contains
                     as_text(num_idle)//' of '//as_text(size(corner, 2))//' slave facets '// &
                     'transmit no force: supports of some step or earlier ties hold all their '// &
                     'corners, the first at node '// &
-                    as_text(model%scene%mesh%node_id(corner(1, worst))), &
+                    as_text(model%problem%mesh%node_id(corner(1, worst))), &
                     'more facets across, or slave and master exchanged')
   end subroutine report_idle
 
@@ -170,10 +172,10 @@ contains
     type(error_type), allocatable :: error
     character(:), allocatable :: kind, values
     integer :: i, worst(2)
-    given = zero_vectors(model%scene%mesh%num_nodes)
-    allocate (is_given(num_directions, model%scene%mesh%num_nodes), source=.false.)
-    do i = 1, size(model%scene%initial_values)
-      associate (item => model%scene%initial_values(i))
+    given = zero_vectors(model%problem%mesh%num_nodes)
+    allocate (is_given(num_directions, model%problem%mesh%num_nodes), source=.false.)
+    do i = 1, size(model%problem%initial_values)
+      associate (item => model%problem%initial_values(i))
         if (item%is_velocity .neqv. is_velocity) cycle
         given(item%dof, item%node) = item%value
         is_given(item%dof, item%node) = .true.
@@ -181,7 +183,7 @@ contains
     end do
     if (.not. any(is_given)) return
     taken = given
-    call follow_ties(model%scene%ties, taken, error)
+    call follow_ties(model%problem%ties, taken, error)
     if (allocated(error)) then
       call model%cards(model%ties(1)%spot%card)%fault(faults, 'the ties: '//error%message)
       return
@@ -192,7 +194,7 @@ contains
     kind = trim(merge('velocity    ', 'displacement', is_velocity))
     values = as_text(taken(worst(1), worst(2)))//', not '//as_text(given(worst(1), worst(2)))
     call model%cards(model%ties(1)%spot%card)%warn( &
-      faults, 'node '//as_text(model%scene%mesh%node_id(worst(2)))//' follows others; its '// &
+      faults, 'node '//as_text(model%problem%mesh%node_id(worst(2)))//' follows others; its '// &
       'initial '//kind//' along '//'xyz' (worst(1):worst(1))//' is '//values//' as given')
   end subroutine check_initial_values
 end module finish_ties

@@ -4,7 +4,7 @@
 !> A face may belong to several ties and joints with different partners. Two opposite facets may not
 !> belong to the same two ties or joints, for any choice of slave and any names of surfaces.
 module joined_twice
-  use dam_mesh, only: mesh, surface
+  use dam_mesh, only: fe_mesh, surface
   use diagnostics, only: diagnostic_list
   use facet_segments, only: find_segments
   use finish_joints, only: farthest_gap, farthest_seam
@@ -50,16 +50,16 @@ contains
     if (size(pairs) < 2) return
     total = 0
     do i = 1, size(pairs)
-      total = total + size(model%scene%surfaces(pairs(i)%surfaces(1))%element) &
-              + size(model%scene%surfaces(pairs(i)%surfaces(2))%element)
+      total = total + size(model%problem%surfaces(pairs(i)%surfaces(1))%element) &
+              + size(model%problem%surfaces(pairs(i)%surfaces(2))%element)
     end do
-    allocate (book%first(6, model%scene%mesh%num_elements), source=0)
+    allocate (book%first(6, model%problem%mesh%num_elements), source=0)
     allocate (book%next(total), book%pair(total), book%side(total), source=0)
     allocate (meets(2, 2, size(pairs)), source=0)
     do i = 1, size(pairs)
       call find_earlier(i, pairs, model, book, meets, earlier)
-      call enter_faces(i, 1, model%scene%surfaces(pairs(i)%surfaces(1)), book)
-      call enter_faces(i, 2, model%scene%surfaces(pairs(i)%surfaces(2)), book)
+      call enter_faces(i, 1, model%problem%surfaces(pairs(i)%surfaces(1)), book)
+      call enter_faces(i, 2, model%problem%surfaces(pairs(i)%surfaces(2)), book)
       if (earlier == 0) cycle
       call model%cards(pairs(i)%spot%card)%fault_at( &
         faults, pairs(i)%spot%line, 1, 'the faces are joined by '//pairs(earlier)%name// &
@@ -112,7 +112,7 @@ contains
     integer, intent(out) :: earlier
     integer :: side, k, entry, p
     do side = 1, 2
-      associate (faces => model%scene%surfaces(pairs(new)%surfaces(side)))
+      associate (faces => model%problem%surfaces(pairs(new)%surfaces(side)))
         do k = 1, size(faces%element)
           entry = book%first(faces%face(k), faces%element(k))
           do while (entry > 0)
@@ -142,10 +142,11 @@ contains
     type(facet_set) :: slave, master
     type(segment_set) :: segments
     type(surface_cover) :: cover
-    associate (scene => model%scene)
-      call list_shared(scene%mesh, scene%surfaces(new%surfaces(1)), number, side, book, slave)
-      call list_shared(scene%mesh, scene%surfaces(new%surfaces(2)), number, 3 - side, book, master)
-      call find_segments(scene%mesh%x, slave, master, segments, cover, &
+    associate (problem => model%problem)
+      call list_shared(problem%mesh, problem%surfaces(new%surfaces(1)), number, side, book, slave)
+      call list_shared(problem%mesh, problem%surfaces(new%surfaces(2)), number, 3 - side, book, &
+                       master)
+      call find_segments(problem%mesh%x, slave, master, segments, cover, &
                          min(new%farthest, old%farthest))
     end associate
     join_the_same = any(cover%bare < 1.0_rk - sliver) &
@@ -153,8 +154,8 @@ contains
   end function join_the_same
 
   !> Facets of a surface on one side of a pair.
-  pure subroutine list_shared(model, faces, number, side, book, facets)
-    type(mesh), intent(in) :: model
+  pure subroutine list_shared(mesh, faces, number, side, book, facets)
+    type(fe_mesh), intent(in) :: mesh
     type(surface), intent(in) :: faces
     integer, intent(in) :: number, side !< of the pair
     type(face_book), intent(in) :: book
@@ -172,7 +173,7 @@ contains
     end do
     shared%element = pack(faces%element, is_shared)
     shared%face = pack(faces%face, is_shared)
-    call list_surface_facets(model, shared, facets)
+    call list_surface_facets(mesh, shared, facets)
   end subroutine list_shared
 
   !> Stores the pair of each face.

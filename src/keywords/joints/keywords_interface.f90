@@ -71,10 +71,10 @@ contains
     integer :: i, e, earlier
     do i = 1, size(elements)
       e = elements(i)
-      if (model%scene%mesh%element_type(e) /= 'IFACE4') then
+      if (model%problem%mesh%element_type(e) /= 'IFACE4') then
         call this%fault_parameter(faults, 'ELSET', 'element '// &
-                                  as_text(model%scene%mesh%element_id(e))//' is a '// &
-                                  trim(model%scene%mesh%element_type(e)), &
+                                  as_text(model%problem%mesh%element_id(e))//' is a '// &
+                                  trim(model%problem%mesh%element_type(e)), &
                                   'a set of IFACE4 elements')
         elements = [integer ::]
         return
@@ -82,7 +82,7 @@ contains
       earlier = model%interface_of_element(e)
       if (earlier > 0) then
         call this%fault_parameter(faults, 'ELSET', 'element '// &
-                                  as_text(model%scene%mesh%element_id(e))// &
+                                  as_text(model%problem%mesh%element_id(e))// &
                                   ' belongs to another interface', &
                                   'one interface for each element', &
                                   first=model%cards(model%interfaces(earlier)%spot%card)%place())

@@ -187,17 +187,17 @@ contains
     integer :: i, e, earlier
     do i = 1, size(elements)
       e = elements(i)
-      if (model%scene%mesh%element_type(e) /= 'JOINT8') then
+      if (model%problem%mesh%element_type(e) /= 'JOINT8') then
         call this%fault_parameter(faults, 'ELSET', 'element '// &
-                                  as_text(model%scene%mesh%element_id(e))//' is a '// &
-                                  trim(model%scene%mesh%element_type(e)), &
+                                  as_text(model%problem%mesh%element_id(e))//' is a '// &
+                                  trim(model%problem%mesh%element_type(e)), &
                                   'a set of JOINT8 elements')
         return
       end if
       earlier = model%joint_of_element(e)
       if (earlier > 0) then
         call this%fault_parameter(faults, 'ELSET', 'element '// &
-                                  as_text(model%scene%mesh%element_id(e))// &
+                                  as_text(model%problem%mesh%element_id(e))// &
                                   ' belongs to another joint', 'one joint for each element', &
                                   first=model%cards(model%joints(earlier)%spot%card)%place())
         return

@@ -6,7 +6,7 @@ module finish_uplift
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use joint_rim, only: area_of_facets, face_rim, find_rim
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use kinds, only: rk
   use load_reservoir, only: reservoir_load
   use load_uplift, only: fill_linear, fill_open, uplift_load
@@ -68,7 +68,7 @@ contains
     is_found = .false.
     presses = .false.
     do i = 1, model%num_loads
-      select type (lake => model%scene%loads(i)%item)
+      select type (lake => model%problem%loads(i)%item)
       type is (reservoir_load)
         n = n + 1
         known(n) = lake%target
@@ -100,7 +100,7 @@ contains
     if (lake_name == '') return
     num_before = model%num_loads
     do i = 1, num_before
-      select type (lake => model%scene%loads(i)%item)
+      select type (lake => model%problem%loads(i)%item)
       type is (reservoir_load)
         if (lake%target /= lake_name) cycle
         call fill_water(model, j, request, lake, is_tail, water, faults)
@@ -125,27 +125,27 @@ contains
     logical, allocatable :: is_wet(:)
     type(face_rim) :: rim
     call list_faces(model, j, slave, master)
-    call mark_surface(model%scene, upstream_of(model, request, lake, is_tail), is_wet)
-    call choose_rim(model%scene%mesh%x, slave, master, is_wet, rim)
-    associate (place => model%cards(model%joints(j)%spot%card), seam => model%scene%joints(j))
+    call mark_surface(model%problem, upstream_of(model, request, lake, is_tail), is_wet)
+    call choose_rim(model%problem%mesh%x, slave, master, is_wet, rim)
+    associate (place => model%cards(model%joints(j)%spot%card), joint => model%problem%joints(j))
       if (size(rim%upstream) == 0) then
         call place%fault(faults, "reservoir '"//request%uplift//"' (UPLIFT of law '"// &
-                         request%law%name//"') does not reach joint '"//seam%name// &
+                         request%law%name//"') does not reach joint '"//joint%name// &
                          "': its surface has no edge in common with the joint", &
                          'a SURFACE of the *RESERVOIR that ends at the edge of the joint')
         return
       end if
       if (size(rim%downstream) == 0 .and. request%profile == 'LINEAR') then
-        call place%fault(faults, "joint '"//seam%name//"' has no edge opposite to the one at "// &
+        call place%fault(faults, "joint '"//joint%name//"' has no edge opposite to the one at "// &
                          "reservoir '"//request%uplift//"'", 'a downstream edge, or PROFILE=OPEN')
         return
       end if
       water%wet_joint = j
       water%kind = 'uplift'
       if (request%profile == 'OPEN') then
-        call fill_open(model%scene%mesh, seam, rim, slave, lake, water)
+        call fill_open(model%problem%mesh, joint, rim, slave, lake, water)
       else
-        call fill_linear(model%scene%mesh, seam, rim, lake, is_tail, water)
+        call fill_linear(model%problem%mesh, joint, rim, lake, is_tail, water)
       end if
     end associate
   end subroutine fill_water
@@ -161,7 +161,7 @@ contains
     faces = lake%faces
     if (.not. is_tail) return
     do i = 1, model%num_loads
-      select type (upper => model%scene%loads(i)%item)
+      select type (upper => model%problem%loads(i)%item)
       type is (reservoir_load)
         if (upper%target /= request%uplift) cycle
         faces = upper%faces
@@ -171,14 +171,14 @@ contains
   end function upstream_of
 
   !> Marks the nodes of a surface.
-  subroutine mark_surface(scene, faces, is_wet)
-    type(problem), intent(in) :: scene
+  subroutine mark_surface(model, faces, is_wet)
+    type(problem), intent(in) :: model
     type(surface), intent(in) :: faces
     logical, allocatable, intent(out) :: is_wet(:) !< (nodes)
     integer :: i
-    allocate (is_wet(scene%mesh%num_nodes), source=.false.)
+    allocate (is_wet(model%mesh%num_nodes), source=.false.)
     do i = 1, size(faces%element)
-      is_wet(face_nodes(scene%mesh, faces%element(i), faces%face(i))) = .true.
+      is_wet(face_nodes(model%mesh, faces%element(i), faces%face(i))) = .true.
     end do
   end subroutine mark_surface
 
@@ -188,15 +188,15 @@ contains
     integer, intent(in) :: j !< joint
     integer, allocatable, intent(out) :: slave(:, :), master(:, :) !< (4, facets) nodes
     type(facet_set) :: facets
-    associate (mesh => model%scene%mesh, request => model%joints(j))
+    associate (mesh => model%problem%mesh, request => model%joints(j))
       if (request%slave == 0) then
         slave = mesh%nodes(5:8, request%elements)
         master = mesh%nodes(1:4, request%elements)
         return
       end if
-      call list_surface_facets(mesh, model%scene%surfaces(request%slave), facets)
+      call list_surface_facets(mesh, model%problem%surfaces(request%slave), facets)
       slave = facets%node
-      call list_surface_facets(mesh, model%scene%surfaces(request%master), facets)
+      call list_surface_facets(mesh, model%problem%surfaces(request%master), facets)
       master = facets%node
     end associate
   end subroutine list_faces
@@ -228,12 +228,12 @@ contains
     type(step_load) :: rule
     integer :: s, i
     allocate (item, source=water)
-    associate (wet => model%scene%joints(water%wet_joint))
+    associate (wet => model%problem%joints(water%wet_joint))
       call add_load(model, item, 'water of '//lake_name//' in joint '//wet%name//' ('//profile// &
                     ')', 'JOINT LAW', lake_name)
     end associate
-    do s = 1, size(model%scene%steps)
-      associate (step => model%scene%steps(s))
+    do s = 1, size(model%problem%steps)
+      associate (step => model%problem%steps(s))
         do i = 1, size(step%loads)
           if (step%loads(i)%load /= lake) cycle
           rule = step%loads(i)

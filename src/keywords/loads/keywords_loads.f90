@@ -178,7 +178,7 @@ contains
     character(:), allocatable :: label
     real(rk) :: heights(2)
     label = this%word_at(line, 2)
-    if (.not. all(is_solid(model%scene%mesh%element_type(elements)))) then
+    if (.not. all(is_solid(model%problem%mesh%element_type(elements)))) then
       call this%fault_at(faults, line, 1, 'pressure on an element that is not a solid', &
                          'solid elements')
       return
@@ -237,7 +237,7 @@ contains
     do line = 1, this%num_lines
       call find_surface_at(this, line, model, faults, found)
       if (found == 0) cycle
-      push%faces = model%scene%surfaces(found)
+      push%faces = model%problem%surfaces(found)
       allocate (item, source=push)
       call put_load(model, item, 'pressure '//this%word_at(line, 1), 'DSLOAD', &
                     this%word_at(line, 1), '', this%real_at(line, 3), history)

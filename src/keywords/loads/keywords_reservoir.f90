@@ -69,7 +69,7 @@ contains
       return
     end if
     lake%kind = 'reservoir'
-    lake%faces = model%scene%surfaces(found)
+    lake%faces = model%problem%surfaces(found)
     lake%water%level = this%real('LEVEL')
     lake%water%bed = this%real('BED')
     lake%water%up = this%integer('UP')
@@ -78,13 +78,13 @@ contains
     lake%is_hydrostatic = this%word('HYDROSTATIC') == 'YES'
     lake%has_added_mass = this%word('ADDED MASS') == 'WESTERGAARD'
     lake%is_diagonal = this%word('DIRECTION') == 'DIAGONAL'
-    if (wetted_area(lake, model%scene%mesh) <= 0.0_rk) then
+    if (wetted_area(lake, model%problem%mesh) <= 0.0_rk) then
       call this%fault_parameter(faults, 'SURFACE', 'no face of the surface is wetted', &
                                 'a surface with faces between BED, '//this%text('BED')// &
                                 ' m, and LEVEL, '//this%text('LEVEL')//' m')
       return
     end if
-    if (model%scene%upstream_surface == 0) model%scene%upstream_surface = found
+    if (model%problem%upstream_surface == 0) model%problem%upstream_surface = found
     allocate (item, source=lake)
     call put_load(model, item, 'reservoir '//this%word('NAME'), 'RESERVOIR', this%word('NAME'), &
                   pattern_of_card(this), 1.0_rk, 0)

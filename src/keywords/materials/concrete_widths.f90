@@ -31,7 +31,7 @@ contains
     type(table_fault) :: limit
     real(rk) :: longest
     integer :: i
-    associate (body => model%scene%mesh)
+    associate (body => model%problem%mesh)
       elements = pack([(i, i=1, body%num_elements)], is_solid(body%element_type) &
                       .and. body%material_of_element == given%material)
       allocate (least(size(elements)), most(size(elements)))
@@ -42,7 +42,7 @@ contains
     call find_longest_band(given%constants, longest, limit)
     if (limit%row == 0) return
     if (.not. any(most > longest*(1.0_rk + rounding))) return
-    elements = model%scene%mesh%element_id(elements)
+    elements = model%problem%mesh%element_id(elements)
     if (given%constants%lowers_strength) then
       call warn_of_strength(given, model, elements, most, longest, faults)
     else

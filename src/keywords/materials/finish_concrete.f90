@@ -34,7 +34,7 @@ contains
     real(rk) :: smallest, largest
     integer :: num_before
     self%given%material = self%material
-    associate (given => self%given, now => model%scene%materials(self%material))
+    associate (given => self%given, now => model%problem%materials(self%material))
       given%constants%young = now%young
       given%constants%poisson = now%poisson
       num_before = faults%num_errors
@@ -60,7 +60,7 @@ contains
     type(origin) :: spot
     character(:), allocatable :: name
     spot = first_spot(given)
-    name = "material '"//model%scene%materials(given%material)%name//"' has no "
+    name = "material '"//model%problem%materials(given%material)%name//"' has no "
     associate (place => model%cards(spot%card))
       if (given%plasticity%card == 0) then
         call place%fault(faults, name//'*CONCRETE DAMAGED PLASTICITY', &
@@ -138,12 +138,12 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(table_fault) :: limit
     real(rk) :: longest
-    associate (test => model%scene%tests(number), given => self%given, &
+    associate (test => model%problem%tests(number), given => self%given, &
                place => model%cards(model%test_origin(number)%card))
       if (.not. uses_length(given)) return
       if (.not. place%has('LENGTH')) then
         call place%warn(faults, "LENGTH is not given and turns the openings of '"// &
-                        model%scene%materials(test%material)%name//"' into strains: 1 is taken", &
+                        model%problem%materials(test%material)%name//"' into strains: 1 is taken", &
                         'LENGTH, the side of an element [m]')
       end if
       call find_longest_band(given%constants, longest, limit)

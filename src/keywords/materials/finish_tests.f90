@@ -17,18 +17,18 @@ contains
     integer :: i, j
     if (size(model%cards) == 0) return
     call complete_materials(model, faults)
-    if (size(model%scene%tests) == 0 .and. .not. faults%has_errors()) then
+    if (size(model%problem%tests) == 0 .and. .not. faults%has_errors()) then
       call model%cards(size(model%cards))%fault(faults, 'the deck ends without a test', &
                                                 '*MATERIAL TEST')
     end if
-    do i = 1, size(model%scene%tests)
+    do i = 1, size(model%problem%tests)
       call check_law(model, i, faults)
     end do
     if (faults%has_errors()) return
-    do i = 1, size(model%scene%tests)
+    do i = 1, size(model%problem%tests)
       do j = 1, size(model%material_requests)
         associate (request => model%material_requests(j)%item)
-          if (request%material == model%scene%tests(i)%material) then
+          if (request%material == model%problem%tests(i)%material) then
             call request%check_test(i, model, faults)
           end if
         end associate
@@ -42,12 +42,12 @@ contains
     integer, intent(in) :: number !< of the test
     type(diagnostic_list), intent(inout) :: faults
     integer :: i
-    i = model%scene%tests(number)%material
+    i = model%problem%tests(number)%material
     if (i == 0) return ! told
-    if (allocated(model%scene%materials(i)%law)) return
-    if (any(model%scene%tests(:number - 1)%material == i)) return ! told
+    if (allocated(model%problem%materials(i)%law)) return
+    if (any(model%problem%tests(:number - 1)%material == i)) return ! told
     if (has_request(model, i)) return ! reported by the request
     call model%cards(model%material_origin(i)%card)%fault( &
-      faults, "material '"//model%scene%materials(i)%name//"' has no stiffness", names_of_laws())
+      faults, "material '"//model%problem%materials(i)%name//"' has no stiffness", names_of_laws())
   end subroutine check_law
 end module finish_tests

@@ -32,7 +32,7 @@ contains
     do i = 1, size(model%material_requests)
       select type (given => model%material_requests(i)%item)
       type is (user_material)
-        if (associated(model%scene%umat)) return
+        if (associated(model%problem%umat)) return
         if (given%spot%card == 0) cycle
         call model%cards(given%spot%card)%fault( &
           faults, 'no UMAT is given', 'the option --umat with its source or library: keyway '// &
@@ -40,8 +40,8 @@ contains
         return
       end select
     end do
-    if (.not. associated(model%scene%umat)) return
-    deck%file = model%scene%deck_file ! a constructor of the type would take a wrong length
+    if (.not. associated(model%problem%umat)) return
+    deck%file = model%problem%deck_file ! a constructor of the type would take a wrong length
     deck%keyword = ''
     deck%source = ''
     call faults%add(severity_warning, deck, '--umat is given and no material asks for it', &
@@ -59,12 +59,12 @@ contains
     type(error_type), allocatable :: error
     call check_cards(self, model, faults)
     if (faults%has_errors()) return
-    call make_user_law(model%scene%umat, self%constants, law)
+    call make_user_law(model%problem%umat, self%constants, law)
     call first_point(model, self%material, points)
     time%tangent = consistent_tangent
-    if (size(model%scene%steps) > 0) then
-      if (model%scene%steps(1)%first_increment > 0.0_rk) then
-        time%size = model%scene%steps(1)%first_increment
+    if (size(model%problem%steps) > 0) then
+      if (model%problem%steps(1)%first_increment > 0.0_rk) then
+        time%size = model%problem%steps(1)%first_increment
       end if
     end if
     call find_stiffness(law, points, time, error)
@@ -72,7 +72,7 @@ contains
       call model%cards(self%spot%card)%fault(faults, error%message)
       return
     end if
-    associate (now => model%scene%materials(self%material))
+    associate (now => model%problem%materials(self%material))
       allocate (now%law, source=law)
       now%remark = 'UMAT with '//as_text(size(law%constants%values))//' constants and '// &
                    as_text(law%constants%num_variables)//' state variables'
@@ -90,7 +90,7 @@ contains
       return
     end if
     associate (spot => model%cards(self%spot%card))
-      if (allocated(model%scene%materials(self%material)%law)) then
+      if (allocated(model%problem%materials(self%material)%law)) then
         call spot%fault(faults, "material '"//self%constants%name//"' has an *ELASTIC, too", &
                         'one law: the UMAT gives the elastic stiffness')
       else if (has_request(model, self%material)) then
@@ -112,16 +112,16 @@ contains
     points%element = [1]
     points%number = [1]
     points%length = [1.0_rk]
-    do i = size(model%scene%tests), 1, -1
-      if (model%scene%tests(i)%material == material) points%length = model%scene%tests(i)%length
+    do i = size(model%problem%tests), 1, -1
+      if (model%problem%tests(i)%material == material) points%length = model%problem%tests(i)%length
     end do
     allocate (points%x(3, 1), points%edges(3, 3, 1), source=0.0_rk)
-    if (.not. allocated(model%scene%mesh%material_of_element)) return
-    e = findloc(model%scene%mesh%material_of_element, material, dim=1)
+    if (.not. allocated(model%problem%mesh%material_of_element)) return
+    e = findloc(model%problem%mesh%material_of_element, material, dim=1)
     if (e == 0) return
-    x = model%scene%mesh%x(:, model%scene%mesh%nodes(:, e))
+    x = model%problem%mesh%x(:, model%problem%mesh%nodes(:, e))
     call hex8_gradients(x, gradient, weight, corner)
-    points%element = model%scene%mesh%element_id(e)
+    points%element = model%problem%mesh%element_id(e)
     points%x(:, 1) = sum(x, 2)/8.0_rk
     if (corner == 0) points%length = sum(weight)**(1.0_rk/3.0_rk)
   end subroutine first_point

@@ -43,7 +43,7 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    associate (now => model%scene%materials(size(model%scene%materials)))
+    associate (now => model%problem%materials(size(model%problem%materials)))
       if (allocated(now%law)) then
         call this%fault(faults, "material '"//now%name//"' has an *ELASTIC already", 'one only')
         return

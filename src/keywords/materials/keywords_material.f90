@@ -35,19 +35,19 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(material), allocatable :: longer(:)
     integer :: i, num
-    num = size(model%scene%materials)
+    num = size(model%problem%materials)
     do i = 1, num
-      if (model%scene%materials(i)%name /= this%word('NAME')) cycle
+      if (model%problem%materials(i)%name /= this%word('NAME')) cycle
       call this%fault_parameter(faults, 'NAME', "material '"//this%text('NAME')// &
                                 "' is defined twice", 'a name that is used once', &
                                 first=model%cards(model%material_origin(i)%card)%place())
     end do
     allocate (longer(num + 1))
     do i = 1, num
-      longer(i) = model%scene%materials(i)
+      longer(i) = model%problem%materials(i)
     end do
     longer(num + 1)%name = this%word('NAME')
-    call move_alloc(longer, model%scene%materials)
+    call move_alloc(longer, model%problem%materials)
     model%material_origin = [model%material_origin, model%here(0)]
   end subroutine read_material
 
@@ -69,7 +69,7 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    associate (now => model%scene%materials(size(model%scene%materials)))
+    associate (now => model%problem%materials(size(model%problem%materials)))
       if (now%density > 0.0_rk) then
         call this%fault(faults, "material '"//now%name//"' has a *DENSITY already", 'one only')
       end if
@@ -95,7 +95,7 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    associate (now => model%scene%materials(size(model%scene%materials)))
+    associate (now => model%problem%materials(size(model%problem%materials)))
       if (now%alpha > 0.0_rk .or. now%beta > 0.0_rk) then
         call this%fault(faults, "material '"//now%name//"' has a *DAMPING already", 'one only')
       end if
@@ -111,7 +111,7 @@ contains
     type(origin), intent(inout) :: spot !< of the keyword in its material
     type(diagnostic_list), intent(inout) :: faults
     if (spot%card > 0) then
-      associate (now => model%scene%materials(size(model%scene%materials)))
+      associate (now => model%problem%materials(size(model%problem%materials)))
         call this%fault(faults, "material '"//now%name//"' has a *"//this%spec%name//' already', &
                         'one only', first=model%cards(spot%card)%place())
       end associate

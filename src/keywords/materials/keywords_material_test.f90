@@ -98,8 +98,8 @@ contains
     new%driven = 1
     if (new%kind == 'SHEAR') new%driven = 4
     if (new%kind == 'GENERAL') new%driven = 0
-    do i = 1, size(model%scene%tests)
-      if (safe_name(model%scene%tests(i)%name) /= safe_name(new%name)) cycle ! one file each
+    do i = 1, size(model%problem%tests)
+      if (safe_name(model%problem%tests(i)%name) /= safe_name(new%name)) cycle ! one file each
       call this%fault_parameter(faults, 'NAME', "test '"//this%text('NAME')// &
                                 "' is defined twice", 'a name that is used once', &
                                 first=model%cards(model%test_origin(i)%card)%place())
@@ -107,7 +107,7 @@ contains
     call find_material(this, model, faults, new%material)
     call check_parameters(this, faults)
     call read_legs(this, faults, new%legs)
-    model%scene%tests = [model%scene%tests, new]
+    model%problem%tests = [model%problem%tests, new]
     model%test_origin = [model%test_origin, model%here(0)]
     if (model%runs_tests) return
     call this%ignore(faults, 'has no effect in an analysis; keyway --material runs it')
@@ -119,7 +119,7 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer, intent(out) :: found !< 0 after a fault
-    character(longest_name) :: known(size(model%scene%materials))
+    character(longest_name) :: known(size(model%problem%materials))
     integer :: i
     found = 0
     if (.not. this%has('MATERIAL')) then
@@ -133,8 +133,8 @@ contains
       return
     end if
     do i = 1, size(known)
-      known(i) = model%scene%materials(i)%name
-      if (model%scene%materials(i)%name == this%word('MATERIAL')) found = i
+      known(i) = model%problem%materials(i)%name
+      if (model%problem%materials(i)%name == this%word('MATERIAL')) found = i
     end do
     if (found > 0) return
     call this%fault_parameter(faults, 'MATERIAL', "there is no material '"// &

@@ -142,7 +142,7 @@ contains
     call find_material_request(model, user_material(), i)
     select type (now => model%material_requests(i)%item)
     type is (user_material)
-      now%constants%name = model%scene%materials(now%material)%name
+      now%constants%name = model%problem%materials(now%material)%name
     end select
   end subroutine find_request
 end module keywords_user_material

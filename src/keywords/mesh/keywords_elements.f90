@@ -52,7 +52,7 @@ contains
   pure subroutine make_room_for_elements(model, most)
     type(draft), intent(inout) :: model
     integer, intent(in) :: most !< data lines of all *ELEMENT cards
-    associate (mesh => model%scene%mesh)
+    associate (mesh => model%problem%mesh)
       allocate (mesh%element_id(most), mesh%element_type(most), mesh%nodes(most_nodes, most))
       allocate (mesh%material_of_element(most), mesh%section_of_element(most), source=0)
       allocate (model%element_origin(most))
@@ -64,8 +64,8 @@ contains
   pure subroutine trim_mesh(model)
     type(draft), intent(inout) :: model
     integer :: used
-    used = model%scene%mesh%num_elements
-    associate (mesh => model%scene%mesh)
+    used = model%problem%mesh%num_elements
+    associate (mesh => model%problem%mesh)
       if (size(mesh%element_id) > used) then
         mesh%element_id = mesh%element_id(:used)
         mesh%element_type = mesh%element_type(:used)
@@ -90,7 +90,7 @@ contains
     kind = find_element_kind(this%word('TYPE'))
     wanted = most_nodes
     if (kind > 0) wanted = element_kinds(kind)%num_nodes
-    first = model%scene%mesh%num_elements + 1
+    first = model%problem%mesh%num_elements + 1
     line = 1
     do while (line <= this%num_lines)
       call read_nodes_of_element(this, line, wanted, model, faults, nodes, next, is_right)
@@ -99,7 +99,7 @@ contains
     end do
     if (this%has('ELSET')) then
       call model%element_sets%add(this%word('ELSET'), &
-                                  positions(first, model%scene%mesh%num_elements))
+                                  positions(first, model%problem%mesh%num_elements))
     end if
   end subroutine read_elements
 
@@ -178,19 +178,19 @@ contains
     integer, intent(out) :: element !< its position
     integer :: earlier, id
     id = this%integer_at(line, 1)
-    element = model%scene%mesh%num_elements + 1
+    element = model%problem%mesh%num_elements + 1
     call model%element_position%insert(id, element, earlier)
     if (earlier > 0) then
       call fault_twice(this, line, 'element', model%element_origin(earlier), model, faults)
       return
     end if
-    model%scene%mesh%num_elements = element
-    model%scene%mesh%element_id(element) = id
-    model%scene%mesh%element_type(element) = this%word('TYPE')
+    model%problem%mesh%num_elements = element
+    model%problem%mesh%element_id(element) = id
+    model%problem%mesh%element_type(element) = this%word('TYPE')
     if (find_element_kind(this%word('TYPE')) == 0) then ! reported; a solid avoids more faults
-      model%scene%mesh%element_type(element) = element_kinds(1)%name
+      model%problem%mesh%element_type(element) = element_kinds(1)%name
     end if
-    model%scene%mesh%nodes(:, element) = nodes
+    model%problem%mesh%nodes(:, element) = nodes
     model%element_origin(element) = model%here(line)
   end subroutine add_element
 end module keywords_elements

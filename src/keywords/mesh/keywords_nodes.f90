@@ -32,7 +32,7 @@ contains
     integer :: line, i
     character(:), allocatable :: text
     if (this%num_lines == 0) call this%warn(faults, 'the heading is empty')
-    text = model%scene%heading
+    text = model%problem%heading
     do line = 1, this%num_lines
       if (len(text) > 0) text = text//nl
       do i = 1, this%num_fields(line)
@@ -40,7 +40,7 @@ contains
         text = text//this%text_at(line, i)
       end do
     end do
-    model%scene%heading = text
+    model%problem%heading = text
   end subroutine read_heading
 
   subroutine describe_include(spec)
@@ -79,7 +79,7 @@ contains
   pure subroutine make_room_for_nodes(model, most)
     type(draft), intent(inout) :: model
     integer, intent(in) :: most !< data lines of all *NODE cards
-    associate (mesh => model%scene%mesh)
+    associate (mesh => model%problem%mesh)
       allocate (mesh%node_id(most), mesh%x(3, most), model%node_origin(most))
     end associate
     call model%node_position%reserve(most)
@@ -90,25 +90,25 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer :: line, first, node, id, earlier
-    first = model%scene%mesh%num_nodes + 1
+    first = model%problem%mesh%num_nodes + 1
     do line = 1, this%num_lines
       id = this%integer_at(line, 1)
       if (id <= 0) cycle
-      node = model%scene%mesh%num_nodes + 1
+      node = model%problem%mesh%num_nodes + 1
       call model%node_position%insert(id, node, earlier)
       if (earlier > 0) then
         call fault_twice(this, line, 'node', model%node_origin(earlier), model, faults)
         cycle
       end if
-      model%scene%mesh%num_nodes = node
-      model%scene%mesh%node_id(node) = id
-      model%scene%mesh%x(1, node) = this%real_at(line, 2)
-      model%scene%mesh%x(2, node) = this%real_at(line, 3)
-      model%scene%mesh%x(3, node) = this%real_at(line, 4)
+      model%problem%mesh%num_nodes = node
+      model%problem%mesh%node_id(node) = id
+      model%problem%mesh%x(1, node) = this%real_at(line, 2)
+      model%problem%mesh%x(2, node) = this%real_at(line, 3)
+      model%problem%mesh%x(3, node) = this%real_at(line, 4)
       model%node_origin(node) = model%here(line)
     end do
     if (this%has('NSET')) then
-      call model%node_sets%add(this%word('NSET'), positions(first, model%scene%mesh%num_nodes))
+      call model%node_sets%add(this%word('NSET'), positions(first, model%problem%mesh%num_nodes))
     end if
   end subroutine read_nodes
 

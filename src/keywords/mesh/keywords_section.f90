@@ -57,12 +57,12 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer, intent(out) :: found
-    character(longest_name) :: known(size(model%scene%materials))
+    character(longest_name) :: known(size(model%problem%materials))
     integer :: i
     found = 0
     do i = 1, size(known)
-      known(i) = model%scene%materials(i)%name
-      if (model%scene%materials(i)%name == this%word('MATERIAL')) found = i
+      known(i) = model%problem%materials(i)%name
+      if (model%problem%materials(i)%name == this%word('MATERIAL')) found = i
     end do
     if (found > 0) return
     call this%fault_parameter(faults, 'MATERIAL', "there is no material '"// &
@@ -83,7 +83,7 @@ contains
       end if
     end if
     model%mass_kind = this%word('MASS')
-    model%scene%has_lumped_mass = model%mass_kind == 'LUMPED'
+    model%problem%has_lumped_mass = model%mass_kind == 'LUMPED'
   end subroutine choose_mass
 
   subroutine give_material(this, elements, num_material, model, faults)
@@ -92,7 +92,7 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer :: i, e, earlier
-    associate (mesh => model%scene%mesh)
+    associate (mesh => model%problem%mesh)
       do i = 1, size(elements)
         e = elements(i)
         if (.not. is_solid(mesh%element_type(e))) then

@@ -174,7 +174,7 @@ contains
       return
     end if
     new%name = this%word('NAME')
-    allocate (seen(model%scene%mesh%num_elements), source=0)
+    allocate (seen(model%problem%mesh%num_elements), source=0)
     used = 0
     call make_room(new%element, used, 0)
     call make_room(new%face, used, 0)
@@ -189,7 +189,7 @@ contains
     end do
     new%element = new%element(:used)
     new%face = new%face(:used)
-    model%scene%surfaces = [model%scene%surfaces, new]
+    model%problem%surfaces = [model%problem%surfaces, new]
     model%surface_origin = [model%surface_origin, model%here(0)]
   end subroutine read_surface
 
@@ -211,7 +211,7 @@ contains
     if (all(is_new)) return
     i = findloc(is_new, .false., dim=1)
     call this%warn_at(faults, line, 1, 'face '//this%text_at(line, 2)//' of element '// &
-                      as_text(model%scene%mesh%element_id(members(i)))// &
+                      as_text(model%problem%mesh%element_id(members(i)))// &
                       trim(merge(' is in the surface twice; it counts once              ', &
                                  ' and others are in the surface twice; they count once ', &
                                  count(.not. is_new) == 1)))
@@ -227,7 +227,7 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer :: i
-    associate (mesh => model%scene%mesh)
+    associate (mesh => model%problem%mesh)
       do i = 1, size(members)
         if (.not. is_solid(mesh%element_type(members(i)))) then
           call this%fault_at(faults, line, 1, 'element '// &

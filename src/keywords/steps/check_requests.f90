@@ -51,11 +51,11 @@ contains
     character(:), allocatable :: reason
     reason = ''
     if (item%place == at_joints .and. keyword == 'ENVELOPE') then
-      if (size(model%scene%joints) == 0) then
+      if (size(model%problem%joints) == 0) then
         reason = 'the model has no joints; '//item%name//' is not written'
       end if
     else if (item%provider == by_law) then
-      if (item%width(model%scene) == 0) then
+      if (item%width(model%problem) == 0) then
         reason = 'no material of the model has '//item%name//'; it is not written'
       end if
     end if

@@ -23,7 +23,7 @@ contains
     model%current_procedure = model%current
     allocate (new%prints(0), new%outputs(0), new%envelope(0))
     if (num > 0) then
-      associate (before => model%scene%steps(num))
+      associate (before => model%problem%steps(num))
         new%prints = before%prints
         new%outputs = before%outputs
         new%controls = before%controls
@@ -51,14 +51,14 @@ contains
     model%now%loads = [model%now%loads, model%active_loads%loads_of_step()]
     is_perturbation = model%now%procedure%finds_modes
     end_time = model%total_time + model%now%duration
-    associate (histories => model%scene%amplitudes, duration => model%now%duration)
+    associate (histories => model%problem%amplitudes, duration => model%now%duration)
       call model%active_loads%end_step(histories, duration, end_time, is_perturbation)
       call model%supports%end_step(histories, duration, end_time, is_perturbation)
       call model%point_forces%end_step(histories, duration, end_time, is_perturbation)
     end associate
     model%total_time = end_time
     model%num_steps = model%num_steps + 1
-    model%scene%steps(model%num_steps) = model%now
+    model%problem%steps(model%num_steps) = model%now
     model%procedure_card = [model%procedure_card, model%current_procedure]
     model%is_in_step = .false.
   end subroutine close_step
@@ -96,7 +96,7 @@ contains
         call add_forces(model, force, 0.0_rk, 1.0_rk, 0)
       end if
     end associate
-    do history = 1, size(model%scene%amplitudes)
+    do history = 1, size(model%problem%amplitudes)
       if (.not. any(model%point_forces%history == history)) cycle
       force = merge(model%point_forces%value, 0.0_rk, model%point_forces%history == history)
       call add_forces(model, force, 0.0_rk, 1.0_rk, history)

@@ -54,8 +54,8 @@ contains
     num_before = faults%num_errors
     new%name = this%word('NAME')
     new%uses_total_time = this%word('TIME') == 'TOTAL TIME'
-    do i = 1, size(model%scene%amplitudes)
-      if (model%scene%amplitudes(i)%name /= new%name) cycle
+    do i = 1, size(model%problem%amplitudes)
+      if (model%problem%amplitudes(i)%name /= new%name) cycle
       call this%fault_parameter(faults, 'NAME', "amplitude '"//this%text('NAME')// &
                                 "' is defined twice", 'a name that is used once')
     end do
@@ -63,7 +63,7 @@ contains
     if (faults%num_errors == num_before) call shape_history(this, numbers, faults, new)
     if (.not. allocated(new%time)) new%time = [0.0_rk] ! the name exists, its faults are reported
     if (.not. allocated(new%value)) new%value = [0.0_rk]
-    model%scene%amplitudes = [model%scene%amplitudes, new]
+    model%problem%amplitudes = [model%problem%amplitudes, new]
   end subroutine read_amplitude
 
   !> The numbers of the card or of its file.

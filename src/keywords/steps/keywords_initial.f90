@@ -59,6 +59,6 @@ contains
       new(i)%dof = this%integer_at(line_of_node(i), 2)
       new(i)%value = this%real_at(line_of_node(i), 3)
     end do
-    model%scene%initial_values = [model%scene%initial_values, new]
+    model%problem%initial_values = [model%problem%initial_values, new]
   end subroutine read_initial_conditions
 end module keywords_initial

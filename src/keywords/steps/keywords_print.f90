@@ -101,7 +101,7 @@ contains
     new%kind = 'ELEMENT'
     new%name = this%word('ELSET')
     call elements_of_set(this, 'ELSET', model, faults, new%members)
-    if (.not. all(is_solid(model%scene%mesh%element_type(new%members)))) then
+    if (.not. all(is_solid(model%problem%mesh%element_type(new%members)))) then
       call this%fault_parameter(faults, 'ELSET', 'the set holds elements that are no solids', &
                                 'solid elements; for joints *JOINT PRINT')
     end if

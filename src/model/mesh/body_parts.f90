@@ -1,7 +1,7 @@
 !> Bodies: parts of the model connected by elements (also joints), ties and couplings; and checks
 !> that supports hold them.
 module body_parts
-  use dam_mesh, only: mesh
+  use dam_mesh, only: fe_mesh
   use kinds, only: rk
   use row_tables, only: row_table
   implicit none
@@ -14,19 +14,19 @@ module body_parts
 contains
 
   !> Numbers the bodies.
-  pure subroutine find_bodies(model, groups, body, example)
-    type(mesh), intent(in) :: model
+  pure subroutine find_bodies(mesh, groups, body, example)
+    type(fe_mesh), intent(in) :: mesh
     type(row_table), intent(in) :: groups !< nodes that joints, ties and springs connect
     integer, allocatable, intent(out) :: body(:) !< of each node; 0 for a node without an element
     integer, allocatable, intent(out) :: example(:) !< first element of each body (position)
     integer, allocatable :: parent(:)
     integer :: e, a, g, node, root, num_bodies
-    allocate (parent(model%num_nodes), source=0)
-    do e = 1, model%num_elements
-      do a = 1, count(model%nodes(:, e) > 0)
-        node = model%nodes(a, e)
+    allocate (parent(mesh%num_nodes), source=0)
+    do e = 1, mesh%num_elements
+      do a = 1, count(mesh%nodes(:, e) > 0)
+        node = mesh%nodes(a, e)
         if (parent(node) == 0) parent(node) = node
-        call unite(parent, model%nodes(1, e), node)
+        call unite(parent, mesh%nodes(1, e), node)
       end do
     end do
     do g = 1, groups%num_rows()
@@ -38,18 +38,18 @@ contains
         call unite(parent, root, node)
       end do
     end do
-    allocate (body(model%num_nodes), source=0)
-    allocate (example(model%num_elements))
+    allocate (body(mesh%num_nodes), source=0)
+    allocate (example(mesh%num_elements))
     num_bodies = 0
-    do e = 1, model%num_elements
-      root = root_of(parent, model%nodes(1, e))
+    do e = 1, mesh%num_elements
+      root = root_of(parent, mesh%nodes(1, e))
       if (body(root) > 0) cycle
       num_bodies = num_bodies + 1
       body(root) = num_bodies
       example(num_bodies) = e
     end do
     example = example(:num_bodies)
-    do node = 1, model%num_nodes
+    do node = 1, mesh%num_nodes
       if (parent(node) > 0) body(node) = body(root_of(parent, node))
     end do
   end subroutine find_bodies

@@ -7,9 +7,9 @@ module dam_mesh
   use kinds, only: rk
   implicit none
   private
-  public :: mesh, named_set, surface, node_tie
+  public :: fe_mesh, named_set, surface, node_tie
 
-  type :: mesh
+  type :: fe_mesh
     integer :: num_nodes = 0
     integer :: num_elements = 0
     integer, allocatable :: node_id(:) !< user's number of each node
@@ -19,7 +19,7 @@ module dam_mesh
     integer, allocatable :: nodes(:, :) !< node positions; shape (8, num_elements), unused are 0
     integer, allocatable :: material_of_element(:) !< position in the list of materials, 0 for none
     integer, allocatable :: section_of_element(:) !< number of its *SOLID SECTION, 0 for none
-  end type mesh
+  end type fe_mesh
 
   !> A set of nodes or elements: positions in the mesh, ascending, each once.
   type :: named_set

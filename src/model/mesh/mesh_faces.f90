@@ -5,7 +5,7 @@
 !> with fewer than three different nodes has collapsed.
 module mesh_faces
   use kinds, only: rk
-  use dam_mesh, only: mesh, surface
+  use dam_mesh, only: fe_mesh, surface
   use small_matrix, only: cross_product
   implicit none
   private
@@ -28,12 +28,12 @@ module mesh_faces
 contains
 
   !> Positions of the four corners of a face in the mesh.
-  pure function face_nodes(model, element, face) result(nodes)
-    type(mesh), intent(in) :: model
+  pure function face_nodes(mesh, element, face) result(nodes)
+    type(fe_mesh), intent(in) :: mesh
     integer, intent(in) :: element !< position of the element
     integer, intent(in) :: face !< 1..6
     integer :: nodes(4)
-    nodes = model%nodes(face_corner(:, face), element)
+    nodes = mesh%nodes(face_corner(:, face), element)
   end function face_nodes
 
   !> Area times the unit normal by the right-hand rule [m2]; exact for a bilinear facet.
@@ -44,13 +44,13 @@ contains
   end function face_vector
 
   !> Mean of the different corners [m].
-  pure function face_centre(model, nodes) result(centre)
-    type(mesh), intent(in) :: model
+  pure function face_centre(mesh, nodes) result(centre)
+    type(fe_mesh), intent(in) :: mesh
     integer, intent(in) :: nodes(4)
     real(rk) :: centre(3)
     integer :: key(4)
     key = face_key(nodes)
-    centre = sum(model%x(:, pack(key, key > 0)), dim=2)/count(key > 0)
+    centre = sum(mesh%x(:, pack(key, key > 0)), dim=2)/count(key > 0)
   end function face_centre
 
   !> Number of different nodes of a face: 4, 3 for a triangle, 2 or 1 for a collapsed face.
@@ -119,8 +119,8 @@ contains
   end function find_face
 
   !> The exterior faces of the elements: faces that no other of them shares.
-  pure subroutine find_exterior(model, elements, skin)
-    type(mesh), intent(in) :: model
+  pure subroutine find_exterior(mesh, elements, skin)
+    type(fe_mesh), intent(in) :: mesh
     integer, intent(in) :: elements(:) !< positions of solid elements
     type(surface), intent(out) :: skin !< without a name; in the order of `elements`
     type(face_table) :: table
@@ -128,13 +128,13 @@ contains
     integer, allocatable :: owner(:), face_of(:)
     integer :: e, face, number, twin
 
-    call open_table(model%num_nodes, 6*size(elements), table)
+    call open_table(mesh%num_nodes, 6*size(elements), table)
     allocate (is_outer(6*size(elements)))
     allocate (owner(6*size(elements)), face_of(6*size(elements)))
     do e = 1, size(elements)
       do face = 1, 6
-        twin = find_face(table, face_nodes(model, elements(e), face))
-        call insert_face(table, face_nodes(model, elements(e), face), number)
+        twin = find_face(table, face_nodes(mesh, elements(e), face))
+        call insert_face(table, face_nodes(mesh, elements(e), face), number)
         owner(number) = elements(e)
         face_of(number) = face
         is_outer(number) = twin == 0 .and. table%key(2, number) > 0
@@ -146,22 +146,22 @@ contains
   end subroutine find_exterior
 
   !> Marks the faces of a skin that are the master or slave face of a JOINT8 element.
-  pure subroutine mark_covered(model, skin, is_covered)
-    type(mesh), intent(in) :: model
+  pure subroutine mark_covered(mesh, skin, is_covered)
+    type(fe_mesh), intent(in) :: mesh
     type(surface), intent(in) :: skin
     logical, allocatable, intent(out) :: is_covered(:) !< (faces of the skin)
     type(face_table) :: table
     integer :: e, i, number
 
-    call open_table(model%num_nodes, 2*count(model%element_type == 'JOINT8'), table)
-    do e = 1, model%num_elements
-      if (model%element_type(e) /= 'JOINT8') cycle
-      call insert_face(table, model%nodes(1:4, e), number)
-      call insert_face(table, model%nodes(5:8, e), number)
+    call open_table(mesh%num_nodes, 2*count(mesh%element_type == 'JOINT8'), table)
+    do e = 1, mesh%num_elements
+      if (mesh%element_type(e) /= 'JOINT8') cycle
+      call insert_face(table, mesh%nodes(1:4, e), number)
+      call insert_face(table, mesh%nodes(5:8, e), number)
     end do
     allocate (is_covered(size(skin%element)))
     do i = 1, size(skin%element)
-      is_covered(i) = find_face(table, face_nodes(model, skin%element(i), skin%face(i))) > 0
+      is_covered(i) = find_face(table, face_nodes(mesh, skin%element(i), skin%face(i))) > 0
     end do
   end subroutine mark_covered
 end module mesh_faces

@@ -65,39 +65,39 @@ module field_type
 
   abstract interface
     !> Number of components in this model; 0 where the model does not have the field.
-    integer function width_of(self, scene)
+    integer function width_of(self, model)
       import :: result_field, problem
       implicit none
       class(result_field), intent(in) :: self
-      type(problem), intent(in) :: scene
+      type(problem), intent(in) :: model
     end function width_of
 
     !> Does the analysis have the field now?
-    logical function presence(self, scene, now)
+    logical function presence(self, model, now)
       import :: result_field, problem, state
       implicit none
       class(result_field), intent(in) :: self
-      type(problem), intent(in) :: scene
+      type(problem), intent(in) :: model
       type(state), intent(in) :: now
     end function presence
 
     !> Values on all nodes.
-    subroutine values_on_nodes(self, scene, now, stresses, values)
+    subroutine values_on_nodes(self, model, now, stresses, values)
       import :: result_field, problem, state, recovered_fields, rk
       implicit none
       class(result_field), intent(in) :: self
-      type(problem), intent(in) :: scene
+      type(problem), intent(in) :: model
       type(state), intent(in) :: now
       type(recovered_fields), intent(inout) :: stresses !< of this increment
       real(rk), allocatable, intent(out) :: values(:, :) !< (components, nodes); unallocated: none
     end subroutine values_on_nodes
 
     !> Values at the integration points of some solids.
-    subroutine values_at_points(self, scene, now, stresses, solids, values)
+    subroutine values_at_points(self, model, now, stresses, solids, values)
       import :: result_field, problem, state, recovered_fields, rk
       implicit none
       class(result_field), intent(in) :: self
-      type(problem), intent(in) :: scene
+      type(problem), intent(in) :: model
       type(state), intent(in) :: now
       type(recovered_fields), intent(inout) :: stresses !< of this increment
       integer, intent(in) :: solids(:) !< numbers of the recovery plan
@@ -105,22 +105,22 @@ module field_type
     end subroutine values_at_points
 
     !> Values at the points of an inelastic block.
-    subroutine values_of_block(self, scene, now, block, values)
+    subroutine values_of_block(self, model, now, block, values)
       import :: result_field, problem, state, rk
       implicit none
       class(result_field), intent(in) :: self
-      type(problem), intent(in) :: scene
+      type(problem), intent(in) :: model
       type(state), intent(in) :: now
       integer, intent(in) :: block !< position in the problem's list
       real(rk), allocatable, intent(out) :: values(:, :) !< (components, points); unallocated: zero
     end subroutine values_of_block
 
     !> Values at the points of a joint.
-    subroutine values_of_joint(self, scene, now, number, values)
+    subroutine values_of_joint(self, model, now, number, values)
       import :: result_field, problem, state, rk
       implicit none
       class(result_field), intent(in) :: self
-      type(problem), intent(in) :: scene
+      type(problem), intent(in) :: model
       type(state), intent(in) :: now
       integer, intent(in) :: number !< position of the joint
       real(rk), allocatable, intent(out) :: values(:, :) !< (components, points); unallocated: none
@@ -130,11 +130,11 @@ module field_type
 contains
 
   !> Number of components in this model; 0 where the model does not have the field.
-  integer function width(self, scene)
+  integer function width(self, model)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     if (associated(self%count)) then
-      width = self%count(scene)
+      width = self%count(model)
     else
       width = self%num_endings()
     end if
@@ -148,12 +148,12 @@ contains
   end function num_endings
 
   !> Does the analysis have the field now?
-  logical function is_available(self, scene, now)
+  logical function is_available(self, model, now)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
-    is_available = self%width(scene) > 0
-    if (is_available .and. associated(self%is_there)) is_available = self%is_there(scene, now)
+    is_available = self%width(model) > 0
+    if (is_available .and. associated(self%is_there)) is_available = self%is_there(model, now)
   end function is_available
 
   !> May a card of this keyword name the field?

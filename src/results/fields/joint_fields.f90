@@ -15,27 +15,27 @@ module joint_fields
 contains
 
   !> The model has joints.
-  logical function has_joints(self, scene, now)
+  logical function has_joints(self, model, now)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
-    has_joints = size(scene%joints) > 0
+    has_joints = size(model%joints) > 0
   end function has_joints
 
   !> OPENING on the nodes of joints, zero on others.
-  subroutine opening_on_nodes(self, scene, now, stresses, values)
+  subroutine opening_on_nodes(self, model, now, stresses, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(recovered_fields), intent(inout) :: stresses
     real(rk), allocatable, intent(out) :: values(:, :) !< (1, nodes) [m]
-    values = reshape(opening_at_nodes(scene, now), [1, scene%mesh%num_nodes])
+    values = reshape(opening_at_nodes(model, now), [1, model%mesh%num_nodes])
   end subroutine opening_on_nodes
 
   !> OPENING.
-  subroutine opening_of_joint(self, scene, now, number, values)
+  subroutine opening_of_joint(self, model, now, number, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     integer, intent(in) :: number
     real(rk), allocatable, intent(out) :: values(:, :) !< (1, points) [m]
@@ -43,9 +43,9 @@ contains
   end subroutine opening_of_joint
 
   !> SLIP.
-  subroutine slip_of_joint(self, scene, now, number, values)
+  subroutine slip_of_joint(self, model, now, number, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     integer, intent(in) :: number
     real(rk), allocatable, intent(out) :: values(:, :) !< (2, points) [m]
@@ -53,9 +53,9 @@ contains
   end subroutine slip_of_joint
 
   !> TRACTION.
-  subroutine traction_of_joint(self, scene, now, number, values)
+  subroutine traction_of_joint(self, model, now, number, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     integer, intent(in) :: number
     real(rk), allocatable, intent(out) :: values(:, :) !< (3, points) [Pa]
@@ -63,9 +63,9 @@ contains
   end subroutine traction_of_joint
 
   !> STATE, a whole number.
-  subroutine state_of_joint(self, scene, now, number, values)
+  subroutine state_of_joint(self, model, now, number, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     integer, intent(in) :: number
     real(rk), allocatable, intent(out) :: values(:, :) !< (1, points)
@@ -73,14 +73,14 @@ contains
   end subroutine state_of_joint
 
   !> REACH_USED; 0 where nothing limits the slip.
-  subroutine used_reach_of_joint(self, scene, now, number, values)
+  subroutine used_reach_of_joint(self, model, now, number, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     integer, intent(in) :: number
     real(rk), allocatable, intent(out) :: values(:, :) !< (1, points)
     integer :: p
-    associate (jump => now%joints(number)%jump, reach => scene%joints(number)%admissible_slip)
+    associate (jump => now%joints(number)%jump, reach => model%joints(number)%admissible_slip)
       allocate (values(1, size(reach)), source=0.0_rk)
       do p = 1, size(reach)
         if (reach(p) < huge(1.0_rk)) values(1, p) = hypot(jump(2, p), jump(3, p))/reach(p)
@@ -89,9 +89,9 @@ contains
   end subroutine used_reach_of_joint
 
   !> WATER; joints without uplift have none.
-  subroutine water_of_joint(self, scene, now, number, values)
+  subroutine water_of_joint(self, model, now, number, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     integer, intent(in) :: number
     real(rk), allocatable, intent(out) :: values(:, :) !< (1, points) [Pa]

@@ -13,9 +13,9 @@ module motion_fields
 contains
 
   !> U.
-  subroutine displacement(self, scene, now, stresses, values)
+  subroutine displacement(self, model, now, stresses, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(recovered_fields), intent(inout) :: stresses
     real(rk), allocatable, intent(out) :: values(:, :) !< (3, nodes) [m]
@@ -23,9 +23,9 @@ contains
   end subroutine displacement
 
   !> V.
-  subroutine velocity(self, scene, now, stresses, values)
+  subroutine velocity(self, model, now, stresses, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(recovered_fields), intent(inout) :: stresses
     real(rk), allocatable, intent(out) :: values(:, :) !< (3, nodes) [m/s]
@@ -33,9 +33,9 @@ contains
   end subroutine velocity
 
   !> A.
-  subroutine acceleration(self, scene, now, stresses, values)
+  subroutine acceleration(self, model, now, stresses, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(recovered_fields), intent(inout) :: stresses
     real(rk), allocatable, intent(out) :: values(:, :) !< (3, nodes) [m/s2]
@@ -43,9 +43,9 @@ contains
   end subroutine acceleration
 
   !> RF.
-  subroutine reaction(self, scene, now, stresses, values)
+  subroutine reaction(self, model, now, stresses, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(recovered_fields), intent(inout) :: stresses
     real(rk), allocatable, intent(out) :: values(:, :) !< (3, nodes) [N]
@@ -53,17 +53,17 @@ contains
   end subroutine reaction
 
   !> Velocities and accelerations belong to dynamic steps.
-  logical function has_motion(self, scene, now)
+  logical function has_motion(self, model, now)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     has_motion = allocated(now%v) .and. allocated(now%a)
   end function has_motion
 
   !> The solver has formed the reactions.
-  logical function has_reactions(self, scene, now)
+  logical function has_reactions(self, model, now)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     has_reactions = allocated(now%reaction)
   end function has_reactions

@@ -17,32 +17,32 @@ module solid_fields
 contains
 
   !> S on nodes.
-  subroutine stress_on_nodes(self, scene, now, stresses, values)
+  subroutine stress_on_nodes(self, model, now, stresses, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(recovered_fields), intent(inout) :: stresses
     real(rk), allocatable, intent(out) :: values(:, :) !< (6, nodes) [Pa]
-    call stresses%need_node_stress(scene, now)
+    call stresses%need_node_stress(model, now)
     values = stresses%node_stress
   end subroutine stress_on_nodes
 
   !> S at points.
-  subroutine stress_of_solids(self, scene, now, stresses, solids, values)
+  subroutine stress_of_solids(self, model, now, stresses, solids, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(recovered_fields), intent(inout) :: stresses
     integer, intent(in) :: solids(:)
     real(rk), allocatable, intent(out) :: values(:, :, :) !< (6, max_points, solids) [Pa]
-    call stresses%need_points(scene, now)
+    call stresses%need_points(model, now)
     values = stresses%point_stress(:, :, solids)
   end subroutine stress_of_solids
 
   !> S of a block.
-  subroutine stress_of_block(self, scene, now, block, values)
+  subroutine stress_of_block(self, model, now, block, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     integer, intent(in) :: block
     real(rk), allocatable, intent(out) :: values(:, :) !< (6, points) [Pa]
@@ -50,32 +50,32 @@ contains
   end subroutine stress_of_block
 
   !> E on nodes.
-  subroutine strain_on_nodes(self, scene, now, stresses, values)
+  subroutine strain_on_nodes(self, model, now, stresses, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(recovered_fields), intent(inout) :: stresses
     real(rk), allocatable, intent(out) :: values(:, :) !< (6, nodes)
-    call stresses%need_node_strain(scene, now)
+    call stresses%need_node_strain(model, now)
     values = stresses%node_strain
   end subroutine strain_on_nodes
 
   !> E at points.
-  subroutine strain_of_solids(self, scene, now, stresses, solids, values)
+  subroutine strain_of_solids(self, model, now, stresses, solids, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(recovered_fields), intent(inout) :: stresses
     integer, intent(in) :: solids(:)
     real(rk), allocatable, intent(out) :: values(:, :, :) !< (6, max_points, solids)
-    call stresses%need_points(scene, now)
+    call stresses%need_points(model, now)
     values = stresses%point_strain(:, :, solids)
   end subroutine strain_of_solids
 
   !> E of a block.
-  subroutine strain_of_block(self, scene, now, block, values)
+  subroutine strain_of_block(self, model, now, block, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     integer, intent(in) :: block
     real(rk), allocatable, intent(out) :: values(:, :) !< (6, points)
@@ -83,26 +83,26 @@ contains
   end subroutine strain_of_block
 
   !> SP on nodes.
-  subroutine principals_on_nodes(self, scene, now, stresses, values)
+  subroutine principals_on_nodes(self, model, now, stresses, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(recovered_fields), intent(inout) :: stresses
     real(rk), allocatable, intent(out) :: values(:, :) !< (3, nodes) [Pa]
-    call stresses%need_principals(scene, now)
+    call stresses%need_principals(model, now)
     values = stresses%node_principal
   end subroutine principals_on_nodes
 
   !> SP at points.
-  subroutine principals_of_solids(self, scene, now, stresses, solids, values)
+  subroutine principals_of_solids(self, model, now, stresses, solids, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(recovered_fields), intent(inout) :: stresses
     integer, intent(in) :: solids(:)
     real(rk), allocatable, intent(out) :: values(:, :, :) !< (3, max_points, solids) [Pa]
     integer :: s, q
-    call stresses%need_points(scene, now)
+    call stresses%need_points(model, now)
     allocate (values(3, size(stresses%point_stress, 2), size(solids)))
     do s = 1, size(solids)
       do q = 1, size(values, 2)
@@ -112,64 +112,64 @@ contains
   end subroutine principals_of_solids
 
   !> S1 on nodes.
-  subroutine largest_on_nodes(self, scene, now, stresses, values)
+  subroutine largest_on_nodes(self, model, now, stresses, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(recovered_fields), intent(inout) :: stresses
     real(rk), allocatable, intent(out) :: values(:, :) !< (1, nodes) [Pa]
-    call stresses%need_principals(scene, now)
+    call stresses%need_principals(model, now)
     values = stresses%node_principal(1:1, :)
   end subroutine largest_on_nodes
 
   !> S3 on nodes.
-  subroutine smallest_on_nodes(self, scene, now, stresses, values)
+  subroutine smallest_on_nodes(self, model, now, stresses, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(recovered_fields), intent(inout) :: stresses
     real(rk), allocatable, intent(out) :: values(:, :) !< (1, nodes) [Pa]
-    call stresses%need_principals(scene, now)
+    call stresses%need_principals(model, now)
     values = stresses%node_principal(3:3, :)
   end subroutine smallest_on_nodes
 
   !> Components of a field of laws.
-  integer function law_width(self, scene)
+  integer function law_width(self, model)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
-    law_width = width_of_field(scene, self%name)
+    type(problem), intent(in) :: model
+    law_width = width_of_field(model, self%name)
   end function law_width
 
   !> A field of laws on nodes.
-  subroutine law_on_nodes(self, scene, now, stresses, values)
+  subroutine law_on_nodes(self, model, now, stresses, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(recovered_fields), intent(inout) :: stresses
     real(rk), allocatable, intent(out) :: values(:, :)
-    call stresses%field_on_nodes(scene, now, self%name, values)
+    call stresses%field_on_nodes(model, now, self%name, values)
   end subroutine law_on_nodes
 
   !> A field of laws at points.
-  subroutine law_of_solids(self, scene, now, stresses, solids, values)
+  subroutine law_of_solids(self, model, now, stresses, solids, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(recovered_fields), intent(inout) :: stresses
     integer, intent(in) :: solids(:)
     real(rk), allocatable, intent(out) :: values(:, :, :)
-    call stresses%need_plan(scene)
-    call field_at_points(scene, stresses%plan, now, self%name, values)
+    call stresses%need_plan(model)
+    call field_at_points(model, stresses%plan, now, self%name, values)
     values = values(:, :, solids)
   end subroutine law_of_solids
 
   !> A field of laws in a block.
-  subroutine law_of_block(self, scene, now, block, values)
+  subroutine law_of_block(self, model, now, block, values)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     integer, intent(in) :: block
     real(rk), allocatable, intent(out) :: values(:, :)
-    call field_of_block(scene, now, block, self%name, values)
+    call field_of_block(model, now, block, self%name, values)
   end subroutine law_of_block
 end module solid_fields

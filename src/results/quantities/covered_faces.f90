@@ -2,10 +2,10 @@
 !> and interfaces. They are no free surface, although no element shares them.
 module covered_faces
   use kinds, only: rk
-  use dam_mesh, only: mesh, surface
+  use dam_mesh, only: fe_mesh, surface
   use mesh_faces, only: face_nodes, face_vector, mark_covered
   use guest_type, only: guest
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use problem_definition, only: problem
   use row_tables, only: row_table
   implicit none
@@ -20,35 +20,35 @@ module covered_faces
 contains
 
   !> Tells which faces of a skin are covered, as a whole or in part.
-  subroutine mark_joined(scene, skin, is_covered)
-    type(problem), intent(in) :: scene
+  subroutine mark_joined(model, skin, is_covered)
+    type(problem), intent(in) :: model
     type(surface), intent(in) :: skin
     logical, allocatable, intent(out) :: is_covered(:) !< (faces of the skin)
     integer :: i
-    call mark_covered(scene%mesh, skin, is_covered)
-    do i = 1, size(scene%joints)
-      if (.not. scene%joints(i)%is_matching) call mark_joint(scene, skin, i, is_covered)
+    call mark_covered(model%mesh, skin, is_covered)
+    do i = 1, size(model%joints)
+      if (.not. model%joints(i)%is_matching) call mark_joint(model, skin, i, is_covered)
     end do
-    do i = 1, size(scene%ties)
-      call mark_between(scene%mesh, skin, [scene%ties(i)%node, scene%ties(i)%master], is_covered)
+    do i = 1, size(model%ties)
+      call mark_between(model%mesh, skin, [model%ties(i)%node, model%ties(i)%master], is_covered)
     end do
-    do i = 1, size(scene%guests)
-      call mark_between(scene%mesh, skin, coupled_nodes(scene%guests(i)%item), is_covered)
+    do i = 1, size(model%guests)
+      call mark_between(model%mesh, skin, coupled_nodes(model%guests(i)%item), is_covered)
     end do
   end subroutine mark_joined
 
   !> Faces whose nodes all belong to a joint that lies along them.
-  subroutine mark_joint(scene, skin, number, is_covered)
-    type(problem), intent(in) :: scene
+  subroutine mark_joint(model, skin, number, is_covered)
+    type(problem), intent(in) :: model
     type(surface), intent(in) :: skin
     integer, intent(in) :: number !< of the joint
     logical, intent(inout) :: is_covered(:) !< (faces of the skin)
-    real(rk) :: normal(3, scene%mesh%num_nodes), looks(3), along(4)
+    real(rk) :: normal(3, model%mesh%num_nodes), looks(3), along(4)
     integer :: i, nodes(4)
-    call add_normals(scene%joints(number), normal)
+    call add_normals(model%joints(number), normal)
     do i = 1, size(skin%element)
-      nodes = face_nodes(scene%mesh, skin%element(i), skin%face(i))
-      looks = face_vector(scene%mesh%x(:, nodes))
+      nodes = face_nodes(model%mesh, skin%element(i), skin%face(i))
+      looks = face_vector(model%mesh%x(:, nodes))
       along = abs(matmul(looks, normal(:, nodes)))
       if (any(along <= 0.0_rk)) cycle
       if (all(along >= least_cosine*norm2(looks)*norm2(normal(:, nodes), dim=1))) then
@@ -58,15 +58,15 @@ contains
   end subroutine mark_joint
 
   !> Mean normal of a joint at each node of both its faces; zero at other nodes.
-  pure subroutine add_normals(item, normal)
-    type(joint), intent(in) :: item
+  pure subroutine add_normals(joint, normal)
+    type(dam_joint), intent(in) :: joint
     real(rk), intent(out) :: normal(:, :) !< (3, nodes) of any length
     integer :: p, k
     normal = 0.0_rk
-    do p = 1, item%num_points
-      do k = item%first(p), item%first(p + 1) - 1
-        normal(:, item%node(k)) = normal(:, item%node(k)) &
-                                  + abs(item%weight(k))*item%area(p)*item%rotation(1, :, p)
+    do p = 1, joint%num_points
+      do k = joint%first(p), joint%first(p + 1) - 1
+        normal(:, joint%node(k)) = normal(:, joint%node(k)) &
+                                   + abs(joint%weight(k))*joint%area(p)*joint%rotation(1, :, p)
       end do
     end do
   end subroutine add_normals
@@ -86,17 +86,17 @@ contains
   end function coupled_nodes
 
   !> Faces whose nodes are all among those of a tie or an interface.
-  subroutine mark_between(model, skin, nodes, is_covered)
-    type(mesh), intent(in) :: model
+  subroutine mark_between(mesh, skin, nodes, is_covered)
+    type(fe_mesh), intent(in) :: mesh
     type(surface), intent(in) :: skin
     integer, intent(in) :: nodes(:)
     logical, intent(inout) :: is_covered(:) !< (faces of the skin)
-    logical :: is_joined(model%num_nodes)
+    logical :: is_joined(mesh%num_nodes)
     integer :: i
     is_joined = .false.
     is_joined(nodes) = .true.
     do i = 1, size(skin%element)
-      if (all(is_joined(face_nodes(model, skin%element(i), skin%face(i))))) is_covered(i) = .true.
+      if (all(is_joined(face_nodes(mesh, skin%element(i), skin%face(i))))) is_covered(i) = .true.
     end do
   end subroutine mark_between
 end module covered_faces

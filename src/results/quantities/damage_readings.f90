@@ -37,7 +37,7 @@ module damage_readings
   end type block_faces
 
   type :: damage_record
-    logical :: is_present = .false. !< a law of the scene has damage
+    logical :: is_present = .false. !< a law of the model has damage
     type(damage_extreme) :: tension, compression
     type(block_faces), allocatable :: faces(:) !< (inelastic blocks)
     ! Of the last increment:
@@ -52,18 +52,18 @@ contains
 
   !> An empty record. A point lies on a face of the dam when the node next to it does; the point of
   !> a one-point element, when any of its nodes does.
-  subroutine open_damage_record(scene, skin, record)
-    type(problem), intent(in) :: scene
+  subroutine open_damage_record(model, skin, record)
+    type(problem), intent(in) :: model
     type(dam_skin), intent(in) :: skin
     type(damage_record), intent(out) :: record
     integer :: i
-    record%is_present = max(width_of_field(scene, 'DAMAGET'), width_of_field(scene, 'DAMAGEC')) > 0
+    record%is_present = max(width_of_field(model, 'DAMAGET'), width_of_field(model, 'DAMAGEC')) > 0
     if (.not. record%is_present) return
-    allocate (record%faces(size(scene%inelastic)))
-    do i = 1, size(scene%inelastic)
-      associate (nodes => scene%mesh%nodes(:, scene%inelastic(i)%elements))
-        record%faces(i)%is_upstream = points_on(skin%is_upstream, nodes, scene%inelastic(i))
-        record%faces(i)%is_downstream = points_on(skin%is_downstream, nodes, scene%inelastic(i))
+    allocate (record%faces(size(model%inelastic)))
+    do i = 1, size(model%inelastic)
+      associate (nodes => model%mesh%nodes(:, model%inelastic(i)%elements))
+        record%faces(i)%is_upstream = points_on(skin%is_upstream, nodes, model%inelastic(i))
+        record%faces(i)%is_downstream = points_on(skin%is_downstream, nodes, model%inelastic(i))
       end associate
     end do
   end subroutine open_damage_record
@@ -86,8 +86,8 @@ contains
   end function points_on
 
   !> Takes note of one increment. Blocks that are still elastic cost the question.
-  subroutine note_damage(scene, now, record)
-    type(problem), intent(in) :: scene
+  subroutine note_damage(model, now, record)
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(damage_record), intent(inout) :: record
     real(rk), allocatable :: tension(:, :), compression(:, :)
@@ -98,13 +98,13 @@ contains
     record%inelastic_elements = 0
     record%cracking = 0.0_rk
     record%crushing = 0.0_rk
-    do i = 1, size(scene%inelastic)
+    do i = 1, size(model%inelastic)
       if (all(now%points(i)%is_elastic)) cycle
-      call field_of_block(scene, now, i, 'DAMAGET', tension)
-      call field_of_block(scene, now, i, 'DAMAGEC', compression)
-      call note_largest(record%tension, tension, scene%inelastic(i), now%total_time)
-      call note_largest(record%compression, compression, scene%inelastic(i), now%total_time)
-      call measure_block(scene%inelastic(i), now, i, tension, record)
+      call field_of_block(model, now, i, 'DAMAGET', tension)
+      call field_of_block(model, now, i, 'DAMAGEC', compression)
+      call note_largest(record%tension, tension, model%inelastic(i), now%total_time)
+      call note_largest(record%compression, compression, model%inelastic(i), now%total_time)
+      call measure_block(model%inelastic(i), now, i, tension, record)
     end do
   end subroutine note_damage
 

@@ -3,7 +3,7 @@ module joint_readings
   use kinds, only: rk
   use joint_law, only: joint_state
   use joint_opening, only: opening_of
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use problem_definition, only: problem
   use analysis_state, only: state
   use dam_faces, only: dam_skin
@@ -38,19 +38,19 @@ contains
   !> the mean by area of its points: one on the slave face (one for each plane at a kink), on the
   !> master face those that lean on it. Negative weights of a mortar projection do not count, so
   !> that no node shows more than any point.
-  pure function opening_at_nodes(scene, now) result(opening)
-    type(problem), intent(in) :: scene
+  pure function opening_at_nodes(model, now) result(opening)
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
-    real(rk) :: opening(scene%mesh%num_nodes)
-    real(rk) :: total(scene%mesh%num_nodes)
+    real(rk) :: opening(model%mesh%num_nodes)
+    real(rk) :: total(model%mesh%num_nodes)
     real(rk), allocatable :: of_points(:)
     integer :: j, p, k
     real(rk) :: share
     opening = 0.0_rk
     total = 0.0_rk
-    do j = 1, size(scene%joints)
+    do j = 1, size(model%joints)
       of_points = opening_at_points(now%joints(j))
-      associate (item => scene%joints(j))
+      associate (item => model%joints(j))
         do p = 1, item%num_points
           do k = item%first(p), item%first(p + 1) - 1
             share = item%weight(k)*item%area(p)
@@ -69,39 +69,41 @@ contains
   !> with the largest shape function: on either side of JOINT8 elements, on the slave side of
   !> surfaces, since a coarse master node draws on points far away from it. Where no slave node lies
   !> on a face (the rock under a dam) the master side speaks.
-  subroutine open_joint_record(item, skin, record)
-    type(joint), intent(in) :: item
+  subroutine open_joint_record(joint, skin, record)
+    type(dam_joint), intent(in) :: joint
     type(dam_skin), intent(in) :: skin
     type(joint_record), intent(out) :: record
-    integer :: slave(item%num_points), master(item%num_points), p
-    do p = 1, item%num_points
-      associate (k => item%first_master(p))
-        slave(p) = item%node(item%first(p) - 1 + maxloc(item%weight(item%first(p):k - 1), dim=1))
-        master(p) = item%node(k - 1 + minloc(item%weight(k:item%first(p + 1) - 1), dim=1))
+    integer :: slave(joint%num_points), master(joint%num_points), p
+    do p = 1, joint%num_points
+      associate (k => joint%first_master(p))
+        associate (first => joint%first(p))
+          slave(p) = joint%node(first - 1 + maxloc(joint%weight(first:k - 1), dim=1))
+        end associate
+        master(p) = joint%node(k - 1 + minloc(joint%weight(k:joint%first(p + 1) - 1), dim=1))
       end associate
     end do
     record%is_upstream = skin%is_upstream(slave)
     record%is_downstream = skin%is_downstream(slave)
-    if (item%is_matching) then
+    if (joint%is_matching) then
       record%is_upstream = record%is_upstream .or. skin%is_upstream(master)
       record%is_downstream = record%is_downstream .or. skin%is_downstream(master)
     else if (.not. any(record%is_upstream .or. record%is_downstream)) then
-      record%is_upstream = leans_on(item, skin%is_upstream)
-      record%is_downstream = leans_on(item, skin%is_downstream)
+      record%is_upstream = leans_on(joint, skin%is_upstream)
+      record%is_downstream = leans_on(joint, skin%is_downstream)
     end if
   end subroutine open_joint_record
 
   !> Does a point's master side lie on these nodes, more than half as much as that of any other?
   !> Under a slave facet much larger than the master's no point lies on them by half itself.
-  pure function leans_on(item, is_marked) result(leans)
-    type(joint), intent(in) :: item
+  pure function leans_on(joint, is_marked) result(leans)
+    type(dam_joint), intent(in) :: joint
     logical, intent(in) :: is_marked(:) !< (nodes)
-    logical :: leans(item%num_points)
-    real(rk) :: part(item%num_points)
+    logical :: leans(joint%num_points)
+    real(rk) :: part(joint%num_points)
     integer :: p
-    do p = 1, item%num_points
-      associate (first => item%first_master(p), last => item%first(p + 1) - 1)
-        part(p) = -sum(item%weight(first:last), mask=is_marked(item%node(first:last)))
+    do p = 1, joint%num_points
+      associate (first => joint%first_master(p), last => joint%first(p + 1) - 1)
+        part(p) = -sum(joint%weight(first:last), mask=is_marked(joint%node(first:last)))
       end associate
     end do
     leans = part > max(0.5_rk*maxval(part), 0.0_rk)
@@ -109,9 +111,9 @@ contains
 
   !> Takes note of one increment: opening (0 while closed), slip (its length), closing pressure and
   !> how far the faces have gone into each other.
-  subroutine note_joint(record, item, now, time)
+  subroutine note_joint(record, joint, now, time)
     type(joint_record), intent(inout) :: record
-    type(joint), intent(in) :: item
+    type(dam_joint), intent(in) :: joint
     type(joint_state), intent(in) :: now
     real(rk), intent(in) :: time !< total time [s]
     real(rk), dimension(size(now%gap)) :: opening, slip, pressure
@@ -132,7 +134,7 @@ contains
     subroutine note(largest, values)
       type(extremes_by_face), intent(inout) :: largest
       real(rk), intent(in) :: values(:)
-      call note_values(largest, values, item%x, record%is_upstream, record%is_downstream, time, &
+      call note_values(largest, values, joint%x, record%is_upstream, record%is_downstream, time, &
                        wants_smallest=.false.)
     end subroutine note
   end subroutine note_joint

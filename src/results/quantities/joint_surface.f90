@@ -6,7 +6,7 @@
 !> that see it, by area and shape function. A corner that cells in two planes share is drawn twice.
 module joint_surface
   use kinds, only: rk
-  use joint_points, only: joint, joint_cells, share_a_plane
+  use joint_points, only: dam_joint, joint_cells, share_a_plane
   use problem_definition, only: problem
   use small_matrix, only: cross_product
   implicit none
@@ -56,16 +56,16 @@ module joint_surface
 contains
 
   !> Takes the cells of all joints and links their corners to points.
-  subroutine find_drawn_joints(scene, drawn)
-    type(problem), intent(in) :: scene
+  subroutine find_drawn_joints(model, drawn)
+    type(problem), intent(in) :: model
     type(drawn_joints), intent(out) :: drawn
     integer :: j, num_cells, num_ends
     num_cells = 0
     num_ends = 0
-    do j = 1, size(scene%joints)
-      if (.not. allocated(scene%joints(j)%cells%first)) cycle
-      num_cells = num_cells + size(scene%joints(j)%cells%element)
-      num_ends = num_ends + size(scene%joints(j)%cells%corner)
+    do j = 1, size(model%joints)
+      if (.not. allocated(model%joints(j)%cells%first)) cycle
+      num_cells = num_cells + size(model%joints(j)%cells%element)
+      num_ends = num_ends + size(model%joints(j)%cells%corner)
     end do
     allocate (drawn%first(num_cells + 1), source=1)
     allocate (drawn%first_node(num_ends + 1), drawn%first_point(num_ends + 1), source=1)
@@ -73,30 +73,30 @@ contains
     allocate (drawn%corner(num_ends), drawn%joint_of(num_ends), drawn%before(num_ends))
     allocate (drawn%node(num_ends), drawn%weight(num_ends))
     allocate (drawn%point(num_ends), drawn%share(num_ends))
-    do j = 1, size(scene%joints)
-      if (allocated(scene%joints(j)%cells%first)) call draw_joint(scene, j, drawn)
+    do j = 1, size(model%joints)
+      if (allocated(model%joints(j)%cells%first)) call draw_joint(model, j, drawn)
     end do
     deallocate (drawn%before)
     drawn%joint_of = drawn%joint_of(:drawn%num_corners)
   end subroutine find_drawn_joints
 
   !> Adds the cells of one joint.
-  subroutine draw_joint(scene, j, drawn)
-    type(problem), intent(in) :: scene
+  subroutine draw_joint(model, j, drawn)
+    type(problem), intent(in) :: model
     integer, intent(in) :: j !< position of the joint
     type(drawn_joints), intent(inout) :: drawn
     type(node_points) :: at_nodes
     type(corner_of_cell) :: seen
-    integer :: newest(scene%mesh%num_nodes), c, i, number, last
+    integer :: newest(model%mesh%num_nodes), c, i, number, last
     real(rk) :: normal(3)
-    call list_points(scene%joints(j), scene%mesh%num_nodes, at_nodes)
+    call list_points(model%joints(j), model%mesh%num_nodes, at_nodes)
     newest = 0
-    associate (item => scene%joints(j), cells => scene%joints(j)%cells)
+    associate (item => model%joints(j), cells => model%joints(j)%cells)
       do c = 1, size(cells%element)
         drawn%num_cells = drawn%num_cells + 1
         drawn%element(drawn%num_cells) = cells%element(c)
         drawn%joint(drawn%num_cells) = j
-        normal = normal_of_cell(scene%mesh%x, item, c)
+        normal = normal_of_cell(model%mesh%x, item, c)
         last = drawn%first(drawn%num_cells) - 1
         do i = cells%first(c), cells%first(c + 1) - 1
           call find_nodes(cells, cells%corner(i), seen)
@@ -112,17 +112,17 @@ contains
   end subroutine draw_joint
 
   !> The points at each node of the slave face.
-  pure subroutine list_points(item, num_nodes, at_nodes)
-    type(joint), intent(in) :: item
+  pure subroutine list_points(joint, num_nodes, at_nodes)
+    type(dam_joint), intent(in) :: joint
     integer, intent(in) :: num_nodes !< of the mesh
     type(node_points), intent(out) :: at_nodes
     integer, allocatable :: next(:)
     integer :: p, k, n
     allocate (at_nodes%first(num_nodes + 1), source=0)
     at_nodes%first(1) = 1
-    do p = 1, item%num_points
-      do k = item%first(p), item%first_master(p) - 1
-        at_nodes%first(item%node(k) + 1) = at_nodes%first(item%node(k) + 1) + 1
+    do p = 1, joint%num_points
+      do k = joint%first(p), joint%first_master(p) - 1
+        at_nodes%first(joint%node(k) + 1) = at_nodes%first(joint%node(k) + 1) + 1
       end do
     end do
     do n = 1, num_nodes
@@ -130,26 +130,26 @@ contains
     end do
     next = at_nodes%first
     allocate (at_nodes%point(next(num_nodes + 1) - 1), at_nodes%share(next(num_nodes + 1) - 1))
-    do p = 1, item%num_points
-      do k = item%first(p), item%first_master(p) - 1
-        n = item%node(k)
+    do p = 1, joint%num_points
+      do k = joint%first(p), joint%first_master(p) - 1
+        n = joint%node(k)
         at_nodes%point(next(n)) = p
-        at_nodes%share(next(n)) = item%weight(k)*item%area(p)
+        at_nodes%share(next(n)) = joint%weight(k)*joint%area(p)
         next(n) = next(n) + 1
       end do
     end do
   end subroutine list_points
 
   !> Normal of a cell by the right-hand rule, of any length; zero where the cell has no area.
-  pure function normal_of_cell(x, item, c) result(normal)
+  pure function normal_of_cell(x, joint, c) result(normal)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
-    type(joint), intent(in) :: item
+    type(dam_joint), intent(in) :: joint
     integer, intent(in) :: c !< cell
     real(rk) :: normal(3)
     real(rk) :: start(3), old(3), new(3)
     integer :: i
     normal = 0.0_rk
-    associate (cells => item%cells)
+    associate (cells => joint%cells)
       start = at_corner(x, cells, cells%corner(cells%first(c)))
       new = 0.0_rk
       do i = cells%first(c) + 1, cells%first(c + 1) - 1
@@ -197,8 +197,8 @@ contains
 
   !> The points that a corner shows in a cell; their shares add up to 1, or to less where a node has
   !> none (both faces hang together there: nothing opens).
-  pure subroutine choose_points(item, at_nodes, normal, seen)
-    type(joint), intent(in) :: item
+  pure subroutine choose_points(joint, at_nodes, normal, seen)
+    type(dam_joint), intent(in) :: joint
     type(node_points), intent(in) :: at_nodes
     real(rk), intent(in) :: normal(3) !< of the cell, of any length
     type(corner_of_cell), intent(inout) :: seen
@@ -211,7 +211,7 @@ contains
       associate (first => at_nodes%first(seen%node(k)), &
                  last => at_nodes%first(seen%node(k) + 1) - 1)
         if (last < first) cycle
-        is_chosen = in_plane(item, at_nodes%point(first:last), normal)
+        is_chosen = in_plane(joint, at_nodes%point(first:last), normal)
         part = pack(at_nodes%share(first:last), is_chosen)
         seen%point = [seen%point, pack(at_nodes%point(first:last), is_chosen)]
         seen%share = [seen%share, seen%weight(k)*part/max(sum(part), tiny(1.0_rk))]
@@ -221,18 +221,18 @@ contains
 
   !> Which of a node's points belong to the plane of a cell: the one that fits best, between nodes
   !> all that fit.
-  pure function in_plane(item, points, normal) result(is_chosen)
-    type(joint), intent(in) :: item
+  pure function in_plane(joint, points, normal) result(is_chosen)
+    type(dam_joint), intent(in) :: joint
     integer, intent(in) :: points(:)
     real(rk), intent(in) :: normal(3) !< of the cell, of any length
     logical :: is_chosen(size(points))
     real(rk) :: along(size(points))
     integer :: i
     do i = 1, size(points)
-      along(i) = dot_product(item%rotation(1, :, points(i)), normal)
-      is_chosen(i) = share_a_plane(item%rotation(1, :, points(i)), normal)
+      along(i) = dot_product(joint%rotation(1, :, points(i)), normal)
+      is_chosen(i) = share_a_plane(joint%rotation(1, :, points(i)), normal)
     end do
-    if (any(is_chosen) .and. .not. item%is_nodal) return
+    if (any(is_chosen) .and. .not. joint%is_nodal) return
     is_chosen = .false.
     is_chosen(maxloc(along, dim=1)) = .true.
   end function in_plane

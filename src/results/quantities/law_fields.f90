@@ -13,21 +13,21 @@ module law_fields
 
 contains
 
-  !> Components of a field: those of the law with most; 0 where no law of the scene has it.
-  integer function width_of_field(scene, name) result(width)
-    type(problem), intent(in) :: scene
+  !> Components of a field: those of the law with most; 0 where no law of the model has it.
+  integer function width_of_field(model, name) result(width)
+    type(problem), intent(in) :: model
     character(*), intent(in) :: name
     type(point_state) :: nobody
     real(rk), allocatable :: values(:, :)
     integer :: i, last
     width = 0
-    if (.not. allocated(scene%inelastic)) return
+    if (.not. allocated(model%inelastic)) return
     last = 0
     allocate (nobody%strain(6, 0), nobody%stress(6, 0), nobody%energy(3, 0), nobody%is_elastic(0))
-    do i = 1, size(scene%inelastic)
-      if (scene%inelastic(i)%material == last) cycle
-      last = scene%inelastic(i)%material
-      associate (law => scene%materials(last)%law)
+    do i = 1, size(model%inelastic)
+      if (model%inelastic(i)%material == last) cycle
+      last = model%inelastic(i)%material
+      associate (law => model%materials(last)%law)
         if (allocated(nobody%internal)) deallocate (nobody%internal)
         allocate (nobody%internal(law%num_state, 0))
         call law%read_field(name, nobody, values)
@@ -44,55 +44,55 @@ contains
 
   !> A field at the points of an inelastic block; unallocated where it is zero: the law does not
   !> have it, or no point has left elasticity.
-  subroutine field_of_block(scene, now, block, name, values)
-    type(problem), intent(in) :: scene
+  subroutine field_of_block(model, now, block, name, values)
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     integer, intent(in) :: block !< position in the problem's list
     character(*), intent(in) :: name
     real(rk), allocatable, intent(out) :: values(:, :) !< (components, points)
     if (is_zero_while_elastic(name) .and. all(now%points(block)%is_elastic)) return
-    associate (law => scene%materials(scene%inelastic(block)%material)%law)
+    associate (law => model%materials(model%inelastic(block)%material)%law)
       call law%read_field(name, now%points(block), values)
     end associate
   end subroutine field_of_block
 
   !> A field at the points of all solids.
-  subroutine field_at_points(scene, plan, now, name, values)
-    type(problem), intent(in) :: scene
+  subroutine field_at_points(model, plan, now, name, values)
+    type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(state), intent(in) :: now
     character(*), intent(in) :: name
     real(rk), allocatable, intent(out) :: values(:, :, :) !< (components, max_points, solids)
     real(rk), allocatable :: of_block(:, :)
     integer :: i, e, s, n
-    allocate (values(width_of_field(scene, name), max_points, plan%num_solids), source=0.0_rk)
-    do i = 1, size(scene%inelastic)
-      call field_of_block(scene, now, i, name, of_block)
+    allocate (values(width_of_field(model, name), max_points, plan%num_solids), source=0.0_rk)
+    do i = 1, size(model%inelastic)
+      call field_of_block(model, now, i, name, of_block)
       if (.not. allocated(of_block)) cycle
-      n = scene%inelastic(i)%points_of_element
-      do e = 1, size(scene%inelastic(i)%elements)
-        s = plan%solid_of_element(scene%inelastic(i)%elements(e))
+      n = model%inelastic(i)%points_of_element
+      do e = 1, size(model%inelastic(i)%elements)
+        s = plan%solid_of_element(model%inelastic(i)%elements(e))
         values(:size(of_block, 1), :n, s) = of_block(:, (e - 1)*n + 1:e*n)
       end do
     end do
   end subroutine field_at_points
 
   !> The mean of a scalar field over the volume of each element; zero in elastic solids.
-  subroutine mean_of_elements(scene, now, name, mean)
-    type(problem), intent(in) :: scene
+  subroutine mean_of_elements(model, now, name, mean)
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     character(*), intent(in) :: name
     real(rk), allocatable, intent(out) :: mean(:) !< (elements of the mesh)
     real(rk), allocatable :: values(:, :)
     integer :: i, e, n
-    allocate (mean(scene%mesh%num_elements), source=0.0_rk)
-    do i = 1, size(scene%inelastic)
-      call field_of_block(scene, now, i, name, values)
+    allocate (mean(model%mesh%num_elements), source=0.0_rk)
+    do i = 1, size(model%inelastic)
+      call field_of_block(model, now, i, name, values)
       if (.not. allocated(values)) cycle
-      n = scene%inelastic(i)%points_of_element
-      do e = 1, size(scene%inelastic(i)%elements)
-        associate (weight => scene%inelastic(i)%weight(:, e))
-          mean(scene%inelastic(i)%elements(e)) = &
+      n = model%inelastic(i)%points_of_element
+      do e = 1, size(model%inelastic(i)%elements)
+        associate (weight => model%inelastic(i)%weight(:, e))
+          mean(model%inelastic(i)%elements(e)) = &
             sum(weight*values(1, (e - 1)*n + 1:e*n))/sum(weight)
         end associate
       end do
@@ -100,18 +100,18 @@ contains
   end subroutine mean_of_elements
 
   !> The solids with a point that has left elasticity.
-  subroutine find_inelastic_solids(scene, plan, now, is_inelastic)
-    type(problem), intent(in) :: scene
+  subroutine find_inelastic_solids(model, plan, now, is_inelastic)
+    type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(state), intent(in) :: now
     logical, allocatable, intent(out) :: is_inelastic(:) !< (solids)
     integer :: i, e, n
     allocate (is_inelastic(plan%num_solids), source=.false.)
-    if (.not. allocated(scene%inelastic)) return
-    do i = 1, size(scene%inelastic)
-      n = scene%inelastic(i)%points_of_element
-      do e = 1, size(scene%inelastic(i)%elements)
-        is_inelastic(plan%solid_of_element(scene%inelastic(i)%elements(e))) = &
+    if (.not. allocated(model%inelastic)) return
+    do i = 1, size(model%inelastic)
+      n = model%inelastic(i)%points_of_element
+      do e = 1, size(model%inelastic(i)%elements)
+        is_inelastic(plan%solid_of_element(model%inelastic(i)%elements(e))) = &
           .not. all(now%points(i)%is_elastic((e - 1)*n + 1:e*n))
       end do
     end do

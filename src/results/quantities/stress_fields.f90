@@ -55,22 +55,22 @@ contains
   end subroutine forget
 
   !> Makes sure that the plan is there.
-  subroutine need_plan(self, scene)
+  subroutine need_plan(self, model)
     class(recovered_fields), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     if (self%has_plan) return
-    call make_recovery_plan(scene, self%plan)
+    call make_recovery_plan(model, self%plan)
     self%has_plan = .true.
   end subroutine need_plan
 
   !> Makes sure that it is known which solids and nodes have left elasticity.
-  subroutine need_inelastic(self, scene, now)
+  subroutine need_inelastic(self, model, now)
     class(recovered_fields), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     if (self%has_inelastic) return
-    call self%need_plan(scene)
-    call find_inelastic_solids(scene, self%plan, now, self%is_inelastic)
+    call self%need_plan(model)
+    call find_inelastic_solids(model, self%plan, now, self%is_inelastic)
     self%inelastic_nodes = [integer ::]
     if (any(self%is_inelastic)) then
       self%inelastic_nodes = nodes_of_solids(self%plan, self%is_inelastic)
@@ -79,14 +79,14 @@ contains
   end subroutine need_inelastic
 
   !> Makes sure that strains and stresses at the points are there.
-  subroutine need_points(self, scene, now)
+  subroutine need_points(self, model, now)
     class(recovered_fields), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     if (self%has_points) return
-    call self%need_inelastic(scene, now)
+    call self%need_inelastic(model, now)
     call allocate_points(self)
-    call recover_points(scene, self%plan, now, self%point_strain, self%point_stress)
+    call recover_points(model, self%plan, now, self%point_strain, self%point_stress)
     self%has_points = .true.
   end subroutine need_points
 
@@ -99,13 +99,13 @@ contains
   end subroutine allocate_points
 
   !> Makes sure that strains on the nodes are there.
-  subroutine need_node_strain(self, scene, now)
+  subroutine need_node_strain(self, model, now)
     class(recovered_fields), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     if (self%has_node_strain) return
-    call self%need_points(scene, now)
-    if (.not. allocated(self%node_strain)) allocate (self%node_strain(6, scene%mesh%num_nodes))
+    call self%need_points(model, now)
+    if (.not. allocated(self%node_strain)) allocate (self%node_strain(6, model%mesh%num_nodes))
     call average_at_nodes(self%plan, self%point_strain, self%is_inelastic, self%node_strain)
     self%has_node_strain = .true.
   end subroutine need_node_strain
@@ -113,25 +113,25 @@ contains
   !> Makes sure that stresses on the nodes are there. Whoever asks again and again is served by the
   !> operator, which costs as much to make as a few recoveries through the points. It holds for all
   !> nodes whose solids are still elastic; where most are not it is not worth its memory.
-  subroutine need_node_stress(self, scene, now)
+  subroutine need_node_stress(self, model, now)
     class(recovered_fields), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     if (self%has_node_stress) return
     self%has_node_stress = .true.
     self%num_recoveries = self%num_recoveries + 1
-    if (.not. allocated(self%node_stress)) allocate (self%node_stress(6, scene%mesh%num_nodes))
-    call self%need_inelastic(scene, now)
+    if (.not. allocated(self%node_stress)) allocate (self%node_stress(6, model%mesh%num_nodes))
+    call self%need_inelastic(model, now)
     if (self%has_operator) then
       call apply_operator(self%operator, now%u, self%node_stress)
       call self%correct_inelastic(now)
       return
     end if
-    call self%need_points(scene, now)
+    call self%need_points(model, now)
     call average_at_nodes(self%plan, self%point_stress, self%is_inelastic, self%node_stress)
     if (self%num_recoveries < recoveries_before_operator) return
-    if (2*size(self%inelastic_nodes) > scene%mesh%num_nodes) return
-    call make_nodal_operator(scene, self%plan, self%operator)
+    if (2*size(self%inelastic_nodes) > model%mesh%num_nodes) return
+    call make_nodal_operator(model, self%plan, self%operator)
     self%has_operator = .true.
   end subroutine need_node_stress
 
@@ -160,17 +160,17 @@ contains
   end subroutine correct_inelastic
 
   !> A field that laws keep (PE, DAMAGET, ...) on the nodes, never beyond what the points hold.
-  subroutine field_on_nodes(self, scene, now, name, values)
+  subroutine field_on_nodes(self, model, now, name, values)
     class(recovered_fields), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     character(*), intent(in) :: name
     real(rk), allocatable, intent(out) :: values(:, :) !< (components, nodes)
     real(rk), allocatable :: at_points(:, :, :)
     logical, allocatable :: is_bounded(:)
-    call self%need_inelastic(scene, now)
-    call field_at_points(scene, self%plan, now, name, at_points)
-    allocate (values(size(at_points, 1), scene%mesh%num_nodes), source=0.0_rk)
+    call self%need_inelastic(model, now)
+    call field_at_points(model, self%plan, now, name, at_points)
+    allocate (values(size(at_points, 1), model%mesh%num_nodes), source=0.0_rk)
     allocate (is_bounded(self%plan%num_solids), source=.true.)
     if (is_zero_while_elastic(name)) then
       call average_at(self%plan, at_points, is_bounded, self%inelastic_nodes, values)
@@ -180,12 +180,12 @@ contains
   end subroutine field_on_nodes
 
   !> Makes sure that the principal stresses on the nodes are there: of the averaged tensor.
-  subroutine need_principals(self, scene, now)
+  subroutine need_principals(self, model, now)
     class(recovered_fields), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     if (self%has_principals) return
-    call self%need_node_stress(scene, now)
+    call self%need_node_stress(model, now)
     self%node_principal = principals(self%node_stress)
     self%has_principals = .true.
   end subroutine need_principals

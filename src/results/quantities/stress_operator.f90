@@ -28,45 +28,45 @@ module stress_operator
 contains
 
   !> Builds the operator by running over the corners of all elements.
-  subroutine make_nodal_operator(scene, plan, operator)
-    type(problem), intent(in) :: scene
+  subroutine make_nodal_operator(model, plan, operator)
+    type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(nodal_operator), intent(out) :: operator
     real(rk), allocatable :: b(:, :, :, :)
     real(rk) :: d(6, 6), to_corner(8, max_points)
     integer :: i, k
-    call find_columns(scene, plan, operator)
+    call find_columns(model, plan, operator)
     allocate (operator%gradient(3, size(operator%column)), source=0.0_rk)
     allocate (operator%rest(6, 3, 0))
-    allocate (operator%material(scene%mesh%num_nodes), source=0)
-    allocate (operator%elastic(6, 6, size(scene%materials)), source=0.0_rk)
+    allocate (operator%material(model%mesh%num_nodes), source=0)
+    allocate (operator%elastic(6, 6, size(model%materials)), source=0.0_rk)
     to_corner = corners_from_points()
     do i = 1, size(plan%blocks)
-      call operators_of_block(scene, plan, plan%blocks(i), b, d)
+      call operators_of_block(model, plan, plan%blocks(i), b, d)
       operator%elastic(:, :, plan%blocks(i)%material) = d
       do k = 1, size(plan%blocks(i)%solids)
-        call add_element(scene, plan, plan%blocks(i)%solids(k), b(:, :, :, k), to_corner, operator)
+        call add_element(model, plan, plan%blocks(i)%solids(k), b(:, :, :, k), to_corner, operator)
       end do
     end do
   end subroutine make_nodal_operator
 
   !> The nodes that a node's stress depends on: those of the elements whose corners count.
-  subroutine find_columns(scene, plan, operator)
-    type(problem), intent(in) :: scene
+  subroutine find_columns(model, plan, operator)
+    type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(nodal_operator), intent(inout) :: operator
     integer, parameter :: nodes_of_corner = 8
     integer, allocatable :: found(:), seen(:)
     integer :: node, i, a, e, neighbour, last
-    allocate (operator%row_start(scene%mesh%num_nodes + 1))
-    allocate (found(nodes_of_corner*size(plan%corner)), seen(scene%mesh%num_nodes), source=0)
+    allocate (operator%row_start(model%mesh%num_nodes + 1))
+    allocate (found(nodes_of_corner*size(plan%corner)), seen(model%mesh%num_nodes), source=0)
     last = 0
-    do node = 1, scene%mesh%num_nodes
+    do node = 1, model%mesh%num_nodes
       operator%row_start(node) = last + 1
       do i = plan%node_start(node), plan%node_start(node + 1) - 1
         e = plan%element_of_solid((plan%corner(i) - 1)/8 + 1)
         do a = 1, 8
-          neighbour = scene%mesh%nodes(a, e)
+          neighbour = model%mesh%nodes(a, e)
           if (seen(neighbour) == node) cycle
           seen(neighbour) = node
           last = last + 1
@@ -74,13 +74,13 @@ contains
         end do
       end do
     end do
-    operator%row_start(scene%mesh%num_nodes + 1) = last + 1
+    operator%row_start(model%mesh%num_nodes + 1) = last + 1
     operator%column = found(:last)
   end subroutine find_columns
 
   !> Adds what one element gives to the nodes whose stress it has a part in.
-  subroutine add_element(scene, plan, solid, b, to_corner, operator)
-    type(problem), intent(in) :: scene
+  subroutine add_element(model, plan, solid, b, to_corner, operator)
+    type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     integer, intent(in) :: solid
     real(rk), intent(in) :: b(:, :, :) !< (6, 24, points)
@@ -88,12 +88,12 @@ contains
     type(nodal_operator), intent(inout) :: operator
     real(rk) :: at_corner(6, hex8_dofs), share
     integer :: a, q, node, c, i, nodes(8)
-    nodes = scene%mesh%nodes(:, plan%element_of_solid(solid))
+    nodes = model%mesh%nodes(:, plan%element_of_solid(solid))
     do a = 1, 8
       node = nodes(a)
       if (.not. any(plan%corner(plan%node_start(node):plan%node_start(node + 1) - 1) == &
                     8*(solid - 1) + a)) cycle
-      operator%material(node) = scene%mesh%material_of_element(plan%element_of_solid(solid))
+      operator%material(node) = model%mesh%material_of_element(plan%element_of_solid(solid))
       share = 1.0_rk/(plan%node_start(node + 1) - plan%node_start(node))
       at_corner = b(:, :, 1)
       if (size(b, 3) == max_points) then

@@ -47,49 +47,49 @@ module stress_recovery
 contains
 
   !> Lists the solids, sorts them into blocks and links nodes to corners.
-  subroutine make_recovery_plan(scene, plan)
-    type(problem), intent(in) :: scene
+  subroutine make_recovery_plan(model, plan)
+    type(problem), intent(in) :: model
     type(recovery_plan), intent(out) :: plan
     integer :: e, s
-    plan%element_of_solid = pack([(e, e=1, scene%mesh%num_elements)], &
-                                 is_solid(scene%mesh%element_type))
+    plan%element_of_solid = pack([(e, e=1, model%mesh%num_elements)], &
+                                 is_solid(model%mesh%element_type))
     plan%num_solids = size(plan%element_of_solid)
-    allocate (plan%solid_of_element(scene%mesh%num_elements), source=0)
+    allocate (plan%solid_of_element(model%mesh%num_elements), source=0)
     do s = 1, plan%num_solids
       plan%solid_of_element(plan%element_of_solid(s)) = s
     end do
-    call find_states(scene, plan)
-    call sort_into_blocks(scene, plan)
-    call link_corners(scene, plan)
+    call find_states(model, plan)
+    call sort_into_blocks(model, plan)
+    call link_corners(model, plan)
   end subroutine make_recovery_plan
 
   !> Where the solids with a history keep it.
-  subroutine find_states(scene, plan)
-    type(problem), intent(in) :: scene
+  subroutine find_states(model, plan)
+    type(problem), intent(in) :: model
     type(recovery_plan), intent(inout) :: plan
     integer :: i, e, s
     allocate (plan%inelastic_block(plan%num_solids), source=0)
     allocate (plan%points_before(plan%num_solids), source=0)
-    if (.not. allocated(scene%inelastic)) return
-    do i = 1, size(scene%inelastic)
-      do e = 1, size(scene%inelastic(i)%elements)
-        s = plan%solid_of_element(scene%inelastic(i)%elements(e))
+    if (.not. allocated(model%inelastic)) return
+    do i = 1, size(model%inelastic)
+      do e = 1, size(model%inelastic(i)%elements)
+        s = plan%solid_of_element(model%inelastic(i)%elements(e))
         plan%inelastic_block(s) = i
-        plan%points_before(s) = (e - 1)*scene%inelastic(i)%points_of_element
+        plan%points_before(s) = (e - 1)*model%inelastic(i)%points_of_element
       end do
     end do
   end subroutine find_states
 
   !> Blocks of equal formulation and material.
-  subroutine sort_into_blocks(scene, plan)
-    type(problem), intent(in) :: scene
+  subroutine sort_into_blocks(model, plan)
+    type(problem), intent(in) :: model
     type(recovery_plan), intent(inout) :: plan
     character(8), allocatable :: names(:)
     integer, allocatable :: kind_of(:), group(:)
     integer :: s, kind, m, first, last, num_blocks
     allocate (names(0), kind_of(plan%num_solids), plan%num_points(plan%num_solids))
     do s = 1, plan%num_solids
-      associate (name => scene%mesh%element_type(plan%element_of_solid(s)))
+      associate (name => model%mesh%element_type(plan%element_of_solid(s)))
         if (.not. any(names == name)) names = [character(8) :: names, name]
         kind_of(s) = findloc(names, name, dim=1)
       end associate
@@ -101,12 +101,12 @@ contains
     do s = 1, plan%num_solids
       plan%num_points(s) = plan%formulations(kind_of(s))%item%num_points
     end do
-    allocate (plan%blocks(plan%num_solids/block_size + size(names)*size(scene%materials)))
+    allocate (plan%blocks(plan%num_solids/block_size + size(names)*size(model%materials)))
     num_blocks = 0
     do kind = 1, size(names)
-      do m = 1, size(scene%materials)
+      do m = 1, size(model%materials)
         group = pack([(s, s=1, plan%num_solids)], kind_of == kind .and. &
-                     scene%mesh%material_of_element(plan%element_of_solid) == m)
+                     model%mesh%material_of_element(plan%element_of_solid) == m)
         do first = 1, size(group), block_size
           last = min(size(group), first + block_size - 1)
           num_blocks = num_blocks + 1
@@ -119,24 +119,24 @@ contains
   end subroutine sort_into_blocks
 
   !> For each node the corners of the elements that decide its stress.
-  subroutine link_corners(scene, plan)
-    type(problem), intent(in) :: scene
+  subroutine link_corners(model, plan)
+    type(problem), intent(in) :: model
     type(recovery_plan), intent(inout) :: plan
     integer, allocatable :: ruler(:), next(:)
     integer :: s, a, node, section, n
-    allocate (ruler(scene%mesh%num_nodes), source=huge(1))
-    allocate (plan%node_start(scene%mesh%num_nodes + 1), source=0)
+    allocate (ruler(model%mesh%num_nodes), source=huge(1))
+    allocate (plan%node_start(model%mesh%num_nodes + 1), source=0)
     do s = 1, plan%num_solids
-      section = scene%mesh%section_of_element(plan%element_of_solid(s))
+      section = model%mesh%section_of_element(plan%element_of_solid(s))
       do a = 1, 8
-        node = scene%mesh%nodes(a, plan%element_of_solid(s))
+        node = model%mesh%nodes(a, plan%element_of_solid(s))
         ruler(node) = min(ruler(node), section)
       end do
     end do
     allocate (plan%corner(8*plan%num_solids), source=0)
     call walk(counting=.true.)
     plan%node_start(1) = 1
-    do n = 1, scene%mesh%num_nodes
+    do n = 1, model%mesh%num_nodes
       plan%node_start(n + 1) = plan%node_start(n) + plan%node_start(n + 1)
     end do
     next = plan%node_start
@@ -148,9 +148,9 @@ contains
     subroutine walk(counting)
       logical, intent(in) :: counting
       do s = 1, plan%num_solids
-        section = scene%mesh%section_of_element(plan%element_of_solid(s))
+        section = model%mesh%section_of_element(plan%element_of_solid(s))
         do a = 1, 8
-          node = scene%mesh%nodes(a, plan%element_of_solid(s))
+          node = model%mesh%nodes(a, plan%element_of_solid(s))
           if (section /= ruler(node)) cycle
           if (counting) then
             plan%node_start(node + 1) = plan%node_start(node + 1) + 1
@@ -164,22 +164,22 @@ contains
   end subroutine link_corners
 
   !> Strain and stress at the points of all solids; threads over blocks, each its own elements.
-  subroutine recover_points(scene, plan, now, strain, stress)
-    type(problem), intent(in) :: scene
+  subroutine recover_points(model, plan, now, strain, stress)
+    type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(state), intent(in) :: now
     real(rk), intent(out) :: strain(:, :, :) !< (6, max_points, solids)
     real(rk), intent(out) :: stress(:, :, :) !< (6, max_points, solids) [Pa]
     integer :: i, k
-    !$omp parallel do default(none) shared(scene, plan, now, strain, stress) private(k) &
-    !$omp schedule(dynamic, 4) if (scene%mesh%num_nodes > few_nodes)
+    !$omp parallel do default(none) shared(model, plan, now, strain, stress) private(k) &
+    !$omp schedule(dynamic, 4) if (model%mesh%num_nodes > few_nodes)
     do i = 1, size(plan%blocks)
       if (plan%blocks(i)%is_inelastic) then
         do k = 1, size(plan%blocks(i)%solids)
           call copy_solid(plan, now, plan%blocks(i)%solids(k), strain, stress)
         end do
       else
-        call recover_block(scene, plan, plan%blocks(i), now%u, strain, stress)
+        call recover_block(model, plan, plan%blocks(i), now%u, strain, stress)
       end if
     end do
     !$omp end parallel do
@@ -201,8 +201,8 @@ contains
   end subroutine copy_solid
 
   !> One elastic block.
-  subroutine recover_block(scene, plan, part, u, strain, stress)
-    type(problem), intent(in) :: scene
+  subroutine recover_block(model, plan, part, u, strain, stress)
+    type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(element_block), intent(in) :: part
     real(rk), intent(in) :: u(:, :)
@@ -211,12 +211,12 @@ contains
     real(rk) :: d(6, 6)
     integer :: k, q, n, points
     n = size(part%solids)
-    call operators_of_block(scene, plan, part, b, d)
+    call operators_of_block(model, plan, part, b, d)
     points = size(b, 3)
     allocate (found(6, points, n), moved(hex8_dofs, n))
     do k = 1, n
       moved(:, k) = &
-        gather_vectors(u, scene%mesh%nodes(:, plan%element_of_solid(part%solids(k))))
+        gather_vectors(u, model%mesh%nodes(:, plan%element_of_solid(part%solids(k))))
     end do
     call strains_at_points(b, moved, found)
     do k = 1, n
@@ -228,8 +228,8 @@ contains
   end subroutine recover_block
 
   !> Strain operators of a block's elements at their points, and the elastic stiffness.
-  subroutine operators_of_block(scene, plan, part, b, d)
-    type(problem), intent(in) :: scene
+  subroutine operators_of_block(model, plan, part, b, d)
+    type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(element_block), intent(in) :: part
     real(rk), allocatable, intent(out) :: b(:, :, :, :) !< (6, 24, points, elements) [1/m]
@@ -241,9 +241,9 @@ contains
     points = plan%formulations(part%formulation)%item%num_points
     allocate (b(6, hex8_dofs, points, n), weight(points, n), x(3, 8, n), status(n))
     do k = 1, n
-      x(:, :, k) = scene%mesh%x(:, scene%mesh%nodes(:, plan%element_of_solid(part%solids(k))))
+      x(:, :, k) = model%mesh%x(:, model%mesh%nodes(:, plan%element_of_solid(part%solids(k))))
     end do
-    call scene%materials(part%material)%law%elastic_stiffness(d)
+    call model%materials(part%material)%law%elastic_stiffness(d)
     call plan%formulations(part%formulation)%item%strain_operator(x, d, b, weight, status)
   end subroutine operators_of_block
 end module stress_recovery

@@ -15,26 +15,26 @@ contains
   !> Fields of all requests that are due, each once, as rows of the record's table. A field that the
   !> analysis does not have now is left out with one warning (of fields of laws, when the deck was
   !> read).
-  subroutine list_due_fields(scene, now, record, fields)
-    type(problem), intent(in) :: scene
+  subroutine list_due_fields(model, now, record, fields)
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
     integer, allocatable, intent(out) :: fields(:)
     integer :: r, i, f
     allocate (fields(0))
-    if (.not. allocated(scene%steps(now%step)%outputs)) return
-    if (now%is_stop .and. any(mod(now%increment, max(1, scene%steps(now%step)%outputs%frequency)) &
+    if (.not. allocated(model%steps(now%step)%outputs)) return
+    if (now%is_stop .and. any(mod(now%increment, max(1, model%steps(now%step)%outputs%frequency)) &
                               == 0)) return
-    do r = 1, size(scene%steps(now%step)%outputs)
-      associate (request => scene%steps(now%step)%outputs(r))
+    do r = 1, size(model%steps(now%step)%outputs)
+      associate (request => model%steps(now%step)%outputs(r))
         if (.not. is_due(now, request%frequency)) cycle
         do i = 1, size(request%fields)
           f = find_field(record%fields, trim(request%fields(i)))
           if (any(fields == f)) cycle
-          if (is_written(scene, now, record, f)) then
+          if (is_written(model, now, record, f)) then
             fields = [fields, f]
           else if (.not. is_of_law(record, f)) then
-            call record%warn_once('step '//scene%steps(now%step)%name//' has no field '// &
+            call record%warn_once('step '//model%steps(now%step)%name//' has no field '// &
                                   trim(request%fields(i))//'; it is not written')
           end if
         end do
@@ -43,15 +43,15 @@ contains
   end subroutine list_due_fields
 
   !> Can this field be written on nodes now?
-  logical function is_written(scene, now, record, f)
-    type(problem), intent(in) :: scene
+  logical function is_written(model, now, record, f)
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(run_record), intent(in) :: record
     integer, intent(in) :: f !< row of the record's table, 0: an unknown field
     is_written = .false.
     if (f == 0) return
     associate (item => record%fields(f))
-      if (associated(item%on_nodes)) is_written = item%is_available(scene, now)
+      if (associated(item%on_nodes)) is_written = item%is_available(model, now)
     end associate
   end function is_written
 

@@ -23,22 +23,22 @@ module result_writer
 
   abstract interface
     !> The run begins.
-    subroutine open_writer(self, scene, stem, record, error)
+    subroutine open_writer(self, model, stem, record, error)
       import :: writer, problem, run_record, error_type
       implicit none
       class(writer), intent(inout) :: self
-      type(problem), intent(in) :: scene
+      type(problem), intent(in) :: model
       character(*), intent(in) :: stem !< folder and name of the job
       type(run_record), intent(inout) :: record
       type(error_type), allocatable, intent(out) :: error
     end subroutine open_writer
 
     !> An increment has converged.
-    subroutine write_increment(self, scene, now, record, error)
+    subroutine write_increment(self, model, now, record, error)
       import :: writer, problem, state, run_record, error_type
       implicit none
       class(writer), intent(inout) :: self
-      type(problem), intent(in) :: scene
+      type(problem), intent(in) :: model
       type(state), intent(in) :: now
       type(run_record), intent(inout) :: record !< stresses are made on demand
       type(error_type), allocatable, intent(out) :: error
@@ -48,9 +48,9 @@ module result_writer
 contains
 
   !> A *FREQUENCY step has found its modes.
-  subroutine write_modes(self, scene, step, modes, record, error)
+  subroutine write_modes(self, model, step, modes, record, error)
     class(writer), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     integer, intent(in) :: step
     type(vibration_mode), intent(in) :: modes(:)
     type(run_record), intent(inout) :: record
@@ -58,9 +58,9 @@ contains
   end subroutine write_modes
 
   !> A step has ended, or the run stops in it: the envelopes of the step.
-  subroutine write_envelopes(self, scene, record, error)
+  subroutine write_envelopes(self, model, record, error)
     class(writer), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
   end subroutine write_envelopes

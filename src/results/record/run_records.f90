@@ -56,67 +56,67 @@ module run_records
 contains
 
   !> Finds the faces of the dam and starts empty.
-  subroutine open_record(self, scene)
+  subroutine open_record(self, model)
     class(run_record), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     integer :: j
     call list_fields(self%fields)
-    call find_dam_faces(scene, self%skin)
-    allocate (self%joints(size(scene%joints)), self%envelopes(0), self%active(0))
+    call find_dam_faces(model, self%skin)
+    allocate (self%joints(size(model%joints)), self%envelopes(0), self%active(0))
     allocate (self%warnings(0), self%files(0))
-    do j = 1, size(scene%joints)
-      call open_joint_record(scene%joints(j), self%skin, self%joints(j))
+    do j = 1, size(model%joints)
+      call open_joint_record(model%joints(j), self%skin, self%joints(j))
     end do
-    call open_damage_record(scene, self%skin, self%damage)
+    call open_damage_record(model, self%skin, self%damage)
   end subroutine open_record
 
   !> Opens the envelopes of a step, but those that the analysis does not have.
-  subroutine begin_step(self, scene, step)
+  subroutine begin_step(self, model, step)
     class(run_record), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     integer, intent(in) :: step
     type(envelope) :: fresh
     integer :: i, k, f
     self%step = step
     self%most_taken = -huge(1.0_rk)
     self%active = [integer ::]
-    if (.not. allocated(scene%steps(step)%envelope)) return
-    do i = 1, size(scene%steps(step)%envelope)
-      associate (name => scene%steps(step)%envelope(i))
+    if (.not. allocated(model%steps(step)%envelope)) return
+    do i = 1, size(model%steps(step)%envelope)
+      associate (name => model%steps(step)%envelope(i))
         f = find_field(self%fields, trim(name))
-        if (self%fields(f)%width(scene) == 0) cycle
+        if (self%fields(f)%width(model) == 0) cycle
         k = findloc(self%envelopes%row, f, dim=1)
         if (k == 0) self%envelopes = [self%envelopes, fresh]
         if (k == 0) k = size(self%envelopes)
         call open_envelope(self%envelopes(k), name, f, self%fields(f)%wants_smallest, &
-                           scene%mesh%num_nodes)
+                           model%mesh%num_nodes)
         self%active = [self%active, k]
       end associate
     end do
   end subroutine begin_step
 
   !> Takes note of an increment: maxima of joints always, envelopes where the step asks.
-  subroutine note(self, scene, now)
+  subroutine note(self, model, now)
     class(run_record), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     integer :: j, i
     call self%stresses%forget()
-    if (scene%steps(now%step)%procedure%has_inertia) then
-      call self%watch_stepping(now, scene%steps(now%step)%procedure%uses_alpha)
+    if (model%steps(now%step)%procedure%has_inertia) then
+      call self%watch_stepping(now, model%steps(now%step)%procedure%uses_alpha)
     end if
-    if (self%damage%is_present) call self%watch_release(scene, now)
+    if (self%damage%is_present) call self%watch_release(model, now)
     if (now%has_held_switches) then
-      call self%warn_once('step '//scene%steps(now%step)%name//': where the jump of '// &
+      call self%warn_once('step '//model%steps(now%step)%name//': where the jump of '// &
                           'RECOVERY=SIGN let no balance be found its switch was kept for the '// &
                           'increment as it had been before')
     end if
-    do j = 1, size(scene%joints)
-      call note_joint(self%joints(j), scene%joints(j), now%joints(j), now%total_time)
+    do j = 1, size(model%joints)
+      call note_joint(self%joints(j), model%joints(j), now%joints(j), now%total_time)
     end do
-    if (self%damage%is_present) call note_damage(scene, now, self%damage)
+    if (self%damage%is_present) call note_damage(model, now, self%damage)
     do i = 1, size(self%active)
-      call self%note_one(scene, now, self%envelopes(self%active(i)))
+      call self%note_one(model, now, self%envelopes(self%active(i)))
     end do
   end subroutine note
 
@@ -137,15 +137,15 @@ contains
 
   !> Warns of a static increment in which cracks took much of the energy that was stored: it has
   !> jumped from one equilibrium to another.
-  subroutine watch_release(self, scene, now)
+  subroutine watch_release(self, model, now)
     class(run_record), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     real(rk) :: released
     released = min(self%last_strain - now%energy%strain, now%energy%fracture - self%last_fracture)
     self%last_strain = now%energy%strain
     self%last_fracture = now%energy%fracture
-    if (.not. scene%steps(now%step)%procedure%is_static()) return
+    if (.not. model%steps(now%step)%procedure%is_static()) return
     if (released <= largest_release*now%energy%largest) return
     call self%warn_once('a static increment has given much of the stored energy to cracks at '// &
                         'once: the structure has jumped from one equilibrium to another; take '// &
@@ -153,66 +153,66 @@ contains
   end subroutine watch_release
 
   !> One envelope, by the place where its field lives.
-  subroutine note_one(self, scene, now, item)
+  subroutine note_one(self, model, now, item)
     class(run_record), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(envelope), intent(inout) :: item
     real(rk), allocatable :: values(:, :), size_of(:)
-    call self%fields(item%row)%on_nodes(scene, now, self%stresses, values)
+    call self%fields(item%row)%on_nodes(model, now, self%stresses, values)
     size_of = values(1, :)
     if (size(values, 1) > 1) size_of = norm2(values, dim=1)
     select case (self%fields(item%row)%place)
     case (at_joints)
-      call self%note_joints(scene, now, max(0.0_rk, size_of), item)
+      call self%note_joints(model, now, max(0.0_rk, size_of), item)
     case (at_points)
-      call self%note_points(scene, now, size_of, item)
+      call self%note_points(model, now, size_of, item)
     case default
-      call self%note_nodes(scene, now, size_of, item)
+      call self%note_nodes(model, now, size_of, item)
     end select
   end subroutine note_one
 
   !> A field on nodes: its extremes are those of the nodes of solids.
-  subroutine note_nodes(self, scene, now, values, item)
+  subroutine note_nodes(self, model, now, values, item)
     class(run_record), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     real(rk), intent(in) :: values(:) !< (nodes)
     type(envelope), intent(inout) :: item
     integer, allocatable :: solid_nodes(:)
     integer :: n
-    call self%stresses%need_plan(scene)
+    call self%stresses%need_plan(model)
     associate (start => self%stresses%plan%node_start)
       solid_nodes = pack([(n, n=1, size(values))], start(2:) > start(:size(start) - 1))
     end associate
     call note_envelope(item, values, now%total_time)
-    call note_values(item%largest, values(solid_nodes), scene%mesh%x(:, solid_nodes), &
+    call note_values(item%largest, values(solid_nodes), model%mesh%x(:, solid_nodes), &
                      self%skin%is_upstream(solid_nodes), self%skin%is_downstream(solid_nodes), &
                      now%total_time, item%wants_smallest)
   end subroutine note_nodes
 
   !> A field of joints: its extremes are those of their points; closed points count as 0.
-  subroutine note_joints(self, scene, now, on_nodes, item)
+  subroutine note_joints(self, model, now, on_nodes, item)
     class(run_record), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     real(rk), intent(in) :: on_nodes(:) !< (nodes)
     type(envelope), intent(inout) :: item
     real(rk), allocatable :: values(:, :)
     integer :: j
     call note_envelope(item, on_nodes, now%total_time)
-    do j = 1, size(scene%joints)
-      call self%fields(item%row)%of_joint(scene, now, j, values)
-      call note_values(item%largest, max(0.0_rk, values(1, :)), scene%joints(j)%x, &
+    do j = 1, size(model%joints)
+      call self%fields(item%row)%of_joint(model, now, j, values)
+      call note_values(item%largest, max(0.0_rk, values(1, :)), model%joints(j)%x, &
                        self%joints(j)%is_upstream, self%joints(j)%is_downstream, &
                        now%total_time, item%wants_smallest)
     end do
   end subroutine note_joints
 
   !> A field of inelastic solids: its extremes are those of their integration points.
-  subroutine note_points(self, scene, now, on_nodes, item)
+  subroutine note_points(self, model, now, on_nodes, item)
     class(run_record), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     real(rk), intent(in) :: on_nodes(:) !< (nodes)
     type(envelope), intent(inout) :: item
@@ -220,12 +220,12 @@ contains
     integer :: i
     call note_envelope(item, on_nodes, now%total_time)
     if (self%fields(item%row)%has_means) then
-      call mean_of_elements(scene, now, item%name, mean)
+      call mean_of_elements(model, now, item%name, mean)
       call note_means(item, mean)
     end if
-    do i = 1, size(scene%inelastic)
-      associate (points => scene%inelastic(i)%points, faces => self%damage%faces(i))
-        call self%fields(item%row)%of_block(scene, now, i, values)
+    do i = 1, size(model%inelastic)
+      associate (points => model%inelastic(i)%points, faces => self%damage%faces(i))
+        call self%fields(item%row)%of_block(model, now, i, values)
         if (.not. allocated(values)) allocate (values(1, points%num_points), source=0.0_rk)
         call note_values(item%largest, values(1, :), points%x, faces%is_upstream, &
                          faces%is_downstream, now%total_time, item%wants_smallest)

@@ -8,7 +8,7 @@ module damage_json
 
 contains
 
-  !> Nothing where no law of the scene has damage.
+  !> Nothing where no law of the model has damage.
   subroutine put_damage(json, record)
     type(json_text), intent(inout) :: json
     type(damage_record), intent(in) :: record

@@ -1,7 +1,7 @@
 !> What job.json tells of joints and of faces of different meshes; extremes by face.
 module joint_json
   use extremes, only: extremes_by_face, face_names
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use json_writer, only: json_text, lower
   use kinds, only: rk
   use problem_definition, only: problem
@@ -18,15 +18,15 @@ module joint_json
 contains
 
   !> What each joint is made of, and its extremes.
-  subroutine put_joints(json, scene, record)
+  subroutine put_joints(json, model, record)
     type(json_text), intent(inout) :: json
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(run_record), intent(in) :: record
     integer :: j
     call json%open_object('joints')
-    do j = 1, size(scene%joints)
-      call json%open_object(scene%joints(j)%name)
-      call put_make(json, scene%joints(j))
+    do j = 1, size(model%joints)
+      call json%open_object(model%joints(j)%name)
+      call put_make(json, model%joints(j))
       call put_extremes(json, 'opening', record%joints(j)%opening)
       call put_extremes(json, 'slip', record%joints(j)%slip)
       call put_extremes(json, 'pressure', record%joints(j)%pressure)
@@ -39,13 +39,13 @@ contains
   end subroutine put_joints
 
   !> What a joint is made of.
-  subroutine put_make(json, item)
+  subroutine put_make(json, joint)
     type(json_text), intent(inout) :: json
-    type(joint), intent(in) :: item
-    call json%put_text(trim(merge('elements', 'surfaces', item%is_matching)), 'kind')
-    call json%put_text(trim(merge('nodes', 'gauss', item%is_nodal)), 'integration')
-    call json%put_integer(item%num_points, 'points')
-    call json%put_real(sum(item%area), 'area')
+    type(dam_joint), intent(in) :: joint
+    call json%put_text(trim(merge('elements', 'surfaces', joint%is_matching)), 'kind')
+    call json%put_text(trim(merge('nodes', 'gauss', joint%is_nodal)), 'integration')
+    call json%put_integer(joint%num_points, 'points')
+    call json%put_real(sum(joint%area), 'area')
   end subroutine put_make
 
   !> Anywhere, upstream, downstream: those that exist.
@@ -67,22 +67,22 @@ contains
   end subroutine put_extremes
 
   !> How faces of different meshes cover each other.
-  subroutine put_interfaces(json, scene)
+  subroutine put_interfaces(json, model)
     type(json_text), intent(inout) :: json
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     integer :: i
     call json%open_array('interfaces')
-    if (allocated(scene%covers)) then
-      do i = 1, size(scene%covers)
-        associate (cover => scene%covers(i)%cover)
+    if (allocated(model%covers)) then
+      do i = 1, size(model%covers)
+        associate (cover => model%covers(i)%cover)
           call json%open_object()
-          call json%put_text(scene%covers(i)%name, 'name')
-          call json%put_text(lower(scene%covers(i)%kind), 'kind')
+          call json%put_text(model%covers(i)%name, 'name')
+          call json%put_text(lower(model%covers(i)%kind), 'kind')
           call json%put_real(cover%slave_area, 'slave_area')
           call json%put_real(cover%master_area, 'master_area')
           call json%put_real(cover%covered_area, 'covered_area')
           call json%put_integer(count(cover%bare > most_bare), 'facets_without_partner')
-          call put_elements(json, scene, pack(cover%element, cover%bare > most_bare))
+          call put_elements(json, model, pack(cover%element, cover%bare > most_bare))
           call json%put_real(cover%largest_gap, 'largest_gap')
           call json%put_reals(cover%gap_place, 'gap_at')
           call json%put_real(cover%largest_overlap, 'largest_overlap')
@@ -95,14 +95,14 @@ contains
   end subroutine put_interfaces
 
   !> The numbers of elements, the first of them where there are very many.
-  subroutine put_elements(json, scene, elements)
+  subroutine put_elements(json, model, elements)
     type(json_text), intent(inout) :: json
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     integer, intent(in) :: elements(:) !< positions
     integer :: i
     call json%open_array('elements_without_partner')
     do i = 1, min(size(elements), most_listed)
-      call json%put_integer(scene%mesh%element_id(elements(i)))
+      call json%put_integer(model%mesh%element_id(elements(i)))
     end do
     call json%close_array()
   end subroutine put_elements

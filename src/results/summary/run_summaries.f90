@@ -38,30 +38,30 @@ module run_summaries
 contains
 
   !> A step begins.
-  subroutine begin_step(self, scene, step)
+  subroutine begin_step(self, model, step)
     class(run_summary), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     integer, intent(in) :: step
     type(step_summary) :: fresh
     fresh%step = step
     allocate (fresh%modes(0))
     self%steps = [self%steps, fresh]
-    if (self%num_unknowns == 0) self%num_unknowns = count_unknowns(scene, step)
+    if (self%num_unknowns == 0) self%num_unknowns = count_unknowns(model, step)
   end subroutine begin_step
 
   !> Displacements of nodes that belong to an element, without the prescribed ones.
-  integer function count_unknowns(scene, step) result(count_free)
-    type(problem), intent(in) :: scene
+  integer function count_unknowns(model, step) result(count_free)
+    type(problem), intent(in) :: model
     integer, intent(in) :: step
-    logical :: is_free(num_directions, scene%mesh%num_nodes)
+    logical :: is_free(num_directions, model%mesh%num_nodes)
     integer :: e, a, i
     is_free = .false.
-    do e = 1, scene%mesh%num_elements
-      do a = 1, size(scene%mesh%nodes, 1)
-        if (scene%mesh%nodes(a, e) > 0) is_free(:, scene%mesh%nodes(a, e)) = .true.
+    do e = 1, model%mesh%num_elements
+      do a = 1, size(model%mesh%nodes, 1)
+        if (model%mesh%nodes(a, e) > 0) is_free(:, model%mesh%nodes(a, e)) = .true.
       end do
     end do
-    associate (fixities => scene%steps(step)%fixities)
+    associate (fixities => model%steps(step)%fixities)
       do i = 1, size(fixities)
         is_free(fixities(i)%dof, fixities(i)%node) = .false.
       end do

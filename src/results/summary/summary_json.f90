@@ -24,9 +24,9 @@ module summary_json
 contains
 
   !> Writes the file anew.
-  subroutine write_summary(path, scene, summary, record, costs, error)
+  subroutine write_summary(path, model, summary, record, costs, error)
     character(*), intent(in) :: path
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(run_summary), intent(in) :: summary
     type(run_record), intent(in) :: record
     type(ledger), intent(in) :: costs
@@ -37,19 +37,19 @@ contains
     call json%put_text(trim(summary%status), 'status')
     call json%put_text(summary%message, 'message')
     call json%open_object('deck')
-    call json%put_text(scene%deck_file, 'file')
+    call json%put_text(model%deck_file, 'file')
     call json%put_text(summary%deck_digest, 'sha256')
     call json%close_object()
-    call put_model(json, scene, summary)
-    call put_effects(json, scene)
-    call put_interfaces(json, scene)
+    call put_model(json, model, summary)
+    call put_effects(json, model)
+    call put_interfaces(json, model)
     call put_remarks(json, summary, record)
-    call put_steps(json, scene, summary)
+    call put_steps(json, model, summary)
     call put_envelopes(json, record)
-    call put_joints(json, scene, record)
+    call put_joints(json, model, record)
     call put_damage(json, record%damage)
-    call put_umat(json, scene%umat)
-    call put_accuracy(json, scene, summary, record)
+    call put_umat(json, model%umat)
+    call put_accuracy(json, model, summary, record)
     call put_costs(json, costs)
     call put_files(json, record)
     call json%close_object()
@@ -76,44 +76,44 @@ contains
   end subroutine put_program
 
   !> Counts.
-  subroutine put_model(json, scene, summary)
+  subroutine put_model(json, model, summary)
     type(json_text), intent(inout) :: json
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(run_summary), intent(in) :: summary
     call json%open_object('model')
-    call json%put_integer(scene%mesh%num_nodes, 'nodes')
-    call json%put_integer(scene%mesh%num_elements, 'elements')
+    call json%put_integer(model%mesh%num_nodes, 'nodes')
+    call json%put_integer(model%mesh%num_elements, 'elements')
     call json%put_integer(summary%num_unknowns, 'unknowns')
-    call json%put_integer(size(scene%joints), 'joints')
-    call json%put_integer(size(scene%materials), 'materials')
+    call json%put_integer(size(model%joints), 'joints')
+    call json%put_integer(size(model%materials), 'materials')
     call json%close_object()
   end subroutine put_model
 
   !> The guests of the model: loads, joints, springs, ties, inelastic materials, damping.
-  subroutine put_effects(json, scene)
+  subroutine put_effects(json, model)
     type(json_text), intent(inout) :: json
-    type(problem), intent(in), target :: scene
+    type(problem), intent(in), target :: model
     type(guest_reference), allocatable :: guests(:)
     integer :: i
     call json%open_array('effects')
-    do i = 1, size(scene%loads)
-      call put_effect(scene%loads(i)%item%name, scene%loads(i)%item%kind)
+    do i = 1, size(model%loads)
+      call put_effect(model%loads(i)%item%name, model%loads(i)%item%kind)
     end do
-    call guests_of_model(scene, guests)
+    call guests_of_model(model, guests)
     do i = 1, size(guests)
       call put_effect(guests(i)%item%name, guests(i)%item%kind)
     end do
-    do i = 1, size(scene%ties)
-      call put_effect(scene%ties(i)%name, 'tie')
+    do i = 1, size(model%ties)
+      call put_effect(model%ties(i)%name, 'tie')
     end do
-    do i = 1, size(scene%materials)
-      if (is_inelastic(scene, i)) call put_effect(scene%materials(i)%name, 'inelastic')
-      if (max(scene%materials(i)%alpha, scene%materials(i)%beta) > 0.0_rk) then
-        call put_effect(scene%materials(i)%name, 'damping')
+    do i = 1, size(model%materials)
+      if (is_inelastic(model, i)) call put_effect(model%materials(i)%name, 'inelastic')
+      if (max(model%materials(i)%alpha, model%materials(i)%beta) > 0.0_rk) then
+        call put_effect(model%materials(i)%name, 'damping')
       end if
     end do
-    do i = 1, size(scene%steps)
-      if (scene%steps(i)%damping_ratio > 0.0_rk) call put_effect(scene%steps(i)%name, 'damping')
+    do i = 1, size(model%steps)
+      if (model%steps(i)%damping_ratio > 0.0_rk) call put_effect(model%steps(i)%name, 'damping')
     end do
     call json%close_array()
 
@@ -129,12 +129,12 @@ contains
     end subroutine put_effect
   end subroutine put_effects
 
-  !> Has a material of the scene points with a history?
-  pure logical function is_inelastic(scene, m)
-    type(problem), intent(in) :: scene
+  !> Has a material of the model points with a history?
+  pure logical function is_inelastic(model, m)
+    type(problem), intent(in) :: model
     integer, intent(in) :: m !< position of the material
     is_inelastic = .false.
-    if (allocated(scene%inelastic)) is_inelastic = any(scene%inelastic%material == m)
+    if (allocated(model%inelastic)) is_inelastic = any(model%inelastic%material == m)
   end function is_inelastic
 
   !> Ignored input, and the warnings of the deck and of the run.
@@ -168,14 +168,14 @@ contains
   end subroutine put_remarks
 
   !> All steps that have begun.
-  subroutine put_steps(json, scene, summary)
+  subroutine put_steps(json, model, summary)
     type(json_text), intent(inout) :: json
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(run_summary), intent(in) :: summary
     integer :: i
     call json%open_array('steps')
     do i = 1, size(summary%steps)
-      associate (part => summary%steps(i), plan => scene%steps(summary%steps(i)%step))
+      associate (part => summary%steps(i), plan => model%steps(summary%steps(i)%step))
         call json%open_object()
         call json%put_text(plan%name, 'name')
         call json%put_text(lower(trim(plan%procedure%name)), 'procedure')
@@ -237,24 +237,24 @@ contains
   end subroutine put_envelopes
 
   !> How well the equations were met.
-  subroutine put_accuracy(json, scene, summary, record)
+  subroutine put_accuracy(json, model, summary, record)
     type(json_text), intent(inout) :: json
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(run_summary), intent(in) :: summary
     type(run_record), intent(in) :: record
     call json%open_object('accuracy')
     call json%put_real(maxval([0.0_rk, summary%steps%largest_residual]), 'largest_residual')
     call json%put_real(maxval([0.0_rk, summary%steps%largest_error]), 'largest_energy_error')
     call json%put_integer(maxval([0, summary%steps%most_iterations]), 'most_iterations')
-    if (size(scene%joints) > 0) call put_contact(json, scene, summary, record)
+    if (size(model%joints) > 0) call put_contact(json, model, summary, record)
     call json%close_object()
   end subroutine put_accuracy
 
   !> How far faces of joints go into each other, held to how far they open, and the condition of the
   !> equations with all joints closed.
-  subroutine put_contact(json, scene, summary, record)
+  subroutine put_contact(json, model, summary, record)
     type(json_text), intent(inout) :: json
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(run_summary), intent(in) :: summary
     type(run_record), intent(in) :: record
     real(rk) :: opening
@@ -263,10 +263,10 @@ contains
     call json%put_integer(sum([0, summary%steps%augmentations]), 'augmentations')
     call json%put_integer(maxval([0, summary%steps%most_augmentations]), 'most_augmentations')
     call json%open_object('joints')
-    do j = 1, size(scene%joints)
+    do j = 1, size(model%joints)
       opening = 0.0_rk
       if (record%joints(j)%opening%at(1)%is_found) opening = record%joints(j)%opening%at(1)%value
-      call json%open_object(scene%joints(j)%name)
+      call json%open_object(model%joints(j)%name)
       call json%put_real(record%joints(j)%penetration, 'largest_penetration')
       call json%put_real(opening, 'largest_opening')
       if (opening > 0.0_rk) then

@@ -36,9 +36,9 @@ contains
   end subroutine put_values
 
   !> The fields of joints at all their points.
-  subroutine put_joints(file, scene, now, table, group)
+  subroutine put_joints(file, model, now, table, group)
     type(hdf5_file), intent(inout) :: file
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(result_field), intent(in) :: table(:) !< all fields
     character(*), intent(in) :: group
@@ -46,12 +46,12 @@ contains
     character(:), allocatable :: place
     integer :: j, i
     call file%make_group(group)
-    do j = 1, size(scene%joints)
-      place = group//'/'//link_name(scene%joints(j)%name)
+    do j = 1, size(model%joints)
+      place = group//'/'//link_name(model%joints(j)%name)
       call file%make_group(place)
       do i = 1, size(table)
         if (table(i)%place /= at_joints) cycle
-        call table(i)%of_joint(scene, now, j, values)
+        call table(i)%of_joint(model, now, j, values)
         if (.not. allocated(values)) cycle
         if (table(i)%is_integer) then
           call file%put(place//'/'//lower(table(i)%name), nint(values(1, :)))

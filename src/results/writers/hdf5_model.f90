@@ -2,7 +2,7 @@
 module hdf5_model
   use dam_mesh, only: named_set
   use problem_definition, only: problem
-  use joint_points, only: joint, joint_cells
+  use joint_points, only: dam_joint, joint_cells
   use run_records, only: run_record
   use joint_readings, only: joint_record
   use hdf5_files, only: hdf5_file
@@ -14,42 +14,42 @@ module hdf5_model
 contains
 
   !> Everything that does not change in time.
-  subroutine write_model(file, scene, record)
+  subroutine write_model(file, model, record)
     type(hdf5_file), intent(inout) :: file
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(run_record), intent(in) :: record
     integer :: j
-    call write_mesh(file, scene)
+    call write_mesh(file, model)
     call file%make_group('/sets')
-    call write_sets(file, '/sets/nodes', scene%node_sets, scene%mesh%node_id)
-    call write_sets(file, '/sets/elements', scene%element_sets, scene%mesh%element_id)
-    call write_surfaces(file, scene)
+    call write_sets(file, '/sets/nodes', model%node_sets, model%mesh%node_id)
+    call write_sets(file, '/sets/elements', model%element_sets, model%mesh%element_id)
+    call write_surfaces(file, model)
     call file%make_group('/faces')
     call file%put('/faces/upstream', merge(1, 0, record%skin%is_upstream))
     call file%put('/faces/downstream', merge(1, 0, record%skin%is_downstream))
     call file%make_group('/joints')
-    do j = 1, size(scene%joints)
-      call write_joint(file, scene, scene%joints(j), record%joints(j))
+    do j = 1, size(model%joints)
+      call write_joint(file, model, model%joints(j), record%joints(j))
     end do
   end subroutine write_model
 
   !> Nodes, elements and materials.
-  subroutine write_mesh(file, scene)
+  subroutine write_mesh(file, model)
     type(hdf5_file), intent(inout) :: file
-    type(problem), intent(in) :: scene
-    character(80) :: names(size(scene%materials))
+    type(problem), intent(in) :: model
+    character(80) :: names(size(model%materials))
     integer :: m
-    do m = 1, size(scene%materials)
-      names(m) = scene%materials(m)%name
+    do m = 1, size(model%materials)
+      names(m) = model%materials(m)%name
     end do
     call file%make_group('/mesh')
-    call file%put('/mesh/node_id', scene%mesh%node_id)
-    call file%put('/mesh/x', scene%mesh%x)
-    call file%put('/mesh/element_id', scene%mesh%element_id)
-    call file%put_texts('/mesh/element_type', scene%mesh%element_type)
-    call file%put('/mesh/connectivity', scene%mesh%nodes - 1)
-    call file%put('/mesh/material', scene%mesh%material_of_element - 1)
-    call file%put('/mesh/section', scene%mesh%section_of_element - 1)
+    call file%put('/mesh/node_id', model%mesh%node_id)
+    call file%put('/mesh/x', model%mesh%x)
+    call file%put('/mesh/element_id', model%mesh%element_id)
+    call file%put_texts('/mesh/element_type', model%mesh%element_type)
+    call file%put('/mesh/connectivity', model%mesh%nodes - 1)
+    call file%put('/mesh/material', model%mesh%material_of_element - 1)
+    call file%put('/mesh/section', model%mesh%section_of_element - 1)
     call file%put_texts('/mesh/material_names', names)
   end subroutine write_mesh
 
@@ -67,57 +67,58 @@ contains
   end subroutine write_sets
 
   !> Surfaces: element and face S1..S6.
-  subroutine write_surfaces(file, scene)
+  subroutine write_surfaces(file, model)
     type(hdf5_file), intent(inout) :: file
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     integer :: i
     call file%make_group('/sets/surfaces')
-    do i = 1, size(scene%surfaces)
-      associate (faces => scene%surfaces(i))
+    do i = 1, size(model%surfaces)
+      associate (faces => model%surfaces(i))
         call file%put('/sets/surfaces/'//link_name(faces%name), &
-                      transpose(reshape([scene%mesh%element_id(faces%element), faces%face], &
+                      transpose(reshape([model%mesh%element_id(faces%element), faces%face], &
                                         [size(faces%face), 2])))
       end associate
     end do
   end subroutine write_surfaces
 
   !> The points of a joint.
-  subroutine write_joint(file, scene, item, faces)
+  subroutine write_joint(file, model, joint, faces)
     type(hdf5_file), intent(inout) :: file
-    type(problem), intent(in) :: scene
-    type(joint), intent(in) :: item
+    type(problem), intent(in) :: model
+    type(dam_joint), intent(in) :: joint
     type(joint_record), intent(in) :: faces
     character(:), allocatable :: group
-    group = '/joints/'//link_name(item%name)
+    group = '/joints/'//link_name(joint%name)
     call file%make_group(group)
-    call file%set(group, 'gap', item%law%gap)
-    call file%put(group//'/x', item%x)
-    call file%put(group//'/area', item%area)
+    call file%set(group, 'gap', joint%law%gap)
+    call file%put(group//'/x', joint%x)
+    call file%put(group//'/area', joint%area)
     ! The axes are the rows for a reader whose last index runs fastest.
-    call file%put(group//'/rotation', reshape(item%rotation, shape(item%rotation), order=[2, 1, 3]))
-    call file%put(group//'/clearance', item%clearance)
-    call file%put(group//'/reach', item%admissible_slip)
-    call file%put(group//'/first', item%first)
-    call file%put(group//'/first_master', item%first_master)
-    call file%put(group//'/node', scene%mesh%node_id(item%node))
-    call file%put(group//'/weight', item%weight)
+    call file%put(group//'/rotation', &
+                  reshape(joint%rotation, shape(joint%rotation), order=[2, 1, 3]))
+    call file%put(group//'/clearance', joint%clearance)
+    call file%put(group//'/reach', joint%admissible_slip)
+    call file%put(group//'/first', joint%first)
+    call file%put(group//'/first_master', joint%first_master)
+    call file%put(group//'/node', model%mesh%node_id(joint%node))
+    call file%put(group//'/weight', joint%weight)
     call file%put(group//'/upstream', merge(1, 0, faces%is_upstream))
     call file%put(group//'/downstream', merge(1, 0, faces%is_downstream))
-    if (allocated(item%cells%first)) call write_cells(file, scene, item%cells, group//'/cells')
+    if (allocated(joint%cells%first)) call write_cells(file, model, joint%cells, group//'/cells')
   end subroutine write_joint
 
   !> The polygons that are drawn of a joint.
-  subroutine write_cells(file, scene, cells, group)
+  subroutine write_cells(file, model, cells, group)
     type(hdf5_file), intent(inout) :: file
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(joint_cells), intent(in) :: cells
     character(*), intent(in) :: group
     call file%make_group(group)
     call file%put(group//'/first', cells%first)
     call file%put(group//'/corner', cells%corner)
-    call file%put(group//'/element', scene%mesh%element_id(cells%element))
+    call file%put(group//'/element', model%mesh%element_id(cells%element))
     call file%put(group//'/first_node', cells%first_node)
-    call file%put(group//'/node', scene%mesh%node_id(cells%node))
+    call file%put(group//'/node', model%mesh%node_id(cells%node))
     call file%put(group//'/weight', cells%weight)
   end subroutine write_cells
 end module hdf5_model

@@ -15,25 +15,25 @@ module hdf5_points
 contains
 
   !> All points, block by block; nothing where there are none.
-  subroutine write_points(file, scene)
+  subroutine write_points(file, model)
     type(hdf5_file), intent(inout) :: file
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     integer, allocatable :: element(:), number(:), material(:)
     real(rk), allocatable :: x(:, :), volume(:)
     integer :: i, before, n
-    if (.not. allocated(scene%inelastic)) return
-    if (size(scene%inelastic) == 0) return
-    n = count_points(scene)
+    if (.not. allocated(model%inelastic)) return
+    if (size(model%inelastic) == 0) return
+    n = count_points(model)
     allocate (element(n), number(n), material(n), x(3, n), volume(n))
     before = 0
-    do i = 1, size(scene%inelastic)
-      associate (points => scene%inelastic(i)%points)
+    do i = 1, size(model%inelastic)
+      associate (points => model%inelastic(i)%points)
         n = points%num_points
         element(before + 1:before + n) = points%element
         number(before + 1:before + n) = points%number
-        material(before + 1:before + n) = scene%inelastic(i)%material - 1
+        material(before + 1:before + n) = model%inelastic(i)%material - 1
         x(:, before + 1:before + n) = points%x
-        volume(before + 1:before + n) = reshape(scene%inelastic(i)%weight, [n])
+        volume(before + 1:before + n) = reshape(model%inelastic(i)%weight, [n])
         before = before + n
       end associate
     end do
@@ -46,34 +46,34 @@ contains
   end subroutine write_points
 
   !> Points of all blocks.
-  pure integer function count_points(scene) result(total)
-    type(problem), intent(in) :: scene
+  pure integer function count_points(model) result(total)
+    type(problem), intent(in) :: model
     integer :: i
     total = 0
-    do i = 1, size(scene%inelastic)
-      total = total + scene%inelastic(i)%points%num_points
+    do i = 1, size(model%inelastic)
+      total = total + model%inelastic(i)%points%num_points
     end do
   end function count_points
 
   !> The group `points` of an increment: rows of /points, and the fields that were asked for there.
-  subroutine add_points(file, scene, now, fields, group)
+  subroutine add_points(file, model, now, fields, group)
     type(hdf5_file), intent(inout) :: file
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(result_field), intent(in) :: fields(:) !< that are due
     character(*), intent(in) :: group !< of the increment
     real(rk), allocatable :: values(:, :)
     integer, allocatable :: rows(:)
     integer :: i
-    if (.not. allocated(scene%inelastic)) return
-    if (size(scene%inelastic) == 0) return
+    if (.not. allocated(model%inelastic)) return
+    if (size(model%inelastic) == 0) return
     if (.not. any([(associated(fields(i)%of_block), i=1, size(fields))])) return
     call list_rows(now, rows)
     call file%make_group(group//'/points')
     call file%put(group//'/points/row', rows - 1)
     do i = 1, size(fields)
       if (.not. associated(fields(i)%of_block)) cycle
-      call gather(scene, now, fields(i), size(rows), values)
+      call gather(model, now, fields(i), size(rows), values)
       call put_field(file, group//'/points/'//fields(i)%name, values, &
                      fields(i)%components(size(values, 1)))
     end do
@@ -98,19 +98,19 @@ contains
   end subroutine list_rows
 
   !> A field at those points.
-  subroutine gather(scene, now, item, num_rows, values)
-    type(problem), intent(in) :: scene
+  subroutine gather(model, now, item, num_rows, values)
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(result_field), intent(in) :: item
     integer, intent(in) :: num_rows
     real(rk), allocatable, intent(out) :: values(:, :) !< (components, rows)
     real(rk), allocatable :: of_block(:, :)
     integer :: i, p, row
-    allocate (values(item%width(scene), num_rows), source=0.0_rk)
+    allocate (values(item%width(model), num_rows), source=0.0_rk)
     row = 0
     do i = 1, size(now%points)
       if (all(now%points(i)%is_elastic)) cycle
-      call item%of_block(scene, now, i, of_block)
+      call item%of_block(model, now, i, of_block)
       do p = 1, size(now%points(i)%is_elastic)
         if (now%points(i)%is_elastic(p)) cycle
         row = row + 1

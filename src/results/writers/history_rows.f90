@@ -47,8 +47,8 @@ contains
   end function keyword_of
 
   !> The header line.
-  function header_of(scene, table, kind, fields) result(header)
-    type(problem), intent(in) :: scene
+  function header_of(model, table, kind, fields) result(header)
+    type(problem), intent(in) :: model
     type(result_field), intent(in) :: table(:) !< all fields
     character(*), intent(in) :: kind !< 'NODE', 'ELEMENT' or 'JOINT'
     integer, intent(in) :: fields(:) !< rows of the table, in the order in which they were asked for
@@ -63,12 +63,12 @@ contains
       header = 'step,increment,time,point,x,y,z'
       do i = 1, size(table)
         if (.not. table(i)%may_stand_in('JOINT PRINT')) cycle
-        header = header//','//lower(table(i)%columns(table(i)%width(scene)))
+        header = header//','//lower(table(i)%columns(table(i)%width(model)))
       end do
       return
     end select
     do i = 1, size(fields)
-      header = header//','//table(fields(i))%columns(table(fields(i))%width(scene))
+      header = header//','//table(fields(i))%columns(table(fields(i))%width(model))
     end do
   end function header_of
 
@@ -95,9 +95,9 @@ contains
   end subroutine add_reals
 
   !> One row for each node; a field that the step does not have is zero.
-  subroutine add_node_rows(lines, scene, now, record, fields, nodes)
+  subroutine add_node_rows(lines, model, now, record, fields, nodes)
     type(text_buffer), intent(inout) :: lines
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
     integer, intent(in) :: fields(:) !< rows of the record's table
@@ -106,16 +106,16 @@ contains
     integer :: k, i
     do i = 1, size(fields)
       associate (item => record%fields(fields(i)))
-        call item%on_nodes(scene, now, record%stresses, values(i)%at)
+        call item%on_nodes(model, now, record%stresses, values(i)%at)
         if (.not. allocated(values(i)%at)) then
-          allocate (values(i)%at(item%width(scene), scene%mesh%num_nodes), source=0.0_rk)
+          allocate (values(i)%at(item%width(model), model%mesh%num_nodes), source=0.0_rk)
         end if
       end associate
     end do
     do k = 1, size(nodes)
       call add_time(lines, now)
       call lines%add(',')
-      call lines%add_integer(scene%mesh%node_id(nodes(k)))
+      call lines%add_integer(model%mesh%node_id(nodes(k)))
       do i = 1, size(fields)
         call add_reals(lines, values(i)%at(:, nodes(k)))
       end do
@@ -124,9 +124,9 @@ contains
   end subroutine add_node_rows
 
   !> One row for each integration point of each solid; other elements have none.
-  subroutine add_element_rows(lines, scene, now, record, fields, elements)
+  subroutine add_element_rows(lines, model, now, record, fields, elements)
     type(text_buffer), intent(inout) :: lines
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
     integer, intent(in) :: fields(:) !< rows of the record's table
@@ -134,18 +134,18 @@ contains
     type(point_values) :: values(size(fields))
     integer, allocatable :: chosen(:), solids(:)
     integer :: k, q, i
-    call record%stresses%need_plan(scene)
+    call record%stresses%need_plan(model)
     associate (plan => record%stresses%plan)
       chosen = pack(elements, plan%solid_of_element(elements) > 0)
       solids = plan%solid_of_element(chosen)
       do i = 1, size(fields)
-        call record%fields(fields(i))%of_solids(scene, now, record%stresses, solids, values(i)%at)
+        call record%fields(fields(i))%of_solids(model, now, record%stresses, solids, values(i)%at)
       end do
       do k = 1, size(chosen)
         do q = 1, plan%num_points(solids(k))
           call add_time(lines, now)
           call lines%add(',')
-          call lines%add_integer(scene%mesh%element_id(chosen(k)))
+          call lines%add_integer(model%mesh%element_id(chosen(k)))
           call lines%add(',')
           call lines%add_integer(q)
           do i = 1, size(fields)
@@ -158,9 +158,9 @@ contains
   end subroutine add_element_rows
 
   !> One row for each chosen point of a joint, with all fields of joints that are printed.
-  subroutine add_joint_rows(lines, scene, now, record, joint, points)
+  subroutine add_joint_rows(lines, model, now, record, joint, points)
     type(text_buffer), intent(inout) :: lines
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(run_record), intent(in) :: record
     integer, intent(in) :: joint !< position in the problem
@@ -169,14 +169,14 @@ contains
     integer :: k, p, i
     do i = 1, size(record%fields)
       if (.not. record%fields(i)%may_stand_in('JOINT PRINT')) cycle
-      call record%fields(i)%of_joint(scene, now, joint, values(i)%at)
+      call record%fields(i)%of_joint(model, now, joint, values(i)%at)
     end do
     do k = 1, size(points)
       p = points(k)
       call add_time(lines, now)
       call lines%add(',')
       call lines%add_integer(p)
-      call add_reals(lines, scene%joints(joint)%x(:, p))
+      call add_reals(lines, model%joints(joint)%x(:, p))
       do i = 1, size(values)
         if (.not. allocated(values(i)%at)) cycle
         if (record%fields(i)%is_integer) then

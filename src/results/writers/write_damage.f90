@@ -24,9 +24,9 @@ module write_damage
 contains
 
   !> Starts the file.
-  subroutine open_damage(self, scene, stem, record, error)
+  subroutine open_damage(self, model, stem, record, error)
     class(damage_file), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     character(*), intent(in) :: stem
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
@@ -37,9 +37,9 @@ contains
   end subroutine open_damage
 
   !> One row.
-  subroutine write_row(self, scene, now, record, error)
+  subroutine write_row(self, model, now, record, error)
     class(damage_file), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error

@@ -24,9 +24,9 @@ module write_energy
 contains
 
   !> Starts the file.
-  subroutine open_energy(self, scene, stem, record, error)
+  subroutine open_energy(self, model, stem, record, error)
     class(energy_file), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     character(*), intent(in) :: stem
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
@@ -35,9 +35,9 @@ contains
   end subroutine open_energy
 
   !> One row.
-  subroutine write_energies(self, scene, now, record, error)
+  subroutine write_energies(self, model, now, record, error)
     class(energy_file), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error

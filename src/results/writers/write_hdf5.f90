@@ -53,9 +53,9 @@ module write_hdf5
 contains
 
   !> Starts the file with the model.
-  subroutine open_hdf5(self, scene, stem, record, error)
+  subroutine open_hdf5(self, model, stem, record, error)
     class(hdf5_results), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     character(*), intent(in) :: stem
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
@@ -65,10 +65,10 @@ contains
     associate (file => self%file)
       call file%create(self%path)
       call file%set('/', 'program', 'Keyway '//program_version)
-      call file%set('/', 'deck', scene%deck_file)
+      call file%set('/', 'deck', model%deck_file)
       call file%set('/', 'layout', layout_version)
-      call write_model(file, scene, record)
-      call write_points(file, scene)
+      call write_model(file, model, record)
+      call write_points(file, model)
       call file%make_group('/steps')
       call file%make_group('/history')
       call file%make_group('/history/joints')
@@ -78,9 +78,9 @@ contains
       if (record%damage%is_present) then
         call self%damages%start(file, '/history/damage', 'step,increment,time,'//damage_columns)
       end if
-      allocate (self%joints(size(scene%joints)))
-      do j = 1, size(scene%joints)
-        call self%joints(j)%start(file, '/history/joints/'//link_name(scene%joints(j)%name), &
+      allocate (self%joints(size(model%joints)))
+      do j = 1, size(model%joints)
+        call self%joints(j)%start(file, '/history/joints/'//link_name(model%joints(j)%name), &
                                   'step,increment,time,'//reading_names)
       end do
     end associate
@@ -88,26 +88,26 @@ contains
   end subroutine open_hdf5
 
   !> Histories of every increment, and the fields that are due.
-  subroutine write_data(self, scene, now, record, error)
+  subroutine write_data(self, model, now, record, error)
     class(hdf5_results), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     integer, allocatable :: fields(:)
     logical :: waits_long
-    call self%enter_step(scene, now%step)
-    if (is_due(now, 1)) call self%add_history(scene, now, record)
-    call list_due_fields(scene, now, record, fields)
-    if (size(fields) > 0) call self%add_fields(scene, now, record, fields)
+    call self%enter_step(model, now%step)
+    if (is_due(now, 1)) call self%add_history(model, now, record)
+    call list_due_fields(model, now, record, fields)
+    if (size(fields) > 0) call self%add_fields(model, now, record, fields)
     waits_long = wall_clock() - self%flushed_at > seconds_between_flushes
     if (size(fields) > 0 .or. waits_long) call self%bring_out(error)
   end subroutine write_data
 
   !> Rows of the histories.
-  subroutine add_history(self, scene, now, record)
+  subroutine add_history(self, model, now, record)
     class(hdf5_results), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(run_record), intent(in) :: record
     real(rk) :: time(3)
@@ -119,15 +119,15 @@ contains
     if (record%damage%is_present) then
       call self%damages%add(self%file, [time, damage_row(record%damage)])
     end if
-    do j = 1, size(scene%joints)
+    do j = 1, size(model%joints)
       call self%joints(j)%add(self%file, [time, record%joints(j)%largest_now])
     end do
   end subroutine add_history
 
   !> The group of one increment.
-  subroutine add_fields(self, scene, now, record, fields)
+  subroutine add_fields(self, model, now, record, fields)
     class(hdf5_results), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
     integer, intent(in) :: fields(:) !< rows of the record's table
@@ -142,29 +142,29 @@ contains
     call self%file%set(group, 'step_time', now%step_time)
     do i = 1, size(fields)
       associate (item => record%fields(fields(i)))
-        call item%on_nodes(scene, now, record%stresses, values)
+        call item%on_nodes(model, now, record%stresses, values)
         call put_field(self%file, group//'/'//item%name, values, item%components(size(values, 1)))
       end associate
     end do
-    call add_points(self%file, scene, now, record%fields(fields), group)
+    call add_points(self%file, model, now, record%fields(fields), group)
     if (asks_for_joints(record, fields)) then
-      call put_joints(self%file, scene, now, record%fields, group//'/joints')
+      call put_joints(self%file, model, now, record%fields, group//'/joints')
     end if
   end subroutine add_fields
 
   !> Frequencies, effective masses and shapes of a *FREQUENCY step.
-  subroutine write_mode_data(self, scene, step, modes, record, error)
+  subroutine write_mode_data(self, model, step, modes, record, error)
     class(hdf5_results), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     integer, intent(in) :: step
     type(vibration_mode), intent(in) :: modes(:)
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: mass(:, :), shapes(:, :, :)
     integer :: i
-    call self%enter_step(scene, step)
+    call self%enter_step(model, step)
     allocate (mass(num_directions, size(modes)))
-    allocate (shapes(num_directions, scene%mesh%num_nodes, size(modes)))
+    allocate (shapes(num_directions, model%mesh%num_nodes, size(modes)))
     do i = 1, size(modes)
       mass(:, i) = modes(i)%effective_mass
       shapes(:, :, i) = modes(i)%shape
@@ -180,9 +180,9 @@ contains
   end subroutine write_mode_data
 
   !> The envelopes of the step that has ended.
-  subroutine write_envelope_data(self, scene, record, error)
+  subroutine write_envelope_data(self, model, record, error)
     class(hdf5_results), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     character(:), allocatable :: group
@@ -220,16 +220,16 @@ contains
   end subroutine close_data
 
   !> Makes the group of a step when it begins.
-  subroutine enter_step(self, scene, step)
+  subroutine enter_step(self, model, step)
     class(hdf5_results), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     integer, intent(in) :: step
     if (self%step == step) return
     self%step = step
     call self%file%make_group(step_group(step))
-    call self%file%set(step_group(step), 'name', scene%steps(step)%name)
+    call self%file%set(step_group(step), 'name', model%steps(step)%name)
     call self%file%set(step_group(step), 'procedure', &
-                       trim(scene%steps(step)%procedure%name))
+                       trim(model%steps(step)%procedure%name))
     call self%file%make_group(step_group(step)//'/increments')
   end subroutine enter_step
 

@@ -37,24 +37,24 @@ module write_history
 contains
 
   !> Opens a file for each set and joint that a step prints.
-  subroutine open_histories(self, scene, stem, record, error)
+  subroutine open_histories(self, model, stem, record, error)
     class(history_files), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     character(*), intent(in) :: stem
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     integer :: s, r, f
     allocate (self%files(0))
-    do s = 1, size(scene%steps)
-      if (.not. allocated(scene%steps(s)%prints)) cycle
-      do r = 1, size(scene%steps(s)%prints)
-        call add_request(scene, scene%steps(s)%prints(r), record, self%files)
+    do s = 1, size(model%steps)
+      if (.not. allocated(model%steps(s)%prints)) cycle
+      do r = 1, size(model%steps(s)%prints)
+        call add_request(model, model%steps(s)%prints(r), record, self%files)
       end do
     end do
     do f = 1, size(self%files)
       associate (file => self%files(f))
         call file%open(stem//'_'//name_part(file%kind)//'_'//own_name(self%files, f)//'.csv', &
-                       header_of(scene, record%fields, file%kind, file%fields), error)
+                       header_of(model, record%fields, file%kind, file%fields), error)
         if (allocated(error)) return
         call record%list_file(file_name(file%path))
       end associate
@@ -76,8 +76,8 @@ contains
   end function own_name
 
   !> Adds the request's fields to its file; makes the file when it is new.
-  subroutine add_request(scene, request, record, files)
-    type(problem), intent(in) :: scene
+  subroutine add_request(model, request, record, files)
+    type(problem), intent(in) :: model
     type(print_request), intent(in) :: request
     type(run_record), intent(inout) :: record
     type(history_file), allocatable, intent(inout) :: files(:)
@@ -97,7 +97,7 @@ contains
     do i = 1, size(request%fields)
       k = find_field(record%fields, trim(request%fields(i)))
       if (any(files(f)%fields == k)) cycle
-      if (is_printed(scene, record, request%kind, k)) then
+      if (is_printed(model, record, request%kind, k)) then
         files(f)%fields = [files(f)%fields, k]
       else if (request%kind /= 'JOINT' .and. .not. is_of_law(record, k)) then
         call record%warn_once(trim(request%fields(i))//' of '//request%name// &
@@ -107,15 +107,15 @@ contains
   end subroutine add_request
 
   !> Does this model have the field for such a table?
-  logical function is_printed(scene, record, kind, f)
-    type(problem), intent(in) :: scene
+  logical function is_printed(model, record, kind, f)
+    type(problem), intent(in) :: model
     type(run_record), intent(in) :: record
     character(*), intent(in) :: kind !< 'NODE', 'ELEMENT' or 'JOINT'
     integer, intent(in) :: f !< row of the record's table, 0: an unknown field
     is_printed = .false.
     if (f == 0) return
     if (.not. record%fields(f)%may_stand_in(keyword_of(kind))) return
-    is_printed = record%fields(f)%width(scene) > 0
+    is_printed = record%fields(f)%width(model) > 0
   end function is_printed
 
   !> Position of the file of a request, 0 when there is none yet.
@@ -130,9 +130,9 @@ contains
   end function find_file
 
   !> Rows of all files that are due.
-  subroutine write_rows(self, scene, now, record, error)
+  subroutine write_rows(self, model, now, record, error)
     class(history_files), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
@@ -140,15 +140,15 @@ contains
     integer :: f
     do f = 1, size(self%files)
       associate (file => self%files(f))
-        call choose_members(scene, now, file, chosen)
+        call choose_members(model, now, file, chosen)
         if (size(chosen) == 0) cycle
         select case (file%kind)
         case ('NODE')
-          call add_node_rows(file%lines, scene, now, record, file%fields, chosen)
+          call add_node_rows(file%lines, model, now, record, file%fields, chosen)
         case ('ELEMENT')
-          call add_element_rows(file%lines, scene, now, record, file%fields, chosen)
+          call add_element_rows(file%lines, model, now, record, file%fields, chosen)
         case default
-          call add_joint_rows(file%lines, scene, now, record, file%joint, chosen)
+          call add_joint_rows(file%lines, model, now, record, file%joint, chosen)
         end select
         call file%save(error)
         if (allocated(error)) return
@@ -157,20 +157,20 @@ contains
   end subroutine write_rows
 
   !> Members that due requests of this step want in the file: nodes, elements or points of a joint.
-  subroutine choose_members(scene, now, file, chosen)
-    type(problem), intent(in) :: scene
+  subroutine choose_members(model, now, file, chosen)
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(history_file), intent(in) :: file
     integer, allocatable, intent(out) :: chosen(:)
     integer :: r
     chosen = [integer ::]
-    if (.not. allocated(scene%steps(now%step)%prints)) return
-    do r = 1, size(scene%steps(now%step)%prints)
-      associate (request => scene%steps(now%step)%prints(r))
+    if (.not. allocated(model%steps(now%step)%prints)) return
+    do r = 1, size(model%steps(now%step)%prints)
+      associate (request => model%steps(now%step)%prints(r))
         if (request%kind /= file%kind .or. request%name /= file%name) cycle
         if (.not. is_due(now, request%frequency)) cycle
         if (file%kind == 'JOINT') then
-          chosen = united(chosen, points_of(scene, request, file%joint))
+          chosen = united(chosen, points_of(model, request, file%joint))
         else
           chosen = united(chosen, request%members)
         end if
@@ -179,20 +179,20 @@ contains
   end subroutine choose_members
 
   !> Points of a joint: the nearest to each named node, or all where none is named.
-  pure function points_of(scene, request, joint) result(points)
-    type(problem), intent(in) :: scene
+  pure function points_of(model, request, joint) result(points)
+    type(problem), intent(in) :: model
     type(print_request), intent(in) :: request
     integer, intent(in) :: joint
     integer, allocatable :: points(:)
     integer :: p, i
-    logical :: is_near(scene%joints(joint)%num_points)
-    real(rk) :: here(3), apart(3, scene%joints(joint)%num_points)
+    logical :: is_near(model%joints(joint)%num_points)
+    real(rk) :: here(3), apart(3, model%joints(joint)%num_points)
     is_near = .true.
     if (allocated(request%near_nodes)) is_near = size(request%near_nodes) == 0
     if (.not. all(is_near)) then
       do i = 1, size(request%near_nodes)
-        here = scene%mesh%x(:, request%near_nodes(i))
-        apart = scene%joints(joint)%x - spread(here, 2, size(is_near))
+        here = model%mesh%x(:, request%near_nodes(i))
+        apart = model%joints(joint)%x - spread(here, 2, size(is_near))
         is_near(minloc(sum(apart**2, dim=1), dim=1)) = .true.
       end do
     end if

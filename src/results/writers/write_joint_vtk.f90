@@ -37,34 +37,34 @@ module write_joint_vtk
 contains
 
   !> Nothing is written before something is due.
-  subroutine open_joint_vtk(self, scene, stem, record, error)
+  subroutine open_joint_vtk(self, model, stem, record, error)
     class(joint_series), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     character(*), intent(in) :: stem
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
-    self%is_idle = size(scene%joints) == 0
+    self%is_idle = size(model%joints) == 0
     self%folder = stem//'_vtk/'
     self%stem = file_name(stem)//'_joints'
     call self%frames%open(stem//'_joints.pvd', file_name(stem)//'_vtk/')
   end subroutine open_joint_vtk
 
   !> One file of the series, when a field of joints is due.
-  subroutine write_frame(self, scene, now, record, error)
+  subroutine write_frame(self, model, now, record, error)
     class(joint_series), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     integer, allocatable :: fields(:)
     type(vtu_file) :: file
-    call list_due_fields(scene, now, record, fields)
+    call list_due_fields(model, now, record, fields)
     if (size(fields) == 0) return
     self%num_frames = self%num_frames + 1
     if (.not. asks_for_joints(record, fields)) return
-    call self%prepare(scene, error)
+    call self%prepare(model, error)
     if (allocated(error) .or. self%drawn%num_cells == 0) return
-    call self%fill(scene, now, record, file)
+    call self%fill(model, now, record, file)
     call file%save(self%folder//frame_name(self%stem, self%num_frames), error)
     if (allocated(error)) return
     call self%frames%add(now%total_time, frame_name(self%stem, self%num_frames), error)
@@ -72,78 +72,78 @@ contains
   end subroutine write_frame
 
   !> Makes the folder and finds the cells, once.
-  subroutine prepare(self, scene, error)
+  subroutine prepare(self, model, error)
     class(joint_series), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(error_type), allocatable, intent(out) :: error
     if (self%is_ready) return
     call make_folder(self%folder(:len(self%folder) - 1), error)
     if (allocated(error)) return
-    call find_drawn_joints(scene, self%drawn)
+    call find_drawn_joints(model, self%drawn)
     self%is_ready = .true.
   end subroutine prepare
 
   !> Polygons and fields.
-  subroutine fill(self, scene, now, record, file)
+  subroutine fill(self, model, now, record, file)
     class(joint_series), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(run_record), intent(in) :: record
     type(vtu_file), intent(inout) :: file
     integer :: i
     associate (drawn => self%drawn, ends => self%drawn%first(2:) - 1)
-      call file%start(nodes_to_corners(drawn, scene%mesh%x), drawn%corner - 1, ends, &
+      call file%start(nodes_to_corners(drawn, model%mesh%x), drawn%corner - 1, ends, &
                       cell_of_polygon(drawn%first(2:) - drawn%first(:drawn%num_cells)))
-      call file%put_point_integers('NODE_ID', node_numbers(scene, drawn))
+      call file%put_point_integers('NODE_ID', node_numbers(model, drawn))
       associate (moved => record%fields(find_field(record%fields, 'U')))
         call file%put_point_reals(moved%name, nodes_to_corners(drawn, now%u), moved%components(3))
       end associate
       do i = 1, size(record%fields)
         if (associated(record%fields(i)%of_joint)) then
-          call put_field(file, scene, now, drawn, record%fields(i))
+          call put_field(file, model, now, drawn, record%fields(i))
         end if
       end do
       call file%put_cell_integers('JOINT', drawn%joint)
-      call file%put_cell_integers('ELEMENT_ID', scene%mesh%element_id(drawn%element))
+      call file%put_cell_integers('ELEMENT_ID', model%mesh%element_id(drawn%element))
     end associate
   end subroutine fill
 
   !> One field of the points of all joints; nothing where no joint has the field.
-  subroutine put_field(file, scene, now, drawn, item)
+  subroutine put_field(file, model, now, drawn, item)
     type(vtu_file), intent(inout) :: file
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(drawn_joints), intent(in) :: drawn
     type(result_field), intent(in) :: item
-    type(joint_values) :: of_joints(size(scene%joints))
+    type(joint_values) :: of_joints(size(model%joints))
     real(rk), allocatable :: means(:, :)
     logical :: is_there
     integer :: j
     is_there = .false.
-    do j = 1, size(scene%joints)
-      call item%of_joint(scene, now, j, of_joints(j)%at)
+    do j = 1, size(model%joints)
+      call item%of_joint(model, now, j, of_joints(j)%at)
       is_there = is_there .or. allocated(of_joints(j)%at)
     end do
     if (.not. is_there) return
     if (item%is_integer) then
       call file%put_point_integers(item%name, heaviest_on_corners(drawn, of_joints))
     else
-      allocate (means(item%width(scene), drawn%num_corners))
+      allocate (means(item%width(model), drawn%num_corners))
       call means_on_corners(drawn, of_joints, means)
       call file%put_point_reals(item%name, means, item%components(size(means, 1)))
     end if
   end subroutine put_field
 
   !> The deck's number of the slave node that a corner lies on; 0 between nodes.
-  pure function node_numbers(scene, drawn) result(number)
-    type(problem), intent(in) :: scene
+  pure function node_numbers(model, drawn) result(number)
+    type(problem), intent(in) :: model
     type(drawn_joints), intent(in) :: drawn
     integer :: number(drawn%num_corners)
     integer :: c
     do c = 1, drawn%num_corners
       number(c) = 0
       if (drawn%first_node(c + 1) - drawn%first_node(c) /= 1) cycle
-      number(c) = scene%mesh%node_id(drawn%node(drawn%first_node(c)))
+      number(c) = model%mesh%node_id(drawn%node(drawn%first_node(c)))
     end do
   end function node_numbers
 end module write_joint_vtk

@@ -40,9 +40,9 @@ module write_vtk
 contains
 
   !> Nothing is written before something is due.
-  subroutine open_vtk(self, scene, stem, record, error)
+  subroutine open_vtk(self, model, stem, record, error)
     class(vtk_series), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     character(*), intent(in) :: stem
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
@@ -52,9 +52,9 @@ contains
   end subroutine open_vtk
 
   !> One file of the series, when a request is due.
-  subroutine write_frame(self, scene, now, record, error)
+  subroutine write_frame(self, model, now, record, error)
     class(vtk_series), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
@@ -62,17 +62,17 @@ contains
     real(rk), allocatable :: mean(:)
     type(vtu_file) :: file
     integer :: i
-    call list_due_fields(scene, now, record, fields)
+    call list_due_fields(model, now, record, fields)
     if (size(fields) == 0) return
-    call self%prepare(scene, error)
+    call self%prepare(model, error)
     if (allocated(error)) return
     self%num_frames = self%num_frames + 1
-    call self%start_grid(scene, file)
+    call self%start_grid(model, file)
     do i = 1, size(fields)
-      call put_field(file, scene, now, record, fields(i))
+      call put_field(file, model, now, record, fields(i))
       associate (item => record%fields(fields(i)))
         if (.not. item%has_means) cycle
-        call mean_of_elements(scene, now, item%name, mean)
+        call mean_of_elements(model, now, item%name, mean)
         call file%put_cell_reals(item%name//'_MEAN', mean(self%elements))
       end associate
     end do
@@ -83,15 +83,15 @@ contains
   end subroutine write_frame
 
   !> One field on the nodes.
-  subroutine put_field(file, scene, now, record, f)
+  subroutine put_field(file, model, now, record, f)
     type(vtu_file), intent(inout) :: file
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(run_record), intent(inout) :: record
     integer, intent(in) :: f !< row of the record's table
     real(rk), allocatable :: values(:, :)
     associate (item => record%fields(f))
-      call item%on_nodes(scene, now, record%stresses, values)
+      call item%on_nodes(model, now, record%stresses, values)
       if (item%is_tensor()) then
         call file%put_point_reals(item%name, tensor_in_vtk_order(values), &
                                   tensor_names_in_vtk_order(item%name))
@@ -102,18 +102,18 @@ contains
   end subroutine put_field
 
   !> The envelopes of a step in one file; nothing where the step has none.
-  subroutine write_envelopes(self, scene, record, error)
+  subroutine write_envelopes(self, model, record, error)
     class(vtk_series), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     type(vtu_file) :: file
     integer :: i
     if (size(record%active) == 0) return
     if (any(record%envelopes(record%active)%is_empty)) return
-    call self%prepare(scene, error)
+    call self%prepare(model, error)
     if (allocated(error)) return
-    call self%start_grid(scene, file)
+    call self%start_grid(model, file)
     do i = 1, size(record%active)
       associate (item => record%envelopes(record%active(i)))
         call file%put_point_reals(name_of_field(item), as_row(item%value), '')
@@ -145,9 +145,9 @@ contains
   end subroutine save_listed
 
   !> All mode shapes of a *FREQUENCY step in one file.
-  subroutine write_mode_shapes(self, scene, step, modes, record, error)
+  subroutine write_mode_shapes(self, model, step, modes, record, error)
     class(vtk_series), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     integer, intent(in) :: step
     type(vibration_mode), intent(in) :: modes(:)
     type(run_record), intent(inout) :: record
@@ -157,9 +157,9 @@ contains
     character(5) :: number
     integer :: i
     names = record%fields(find_field(record%fields, 'U'))%components(3)
-    call self%prepare(scene, error)
+    call self%prepare(model, error)
     if (allocated(error)) return
-    call self%start_grid(scene, file)
+    call self%start_grid(model, file)
     do i = 1, size(modes)
       write (number, '(i5.2)') i
       call file%put_point_reals('MODE_'//trim(adjustl(number)), modes(i)%shape, names)
@@ -168,20 +168,20 @@ contains
   end subroutine write_mode_shapes
 
   !> Makes the folder and the cells, once.
-  subroutine prepare(self, scene, error)
+  subroutine prepare(self, model, error)
     class(vtk_series), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(error_type), allocatable, intent(out) :: error
     integer :: e, c, last, corners(8), num_corners
     if (self%has_grid) return
     call make_folder(self%folder(:len(self%folder) - 1), error)
     if (allocated(error)) return
-    self%elements = pack([(e, e=1, scene%mesh%num_elements)], is_solid(scene%mesh%element_type))
+    self%elements = pack([(e, e=1, model%mesh%num_elements)], is_solid(model%mesh%element_type))
     allocate (self%connectivity(8*size(self%elements)))
     allocate (self%ends(size(self%elements)), self%kinds(size(self%elements)))
     last = 0
     do c = 1, size(self%elements)
-      call cell_of_solid(scene%mesh%nodes(:, self%elements(c)), self%kinds(c), corners, num_corners)
+      call cell_of_solid(model%mesh%nodes(:, self%elements(c)), self%kinds(c), corners, num_corners)
       self%connectivity(last + 1:last + num_corners) = corners(:num_corners) - 1
       last = last + num_corners
       self%ends(c) = last
@@ -191,13 +191,13 @@ contains
   end subroutine prepare
 
   !> Starts a file with the solids, their materials and the numbers of the deck.
-  subroutine start_grid(self, scene, file)
+  subroutine start_grid(self, model, file)
     class(vtk_series), intent(in) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(vtu_file), intent(inout) :: file
-    call file%start(scene%mesh%x, self%connectivity, self%ends, self%kinds)
-    call file%put_point_integers('NODE_ID', scene%mesh%node_id)
-    call file%put_cell_integers('MATERIAL', scene%mesh%material_of_element(self%elements))
-    call file%put_cell_integers('ELEMENT_ID', scene%mesh%element_id(self%elements))
+    call file%start(model%mesh%x, self%connectivity, self%ends, self%kinds)
+    call file%put_point_integers('NODE_ID', model%mesh%node_id)
+    call file%put_cell_integers('MATERIAL', model%mesh%material_of_element(self%elements))
+    call file%put_cell_integers('ELEMENT_ID', model%mesh%element_id(self%elements))
   end subroutine start_grid
 end module write_vtk

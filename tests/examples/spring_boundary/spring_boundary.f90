@@ -6,7 +6,7 @@
 !> With c_n = rho c_p and c_t = rho c_s the boundary absorbs plane waves that arrive along n (Lysmer
 !> & Kuhlemeyer, J. Eng. Mech. Div. ASCE 95, 1969).
 module spring_boundary
-  use dam_mesh, only: mesh, surface
+  use dam_mesh, only: fe_mesh, surface
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use dof_numbering, only: numbering
@@ -83,23 +83,23 @@ contains
     springs%kind = 'spring boundary'
     springs%stiffness = given(1:2)
     springs%damping = given(3:4)
-    call share_area(model%scene%mesh, model%scene%surfaces(found), springs%area)
+    call share_area(model%problem%mesh, model%problem%surfaces(found), springs%area)
     allocate (item, source=springs)
     call add_guest(model, item)
   end subroutine read_spring_boundary
 
   !> A_a n of each node, by 2 x 2 Gauss points.
-  subroutine share_area(model, faces, area)
-    type(mesh), intent(in) :: model
+  subroutine share_area(mesh, faces, area)
+    type(fe_mesh), intent(in) :: mesh
     type(surface), intent(in) :: faces
     real(rk), allocatable, intent(out) :: area(:, :) !< (3, nodes) [m2]
     real(rk) :: n(4), vector(3)
     integer :: i, q, a, nodes(4)
-    allocate (area(3, model%num_nodes), source=0.0_rk)
+    allocate (area(3, mesh%num_nodes), source=0.0_rk)
     do i = 1, size(faces%element)
-      nodes = face_nodes(model, faces%element(i), faces%face(i))
+      nodes = face_nodes(mesh, faces%element(i), faces%face(i))
       do q = 1, 4
-        call facet_point(model%x(:, nodes), q, n, vector)
+        call facet_point(mesh%x(:, nodes), q, n, vector)
         do a = 1, 4
           area(:, nodes(a)) = area(:, nodes(a)) + n(a)*vector
         end do
@@ -124,18 +124,18 @@ contains
     if (kind == damping_matrix) k = self%damping
   end function constants
 
-  subroutine add_matrix(self, kind, model, numbers, matrix, values)
+  subroutine add_matrix(self, kind, mesh, numbers, matrix, values)
     class(ground_springs), intent(in) :: self
     integer, intent(in) :: kind
-    type(mesh), intent(in) :: model
+    type(fe_mesh), intent(in) :: mesh
     type(numbering), intent(in) :: numbers
     type(pattern), intent(in) :: matrix
     real(rk), intent(inout) :: values(:)
-    real(rk) :: blocks(3, 3, model%num_nodes), k(2), size_of_area, n(3)
+    real(rk) :: blocks(3, 3, mesh%num_nodes), k(2), size_of_area, n(3)
     integer :: node, i, j
     k = constants(self, kind)
     blocks = 0.0_rk
-    do node = 1, model%num_nodes
+    do node = 1, mesh%num_nodes
       size_of_area = norm2(self%area(:, node))
       if (size_of_area <= 0.0_rk) cycle
       n = self%area(:, node)/size_of_area

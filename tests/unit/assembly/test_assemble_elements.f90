@@ -18,10 +18,10 @@ program test_assemble_elements
   use scatter_matrix, only: scatter_blocks
   use assemble_forces, only: rigid_translation, inertia_force
   use damping_rayleigh, only: rayleigh_coefficients
-  use arch_scene, only: make_arch
+  use arch_model, only: make_arch
   implicit none
   type(test_log) :: log
-  type(problem), target :: scene
+  type(problem), target :: model
   type(numbering) :: numbers
   type(pattern) :: matrix
   real(rk), allocatable :: stiffness(:), mass(:)
@@ -42,12 +42,12 @@ contains
     type(guest_reference), allocatable :: guests(:)
     type(row_table) :: cells
     type(error_type), allocatable :: error
-    call make_arch(2, 3, 4, 3, scene, fixities)
-    call number_step(scene%mesh, scene%joints, scene%ties, fixities, numbers, error)
+    call make_arch(2, 3, 4, 3, model, fixities)
+    call number_step(model%mesh, model%joints, model%ties, fixities, numbers, error)
     call check(log, allocated(error) .eqv. .false., 'numbering')
     call check(log, numbers%num_jumps == 2*3*12, 'a jump for every pair')
-    call guests_of_model(scene, guests)
-    call list_cells(scene%mesh, guests, cells)
+    call guests_of_model(model, guests)
+    call list_cells(model%mesh, guests, cells)
     call build_pattern(numbers, cells, matrix)
   end subroutine prepare
 
@@ -55,13 +55,13 @@ contains
     real(rk), allocatable :: again(:)
     type(error_type), allocatable :: error
     call omp_set_num_threads(1)
-    call assemble_stiffness(scene, numbers, matrix, stiffness, error)
+    call assemble_stiffness(model, numbers, matrix, stiffness, error)
     call check(log, allocated(error) .eqv. .false., 'stiffness')
     call omp_set_num_threads(2)
-    call assemble_stiffness(scene, numbers, matrix, again, error)
+    call assemble_stiffness(model, numbers, matrix, again, error)
     call check(log, all(transfer(again, [1_int64]) == transfer(stiffness, [1_int64])), &
                'one and two threads agree to the last bit')
-    call assemble_mass(scene, numbers, matrix, mass, error)
+    call assemble_mass(model, numbers, matrix, mass, error)
   end subroutine threads
 
   !> A translation of everything, supports included, leaves no forces.
@@ -80,7 +80,7 @@ contains
   subroutine energy_of_blocks()
     real(rk), allocatable :: q(:), y(:), u(:, :)
     integer :: k
-    allocate (q(numbers%num_total), y(numbers%num_total), u(3, scene%mesh%num_nodes))
+    allocate (q(numbers%num_total), y(numbers%num_total), u(3, model%mesh%num_nodes))
     q = [(sin(real(k, rk)), k=1, numbers%num_total)]
     call numbers%expand(q, u)
     call multiply(matrix, stiffness, q, y)
@@ -117,14 +117,14 @@ contains
     allocate (force(numbers%num_total), r(numbers%num_total))
     call rigid_translation(numbers, 2, r)
     do pass = 1, 2
-      scene%has_lumped_mass = pass == 2
-      call assemble_mass(scene, numbers, matrix, lumped, error)
+      model%has_lumped_mass = pass == 2
+      call assemble_mass(model, numbers, matrix, lumped, error)
       call inertia_force(numbers, matrix, lumped, 2, force)
       total(pass) = -dot_product(r, force)
     end do
-    scene%has_lumped_mass = .false.
+    model%has_lumped_mass = .false.
     call check_close(log, total(1), total(2), 1.0e-9_rk*total(1), 'both masses have one total')
-    allocate (blocks(3, 3, scene%mesh%num_nodes))
+    allocate (blocks(3, 3, model%mesh%num_nodes))
     blocks = 0.0_rk
     blocks(2, 2, 7) = 5.0e6_rk
     blocks(2, 2, 100) = 3.0e6_rk
@@ -143,9 +143,9 @@ contains
     call check_close(log, alpha/(2.0_rk*w) + beta*w/2.0_rk, 0.05_rk, 1.0e-15_rk, 'ratio at f1')
     w = 4.0_rk*w
     call check_close(log, alpha/(2.0_rk*w) + beta*w/2.0_rk, 0.05_rk, 1.0e-15_rk, 'ratio at f2')
-    scene%materials(1)%alpha = 1.0_rk
-    call assemble_damping(scene, numbers, alpha, beta, matrix, values, error)
-    scene%materials(1)%alpha = 0.0_rk
+    model%materials(1)%alpha = 1.0_rk
+    call assemble_damping(model, numbers, alpha, beta, matrix, values, error)
+    model%materials(1)%alpha = 0.0_rk
     values = values - (alpha + 1.0_rk)*mass - beta*stiffness
     call check_close(log, maxval(abs(values)), 0.0_rk, 1.0e-13_rk*beta*maxval(stiffness), &
                      'C = alpha M + beta K')
@@ -154,8 +154,8 @@ contains
   subroutine bad_element()
     type(error_type), allocatable :: error
     real(rk), allocatable :: values(:)
-    scene%mesh%nodes([1, 5], 9) = scene%mesh%nodes([5, 1], 9)
-    call assemble_stiffness(scene, numbers, matrix, values, error)
+    model%mesh%nodes([1, 5], 9) = model%mesh%nodes([5, 1], 9)
+    call assemble_stiffness(model, numbers, matrix, values, error)
     call check(log, allocated(error), 'an inverted element is an error')
     if (allocated(error)) call check_text(log, error%message(:10), 'element 9:', 'it is named')
   end subroutine bad_element

@@ -1,6 +1,6 @@
 !> Widths that crack bands can have in elements of several shapes.
 program test_element_sizes
-  use dam_mesh, only: mesh
+  use dam_mesh, only: fe_mesh
   use element_sizes, only: measure_widths
   use gauss_rules, only: hex_point
   use kinds, only: rk
@@ -22,20 +22,20 @@ contains
   !> x = xi, y = eta, z = zeta (2 + xi)/2: edges (2, 0, zeta), (0, 2, 0), (0, 0, 2 + xi).
   subroutine brick_and_taper(log)
     type(test_log), intent(inout) :: log
-    type(mesh) :: body
+    type(fe_mesh) :: mesh
     real(rk) :: smallest(3), largest(3), point
     integer :: i
-    body%num_elements = 3
-    body%num_nodes = 16
-    body%element_type = ['C3D8    ', 'C3D8R   ', 'C3D8    ']
-    body%nodes = reshape([[(i, i=1, 8)], [(i, i=1, 8)], [(i, i=9, 16)]], [8, 3])
-    allocate (body%x(3, 16))
+    mesh%num_elements = 3
+    mesh%num_nodes = 16
+    mesh%element_type = ['C3D8    ', 'C3D8R   ', 'C3D8    ']
+    mesh%nodes = reshape([[(i, i=1, 8)], [(i, i=1, 8)], [(i, i=9, 16)]], [8, 3])
+    allocate (mesh%x(3, 16))
     do i = 1, 8
-      body%x(:, i) = 0.5_rk*corner(:, i)*[1.0_rk, 2.0_rk, 5.0_rk]
-      body%x(:, 8 + i) = [corner(1, i), corner(2, i), &
+      mesh%x(:, i) = 0.5_rk*corner(:, i)*[1.0_rk, 2.0_rk, 5.0_rk]
+      mesh%x(:, 8 + i) = [corner(1, i), corner(2, i), &
                           corner(3, i)*(2.0_rk + corner(1, i))/2.0_rk]
     end do
-    call measure_widths(body, [1, 2, 3], smallest, largest)
+    call measure_widths(mesh, [1, 2, 3], smallest, largest)
     call check_close(log, smallest(1), 1.0_rk, 25.0_rk*roundoff, 'brick, across')
     call check_close(log, largest(1), 5.0_rk, 5.0_rk*roundoff, 'brick, along')
     call check_close(log, largest(2), 5.0_rk, 5.0_rk*roundoff, 'brick, one point')

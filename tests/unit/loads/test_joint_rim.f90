@@ -1,6 +1,6 @@
 !> Edges of a joint's face at the water, and how far water gets into a joint.
 program test_joint_rim
-  use joint_points, only: joint, list_faces
+  use joint_points, only: dam_joint, list_faces
   use joint_rim, only: area_of_facets, distance_to_edges, face_rim, find_rim
   use kinds, only: rk
   use testing, only: check, check_close, test_log
@@ -87,16 +87,16 @@ contains
     real(rk), allocatable :: x(:, :)
     integer, allocatable :: facets(:, :)
     logical, allocatable :: is_open(:), is_wet(:)
-    type(joint) :: seam
+    type(dam_joint) :: joint
     type(path_net) :: net
     integer :: n
     call level_face(x, facets)
     n = size(x, 2)
     call list_faces(reshape([(n, n=1, size(x, 2))], [1, size(x, 2)]), &
                     reshape([(n, n=1, size(x, 2))], [1, size(x, 2)]), &
-                    spread(spread(1.0_rk, 1, size(x, 2)), 1, 1), seam)
-    seam%is_nodal = .true.
-    call build_paths(size(x, 2), seam, facets, x(1, :), net)
+                    spread(spread(1.0_rk, 1, size(x, 2)), 1, 1), joint)
+    joint%is_nodal = .true.
+    call build_paths(size(x, 2), joint, facets, x(1, :), net)
     call check(log, all(net%is_inlet .eqv. x(1, :) < 0.5_rk), 'water comes in at the edge')
     allocate (is_open(size(x, 2)), is_wet(size(x, 2)))
     is_open = abs(x(1, :) - 2.0_rk) > 0.5_rk
@@ -116,7 +116,7 @@ contains
     real(rk), allocatable :: x(:, :), place(:, :)
     integer, allocatable :: facets(:, :), sides(:, :)
     logical, allocatable :: is_wet(:)
-    type(joint) :: seam
+    type(dam_joint) :: joint
     type(path_net) :: net
     real(rk) :: s
     integer :: f, q, p
@@ -130,9 +130,9 @@ contains
         sides(:, p) = facets(:, f)
       end do
     end do
-    call list_faces(sides, sides, spread(spread(0.25_rk, 1, 4), 2, size(sides, 2)), seam)
-    seam%is_nodal = .false.
-    call build_paths(size(x, 2), seam, facets, place(1, :), net)
+    call list_faces(sides, sides, spread(spread(0.25_rk, 1, 4), 2, size(sides, 2)), joint)
+    joint%is_nodal = .false.
+    call build_paths(size(x, 2), joint, facets, place(1, :), net)
     call check(log, all(net%is_inlet .eqv. place(1, :) < 0.5_rk), 'first row of points')
     allocate (is_wet(size(place, 2)))
     call find_wet(net, place(1, :) < 1.5_rk .or. place(1, :) > 3.5_rk, is_wet)

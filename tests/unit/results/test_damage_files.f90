@@ -21,7 +21,7 @@ program test_damage_files
   character(*), parameter :: deck = 'cracked dam.inp'
   integer, parameter :: num_increments = 3
   type(test_log) :: log
-  type(problem) :: scene
+  type(problem) :: model
   type(result_folder) :: results
   type(error_type), allocatable :: error
   type(diagnostic_list) :: remarks
@@ -31,17 +31,17 @@ program test_damage_files
   log%suite = 'damage_files'
   folder = 'damage of the unit test'
   if (command_argument_count() > 0) call get_command_argument(1, folder)
-  call make_scene()
+  call make_model()
   call results%costs%open()
   call results%log%open(.true., error)
-  call results%open(scene, trim(folder), remarks, error)
+  call results%open(model, trim(folder), remarks, error)
   call check_success(error, 'results open')
   do increment = 1, num_increments
     call set_state(increment)
-    call results%increment_done(scene, now, error)
+    call results%increment_done(model, now, error)
     call check_success(error, 'an increment is written')
   end do
-  call results%finish(scene, now, 'finished', '', error)
+  call results%finish(model, now, 'finished', '', error)
   call check_success(error, 'results close')
   print '(i0,a,i0,a)', log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
@@ -49,11 +49,11 @@ program test_damage_files
 contains
 
   !> Nodes at x = 0, 1 (fastest), y = 0, 2, 4, z = -1, 0, 3; ridge over the first block at z = 5.
-  subroutine make_scene()
+  subroutine make_model()
     type(by_hand) :: law
     integer :: i, n
-    scene%deck_file = deck
-    associate (mesh => scene%mesh)
+    model%deck_file = deck
+    associate (mesh => model%mesh)
       mesh%num_nodes = 20
       mesh%num_elements = 4
       allocate (mesh%x(3, 20))
@@ -74,25 +74,25 @@ contains
     end associate
     law%num_state = 8
     law%is_nonlinear = .true.
-    allocate (scene%materials(2), scene%joints(0), scene%loads(0), scene%amplitudes(0), &
-              scene%ties(0), scene%guests(0), &
-              scene%initial_values(0), scene%node_sets(0))
-    scene%materials(1)%name = 'CONCRETE'
-    scene%materials(1)%density = 2400.0_rk
-    scene%materials(1)%law = law
-    scene%materials(2)%name = 'ROCK'
-    scene%materials(2)%law = elastic_law(young=20.0e9_rk, poisson=0.2_rk)
-    scene%element_sets = [named_set('BODY', [1, 2, 3, 4])]
-    scene%surfaces = [surface('WATER', [1, 2], [6, 6])]
-    scene%upstream_surface = 1
-    call list_inelastic_blocks(scene%mesh, scene%materials, scene%inelastic)
+    allocate (model%materials(2), model%joints(0), model%loads(0), model%amplitudes(0), &
+              model%ties(0), model%guests(0), &
+              model%initial_values(0), model%node_sets(0))
+    model%materials(1)%name = 'CONCRETE'
+    model%materials(1)%density = 2400.0_rk
+    model%materials(1)%law = law
+    model%materials(2)%name = 'ROCK'
+    model%materials(2)%law = elastic_law(young=20.0e9_rk, poisson=0.2_rk)
+    model%element_sets = [named_set('BODY', [1, 2, 3, 4])]
+    model%surfaces = [surface('WATER', [1, 2], [6, 6])]
+    model%upstream_surface = 1
+    call list_inelastic_blocks(model%mesh, model%materials, model%inelastic)
     call make_step()
     allocate (now%u(3, 20), source=0.0_rk)
-    allocate (now%joints(0), now%points(size(scene%inelastic)))
-    do i = 1, size(scene%inelastic)
-      call start_points(law, scene%inelastic(i)%points, now%points(i))
+    allocate (now%joints(0), now%points(size(model%inelastic)))
+    do i = 1, size(model%inelastic)
+      call start_points(law, model%inelastic(i)%points, now%points(i))
     end do
-  end subroutine make_scene
+  end subroutine make_model
 
   !> Everything at every increment.
   subroutine make_step()
@@ -105,8 +105,8 @@ contains
     plan%outputs = [field_request(['U       ', 'S       ', 'E       ', 'PE      ', 'DAMAGET ', &
                                    'DAMAGEC ', 'SDV     '], 1)]
     plan%envelope = ['DAMAGET ', 'DAMAGEC ', 'S1      ']
-    allocate (scene%steps(1))
-    scene%steps(1) = plan
+    allocate (model%steps(1))
+    model%steps(1) = plan
   end subroutine make_step
 
   !> e33 = 1e-4 t. From increment 2 on element 10 is cracked, d = 0.1 q at its point q and plastic
@@ -119,10 +119,10 @@ contains
     now%is_last_of_step = increment == num_increments
     now%total_time = 0.5_rk*increment
     now%step_time = now%total_time
-    now%u(3, :) = 1.0e-4_rk*now%total_time*scene%mesh%x(3, :)
-    call set_elastic(scene, now)
-    do i = 1, size(scene%inelastic)
-      associate (points => now%points(i), element => scene%inelastic(i)%points%element(1))
+    now%u(3, :) = 1.0e-4_rk*now%total_time*model%mesh%x(3, :)
+    call set_elastic(model, now)
+    do i = 1, size(model%inelastic)
+      associate (points => now%points(i), element => model%inelastic(i)%points%element(1))
         if (element == 10 .and. increment >= 2) then
           points%is_elastic = .false.
           points%internal(1, :) = [(0.1_rk*q, q=1, 8)]

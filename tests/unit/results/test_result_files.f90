@@ -10,7 +10,7 @@ program test_result_files
   use step_plan, only: step, print_request, field_request
   use material_elastic, only: elastic_law
   use joint_contraction, only: contraction_law
-  use joint_points, only: draw_elements, joint, list_faces
+  use joint_points, only: draw_elements, dam_joint, list_faces
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
   use result_files, only: result_folder
@@ -19,14 +19,14 @@ program test_result_files
 
   character(*), parameter :: deck = 'hand driven.inp'
   type(test_log) :: log
-  type(problem) :: scene
+  type(problem) :: model
   type(result_folder) :: results
   character(500) :: folder
   log%suite = 'result_files'
   folder = 'results of the unit test'
   if (command_argument_count() > 0) call get_command_argument(1, folder)
-  call make_scene(scene)
-  call run(scene, results)
+  call make_model(model)
+  call run(model, results)
   call check_maxima(results)
   print '(i0,a,i0,a)', log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
@@ -34,23 +34,23 @@ program test_result_files
 contains
 
   !> Mesh, materials, joint, sets and steps.
-  subroutine make_scene(scene)
-    type(problem), intent(out) :: scene
-    scene%deck_file = deck
-    call make_mesh(scene)
-    call make_materials(scene)
-    call make_joint(scene)
-    allocate (scene%loads(0), scene%amplitudes(0), scene%initial_values(0))
-    scene%node_sets = [named_set('TOP', [13, 14, 19, 20])]
-    scene%element_sets = [named_set('TWO/BLOCKS', [1, 2])]
-    scene%surfaces = [surface('WATER', [1, 2], [6, 6])]
-    scene%upstream_surface = 1
-    call make_steps(scene)
-  end subroutine make_scene
+  subroutine make_model(model)
+    type(problem), intent(out) :: model
+    model%deck_file = deck
+    call make_mesh(model)
+    call make_materials(model)
+    call make_joint(model)
+    allocate (model%loads(0), model%amplitudes(0), model%initial_values(0))
+    model%node_sets = [named_set('TOP', [13, 14, 19, 20])]
+    model%element_sets = [named_set('TWO/BLOCKS', [1, 2])]
+    model%surfaces = [surface('WATER', [1, 2], [6, 6])]
+    model%upstream_surface = 1
+    call make_steps(model)
+  end subroutine make_model
 
   !> Nodes at x = 0, 1 (fastest), y = 0, 2 | 2, 4, z = -1 (first block only), 0, 3; ridge at z = 5.
-  subroutine make_mesh(scene)
-    type(problem), intent(inout) :: scene
+  subroutine make_mesh(model)
+    type(problem), intent(inout) :: model
     real(rk), parameter :: x(3, 22) = reshape(real([ &
                                                    0, 0, -1, 1, 0, -1, 0, 2, -1, 1, 2, -1, &
                                                    0, 0, 0, 1, 0, 0, 0, 2, 0, 1, 2, 0, &
@@ -59,7 +59,7 @@ contains
                                                    0, 2, 3, 1, 2, 3, 0, 4, 3, 1, 4, 3, &
                                                    0, 0, 5, 0, 2, 5], rk), [3, 22])
     integer :: n
-    associate (mesh => scene%mesh)
+    associate (mesh => model%mesh)
       mesh%num_nodes = 22
       mesh%num_elements = 5
       mesh%node_id = [(10*n, n=1, 22)]
@@ -75,31 +75,31 @@ contains
   end subroutine make_mesh
 
   !> Concrete and massless rock of the same stiffness.
-  subroutine make_materials(scene)
-    type(problem), intent(inout) :: scene
+  subroutine make_materials(model)
+    type(problem), intent(inout) :: model
     integer :: m
-    allocate (scene%materials(2))
-    scene%materials(1)%name = 'CONCRETE'
-    scene%materials(1)%density = 2400.0_rk
-    scene%materials(1)%beta = 1.0e-3_rk
-    scene%materials(2)%name = 'ROCK'
+    allocate (model%materials(2))
+    model%materials(1)%name = 'CONCRETE'
+    model%materials(1)%density = 2400.0_rk
+    model%materials(1)%beta = 1.0e-3_rk
+    model%materials(2)%name = 'ROCK'
     do m = 1, 2
-      scene%materials(m)%law = elastic_law(young=20.0e9_rk, poisson=0.0_rk)
+      model%materials(m)%law = elastic_law(young=20.0e9_rk, poisson=0.0_rk)
     end do
   end subroutine make_materials
 
   !> Four points between the blocks.
-  subroutine make_joint(scene)
-    type(problem), intent(inout) :: scene
+  subroutine make_joint(model)
+    type(problem), intent(inout) :: model
     integer :: p
-    allocate (scene%joints(1), scene%ties(0), scene%guests(0))
-    associate (item => scene%joints(1))
+    allocate (model%joints(1), model%ties(0), model%guests(0))
+    associate (item => model%joints(1))
       item%name = 'MIDDLE'
       allocate (item%law, source=contraction_law(name='LAW', gap=1.0e-4_rk))
       call list_faces(reshape([9, 10, 18, 17], [1, 4]), reshape([7, 8, 16, 15], [1, 4]), &
                       reshape([1.0_rk], [1, 4], pad=[1.0_rk]), item)
-      call draw_elements(scene%mesh, [3], [-1], item)
-      item%x = scene%mesh%x(:, [7, 8, 16, 15])
+      call draw_elements(model%mesh, [3], [-1], item)
+      item%x = model%mesh%x(:, [7, 8, 16, 15])
       allocate (item%area(4), source=0.75_rk)
       allocate (item%rotation(3, 3, 4), source=0.0_rk)
       do p = 1, 4
@@ -111,8 +111,8 @@ contains
   end subroutine make_joint
 
   !> A static step, a dynamic one that prints every second increment, and one for frequencies.
-  subroutine make_steps(scene)
-    type(problem), intent(inout) :: scene
+  subroutine make_steps(model)
+    type(problem), intent(inout) :: model
     type(step) :: plan
     type(print_request) :: nodes, elements, points
     nodes = print_request('NODE', 'TOP', [13, 14], [integer ::], ['U   ', 'RF  ', 'SDV '], 1)
@@ -124,8 +124,8 @@ contains
     plan%prints = [nodes, elements, points]
     plan%outputs = [field_request(['U ', 'V ', 'S '], 1), field_request(['SP', 'PE'], 1)]
     plan%envelope = ['S1      ', 'OPENING ', 'DAMAGET ']
-    allocate (scene%steps(3))
-    scene%steps(1) = plan
+    allocate (model%steps(3))
+    model%steps(1) = plan
     nodes = print_request('NODE', 'TOP', [14, 20], [integer ::], ['V'], 2)
     points%near_nodes = [integer ::]
     plan%name = 'earthquake'
@@ -133,15 +133,15 @@ contains
     plan%prints = [nodes, points]
     plan%outputs = [field_request(['U      ', 'V      ', 'RF     ', 'E      ', 'OPENING'], 2)]
     plan%envelope = ['S1      ', 'S3      ', 'U       ', 'OPENING ']
-    scene%steps(2) = plan
-    scene%steps(3)%name = 'shapes'
-    scene%steps(3)%procedure = procedure_named('FREQUENCY')
-    allocate (scene%steps(3)%fixities(0))
+    model%steps(2) = plan
+    model%steps(3)%name = 'shapes'
+    model%steps(3)%procedure = procedure_named('FREQUENCY')
+    allocate (model%steps(3)%fixities(0))
   end subroutine make_steps
 
   !> The calls a solver would make.
-  subroutine run(scene, results)
-    type(problem), intent(in) :: scene
+  subroutine run(model, results)
+    type(problem), intent(in) :: model
     type(result_folder), intent(inout) :: results
     type(error_type), allocatable :: error
     type(vibration_mode) :: modes(2)
@@ -152,29 +152,29 @@ contains
     call remarks%add(severity_warning, place(deck, 8, 1, 9, 'NODE', ''), 'odd "name"')
     call results%costs%open()
     call results%log%open(.true., error)
-    call results%open(scene, trim(folder), remarks, error)
+    call results%open(model, trim(folder), remarks, error)
     call check_success(error, 'results open')
     do i = 1, 2
-      call announce(results, scene, 1, i, 0.5_rk*i, i == 2)
+      call announce(results, model, 1, i, 0.5_rk*i, i == 2)
     end do
     do i = 0, 3
-      call announce(results, scene, 2, i, 1.0_rk + 0.1_rk*i, i == 3)
+      call announce(results, model, 2, i, 1.0_rk + 0.1_rk*i, i == 3)
     end do
     do i = 1, 2
       modes(i)%hz = 2.5_rk*i
       modes(i)%effective_mass = [1.0_rk, 2.0_rk, 3.0_rk]
-      modes(i)%shape = scene%mesh%x*i
+      modes(i)%shape = model%mesh%x*i
     end do
-    call results%modes_found(scene, 3, modes, error)
+    call results%modes_found(model, 3, modes, error)
     call check_success(error, 'modes are written')
-    call results%finish(scene, now, 'finished', '', error)
+    call results%finish(model, now, 'finished', '', error)
     call check_success(error, 'results close')
   end subroutine run
 
   !> One increment: e11 = 1e-3 t, e33 = -2e-3 t, g12 = 1e-3 t; the joint opens with height.
-  subroutine announce(results, scene, number, increment, time, is_last)
+  subroutine announce(results, model, number, increment, time, is_last)
     type(result_folder), intent(inout) :: results
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     integer, intent(in) :: number, increment
     real(rk), intent(in) :: time
     logical, intent(in) :: is_last
@@ -188,17 +188,17 @@ contains
     now%step_time = time - (number - 1)
     now%energy%error = 1.0e-4_rk*increment
     allocate (now%u(3, 22), source=0.0_rk)
-    now%u(1, :) = 1.0e-3_rk*time*(scene%mesh%x(1, :) + scene%mesh%x(2, :))
-    now%u(3, :) = -2.0e-3_rk*time*scene%mesh%x(3, :)
+    now%u(1, :) = 1.0e-3_rk*time*(model%mesh%x(1, :) + model%mesh%x(2, :))
+    now%u(3, :) = -2.0e-3_rk*time*model%mesh%x(3, :)
     now%reaction = now%u
     if (number == 2) now%v = now%u/time
     if (number == 2) now%a = 0.0_rk*now%u
     allocate (now%joints(1))
-    call scene%joints(1)%law%start_state(scene%joints(1)%clearance, now%joints(1))
-    now%joints(1)%jump(1, :) = 1.0e-3_rk*(time*scene%joints(1)%x(3, :) - 1.0_rk)
-    now%joints(1)%slip(2, :) = -1.0e-3_rk*time*scene%joints(1)%x(1, :)
-    now%joints(1)%traction(1, :) = -1.0e6_rk*scene%joints(1)%x(1, :)
-    call results%increment_done(scene, now, error)
+    call model%joints(1)%law%start_state(model%joints(1)%clearance, now%joints(1))
+    now%joints(1)%jump(1, :) = 1.0e-3_rk*(time*model%joints(1)%x(3, :) - 1.0_rk)
+    now%joints(1)%slip(2, :) = -1.0e-3_rk*time*model%joints(1)%x(1, :)
+    now%joints(1)%traction(1, :) = -1.0e6_rk*model%joints(1)%x(1, :)
+    call results%increment_done(model, now, error)
     call check_success(error, 'an increment is written')
   end subroutine announce
 

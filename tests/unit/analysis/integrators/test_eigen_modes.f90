@@ -17,10 +17,10 @@ program test_eigen_modes
   use scatter_matrix, only: scatter_blocks
   use solver_cholmod, only: cholmod_solver
   use eigen_modes, only: find_modes
-  use arch_scene, only: make_arch
+  use arch_model, only: make_arch
   implicit none
   type(test_log) :: log
-  type(problem), target :: scene
+  type(problem), target :: model
   type(numbering) :: numbers
   type(pattern) :: matrix
   type(cholmod_solver) :: solver
@@ -41,13 +41,13 @@ contains
     type(row_table) :: cells
     type(error_type), allocatable :: error
     integer :: j, k
-    call make_arch(1, 3, 6, 2, scene, fixities)
-    call number_step(scene%mesh, scene%joints, scene%ties, fixities, numbers, error)
-    call guests_of_model(scene, guests)
-    call list_cells(scene%mesh, guests, cells)
+    call make_arch(1, 3, 6, 2, model, fixities)
+    call number_step(model%mesh, model%joints, model%ties, fixities, numbers, error)
+    call guests_of_model(model, guests)
+    call list_cells(model%mesh, guests, cells)
     call build_pattern(numbers, cells, matrix)
-    call assemble_stiffness(scene, numbers, matrix, stiffness, error)
-    call assemble_mass(scene, numbers, matrix, mass, error)
+    call assemble_stiffness(model, numbers, matrix, stiffness, error)
+    call assemble_mass(model, numbers, matrix, mass, error)
     do j = numbers%num_free - numbers%num_jumps + 1, numbers%num_free
       k = position_of(matrix, j, j)
       stiffness(k) = stiffness(k) + 1.0e11_rk
@@ -88,7 +88,7 @@ contains
     type(error_type), allocatable :: error
     real(rk), allocatable :: unit(:, :), blocks(:, :, :)
     integer :: node, unknown
-    node = scene%mesh%num_nodes
+    node = model%mesh%num_nodes
     unknown = findloc(numbers%node == 30 .and. numbers%direction == 2, .true., 1)
     mass = 0.0_rk
     allocate (blocks(3, 3, node), unit(numbers%num_free, 1))

@@ -9,7 +9,7 @@ program test_time_static
   use step_loop, only: run_all_steps
   use step_control, only: increment_control, start_control
   use joint_contraction, only: contraction_law
-  use row_scene, only: make_row, put_on_ground, add_gravity, new_step, fix, recorder, calls_of
+  use row_model, only: make_row, put_on_ground, add_gravity, new_step, fix, recorder, calls_of
   use testing, only: test_log, check, check_close
   implicit none
 
@@ -30,25 +30,25 @@ contains
   !> A bar with one end moved by 1 mm in four increments: u and reaction are E A/L of it.
   subroutine bar_is_pulled(log)
     type(test_log), intent(inout) :: log
-    type(problem) :: scene
+    type(problem) :: model
     type(recorder) :: results
     type(state), allocatable :: now
     type(error_type), allocatable :: error
     integer :: i
     call make_row([0.0_rk, 1.0_rk, 3.0_rk], 1.0_rk, 2.0_rk, [3.0e9_rk, 3.0e9_rk], &
-                  [0.0_rk, 0.0_rk], scene)
-    call new_step('STATIC', 0.25_rk, 1.0_rk, scene)
-    scene%steps(1)%is_direct = .true.
+                  [0.0_rk, 0.0_rk], model)
+    call new_step('STATIC', 0.25_rk, 1.0_rk, model)
+    model%steps(1)%is_direct = .true.
     do i = 1, 3
-      call fix([1, 2, 3, 4], i, scene)
+      call fix([1, 2, 3, 4], i, model)
     end do
-    call fix([9, 10, 11, 12], 1, scene)
-    associate (last => size(scene%steps(1)%fixities))
-      scene%steps(1)%fixities(last - 3:)%value = 1.0e-3_rk
+    call fix([9, 10, 11, 12], 1, model)
+    associate (last => size(model%steps(1)%fixities))
+      model%steps(1)%fixities(last - 3:)%value = 1.0e-3_rk
     end associate
     call results%costs%open()
-    call start_analysis(scene, now, error)
-    call run_all_steps(scene, now, results, error)
+    call start_analysis(model, now, error)
+    call run_all_steps(model, now, results, error)
     call check(log,.not. allocated(error), 'runs')
     call check_close(log, now%u(1, 5), 1.0e-3_rk/3.0_rk, 1.0e-15_rk, 'middle of the bar')
     call check_close(log, sum(now%reaction(1, 9:12)), 2.0e6_rk, 1.0e-3_rk, 'reaction')
@@ -61,13 +61,13 @@ contains
   !> A block on a joint: the joint carries its weight.
   subroutine block_rests_on_joint(log)
     type(test_log), intent(inout) :: log
-    type(problem) :: scene
+    type(problem) :: model
     type(recorder) :: results
     type(state), allocatable :: now
     type(error_type), allocatable :: error
-    call make_block(10.0_rk, scene)
-    call start_analysis(scene, now, error)
-    call run_all_steps(scene, now, results, error)
+    call make_block(10.0_rk, model)
+    call start_analysis(model, now, error)
+    call run_all_steps(model, now, results, error)
     call check(log,.not. allocated(error), 'runs')
     call check_close(log, results%pressure(size(results%pressure)), 2.4e4_rk, 1.0e-3_rk, 'pressure')
     call check_close(log, now%u(3, 1), -2.4e-5_rk, 1.0e-14_rk, 'closing')
@@ -77,42 +77,42 @@ contains
   !> The same block pulled upwards has no equilibrium, and the message says where.
   subroutine floating_block_is_told(log)
     type(test_log), intent(inout) :: log
-    type(problem) :: scene
+    type(problem) :: model
     type(recorder) :: results
     type(state), allocatable :: now
     type(error_type), allocatable :: error
-    call make_block(-10.0_rk, scene)
-    call start_analysis(scene, now, error)
-    call run_all_steps(scene, now, results, error)
+    call make_block(-10.0_rk, model)
+    call start_analysis(model, now, error)
+    call run_all_steps(model, now, results, error)
     call check(log, allocated(error), 'a block that flies off is an error')
     if (.not. allocated(error)) return
     call check(log, index(error%message, 'joint GROUND') > 0, 'the message names the joint')
     call check(log, now%step_time <= 0.0_rk .and. now%increment == 0, 'the last state is kept')
   end subroutine floating_block_is_told
 
-  subroutine make_block(g, scene)
+  subroutine make_block(g, model)
     real(rk), intent(in) :: g !< downwards [m/s2]
-    type(problem), intent(out) :: scene
-    call make_row([0.0_rk, 1.0_rk], 1.0_rk, 1.0_rk, [1.0e9_rk], [2400.0_rk], scene)
+    type(problem), intent(out) :: model
+    call make_row([0.0_rk, 1.0_rk], 1.0_rk, 1.0_rk, [1.0e9_rk], [2400.0_rk], model)
     call put_on_ground(1, contraction_law(normal_stiffness=1.0e9_rk, tangent_stiffness=1.0e9_rk, &
-                                          friction=0.5_rk), scene)
-    call add_gravity(g, scene)
-    call new_step('STATIC', 1.0_rk, 1.0_rk, scene)
+                                          friction=0.5_rk), model)
+    call add_gravity(g, model)
+    call new_step('STATIC', 1.0_rk, 1.0_rk, model)
   end subroutine make_block
 
   !> A model without supports is named by node and direction.
   subroutine loose_model_is_told(log)
     type(test_log), intent(inout) :: log
-    type(problem) :: scene
+    type(problem) :: model
     type(recorder) :: results
     type(state), allocatable :: now
     type(error_type), allocatable :: error
-    call make_row([0.0_rk, 1.0_rk], 1.0_rk, 1.0_rk, [1.0e9_rk], [2400.0_rk], scene)
-    call add_gravity(10.0_rk, scene)
-    call new_step('STATIC', 1.0_rk, 1.0_rk, scene)
-    call fix([1, 2, 3, 4], 1, scene)
-    call start_analysis(scene, now, error)
-    call run_all_steps(scene, now, results, error)
+    call make_row([0.0_rk, 1.0_rk], 1.0_rk, 1.0_rk, [1.0e9_rk], [2400.0_rk], model)
+    call add_gravity(10.0_rk, model)
+    call new_step('STATIC', 1.0_rk, 1.0_rk, model)
+    call fix([1, 2, 3, 4], 1, model)
+    call start_analysis(model, now, error)
+    call run_all_steps(model, now, results, error)
     call check(log, allocated(error), 'a loose model is an error')
     if (.not. allocated(error)) return
     call check(log, index(error%message, 'node ') > 0, 'the message names a node')
@@ -156,19 +156,19 @@ contains
   !> Lowest frequency of one box with one free direction: w^2 = 3 E/(rho L^2).
   subroutine bar_vibrates(log)
     type(test_log), intent(inout) :: log
-    type(problem) :: scene
+    type(problem) :: model
     type(recorder) :: results
     type(state), allocatable :: now
     type(error_type), allocatable :: error
     integer :: i
-    call make_row([0.0_rk, 1.0_rk], 1.0_rk, 1.0_rk, [3.0e9_rk], [2400.0_rk], scene)
-    call new_step('FREQUENCY', 1.0_rk, 1.0_rk, scene)
-    scene%steps(1)%num_modes = 1
-    call fix([1, 2, 3, 4], 1, scene)
-    call fix([(i, i=1, 8)], 2, scene)
-    call fix([(i, i=1, 8)], 3, scene)
-    call start_analysis(scene, now, error)
-    call run_all_steps(scene, now, results, error)
+    call make_row([0.0_rk, 1.0_rk], 1.0_rk, 1.0_rk, [3.0e9_rk], [2400.0_rk], model)
+    call new_step('FREQUENCY', 1.0_rk, 1.0_rk, model)
+    model%steps(1)%num_modes = 1
+    call fix([1, 2, 3, 4], 1, model)
+    call fix([(i, i=1, 8)], 2, model)
+    call fix([(i, i=1, 8)], 3, model)
+    call start_analysis(model, now, error)
+    call run_all_steps(model, now, results, error)
     call check(log,.not. allocated(error), 'runs')
     call check_close(log, results%modes(1)%hz, sqrt(9.0e9_rk/2400.0_rk)/(2.0_rk*acos(-1.0_rk)), &
                      1.0e-6_rk, 'frequency')

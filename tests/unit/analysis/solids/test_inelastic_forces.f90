@@ -19,13 +19,13 @@ program test_inelastic_forces
   use inelastic_energy, only: solid_work, sum_solid_work
   use row_tables, only: row_table
   use step_plan, only: step_fixity
-  use row_scene, only: make_row
+  use row_model, only: make_row
   use softening_law, only: damage_law, put_law
   use testing, only: test_log, check, check_close
   implicit none
 
   type(test_log) :: log
-  type(problem), target :: scene
+  type(problem), target :: model
   type(numbering) :: numbers
   type(pattern) :: matrix, full
   type(point_state), allocatable :: old(:), new(:)
@@ -33,7 +33,7 @@ program test_inelastic_forces
   integer, parameter :: num_boxes = 40
 
   log%suite = 'inelastic_forces'
-  call make_scene()
+  call make_model()
   call elastic_points_release_nothing(log)
   call tangent_follows_differences(log)
   call secant_gives_excess_force(log)
@@ -46,30 +46,30 @@ program test_inelastic_forces
 contains
 
   !> A crooked row of 40 boxes of one soft material, three blocks.
-  subroutine make_scene()
+  subroutine make_model()
     type(guest_reference), allocatable :: guests(:)
     type(row_table) :: cells
     type(error_type), allocatable :: error
     integer :: i
     call make_row([(real(i, rk), i=0, num_boxes)], 1.0_rk, 1.0_rk, &
-                  spread(3.0e10_rk, 1, num_boxes), spread(0.0_rk, 1, num_boxes), scene)
-    scene%mesh%x = scene%mesh%x + 0.1_rk*sin(reshape([(37.0_rk*i, i=1, size(scene%mesh%x))], &
-                                                     shape(scene%mesh%x)))
-    scene%mesh%material_of_element = 1
-    call put_law(damage_law(elastic=elastic_law(young=3.0e10_rk, poisson=0.2_rk)), [1], scene)
-    call number_step(scene%mesh, scene%joints, scene%ties, [step_fixity(node=1, dof=1)], numbers, &
+                  spread(3.0e10_rk, 1, num_boxes), spread(0.0_rk, 1, num_boxes), model)
+    model%mesh%x = model%mesh%x + 0.1_rk*sin(reshape([(37.0_rk*i, i=1, size(model%mesh%x))], &
+                                                     shape(model%mesh%x)))
+    model%mesh%material_of_element = 1
+    call put_law(damage_law(elastic=elastic_law(young=3.0e10_rk, poisson=0.2_rk)), [1], model)
+    call number_step(model%mesh, model%joints, model%ties, [step_fixity(node=1, dof=1)], numbers, &
                      error)
-    call guests_of_model(scene, guests)
-    call list_cells(scene%mesh, guests, cells)
+    call guests_of_model(model, guests)
+    call list_cells(model%mesh, guests, cells)
     call build_pattern(numbers, cells, matrix)
     call full_pattern(matrix, full)
-    allocate (old(size(scene%inelastic)))
+    allocate (old(size(model%inelastic)))
     do i = 1, size(old)
-      call start_points(scene%materials(1)%law, scene%inelastic(i)%points, old(i))
+      call start_points(model%materials(1)%law, model%inelastic(i)%points, old(i))
     end do
     new = old
-    call open_answers(scene%inelastic, answers)
-  end subroutine make_scene
+    call open_answers(model%inelastic, answers)
+  end subroutine make_model
 
   !> Unknowns of a rough field whose strains are some times `size`.
   function field(size_of_strain) result(q)
@@ -84,18 +84,18 @@ contains
     real(rk), intent(in) :: q(:)
     integer, intent(in) :: tangent
     real(rk), intent(out) :: excess(:)
-    real(rk) :: u(3, scene%mesh%num_nodes)
+    real(rk) :: u(3, model%mesh%num_nodes)
     call numbers%expand(q, u)
-    call update_points(scene, u, time_increment(tangent=tangent), old, new, answers)
-    call sum_excess(scene, numbers, answers, excess)
+    call update_points(model, u, time_increment(tangent=tangent), old, new, answers)
+    call sum_excess(model, numbers, answers, excess)
   end subroutine find_excess
 
   subroutine elastic_points_release_nothing(log)
     type(test_log), intent(inout) :: log
     real(rk) :: excess(numbers%num_total), values(size(matrix%row))
     call find_excess(field(1.0e-5_rk), consistent_tangent, excess)
-    call lost_stiffness(scene, numbers, answers, matrix, values)
-    call check(log, size(scene%inelastic) == 3, 'three blocks')
+    call lost_stiffness(model, numbers, answers, matrix, values)
+    call check(log, size(model%inelastic) == 3, 'three blocks')
     call check(log, all(abs(excess) <= 0.0_rk), 'no force')
     call check(log, all(abs(values) <= 0.0_rk), 'no stiffness lost')
   end subroutine elastic_points_release_nothing
@@ -111,7 +111,7 @@ contains
     call find_excess(q + h, consistent_tangent, above)
     call find_excess(q - h, consistent_tangent, below)
     call find_excess(q, consistent_tangent, excess)
-    call lost_stiffness(scene, numbers, answers, full, values)
+    call lost_stiffness(model, numbers, answers, full, values)
     call multiply(full, values, h, product)
     call check(log, norm2(excess) > 1.0e6_rk, 'there is something to test')
     ! Round-off of a difference of forces of 1e7 N over 1e2 N: 1e-16*1e5; kinks none with this q.
@@ -126,7 +126,7 @@ contains
     real(rk) :: values(size(matrix%row))
     q = field(3.0e-4_rk)
     call find_excess(q, secant_tangent, excess)
-    call lost_stiffness(scene, numbers, answers, matrix, values)
+    call lost_stiffness(model, numbers, answers, matrix, values)
     call multiply(matrix, values, q, product)
     call check_close(log, norm2(product - excess)/norm2(excess), 0.0_rk, 1.0e-12_rk, &
                      'secant stiffness times displacement')
@@ -139,10 +139,10 @@ contains
     real(rk) :: first(size(full%row)), second(size(full%row))
     call omp_set_num_threads(1)
     call find_excess(field(3.0e-4_rk), consistent_tangent, one)
-    call lost_stiffness(scene, numbers, answers, full, first)
+    call lost_stiffness(model, numbers, answers, full, first)
     call omp_set_num_threads(2)
     call find_excess(field(3.0e-4_rk), consistent_tangent, two)
-    call lost_stiffness(scene, numbers, answers, full, second)
+    call lost_stiffness(model, numbers, answers, full, second)
     call check(log, all(abs(one - two) <= 0.0_rk), 'forces do not depend on the threads')
     call check(log, all(abs(first - second) <= 0.0_rk), 'nor does the stiffness')
   end subroutine threads_do_not_matter
@@ -154,11 +154,11 @@ contains
     type(solid_work) :: total
     real(rk), dimension(numbers%num_total) :: excess, recalled
     call find_excess(field(3.0e-4_rk), secant_tangent, excess)
-    call open_answers(scene%inelastic, others)
-    call recall_points(scene, new, others)
-    call sum_excess(scene, numbers, others, recalled)
+    call open_answers(model%inelastic, others)
+    call recall_points(model, new, others)
+    call sum_excess(model, numbers, others, recalled)
     call check(log, all(abs(excess - recalled) <= 0.0_rk), 'excess forces are recalled')
-    call sum_solid_work(scene, new, total)
+    call sum_solid_work(model, new, total)
     ! Linear elastic-damage: stored - 1/2 eps D eps = -1/2 u . excess.
     call check_close(log, total%stored, -0.5_rk*dot_product(field(3.0e-4_rk), excess), &
                      1.0e-12_rk*abs(total%stored), 'stored energy')
@@ -169,12 +169,12 @@ contains
     type(test_log), intent(inout) :: log
     character(:), allocatable :: why
     real(rk) :: size_ratio, excess(numbers%num_total)
-    call find_failure(scene, answers, size_ratio, why)
+    call find_failure(model, answers, size_ratio, why)
     call check(log,.not. allocated(why), 'no failure')
     call put_law(damage_law(elastic=elastic_law(young=3.0e10_rk), largest_strain=2.0e-4_rk), [1], &
-                 scene)
+                 model)
     call find_excess(field(3.0e-4_rk), secant_tangent, excess)
-    call find_failure(scene, answers, size_ratio, why)
+    call find_failure(model, answers, size_ratio, why)
     call check(log, allocated(why), 'a failure')
     if (.not. allocated(why)) return
     call check(log, index(why, 'material SOFT, element 1, point ') == 1 .and. &

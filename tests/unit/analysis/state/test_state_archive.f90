@@ -11,7 +11,7 @@ program test_state_archive
   use step_loop, only: run_all_steps
   use joint_contraction, only: contraction_law
   use material_elastic, only: elastic_law
-  use row_scene, only: make_row, put_at_wall, shake_base, new_step, fix
+  use row_model, only: make_row, put_at_wall, shake_base, new_step, fix
   use softening_law, only: damage_law, put_law
   use full_state, only: make_full_state
   use state_recorder, only: recorder_of_states
@@ -74,41 +74,41 @@ contains
   end subroutine full_state_comes_back
 
   !> Four boxes that crack, before a wall with a joint: pressed against it, then shaken.
-  subroutine make_model(num_boxes, scene)
+  subroutine make_model(num_boxes, model)
     integer, intent(in) :: num_boxes
-    type(problem), intent(out) :: scene
+    type(problem), intent(out) :: model
     type(amplitude) :: pulse
     integer :: k, last(4)
     call make_row([(real(k, rk), k=0, num_boxes)], 0.5_rk, 0.5_rk, &
-                  spread(young, 1, num_boxes), spread(2400.0_rk, 1, num_boxes), scene)
+                  spread(young, 1, num_boxes), spread(2400.0_rk, 1, num_boxes), model)
     call put_at_wall(contraction_law(normal_stiffness=1.0e12_rk, tangent_stiffness=1.0e12_rk, &
-                                     friction=0.5_rk), scene)
+                                     friction=0.5_rk), model)
     pulse%name = 'PULSE'
     pulse%time = [(0.001_rk*k, k=0, 60)]
     pulse%value = 400.0_rk*sin(300.0_rk*pulse%time)
-    call shake_base(pulse, scene)
-    call new_step('STATIC', 0.125_rk, 1.0_rk, scene)
+    call shake_base(pulse, model)
+    call new_step('STATIC', 0.125_rk, 1.0_rk, model)
     last = 4*num_boxes + [1, 2, 3, 4]
-    call fix(last, 1, scene)
-    scene%steps(1)%fixities%value = -5.0e-5_rk
-    scene%steps(1)%loads = scene%steps(1)%loads(:0)
-    call new_step('DYNAMIC', 5.0e-4_rk, 0.01_rk, scene)
-    scene%steps(2)%fixities = scene%steps(2)%fixities(:0)
-    scene%steps%alpha = -0.05_rk
+    call fix(last, 1, model)
+    model%steps(1)%fixities%value = -5.0e-5_rk
+    model%steps(1)%loads = model%steps(1)%loads(:0)
+    call new_step('DYNAMIC', 5.0e-4_rk, 0.01_rk, model)
+    model%steps(2)%fixities = model%steps(2)%fixities(:0)
+    model%steps%alpha = -0.05_rk
     call put_law(damage_law(elastic=elastic_law(young=young, poisson=0.2_rk), threshold=3.0e-6_rk, &
-                            slope=1.0e-4_rk), [(k, k=1, num_boxes)], scene)
+                            slope=1.0e-4_rk), [(k, k=1, num_boxes)], model)
   end subroutine make_model
 
   !> The whole run, each of its states.
-  subroutine run_model(scene, whole, log)
-    type(problem), intent(out) :: scene
+  subroutine run_model(model, whole, log)
+    type(problem), intent(out) :: model
     type(recorder_of_states), intent(inout) :: whole
     type(test_log), intent(inout) :: log
     type(state), allocatable :: now
     type(error_type), allocatable :: error
-    call make_model(4, scene)
-    call start_analysis(scene, now, error)
-    call run_all_steps(scene, now, whole, error)
+    call make_model(4, model)
+    call start_analysis(model, now, error)
+    call run_all_steps(model, now, whole, error)
     call check(log,.not. allocated(error), 'the model runs')
     call check(log, now%energy%fracture > 1.0e-3_rk*now%energy%largest, 'solids crack')
     call check(log, any(abs(now%joints(1)%jump) > 0.0_rk), 'the joint moves')
@@ -117,22 +117,22 @@ contains
   !> Saved in the middle of a static step, at its end, and in the middle of a dynamic step.
   subroutine runs_go_on(log)
     type(test_log), intent(inout) :: log
-    type(problem) :: scene
+    type(problem) :: model
     type(recorder_of_states) :: whole
     integer :: k, num_tried(3)
-    call run_model(scene, whole, log)
+    call run_model(model, whole, log)
     num_tried = 0
     do k = 1, size(whole%states)
       associate (saved => whole%states(k))
         if (saved%step == 1 .and. saved%increment == 3) then
           num_tried(1) = num_tried(1) + 1
-          call goes_on(scene, whole%states, k, 'static step: ', log)
+          call goes_on(model, whole%states, k, 'static step: ', log)
         else if (saved%step == 1 .and. saved%is_last_of_step) then
           num_tried(2) = num_tried(2) + 1
-          call goes_on(scene, whole%states, k, 'end of a step: ', log)
+          call goes_on(model, whole%states, k, 'end of a step: ', log)
         else if (saved%step == 2 .and. saved%increment == 7) then
           num_tried(3) = num_tried(3) + 1
-          call goes_on(scene, whole%states, k, 'dynamic step: ', log)
+          call goes_on(model, whole%states, k, 'dynamic step: ', log)
         end if
       end associate
     end do
@@ -140,8 +140,8 @@ contains
   end subroutine runs_go_on
 
   !> Saves a state, loads it into a new analysis and runs to the end: all states are the same.
-  subroutine goes_on(scene, states, k, what, log)
-    type(problem), intent(in) :: scene
+  subroutine goes_on(model, states, k, what, log)
+    type(problem), intent(in) :: model
     type(state), intent(in) :: states(:) !< of the whole run
     integer, intent(in) :: k !< the one that is saved
     character(*), intent(in) :: what
@@ -151,12 +151,12 @@ contains
     type(error_type), allocatable :: error
     integer :: i
     call write_state(states(k), log)
-    call start_analysis(scene, now, error)
+    call start_analysis(model, now, error)
     call read_state(now, error)
     call check(log,.not. allocated(error), what//'the state is loaded')
     if (allocated(error)) return
     call compare_states(log, what//'loaded ', states(k), now)
-    call run_all_steps(scene, now, rest, error)
+    call run_all_steps(model, now, rest, error)
     call check(log,.not. allocated(error), what//'the run goes on')
     call check(log, size(rest%states) == size(states) - k, what//'as many increments')
     if (size(rest%states) /= size(states) - k) return
@@ -168,11 +168,11 @@ contains
   !> A model of another size.
   subroutine other_model_fails(log)
     type(test_log), intent(inout) :: log
-    type(problem) :: scene, other
+    type(problem) :: model, other
     type(state), allocatable :: now
     type(error_type), allocatable :: error
-    call make_model(4, scene)
-    call start_analysis(scene, now, error)
+    call make_model(4, model)
+    call start_analysis(model, now, error)
     call write_state(now, log)
     call make_model(3, other)
     call start_analysis(other, now, error)
@@ -187,14 +187,14 @@ contains
   !> A model of the same size whose step has other supports.
   subroutine other_step_fails(log)
     type(test_log), intent(inout) :: log
-    type(problem) :: scene
+    type(problem) :: model
     type(recorder_of_states) :: whole, rest
     type(state), allocatable :: now
     type(error_type), allocatable :: error
-    call run_model(scene, whole, log)
+    call run_model(model, whole, log)
     now = whole%states(3)
-    scene%steps(1)%fixities = scene%steps(1)%fixities(:2)
-    call run_all_steps(scene, now, rest, error)
+    model%steps(1)%fixities = model%steps(1)%fixities(:2)
+    call run_all_steps(model, now, rest, error)
     call check(log, allocated(error), 'a step with other supports is an error')
     if (.not. allocated(error)) return
     call check_text(log, error%message, "the loaded state does not belong to step 'Step' of "// &

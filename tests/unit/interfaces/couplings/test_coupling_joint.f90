@@ -1,12 +1,12 @@
 !> Joints between two surfaces: their points, axes, clearances, and what is drawn of them.
 program test_coupling_joint
   use coupling_joint, only: lay_gauss_points, lay_node_points
-  use dam_mesh, only: mesh
+  use dam_mesh, only: fe_mesh
   use element_joint8, only: build_joint_points
   use errors, only: error_type
   use face_pairs, only: add_sheet, bent, parts, two_faces
   use facet_segments, only: find_segments
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use kinds, only: rk
   use small_matrix, only: cross_product
   use testing, only: check, check_close, test_log
@@ -43,7 +43,7 @@ contains
   subroutine nodes_stand_on_the_master(log)
     type(test_log), intent(inout) :: log
     type(two_faces) :: pair
-    type(joint) :: built, measured
+    type(dam_joint) :: built, measured
     logical, allocatable :: is_bare(:)
     integer :: p
     logical :: is_right
@@ -77,8 +77,8 @@ contains
   subroutine equal_meshes_are_joint8(log)
     type(test_log), intent(inout) :: log
     type(two_faces) :: pair
-    type(mesh) :: model
-    type(joint) :: built, elements
+    type(fe_mesh) :: mesh
+    type(dam_joint) :: built, elements
     type(error_type), allocatable :: error
     logical, allocatable :: is_bare(:)
     integer :: p, q, e
@@ -90,14 +90,14 @@ contains
     call find_segments(pair%x, pair%slave, pair%master, pair%segments, pair%cover)
     call lay_node_points(pair%x, pair%slave, pair%master, pair%segments, none(pair), &
                          .false., built, is_bare)
-    model%num_nodes = 18
-    model%num_elements = 4
-    model%x = pair%x
-    model%nodes = reshape([(pair%master%node(:, e), pair%master%node(:, e) - 9, e=1, 4)], [8, 4])
-    model%element_type = spread('JOINT8  ', 1, 4)
-    model%node_id = [(p, p=1, 18)]
-    model%element_id = [1, 2, 3, 4]
-    call build_joint_points(model, [1, 2, 3, 4], .true., elements, error)
+    mesh%num_nodes = 18
+    mesh%num_elements = 4
+    mesh%x = pair%x
+    mesh%nodes = reshape([(pair%master%node(:, e), pair%master%node(:, e) - 9, e=1, 4)], [8, 4])
+    mesh%element_type = spread('JOINT8  ', 1, 4)
+    mesh%node_id = [(p, p=1, 18)]
+    mesh%element_id = [1, 2, 3, 4]
+    call build_joint_points(mesh, [1, 2, 3, 4], .true., elements, error)
     call check(log, built%num_points == 9 .and. elements%num_points == 9, 'a point a pair')
     is_right = .true.
     do p = 1, 9
@@ -118,7 +118,7 @@ contains
   subroutine shared_nodes_hold_together(log)
     type(test_log), intent(inout) :: log
     type(two_faces) :: pair
-    type(joint) :: built
+    type(dam_joint) :: built
     logical, allocatable :: is_bare(:)
     real(rk) :: force(16), expected(16)
     integer :: p, k
@@ -147,7 +147,7 @@ contains
   subroutine tied_nodes_leave_their_share(log)
     type(test_log), intent(inout) :: log
     type(two_faces) :: pair
-    type(joint) :: free, beside
+    type(dam_joint) :: free, beside
     logical, allocatable :: is_bare(:), is_tied(:)
     real(rk) :: expected(size_of_pair), force(size_of_pair), jump, field
     integer :: p, k
@@ -175,7 +175,7 @@ contains
 
   !> Forces of a unit traction on the nodes [m2].
   pure subroutine unit_traction(built, force)
-    type(joint), intent(in) :: built
+    type(dam_joint), intent(in) :: built
     real(rk), intent(out) :: force(:) !< (nodes)
     integer :: p, k
     force = 0.0_rk
@@ -201,7 +201,7 @@ contains
   subroutine gauss_points_share_the_area(log)
     type(test_log), intent(inout) :: log
     type(two_faces) :: pair
-    type(joint) :: built
+    type(dam_joint) :: built
     real(rk), allocatable :: force(:)
     integer :: p, k
     call lay_faces(0.01_rk, pair)
@@ -234,7 +234,7 @@ contains
   subroutine cells_draw_the_face(log)
     type(test_log), intent(inout) :: log
     type(two_faces) :: pair
-    type(joint) :: built
+    type(dam_joint) :: built
     logical, allocatable :: is_bare(:)
     real(rk) :: corner(3, 12), area
     integer :: c, i, k, n

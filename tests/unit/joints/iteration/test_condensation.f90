@@ -11,8 +11,8 @@ program test_condensation
   use joint_law, only: state_open, state_slip
   use joint_contraction, only: contraction_law
   use step_plan, only: step_fixity
-  use arch_scene, only: make_arch
-  use row_scene, only: add_gravity, shake_base, new_step, recorder, calls_of, fix
+  use arch_model, only: make_arch
+  use row_model, only: add_gravity, shake_base, new_step, recorder, calls_of, fix
   use testing, only: test_log, check, check_close
   implicit none
 
@@ -57,34 +57,34 @@ contains
     logical, intent(in) :: is_held
     type(recorder), intent(inout) :: results
     type(state), allocatable, intent(out) :: now
-    type(problem) :: scene
+    type(problem) :: model
     type(step_fixity), allocatable :: fixities(:)
     type(error_type), allocatable :: error
     type(amplitude) :: pulse
     integer :: i
-    call make_arch(1, 2, 3, 3, scene, fixities)
-    allocate (scene%amplitudes(0), scene%initial_values(0), scene%steps(0))
-    do i = 1, size(scene%joints)
-      scene%joints(i)%name = 'J'
-      allocate (scene%joints(i)%law, source=contraction_law(normal_stiffness=1.0e11_rk, &
+    call make_arch(1, 2, 3, 3, model, fixities)
+    allocate (model%amplitudes(0), model%initial_values(0), model%steps(0))
+    do i = 1, size(model%joints)
+      model%joints(i)%name = 'J'
+      allocate (model%joints(i)%law, source=contraction_law(normal_stiffness=1.0e11_rk, &
                                                             tangent_stiffness=4.0e10_rk, &
                                                             friction=0.6_rk))
     end do
-    call add_gravity(9.81_rk, scene)
-    call new_step('STATIC', 1.0_rk, 1.0_rk, scene)
-    scene%steps(1)%fixities = fixities
+    call add_gravity(9.81_rk, model)
+    call new_step('STATIC', 1.0_rk, 1.0_rk, model)
+    model%steps(1)%fixities = fixities
     pulse%name = 'PULSE'
     pulse%time = [(0.01_rk*i, i=0, 60)]
     pulse%value = 8.0_rk*sin(20.0_rk*pulse%time)
-    call shake_base(pulse, scene)
-    call new_step('DYNAMIC', 0.01_rk, 0.4_rk, scene)
-    if (is_held) call fix(scene%joints(1)%node, 3, scene)
+    call shake_base(pulse, model)
+    call new_step('DYNAMIC', 0.01_rk, 0.4_rk, model)
+    if (is_held) call fix(model%joints(1)%node, 3, model)
     do i = 1, 2
-      scene%steps(i)%controls%joint_solver = joint_solver
-      scene%steps(i)%controls%residual_tolerance = 1.0e-9_rk
+      model%steps(i)%controls%joint_solver = joint_solver
+      model%steps(i)%controls%residual_tolerance = 1.0e-9_rk
     end do
-    call start_analysis(scene, now, error)
-    call run_all_steps(scene, now, results, error)
+    call start_analysis(model, now, error)
+    call run_all_steps(model, now, results, error)
     if (allocated(error)) print '(a)', error%message
     call check(log,.not. allocated(error), joint_solver//' runs to the end')
   end subroutine shake_arch

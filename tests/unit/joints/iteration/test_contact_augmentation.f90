@@ -12,8 +12,8 @@ program test_contact_augmentation
   use joint_law, only: joint_state, state_open, state_slip, state_stick
   use joint_contraction, only: contraction_law
   use step_plan, only: step_fixity
-  use arch_scene, only: make_arch
-  use row_scene, only: add_gravity, fix, make_row, put_on_ground, shake_base, new_step, recorder
+  use arch_model, only: make_arch
+  use row_model, only: add_gravity, fix, make_row, put_on_ground, shake_base, new_step, recorder
   use testing, only: test_log, check, check_close
   implicit none
 
@@ -54,25 +54,25 @@ contains
     real(rk), intent(in) :: penetration !< [m]
     type(state), allocatable, intent(out) :: now
     type(recorder), intent(out) :: results
-    type(problem) :: scene
+    type(problem) :: model
     type(error_type), allocatable :: error
-    call make_row([0.0_rk, 1.0_rk], 1.0_rk, 2.0_rk, [young], [density], scene)
+    call make_row([0.0_rk, 1.0_rk], 1.0_rk, 2.0_rk, [young], [density], model)
     call put_on_ground(1, contraction_law(normal_stiffness=kn, tangent_stiffness=kn, &
-                                          friction=0.5_rk, penetration=penetration), scene)
-    call add_gravity(gravity, scene)
-    call new_step('STATIC', 1.0_rk, 1.0_rk, scene)
-    call hold_ground(scene)
-    call start_analysis(scene, now, error)
-    call run_all_steps(scene, now, results, error)
+                                          friction=0.5_rk, penetration=penetration), model)
+    call add_gravity(gravity, model)
+    call new_step('STATIC', 1.0_rk, 1.0_rk, model)
+    call hold_ground(model)
+    call start_analysis(model, now, error)
+    call run_all_steps(model, now, results, error)
     call check(log,.not. allocated(error), 'runs')
   end subroutine stand
 
   !> Supports the nodes of the ground, behind the 8 of the box.
-  subroutine hold_ground(scene)
-    type(problem), intent(inout) :: scene
+  subroutine hold_ground(model)
+    type(problem), intent(inout) :: model
     integer :: dof
     do dof = 1, 3
-      call fix([9, 10, 11, 12], dof, scene)
+      call fix([9, 10, 11, 12], dof, model)
     end do
   end subroutine hold_ground
 
@@ -106,33 +106,33 @@ contains
     real(rk), intent(in) :: allowed !< penetration [m]
     type(recorder), intent(inout) :: results
     type(state), allocatable, intent(out) :: now
-    type(problem) :: scene
+    type(problem) :: model
     type(step_fixity), allocatable :: fixities(:)
     type(error_type), allocatable :: error
     type(amplitude) :: pulse
     integer :: i
-    call make_arch(1, 2, 3, 3, scene, fixities)
-    allocate (scene%amplitudes(0), scene%initial_values(0), scene%steps(0))
-    do i = 1, size(scene%joints)
-      scene%joints(i)%name = 'J'
-      allocate (scene%joints(i)%law, source=contraction_law(normal_stiffness=3.0e9_rk, &
+    call make_arch(1, 2, 3, 3, model, fixities)
+    allocate (model%amplitudes(0), model%initial_values(0), model%steps(0))
+    do i = 1, size(model%joints)
+      model%joints(i)%name = 'J'
+      allocate (model%joints(i)%law, source=contraction_law(normal_stiffness=3.0e9_rk, &
                                                             tangent_stiffness=4.0e10_rk, &
                                                             friction=0.6_rk, penetration=allowed))
     end do
-    call add_gravity(9.81_rk, scene)
-    call new_step('STATIC', 1.0_rk, 1.0_rk, scene)
-    scene%steps(1)%fixities = fixities
+    call add_gravity(9.81_rk, model)
+    call new_step('STATIC', 1.0_rk, 1.0_rk, model)
+    model%steps(1)%fixities = fixities
     pulse%name = 'PULSE'
     pulse%time = [(0.01_rk*i, i=0, 60)]
     pulse%value = 8.0_rk*sin(20.0_rk*pulse%time)
-    call shake_base(pulse, scene)
-    call new_step('DYNAMIC', 0.01_rk, 0.2_rk, scene)
+    call shake_base(pulse, model)
+    call new_step('DYNAMIC', 0.01_rk, 0.2_rk, model)
     do i = 1, 2
-      scene%steps(i)%controls%joint_solver = joint_solver
-      scene%steps(i)%controls%residual_tolerance = 1.0e-9_rk
+      model%steps(i)%controls%joint_solver = joint_solver
+      model%steps(i)%controls%residual_tolerance = 1.0e-9_rk
     end do
-    call start_analysis(scene, now, error)
-    call run_all_steps(scene, now, results, error)
+    call start_analysis(model, now, error)
+    call run_all_steps(model, now, results, error)
     if (allocated(error)) print '(a)', error%message
     call check(log,.not. allocated(error), joint_solver//' runs to the end')
   end subroutine shake_arch
@@ -140,19 +140,19 @@ contains
   !> An increment starts with lambda = t of the converged history after any trial.
   subroutine multipliers_start_from_the_last_balance(log)
     type(test_log), intent(inout) :: log
-    type(problem) :: scene
+    type(problem) :: model
     type(joint_state) :: old(1), new(1)
     type(contact_multiplier) :: multiplier
-    call make_row([0.0_rk, 1.0_rk], 1.0_rk, 2.0_rk, [young], [density], scene)
+    call make_row([0.0_rk, 1.0_rk], 1.0_rk, 2.0_rk, [young], [density], model)
     call put_on_ground(1, contraction_law(normal_stiffness=1.0e9_rk, tangent_stiffness=1.0e9_rk, &
-                                          penetration=1.0e-6_rk), scene)
-    call scene%joints(1)%law%start_state(spread(0.0_rk, 1, 4), old(1))
+                                          penetration=1.0e-6_rk), model)
+    call model%joints(1)%law%start_state(spread(0.0_rk, 1, 4), old(1))
     old(1)%status = [state_stick, state_slip, state_open, state_stick]
     old(1)%shift = [-2.0e-3_rk, -1.0e-3_rk, 0.0_rk, 0.0_rk]
     old(1)%jump(1, :) = [-1.0e-7_rk, 2.0e-7_rk, 1.0e-3_rk, 0.0_rk]
     new = old
     new(1)%shift = 1.0_rk
-    call start_multiplier(scene%joints, old, new, multiplier)
+    call start_multiplier(model%joints, old, new, multiplier)
     call check(log, multiplier%is_there, 'penetration is limited')
     call check_close(log, new(1)%shift(1), -2.0001e-3_rk, 1.0e-15_rk, 'pressed in')
     call check_close(log, new(1)%shift(2), -0.9998e-3_rk, 1.0e-15_rk, 'shift under pressure')
@@ -165,30 +165,31 @@ contains
   subroutine slip_beyond_reach_ends_the_run(log)
     type(test_log), intent(inout) :: log
     real(rk), parameter :: reach = 0.02_rk, pull = 4.0_rk
-    type(problem) :: scene
+    type(problem) :: model
     type(state), allocatable :: now
     type(recorder) :: results
     type(error_type), allocatable :: error
     type(amplitude) :: steady
-    call make_row([0.0_rk, 1.0_rk], 1.0_rk, 1.0_rk, [young], [density], scene)
+    call make_row([0.0_rk, 1.0_rk], 1.0_rk, 1.0_rk, [young], [density], model)
     call put_on_ground(1, contraction_law(normal_stiffness=1.0e9_rk, tangent_stiffness=1.0e9_rk, &
-                                          friction=0.1_rk), scene)
-    scene%joints(1)%admissible_slip = [1.0_rk, 1.0_rk, reach, 1.0_rk]
-    call add_gravity(gravity, scene)
-    call new_step('STATIC', 1.0_rk, 1.0_rk, scene)
+                                          friction=0.1_rk), model)
+    model%joints(1)%admissible_slip = [1.0_rk, 1.0_rk, reach, 1.0_rk]
+    call add_gravity(gravity, model)
+    call new_step('STATIC', 1.0_rk, 1.0_rk, model)
     steady%name = 'STEADY'
     steady%time = [0.0_rk, 100.0_rk]
     steady%value = [pull, pull]
-    call shake_base(steady, scene)
-    call new_step('DYNAMIC', 0.01_rk, 1.0_rk, scene)
-    call hold_ground(scene)
-    call start_analysis(scene, now, error)
-    call run_all_steps(scene, now, results, error)
+    call shake_base(steady, model)
+    call new_step('DYNAMIC', 0.01_rk, 1.0_rk, model)
+    call hold_ground(model)
+    call start_analysis(model, now, error)
+    call run_all_steps(model, now, results, error)
     call check(log, allocated(error), 'stops')
     if (.not. allocated(error)) return
     call check(log, index(error%message, 'joint GROUND has slipped 0.0') == 1, 'names the joint')
     call check(log, index(error%message, ' m at (1, 0, 0) at time 1.') > 0, 'names place and time')
-    call check(log, index(error%message, 'allow small sliding only, 0.02 m') > 0, 'names what is allowed')
+    call check(log, index(error%message, 'allow small sliding only, 0.02 m') > 0, &
+               'names what is allowed')
     ! From rest it moves by (pull - mu g) t^2/2.
     call check_close(log, now%step_time, sqrt(2.0_rk*reach/(pull - 0.1_rk*gravity)), 0.011_rk, &
                      'when it has gone that far')

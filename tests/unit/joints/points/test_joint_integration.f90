@@ -4,13 +4,13 @@
 !> The traction should decay smoothly. With Gauss points its sign alternates from point
 !> to point, the old finding of Schellekens & de Borst (Int. J. Num. Meth. Engng 36 (1993) 43).
 program test_joint_integration
-  use dam_mesh, only: mesh
+  use dam_mesh, only: fe_mesh
   use element_catalogue, only: make_solid
   use element_formulation, only: solid_element
   use element_joint8, only: build_joint_points
   use element_matrices, only: stiffness_matrices
   use errors, only: error_type
-  use joint_points, only: joint
+  use joint_points, only: dam_joint
   use kinds, only: rk
   use material_elastic, only: elastic_law
   use testing, only: check, test_log
@@ -44,45 +44,45 @@ program test_joint_integration
 contains
 
   !> The strip along x, one solid wide and high; its joint below, the ground's nodes last.
-  subroutine strip(model)
-    type(mesh), intent(out) :: model
+  subroutine strip(mesh)
+    type(fe_mesh), intent(out) :: mesh
     integer :: i, n
-    model%num_nodes = num_upper + 2*(length + 1)
-    model%num_elements = 2*length
-    allocate (model%x(3, model%num_nodes), model%nodes(8, 2*length))
-    allocate (model%element_type(2*length))
+    mesh%num_nodes = num_upper + 2*(length + 1)
+    mesh%num_elements = 2*length
+    allocate (mesh%x(3, mesh%num_nodes), mesh%nodes(8, 2*length))
+    allocate (mesh%element_type(2*length))
     do i = 0, length
       n = 4*i
-      model%x(:, n + 1:n + 4) = reshape(real([i, 0, 0, i, 1, 0, i, 0, 1, i, 1, 1], rk), [3, 4])
-      model%x(:, num_upper + 2*i + 1:num_upper + 2*i + 2) = model%x(:, n + 1:n + 2)
+      mesh%x(:, n + 1:n + 4) = reshape(real([i, 0, 0, i, 1, 0, i, 0, 1, i, 1, 1], rk), [3, 4])
+      mesh%x(:, num_upper + 2*i + 1:num_upper + 2*i + 2) = mesh%x(:, n + 1:n + 2)
     end do
     do i = 1, length
       n = 4*(i - 1)
-      model%nodes(:, i) = n + [1, 5, 6, 2, 3, 7, 8, 4]
-      model%nodes(5:, length + i) = n + [1, 5, 6, 2]
-      model%nodes(:4, length + i) = num_upper + 2*(i - 1) + [1, 3, 4, 2]
+      mesh%nodes(:, i) = n + [1, 5, 6, 2, 3, 7, 8, 4]
+      mesh%nodes(5:, length + i) = n + [1, 5, 6, 2]
+      mesh%nodes(:4, length + i) = num_upper + 2*(i - 1) + [1, 3, 4, 2]
     end do
-    model%element_type = 'C3D8'
-    model%element_type(length + 1:) = 'JOINT8'
-    model%node_id = [(i, i=1, model%num_nodes)]
-    model%element_id = [(i, i=1, 2*length)]
+    mesh%element_type = 'C3D8'
+    mesh%element_type(length + 1:) = 'JOINT8'
+    mesh%node_id = [(i, i=1, mesh%num_nodes)]
+    mesh%element_id = [(i, i=1, 2*length)]
   end subroutine strip
 
   !> Sum of the reversals of the normal traction along the strip over its largest value.
   subroutine traction_ripple(is_nodal, ripple)
     logical, intent(in) :: is_nodal
     real(rk), intent(out) :: ripple
-    type(mesh) :: model
-    type(joint) :: built
+    type(fe_mesh) :: mesh
+    type(dam_joint) :: built
     type(error_type), allocatable :: error
     real(rk), allocatable :: k(:, :), u(:), traction(:), x(:)
     integer :: e, info, p
-    call strip(model)
-    call build_joint_points(model, [(e, e=length + 1, 2*length)], is_nodal, built, error)
+    call strip(mesh)
+    call build_joint_points(mesh, [(e, e=length + 1, 2*length)], is_nodal, built, error)
     if (allocated(error)) error stop 2
     allocate (k(3*num_upper, 3*num_upper), source=0.0_rk)
     allocate (u(3*num_upper), source=0.0_rk)
-    call add_solids(model, k)
+    call add_solids(mesh, k)
     call add_springs(built, k)
     u([9, 12]) = 1.0e6_rk
     call dposv('U', size(u), 1, k, size(u), u, size(u), info)
@@ -97,8 +97,8 @@ contains
     ripple = reversals(x, traction)
   end subroutine traction_ripple
 
-  subroutine add_solids(model, k)
-    type(mesh), intent(in) :: model
+  subroutine add_solids(mesh, k)
+    type(fe_mesh), intent(in) :: mesh
     real(rk), intent(inout) :: k(:, :)
     class(solid_element), allocatable :: element
     type(elastic_law) :: law
@@ -108,10 +108,10 @@ contains
     call law%elastic_stiffness(d)
     call make_solid('C3D8', element)
     do e = 1, length
-      corners(:, :, 1) = model%x(:, model%nodes(:, e))
+      corners(:, :, 1) = mesh%x(:, mesh%nodes(:, e))
       call stiffness_matrices(element, corners, d, ke, status)
       do i = 1, 3
-        dof(i::3) = 3*model%nodes(:, e) - 3 + i
+        dof(i::3) = 3*mesh%nodes(:, e) - 3 + i
       end do
       k(dof, dof) = k(dof, dof) + ke(:, :, 1)
     end do
@@ -119,7 +119,7 @@ contains
 
   !> Springs of the joint in all directions; the ground is fixed.
   subroutine add_springs(built, k)
-    type(joint), intent(in) :: built
+    type(dam_joint), intent(in) :: built
     real(rk), intent(inout) :: k(:, :)
     integer :: p, a, b, i, row, column
     do p = 1, built%num_points
@@ -137,14 +137,14 @@ contains
   end subroutine add_springs
 
   pure function slave_nodes(built, p) result(nodes)
-    type(joint), intent(in) :: built
+    type(dam_joint), intent(in) :: built
     integer, intent(in) :: p
     integer, allocatable :: nodes(:)
     nodes = built%node(built%first(p):built%first_master(p) - 1)
   end function slave_nodes
 
   pure function slave_weights(built, p) result(weights)
-    type(joint), intent(in) :: built
+    type(dam_joint), intent(in) :: built
     integer, intent(in) :: p
     real(rk), allocatable :: weights(:)
     weights = built%weight(built%first(p):built%first_master(p) - 1)

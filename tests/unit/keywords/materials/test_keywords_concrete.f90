@@ -25,10 +25,10 @@ program test_keywords_concrete
 contains
 
   !> Reads a brick of 1 x 1 x height with a material.
-  subroutine read_brick(height, properties, scene, faults, echo)
+  subroutine read_brick(height, properties, model, faults, echo)
     character(*), intent(in) :: height !< [m], as the deck writes it
     character(*), intent(in) :: properties !< lines of the material
-    type(problem), allocatable, intent(out) :: scene
+    type(problem), allocatable, intent(out) :: model
     type(diagnostic_list), intent(out) :: faults
     character(:), allocatable, intent(out) :: echo
     integer :: unit
@@ -41,7 +41,7 @@ contains
     write (unit, '(a)') '*SOLID SECTION, ELSET=ALL, MATERIAL=CONCRETE', '*BOUNDARY', &
       'BASE, 1, 3', '*STEP', '*STATIC', '*CLOAD', '5, 3, 1.', '*END STEP'
     close (unit)
-    call read_problem(deck_file, scene, faults, echo)
+    call read_problem(deck_file, model, faults, echo)
     open (newunit=unit, file=deck_file, status='old')
     close (unit, status='delete')
   end subroutine read_brick
@@ -49,15 +49,15 @@ contains
   !> Empty fields take the defaults of Abaqus, and the echo shows them.
   subroutine makes_the_law(log)
     type(test_log), intent(inout) :: log
-    type(problem), allocatable :: scene
+    type(problem), allocatable :: model
     type(diagnostic_list) :: faults
     character(:), allocatable :: echo
     call read_brick('1.', elastic//'*CONCRETE DAMAGED PLASTICITY'//nl//'36.31,'//nl//crushing// &
                     '*CONCRETE TENSION STIFFENING'//nl//'2.9e6, 0.'//nl//'1e6, 1e-3'//nl, &
-                    scene, faults, echo)
+                    model, faults, echo)
     call check(log, faults%num_errors == 0, 'no fault')
     if (faults%has_errors()) return
-    associate (brick => scene%materials(1))
+    associate (brick => model%materials(1))
       call check(log, brick%law%is_nonlinear, 'a law that cracks')
       select type (law => brick%law)
       type is (concrete_law)
@@ -67,7 +67,7 @@ contains
         call check(log, .false., 'the law of concrete')
       end select
     end associate
-    call check(log, size(scene%inelastic) == 1, 'its elements are in a block')
+    call check(log, size(model%inelastic) == 1, 'its elements are in a block')
     call check(log, index(echo, '36.31, 0.1, 1.16, 0.6666666666666667, 0') > 0, 'echo')
   end subroutine makes_the_law
 
@@ -75,7 +75,7 @@ contains
   !> 0.813 / 1.219 / 1.626 / 2.439 m; half a millimetre more and less is on either side.
   subroutine longest_elements(log)
     type(test_log), intent(inout) :: log
-    type(problem), allocatable :: scene
+    type(problem), allocatable :: model
     type(diagnostic_list) :: faults
     character(:), allocatable :: echo
     integer :: i
@@ -83,10 +83,10 @@ contains
     real(rk), parameter :: longest(3) = [1.219_rk, 1.626_rk, 2.439_rk]
     character(*), parameter :: limits(3) = ['1.2194', '1.6259', '2.4388']
     do i = 1, 3
-      call read_brick(number(longest(i) - 1.0e-3_rk), cracking_by(energy(i), ''), scene, faults, &
+      call read_brick(number(longest(i) - 1.0e-3_rk), cracking_by(energy(i), ''), model, faults, &
                       echo)
       call check(log, faults%num_errors == 0, 'short enough '//number(longest(i)))
-      call read_brick(number(longest(i) + 1.0e-3_rk), cracking_by(energy(i), ''), scene, faults, &
+      call read_brick(number(longest(i) + 1.0e-3_rk), cracking_by(energy(i), ''), model, faults, &
                       echo)
       call check(log, faults%num_errors == 1, 'too long '//number(longest(i)))
       if (faults%num_errors /= 1) cycle
@@ -120,10 +120,10 @@ contains
   !> Four times too long: half the strength, and a warning that lists the element.
   subroutine lowers_strength(log)
     type(test_log), intent(inout) :: log
-    type(problem), allocatable :: scene
+    type(problem), allocatable :: model
     type(diagnostic_list) :: faults
     character(:), allocatable :: echo
-    call read_brick('6.504', cracking_by(200.0_rk, ', LONG ELEMENTS=LOWER STRENGTH'), scene, &
+    call read_brick('6.504', cracking_by(200.0_rk, ', LONG ELEMENTS=LOWER STRENGTH'), model, &
                     faults, echo)
     call check(log, faults%num_errors == 0, 'no error')
     call check(log, faults%num_warnings == 1, 'one warning')
@@ -137,13 +137,13 @@ contains
   !> All missing data are reported at once.
   subroutine wants_its_parts(log)
     type(test_log), intent(inout) :: log
-    type(problem), allocatable :: scene
+    type(problem), allocatable :: model
     type(diagnostic_list) :: faults
     character(:), allocatable :: echo
-    call read_brick('1.', '*CONCRETE DAMAGED PLASTICITY'//nl//'32.5'//nl, scene, faults, echo)
+    call read_brick('1.', '*CONCRETE DAMAGED PLASTICITY'//nl//'32.5'//nl, model, faults, echo)
     call check(log, faults%num_errors == 3, 'elasticity and two tables are missing')
-    call read_brick('1.', elastic, scene, faults, echo)
+    call read_brick('1.', elastic, model, faults, echo)
     call check(log, faults%num_errors == 0, 'elastic as before')
-    call check(log, size(scene%inelastic) == 0, 'and in no block')
+    call check(log, size(model%inelastic) == 0, 'and in no block')
   end subroutine wants_its_parts
 end program test_keywords_concrete

@@ -1,6 +1,6 @@
 !> Faults of the tables of concrete: each is found, in its table and row, and good tables have none.
 program test_damage_checks
-  use concrete_scene, only: lee_fenves, table_one
+  use concrete_model, only: lee_fenves, table_one
   use damage_checks, only: compression_damage_table, find_longest_band, find_table_faults, &
                            hardening_table, stiffening_table, table_fault, tension_damage_table
   use damage_constants, only: concrete_constants

@@ -1,6 +1,6 @@
 !> Curves over plastic strain: the rows of Table 1, openings, snap-back, tables of pure damage.
 program test_damage_curves
-  use concrete_scene, only: lee_fenves, table_one
+  use concrete_model, only: lee_fenves, table_one
   use damage_constants, only: concrete_constants
   use damage_curves, only: curve_value, make_compression_curve, make_tension_curve, place_knots, &
                            smallest_strength, strength_curve, value_of_curve

@@ -3,7 +3,7 @@
 !> usage: test_damage_paths [PATHS] (20 000 unless given, shared between the concretes)
 program test_damage_paths
   use concrete_paths, only: path_counts, run_paths
-  use concrete_scene, only: lee_fenves, repeat_chance, table_one
+  use concrete_model, only: lee_fenves, repeat_chance, table_one
   use damage_constants, only: concrete_constants
   use damage_model, only: concrete_model, largest_safe_dilation, make_concrete_model
   use kinds, only: rk

@@ -1,6 +1,6 @@
 !> The kernel of concrete at one point: its tangents against central differences.
 program test_damage_point
-  use concrete_scene, only: lee_fenves, repeat_chance, table_one
+  use concrete_model, only: lee_fenves, repeat_chance, table_one
   use damage_constants, only: concrete_constants
   use damage_model, only: concrete_model, make_concrete_model, placed_curves, stiffness_of
   use damage_point, only: point_answer, point_history, point_motion, update_point

@@ -1,7 +1,7 @@
 !> The elastic check of virgin concrete never accepts an inelastic point, accepts nearly all elastic
 !> points, and gives their stress and energy.
 program test_damage_screen
-  use concrete_scene, only: repeat_chance, table_one
+  use concrete_model, only: repeat_chance, table_one
   use damage_model, only: concrete_model, make_concrete_model, stiffness_of
   use damage_screen, only: screen_points
   use damage_yield, only: yield_at, yield_value

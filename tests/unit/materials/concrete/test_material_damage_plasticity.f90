@@ -1,7 +1,7 @@
 !> The law of plastic-damage concrete at one point against closed forms: tables returned, recovery
 !> of stiffness, biaxial and triaxial strength, apex, crack band, viscosity, cycles, energy.
 program test_material_damage_plasticity
-  use concrete_scene, only: lee_fenves, table_one
+  use concrete_model, only: lee_fenves, table_one
   use damage_constants, only: concrete_constants
   use errors, only: error_type
   use kinds, only: rk

@@ -9,16 +9,16 @@ program test_law_fields
   use inelastic_blocks, only: list_inelastic_blocks
   use law_fields, only: width_of_field, field_at_points
   use stress_fields, only: recovered_fields
-  use arch_scene, only: make_arch
+  use arch_model, only: make_arch
   use hand_law, only: by_hand, set_elastic
   use testing, only: test_log, check, check_close
   implicit none
   character(8), parameter :: kinds_of_solids(4) = ['C3D8    ', 'C3D8B   ', 'C3D8I   ', 'C3D8R   ']
   type(test_log) :: log
-  type(problem) :: scene
+  type(problem) :: model
   type(state) :: now
   log%suite = 'law_fields'
-  call make_scene()
+  call make_model()
   call test_widths(log)
   call test_elastic_points(log)
   call test_cracked_points(log)
@@ -28,21 +28,21 @@ program test_law_fields
 contains
 
   !> Section 2, the upper half, has the law with a history.
-  subroutine make_scene()
+  subroutine make_model()
     type(step_fixity), allocatable :: fixities(:)
     type(by_hand) :: law
     type(problem) :: arch
     real(rk) :: height
     integer :: e, i
     call make_arch(2, 3, 6, 2, arch, fixities)
-    allocate (scene%materials(2))
-    scene%materials(1)%law = arch%materials(1)%law
+    allocate (model%materials(2))
+    model%materials(1)%law = arch%materials(1)%law
     law%num_state = 8
     law%is_nonlinear = .true.
-    scene%materials(2)%law = law
-    scene%mesh = arch%mesh
-    allocate (scene%joints(0), scene%loads(0), scene%ties(0), scene%guests(0))
-    associate (m => scene%mesh)
+    model%materials(2)%law = law
+    model%mesh = arch%mesh
+    allocate (model%joints(0), model%loads(0), model%ties(0), model%guests(0))
+    associate (m => model%mesh)
       do e = 1, m%num_elements
         m%element_type(e) = kinds_of_solids(1 + mod(e, 4))
         height = sum(m%x(3, m%nodes(:, e)))/8.0_rk
@@ -50,40 +50,40 @@ contains
       end do
       m%material_of_element = m%section_of_element
     end associate
-    call list_inelastic_blocks(scene%mesh, scene%materials, scene%inelastic)
-    allocate (now%u(3, scene%mesh%num_nodes), now%points(size(scene%inelastic)))
+    call list_inelastic_blocks(model%mesh, model%materials, model%inelastic)
+    allocate (now%u(3, model%mesh%num_nodes), now%points(size(model%inelastic)))
     call random_number(now%u)
     now%u = 1.0e-3_rk*now%u
-    do i = 1, size(scene%inelastic)
-      call start_points(law, scene%inelastic(i)%points, now%points(i))
+    do i = 1, size(model%inelastic)
+      call start_points(law, model%inelastic(i)%points, now%points(i))
     end do
-    call set_elastic(scene, now)
-  end subroutine make_scene
+    call set_elastic(model, now)
+  end subroutine make_model
 
   !> Components of the law with most; none for a field that nobody has.
   subroutine test_widths(log)
     type(test_log), intent(inout) :: log
     type(problem) :: other
-    call check(log, width_of_field(scene, 'DAMAGET') == 1, 'damage is one number')
-    call check(log, width_of_field(scene, 'PE') == 6, 'plastic strain is a tensor')
-    call check(log, width_of_field(scene, 'SDV') == 8, 'all state variables')
-    call check(log, width_of_field(scene, 'TEMP') == 0, 'an unknown field')
+    call check(log, width_of_field(model, 'DAMAGET') == 1, 'damage is one number')
+    call check(log, width_of_field(model, 'PE') == 6, 'plastic strain is a tensor')
+    call check(log, width_of_field(model, 'SDV') == 8, 'all state variables')
+    call check(log, width_of_field(model, 'TEMP') == 0, 'an unknown field')
     call check(log, width_of_field(other, 'PE') == 0, 'no inelastic solids')
   end subroutine test_widths
 
-  !> Points that are still elastic: the stress is that of an elastic scene, by points and operator.
+  !> Points that are still elastic: the stress is that of an elastic model, by points and operator.
   subroutine test_elastic_points(log)
     type(test_log), intent(inout) :: log
     type(problem) :: elastic
-    real(rk) :: expected(6, scene%mesh%num_nodes), found(6, scene%mesh%num_nodes)
-    elastic = scene
+    real(rk) :: expected(6, model%mesh%num_nodes), found(6, model%mesh%num_nodes)
+    elastic = model
     deallocate (elastic%inelastic)
     call stress_on_nodes(elastic, 1, expected)
-    call stress_on_nodes(scene, 1, found)
+    call stress_on_nodes(model, 1, found)
     ! Sums of 24 products in another order.
     call check_close(log, maxval(abs(found - expected))/maxval(abs(expected)), 0.0_rk, 1.0e-13_rk, &
                      'elastic points')
-    call stress_on_nodes(scene, 5, found)
+    call stress_on_nodes(model, 5, found)
     call check_close(log, maxval(abs(found - expected))/maxval(abs(expected)), 0.0_rk, 1.0e-13_rk, &
                      'elastic points by the operator')
   end subroutine test_elastic_points
@@ -92,25 +92,25 @@ contains
   subroutine test_cracked_points(log)
     type(test_log), intent(inout) :: log
     type(recovered_fields) :: fields
-    real(rk) :: by_points(6, scene%mesh%num_nodes), by_operator(6, scene%mesh%num_nodes)
-    real(rk) :: before(6, scene%mesh%num_nodes)
+    real(rk) :: by_points(6, model%mesh%num_nodes), by_operator(6, model%mesh%num_nodes)
+    real(rk) :: before(6, model%mesh%num_nodes)
     real(rk), allocatable :: damage(:, :), at_points(:, :, :)
-    logical :: is_touched(scene%mesh%num_nodes)
-    call stress_on_nodes(scene, 1, before)
+    logical :: is_touched(model%mesh%num_nodes)
+    call stress_on_nodes(model, 1, before)
     call crack(is_touched)
-    call stress_on_nodes(scene, 1, by_points)
-    call stress_on_nodes(scene, 5, by_operator)
+    call stress_on_nodes(model, 1, by_points)
+    call stress_on_nodes(model, 5, by_operator)
     call check_close(log, maxval(abs(by_points - by_operator))/maxval(abs(by_points)), 0.0_rk, &
                      1.0e-13_rk, 'points and operator agree')
     call check(log, maxval(abs(by_points - before), mask=spread(.not. is_touched, 1, 6)) <= &
                1.0e-13_rk*maxval(abs(before)), 'nodes away from the crack are as before')
     call check_near_points(log, by_points)
-    call fields%field_on_nodes(scene, now, 'DAMAGET', damage)
-    call field_at_points(scene, fields%plan, now, 'DAMAGET', at_points)
+    call fields%field_on_nodes(model, now, 'DAMAGET', damage)
+    call field_at_points(model, fields%plan, now, 'DAMAGET', at_points)
     call check_close(log, maxval(damage), 1.0_rk, 0.0_rk, 'largest damage')
     call check_close(log, minval(damage), 0.0_rk, 0.0_rk, 'smallest damage')
     call check_close(log, maxval(at_points), 1.0_rk, 0.0_rk, 'largest damage at points')
-    call fields%field_on_nodes(scene, now, 'PE', damage)
+    call fields%field_on_nodes(model, now, 'PE', damage)
     call check(log, size(damage, 1) == 6, 'plastic strain on nodes')
     call check_close(log, maxval(damage(2, :)), 2.0e-3_rk, 1.0e-18_rk, 'plastic strain')
   end subroutine test_cracked_points
@@ -121,17 +121,17 @@ contains
     logical, intent(out) :: is_touched(:) !< (nodes)
     integer :: i, e, n, first, last
     is_touched = .false.
-    do i = 1, size(scene%inelastic)
-      n = scene%inelastic(i)%points_of_element
-      associate (points => now%points(i), elements => scene%inelastic(i)%elements)
-        last = merge(1, n, scene%inelastic(i)%kind == 'C3D8I')
+    do i = 1, size(model%inelastic)
+      n = model%inelastic(i)%points_of_element
+      associate (points => now%points(i), elements => model%inelastic(i)%elements)
+        last = merge(1, n, model%inelastic(i)%kind == 'C3D8I')
         e = size(elements)
         first = (e - 1)*n + 1
         points%is_elastic(first:first + last - 1) = .false.
         points%stress(:, first:first + last - 1) = 0.0_rk
         points%internal(1, first:first + last - 1) = 1.0_rk
         points%internal(4, first:first + last - 1) = 2.0e-3_rk
-        is_touched(scene%mesh%nodes(:, elements(e))) = .true.
+        is_touched(model%mesh%nodes(:, elements(e))) = .true.
       end associate
     end do
   end subroutine crack
@@ -140,15 +140,15 @@ contains
   subroutine check_near_points(log, stress)
     type(test_log), intent(inout) :: log
     real(rk), intent(in) :: stress(:, :)
-    integer :: uses(scene%mesh%num_nodes), e, a, node, seen
+    integer :: uses(model%mesh%num_nodes), e, a, node, seen
     uses = 0
-    do e = 1, scene%mesh%num_elements
-      uses(scene%mesh%nodes(:, e)) = uses(scene%mesh%nodes(:, e)) + 1
+    do e = 1, model%mesh%num_elements
+      uses(model%mesh%nodes(:, e)) = uses(model%mesh%nodes(:, e)) + 1
     end do
-    e = scene%mesh%num_elements
+    e = model%mesh%num_elements
     seen = 0
     do a = 1, 8
-      node = scene%mesh%nodes(a, e)
+      node = model%mesh%nodes(a, e)
       if (uses(node) > 1) cycle
       seen = seen + 1
       call check_close(log, maxval(abs(stress(:, node))), 0.0_rk, 0.0_rk, 'stress of a free corner')

@@ -9,7 +9,7 @@ program test_record_archive
   use damage_readings, only: damage_extreme
   use run_records, only: run_record
   use record_archive, only: save_record, load_record
-  use row_scene, only: make_row, put_at_wall, new_step
+  use row_model, only: make_row, put_at_wall, new_step
   use same_states, only: compare
   use testing, only: test_log, check, check_text
   implicit none
@@ -27,28 +27,28 @@ program test_record_archive
 contains
 
   !> A row of boxes with `num_joints` joints at its wall; its step asks for two envelopes.
-  subroutine make_model(num_joints, scene)
+  subroutine make_model(num_joints, model)
     integer, intent(in) :: num_joints
-    type(problem), intent(out) :: scene
+    type(problem), intent(out) :: model
     integer :: i
     call make_row([0.0_rk, 1.0_rk, 2.0_rk], 1.0_rk, 1.0_rk, [1.0e9_rk, 1.0e9_rk], &
-                  [2400.0_rk, 2400.0_rk], scene)
+                  [2400.0_rk, 2400.0_rk], model)
     do i = 1, num_joints
       call put_at_wall(contraction_law(normal_stiffness=1.0e9_rk, tangent_stiffness=1.0e9_rk, &
-                                       friction=0.5_rk), scene)
+                                       friction=0.5_rk), model)
     end do
-    call new_step('STATIC', 1.0_rk, 1.0_rk, scene)
-    scene%steps(1)%envelope = [character(8) :: 'U', 'OPENING']
-    allocate (scene%inelastic(0))
+    call new_step('STATIC', 1.0_rk, 1.0_rk, model)
+    model%steps(1)%envelope = [character(8) :: 'U', 'OPENING']
+    allocate (model%inelastic(0))
   end subroutine make_model
 
   !> A record with values of its own in all components that change in time.
-  subroutine make_record(scene, record)
-    type(problem), intent(in) :: scene
+  subroutine make_record(model, record)
+    type(problem), intent(in) :: model
     type(run_record), intent(out) :: record
     integer :: i
-    call record%open(scene)
-    call record%begin_step(scene, 1)
+    call record%open(model)
+    call record%begin_step(model, 1)
     call record%warn_once('a warning')
     call record%warn_once('another one ')
     call record%list_file('a_file.csv')
@@ -226,12 +226,12 @@ contains
   !> All components come back.
   subroutine record_comes_back(log)
     type(test_log), intent(inout) :: log
-    type(problem) :: scene
+    type(problem) :: model
     type(run_record) :: record, other
     type(error_type), allocatable :: error
-    call make_model(2, scene)
-    call make_record(scene, record)
-    call other%open(scene)
+    call make_model(2, model)
+    call make_record(model, record)
+    call other%open(model)
     call pass_through(record, other, log, error)
     call check(log,.not. allocated(error), 'the record is loaded')
     if (.not. allocated(error)) call compare_records(log, record, other)
@@ -240,11 +240,11 @@ contains
   !> A model with another number of joints.
   subroutine other_model_fails(log)
     type(test_log), intent(inout) :: log
-    type(problem) :: scene, changed
+    type(problem) :: model, changed
     type(run_record) :: record, other
     type(error_type), allocatable :: error
-    call make_model(2, scene)
-    call make_record(scene, record)
+    call make_model(2, model)
+    call make_record(model, record)
     call make_model(1, changed)
     call other%open(changed)
     call pass_through(record, other, log, error)

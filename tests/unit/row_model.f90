@@ -1,6 +1,6 @@
 !> A row of boxes along x that share their faces, on joints that rest on fixed ground; and a
 !> listener that records a run.
-module row_scene
+module row_model
   use integrator_catalogue, only: procedure_named
   use kinds, only: rk
   use errors, only: error_type
@@ -12,7 +12,7 @@ module row_scene
   use applied_load, only: load_slot
   use material_elastic, only: elastic_law
   use joint_contraction, only: contraction_law
-  use joint_points, only: joint, list_faces
+  use joint_points, only: dam_joint, list_faces
   use load_gravity, only: gravity_load
   use load_base_motion, only: base_motion
   use step_plan, only: step, step_fixity, step_load, initial_value
@@ -36,111 +36,111 @@ contains
 
   !> Boxes between the planes x(i) and x(i + 1), y in 0..width, z in 0..height, Poisson's ratio 0.
   !> Nodes 4*i - 3 .. 4*i lie in plane i: (0, 0), (width, 0), (width, height), (0, height).
-  subroutine make_row(x, width, height, young, density, scene)
+  subroutine make_row(x, width, height, young, density, model)
     real(rk), intent(in) :: x(:), width, height
     real(rk), intent(in) :: young(:), density(:) !< (boxes)
-    type(problem), intent(out) :: scene
+    type(problem), intent(out) :: model
     integer :: i, n
     n = size(young)
-    scene%mesh%num_nodes = 4*(n + 1)
-    scene%mesh%num_elements = n
-    allocate (scene%mesh%x(3, 4*(n + 1)), scene%mesh%nodes(8, n), scene%mesh%element_type(n))
-    scene%mesh%element_type = 'C3D8'
+    model%mesh%num_nodes = 4*(n + 1)
+    model%mesh%num_elements = n
+    allocate (model%mesh%x(3, 4*(n + 1)), model%mesh%nodes(8, n), model%mesh%element_type(n))
+    model%mesh%element_type = 'C3D8'
     do i = 1, n + 1
-      scene%mesh%x(:, 4*i - 3:4*i) = reshape([x(i), 0.0_rk, 0.0_rk, x(i), width, 0.0_rk, &
+      model%mesh%x(:, 4*i - 3:4*i) = reshape([x(i), 0.0_rk, 0.0_rk, x(i), width, 0.0_rk, &
                                               x(i), width, height, x(i), 0.0_rk, height], [3, 4])
     end do
-    allocate (scene%materials(n), scene%joints(0), scene%loads(0), scene%amplitudes(0), &
-              scene%ties(0), scene%guests(0), &
-              scene%initial_values(0), scene%steps(0))
+    allocate (model%materials(n), model%joints(0), model%loads(0), model%amplitudes(0), &
+              model%ties(0), model%guests(0), &
+              model%initial_values(0), model%steps(0))
     do i = 1, n
-      scene%mesh%nodes(:, i) = [4*i - 3, 4*i - 2, 4*i - 1, 4*i, 4*i + 1, 4*i + 2, 4*i + 3, 4*i + 4]
-      scene%materials(i)%density = density(i)
-      allocate (scene%materials(i)%law, source=elastic_law(young=young(i), poisson=0.0_rk))
+      model%mesh%nodes(:, i) = [4*i - 3, 4*i - 2, 4*i - 1, 4*i, 4*i + 1, 4*i + 2, 4*i + 3, 4*i + 4]
+      model%materials(i)%density = density(i)
+      allocate (model%materials(i)%law, source=elastic_law(young=young(i), poisson=0.0_rk))
     end do
-    scene%mesh%material_of_element = [(i, i=1, n)]
-    scene%mesh%section_of_element = [(i, i=1, n)]
-    scene%mesh%element_id = [(i, i=1, n)]
-    scene%mesh%node_id = [(i, i=1, 4*(n + 1))]
+    model%mesh%material_of_element = [(i, i=1, n)]
+    model%mesh%section_of_element = [(i, i=1, n)]
+    model%mesh%element_id = [(i, i=1, n)]
+    model%mesh%node_id = [(i, i=1, 4*(n + 1))]
   end subroutine make_row
 
   !> A joint below box `box`.
-  subroutine put_on_ground(box, law, scene)
+  subroutine put_on_ground(box, law, model)
     integer, intent(in) :: box
     type(contraction_law), intent(in) :: law
-    type(problem), intent(inout) :: scene
+    type(problem), intent(inout) :: model
     real(rk) :: area
     integer :: slave(4)
     slave = 4*box + [-3, -2, 1, 2]
-    area = (scene%mesh%x(1, slave(3)) - scene%mesh%x(1, slave(1))) &
-           *scene%mesh%x(2, slave(2))/4.0_rk
-    call add_joint(slave, area, reshape([0, 1, 0, 0, 0, 1, 1, 0, 0], [3, 3]), law, scene)
+    area = (model%mesh%x(1, slave(3)) - model%mesh%x(1, slave(1))) &
+           *model%mesh%x(2, slave(2))/4.0_rk
+    call add_joint(slave, area, reshape([0, 1, 0, 0, 0, 1, 1, 0, 0], [3, 3]), law, model)
   end subroutine put_on_ground
 
   !> A joint in front of the first face.
-  subroutine put_at_wall(law, scene)
+  subroutine put_at_wall(law, model)
     type(contraction_law), intent(in) :: law
-    type(problem), intent(inout) :: scene
+    type(problem), intent(inout) :: model
     real(rk) :: area
-    area = scene%mesh%x(2, 3)*scene%mesh%x(3, 3)/4.0_rk
-    call add_joint([1, 2, 3, 4], area, reshape([1, 0, 0, 0, 1, 0, 0, 0, 1], [3, 3]), law, scene)
+    area = model%mesh%x(2, 3)*model%mesh%x(3, 3)/4.0_rk
+    call add_joint([1, 2, 3, 4], area, reshape([1, 0, 0, 0, 1, 0, 0, 0, 1], [3, 3]), law, model)
   end subroutine put_at_wall
 
   !> Pairs of nodes of the row (slave) and nodes of the ground, which no element uses.
-  subroutine add_joint(slave, area, rotation, law, scene)
+  subroutine add_joint(slave, area, rotation, law, model)
     integer, intent(in) :: slave(:), rotation(3, 3)
     real(rk), intent(in) :: area
     type(contraction_law), intent(in) :: law
-    type(problem), intent(inout) :: scene
-    type(joint) :: seam
+    type(problem), intent(inout) :: model
+    type(dam_joint) :: joint
     integer :: n, p
     n = size(slave)
-    seam%name = 'GROUND'
-    allocate (seam%law, source=law)
+    joint%name = 'GROUND'
+    allocate (joint%law, source=law)
     call list_faces(reshape(slave, [1, n]), &
-                    reshape([(scene%mesh%num_nodes + p, p=1, n)], [1, n]), &
-                    reshape([1.0_rk], [1, n], pad=[1.0_rk]), seam)
-    seam%x = scene%mesh%x(:, slave)
-    seam%rotation = spread(real(rotation, rk), 3, n)
-    seam%area = spread(area, 1, n)
-    scene%mesh%x = reshape([scene%mesh%x, seam%x], [3, scene%mesh%num_nodes + n])
-    scene%mesh%num_nodes = scene%mesh%num_nodes + n
-    scene%mesh%node_id = [(p, p=1, scene%mesh%num_nodes)]
-    scene%joints = [scene%joints, seam]
+                    reshape([(model%mesh%num_nodes + p, p=1, n)], [1, n]), &
+                    reshape([1.0_rk], [1, n], pad=[1.0_rk]), joint)
+    joint%x = model%mesh%x(:, slave)
+    joint%rotation = spread(real(rotation, rk), 3, n)
+    joint%area = spread(area, 1, n)
+    model%mesh%x = reshape([model%mesh%x, joint%x], [3, model%mesh%num_nodes + n])
+    model%mesh%num_nodes = model%mesh%num_nodes + n
+    model%mesh%node_id = [(p, p=1, model%mesh%num_nodes)]
+    model%joints = [model%joints, joint]
   end subroutine add_joint
 
   !> Weight along -z.
-  subroutine add_gravity(g, scene)
+  subroutine add_gravity(g, model)
     real(rk), intent(in) :: g
-    type(problem), intent(inout) :: scene
+    type(problem), intent(inout) :: model
     type(load_slot) :: slot
     type(gravity_load) :: weight
     integer :: e
     weight%name = 'GRAVITY'
-    weight%elements = [(e, e=1, scene%mesh%num_elements)]
+    weight%elements = [(e, e=1, model%mesh%num_elements)]
     weight%acceleration = [0.0_rk, 0.0_rk, -g]
     allocate (slot%item, source=weight)
-    scene%loads = [scene%loads, slot]
+    model%loads = [model%loads, slot]
   end subroutine add_gravity
 
   !> Base motion along x, a0 sin(2 pi t) or another history.
-  subroutine shake_base(history, scene)
+  subroutine shake_base(history, model)
     type(amplitude), intent(in) :: history
-    type(problem), intent(inout) :: scene
+    type(problem), intent(inout) :: model
     type(load_slot) :: slot
     type(base_motion) :: motion
     motion%name = 'BASE'
     motion%dof = 1
     allocate (slot%item, source=motion)
-    scene%loads = [scene%loads, slot]
-    scene%amplitudes = [scene%amplitudes, history]
+    model%loads = [model%loads, slot]
+    model%amplitudes = [model%amplitudes, history]
   end subroutine shake_base
 
-  !> A step with all loads of the scene: the second one follows the first amplitude.
-  subroutine new_step(procedure_name, increment, duration, scene)
+  !> A step with all loads of the model: the second one follows the first amplitude.
+  subroutine new_step(procedure_name, increment, duration, model)
     character(*), intent(in) :: procedure_name
     real(rk), intent(in) :: increment, duration
-    type(problem), intent(inout) :: scene
+    type(problem), intent(inout) :: model
     type(step) :: plan
     type(step_load) :: rule
     integer :: i
@@ -149,50 +149,50 @@ contains
     plan%first_increment = increment
     plan%duration = duration
     allocate (plan%loads(0), plan%fixities(0))
-    if (size(scene%steps) > 0) plan%fixities = scene%steps(size(scene%steps))%fixities
-    do i = 1, size(scene%loads)
+    if (size(model%steps) > 0) plan%fixities = model%steps(size(model%steps))%fixities
+    do i = 1, size(model%loads)
       rule%load = i
       rule%amplitude = 0
-      if (allocated(scene%loads(i)%item%name)) then
-        if (scene%loads(i)%item%name == 'BASE') rule%amplitude = 1
+      if (allocated(model%loads(i)%item%name)) then
+        if (model%loads(i)%item%name == 'BASE') rule%amplitude = 1
       end if
       plan%loads = [plan%loads, rule]
     end do
-    scene%steps = [scene%steps, plan]
+    model%steps = [model%steps, plan]
   end subroutine new_step
 
   !> Fixes a direction of nodes in all steps.
-  subroutine fix(nodes, dof, scene)
+  subroutine fix(nodes, dof, model)
     integer, intent(in) :: nodes(:), dof
-    type(problem), intent(inout) :: scene
+    type(problem), intent(inout) :: model
     type(step_fixity) :: fixity
     integer :: s, i
-    do s = 1, size(scene%steps)
+    do s = 1, size(model%steps)
       do i = 1, size(nodes)
         fixity%node = nodes(i)
         fixity%dof = dof
-        scene%steps(s)%fixities = [scene%steps(s)%fixities, fixity]
+        model%steps(s)%fixities = [model%steps(s)%fixities, fixity]
       end do
     end do
   end subroutine fix
 
   !> Initial velocity or displacement of nodes.
-  subroutine kick(nodes, dof, value, is_velocity, scene)
+  subroutine kick(nodes, dof, value, is_velocity, model)
     integer, intent(in) :: nodes(:), dof
     real(rk), intent(in) :: value
     logical, intent(in) :: is_velocity
-    type(problem), intent(inout) :: scene
+    type(problem), intent(inout) :: model
     integer :: i
     do i = 1, size(nodes)
-      scene%initial_values = [scene%initial_values, &
+      model%initial_values = [model%initial_values, &
                               initial_value(is_velocity, nodes(i), dof, value)]
     end do
   end subroutine kick
 
   !> Records the results for the tests.
-  subroutine increment_done(self, scene, now, error)
+  subroutine increment_done(self, model, now, error)
     class(recorder), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
     real(rk) :: pressure
@@ -205,7 +205,7 @@ contains
     self%sum_iterations = self%sum_iterations + now%iterations
     self%worst_error = max(self%worst_error, now%energy%error)
     pressure = 0.0_rk
-    if (size(scene%joints) > 0) pressure = -now%joints(1)%traction(1, 1)
+    if (size(model%joints) > 0) pressure = -now%joints(1)%traction(1, 1)
     self%time = [self%time, now%total_time]
     self%u = [self%u, now%u(self%watched_dof, self%watched_node)]
     if (allocated(now%v)) self%v = [self%v, now%v(self%watched_dof, self%watched_node)]
@@ -216,9 +216,9 @@ contains
   end subroutine increment_done
 
   !> Keeps the modes.
-  subroutine modes_found(self, scene, step, modes, error)
+  subroutine modes_found(self, model, step, modes, error)
     class(recorder), intent(inout) :: self
-    type(problem), intent(in) :: scene
+    type(problem), intent(in) :: model
     integer, intent(in) :: step
     type(vibration_mode), intent(in) :: modes(:)
     type(error_type), allocatable, intent(out) :: error
@@ -238,4 +238,4 @@ contains
       if (parts(i)%name() == name) calls_of = parts(i)%num_calls
     end do
   end function calls_of
-end module row_scene
+end module row_model

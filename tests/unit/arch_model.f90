@@ -1,10 +1,10 @@
 !> A curved plate like an arch dam, fixed at the bottom, with vertical joints between its blocks.
-module arch_scene
+module arch_model
   use kinds, only: rk
   use problem_definition, only: problem
   use material_law, only: material
   use material_elastic, only: elastic_law
-  use joint_points, only: joint, list_faces
+  use joint_points, only: dam_joint, list_faces
   use step_plan, only: step_fixity
   implicit none
   private
@@ -13,23 +13,23 @@ module arch_scene
 contains
 
   !> Blocks of the same size side by side; each pair of neighbours is one joint of node pairs.
-  subroutine make_arch(across, along, over, num_blocks, scene, fixities)
+  subroutine make_arch(across, along, over, num_blocks, model, fixities)
     integer, intent(in) :: across, along, over !< elements: thickness, arc of one block, height
     integer, intent(in) :: num_blocks
-    type(problem), intent(out) :: scene
+    type(problem), intent(out) :: model
     type(step_fixity), allocatable, intent(out) :: fixities(:)
     integer :: b, k, i
-    call make_material(scene)
-    call make_mesh(across, along, over, num_blocks, scene)
-    allocate (scene%joints(num_blocks - 1), scene%loads(0))
-    allocate (scene%ties(0), scene%guests(0))
+    call make_material(model)
+    call make_mesh(across, along, over, num_blocks, model)
+    allocate (model%joints(num_blocks - 1), model%loads(0))
+    allocate (model%ties(0), model%guests(0))
     do b = 1, num_blocks - 1
-      call make_joint(across, along, over, b, num_blocks, scene, scene%joints(b))
+      call make_joint(across, along, over, b, num_blocks, model, model%joints(b))
     end do
-    allocate (fixities(3*count(scene%mesh%x(3, :) <= 0.0_rk)))
+    allocate (fixities(3*count(model%mesh%x(3, :) <= 0.0_rk)))
     k = 0
-    do b = 1, scene%mesh%num_nodes
-      if (scene%mesh%x(3, b) > 0.0_rk) cycle
+    do b = 1, model%mesh%num_nodes
+      if (model%mesh%x(3, b) > 0.0_rk) cycle
       do i = 1, 3
         k = k + 1
         fixities(k)%node = b
@@ -38,20 +38,20 @@ contains
     end do
   end subroutine make_arch
 
-  subroutine make_material(scene)
-    type(problem), intent(inout) :: scene
-    allocate (scene%materials(1))
-    scene%materials(1)%density = 2400.0_rk
-    scene%materials(1)%young = 31.0e9_rk
-    scene%materials(1)%poisson = 0.2_rk
-    allocate (scene%materials(1)%law, source=elastic_law(young=31.0e9_rk, poisson=0.2_rk))
+  subroutine make_material(model)
+    type(problem), intent(inout) :: model
+    allocate (model%materials(1))
+    model%materials(1)%density = 2400.0_rk
+    model%materials(1)%young = 31.0e9_rk
+    model%materials(1)%poisson = 0.2_rk
+    allocate (model%materials(1)%law, source=elastic_law(young=31.0e9_rk, poisson=0.2_rk))
   end subroutine make_material
 
-  subroutine make_mesh(across, along, over, num_blocks, scene)
+  subroutine make_mesh(across, along, over, num_blocks, model)
     integer, intent(in) :: across, along, over, num_blocks
-    type(problem), intent(inout) :: scene
+    type(problem), intent(inout) :: model
     integer :: b, i, j, k, e
-    associate (m => scene%mesh)
+    associate (m => model%mesh)
       m%num_nodes = num_blocks*(along + 1)*(across + 1)*(over + 1)
       m%num_elements = num_blocks*along*across*over
       allocate (m%x(3, m%num_nodes), m%nodes(8, m%num_elements), m%element_type(m%num_elements))
@@ -74,11 +74,11 @@ contains
     !> Nodes, and elements where there is room for them, through the thickness.
     subroutine add_row()
       do i = 0, across
-        scene%mesh%x(:, node_at(b, i, j, k)) = &
+        model%mesh%x(:, node_at(b, i, j, k)) = &
           place(real(i, rk)/across, (b - 1 + real(j, rk)/along)/num_blocks, real(k, rk)/over)
         if (i == across .or. j == along .or. k == over) cycle
         e = e + 1
-        scene%mesh%nodes(:, e) = [node_at(b, i, j, k), node_at(b, i + 1, j, k), &
+        model%mesh%nodes(:, e) = [node_at(b, i, j, k), node_at(b, i + 1, j, k), &
                                   node_at(b, i + 1, j + 1, k), node_at(b, i, j + 1, k), &
                                   node_at(b, i, j, k + 1), node_at(b, i + 1, j, k + 1), &
                                   node_at(b, i + 1, j + 1, k + 1), node_at(b, i, j + 1, k + 1)]
@@ -101,17 +101,17 @@ contains
   end function place
 
   !> The pairs between block b (master) and the next (slave), above the fixed bottom.
-  subroutine make_joint(across, along, over, b, num_blocks, scene, seam)
+  subroutine make_joint(across, along, over, b, num_blocks, model, joint)
     integer, intent(in) :: across, along, over, b, num_blocks
-    type(problem), intent(in) :: scene
-    type(joint), intent(out) :: seam
+    type(problem), intent(in) :: model
+    type(dam_joint), intent(out) :: joint
     real(rk) :: angle
     integer, allocatable :: master(:, :), slave(:, :)
     integer :: i, k, p, nodes_of_block
     nodes_of_block = (across + 1)*(along + 1)*(over + 1)
     angle = (real(b, rk)/num_blocks - 0.5_rk)*1.745_rk
     p = (across + 1)*over
-    allocate (master(1, p), slave(1, p), seam%rotation(3, 3, p), seam%area(p))
+    allocate (master(1, p), slave(1, p), joint%rotation(3, 3, p), joint%area(p))
     p = 0
     do k = 1, over
       do i = 0, across
@@ -120,13 +120,13 @@ contains
         slave(1, p) = 1 + i + (across + 1)*(along + 1)*k + b*nodes_of_block
       end do
     end do
-    call list_faces(slave, master, reshape([1.0_rk], shape(slave), pad=[1.0_rk]), seam)
-    seam%x = scene%mesh%x(:, master(1, :))
-    seam%area = 2000.0_rk/seam%num_points
-    do p = 1, seam%num_points
-      seam%rotation(1, :, p) = [cos(angle), -sin(angle), 0.0_rk]
-      seam%rotation(2, :, p) = [sin(angle), cos(angle), 0.0_rk]
-      seam%rotation(3, :, p) = [0.0_rk, 0.0_rk, 1.0_rk]
+    call list_faces(slave, master, reshape([1.0_rk], shape(slave), pad=[1.0_rk]), joint)
+    joint%x = model%mesh%x(:, master(1, :))
+    joint%area = 2000.0_rk/joint%num_points
+    do p = 1, joint%num_points
+      joint%rotation(1, :, p) = [cos(angle), -sin(angle), 0.0_rk]
+      joint%rotation(2, :, p) = [sin(angle), cos(angle), 0.0_rk]
+      joint%rotation(3, :, p) = [0.0_rk, 0.0_rk, 1.0_rk]
     end do
   end subroutine make_joint
-end module arch_scene
+end module arch_model

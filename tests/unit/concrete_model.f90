@@ -1,5 +1,5 @@
 !> Concretes that tests of the law share.
-module concrete_scene
+module concrete_model
   use damage_constants, only: concrete_constants
   use kinds, only: rk
   implicit none
@@ -72,4 +72,4 @@ contains
     call random_seed(size=n)
     call random_seed(put=[(start + 7919*i, i=1, n)])
   end subroutine repeat_chance
-end module concrete_scene
+end module concrete_model
