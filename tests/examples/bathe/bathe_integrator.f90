@@ -103,7 +103,7 @@ contains
     type(step_time) :: halfway, last
     call move_alloc(self%middle, middle)
     halfway = when
-    call halfway%advance(before%step_time, gamma*when%increment)
+    call halfway%set_end(before%step_time, gamma*when%increment)
     last = when
     last%increment = when%now - halfway%now
     middle%increment_status = before%increment_status
@@ -186,7 +186,7 @@ contains
     call results%costs%stop()
     call self%solids%open_increment(before, when%increment)
     call pose_task(self, model, when, before, after, moved, task)
-    call self%solids%solve(model, self%system, task, before, after, outcome, error)
+    call self%solids%solve_increment(model, self%system, task, before, after, outcome, error)
     if (.not. allocated(error) .and. outcome%has_converged) then
       call correct(self, task, task%x + moved, when%increment, after, outcome)
     end if
@@ -213,9 +213,10 @@ contains
                          - before%motion%elastic(:n)
       call add_moving_supports(system, self%solids%values, moved, task%balance%rhs)
       task%start = new%q + moved
-      task%balance%reference = largest_force(before%motion, n, 1.0_rk, when%increment)
+      task%balance%reference_force = largest_force(before%motion, n, 1.0_rk, when%increment)
       if (self%solids%has_inelastic()) then
-        task%reference = max(task%balance%reference, before%largest_force, length(new%external(:n)))
+        task%reference_force = max(task%balance%reference_force, before%largest_force, &
+                                   length(new%external(:n)))
       end if
       allocate (task%balance%offset(3, num_points), task%balance%guess(3, num_points))
       call system%operator%jumps(task%start, task%balance%offset)
@@ -241,7 +242,8 @@ contains
       call self%solids%set_internal(new)
       call sum_contact(system%operator, after)
       new%balanced = new%external - new%viscous - new%internal - new%contact
-      after%largest_force = max(task%balance%reference, task%reference, length(new%internal), &
+      after%largest_force = max(task%balance%reference_force, task%reference_force, &
+                                length(new%internal), &
                                 largest_force(new, n, 1.0_rk, dt))
       after%joint_condition = max(after%joint_condition, self%solids%solver%condition)
       call check_bulk(new%balanced(:n) - new%inertia(:n), after%largest_force, &
