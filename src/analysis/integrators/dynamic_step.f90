@@ -81,9 +81,7 @@ contains
       call external_force(system%groups, model%amplitudes, when, own%external)
       call start_supports(model, system, when, 1.0e-3_rk*plan%first_increment, own%v)
       call multiply(system%matrix, system%mass, own%v, own%momentum)
-      if (size(system%damping) > 0) then
-        call multiply(system%matrix, system%damping, own%v, own%viscous)
-      end if
+      call system%find_damping_force(own%v, own%viscous)
       call sum_contact(system%operator, now)
       call find_acceleration(system%matrix, system%mass, system%numbers%node, &
                              own%external - own%internal - own%viscous - own%contact, own%a, error)

@@ -31,7 +31,7 @@ contains
     real(rk), dimension(self%system%matrix%num_total) :: moved, rhs
     associate (system => self%system, scheme => self%scheme, solids => self%solids, &
                n => self%system%matrix%num_free, old => before%motion, new => after%motion)
-      call predict(system, scheme, old, new)
+      call predict(scheme, old, new)
       call external_force(system%groups, model%amplitudes, when, new%external)
       moved = new%q
       call prescribed_values(system%supports, model%amplitudes, when, moved)
@@ -60,8 +60,7 @@ contains
   end subroutine take_increment
 
   !> u^, v^, a = 0 and the forces that go with them.
-  subroutine predict(system, scheme, before, after)
-    type(dam_system), intent(in) :: system
+  subroutine predict(scheme, before, after)
     type(hht), intent(in) :: scheme
     type(motion), intent(in) :: before
     type(motion), intent(inout) :: after
@@ -69,7 +68,7 @@ contains
       after%q = before%q + dt*before%v + dt**2*(0.5_rk - scheme%beta)*before%a
       after%v = before%v + rest*before%a
       after%momentum = before%momentum + rest*before%inertia
-      if (size(system%damping) > 0) after%viscous = before%viscous + rest*before%viscous_rate
+      after%viscous = before%viscous + rest*before%viscous_rate
       after%elastic = before%elastic + dt*before%elastic_rate &
                       + dt**2*(0.5_rk - scheme%beta)*before%elastic_jerk
       after%elastic_rate = before%elastic_rate + rest*before%elastic_jerk
@@ -130,11 +129,9 @@ contains
       new%elastic_rate = new%elastic_rate + weight*new%elastic_jerk
       call solids%set_internal(new)
       rhs = rhs - new%inertia - bulk*(new%internal - predicted)
-      if (size(system%damping) > 0) then
-        call multiply(system%matrix, system%damping, new%a, new%viscous_rate)
-        new%viscous = new%viscous + weight*new%viscous_rate
-        rhs = rhs - bulk*weight*new%viscous_rate
-      end if
+      call system%find_damping_force(new%a, new%viscous_rate)
+      new%viscous = new%viscous + weight*new%viscous_rate
+      rhs = rhs - bulk*weight*new%viscous_rate
       new%balanced = bulk*(new%external - new%viscous - new%internal) &
                      - scheme%alpha*(old%external - old%viscous - old%internal)
     end associate

@@ -76,9 +76,7 @@ contains
       call gather_tractions(system%operator, now%joints, own%carried)
       call multiply(system%matrix, system%stiffness, own%v, own%elastic_rate)
       call multiply(system%matrix, system%stiffness, own%a, own%elastic_jerk)
-      if (size(system%damping) > 0) then
-        call multiply(system%matrix, system%damping, own%a, own%viscous_rate)
-      end if
+      call system%find_damping_force(own%a, own%viscous_rate)
     end associate
   end subroutine start_rates
 
@@ -107,9 +105,7 @@ contains
     type(hht), intent(in) :: scheme
     real(rk), allocatable, intent(out) :: values(:)
     values = (1.0_rk + scheme%alpha)*system%stiffness + scheme%acceleration_of_x*system%mass
-    if (size(system%damping) > 0) then
-      values = values + (1.0_rk + scheme%alpha)*scheme%velocity_of_x*system%damping
-    end if
+    call system%add_damping((1.0_rk + scheme%alpha)*scheme%velocity_of_x, values)
   end subroutine effective_values
 
   !> One increment with the water where the joints were open at its start.

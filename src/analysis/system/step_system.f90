@@ -7,7 +7,7 @@ module step_system
   use step_plan, only: step
   use dof_numbering, only: numbering
   use constraint_elimination, only: number_step
-  use global_vectors, only: diagonal
+  use global_vectors, only: diagonal, multiply
   use matrix_pattern, only: pattern, drop_zeros
   use pattern_builder, only: list_cells, build_pattern
   use assemble_elements, only: assemble_stiffness, assemble_mass, assemble_damping
@@ -33,9 +33,31 @@ module step_system
     type(jump_operator) :: operator
     type(load_group), allocatable :: groups(:)
     type(support), allocatable :: supports(:)
+  contains
+    procedure :: find_damping_force, add_damping
   end type dam_system
 
 contains
+
+  !> C v; zero where nothing damps.
+  subroutine find_damping_force(self, v, force)
+    class(dam_system), intent(in) :: self
+    real(rk), intent(in) :: v(:) !< (num_total)
+    real(rk), intent(out) :: force(:) !< (num_total)
+    if (size(self%damping) > 0) then
+      call multiply(self%matrix, self%damping, v, force)
+    else
+      force = 0.0_rk
+    end if
+  end subroutine find_damping_force
+
+  !> Adds a multiple of C to the values of a matrix.
+  subroutine add_damping(self, factor, values)
+    class(dam_system), intent(in) :: self
+    real(rk), intent(in) :: factor
+    real(rk), intent(inout) :: values(:)
+    if (size(self%damping) > 0) values = values + factor*self%damping
+  end subroutine add_damping
 
   !> Numbering, pattern, stiffness of solids and guests, joints.
   subroutine build_structure(model, plan, system, costs, error)

@@ -79,7 +79,7 @@ contains
     self%c = 2.0_rk/(gamma*dt)
     associate (system => self%system, c => self%c)
       self%solids%values = system%stiffness + c**2*system%mass
-      if (size(system%damping) > 0) self%solids%values = self%solids%values + c*system%damping
+      call system%add_damping(c, self%solids%values)
     end associate
     self%solids%matrix%is_elastic = .true.
     call results%costs%start('iterate', 'structure', 'solver')
@@ -257,9 +257,7 @@ contains
     type(motion), intent(inout) :: moving
     call multiply(system%mass_pattern, system%mass_entries, moving%v, moving%momentum)
     call multiply(system%mass_pattern, system%mass_entries, moving%a, moving%inertia)
-    if (size(system%damping) > 0) then
-      call multiply(system%matrix, system%damping, moving%v, moving%viscous)
-    end if
+    call system%find_damping_force(moving%v, moving%viscous)
   end subroutine find_rate_forces
 
   !> Change of the kinetic energy in the second part beyond du . M a_mean. In the first part the two
