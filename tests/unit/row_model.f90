@@ -96,6 +96,7 @@ contains
     integer :: n, p
     n = size(slave)
     joint%name = 'GROUND'
+    joint%kind = 'joint'
     allocate (joint%law, source=law)
     call list_faces(reshape(slave, [1, n]), &
                     reshape([(model%mesh%num_nodes + p, p=1, n)], [1, n]), &
@@ -117,6 +118,7 @@ contains
     type(gravity_load) :: weight
     integer :: e
     weight%name = 'GRAVITY'
+    weight%kind = 'gravity'
     weight%elements = [(e, e=1, model%mesh%num_elements)]
     weight%acceleration = [0.0_rk, 0.0_rk, -g]
     allocate (slot%item, source=weight)
@@ -130,6 +132,7 @@ contains
     type(load_slot) :: slot
     type(base_motion) :: motion
     motion%name = 'BASE'
+    motion%kind = 'base motion'
     motion%dof = 1
     allocate (slot%item, source=motion)
     model%loads = [model%loads, slot]

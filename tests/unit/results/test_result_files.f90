@@ -95,6 +95,7 @@ contains
     allocate (model%joints(1), model%ties(0), model%guests(0))
     associate (item => model%joints(1))
       item%name = 'MIDDLE'
+      item%kind = 'joint'
       allocate (item%law, source=contraction_law(name='LAW', gap=1.0e-4_rk))
       call list_faces(reshape([9, 10, 18, 17], [1, 4]), reshape([7, 8, 16, 15], [1, 4]), &
                       reshape([1.0_rk], [1, 4], pad=[1.0_rk]), item)

@@ -115,6 +115,7 @@ contains
     allocate (model%amplitudes(0), model%initial_values(0), model%steps(0))
     do i = 1, size(model%joints)
       model%joints(i)%name = 'J'
+      model%joints(i)%kind = 'joint'
       allocate (model%joints(i)%law, source=contraction_law(normal_stiffness=3.0e9_rk, &
                                                             tangent_stiffness=4.0e10_rk, &
                                                             friction=0.6_rk, penetration=allowed))
