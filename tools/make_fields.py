@@ -54,7 +54,7 @@ def table(pages: list[dict[str, str]]) -> str:
         text += f"\n## {page['field']}: {page['meaning']}\n"
         if "remark" in page:
             text += textwrap.fill(page["remark"], WIDTH, break_on_hyphens=False) + "\n\n"
-        text += f"- asked for by: {page['asked for by']}\n- written to: {page['written to']}\n"
+        text += f"- requested by: {page['requested by']}\n- written to: {page['written to']}\n"
     return text
 
 

@@ -1,6 +1,6 @@
 !> The listener that writes all results of a run into one folder.
 !>
-!> Order of use: `open`, then the solvers call it, then `finish`, also after a failure.
+!> Order of use: `open`, the calls of the solvers, `finish` (also after a failure).
 module result_files
   use kinds, only: rk
   use errors, only: error_type
@@ -27,11 +27,11 @@ module result_files
   type, extends(listener) :: result_folder
     type(run_summary) :: summary
     type(run_record) :: record
-    character(:), allocatable :: stem !< folder and job's name
+    character(:), allocatable :: stem !< folder and name of the job
     logical, private :: is_open = .false.
     logical, private :: has_unwritten_envelopes = .false.
-    real(rk), private :: summarised_at = 0.0_rk !< by the wall clock [s]
-    integer, private :: num_warnings_said = 0
+    real(rk), private :: summarised_at = 0.0_rk !< wall clock [s]
+    integer, private :: num_warnings_printed = 0
     type(writer_item), allocatable, private :: writers(:)
   contains
     procedure :: open => open_results
@@ -39,11 +39,11 @@ module result_files
     procedure :: modes_found
     procedure :: finish
     procedure, private :: open_writers
-    procedure, private :: enter_step
+    procedure, private :: start_step
     procedure, private :: write_increment
     procedure, private :: write_last
     procedure, private :: write_envelopes
-    procedure, private :: say_warnings
+    procedure, private :: print_warnings
     procedure, private :: summarise
   end type result_folder
 
@@ -53,7 +53,7 @@ contains
   subroutine open_results(self, model, folder, remarks, error)
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: model
-    character(*), intent(in) :: folder !< made when it is not there
+    character(*), intent(in) :: folder !< made unless it exists
     type(diagnostic_list), intent(in) :: remarks
     type(error_type), allocatable, intent(out) :: error
     call self%costs%start('open', 'results', 'output')
@@ -71,7 +71,7 @@ contains
     if (self%is_open) call self%summarise(model, error)
   end subroutine open_results
 
-  !> One writer after the other.
+  !> Opens one writer after the other.
   subroutine open_writers(self, model, error)
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -84,13 +84,13 @@ contains
     end do
   end subroutine open_writers
 
-  !> An increment has converged: maxima, files, log.
+  !> Records, writes and logs a converged increment.
   subroutine increment_done(self, model, now, error)
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
-    if (now%step /= self%record%step) call self%enter_step(model, now%step)
+    if (now%step /= self%record%step) call self%start_step(model, now%step)
     call self%costs%start('recover', 'envelopes', 'output')
     call self%record%note(model, now)
     self%has_unwritten_envelopes = size(self%record%active) > 0
@@ -102,14 +102,14 @@ contains
     if (allocated(error)) return
     call self%costs%start('write', 'log', 'output')
     if (now%increment > 0 .or. starts_analysis(now)) call self%log%progress(line_of(now))
-    call self%say_warnings()
+    call self%print_warnings()
     call self%costs%stop()
     if (wall_clock() - self%summarised_at > seconds_between_summaries) then
       call self%summarise(model, error)
     end if
   end subroutine increment_done
 
-  !> Every writer in turn, each with its line in the ledger.
+  !> Calls every writer, each with its line in the ledger.
   subroutine write_increment(self, model, now, error)
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -127,7 +127,7 @@ contains
     end do
   end subroutine write_increment
 
-  !> The run stops within a step: what was not due at its last increment is written now.
+  !> Writes the last increment for requests that have not written it, when a run stops in a step.
   subroutine write_last(self, model, now, error)
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -148,7 +148,7 @@ contains
     type(vibration_mode), intent(in) :: modes(:)
     type(error_type), allocatable, intent(out) :: error
     integer :: i, w
-    call self%enter_step(model, step)
+    call self%start_step(model, step)
     call self%summary%note_modes(modes)
     do i = 1, size(modes)
       call self%log%say('step '//as_text(step)//'  mode '//as_text(i)//'  '// &
@@ -165,7 +165,7 @@ contains
   end subroutine modes_found
 
   !> A step begins.
-  subroutine enter_step(self, model, step)
+  subroutine start_step(self, model, step)
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: model
     integer, intent(in) :: step
@@ -173,9 +173,9 @@ contains
     call self%record%begin_step(model, step)
     call self%summary%begin_step(model, step)
     call self%costs%stop()
-  end subroutine enter_step
+  end subroutine start_step
 
-  !> The envelopes of the step, once.
+  !> Writes the envelopes of the step, once.
   subroutine write_envelopes(self, model, error)
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -192,7 +192,7 @@ contains
     end do
   end subroutine write_envelopes
 
-  !> The run has ended. Everything that can still be written is; the first failure is reported.
+  !> Completes all files that can be written at the end of a run; returns the first failure.
   subroutine finish(self, model, now, status, message, error)
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -217,7 +217,7 @@ contains
       call keep_first(error, failure)
       call self%costs%stop()
     end do
-    call self%say_warnings()
+    call self%print_warnings()
     call self%summarise(model, failure)
     call keep_first(error, failure)
   end subroutine finish
@@ -228,15 +228,15 @@ contains
     if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
   end subroutine keep_first
 
-  !> Says the warnings of the run that were not said yet.
-  subroutine say_warnings(self)
+  !> Prints the new warnings of the run.
+  subroutine print_warnings(self)
     class(result_folder), intent(inout) :: self
     integer :: i
-    do i = self%num_warnings_said + 1, size(self%record%warnings)
+    do i = self%num_warnings_printed + 1, size(self%record%warnings)
       call self%log%say('warning: '//self%record%warnings(i)%text)
     end do
-    self%num_warnings_said = size(self%record%warnings)
-  end subroutine say_warnings
+    self%num_warnings_printed = size(self%record%warnings)
+  end subroutine print_warnings
 
   !> Writes job.json.
   subroutine summarise(self, model, error)

@@ -22,7 +22,7 @@ def test_every_field_has_unit_and_meaning(pages: list[dict[str, str]]) -> None:
     assert len(pages) >= 19
     for page in pages:
         assert page["unit"] and page["meaning"] and page["components"] and page["computed by"]
-        assert page["asked for by"] and page["written to"], page["field"]
+        assert page["requested by"] and page["written to"], page["field"]
 
 
 def test_keywords_take_the_fields_of_the_table(program_path: Path, pages) -> None:
@@ -33,7 +33,7 @@ def test_keywords_take_the_fields_of_the_table(program_path: Path, pages) -> Non
         )
         data = " ".join(done.stdout.split("Data lines")[1].split("Example")[0].split())
         offered = data.split("one of ")[1].split(", ")
-        expected = [p["field"] for p in pages if f"*{keyword}" in p["asked for by"].split(", ")]
+        expected = [p["field"] for p in pages if f"*{keyword}" in p["requested by"].split(", ")]
         assert offered == expected
 
 

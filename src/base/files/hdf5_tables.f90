@@ -16,7 +16,7 @@ module hdf5_tables
   contains
     procedure :: start => start_rows
     procedure :: add => add_table_row
-    procedure :: bring_out
+    procedure :: write_rows
   end type growing_table
 
 contains
@@ -38,18 +38,18 @@ contains
     class(growing_table), intent(inout) :: self
     type(hdf5_file), intent(inout) :: file
     real(rk), intent(in) :: row(:)
-    if (self%num_kept == capacity) call self%bring_out(file)
+    if (self%num_kept == capacity) call self%write_rows(file)
     self%num_kept = self%num_kept + 1
     self%rows(:, self%num_kept) = row
   end subroutine add_table_row
 
   !> Moves the rows from memory to the file; does nothing for a table that was not started.
-  subroutine bring_out(self, file)
+  subroutine write_rows(self, file)
     class(growing_table), intent(inout) :: self
     type(hdf5_file), intent(inout) :: file
     if (.not. allocated(self%path)) return
     call file%extend_table(self%path, self%rows(:, :self%num_kept), self%num_written)
     self%num_written = self%num_written + self%num_kept
     self%num_kept = 0
-  end subroutine bring_out
+  end subroutine write_rows
 end module hdf5_tables

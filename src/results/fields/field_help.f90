@@ -40,11 +40,11 @@ contains
     line = first//second//third//meaning//nl
   end function line_of
 
-  !> All about a field.
+  !> Description of a field.
   subroutine field_page(name, text, is_known)
     character(*), intent(in) :: name !< in any case
     character(:), allocatable, intent(out) :: text !< lines with new_line between them
-    logical, intent(out) :: is_known !< else the text says that the field is not known
+    logical, intent(out) :: is_known !< false: the text is an error message
     type(result_field), allocatable :: table(:)
     character(longest_name), allocatable :: names(:)
     character(:), allocatable :: wanted, nearest
@@ -73,7 +73,7 @@ contains
     text = entry_of('field', item%name)//entry_of('meaning', item%meaning)// &
            entry_of('components', component_names(item))// &
            entry_of('where', trim(place_names(item%place)))//entry_of('unit', item%unit)// &
-           entry_of('computed by', item%provider)//entry_of('asked for by', keywords(item))// &
+           entry_of('computed by', item%provider)//entry_of('requested by', keywords(item))// &
            entry_of('written to', files_of(item))
     if (len(item%remark) > 0) text = text//entry_of('remark', item%remark)
     text = text(:len(text) - 1)
@@ -99,7 +99,7 @@ contains
     end if
   end function component_names
 
-  !> Keywords that may name the field, with those that take the same fields.
+  !> Keywords that may name the field, synonyms included.
   pure function keywords(item) result(text)
     type(result_field), intent(in) :: item
     character(:), allocatable :: text
@@ -112,7 +112,7 @@ contains
     integer :: i
     text = ''
     do i = 1, size(names)
-      if (item%may_stand_in(trim(as(i)))) text = text//', *'//trim(names(i))
+      if (item%is_allowed_in(trim(as(i)))) text = text//', *'//trim(names(i))
     end do
     if (len(text) == 0) text = ', written with the other fields of joints'
     text = text(3:)
@@ -123,19 +123,19 @@ contains
     type(result_field), intent(in) :: item
     character(:), allocatable :: text
     text = ''
-    if (item%may_stand_in('NODE PRINT')) text = text//', job_node_NSET.csv'
-    if (item%may_stand_in('EL PRINT')) text = text//', job_el_ELSET.csv'
-    if (item%may_stand_in('JOINT PRINT')) text = text//', job_joint_NAME.csv'
+    if (item%is_allowed_in('NODE PRINT')) text = text//', job_node_NSET.csv'
+    if (item%is_allowed_in('EL PRINT')) text = text//', job_el_ELSET.csv'
+    if (item%is_allowed_in('JOINT PRINT')) text = text//', job_joint_NAME.csv'
     if (is_in_series(item)) text = text//', job.pvd'
     if (associated(item%of_joint)) text = text//', job_joints.pvd'
     if (is_in_series(item) .or. item%place == at_joints) text = text//', job.h5'
-    if (item%may_stand_in('ENVELOPE')) text = text//', envelopes'
+    if (item%is_allowed_in('ENVELOPE')) text = text//', envelopes'
     text = text(3:)
   end function files_of
 
-  !> May a deck ask for the field in the VTK series?
+  !> May a deck request the field in the VTK series?
   pure logical function is_in_series(item)
     type(result_field), intent(in) :: item
-    is_in_series = item%may_stand_in('NODE FILE') .or. item%may_stand_in('EL FILE')
+    is_in_series = item%is_allowed_in('NODE FILE') .or. item%is_allowed_in('EL FILE')
   end function is_in_series
 end module field_help

@@ -1,7 +1,7 @@
-!> The one table of fields: keywords, messages, files of results, `keyway --fields` and
-!> docs/fields.md are made from it. A new field is one row here and the procedure that gives it.
+!> The one table of fields. Keywords, messages, result files, `keyway --fields` and docs/fields.md
+!> are made from it. A new field is one row here and the procedure that computes it.
 !>
-!> The order is that of the columns and arrays of files which hold several fields.
+!> Files with several fields keep the order of the table.
 module field_table
   use field_type, only: result_field, at_nodes, at_points, at_joints, on_faces, &
                         by_solver, by_recovery, by_law, by_joint, scalar, vector, tensor, counted
@@ -12,7 +12,7 @@ module field_table
                           principals_of_solids, largest_on_nodes, smallest_on_nodes, law_width, &
                           law_on_nodes, law_of_solids, law_of_block
   use joint_fields, only: has_joints, opening_on_nodes, opening_of_joint, slip_of_joint, &
-                          traction_of_joint, state_of_joint, used_reach_of_joint, water_of_joint
+                          traction_of_joint, state_of_joint, used_slip_of_joint, water_of_joint
   use json_writer, only: lower
   implicit none
   private
@@ -25,39 +25,39 @@ contains
   !> All fields.
   subroutine list_fields(table)
     type(result_field), allocatable, intent(out) :: table(:)
-    type(result_field) :: room(most_fields)
+    type(result_field) :: rows(most_fields)
     integer :: last, i
     last = 0
-    call list_motion(room, last)
-    call list_stresses(room, last)
-    call list_fields_of_joints(room, last)
-    call list_fields_of_laws(room, last)
+    call list_motion(rows, last)
+    call list_stresses(rows, last)
+    call list_fields_of_joints(rows, last)
+    call list_fields_of_laws(rows, last)
     allocate (table(last))
     do i = 1, last
-      table(i) = room(i)
+      table(i) = rows(i)
     end do
   end subroutine list_fields
 
   !> Fields on nodes.
-  subroutine list_motion(room, last)
-    type(result_field), intent(inout) :: room(:)
+  subroutine list_motion(rows, last)
+    type(result_field), intent(inout) :: rows(:)
     integer, intent(inout) :: last !< number of fields so far
-    call enter(room, last, result_field( &
+    call enter(rows, last, result_field( &
                name='U', meaning='displacement', endings=vector, unit='m', place=at_nodes, &
                remark='Relative to the base where the base moves. The envelope keeps the length.', &
                provider=by_solver, requests='NODE PRINT | NODE FILE | ENVELOPE', &
                on_nodes=displacement))
-    call enter(room, last, result_field( &
+    call enter(rows, last, result_field( &
                name='V', meaning='velocity', endings=vector, unit='m/s', place=at_nodes, &
                remark='Relative to the base. Zero in a static step.', &
                provider=by_solver, requests='NODE PRINT | NODE FILE', on_nodes=velocity, &
                is_there=has_motion))
-    call enter(room, last, result_field( &
+    call enter(rows, last, result_field( &
                name='A', meaning='acceleration', endings=vector, unit='m/s2', place=at_nodes, &
                remark='Relative to the base. Zero in a static step.', &
                provider=by_solver, requests='NODE PRINT | NODE FILE', on_nodes=acceleration, &
                is_there=has_motion))
-    call enter(room, last, result_field( &
+    call enter(rows, last, result_field( &
                name='RF', meaning='reaction', endings=vector, unit='N', place=at_nodes, &
                remark='Zero where no degree of freedom is prescribed.', &
                provider=by_solver, requests='NODE PRINT | NODE FILE', on_nodes=reaction, &
@@ -65,29 +65,29 @@ contains
   end subroutine list_motion
 
   !> Strains and stresses of solids.
-  subroutine list_stresses(room, last)
-    type(result_field), intent(inout) :: room(:)
+  subroutine list_stresses(rows, last)
+    type(result_field), intent(inout) :: rows(:)
     integer, intent(inout) :: last !< number of fields so far
-    call enter(room, last, result_field( &
+    call enter(rows, last, result_field( &
                name='S', meaning='stress', endings=tensor, unit='Pa', place=at_points, &
                remark='Tension is positive.', &
                provider=by_recovery, requests='EL PRINT | EL FILE', on_nodes=stress_on_nodes, &
                of_solids=stress_of_solids, of_block=stress_of_block))
-    call enter(room, last, result_field( &
+    call enter(rows, last, result_field( &
                name='E', meaning='strain', endings=tensor, unit='1', place=at_points, &
                remark='Shear components are engineering strains.', &
                provider=by_recovery, requests='EL PRINT | EL FILE', on_nodes=strain_on_nodes, &
                of_solids=strain_of_solids, of_block=strain_of_block))
-    call enter(room, last, result_field( &
+    call enter(rows, last, result_field( &
                name='SP', meaning='principal stresses', endings=vector, unit='Pa', &
-               place=at_points, remark='SP1 is the largest. On nodes of the mean tensor.', &
+               place=at_points, remark='SP1 is the largest. On nodes those of the mean tensor.', &
                provider=by_recovery, requests='EL PRINT | EL FILE', &
                on_nodes=principals_on_nodes, of_solids=principals_of_solids))
-    call enter(room, last, result_field( &
+    call enter(rows, last, result_field( &
                name='S1', meaning='largest tension', endings=scalar, unit='Pa', place=at_nodes, &
                remark='Largest principal stress of the mean tensor at a node.', &
                provider=by_recovery, requests='ENVELOPE', on_nodes=largest_on_nodes))
-    call enter(room, last, result_field( &
+    call enter(rows, last, result_field( &
                name='S3', meaning='largest compression', endings=scalar, unit='Pa', &
                place=at_nodes, wants_smallest=.true., &
                remark='Smallest principal stress of the mean tensor at a node.', &
@@ -95,79 +95,79 @@ contains
   end subroutine list_stresses
 
   !> Fields of joints.
-  subroutine list_fields_of_joints(room, last)
-    type(result_field), intent(inout) :: room(:)
+  subroutine list_fields_of_joints(rows, last)
+    type(result_field), intent(inout) :: rows(:)
     integer, intent(inout) :: last !< number of fields so far
-    call enter(room, last, result_field( &
+    call enter(rows, last, result_field( &
                name='OPENING', meaning='distance between the faces of joints', endings=scalar, &
                unit='m', place=at_joints, &
                remark='Normal relative displacement with the GAP added, '// &
-               'negative while the joint is pressed together. On nodes the mean of the points '// &
-               'next to them. The envelope keeps 0 where a joint is closed.', &
+               'negative while the joint is compressed. On nodes the mean of the adjacent '// &
+               'points. The envelope keeps 0 where a joint is closed.', &
                provider=by_joint, requests='JOINT PRINT | NODE FILE | EL FILE | ENVELOPE', &
                on_nodes=opening_on_nodes, of_joint=opening_of_joint, is_there=has_joints))
-    call enter(room, last, result_field( &
+    call enter(rows, last, result_field( &
                name='SLIP', meaning='irrecoverable sliding of joints', endings='1,2', unit='m', &
                place=at_joints, remark='SLIP1 is horizontal, SLIP2 up or down the joint.', &
                provider=by_joint, requests='JOINT PRINT', of_joint=slip_of_joint))
-    call enter(room, last, result_field( &
+    call enter(rows, last, result_field( &
                name='TRACTION', meaning='traction of joints', stem='T', endings='N,1,2', &
                unit='Pa', place=at_joints, &
                remark='Normal, and along the axes of the slip. Tension is '// &
                'positive.', provider=by_joint, requests='JOINT PRINT', &
                of_joint=traction_of_joint))
-    call enter(room, last, result_field( &
+    call enter(rows, last, result_field( &
                name='STATE', meaning='contact of joints', endings=scalar, unit='1', &
                is_integer=.true., place=at_joints, &
                remark='0 open, 1 stick, 2 slip, 3 bonded; on drawn faces -1 '// &
                'where both faces share a node.', &
                provider=by_joint, requests='JOINT PRINT', of_joint=state_of_joint))
-    call enter(room, last, result_field( &
-               name='REACH_USED', meaning='used part of the admissible slip', endings=scalar, &
-               unit='1', place=on_faces, remark='Relative sliding over the slip that small '// &
-               'sliding allows; 0 for JOINT8.', &
-               provider=by_joint, requests='', of_joint=used_reach_of_joint))
-    call enter(room, last, result_field( &
-               name='WATER', meaning='pressure of water in joints', endings=scalar, unit='Pa', &
-               place=at_joints, remark='Of joints with UPLIFT (*JOINT LAW).', &
+    call enter(rows, last, result_field( &
+               name='REACH_USED', meaning='used fraction of the admissible slip', endings=scalar, &
+               unit='1', place=on_faces, remark='Tangential relative displacement '// &
+               'divided by the admissible slip; 0 for JOINT8.', &
+               provider=by_joint, requests='', of_joint=used_slip_of_joint))
+    call enter(rows, last, result_field( &
+               name='WATER', meaning='water pressure in joints', endings=scalar, unit='Pa', &
+               place=at_joints, remark='Only in joints with UPLIFT (*JOINT LAW).', &
                provider='uplift', requests='', of_joint=water_of_joint))
   end subroutine list_fields_of_joints
 
-  !> Fields that the laws of inelastic solids keep.
-  subroutine list_fields_of_laws(room, last)
-    type(result_field), intent(inout) :: room(:)
+  !> Fields of the laws of inelastic solids.
+  subroutine list_fields_of_laws(rows, last)
+    type(result_field), intent(inout) :: rows(:)
     integer, intent(inout) :: last !< number of fields so far
-    call enter(room, last, result_field( &
+    call enter(rows, last, result_field( &
                name='PE', meaning='plastic strain', endings=tensor, unit='1', place=at_points, &
                remark='Of concrete. Shear components are engineering strains.', &
                provider=by_law, requests='EL PRINT | EL FILE', count=law_width, &
                on_nodes=law_on_nodes, of_solids=law_of_solids, of_block=law_of_block))
-    call enter(room, last, result_field( &
+    call enter(rows, last, result_field( &
                name='DAMAGET', meaning='damage in tension', endings=scalar, unit='1', &
                place=at_points, has_means=.true., remark='Of concrete, 0 to 1.', &
                provider=by_law, requests='EL PRINT | EL FILE | ENVELOPE', count=law_width, &
                on_nodes=law_on_nodes, of_solids=law_of_solids, of_block=law_of_block))
-    call enter(room, last, result_field( &
+    call enter(rows, last, result_field( &
                name='DAMAGEC', meaning='damage in compression', endings=scalar, unit='1', &
                place=at_points, has_means=.true., remark='Of concrete, 0 to 1.', &
                provider=by_law, requests='EL PRINT | EL FILE | ENVELOPE', count=law_width, &
                on_nodes=law_on_nodes, of_solids=law_of_solids, of_block=law_of_block))
-    call enter(room, last, result_field( &
+    call enter(rows, last, result_field( &
                name='SDV', meaning='state variables of the material', endings=counted, unit='-', &
-               place=at_points, remark='All of a UMAT (*DEPVAR), those of concrete as listed '// &
-               'with its law; as many as the material with most of them has.', &
+               place=at_points, remark='All of a UMAT (*DEPVAR); those of concrete are listed '// &
+               'with its law. The material with most variables gives their number.', &
                provider=by_law, requests='EL PRINT | EL FILE', count=law_width, &
                on_nodes=law_on_nodes, of_solids=law_of_solids, of_block=law_of_block))
   end subroutine list_fields_of_laws
 
-  !> Adds a row; names of components begin with the name of the field unless the row has a stem.
-  subroutine enter(room, last, row)
-    type(result_field), intent(inout) :: room(:)
+  !> Adds a row. Its stem is the name of the field unless the row has its own.
+  subroutine enter(rows, last, row)
+    type(result_field), intent(inout) :: rows(:)
     integer, intent(inout) :: last !< number of fields so far
     type(result_field), intent(in) :: row
     last = last + 1
-    room(last) = row
-    if (.not. allocated(row%stem)) room(last)%stem = row%name
+    rows(last) = row
+    if (.not. allocated(row%stem)) rows(last)%stem = row%name
   end subroutine enter
 
   !> Position of a field in the table, 0 where it is unknown.
@@ -179,20 +179,20 @@ contains
     end do
   end function find_field
 
-  !> Words that a data line of a keyword may hold: fields, in tables of joints also components.
+  !> Words allowed in a data line of a keyword: fields, for *JOINT PRINT also components.
   function choices_of(keyword) result(choices)
     character(*), intent(in) :: keyword
-    character(:), allocatable :: choices !< ' | ' between
+    character(:), allocatable :: choices !< separated by ' | '
     type(result_field), allocatable :: table(:)
     integer :: i, k
     call list_fields(table)
     choices = ''
     do i = 1, size(table)
-      if (table(i)%may_stand_in(keyword)) choices = choices//' | '//table(i)%name
+      if (table(i)%is_allowed_in(keyword)) choices = choices//' | '//table(i)%name
     end do
     do i = 1, size(table)
       if (table(i)%place /= at_joints .or. table(i)%endings == scalar) cycle
-      if (.not. table(i)%may_stand_in(keyword)) cycle
+      if (.not. table(i)%is_allowed_in(keyword)) cycle
       do k = 1, table(i)%num_endings()
         choices = choices//' | '//table(i)%component(k)
       end do
@@ -209,13 +209,13 @@ contains
     call list_fields(table)
     text = ''
     do i = 1, size(table)
-      if (.not. table(i)%may_stand_in(keyword)) cycle
+      if (.not. table(i)%is_allowed_in(keyword)) cycle
       text = text//', '//table(i)%name//' '//table(i)%meaning
     end do
     text = text(3:)
   end function fields_in_words
 
-  !> 'opening [m], slip1, slip2 [m]': the columns of *JOINT PRINT behind the place of the point.
+  !> 'opening [m], slip1, slip2 [m]': the columns of *JOINT PRINT after the coordinates.
   function columns_of_joints() result(text)
     character(:), allocatable :: text
     type(result_field), allocatable :: table(:)
@@ -223,7 +223,7 @@ contains
     call list_fields(table)
     text = ''
     do i = 1, size(table)
-      if (.not. table(i)%may_stand_in('JOINT PRINT')) cycle
+      if (.not. table(i)%is_allowed_in('JOINT PRINT')) cycle
       do k = 1, table(i)%num_endings()
         text = text//', '//lower(table(i)%component(k))
       end do

@@ -13,15 +13,15 @@ module field_type
   public :: scalar, vector, tensor, counted
   public :: values_on_nodes, values_at_points, values_of_block, values_of_joint, width_of, presence
 
-  !> Where the values of a field live.
+  !> Where the values of a field are defined.
   integer, parameter :: at_nodes = 1
-  integer, parameter :: at_points = 2 !< integration points of solids; means of them on nodes
+  integer, parameter :: at_points = 2 !< integration points of solids; their means on nodes
   integer, parameter :: at_joints = 3 !< points of joints
-  integer, parameter :: on_faces = 4 !< points of joints, drawn on the faces of joints alone
+  integer, parameter :: on_faces = 4 !< points of joints, only on drawn faces
   character(12), parameter :: place_names(4) = ['nodes       ', 'solid points', 'joint points', &
                                                 'joint faces ']
 
-  !> Who computes a field.
+  !> Part of the program that computes a field.
   character(*), parameter :: by_solver = 'equations of motion'
   character(*), parameter :: by_recovery = 'stress recovery'
   character(*), parameter :: by_law = 'material law'
@@ -35,18 +35,18 @@ module field_type
 
   type :: result_field
     character(:), allocatable :: name !< upper case; at most 8 letters where a deck may name it
-    character(:), allocatable :: meaning !< a noun and what belongs to it
-    character(:), allocatable :: remark !< sentences; '' where the meaning says all
+    character(:), allocatable :: meaning !< a noun phrase
+    character(:), allocatable :: remark !< sentences; '' for none
     character(:), allocatable :: unit !< in SI; '1' for a pure number
-    character(:), allocatable :: provider !< who computes it
-    character(:), allocatable :: endings !< of the names of components, commas between
-    character(:), allocatable :: stem !< that the endings follow
-    character(:), allocatable :: requests !< keywords that may name it, ' | ' between
+    character(:), allocatable :: provider !< part of the program that computes the field
+    character(:), allocatable :: endings !< of the names of components, separated by commas
+    character(:), allocatable :: stem !< before the endings
+    character(:), allocatable :: requests !< keywords that may name the field, separated by ' | '
     integer :: place = at_nodes
-    logical :: is_integer = .false. !< whole numbers, of which no mean is taken
-    logical :: has_means = .false. !< also written as mean over each element
+    logical :: is_integer = .false. !< whole numbers: no mean is taken
+    logical :: has_means = .false. !< also written as the mean over each element
     logical :: wants_smallest = .false. !< the envelope keeps the smallest value
-    procedure(width_of), pointer :: count => null() !< null: as many as there are endings
+    procedure(width_of), pointer :: count => null() !< null: one for each ending
     procedure(presence), pointer :: is_there => null() !< null: whenever the model has the field
     procedure(values_on_nodes), pointer :: on_nodes => null()
     procedure(values_at_points), pointer :: of_solids => null()
@@ -56,7 +56,7 @@ module field_type
     procedure :: width
     procedure :: num_endings
     procedure :: is_available
-    procedure :: may_stand_in
+    procedure :: is_allowed_in
     procedure :: component
     procedure :: components
     procedure :: columns
@@ -157,11 +157,11 @@ contains
   end function is_available
 
   !> May a card of this keyword name the field?
-  pure logical function may_stand_in(self, keyword)
+  pure logical function is_allowed_in(self, keyword)
     class(result_field), intent(in) :: self
     character(*), intent(in) :: keyword !< 'NODE PRINT', ...
-    may_stand_in = index('| '//self%requests//' |', '| '//keyword//' |') > 0
-  end function may_stand_in
+    is_allowed_in = index('| '//self%requests//' |', '| '//keyword//' |') > 0
+  end function is_allowed_in
 
   !> Name of a component: 'U1', 'S11', 'TN'.
   pure function component(self, number) result(name)
@@ -181,27 +181,27 @@ contains
     name = self%stem//self%endings(first:last)
   end function component
 
-  !> Names of the components with commas between; '' for one.
+  !> Names of the components, separated by commas; '' for a scalar.
   pure function components(self, width) result(list)
     class(result_field), intent(in) :: self
-    integer, intent(in) :: width !< how many
+    integer, intent(in) :: width !< number of components
     character(:), allocatable :: list
     list = ''
     if (width > 1) list = joined(self, width)
   end function components
 
-  !> Names of the columns of a table, commas between; '' where the field has no component.
+  !> Names of the columns of a table, separated by commas; '' where the field has no component.
   pure function columns(self, width) result(list)
     class(result_field), intent(in) :: self
-    integer, intent(in) :: width !< how many
+    integer, intent(in) :: width !< number of components
     character(:), allocatable :: list
     list = joined(self, width)
   end function columns
 
-  !> Names of components with commas between.
+  !> Names of components, separated by commas.
   pure function joined(item, width) result(list)
     class(result_field), intent(in) :: item
-    integer, intent(in) :: width !< how many
+    integer, intent(in) :: width !< number of components
     character(:), allocatable :: list
     integer :: i
     list = ''

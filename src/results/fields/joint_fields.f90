@@ -10,7 +10,7 @@ module joint_fields
   private
   public :: has_joints, opening_on_nodes
   public :: opening_of_joint, slip_of_joint, traction_of_joint, state_of_joint
-  public :: used_reach_of_joint, water_of_joint
+  public :: used_slip_of_joint, water_of_joint
 
 contains
 
@@ -72,21 +72,21 @@ contains
     values = one_row(real(now%joints(number)%status, rk))
   end subroutine state_of_joint
 
-  !> REACH_USED; 0 where nothing limits the slip.
-  subroutine used_reach_of_joint(self, model, now, number, values)
+  !> REACH_USED: sliding over admissible slip; 0 where the slip has no limit.
+  subroutine used_slip_of_joint(self, model, now, number, values)
     class(result_field), intent(in) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
     integer, intent(in) :: number
     real(rk), allocatable, intent(out) :: values(:, :) !< (1, points)
     integer :: p
-    associate (jump => now%joints(number)%jump, reach => model%joints(number)%admissible_slip)
-      allocate (values(1, size(reach)), source=0.0_rk)
-      do p = 1, size(reach)
-        if (reach(p) < huge(1.0_rk)) values(1, p) = hypot(jump(2, p), jump(3, p))/reach(p)
+    associate (jump => now%joints(number)%jump, limit => model%joints(number)%admissible_slip)
+      allocate (values(1, size(limit)), source=0.0_rk)
+      do p = 1, size(limit)
+        if (limit(p) < huge(1.0_rk)) values(1, p) = hypot(jump(2, p), jump(3, p))/limit(p)
       end do
     end associate
-  end subroutine used_reach_of_joint
+  end subroutine used_slip_of_joint
 
   !> WATER; joints without uplift have none.
   subroutine water_of_joint(self, model, now, number, values)

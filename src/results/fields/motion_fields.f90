@@ -1,4 +1,4 @@
-!> Fields that the equations of motion give on the nodes.
+!> Fields of the equations of motion, on the nodes.
 module motion_fields
   use kinds, only: rk
   use problem_definition, only: problem
@@ -60,7 +60,7 @@ contains
     has_motion = allocated(now%v) .and. allocated(now%a)
   end function has_motion
 
-  !> The solver has formed the reactions.
+  !> True when the solver has computed the reactions.
   logical function has_reactions(self, model, now)
     class(result_field), intent(in) :: self
     type(problem), intent(in) :: model

@@ -1,5 +1,5 @@
-!> Which outer faces of a body lie on another one: under JOINT8 elements, joints on surfaces, ties
-!> and interfaces. They are no free surface, although no element shares them.
+!> Outer faces of solids that are covered: by JOINT8 elements, joints on surfaces, ties and
+!> interfaces. These faces are not a free surface, although no second element shares them.
 module covered_faces
   use kinds, only: rk
   use dam_mesh, only: fe_mesh, surface
@@ -12,14 +12,14 @@ module covered_faces
   private
   public :: mark_joined
 
-  !> Cosine between a face and the normal of the joint at its nodes: less is another face of the
-  !> same solid (a key that is one element thick has all its nodes in the joint). At the corner of
-  !> three faces the mean normal makes 1/sqrt(3) with each.
+  !> Least cosine between the normal of a covered face and the normal of the joint at its nodes. A
+  !> key of one element has all its nodes in the joint, but not all its faces. At the corner of
+  !> three faces the cosine of the mean normal with each is 1/sqrt(3).
   real(rk), parameter :: least_cosine = 0.5_rk
 
 contains
 
-  !> Tells which faces of a skin are covered, as a whole or in part.
+  !> Marks the faces of a skin that are covered, fully or in part.
   subroutine mark_joined(model, skin, is_covered)
     type(problem), intent(in) :: model
     type(surface), intent(in) :: skin
@@ -37,21 +37,21 @@ contains
     end do
   end subroutine mark_joined
 
-  !> Faces whose nodes all belong to a joint that lies along them.
+  !> Marks the faces along a joint whose nodes all belong to the joint.
   subroutine mark_joint(model, skin, number, is_covered)
     type(problem), intent(in) :: model
     type(surface), intent(in) :: skin
     integer, intent(in) :: number !< of the joint
     logical, intent(inout) :: is_covered(:) !< (faces of the skin)
-    real(rk) :: normal(3, model%mesh%num_nodes), looks(3), along(4)
+    real(rk) :: normal(3, model%mesh%num_nodes), outward(3), along(4)
     integer :: i, nodes(4)
     call add_normals(model%joints(number), normal)
     do i = 1, size(skin%element)
       nodes = face_nodes(model%mesh, skin%element(i), skin%face(i))
-      looks = face_vector(model%mesh%x(:, nodes))
-      along = abs(matmul(looks, normal(:, nodes)))
+      outward = face_vector(model%mesh%x(:, nodes))
+      along = abs(matmul(outward, normal(:, nodes)))
       if (any(along <= 0.0_rk)) cycle
-      if (all(along >= least_cosine*norm2(looks)*norm2(normal(:, nodes), dim=1))) then
+      if (all(along >= least_cosine*norm2(outward)*norm2(normal(:, nodes), dim=1))) then
         is_covered(i) = .true.
       end if
     end do
@@ -71,7 +71,7 @@ contains
     end do
   end subroutine add_normals
 
-  !> The nodes that a guest couples with others.
+  !> Nodes that a guest couples.
   function coupled_nodes(item) result(nodes)
     class(guest), intent(in) :: item
     integer, allocatable :: nodes(:)
@@ -85,7 +85,7 @@ contains
     end if
   end function coupled_nodes
 
-  !> Faces whose nodes are all among those of a tie or an interface.
+  !> Marks the faces whose nodes all belong to a tie or an interface.
   subroutine mark_between(mesh, skin, nodes, is_covered)
     type(fe_mesh), intent(in) :: mesh
     type(surface), intent(in) :: skin

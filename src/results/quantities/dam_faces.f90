@@ -1,8 +1,8 @@
-!> Which nodes lie on the upstream and which on the downstream face of the dam.
+!> Nodes on the upstream and on the downstream face of the dam.
 !>
-!> Upstream is the surface of the reservoir. Downstream are the dam's outer faces, not covered by
-!> joints or ties, that look away from the nearest facet of the upstream face. The dam is what has a
-!> mass, where the rock has none; otherwise the sections that hold the reservoir's surface.
+!> Upstream is the surface of the reservoir. Downstream are the outer faces of the dam that face
+!> away from the nearest upstream facet and are not covered by joints or ties. The dam is the part
+!> with mass where the rock has none; otherwise the sections with the surface of the reservoir.
 module dam_faces
   use kinds, only: rk
   use dam_mesh, only: fe_mesh, surface
@@ -14,7 +14,7 @@ module dam_faces
   private
   public :: dam_skin, find_dam_faces
 
-  !> A face is downstream when the cosine between its normal and the nearest upstream one is less.
+  !> Largest cosine between the normals of a downstream face and of the nearest upstream facet.
   real(rk), parameter :: largest_cosine = -0.3_rk
 
   type :: dam_skin
@@ -79,14 +79,14 @@ contains
     body = pack([(e, e=1, model%mesh%num_elements)], is_dam)
   end subroutine list_dam_elements
 
-  !> Those outer faces that look away from the nearest upstream facet.
+  !> Keeps the outer faces that face away from the nearest upstream facet.
   subroutine keep_downstream(model, outside, upstream, downstream)
     type(problem), intent(in) :: model
     type(surface), intent(in) :: outside, upstream
     type(surface), intent(out) :: downstream
     logical, allocatable :: is_covered(:), is_kept(:)
     real(rk), allocatable :: centre(:, :), normal(:, :)
-    real(rk) :: here(3), looks(3)
+    real(rk) :: here(3), outward(3)
     integer :: i, nodes(4), nearest
     call mark_joined(model, outside, is_covered)
     allocate (centre(3, size(upstream%element)), normal(3, size(upstream%element)))
@@ -100,15 +100,15 @@ contains
       if (is_covered(i)) cycle
       nodes = face_nodes(model%mesh, outside%element(i), outside%face(i))
       here = face_centre(model%mesh, nodes)
-      looks = unit_vector(face_vector(model%mesh%x(:, nodes)))
+      outward = unit_vector(face_vector(model%mesh%x(:, nodes)))
       nearest = nearest_point(centre, here)
-      is_kept(i) = dot_product(looks, normal(:, nearest)) < largest_cosine
+      is_kept(i) = dot_product(outward, normal(:, nearest)) < largest_cosine
     end do
     downstream%element = pack(outside%element, is_kept)
     downstream%face = pack(outside%face, is_kept)
   end subroutine keep_downstream
 
-  !> The first of the points that is nearest.
+  !> Position of the nearest point; of the first where several are equally near.
   pure integer function nearest_point(points, here) result(nearest)
     real(rk), intent(in) :: points(:, :), here(3)
     integer :: i
@@ -124,7 +124,7 @@ contains
     end do
   end function nearest_point
 
-  !> The direction of a vector; zero stays zero.
+  !> Unit vector along a vector; zero for a zero vector.
   pure function unit_vector(vector) result(direction)
     real(rk), intent(in) :: vector(3)
     real(rk) :: direction(3)

@@ -1,5 +1,5 @@
-!> What the results say of solids that take damage: the largest damage with time and place, how much
-!> of the body is damaged, and the energy that went into it.
+!> Damage of solids in the results: largest damage with time and place, damaged volume, dissipated
+!> energy.
 module damage_readings
   use kinds, only: rk
   use material_points, only: fracture_energy, crushing_energy
@@ -15,23 +15,23 @@ module damage_readings
   public :: damage_record, damage_extreme, open_damage_record, note_damage
   public :: levels, damage_columns, damage_row
 
-  !> Damage in tension from which on volumes and elements are counted. The largest of a table, often
-  !> a round number, counts as reached although roundoff keeps it below.
+  !> Levels of damage in tension for the damaged volumes and elements. The largest damage of a table
+  !> is often a round number; round-off just below this number counts as reached.
   real(rk), parameter :: levels(3) = [0.1_rk, 0.5_rk, 0.9_rk]
   real(rk), parameter :: least(3) = levels - 1.0e-9_rk
 
-  !> Names of what `damage_row` gives.
+  !> Names of the columns of `damage_row`.
   character(*), parameter :: damage_columns = 'DAMAGET,DAMAGEC,volume_10,volume_50,volume_90,'// &
                              'inelastic_volume,cracking,crushing'
   integer, parameter :: num_columns = 8
 
-  !> The largest damage since the start, and the point that has it.
+  !> The largest damage since the start, and its point.
   type :: damage_extreme
     type(extreme) :: at
-    integer :: element = 0, point = 0 !< the user's number, and 1..8
+    integer :: element = 0, point = 0 !< number in the deck; 1..8
   end type damage_extreme
 
-  !> Which points of a block lie on which face.
+  !> Points of a block on the faces of the dam.
   type :: block_faces
     logical, allocatable :: is_upstream(:), is_downstream(:) !< (points)
   end type block_faces
@@ -41,17 +41,17 @@ module damage_readings
     type(damage_extreme) :: tension, compression
     type(block_faces), allocatable :: faces(:) !< (inelastic blocks)
     ! Of the last increment:
-    real(rk) :: volume(size(levels)) = 0.0_rk !< with each level of damage in tension [m3]
-    integer :: elements(size(levels)) = 0 !< with a point of each level
-    real(rk) :: inelastic_volume = 0.0_rk !< that has left elasticity [m3]
-    integer :: inelastic_elements = 0 !< with a point that has
+    real(rk) :: volume(size(levels)) = 0.0_rk !< at or above each level of damage in tension [m3]
+    integer :: elements(size(levels)) = 0 !< with a point at or above each level
+    real(rk) :: inelastic_volume = 0.0_rk !< of points that have left elasticity [m3]
+    integer :: inelastic_elements = 0 !< with a point that has left elasticity
     real(rk) :: cracking = 0.0_rk, crushing = 0.0_rk !< energy dissipated in solids so far [J]
   end type damage_record
 
 contains
 
-  !> An empty record. A point lies on a face of the dam when the node next to it does; the point of
-  !> a one-point element, when any of its nodes does.
+  !> An empty record. A point lies on a face of the dam when the nearest node does; the point of a
+  !> one-point element, when any node of the element does.
   subroutine open_damage_record(model, skin, record)
     type(problem), intent(in) :: model
     type(dam_skin), intent(in) :: skin
@@ -68,7 +68,7 @@ contains
     end do
   end subroutine open_damage_record
 
-  !> Points of a block that lie where marked nodes do.
+  !> Points of a block at marked nodes.
   pure function points_on(is_marked, nodes, part) result(is_on)
     logical, intent(in) :: is_marked(:) !< (nodes of the mesh)
     integer, intent(in) :: nodes(:, :) !< (8, elements of the block)
@@ -85,7 +85,7 @@ contains
     end do
   end function points_on
 
-  !> Takes note of one increment. Blocks that are still elastic cost the question.
+  !> Records one increment. Elastic blocks cost next to nothing.
   subroutine note_damage(model, now, record)
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
@@ -108,10 +108,10 @@ contains
     end do
   end subroutine note_damage
 
-  !> Keeps the largest value so far.
+  !> Updates the largest damage so far.
   subroutine note_largest(largest, damage, part, time)
     type(damage_extreme), intent(inout) :: largest
-    real(rk), allocatable, intent(in) :: damage(:, :) !< (1, points), or no such field
+    real(rk), allocatable, intent(in) :: damage(:, :) !< (1, points); unallocated: none
     type(inelastic_block), intent(in) :: part
     real(rk), intent(in) :: time !< [s]
     integer :: p
@@ -128,7 +128,7 @@ contains
     type(inelastic_block), intent(in) :: part
     type(state), intent(in) :: now
     integer, intent(in) :: block !< its position
-    real(rk), allocatable, intent(in) :: tension(:, :) !< (1, points), or no such field
+    real(rk), allocatable, intent(in) :: tension(:, :) !< (1, points); unallocated: none
     type(damage_record), intent(inout) :: record
     integer :: e, n, first, last, level
     n = part%points_of_element
@@ -153,7 +153,7 @@ contains
     end do
   end subroutine measure_block
 
-  !> The record in numbers: largest damage so far, volumes now [m3], energies so far [J].
+  !> A row of the record: largest damage so far, volumes now [m3], energies so far [J].
   pure function damage_row(record) result(row)
     type(damage_record), intent(in) :: record
     real(rk) :: row(num_columns)

@@ -6,7 +6,7 @@ module energy_readings
   private
   public :: energy_columns, energy_row
 
-  !> Names of what `energy_row` gives.
+  !> Names of the columns of `energy_row`.
   character(*), parameter :: energy_columns = 'external,kinetic,strain,damping,friction,'// &
                              'fracture,crushing,numerical,error'
   integer, parameter :: num_columns = 9

@@ -1,4 +1,4 @@
-!> *ENVELOPE: maxima over the time of a step on every node, and their extremes over all steps.
+!> *ENVELOPE: maxima over a step at every node, and their extremes over all steps.
 module envelopes
   use kinds, only: rk
   use extremes, only: extremes_by_face
@@ -7,15 +7,15 @@ module envelopes
   private
   public :: envelope, open_envelope, note_envelope, note_means, name_of_field
 
-  !> One field; of a vector its length.
+  !> Envelope of one field; of the length for a vector.
   type :: envelope
     character(field_name_length) :: name = ''
     integer :: row = 0 !< of the table of fields
     logical :: wants_smallest = .false.
-    logical :: is_empty = .true. !< nothing noted in this step
+    logical :: is_empty = .true. !< no values in this step yet
     real(rk), allocatable :: value(:), time(:) !< (nodes), of this step
-    real(rk), allocatable :: mean(:) !< (elements) largest mean over each, of fields with means
-    type(extremes_by_face) :: largest !< of all steps that asked for it
+    real(rk), allocatable :: mean(:) !< (elements) largest element means, of fields with means
+    type(extremes_by_face) :: largest !< of all steps with this envelope
   end type envelope
 
 contains
@@ -37,7 +37,7 @@ contains
     if (allocated(item%mean)) item%mean = 0.0_rk
   end subroutine open_envelope
 
-  !> Takes note of the values on the nodes at one time.
+  !> Includes the values on the nodes at one time.
   subroutine note_envelope(item, values, time)
     type(envelope), intent(inout) :: item
     real(rk), intent(in) :: values(:) !< (nodes)
@@ -55,7 +55,7 @@ contains
     item%is_empty = .false.
   end subroutine note_envelope
 
-  !> Takes note of the means over the elements of a quantity that is never negative.
+  !> Includes the element means of a quantity that is never negative.
   subroutine note_means(item, values)
     type(envelope), intent(inout) :: item
     real(rk), intent(in) :: values(:) !< (elements)

@@ -1,4 +1,4 @@
-!> The largest (or smallest) value seen so far, with its time and place: anywhere and on each face.
+!> Largest (or smallest) value so far, with time and place: anywhere and on each face of the dam.
 module extremes
   use kinds, only: rk
   implicit none
@@ -21,7 +21,7 @@ module extremes
 
 contains
 
-  !> Takes note of the values at one time. Equal values keep the earlier time and place.
+  !> Includes the values at one time. Equal values keep the earlier time and place.
   subroutine note_values(record, values, x, is_upstream, is_downstream, time, wants_smallest)
     type(extremes_by_face), intent(inout) :: record
     real(rk), intent(in) :: values(:)
@@ -29,22 +29,22 @@ contains
     logical, intent(in) :: is_upstream(:), is_downstream(:)
     real(rk), intent(in) :: time !< [s]
     logical, intent(in) :: wants_smallest
-    real(rk) :: way
+    real(rk) :: sign_of
     integer :: i
-    way = merge(-1.0_rk, 1.0_rk, wants_smallest)
+    sign_of = merge(-1.0_rk, 1.0_rk, wants_smallest)
     do i = 1, size(values)
-      call note_value(record%at(1), values(i), way)
-      if (is_upstream(i)) call note_value(record%at(2), values(i), way)
-      if (is_downstream(i)) call note_value(record%at(3), values(i), way)
+      call note_value(record%at(1), values(i), sign_of)
+      if (is_upstream(i)) call note_value(record%at(2), values(i), sign_of)
+      if (is_downstream(i)) call note_value(record%at(3), values(i), sign_of)
     end do
 
   contains
 
-    !> Keeps value `i` when it goes further `way` than what was kept.
-    subroutine note_value(kept, value, way)
+    !> Replaces the extreme by value `i` when `sign_of` times the value is larger.
+    subroutine note_value(kept, value, sign_of)
       type(extreme), intent(inout) :: kept
-      real(rk), intent(in) :: value, way
-      if (kept%is_found .and. way*(value - kept%value) <= 0.0_rk) return
+      real(rk), intent(in) :: value, sign_of
+      if (kept%is_found .and. sign_of*(value - kept%value) <= 0.0_rk) return
       kept = extreme(.true., value, time, x(:, i))
     end subroutine note_value
   end subroutine note_values

@@ -1,4 +1,4 @@
-!> What the results say of a joint: opening, slip and pressure at its points, and on its nodes.
+!> Joints in the results: opening, slip and pressure at the points, opening on the nodes.
 module joint_readings
   use kinds, only: rk
   use joint_law, only: joint_state
@@ -13,21 +13,21 @@ module joint_readings
   public :: joint_record, open_joint_record, note_joint
   public :: opening_at_points, opening_at_nodes, reading_names
 
-  !> What `joint_record%largest_now` holds.
+  !> Names of the components of `joint_record%largest_now`.
   character(*), parameter :: reading_names = 'opening,slip,pressure'
 
-  !> The maxima of one joint since the start, and which of its points lie on which face.
+  !> Maxima of one joint since the start, and its points on the faces of the dam.
   type :: joint_record
     logical, allocatable :: is_upstream(:), is_downstream(:) !< (points)
     type(extremes_by_face) :: opening, slip, pressure
     real(rk) :: largest_now(3) = 0.0_rk !< opening [m], slip [m] and pressure [Pa] of this increment
     real(rk) :: penetration = 0.0_rk !< largest [m]
-    type(extremes_by_face) :: water !< nothing found where the joint has none
+    type(extremes_by_face) :: water !< not found where the joint has no water
   end type joint_record
 
 contains
 
-  !> Signed opening of each point: jump and gap, positive when open [m].
+  !> Signed opening of each point: jump plus gap, positive when open [m].
   pure function opening_at_points(now) result(opening)
     type(joint_state), intent(in) :: now
     real(rk) :: opening(size(now%gap))
@@ -35,9 +35,9 @@ contains
   end function opening_at_points
 
   !> Signed opening on the nodes of all joints, on both sides; zero on other nodes [m]. A node takes
-  !> the mean by area of its points: one on the slave face (one for each plane at a kink), on the
-  !> master face those that lean on it. Negative weights of a mortar projection do not count, so
-  !> that no node shows more than any point.
+  !> the mean of its points, weighted by area. A slave node has one point (at a kink one for each
+  !> plane); a master node has the points that are projected onto it. Negative weights of a mortar
+  !> projection are left out: no node exceeds the largest point.
   pure function opening_at_nodes(model, now) result(opening)
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
@@ -50,14 +50,14 @@ contains
     total = 0.0_rk
     do j = 1, size(model%joints)
       of_points = opening_at_points(now%joints(j))
-      associate (item => model%joints(j))
-        do p = 1, item%num_points
-          do k = item%first(p), item%first(p + 1) - 1
-            share = item%weight(k)*item%area(p)
-            if (k >= item%first_master(p)) share = -share
+      associate (joint => model%joints(j))
+        do p = 1, joint%num_points
+          do k = joint%first(p), joint%first(p + 1) - 1
+            share = joint%weight(k)*joint%area(p)
+            if (k >= joint%first_master(p)) share = -share
             if (share <= 0.0_rk) cycle
-            opening(item%node(k)) = opening(item%node(k)) + share*of_points(p)
-            total(item%node(k)) = total(item%node(k)) + share
+            opening(joint%node(k)) = opening(joint%node(k)) + share*of_points(p)
+            total(joint%node(k)) = total(joint%node(k)) + share
           end do
         end do
       end associate
@@ -65,10 +65,10 @@ contains
     where (total > 0.0_rk) opening = opening/total
   end function opening_at_nodes
 
-  !> An empty record. A point lies on a face of the dam when its node does, at a Gauss point the one
-  !> with the largest shape function: on either side of JOINT8 elements, on the slave side of
-  !> surfaces, since a coarse master node draws on points far away from it. Where no slave node lies
-  !> on a face (the rock under a dam) the master side speaks.
+  !> An empty record. A point lies on a face of the dam when its node does. The node of a Gauss
+  !> point is that with the largest shape function. JOINT8 elements use the nodes of both sides,
+  !> surfaces those of the slave side: points of a coarse master node may be far away from the node.
+  !> Where no slave node lies on a face (the rock under a dam), the master side is used.
   subroutine open_joint_record(joint, skin, record)
     type(dam_joint), intent(in) :: joint
     type(dam_skin), intent(in) :: skin
@@ -88,17 +88,17 @@ contains
       record%is_upstream = record%is_upstream .or. skin%is_upstream(master)
       record%is_downstream = record%is_downstream .or. skin%is_downstream(master)
     else if (.not. any(record%is_upstream .or. record%is_downstream)) then
-      record%is_upstream = leans_on(joint, skin%is_upstream)
-      record%is_downstream = leans_on(joint, skin%is_downstream)
+      record%is_upstream = is_master_on(joint, skin%is_upstream)
+      record%is_downstream = is_master_on(joint, skin%is_downstream)
     end if
   end subroutine open_joint_record
 
-  !> Does a point's master side lie on these nodes, more than half as much as that of any other?
-  !> Under a slave facet much larger than the master's no point lies on them by half itself.
-  pure function leans_on(joint, is_marked) result(leans)
+  !> True where the master weight of a point on the marked nodes exceeds half the largest such
+  !> weight. An absolute threshold of 0.5 would find no point under large slave facets.
+  pure function is_master_on(joint, is_marked) result(is_on)
     type(dam_joint), intent(in) :: joint
     logical, intent(in) :: is_marked(:) !< (nodes)
-    logical :: leans(joint%num_points)
+    logical :: is_on(joint%num_points)
     real(rk) :: part(joint%num_points)
     integer :: p
     do p = 1, joint%num_points
@@ -106,11 +106,11 @@ contains
         part(p) = -sum(joint%weight(first:last), mask=is_marked(joint%node(first:last)))
       end associate
     end do
-    leans = part > max(0.5_rk*maxval(part), 0.0_rk)
-  end function leans_on
+    is_on = part > max(0.5_rk*maxval(part), 0.0_rk)
+  end function is_master_on
 
-  !> Takes note of one increment: opening (0 while closed), slip (its length), closing pressure and
-  !> how far the faces have gone into each other.
+  !> Records one increment: opening (0 while closed), length of the slip, closing pressure and
+  !> penetration of the faces.
   subroutine note_joint(record, joint, now, time)
     type(joint_record), intent(inout) :: record
     type(dam_joint), intent(in) :: joint
@@ -130,7 +130,7 @@ contains
 
   contains
 
-    !> The largest of each.
+    !> Updates the extremes of one quantity.
     subroutine note(largest, values)
       type(extremes_by_face), intent(inout) :: largest
       real(rk), intent(in) :: values(:)

@@ -1,9 +1,9 @@
-!> The joints as surfaces that can be drawn: polygons, and values on their corners.
+!> Joints as surfaces for drawing: polygons, and values at their corners.
 !>
-!> A corner of a joint's cells lies between nodes of the slave face. Each of these nodes brings the
-!> value of the point that belongs to it; at a kink, where a node has a point for each plane, that
-!> of the cell's own. Where points lie between the nodes (Gauss), a node brings the mean of those
-!> that see it, by area and shape function. A corner that cells in two planes share is drawn twice.
+!> A corner of a joint's cells lies between nodes of the slave face. Each of these nodes contributes
+!> the value of its point. At a kink a node has a point for each plane; the point in the plane of
+!> the cell counts. Where points lie between the nodes (Gauss), a node contributes their mean,
+!> weighted by area and shape function. A corner shared by cells in two planes is drawn twice.
 module joint_surface
   use kinds, only: rk
   use joint_points, only: dam_joint, joint_cells, share_a_plane
@@ -16,18 +16,18 @@ module joint_surface
 
   !> A quantity at the points of a joint.
   type :: joint_values
-    real(rk), allocatable :: at(:, :) !< (components, points); unallocated where the joint has none
+    real(rk), allocatable :: at(:, :) !< (components, points); unallocated: the joint has no values
   end type joint_values
 
-  !> Weights this small, or that differ by so little, come from roundoff in the clipping of facets,
-  !> whose coordinates are of order 1.
+  !> Smaller weights, and smaller differences of weights, are round-off of the clipping of facets
+  !> (coordinates of order 1).
   real(rk), parameter :: nothing = 1.0e-10_rk
 
   !> Corners are not shared between joints.
   type :: drawn_joints
     integer :: num_cells = 0, num_corners = 0
     integer, allocatable :: first(:) !< (cells + 1) where each cell's corners start
-    integer, allocatable :: corner(:) !< right-hand rule about the normal
+    integer, allocatable :: corner(:) !< counter-clockwise about the normal
     integer, allocatable :: element(:) !< (cells) JOINT8 or the solid behind the slave face
     integer, allocatable :: joint(:) !< (cells) position of the joint
     integer, allocatable :: joint_of(:) !< (corners) position of the joint
@@ -36,17 +36,17 @@ module joint_surface
     real(rk), allocatable :: weight(:) !< they add up to 1
     integer, allocatable :: first_point(:) !< (corners + 1) where a corner's points start
     integer, allocatable :: point(:) !< of the joint
-    real(rk), allocatable :: share(:) !< what each brings
-    integer, allocatable :: before(:) !< (corners) the last one with the same first node, 0: none
+    real(rk), allocatable :: share(:) !< weight of each point
+    integer, allocatable :: before(:) !< (corners) previous corner with the same first node, 0: none
   end type drawn_joints
 
-  !> A corner as one cell sees it.
+  !> A corner of one cell.
   type :: corner_of_cell
     integer, allocatable :: node(:), point(:)
     real(rk), allocatable :: weight(:), share(:)
   end type corner_of_cell
 
-  !> Which points belong to the nodes of a joint's slave face.
+  !> Points of each node of a joint's slave face.
   type :: node_points
     integer, allocatable :: first(:) !< (nodes of the mesh + 1)
     integer, allocatable :: point(:)
@@ -55,7 +55,7 @@ module joint_surface
 
 contains
 
-  !> Takes the cells of all joints and links their corners to points.
+  !> Lists the cells of all joints and links their corners to points.
   subroutine find_drawn_joints(model, drawn)
     type(problem), intent(in) :: model
     type(drawn_joints), intent(out) :: drawn
@@ -101,7 +101,7 @@ contains
         do i = cells%first(c), cells%first(c + 1) - 1
           call find_nodes(cells, cells%corner(i), seen)
           call choose_points(item, at_nodes, normal, seen)
-          number = corner_like(drawn, newest(seen%node(1)), seen)
+          number = find_equal_corner(drawn, newest(seen%node(1)), seen)
           if (number == 0) call add_corner(j, seen, newest(seen%node(1)), drawn, number)
           last = last + 1
           drawn%corner(last) = number
@@ -160,7 +160,7 @@ contains
     end associate
   end function normal_of_cell
 
-  !> A quantity of the nodes at a corner of a joint's cells.
+  !> A quantity of the nodes, interpolated to a corner of a joint's cells.
   pure function at_corner(values, cells, corner) result(mean)
     real(rk), intent(in) :: values(:, :) !< (components, nodes)
     type(joint_cells), intent(in) :: cells
@@ -173,7 +173,7 @@ contains
     end do
   end function at_corner
 
-  !> The nodes that a corner lies on or between, ascending, each once.
+  !> The nodes at or around a corner, ascending, each once.
   pure subroutine find_nodes(cells, corner, seen)
     type(joint_cells), intent(in) :: cells
     integer, intent(in) :: corner
@@ -195,8 +195,8 @@ contains
     seen%weight = seen%weight/sum(seen%weight)
   end subroutine find_nodes
 
-  !> The points that a corner shows in a cell; their shares add up to 1, or to less where a node has
-  !> none (both faces hang together there: nothing opens).
+  !> The points that give the value of a corner in a cell. Their shares add up to 1, or to less
+  !> where a node has no point (both faces share the node: nothing opens).
   pure subroutine choose_points(joint, at_nodes, normal, seen)
     type(dam_joint), intent(in) :: joint
     type(node_points), intent(in) :: at_nodes
@@ -219,8 +219,8 @@ contains
     end do
   end subroutine choose_points
 
-  !> Which of a node's points belong to the plane of a cell: the one that fits best, between nodes
-  !> all that fit.
+  !> Points of a node in the plane of a cell: the point with the closest normal; of points between
+  !> nodes all with a close normal.
   pure function in_plane(joint, points, normal) result(is_chosen)
     type(dam_joint), intent(in) :: joint
     integer, intent(in) :: points(:)
@@ -237,8 +237,8 @@ contains
     is_chosen(maxloc(along, dim=1)) = .true.
   end function in_plane
 
-  !> The drawn corner that lies and shows alike, 0 when there is none yet.
-  pure integer function corner_like(drawn, newest, seen) result(found)
+  !> The drawn corner with the same nodes and points, 0 when there is none yet.
+  pure integer function find_equal_corner(drawn, newest, seen) result(found)
     type(drawn_joints), intent(in) :: drawn
     integer, intent(in) :: newest !< corner with the same first node
     type(corner_of_cell), intent(in) :: seen
@@ -255,7 +255,7 @@ contains
       end associate
       found = drawn%before(found)
     end do
-  end function corner_like
+  end function find_equal_corner
 
   !> Adds a corner.
   pure subroutine add_corner(j, seen, newest, drawn, number)
@@ -275,11 +275,11 @@ contains
                 drawn%share)
   end subroutine add_corner
 
-  !> Appends members and what each weighs to lists that grow.
+  !> Appends members and their weights to growing lists.
   pure subroutine append(members, weights, ends, list, list_weights)
     integer, intent(in) :: members(:)
     real(rk), intent(in) :: weights(:)
-    integer, intent(inout) :: ends(2) !< where they start, and where the next will
+    integer, intent(inout) :: ends(2) !< starts of these members and of the next
     integer, allocatable, intent(inout) :: list(:)
     real(rk), allocatable, intent(inout) :: list_weights(:)
     ends(2) = ends(1) + size(members)
@@ -291,7 +291,7 @@ contains
     list_weights(ends(1):ends(2) - 1) = weights
   end subroutine append
 
-  !> A quantity of points on the corners, the mean by their shares; zero where there is no point.
+  !> Means of a quantity of points at the corners, weighted by share; zero where there is no point.
   pure subroutine means_on_corners(drawn, of_joints, means)
     type(drawn_joints), intent(in) :: drawn
     type(joint_values), intent(in) :: of_joints(:)
@@ -308,7 +308,7 @@ contains
     end do
   end subroutine means_on_corners
 
-  !> A whole number: that of the point which weighs most at each corner; -1 where there is none.
+  !> A whole number at each corner: that of the point with the largest share; -1 without a point.
   pure function heaviest_on_corners(drawn, of_joints) result(numbers)
     type(drawn_joints), intent(in) :: drawn
     type(joint_values), intent(in) :: of_joints(:) !< of one component
@@ -326,7 +326,7 @@ contains
     end do
   end function heaviest_on_corners
 
-  !> A quantity of the nodes (place, displacement) on the corners: that of the slave face.
+  !> A quantity of the nodes (position, displacement) at the corners, from the slave face.
   pure function nodes_to_corners(drawn, values) result(mean)
     type(drawn_joints), intent(in) :: drawn
     real(rk), intent(in) :: values(:, :) !< (3, nodes)

@@ -1,5 +1,5 @@
-!> Fields that the laws of inelastic solids keep (PE, DAMAGET, ...). Where a law does not have the
-!> field, and in elastic solids, the field is zero.
+!> Fields of the laws of inelastic solids (PE, DAMAGET, ...). In elastic solids, and where a law
+!> does not have the field, the field is zero.
 module law_fields
   use kinds, only: rk
   use material_points, only: point_state
@@ -13,7 +13,7 @@ module law_fields
 
 contains
 
-  !> Components of a field: those of the law with most; 0 where no law of the model has it.
+  !> Largest number of components of a field among the laws; 0 where no law has the field.
   integer function width_of_field(model, name) result(width)
     type(problem), intent(in) :: model
     character(*), intent(in) :: name
@@ -36,14 +36,14 @@ contains
     end do
   end function width_of_field
 
-  !> State variables of a law are what the law makes of them, also while a point is elastic.
+  !> False for state variables: a law may change them while a point is elastic.
   pure logical function is_zero_while_elastic(name)
     character(*), intent(in) :: name
     is_zero_while_elastic = name /= 'SDV'
   end function is_zero_while_elastic
 
-  !> A field at the points of an inelastic block; unallocated where it is zero: the law does not
-  !> have it, or no point has left elasticity.
+  !> A field at the points of an inelastic block; unallocated where the field is zero: the law does
+  !> not have the field, or no point has left elasticity.
   subroutine field_of_block(model, now, block, name, values)
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
@@ -117,7 +117,7 @@ contains
     end do
   end subroutine find_inelastic_solids
 
-  !> The nodes whose value such solids have a part in.
+  !> The nodes whose means include chosen solids.
   pure function nodes_of_solids(plan, is_chosen) result(nodes)
     type(recovery_plan), intent(in) :: plan
     logical, intent(in) :: is_chosen(:) !< (solids)

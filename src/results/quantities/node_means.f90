@@ -1,9 +1,9 @@
-!> Values at the points of the solids, carried to the nodes.
+!> Values at the points of the solids, averaged at the nodes.
 !>
-!> An elastic element gives each corner the trilinear field through its eight points there; where
-!> damage bends the field that would shoot over what any point holds, so such an element gives each
-!> corner the value of the point nearest to it. An element of one point is constant. A node takes
-!> the mean of the corners of one section that meet there (recovery_plan says which).
+!> An elastic element extrapolates the trilinear field through its eight points to the corners. With
+!> damage the extrapolation would exceed the values of all points: each corner takes the value of
+!> the nearest point. An element of one point is constant. A node takes the mean of the corners of
+!> one section there (recovery_plan selects the section).
 module node_means
   use kinds, only: rk
   use shape_hex8, only: corners_from_points, corner_of_point
@@ -12,26 +12,26 @@ module node_means
   private
   public :: average_at_nodes, average_at
 
-  !> The point next to each corner: the map of corners to points is its own inverse.
+  !> The point nearest to each corner: the map of corners to points is its own inverse.
   integer, parameter :: point_of_corner(8) = corner_of_point
 
 contains
 
-  !> All nodes; those without a solid get zero.
+  !> Means at all nodes; zero at nodes without a solid.
   subroutine average_at_nodes(plan, at_points, is_bounded, at_nodes)
     type(recovery_plan), intent(in) :: plan
     real(rk), intent(in) :: at_points(:, :, :) !< (components, max_points, solids)
-    logical, intent(in) :: is_bounded(:) !< (solids) its corners take the nearest point's value
+    logical, intent(in) :: is_bounded(:) !< (solids) corners take the value of the nearest point
     real(rk), intent(out) :: at_nodes(:, :) !< (components, nodes)
     integer :: n
     call average_at(plan, at_points, is_bounded, [(n, n=1, size(at_nodes, 2))], at_nodes)
   end subroutine average_at_nodes
 
-  !> Some nodes; the others keep what they have.
+  !> Means at some nodes; the values of other nodes remain.
   subroutine average_at(plan, at_points, is_bounded, nodes, at_nodes)
     type(recovery_plan), intent(in) :: plan
     real(rk), intent(in) :: at_points(:, :, :) !< (components, max_points, solids)
-    logical, intent(in) :: is_bounded(:) !< (solids) its corners take the nearest point's value
+    logical, intent(in) :: is_bounded(:) !< (solids) corners take the value of the nearest point
     integer, intent(in) :: nodes(:) !< each once
     real(rk), intent(inout) :: at_nodes(:, :) !< (components, nodes)
     real(rk) :: to_corner(max_points, 8)
@@ -46,7 +46,7 @@ contains
     !$omp end parallel do
   end subroutine average_at
 
-  !> One node.
+  !> Mean at one node.
   pure subroutine average_one(plan, at_points, is_bounded, to_corner, node, mean)
     type(recovery_plan), intent(in) :: plan
     real(rk), intent(in) :: at_points(:, :, :)

@@ -1,4 +1,4 @@
-!> Stresses of the present increment, computed when somebody asks and then kept until the next one.
+!> Stresses of the present increment, computed on demand and kept until the next increment.
 module stress_fields
   use kinds, only: rk
   use problem_definition, only: problem
@@ -20,18 +20,18 @@ module stress_fields
   type :: recovered_fields
     type(recovery_plan) :: plan
     logical :: has_plan = .false., has_operator = .false. !< made once
-    logical :: has_inelastic = .false. !< of this increment, as the next
-    logical :: has_points = .false., has_node_strain = .false. !< of this increment
+    logical :: has_inelastic = .false. !< valid for this increment
+    logical :: has_points = .false., has_node_strain = .false. !< valid for this increment
     logical :: has_node_stress = .false., has_principals = .false.
-    integer :: num_recoveries = 0 !< how often stresses on the nodes were asked for
+    integer :: num_recoveries = 0 !< number of requests for stresses on the nodes
     type(nodal_operator) :: operator
     logical, allocatable :: is_inelastic(:) !< (solids) a point has left elasticity
-    integer, allocatable :: inelastic_nodes(:) !< those that such solids have a part in
+    integer, allocatable :: inelastic_nodes(:) !< nodes whose means include such solids
     real(rk), allocatable :: point_strain(:, :, :), point_stress(:, :, :)
     real(rk), allocatable :: node_strain(:, :), node_stress(:, :)
     real(rk), allocatable :: node_principal(:, :) !< (3, nodes), the largest first [Pa]
   contains
-    procedure :: forget
+    procedure :: invalidate
     procedure :: need_plan
     procedure :: need_inelastic
     procedure :: need_points
@@ -44,17 +44,17 @@ module stress_fields
 
 contains
 
-  !> A new increment has come.
-  subroutine forget(self)
+  !> Marks all fields as outdated, for a new increment.
+  subroutine invalidate(self)
     class(recovered_fields), intent(inout) :: self
     self%has_inelastic = .false.
     self%has_points = .false.
     self%has_node_strain = .false.
     self%has_node_stress = .false.
     self%has_principals = .false.
-  end subroutine forget
+  end subroutine invalidate
 
-  !> Makes sure that the plan is there.
+  !> Makes the plan unless it exists.
   subroutine need_plan(self, model)
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -63,7 +63,7 @@ contains
     self%has_plan = .true.
   end subroutine need_plan
 
-  !> Makes sure that it is known which solids and nodes have left elasticity.
+  !> Finds the solids and nodes that have left elasticity, once an increment.
   subroutine need_inelastic(self, model, now)
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -78,7 +78,7 @@ contains
     self%has_inelastic = .true.
   end subroutine need_inelastic
 
-  !> Makes sure that strains and stresses at the points are there.
+  !> Computes strains and stresses at the points, once an increment.
   subroutine need_points(self, model, now)
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -90,7 +90,7 @@ contains
     self%has_points = .true.
   end subroutine need_points
 
-  !> Room for strains and stresses at the points.
+  !> Allocates strains and stresses at the points.
   subroutine allocate_points(self)
     class(recovered_fields), intent(inout) :: self
     if (allocated(self%point_strain)) return
@@ -98,7 +98,7 @@ contains
     allocate (self%point_stress(6, max_points, self%plan%num_solids), source=0.0_rk)
   end subroutine allocate_points
 
-  !> Makes sure that strains on the nodes are there.
+  !> Computes strains on the nodes, once an increment.
   subroutine need_node_strain(self, model, now)
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -110,9 +110,9 @@ contains
     self%has_node_strain = .true.
   end subroutine need_node_strain
 
-  !> Makes sure that stresses on the nodes are there. Whoever asks again and again is served by the
-  !> operator, which costs as much to make as a few recoveries through the points. It holds for all
-  !> nodes whose solids are still elastic; where most are not it is not worth its memory.
+  !> Computes stresses on the nodes, once an increment. The operator serves repeated requests; it
+  !> costs as much as a few recoveries through the points. It is valid at nodes whose solids are
+  !> elastic, and not worth its memory where most solids are inelastic.
   subroutine need_node_stress(self, model, now)
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -135,8 +135,8 @@ contains
     self%has_operator = .true.
   end subroutine need_node_stress
 
-  !> Replaces the stress on the nodes where a solid has left elasticity. All solids that count there
-  !> are of one section, so all have states.
+  !> Replaces the stress on the nodes where a solid has left elasticity. All solids in such a mean
+  !> belong to one section, so all have states.
   subroutine correct_inelastic(self, now)
     class(recovered_fields), intent(inout) :: self
     type(state), intent(in) :: now
@@ -159,7 +159,7 @@ contains
                     self%node_stress)
   end subroutine correct_inelastic
 
-  !> A field that laws keep (PE, DAMAGET, ...) on the nodes, never beyond what the points hold.
+  !> A field of laws (PE, DAMAGET, ...) on the nodes, within the range of the values at the points.
   subroutine field_on_nodes(self, model, now, name, values)
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -179,7 +179,7 @@ contains
     end if
   end subroutine field_on_nodes
 
-  !> Makes sure that the principal stresses on the nodes are there: of the averaged tensor.
+  !> Computes the principal stresses on the nodes from the mean tensor, once an increment.
   subroutine need_principals(self, model, now)
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: model

@@ -1,5 +1,5 @@
-!> The stress on the nodes as one linear operator of the displacements: what the recovery through
-!> points and corners amounts to where all laws are elastic, at the price of one sparse product.
+!> The stress on the nodes as a linear operator on the displacements. For elastic laws this sparse
+!> product equals the recovery through points and corners.
 module stress_operator
   use kinds, only: rk
   use node_dofs, only: num_directions
@@ -10,24 +10,24 @@ module stress_operator
   private
   public :: nodal_operator, make_nodal_operator, apply_operator
 
-  !> A part of the strain that is not that of a gradient and is more than roundoff.
+  !> Smaller parts of the strain besides the gradient are round-off.
   real(rk), parameter :: smallest_rest = 1.0e-13_rk
 
-  !> Rows of gradients: in most elements the strain on a node is that of a gradient, three numbers
-  !> for every node it depends on. What else an element makes of it (means of the volume,
-  !> incompatible modes) is kept as blocks, in models that have such elements.
+  !> Rows of gradients: in most elements the strain on a node follows from a gradient, three numbers
+  !> for every node of the element. Other parts of the strain (mean volume, incompatible modes) are
+  !> kept as blocks, in models with such elements.
   type :: nodal_operator
     integer, allocatable :: row_start(:) !< (nodes + 1)
     integer, allocatable :: column(:) !< node of each entry
     real(rk), allocatable :: gradient(:, :) !< (3, entries) [1/m]
     real(rk), allocatable :: rest(:, :, :) !< (6, 3, entries) strain per displacement, or (6, 3, 0)
-    integer, allocatable :: material(:) !< (nodes) whose law holds there, 0 without a solid
+    integer, allocatable :: material(:) !< (nodes) material of the node, 0 without a solid
     real(rk), allocatable :: elastic(:, :, :) !< (6, 6, materials) [Pa]
   end type nodal_operator
 
 contains
 
-  !> Builds the operator by running over the corners of all elements.
+  !> Builds the operator from the corners of all elements.
   subroutine make_nodal_operator(model, plan, operator)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
@@ -50,7 +50,7 @@ contains
     end do
   end subroutine make_nodal_operator
 
-  !> The nodes that a node's stress depends on: those of the elements whose corners count.
+  !> The nodes that the stress on a node depends on: those of the elements in its mean.
   subroutine find_columns(model, plan, operator)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
@@ -78,7 +78,7 @@ contains
     operator%column = found(:last)
   end subroutine find_columns
 
-  !> Adds what one element gives to the nodes whose stress it has a part in.
+  !> Adds one element to the rows of the nodes whose mean includes the element.
   subroutine add_element(model, plan, solid, b, to_corner, operator)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
@@ -111,8 +111,8 @@ contains
     end do
   end subroutine add_element
 
-  !> Adds the strain that a node's displacement gives: its gradient, read from the shears, and what
-  !> that leaves.
+  !> Adds the strain of the displacement of a node: the gradient, taken from the shears, and the
+  !> remainder.
   subroutine add_entry(block, i, operator)
     real(rk), intent(in) :: block(6, 3) !< [1/m]
     integer, intent(in) :: i !< the entry
@@ -156,7 +156,7 @@ contains
     unit(j) = 1.0_rk
   end function unit
 
-  !> Stress on the nodes; those without a solid get zero.
+  !> Stress on the nodes; zero at nodes without a solid.
   subroutine apply_operator(operator, u, stress)
     type(nodal_operator), intent(in) :: operator
     real(rk), intent(in) :: u(:, :) !< (3, nodes) [m]

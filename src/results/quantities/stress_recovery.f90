@@ -1,7 +1,7 @@
-!> Strains and stresses at the points of the solid elements, and which corners make a node's value.
+!> Strains and stresses at the points of the solid elements, and the corners in the mean of a node.
 !>
 !> Elastic solids: eps = B u with the element's own operator, sigma = D eps. Solids of inelastic
-!> blocks: strain and stress as their laws left them. A wedge is a hexahedron with repeated nodes.
+!> blocks: strain and stress of their states. A wedge is a hexahedron with repeated nodes.
 module stress_recovery
   use kinds, only: rk
   use element_formulation, only: solid_element
@@ -16,32 +16,32 @@ module stress_recovery
   public :: recovery_plan, make_recovery_plan, recover_points, copy_solid, max_points
   public :: operators_of_block, few_nodes
 
-  integer, parameter :: max_points = 8 !< integration points an element may have
-  integer, parameter :: few_nodes = 2000 !< models for which waking threads costs more than it gains
-  integer, parameter :: block_size = 32 !< elements whose operators fit a core's cache together
+  integer, parameter :: max_points = 8 !< most integration points of an element
+  integer, parameter :: few_nodes = 2000 !< smaller models are faster on one thread
+  integer, parameter :: block_size = 32 !< elements; their operators fit into the cache of a core
 
   type :: formulation_slot
     class(solid_element), allocatable :: item
   end type formulation_slot
 
-  !> Elements of one formulation and one material, handled in one call.
+  !> Elements of one formulation and one material, recovered in one call.
   type :: element_block
     integer :: formulation = 0, material = 0
     integer, allocatable :: solids(:) !< positions in the list of solids
-    logical :: is_inelastic = .false. !< its points have states of their own
+    logical :: is_inelastic = .false. !< the points have states
   end type element_block
 
-  !> What depends on the mesh only; made when somebody first asks for stresses.
+  !> Data of the mesh; made at the first request for stresses.
   type :: recovery_plan
     integer :: num_solids = 0
     integer, allocatable :: element_of_solid(:), solid_of_element(:) !< 0: not a solid
     integer, allocatable :: num_points(:) !< (solids)
-    integer, allocatable :: inelastic_block(:) !< (solids) place in the problem's list; 0: elastic
-    integer, allocatable :: points_before(:) !< (solids) points of that block before its own
+    integer, allocatable :: inelastic_block(:) !< (solids) position of the block; 0: elastic
+    integer, allocatable :: points_before(:) !< (solids) points of the block before the solid
     type(formulation_slot), allocatable :: formulations(:)
     type(element_block), allocatable :: blocks(:)
     integer, allocatable :: node_start(:) !< (nodes + 1) where a node's corners start
-    integer, allocatable :: corner(:) !< 8 (solid - 1) + corner, of the section that rules the node
+    integer, allocatable :: corner(:) !< 8 (solid - 1) + corner, of the lowest section at the node
   end type recovery_plan
 
 contains
@@ -63,7 +63,7 @@ contains
     call link_corners(model, plan)
   end subroutine make_recovery_plan
 
-  !> Where the solids with a history keep it.
+  !> Finds block and points of the solids with states.
   subroutine find_states(model, plan)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(inout) :: plan
@@ -80,7 +80,7 @@ contains
     end do
   end subroutine find_states
 
-  !> Blocks of equal formulation and material.
+  !> Sorts the solids into blocks of one formulation and one material.
   subroutine sort_into_blocks(model, plan)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(inout) :: plan
@@ -118,40 +118,40 @@ contains
     plan%blocks = plan%blocks(:num_blocks)
   end subroutine sort_into_blocks
 
-  !> For each node the corners of the elements that decide its stress.
+  !> For each node, lists the corners in its mean: those of the lowest section at the node.
   subroutine link_corners(model, plan)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(inout) :: plan
-    integer, allocatable :: ruler(:), next(:)
+    integer, allocatable :: lowest_section(:), next(:)
     integer :: s, a, node, section, n
-    allocate (ruler(model%mesh%num_nodes), source=huge(1))
+    allocate (lowest_section(model%mesh%num_nodes), source=huge(1))
     allocate (plan%node_start(model%mesh%num_nodes + 1), source=0)
     do s = 1, plan%num_solids
       section = model%mesh%section_of_element(plan%element_of_solid(s))
       do a = 1, 8
         node = model%mesh%nodes(a, plan%element_of_solid(s))
-        ruler(node) = min(ruler(node), section)
+        lowest_section(node) = min(lowest_section(node), section)
       end do
     end do
     allocate (plan%corner(8*plan%num_solids), source=0)
-    call walk(counting=.true.)
+    call visit_corners(counting=.true.)
     plan%node_start(1) = 1
     do n = 1, model%mesh%num_nodes
       plan%node_start(n + 1) = plan%node_start(n) + plan%node_start(n + 1)
     end do
     next = plan%node_start
-    call walk(counting=.false.)
+    call visit_corners(counting=.false.)
 
   contains
 
-    !> Visits the corners that count, first to count them, then to store them.
-    subroutine walk(counting)
+    !> Counts or stores the corners.
+    subroutine visit_corners(counting)
       logical, intent(in) :: counting
       do s = 1, plan%num_solids
         section = model%mesh%section_of_element(plan%element_of_solid(s))
         do a = 1, 8
           node = model%mesh%nodes(a, plan%element_of_solid(s))
-          if (section /= ruler(node)) cycle
+          if (section /= lowest_section(node)) cycle
           if (counting) then
             plan%node_start(node + 1) = plan%node_start(node + 1) + 1
           else
@@ -160,10 +160,10 @@ contains
           end if
         end do
       end do
-    end subroutine walk
+    end subroutine visit_corners
   end subroutine link_corners
 
-  !> Strain and stress at the points of all solids; threads over blocks, each its own elements.
+  !> Strain and stress at the points of all solids; one thread a block.
   subroutine recover_points(model, plan, now, strain, stress)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
@@ -185,7 +185,7 @@ contains
     !$omp end parallel do
   end subroutine recover_points
 
-  !> One solid whose points have states.
+  !> Strain and stress of one solid with states.
   subroutine copy_solid(plan, now, solid, strain, stress)
     type(recovery_plan), intent(in) :: plan
     type(state), intent(in) :: now
@@ -200,7 +200,7 @@ contains
     end associate
   end subroutine copy_solid
 
-  !> One elastic block.
+  !> Strain and stress of one elastic block.
   subroutine recover_block(model, plan, part, u, strain, stress)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
@@ -227,7 +227,7 @@ contains
     end do
   end subroutine recover_block
 
-  !> Strain operators of a block's elements at their points, and the elastic stiffness.
+  !> Strain operators of the elements of a block at their points, and the elastic stiffness.
   subroutine operators_of_block(model, plan, part, b, d)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan

@@ -1,6 +1,6 @@
-!> How the record of a run saves and loads itself: extremes, envelopes, warnings. Faces of the dam
-!> come from the model, stresses from the state. tests/tools/test_archives.py compares the
-!> procedures with the types.
+!> Saves and loads the record of a run: extremes, envelopes, warnings. Faces of the dam come from
+!> the model, stresses from the state. tests/tools/test_archives.py compares the procedures with the
+!> types.
 module record_archive
   use errors, only: error_type
   use kinds, only: rk
@@ -50,7 +50,7 @@ contains
     call file%report(error)
   end subroutine save_record
 
-  !> Reads the record. It arrives opened for this model. After an error it is of no use.
+  !> Reads a record that is open for this model. After an error the record is invalid.
   subroutine load_record(record, file, error)
     type(run_record), intent(inout) :: record
     class(archive), intent(inout) :: file !< open for reading
@@ -84,7 +84,7 @@ contains
     call load_texts('warnings', record%warnings, file)
     call load_texts('files', record%files, file)
     call file%close_group()
-    call record%stresses%forget()
+    call record%stresses%invalidate()
     call file%report(error)
   end subroutine load_record
 

@@ -1,4 +1,4 @@
-!> Which fields an increment shall write.
+!> Fields that an increment writes.
 module requested_fields
   use problem_definition, only: problem
   use analysis_state, only: state
@@ -12,9 +12,9 @@ module requested_fields
 
 contains
 
-  !> Fields of all requests that are due, each once, as rows of the record's table. A field that the
-  !> analysis does not have now is left out with one warning (of fields of laws, when the deck was
-  !> read).
+  !> Fields of all requests with output now, each once, as rows of the record's table. A field that
+  !> the analysis does not have now is left out, with one warning. For fields of laws the reader of
+  !> the deck has warned.
   subroutine list_due_fields(model, now, record, fields)
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
@@ -55,7 +55,7 @@ contains
     end associate
   end function is_written
 
-  !> Do material laws give this field?
+  !> Do material laws compute this field?
   logical function is_of_law(record, f)
     type(run_record), intent(in) :: record
     integer, intent(in) :: f !< row of the record's table, 0: an unknown field
@@ -63,7 +63,7 @@ contains
     if (f > 0) is_of_law = record%fields(f)%provider == by_law
   end function is_of_law
 
-  !> Does one of the fields live at points of joints?
+  !> Is one of the fields defined at points of joints?
   pure logical function asks_for_joints(record, fields)
     type(run_record), intent(in) :: record
     integer, intent(in) :: fields(:) !< rows of the record's table

@@ -1,4 +1,4 @@
-!> What every writer of results can do. The defaults do nothing.
+!> The interface of all writers of results. The defaults do nothing.
 module result_writer
   use kinds, only: rk
   use errors, only: error_type
@@ -11,7 +11,7 @@ module result_writer
   public :: writer, is_due, starts_analysis
 
   type, abstract :: writer
-    logical :: is_idle = .false. !< since it was opened: the model gives it nothing to write
+    logical :: is_idle = .false. !< set by `open`: the model has nothing for this writer
   contains
     procedure(open_writer), deferred :: open
     procedure(write_increment), deferred :: write_increment
@@ -40,7 +40,7 @@ module result_writer
       class(writer), intent(inout) :: self
       type(problem), intent(in) :: model
       type(state), intent(in) :: now
-      type(run_record), intent(inout) :: record !< stresses are made on demand
+      type(run_record), intent(inout) :: record !< computes stresses on demand
       type(error_type), allocatable, intent(out) :: error
     end subroutine write_increment
   end interface
@@ -57,7 +57,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
   end subroutine write_modes
 
-  !> A step has ended, or the run stops in it: the envelopes of the step.
+  !> Writes the envelopes of a step that has ended or in which the run stops.
   subroutine write_envelopes(self, model, record, error)
     class(writer), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -65,22 +65,22 @@ contains
     type(error_type), allocatable, intent(out) :: error
   end subroutine write_envelopes
 
-  !> The analysis has ended, well or not: the ledger of the run, before `finish`.
+  !> Writes the ledger of the run, before `finish`, also after a failure.
   subroutine write_costs(self, costs)
     class(writer), intent(inout) :: self
     type(ledger), intent(in) :: costs
   end subroutine write_costs
 
-  !> The analysis has ended, well or not: everything must be on the disk.
+  !> Completes the files on disk, also after a failure.
   subroutine finish(self, error)
     class(writer), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: error
   end subroutine finish
 
-  !> Is this increment one of a request? Every `frequency`-th, and the last of a step; where a run
-  !> stops early the last one reached is told once more and due for those that have not got it.
-  !> Increment 0 repeats the end of the step before; it counts only where there is none. Frequency 0
-  !> is never.
+  !> Does a request write this increment? True for every `frequency`-th increment and the last of a
+  !> step. When a run stops early, the last increment is sent again to requests that have not
+  !> written it. Increment 0 repeats the end of the previous step; only the first step writes it.
+  !> Frequency 0 writes nothing.
   pure logical function is_due(now, frequency)
     type(state), intent(in) :: now
     integer, intent(in) :: frequency

@@ -1,5 +1,5 @@
-!> What a run knows of itself beyond one increment: faces of the dam, maxima, warnings; and the
-!> stresses of the present increment. All writers read it.
+!> The record of a run: faces of the dam, maxima and warnings of all increments, stresses of the
+!> present increment. All writers read the record.
 module run_records
   use kinds, only: rk
   use problem_definition, only: problem
@@ -17,45 +17,46 @@ module run_records
   private
   public :: run_record, text_item
 
-  !> Energy that the stepping may feed in a dynamic step, over the largest of the balance. Of the
-  !> schemes compared in docs/theory.md, 7.2, sound ones feed 2 %, others 100 %.
+  !> Energy that the time stepping may add in a dynamic step, over the largest energy of the
+  !> balance. In docs/theory.md, 7.2, stable schemes add 2 %, others 100 %.
   real(rk), parameter :: largest_gain = 0.1_rk
 
-  !> Part of the energy stored at most that solids may lose within one static increment. A crack
-  !> that is followed takes a few percent; one that snaps back takes most of it.
-  real(rk), parameter :: largest_release = 0.3_rk
+  !> Energy that solids may dissipate in one static increment, over the largest energy of the
+  !> balance. A crack in stable growth takes a few percent; a crack that snaps back takes most of
+  !> the energy.
+  real(rk), parameter :: largest_dissipation = 0.3_rk
 
   type :: text_item
     character(:), allocatable :: text
   end type text_item
 
-  !> What changes in time is saved and loaded by record_archive; a new component goes there too.
+  !> record_archive saves and loads what changes in time; add a new component there too.
   type :: run_record
     type(result_field), allocatable :: fields(:) !< the table of fields
     type(recovered_fields) :: stresses
     type(dam_skin) :: skin
     type(joint_record), allocatable :: joints(:)
     type(damage_record) :: damage
-    type(envelope), allocatable :: envelopes(:) !< all ever asked for
-    integer, allocatable :: active(:) !< those of the present step
+    type(envelope), allocatable :: envelopes(:) !< of all steps so far
+    integer, allocatable :: active(:) !< envelopes of the present step
     type(text_item), allocatable :: warnings(:)
-    type(text_item), allocatable :: files(:) !< names of what was written, beside job.json
+    type(text_item), allocatable :: files(:) !< names of the files beside job.json
     integer :: step = 0 !< the present step
-    real(rk) :: most_taken = 0.0_rk !< by the stepping in this step so far [J]
-    real(rk) :: last_strain = 0.0_rk, last_fracture = 0.0_rk !< energies before [J]
+    real(rk) :: most_taken = 0.0_rk !< largest numerical dissipation in this step so far [J]
+    real(rk) :: last_strain = 0.0_rk, last_fracture = 0.0_rk !< energies, previous increment [J]
   contains
     procedure :: open => open_record
     procedure :: begin_step
     procedure :: note
     procedure :: warn_once
     procedure :: list_file
-    procedure, private :: watch_stepping, watch_release
-    procedure, private :: note_one, note_nodes, note_points, note_joints
+    procedure, private :: check_time_stepping, check_crack_energy
+    procedure, private :: update_envelope, note_nodes, note_points, note_joints
   end type run_record
 
 contains
 
-  !> Finds the faces of the dam and starts empty.
+  !> Finds the faces of the dam and starts an empty record.
   subroutine open_record(self, model)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -70,7 +71,7 @@ contains
     call open_damage_record(model, self%skin, self%damage)
   end subroutine open_record
 
-  !> Opens the envelopes of a step, but those that the analysis does not have.
+  !> Opens the envelopes of a step, except those that the model does not have.
   subroutine begin_step(self, model, step)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -95,84 +96,84 @@ contains
     end do
   end subroutine begin_step
 
-  !> Takes note of an increment: maxima of joints always, envelopes where the step asks.
+  !> Records an increment: maxima of joints always, envelopes where the step requests them.
   subroutine note(self, model, now)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
     integer :: j, i
-    call self%stresses%forget()
+    call self%stresses%invalidate()
     if (model%steps(now%step)%procedure%has_inertia) then
-      call self%watch_stepping(now, model%steps(now%step)%procedure%uses_alpha)
+      call self%check_time_stepping(now, model%steps(now%step)%procedure%uses_alpha)
     end if
-    if (self%damage%is_present) call self%watch_release(model, now)
+    if (self%damage%is_present) call self%check_crack_energy(model, now)
     if (now%has_held_switches) then
-      call self%warn_once('step '//model%steps(now%step)%name//': where the jump of '// &
-                          'RECOVERY=SIGN let no balance be found its switch was kept for the '// &
-                          'increment as it had been before')
+      call self%warn_once('step '//model%steps(now%step)%name//': the jump of '// &
+                          'RECOVERY=SIGN prevented equilibrium at some points; these '// &
+                          'points kept the stiffness recovery of the previous increment')
     end if
     do j = 1, size(model%joints)
       call note_joint(self%joints(j), model%joints(j), now%joints(j), now%total_time)
     end do
     if (self%damage%is_present) call note_damage(model, now, self%damage)
     do i = 1, size(self%active)
-      call self%note_one(model, now, self%envelopes(self%active(i)))
+      call self%update_envelope(model, now, self%envelopes(self%active(i)))
     end do
   end subroutine note
 
-  !> Warns of a motion that the time stepping drives: the balance of energy closes all the same.
-  subroutine watch_stepping(self, now, uses_alpha)
+  !> Warns when the time stepping drives the motion. The balance of energy does not show this error.
+  subroutine check_time_stepping(self, now, uses_alpha)
     class(run_record), intent(inout) :: self
     type(state), intent(in) :: now
-    logical, intent(in) :: uses_alpha !< the scheme has numerical damping to choose
+    logical, intent(in) :: uses_alpha !< the scheme has an ALPHA for numerical damping
     character(:), allocatable :: advice
     self%most_taken = max(self%most_taken, now%energy%numerical)
     if (self%most_taken - now%energy%numerical <= largest_gain*now%energy%largest) return
     advice = 'smaller increments'
     if (uses_alpha) advice = advice//', or an ALPHA further below 0'
-    call self%warn_once('the time stepping has fed more than a tenth of the energy '// &
+    call self%warn_once('the time stepping has added more than a tenth of the energy '// &
                         '("numerical" in the energy balance): do not trust this motion; try '// &
                         advice)
-  end subroutine watch_stepping
+  end subroutine check_time_stepping
 
-  !> Warns of a static increment in which cracks took much of the energy that was stored: it has
-  !> jumped from one equilibrium to another.
-  subroutine watch_release(self, model, now)
+  !> Warns when cracks dissipate much of the stored energy in one static increment: the structure
+  !> has jumped from one equilibrium to another.
+  subroutine check_crack_energy(self, model, now)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
-    real(rk) :: released
-    released = min(self%last_strain - now%energy%strain, now%energy%fracture - self%last_fracture)
+    real(rk) :: dissipated
+    dissipated = min(self%last_strain - now%energy%strain, now%energy%fracture - self%last_fracture)
     self%last_strain = now%energy%strain
     self%last_fracture = now%energy%fracture
     if (.not. model%steps(now%step)%procedure%is_static()) return
-    if (released <= largest_release*now%energy%largest) return
-    call self%warn_once('a static increment has given much of the stored energy to cracks at '// &
-                        'once: the structure has jumped from one equilibrium to another; take '// &
-                        'smaller increments, or a *DYNAMIC step where it still jumps')
-  end subroutine watch_release
+    if (dissipated <= largest_dissipation*now%energy%largest) return
+    call self%warn_once('cracks have dissipated much of the stored energy in one static '// &
+                        'increment: the structure has jumped from one equilibrium to another; '// &
+                        'take smaller increments, or a *DYNAMIC step if the jump remains')
+  end subroutine check_crack_energy
 
-  !> One envelope, by the place where its field lives.
-  subroutine note_one(self, model, now, item)
+  !> Updates one envelope, by the place of its field.
+  subroutine update_envelope(self, model, now, item)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(envelope), intent(inout) :: item
-    real(rk), allocatable :: values(:, :), size_of(:)
+    real(rk), allocatable :: values(:, :), magnitude(:)
     call self%fields(item%row)%on_nodes(model, now, self%stresses, values)
-    size_of = values(1, :)
-    if (size(values, 1) > 1) size_of = norm2(values, dim=1)
+    magnitude = values(1, :)
+    if (size(values, 1) > 1) magnitude = norm2(values, dim=1)
     select case (self%fields(item%row)%place)
     case (at_joints)
-      call self%note_joints(model, now, max(0.0_rk, size_of), item)
+      call self%note_joints(model, now, max(0.0_rk, magnitude), item)
     case (at_points)
-      call self%note_points(model, now, size_of, item)
+      call self%note_points(model, now, magnitude, item)
     case default
-      call self%note_nodes(model, now, size_of, item)
+      call self%note_nodes(model, now, magnitude, item)
     end select
-  end subroutine note_one
+  end subroutine update_envelope
 
-  !> A field on nodes: its extremes are those of the nodes of solids.
+  !> A field on nodes: the extremes are those of the nodes of solids.
   subroutine note_nodes(self, model, now, values, item)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -191,7 +192,7 @@ contains
                      now%total_time, item%wants_smallest)
   end subroutine note_nodes
 
-  !> A field of joints: its extremes are those of their points; closed points count as 0.
+  !> A field of joints: the extremes are those of the points; closed points count as 0.
   subroutine note_joints(self, model, now, on_nodes, item)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -209,7 +210,7 @@ contains
     end do
   end subroutine note_joints
 
-  !> A field of inelastic solids: its extremes are those of their integration points.
+  !> A field of inelastic solids: the extremes are those of the integration points.
   subroutine note_points(self, model, now, on_nodes, item)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -247,7 +248,7 @@ contains
     call add_once(self%files, path)
   end subroutine list_file
 
-  !> Adds a text that is not there yet.
+  !> Adds a text unless the list has it.
   subroutine add_once(list, text)
     type(text_item), allocatable, intent(inout) :: list(:)
     character(*), intent(in) :: text

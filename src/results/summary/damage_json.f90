@@ -8,7 +8,7 @@ module damage_json
 
 contains
 
-  !> Nothing where no law of the model has damage.
+  !> Writes the block where a law of the model has damage.
   subroutine put_damage(json, record)
     type(json_text), intent(inout) :: json
     type(damage_record), intent(in) :: record
@@ -37,7 +37,7 @@ contains
     call json%close_object()
   end subroutine put_damage
 
-  !> The largest damage; without place and time as long as there is none.
+  !> The largest damage; place and time only where there is damage.
   subroutine put_largest(json, name, largest)
     type(json_text), intent(inout) :: json
     character(*), intent(in) :: name

@@ -1,4 +1,4 @@
-!> What job.json tells of joints and of faces of different meshes; extremes by face.
+!> Joints, interfaces of different meshes, and extremes by face in job.json.
 module joint_json
   use extremes, only: extremes_by_face, face_names
   use joint_points, only: dam_joint
@@ -10,14 +10,14 @@ module joint_json
   private
   public :: put_joints, put_interfaces, put_extremes
 
-  !> A slave facet has no partner where more than this part of it is bare.
+  !> A slave facet has no partner when a larger fraction of its area is uncovered.
   real(rk), parameter :: most_bare = 0.5_rk
 
   integer, parameter :: most_listed = 1000 !< elements without partner
 
 contains
 
-  !> What each joint is made of, and its extremes.
+  !> Composition and extremes of each joint.
   subroutine put_joints(json, model, record)
     type(json_text), intent(inout) :: json
     type(problem), intent(in) :: model
@@ -26,7 +26,7 @@ contains
     call json%open_object('joints')
     do j = 1, size(model%joints)
       call json%open_object(model%joints(j)%name)
-      call put_make(json, model%joints(j))
+      call put_composition(json, model%joints(j))
       call put_extremes(json, 'opening', record%joints(j)%opening)
       call put_extremes(json, 'slip', record%joints(j)%slip)
       call put_extremes(json, 'pressure', record%joints(j)%pressure)
@@ -38,17 +38,17 @@ contains
     call json%close_object()
   end subroutine put_joints
 
-  !> What a joint is made of.
-  subroutine put_make(json, joint)
+  !> Composition of a joint.
+  subroutine put_composition(json, joint)
     type(json_text), intent(inout) :: json
     type(dam_joint), intent(in) :: joint
     call json%put_text(trim(merge('elements', 'surfaces', joint%is_matching)), 'kind')
     call json%put_text(trim(merge('nodes', 'gauss', joint%is_nodal)), 'integration')
     call json%put_integer(joint%num_points, 'points')
     call json%put_real(sum(joint%area), 'area')
-  end subroutine put_make
+  end subroutine put_composition
 
-  !> Anywhere, upstream, downstream: those that exist.
+  !> Extremes anywhere, upstream and downstream, where they exist.
   subroutine put_extremes(json, name, found)
     type(json_text), intent(inout) :: json
     character(*), intent(in) :: name
@@ -66,7 +66,7 @@ contains
     call json%close_object()
   end subroutine put_extremes
 
-  !> How faces of different meshes cover each other.
+  !> Overlap of interfaces of different meshes.
   subroutine put_interfaces(json, model)
     type(json_text), intent(inout) :: json
     type(problem), intent(in) :: model
@@ -94,7 +94,7 @@ contains
     call json%close_array()
   end subroutine put_interfaces
 
-  !> The numbers of elements, the first of them where there are very many.
+  !> Numbers of elements, at most `most_listed`.
   subroutine put_elements(json, model, elements)
     type(json_text), intent(inout) :: json
     type(problem), intent(in) :: model

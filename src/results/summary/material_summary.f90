@@ -1,5 +1,4 @@
-!> What matters of the tests of materials: extremes and energies, for job_material.json and for
-!> people.
+!> Summary of material tests: extremes and energies, for job_material.json and the terminal.
 module material_summary
   use build_info, only: program_version
   use errors, only: error_type
@@ -17,7 +16,7 @@ module material_summary
   character, parameter :: nl = new_line('a')
   character(3), parameter :: stress_names(6) = ['S11', 'S22', 'S33', 'S12', 'S13', 'S23']
 
-  !> A stress with the strain of the same component, and when.
+  !> A stress with strain of the same component and time.
   type :: peak
     real(rk) :: stress = 0.0_rk, strain = 0.0_rk, time = 0.0_rk
   end type peak
@@ -26,9 +25,9 @@ module material_summary
     character(:), allocatable :: name, kind, material, message, file
     logical :: has_finished = .false.
     real(rk) :: length = 0.0_rk !< [m]
-    real(rk) :: time = 0.0_rk !< that the test took [s]
+    real(rk) :: time = 0.0_rk !< duration of the test [s]
     integer :: rows = 0, iterations = 0
-    integer :: component = 1 !< the peaks are of this one
+    integer :: component = 1 !< of the peaks
     type(peak) :: largest, smallest
     real(rk) :: largest_principal = 0.0_rk, smallest_principal = 0.0_rk !< [Pa]
     real(rk) :: work = 0.0_rk, stored = 0.0_rk, fracture = 0.0_rk, crushing = 0.0_rk !< [J/m3]
@@ -36,10 +35,10 @@ module material_summary
 
 contains
 
-  !> Takes the numbers out of a record.
+  !> Computes the summary from the record of a test.
   subroutine summarise_test(test, material, record, summary)
     type(material_test), intent(in) :: test
-    character(*), intent(in) :: material !< its name
+    character(*), intent(in) :: material !< name
     type(path_record), intent(in) :: record
     type(test_summary), intent(out) :: summary
     real(rk) :: principal(3)
@@ -105,7 +104,7 @@ contains
 
   !> Writes job_material.json.
   subroutine write_test_summary(path, deck, tests, error)
-    character(*), intent(in) :: path, deck !< the file, and the deck as it was named
+    character(*), intent(in) :: path, deck !< name of the file; name of the deck as given
     type(test_summary), intent(in) :: tests(:)
     type(error_type), allocatable, intent(out) :: error
     type(json_text) :: json

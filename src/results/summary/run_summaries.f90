@@ -1,4 +1,4 @@
-!> What job.json tells of a run, gathered while it goes.
+!> Data of job.json, collected during the run.
 module run_summaries
   use kinds, only: rk
   use diagnostics, only: diagnostic_list
@@ -12,10 +12,10 @@ module run_summaries
   !> One step that has begun.
   type :: step_summary
     integer :: step = 0 !< position in the problem
-    real(rk) :: time = 0.0_rk !< of the step, reached so far [s]
+    real(rk) :: time = 0.0_rk !< step time so far [s]
     integer :: increments = 0, iterations = 0, cutbacks = 0
     integer :: most_iterations = 0 !< in one increment
-    integer :: augmentations = 0, most_augmentations = 0 !< of contact; most in one increment
+    integer :: augmentations = 0, most_augmentations = 0 !< of contact: all, in one increment
     real(rk) :: joint_condition = 0.0_rk !< of the system with all joints closed
     real(rk) :: largest_residual = 0.0_rk, largest_error = 0.0_rk !< error of the energy balance
     type(energy_balance) :: energy !< at its end [J]
@@ -49,7 +49,7 @@ contains
     if (self%num_unknowns == 0) self%num_unknowns = count_unknowns(model, step)
   end subroutine begin_step
 
-  !> Displacements of nodes that belong to an element, without the prescribed ones.
+  !> Number of displacements that are not prescribed, at nodes of elements.
   integer function count_unknowns(model, step) result(count_free)
     type(problem), intent(in) :: model
     integer, intent(in) :: step
@@ -69,7 +69,7 @@ contains
     count_free = count(is_free)
   end function count_unknowns
 
-  !> An increment of the last step that has begun.
+  !> Records an increment of the present step.
   subroutine note(self, now)
     class(run_summary), intent(inout) :: self
     type(state), intent(in) :: now
@@ -89,7 +89,7 @@ contains
     end associate
   end subroutine note
 
-  !> The modes of the last step that has begun.
+  !> Records the modes of the present step.
   subroutine note_modes(self, modes)
     class(run_summary), intent(inout) :: self
     type(vibration_mode), intent(in) :: modes(:)

@@ -1,4 +1,4 @@
-!> job.json: the summary of a run, readable at any moment.
+!> job.json: the summary of a run. The file is complete at any time.
 module summary_json
   use kinds, only: rk
   use errors, only: error_type
@@ -56,7 +56,7 @@ contains
     call write_whole_file(path, json%contents(), error)
   end subroutine write_summary
 
-  !> The program and what it was built from.
+  !> The program and its source version.
   subroutine put_program(json)
     type(json_text), intent(inout) :: json
     integer :: start, comma
@@ -119,7 +119,7 @@ contains
 
   contains
 
-    !> One of them.
+    !> One guest.
     subroutine put_effect(name, kind)
       character(*), intent(in) :: name, kind
       call json%open_object()
@@ -129,7 +129,7 @@ contains
     end subroutine put_effect
   end subroutine put_effects
 
-  !> Has a material of the model points with a history?
+  !> Has a material of the model points with states?
   pure logical function is_inelastic(model, m)
     type(problem), intent(in) :: model
     integer, intent(in) :: m !< position of the material
@@ -167,7 +167,7 @@ contains
     call json%close_array()
   end subroutine put_remarks
 
-  !> All steps that have begun.
+  !> All steps that have started.
   subroutine put_steps(json, model, summary)
     type(json_text), intent(inout) :: json
     type(problem), intent(in) :: model
@@ -191,7 +191,7 @@ contains
     call json%close_array()
   end subroutine put_steps
 
-  !> Frequencies of a step; an empty list where it sought none.
+  !> Frequencies of a step; an empty list for other steps.
   subroutine put_modes(json, part)
     type(json_text), intent(inout) :: json
     type(step_summary), intent(in) :: part
@@ -207,7 +207,7 @@ contains
     call json%close_array()
   end subroutine put_modes
 
-  !> Energies at the end of a step; the error is the largest in it.
+  !> Energies at the end of a step; the error is the largest in the step.
   subroutine put_energy(json, part)
     type(json_text), intent(inout) :: json
     type(step_summary), intent(in) :: part
@@ -224,7 +224,7 @@ contains
     call json%close_object()
   end subroutine put_energy
 
-  !> Extremes of *ENVELOPE over all steps that asked for it.
+  !> Extremes of *ENVELOPE over all steps with the envelope.
   subroutine put_envelopes(json, record)
     type(json_text), intent(inout) :: json
     type(run_record), intent(in) :: record
@@ -236,7 +236,7 @@ contains
     call json%close_object()
   end subroutine put_envelopes
 
-  !> How well the equations were met.
+  !> Accuracy of the solution.
   subroutine put_accuracy(json, model, summary, record)
     type(json_text), intent(inout) :: json
     type(problem), intent(in) :: model
@@ -250,7 +250,7 @@ contains
     call json%close_object()
   end subroutine put_accuracy
 
-  !> How far faces of joints go into each other, held to how far they open, and the condition of the
+  !> Penetration of the joints compared with their opening, and the condition number of the
   !> equations with all joints closed.
   subroutine put_contact(json, model, summary, record)
     type(json_text), intent(inout) :: json

@@ -1,4 +1,4 @@
-!> What job.json says of the user's UMAT: where it came from, and the check of its tangents.
+!> The user's UMAT in job.json: its source, and the check of its tangents.
 module umat_json
   use kinds, only: rk
   use json_writer, only: json_text
@@ -10,7 +10,7 @@ module umat_json
 
 contains
 
-  !> Nothing without a UMAT.
+  !> Writes the block of a run with a UMAT.
   subroutine put_umat(json, umat)
     type(json_text), intent(inout) :: json
     type(user_library), pointer, intent(in) :: umat
@@ -26,7 +26,7 @@ contains
     call json%close_object()
   end subroutine put_umat
 
-  !> DDSDDE against differences of STRESS; the entry that is farthest off where one was compared.
+  !> DDSDDE compared with differences of STRESS, and the entry with the largest difference, if any.
   subroutine put_check(json, check)
     type(json_text), intent(inout) :: json
     type(tangent_check), intent(in) :: check

@@ -13,17 +13,17 @@ module hdf5_fields
 
 contains
 
-  !> One array; several components bear their names.
+  !> One array, with the names of its components where there are several.
   subroutine put_field(file, path, values, components)
     type(hdf5_file), intent(inout) :: file
     character(*), intent(in) :: path
     real(rk), intent(in) :: values(:, :) !< (components, places)
-    character(*), intent(in) :: components !< names, '' for one
+    character(*), intent(in) :: components !< names, '' for a scalar
     call put_values(file, path, values)
     if (size(values, 1) /= 1) call file%set(path, 'components', components)
   end subroutine put_field
 
-  !> A list where there is one component, else a table.
+  !> A list for one component, a table for several.
   subroutine put_values(file, path, values)
     type(hdf5_file), intent(inout) :: file
     character(*), intent(in) :: path

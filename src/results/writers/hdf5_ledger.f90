@@ -10,7 +10,7 @@ module hdf5_ledger
 
 contains
 
-  !> Writes all parts as they are now, in arrays of the same order.
+  !> Writes all parts, in arrays of the same order.
   subroutine write_ledger(file, costs)
     type(hdf5_file), intent(inout) :: file
     type(ledger), intent(in) :: costs

@@ -13,7 +13,7 @@ module hdf5_model
 
 contains
 
-  !> Everything that does not change in time.
+  !> Writes all data that do not change in time.
   subroutine write_model(file, model, record)
     type(hdf5_file), intent(inout) :: file
     type(problem), intent(in) :: model
@@ -53,7 +53,7 @@ contains
     call file%put_texts('/mesh/material_names', names)
   end subroutine write_mesh
 
-  !> Sets of nodes or elements, by the numbers of the deck.
+  !> Sets of nodes or elements, with the numbers of the deck.
   subroutine write_sets(file, group, sets, id)
     type(hdf5_file), intent(inout) :: file
     character(*), intent(in) :: group
@@ -93,7 +93,7 @@ contains
     call file%set(group, 'gap', joint%law%gap)
     call file%put(group//'/x', joint%x)
     call file%put(group//'/area', joint%area)
-    ! The axes are the rows for a reader whose last index runs fastest.
+    ! Axes are rows for readers in C order.
     call file%put(group//'/rotation', &
                   reshape(joint%rotation, shape(joint%rotation), order=[2, 1, 3]))
     call file%put(group//'/clearance', joint%clearance)
@@ -107,7 +107,7 @@ contains
     if (allocated(joint%cells%first)) call write_cells(file, model, joint%cells, group//'/cells')
   end subroutine write_joint
 
-  !> The polygons that are drawn of a joint.
+  !> The polygons for drawing a joint.
   subroutine write_cells(file, model, cells, group)
     type(hdf5_file), intent(inout) :: file
     type(problem), intent(in) :: model

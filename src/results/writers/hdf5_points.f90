@@ -1,6 +1,6 @@
-!> Integration points of inelastic solids in job.h5: who they are, once; what those that have left
-!> elasticity are in, with every increment. Points that are elastic are not written: their stress is
-!> D eps, their history nil.
+!> Integration points of inelastic solids in job.h5: the list of points once, and the fields of
+!> points that have left elasticity in every increment. Elastic points are not written: their stress
+!> is D eps, their state variables are zero.
 module hdf5_points
   use kinds, only: rk
   use problem_definition, only: problem
@@ -14,7 +14,7 @@ module hdf5_points
 
 contains
 
-  !> All points, block by block; nothing where there are none.
+  !> Writes the list of points, block by block; no group without points.
   subroutine write_points(file, model)
     type(hdf5_file), intent(inout) :: file
     type(problem), intent(in) :: model
@@ -55,12 +55,12 @@ contains
     end do
   end function count_points
 
-  !> The group `points` of an increment: rows of /points, and the fields that were asked for there.
+  !> The group `points` of an increment: rows of /points, and the requested fields.
   subroutine add_points(file, model, now, fields, group)
     type(hdf5_file), intent(inout) :: file
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
-    type(result_field), intent(in) :: fields(:) !< that are due
+    type(result_field), intent(in) :: fields(:) !< requested now
     character(*), intent(in) :: group !< of the increment
     real(rk), allocatable :: values(:, :)
     integer, allocatable :: rows(:)
@@ -97,7 +97,7 @@ contains
     end do
   end subroutine list_rows
 
-  !> A field at those points.
+  !> A field at the points that have left elasticity.
   subroutine gather(model, now, item, num_rows, values)
     type(problem), intent(in) :: model
     type(state), intent(in) :: now

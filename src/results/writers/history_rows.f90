@@ -19,12 +19,12 @@ module history_rows
 
   !> A field on all nodes, or at all points of a joint; unallocated where it is zero.
   type :: list_values
-    real(rk), allocatable :: at(:, :) !< (components, places)
+    real(rk), allocatable :: at(:, :) !< (components, nodes or points)
   end type list_values
 
 contains
 
-  !> Part of the file's name.
+  !> Part of the file name.
   pure function name_part(kind) result(text)
     character(*), intent(in) :: kind
     character(:), allocatable :: text
@@ -38,7 +38,7 @@ contains
     end select
   end function name_part
 
-  !> The keyword that asks for such a table.
+  !> The keyword that requests such a table.
   pure function keyword_of(kind) result(text)
     character(*), intent(in) :: kind
     character(:), allocatable :: text
@@ -51,7 +51,7 @@ contains
     type(problem), intent(in) :: model
     type(result_field), intent(in) :: table(:) !< all fields
     character(*), intent(in) :: kind !< 'NODE', 'ELEMENT' or 'JOINT'
-    integer, intent(in) :: fields(:) !< rows of the table, in the order in which they were asked for
+    integer, intent(in) :: fields(:) !< rows of the table, in the order of the request
     character(:), allocatable :: header
     integer :: i
     select case (kind)
@@ -62,7 +62,7 @@ contains
     case default
       header = 'step,increment,time,point,x,y,z'
       do i = 1, size(table)
-        if (.not. table(i)%may_stand_in('JOINT PRINT')) cycle
+        if (.not. table(i)%is_allowed_in('JOINT PRINT')) cycle
         header = header//','//lower(table(i)%columns(table(i)%width(model)))
       end do
       return
@@ -83,7 +83,7 @@ contains
     call lines%add_real(now%total_time)
   end subroutine add_time
 
-  !> Reals, each with its comma in front.
+  !> Reals, each after a comma.
   subroutine add_reals(lines, numbers)
     type(text_buffer), intent(inout) :: lines
     real(rk), intent(in) :: numbers(:)
@@ -123,7 +123,7 @@ contains
     end do
   end subroutine add_node_rows
 
-  !> One row for each integration point of each solid; other elements have none.
+  !> One row for each integration point of each solid; other elements have no points.
   subroutine add_element_rows(lines, model, now, record, fields, elements)
     type(text_buffer), intent(inout) :: lines
     type(problem), intent(in) :: model
@@ -157,7 +157,7 @@ contains
     end associate
   end subroutine add_element_rows
 
-  !> One row for each chosen point of a joint, with all fields of joints that are printed.
+  !> One row for each chosen point of a joint, with all printed fields of joints.
   subroutine add_joint_rows(lines, model, now, record, joint, points)
     type(text_buffer), intent(inout) :: lines
     type(problem), intent(in) :: model
@@ -168,7 +168,7 @@ contains
     type(list_values) :: values(size(record%fields))
     integer :: k, p, i
     do i = 1, size(record%fields)
-      if (.not. record%fields(i)%may_stand_in('JOINT PRINT')) cycle
+      if (.not. record%fields(i)%is_allowed_in('JOINT PRINT')) cycle
       call record%fields(i)%of_joint(model, now, joint, values(i)%at)
     end do
     do k = 1, size(points)

@@ -1,4 +1,4 @@
-!> job_damage.csv: how damage grows, a row an increment; only where a law has damage.
+!> job_damage.csv: the damage in every increment, for models with damage.
 module write_damage
   use errors, only: error_type
   use problem_definition, only: problem
@@ -36,7 +36,7 @@ contains
     call self%file%open(stem//'_damage.csv', 'step,increment,time,'//damage_columns, error)
   end subroutine open_damage
 
-  !> One row.
+  !> Writes one row.
   subroutine write_row(self, model, now, record, error)
     class(damage_file), intent(inout) :: self
     type(problem), intent(in) :: model

@@ -34,7 +34,7 @@ contains
     call self%file%open(stem//'_energy.csv', 'step,increment,time,'//energy_columns, error)
   end subroutine open_energy
 
-  !> One row.
+  !> Writes one row.
   subroutine write_energies(self, model, now, record, error)
     class(energy_file), intent(inout) :: self
     type(problem), intent(in) :: model

@@ -33,8 +33,8 @@ module write_hdf5
     private
     type(hdf5_file) :: file
     character(:), allocatable :: path
-    integer :: step = 0 !< whose group is there
-    real(rk) :: flushed_at = 0.0_rk !< by the wall clock [s]
+    integer :: step = 0 !< the last step with a group
+    real(rk) :: flushed_at = 0.0_rk !< wall clock [s]
     type(growing_table) :: increments, energies, damages
     type(growing_table), allocatable :: joints(:)
   contains
@@ -44,10 +44,10 @@ module write_hdf5
     procedure :: write_envelopes => write_envelope_data
     procedure :: write_costs
     procedure :: finish => close_data
-    procedure, private :: enter_step
+    procedure, private :: make_step_group
     procedure, private :: add_history
     procedure, private :: add_fields
-    procedure, private :: bring_out
+    procedure, private :: flush_rows
   end type hdf5_results
 
 contains
@@ -84,10 +84,10 @@ contains
                                   'step,increment,time,'//reading_names)
       end do
     end associate
-    call self%bring_out(error)
+    call self%flush_rows(error)
   end subroutine open_hdf5
 
-  !> Histories of every increment, and the fields that are due.
+  !> Writes the histories of every increment, and the fields requested now.
   subroutine write_data(self, model, now, record, error)
     class(hdf5_results), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -95,13 +95,13 @@ contains
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     integer, allocatable :: fields(:)
-    logical :: waits_long
-    call self%enter_step(model, now%step)
+    logical :: is_flush_due
+    call self%make_step_group(model, now%step)
     if (is_due(now, 1)) call self%add_history(model, now, record)
     call list_due_fields(model, now, record, fields)
     if (size(fields) > 0) call self%add_fields(model, now, record, fields)
-    waits_long = wall_clock() - self%flushed_at > seconds_between_flushes
-    if (size(fields) > 0 .or. waits_long) call self%bring_out(error)
+    is_flush_due = wall_clock() - self%flushed_at > seconds_between_flushes
+    if (size(fields) > 0 .or. is_flush_due) call self%flush_rows(error)
   end subroutine write_data
 
   !> Rows of the histories.
@@ -162,7 +162,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: mass(:, :), shapes(:, :, :)
     integer :: i
-    call self%enter_step(model, step)
+    call self%make_step_group(model, step)
     allocate (mass(num_directions, size(modes)))
     allocate (shapes(num_directions, model%mesh%num_nodes, size(modes)))
     do i = 1, size(modes)
@@ -175,7 +175,7 @@ contains
       call self%file%put(group//'/effective_mass', mass)
       call self%file%put(group//'/shape', shapes)
     end associate
-    call self%bring_out(error)
+    call self%flush_rows(error)
     call record%list_file(file_name(self%path))
   end subroutine write_mode_data
 
@@ -200,7 +200,7 @@ contains
         end if
       end associate
     end do
-    call self%bring_out(error)
+    call self%flush_rows(error)
   end subroutine write_envelope_data
 
   !> The ledger of the run, at its end.
@@ -215,12 +215,12 @@ contains
     class(hdf5_results), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: error
     if (self%file%id == 0) return
-    call self%bring_out(error)
+    call self%flush_rows(error)
     call self%file%close()
   end subroutine close_data
 
-  !> Makes the group of a step when it begins.
-  subroutine enter_step(self, model, step)
+  !> Makes the group of a step unless it exists.
+  subroutine make_step_group(self, model, step)
     class(hdf5_results), intent(inout) :: self
     type(problem), intent(in) :: model
     integer, intent(in) :: step
@@ -231,24 +231,24 @@ contains
     call self%file%set(step_group(step), 'procedure', &
                        trim(model%steps(step)%procedure%name))
     call self%file%make_group(step_group(step)//'/increments')
-  end subroutine enter_step
+  end subroutine make_step_group
 
-  !> Rows to the file, file to the disk.
-  subroutine bring_out(self, error)
+  !> Writes all rows and flushes the file.
+  subroutine flush_rows(self, error)
     class(hdf5_results), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: error
     integer :: j
-    call self%increments%bring_out(self%file)
-    call self%energies%bring_out(self%file)
-    call self%damages%bring_out(self%file)
+    call self%increments%write_rows(self%file)
+    call self%energies%write_rows(self%file)
+    call self%damages%write_rows(self%file)
     do j = 1, size(self%joints)
-      call self%joints(j)%bring_out(self%file)
+      call self%joints(j)%write_rows(self%file)
     end do
     call self%file%flush()
     self%flushed_at = wall_clock()
     if (self%file%has_failed) call raise(error, "cannot write '"//self%path//"' (disk full?)", &
                                          system_failed)
-  end subroutine bring_out
+  end subroutine flush_rows
 
   !> '/steps/0001'
   pure function step_group(step) result(path)
@@ -257,7 +257,7 @@ contains
     path = '/steps/'//padded(step, 4)
   end function step_group
 
-  !> A number with zeros in front.
+  !> A number with leading zeros.
   pure function padded(number, width) result(digits)
     integer, intent(in) :: number, width
     character(width) :: digits

@@ -18,7 +18,7 @@ module write_history
   private
   public :: history_files
 
-  !> One file. Its columns are all fields that any step asks for.
+  !> One file. The columns are the fields of all steps.
   type, extends(csv_file) :: history_file
     character(:), allocatable :: kind, name
     integer, allocatable :: fields(:) !< rows of the record's table
@@ -36,7 +36,7 @@ module write_history
 
 contains
 
-  !> Opens a file for each set and joint that a step prints.
+  !> Opens a file for each printed set and joint.
   subroutine open_histories(self, model, stem, record, error)
     class(history_files), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -53,7 +53,7 @@ contains
     end do
     do f = 1, size(self%files)
       associate (file => self%files(f))
-        call file%open(stem//'_'//name_part(file%kind)//'_'//own_name(self%files, f)//'.csv', &
+        call file%open(stem//'_'//name_part(file%kind)//'_'//unique_name(self%files, f)//'.csv', &
                        header_of(model, record%fields, file%kind, file%fields), error)
         if (allocated(error)) return
         call record%list_file(file_name(file%path))
@@ -61,9 +61,9 @@ contains
     end do
   end subroutine open_histories
 
-  !> The name of a set or joint as its file has it; where it is taken already (sets 'A B' and
-  !> 'A_B'), the position of the file makes it another.
-  pure function own_name(files, f) result(name)
+  !> The name of a set or joint in its file name. Where another file has this name (sets 'A B' and
+  !> 'A_B'), the position of the file is appended.
+  pure function unique_name(files, f) result(name)
     type(history_file), intent(in) :: files(:)
     integer, intent(in) :: f !< position of the file
     character(:), allocatable :: name
@@ -73,9 +73,9 @@ contains
       if (files(other)%kind /= files(f)%kind) cycle
       if (safe_name(files(other)%name) == name) name = name//'_'//as_text(f)
     end do
-  end function own_name
+  end function unique_name
 
-  !> Adds the request's fields to its file; makes the file when it is new.
+  !> Adds the fields of a request to its file; adds the file when it is new.
   subroutine add_request(model, request, record, files)
     type(problem), intent(in) :: model
     type(print_request), intent(in) :: request
@@ -101,7 +101,7 @@ contains
         files(f)%fields = [files(f)%fields, k]
       else if (request%kind /= 'JOINT' .and. .not. is_of_law(record, k)) then
         call record%warn_once(trim(request%fields(i))//' of '//request%name// &
-                              ' is not printed: this analysis does not have it')
+                              ' is not printed: the model does not have this field')
       end if
     end do
   end subroutine add_request
@@ -114,7 +114,7 @@ contains
     integer, intent(in) :: f !< row of the record's table, 0: an unknown field
     is_printed = .false.
     if (f == 0) return
-    if (.not. record%fields(f)%may_stand_in(keyword_of(kind))) return
+    if (.not. record%fields(f)%is_allowed_in(keyword_of(kind))) return
     is_printed = record%fields(f)%width(model) > 0
   end function is_printed
 
@@ -129,7 +129,7 @@ contains
     end do
   end function find_file
 
-  !> Rows of all files that are due.
+  !> Writes the rows of all files with output now.
   subroutine write_rows(self, model, now, record, error)
     class(history_files), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -156,7 +156,7 @@ contains
     end do
   end subroutine write_rows
 
-  !> Members that due requests of this step want in the file: nodes, elements or points of a joint.
+  !> Members that the requests of this step print now: nodes, elements or points of a joint.
   subroutine choose_members(model, now, file, chosen)
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
@@ -178,7 +178,7 @@ contains
     end do
   end subroutine choose_members
 
-  !> Points of a joint: the nearest to each named node, or all where none is named.
+  !> Points of a joint: the nearest to each named node, or all without named nodes.
   pure function points_of(model, request, joint) result(points)
     type(problem), intent(in) :: model
     type(print_request), intent(in) :: request
@@ -186,20 +186,20 @@ contains
     integer, allocatable :: points(:)
     integer :: p, i
     logical :: is_near(model%joints(joint)%num_points)
-    real(rk) :: here(3), apart(3, model%joints(joint)%num_points)
+    real(rk) :: here(3), distance(3, model%joints(joint)%num_points)
     is_near = .true.
     if (allocated(request%near_nodes)) is_near = size(request%near_nodes) == 0
     if (.not. all(is_near)) then
       do i = 1, size(request%near_nodes)
         here = model%mesh%x(:, request%near_nodes(i))
-        apart = model%joints(joint)%x - spread(here, 2, size(is_near))
-        is_near(minloc(sum(apart**2, dim=1), dim=1)) = .true.
+        distance = model%joints(joint)%x - spread(here, 2, size(is_near))
+        is_near(minloc(sum(distance**2, dim=1), dim=1)) = .true.
       end do
     end if
     points = pack([(p, p=1, size(is_near))], is_near)
   end function points_of
 
-  !> Both lists, each member once; in the order of the first, or ascending when both hold some.
+  !> Union of two lists: in the order of a single list, ascending when both have members.
   pure function united(first, second) result(both)
     integer, intent(in) :: first(:), second(:)
     integer, allocatable :: both(:)

@@ -23,8 +23,8 @@ module write_joint_vtk
     private
     character(:), allocatable :: folder !< '.../job_vtk/'
     character(:), allocatable :: stem !< 'job_joints'
-    logical :: is_ready = .false. !< the folder and the cells are there
-    integer :: num_frames = 0 !< of the solids' series, whose numbers the files share
+    logical :: is_ready = .false. !< the folder and the cells exist
+    integer :: num_frames = 0 !< of the series of solids; both series have the same numbers
     type(drawn_joints) :: drawn
     type(pvd_file) :: frames
   contains
@@ -36,7 +36,7 @@ module write_joint_vtk
 
 contains
 
-  !> Nothing is written before something is due.
+  !> Sets names; the first frame makes the files.
   subroutine open_joint_vtk(self, model, stem, record, error)
     class(joint_series), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -49,7 +49,7 @@ contains
     call self%frames%open(stem//'_joints.pvd', file_name(stem)//'_vtk/')
   end subroutine open_joint_vtk
 
-  !> One file of the series, when a field of joints is due.
+  !> Writes a file of the series when fields of joints are requested now.
   subroutine write_frame(self, model, now, record, error)
     class(joint_series), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -71,7 +71,7 @@ contains
     call record%list_file(self%stem//'.pvd')
   end subroutine write_frame
 
-  !> Makes the folder and finds the cells, once.
+  !> Makes the folder and the cells, once.
   subroutine prepare(self, model, error)
     class(joint_series), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -108,7 +108,7 @@ contains
     end associate
   end subroutine fill
 
-  !> One field of the points of all joints; nothing where no joint has the field.
+  !> One field at the corners of all joints; no array where no joint has the field.
   subroutine put_field(file, model, now, drawn, item)
     type(vtu_file), intent(inout) :: file
     type(problem), intent(in) :: model
@@ -134,7 +134,7 @@ contains
     end if
   end subroutine put_field
 
-  !> The deck's number of the slave node that a corner lies on; 0 between nodes.
+  !> The number in the deck of the slave node at a corner; 0 between nodes.
   pure function node_numbers(model, drawn) result(number)
     type(problem), intent(in) :: model
     type(drawn_joints), intent(in) :: drawn

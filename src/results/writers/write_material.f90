@@ -52,7 +52,7 @@ contains
     if (.not. allocated(error)) call file%close(error)
   end subroutine write_curve
 
-  !> What the law keeps besides strain and stress: only fields that the law has.
+  !> The fields of the law besides strain and stress.
   subroutine collect_fields(law, record, names, values)
     class(stress_law), intent(in) :: law
     type(path_record), intent(in) :: record

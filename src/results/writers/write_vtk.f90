@@ -24,9 +24,9 @@ module write_vtk
     private
     character(:), allocatable :: folder !< '.../job_vtk/'
     character(:), allocatable :: job
-    logical :: has_grid = .false. !< the arrays below and the folder are there
+    logical :: has_grid = .false. !< the arrays below and the folder exist
     integer :: num_frames = 0
-    integer, allocatable :: connectivity(:), ends(:), kinds(:), elements(:) !< of the solids' cells
+    integer, allocatable :: connectivity(:), ends(:), kinds(:), elements(:) !< of solids
     type(pvd_file) :: frames
   contains
     procedure :: open => open_vtk
@@ -39,7 +39,7 @@ module write_vtk
 
 contains
 
-  !> Nothing is written before something is due.
+  !> Sets names; the first frame makes the files.
   subroutine open_vtk(self, model, stem, record, error)
     class(vtk_series), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -51,7 +51,7 @@ contains
     call self%frames%open(stem//'.pvd', self%job//'_vtk/')
   end subroutine open_vtk
 
-  !> One file of the series, when a request is due.
+  !> Writes a file of the series when a field is requested now.
   subroutine write_frame(self, model, now, record, error)
     class(vtk_series), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -101,7 +101,7 @@ contains
     end associate
   end subroutine put_field
 
-  !> The envelopes of a step in one file; nothing where the step has none.
+  !> Writes the envelopes of a step in one file; no file without envelopes.
   subroutine write_envelopes(self, model, record, error)
     class(vtk_series), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -133,7 +133,7 @@ contains
     row(1, :) = list
   end function as_row
 
-  !> Saves a file that stands for itself, and lists it among the results.
+  !> Saves a file outside the series and lists it among the results.
   subroutine save_listed(self, file, ending, record, error)
     class(vtk_series), intent(in) :: self
     type(vtu_file), intent(inout) :: file
@@ -144,7 +144,7 @@ contains
     call record%list_file(self%job//'_vtk/'//self%job//ending)
   end subroutine save_listed
 
-  !> All mode shapes of a *FREQUENCY step in one file.
+  !> Writes all mode shapes of a *FREQUENCY step in one file.
   subroutine write_mode_shapes(self, model, step, modes, record, error)
     class(vtk_series), intent(inout) :: self
     type(problem), intent(in) :: model

@@ -1,4 +1,4 @@
-!> The writers of a run. A new writer is one file and one line here.
+!> The writers of a run. A new writer needs one file and one line here.
 module writer_catalogue
   use result_writer, only: writer
   use write_history, only: history_files
@@ -13,25 +13,25 @@ module writer_catalogue
 
   type :: writer_item
     class(writer), allocatable :: item
-    character(:), allocatable :: label !< of what it writes, in the ledger
+    character(:), allocatable :: label !< name in the ledger
   end type writer_item
 
   integer, parameter :: most_writers = 20
 
 contains
 
-  !> All writers, in the order in which they write.
+  !> All writers, in the order of writing.
   subroutine list_writers(writers)
     type(writer_item), allocatable, intent(out) :: writers(:)
     type(writer_item) :: room(most_writers)
     integer :: last, i
     last = 0
-    call enter(history_files(), 'CSV')
-    call enter(energy_file(), 'CSV')
-    call enter(damage_file(), 'CSV')
-    call enter(hdf5_results(), 'HDF5')
-    call enter(vtk_series(), 'VTK')
-    call enter(joint_series(), 'VTK of joints')
+    call add_writer(history_files(), 'CSV')
+    call add_writer(energy_file(), 'CSV')
+    call add_writer(damage_file(), 'CSV')
+    call add_writer(hdf5_results(), 'HDF5')
+    call add_writer(vtk_series(), 'VTK')
+    call add_writer(joint_series(), 'VTK of joints')
     allocate (writers(last))
     do i = 1, last
       call move_alloc(room(i)%item, writers(i)%item)
@@ -40,13 +40,13 @@ contains
 
   contains
 
-    !> Adds one.
-    subroutine enter(item, label)
+    !> Adds a writer.
+    subroutine add_writer(item, label)
       class(writer), intent(in) :: item
       character(*), intent(in) :: label
       last = last + 1
       allocate (room(last)%item, source=item)
       room(last)%label = label
-    end subroutine enter
+    end subroutine add_writer
   end subroutine list_writers
 end module writer_catalogue

@@ -46,7 +46,7 @@ contains
     integer :: i, k
     do i = 1, size(table)
       do k = 1, size(keywords)
-        if (.not. table(i)%may_stand_in(trim(keywords(k)))) cycle
+        if (.not. table(i)%is_allowed_in(trim(keywords(k)))) cycle
         call check(log, can_be_written(table(i), trim(keywords(k))), &
                    table(i)%name//' of *'//trim(keywords(k))//' has values')
       end do

@@ -164,7 +164,7 @@ contains
     type(recovered_fields) :: fields
     integer :: i
     do i = 1, times
-      call fields%forget()
+      call fields%invalidate()
       call fields%need_node_stress(body, now)
     end do
     call check(log, fields%has_operator .eqv. times > 3, 'the operator is made when it pays')
