@@ -110,9 +110,9 @@ contains
     self%has_node_strain = .true.
   end subroutine need_node_strain
 
-  !> Computes stresses on the nodes, once an increment. The operator serves repeated requests; it
-  !> costs as much as a few recoveries through the points. It is valid at nodes whose solids are
-  !> elastic, and not worth its memory where most solids are inelastic.
+  !> Computes stresses on the nodes, once an increment. The operator serves repeated requests;
+  !> setting the operator up costs as much as a few recoveries through the points. It is valid at
+  !> nodes whose solids are elastic, and not worth its memory where most solids are inelastic.
   subroutine need_node_stress(self, model, now)
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: model

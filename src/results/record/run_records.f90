@@ -109,8 +109,8 @@ contains
     if (self%damage%is_present) call self%check_crack_energy(model, now)
     if (now%has_held_switches) then
       call self%warn_once('step '//model%steps(now%step)%name//': the jump of '// &
-                          'RECOVERY=SIGN prevented equilibrium at some points; these '// &
-                          'points kept the stiffness recovery of the previous increment')
+                          'RECOVERY=SIGN prevented equilibrium in an increment; the stiffness '// &
+                          'recovery was fixed at its value from the start of the increment')
     end if
     do j = 1, size(model%joints)
       call note_joint(self%joints(j), model%joints(j), now%joints(j), now%total_time)
