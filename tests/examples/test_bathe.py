@@ -19,7 +19,7 @@ SPLIT = 2.0 - math.sqrt(2.0)  # gamma
 
 
 def edited(deck: str, *edits: tuple[str, str]) -> str:
-    """The deck with other words; each must be there."""
+    """The deck with replaced texts; each text must occur in the deck."""
     for old, new in edits:
         assert old in deck, f"the deck has no '{old}'"
         deck = deck.replace(old, new)
@@ -87,7 +87,7 @@ def test_second_order(example):
     assert np.all(errors["BATHE"][:, :2] < 0.5 * errors["HHT"][:, :2])
 
 
-def test_what_the_increment_cannot_resolve_is_gone(example):
+def test_unresolved_motion_is_damped(example):
     """Spectral radius at 100 periods an increment: near 0; of HHT (1 + alpha)/(1 - alpha), 0.90."""
     program = example("bathe")
     left = {}
@@ -101,7 +101,7 @@ def test_what_the_increment_cannot_resolve_is_gone(example):
 
 
 def test_energies(example):
-    """Without damping the scheme alone takes energy: of third order in the increment."""
+    """Without damping only the scheme dissipates energy, of third order in the increment."""
     taken = []
     for dt in (0.02, 0.01):
         run = example("bathe")(edited(DECK, with_increments(dt), (DAMPING, "")))
@@ -116,7 +116,7 @@ def test_energies(example):
 
 
 def test_energies_with_damping(example):
-    """Damping takes what the closed form has lost; 1e-3: its work is that of mean forces."""
+    """Damping dissipates the loss of the closed form; 1e-3: its work is that of mean forces."""
     table = example("bathe")(edited(DECK, with_increments(0.005))).csv("energy")
     assert table["error"].max() < 1e-11
     u, v, _ = exact(1.25)
@@ -132,14 +132,14 @@ def wave(name: str, values) -> str:
     return f"*AMPLITUDE, NAME={name}\n" + "".join(f"{t!r}, {v!r}\n" for t, v in pairs)
 
 
-@pytest.mark.parametrize("way", ["base motion", "moved supports"])
-def test_shaken_base(example, way):
+@pytest.mark.parametrize("motion_of_base", ["base motion", "moved supports"])
+def test_shaken_base(example, motion_of_base):
     """The base moves by 1 - cos(3 t): u'' + w^2 u = -1.5 * 9 cos(3 t), from rest, without damping.
 
     Half of the brick's mass moves with the base, which is 1.5 times the mass of its top.
     """
     speed, end = 3.0, 1.25
-    if way == "base motion":
+    if motion_of_base == "base motion":
         cards = wave("PATH", lambda t: speed**2 * np.cos(speed * t))
         moving = "*BASE MOTION, DOF=3, AMPLITUDE=PATH, TYPE=ACCELERATION\n"
         base = 0.0
@@ -216,7 +216,7 @@ CONCRETE = """25e9, 0.
 
 def test_concrete_that_cracks(example):
     """Concrete thrown upwards at its top, beyond its strength: it cracks once, in a quarter of its
-    period, and swings on. 1 %: both schemes resolve the crack with 60 increments or more.
+    period, and oscillates on. 1 %: both schemes resolve the crack with 60 increments or more.
     """
     model = edited(
         MODEL, (DAMPING, ""), ("39.47841760435743, 0.\n", CONCRETE), ("\n3.\n", "\n2400.\n")
@@ -235,7 +235,7 @@ def test_concrete_that_cracks(example):
     assert broken["BATHE"] == pytest.approx(broken["HHT"], rel=1e-2)
 
 
-def test_help_and_messages_know_the_new_scheme(example):
+def test_help_and_messages_name_the_new_scheme(example):
     """The reader, the help and the messages are made from the catalogue."""
     program = example("bathe")
     text = program.call("--keywords", "DYNAMIC").stdout

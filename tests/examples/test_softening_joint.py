@@ -43,7 +43,8 @@ def test_path_of_a_softening_joint(example):
     assert traction.min() < -0.5 * STRENGTH
     work = run.csv("energy")["fracture"]
     assert work[-1] == pytest.approx(ENERGY * AREA, rel=1e-9)
-    w = largest[19]  # end of the first leg: area below the curve less what unloading gives back
+    # End of the first leg: area below the curve less the energy recovered by unloading.
+    w = largest[19]
     below = 0.5 * STRENGTH * FIRST + 0.5 * (STRENGTH + envelope(w)) * (w - FIRST)
     assert work[19] == pytest.approx((below - 0.5 * envelope(w) * w) * AREA, rel=1e-9)
     assert work[39] == pytest.approx(work[19], rel=1e-12)
@@ -60,7 +61,7 @@ def test_state_of_a_softening_joint(example):
     assert np.array_equal(state, np.where(broken, np.where(opening > 0.0, 0, 1), 3))
 
 
-def test_help_and_messages_know_the_new_law(example):
+def test_help_and_messages_name_the_new_law(example):
     """The reader, the help and the messages are made from the catalogue."""
     program = example("softening_joint")
     text = program.call("--keywords", "JOINT LAW").stdout
@@ -69,7 +70,7 @@ def test_help_and_messages_know_the_new_law(example):
     assert "work of fracture per area; a number > 0 [J/m2]; required" in text
     deck = DECK.read_text(encoding="utf-8")
     run = program(deck.replace("TYPE=SOFTENING", "TYPE=SOFT"), code=2)
-    assert "expected which law, one of CONTRACTION, SOFTENING" in run.stderr
+    assert "expected type of the law, one of CONTRACTION, SOFTENING" in run.stderr
     run = program(deck.replace("FRACTURE ENERGY=100.", "FRICTION=0.5"), code=2)
     assert "unknown parameter 'FRICTION'; expected one of NAME, TYPE, KN, KT," in run.stderr
     assert "parameter FRACTURE ENERGY is missing" in run.stderr

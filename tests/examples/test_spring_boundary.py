@@ -36,7 +36,7 @@ def bar(constants: str, steps: str, young: float = YOUNG) -> str:
 
 
 def test_weight_on_springs(example):
-    """The foot settles by rho g L/k_n; the springs hold the bar without any support."""
+    """The foot settles by rho g L/k_n; the springs support the bar without any *BOUNDARY."""
     steps = (
         "*STEP\n*STATIC\n*DLOAD\nBAR, GRAV, 9.81, 0., 0., -1.\n*NODE PRINT, NSET=FOOT\nU\n*END STEP"
     )
@@ -60,7 +60,7 @@ def test_bar_on_a_spring(example):
 
 
 def test_dashpots_absorb_a_wave(example):
-    """A bar with a uniform velocity comes to rest: half goes down, half up and down again.
+    """A bar with a uniform velocity comes to rest: half travels down, half up and then down.
 
     d'Alembert: the top moves on with v until t = L/c and rests afterwards; at 2 L/c the dashpots
     rho c have taken all energy.
@@ -86,7 +86,7 @@ def test_dashpots_absorb_a_wave(example):
     assert np.mean(v[time > 1.1 * LENGTH / WAVE]) == pytest.approx(0.0, abs=1e-2)
 
 
-def test_messages_and_help_know_the_keyword(example):
+def test_messages_and_help_name_the_keyword(example):
     program = example("spring_boundary")
     text = program.call("--keywords", "SPRING BOUNDARY").stdout
     assert "springs along the normal" in text

@@ -245,4 +245,4 @@ def test_options_and_routines_that_belong_together(keyway, tmp_path):
     assert "undefined symbol: nosuch_" in run.stderr
     text = deck().replace("*USER MATERIAL, CONSTANTS=2", "*ELASTIC")
     run = pull(keyway, "free_in_for.for", text)
-    assert "--umat is given and no material asks for it" in run.stderr
+    assert "--umat is given, but no material uses it" in run.stderr

@@ -1,4 +1,4 @@
-!> What dynamic steps share, whatever their scheme: the start of a step and the size of the forces.
+!> Parts common to all dynamic schemes: the start of a step and the reference force.
 module dynamic_step
   use kinds, only: rk
   use errors, only: error_type
@@ -28,7 +28,8 @@ module dynamic_step
 contains
 
   !> Builds the equations of a step, finds the acceleration that it starts with, opens the energy
-  !> balance, reports the start to the listener and prepares the solver. K_eff is still missing.
+  !> balance, reports the start to the listener and prepares the solver. The integrator computes
+  !> K_eff later.
   subroutine open_dynamic_step(model, plan, system, solids, now, results, error)
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan
@@ -54,7 +55,7 @@ contains
     call results%costs%start('recover', 'energy', 'solver')
     call open_account(model, system%diagonal, now, now%total_time <= 0.0_rk)
     call results%costs%stop()
-    if (now%increment == 0) then ! not where a loaded state goes on in the middle of the step
+    if (now%increment == 0) then ! not after a restart within the step
       call store_motion(system%numbers, now)
       call results%increment_done(model, now, error)
       if (allocated(error)) return
@@ -90,7 +91,7 @@ contains
     end associate
   end subroutine start_forces
 
-  !> Velocities of supports that follow an amplitude; the others stand still.
+  !> Velocities of supports that follow an amplitude; other supports have none.
   subroutine start_supports(model, system, when, instant, v)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
@@ -113,7 +114,7 @@ contains
     end do
   end subroutine start_supports
 
-  !> The largest of the forces in the balance: what a residual is measured against [N].
+  !> The largest force in the balance: the reference of the residual [N].
   real(rk) function largest_force(moving, num_free, joint_weight, dt) result(force)
     type(motion), intent(in) :: moving
     integer, intent(in) :: num_free

@@ -3,7 +3,7 @@
 !> External work and damping are the work of their mean forces over the increment; kinetic and
 !> stored energies are those at its end. `numerical` is the dissipation of the time stepping by its
 !> formula: numerical damping, and work of joints and inelastic solids beyond their stored and
-!> dissipated energies. The remainder, `error`, measures how far the equations are not satisfied.
+!> dissipated energies. The remainder, `error`, measures the residual of the equations.
 module energy_account
   use kinds, only: rk
   use global_vectors, only: dot, total, work

@@ -56,7 +56,7 @@ contains
     now%num_unknowns = self%system%matrix%num_free
   end subroutine open_step
 
-  !> A frequency step takes no time.
+  !> A frequency step has no increments.
   subroutine advance(self, model, when, before, after, results, outcome, error)
     class(frequency_method), intent(inout) :: self
     type(problem), intent(in) :: model

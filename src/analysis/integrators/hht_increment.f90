@@ -18,7 +18,7 @@ submodule(hht_integrator) hht_increment
 
 contains
 
-  !> Goes from `before` to `after`. Without convergence `after` is of no use.
+  !> Goes from `before` to `after`. Without convergence `after` is invalid.
   module subroutine take_increment(self, model, when, before, after, outcome, error)
     class(hht_method), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -50,7 +50,7 @@ contains
       call solids%solve_increment(model, system, task, before, after, outcome, error)
       if (allocated(error) .or. .not. outcome%has_converged) return
       call correct(system, scheme, solids, task%x + moved, before, after, rhs)
-      ! Reactions count: displaced supports alone may be what strains the dam.
+      ! With reactions: displaced supports may be the only load of the dam.
       after%largest_force = max(task%balance%reference_force, length(new%internal), &
                                 task%reference_force, &
                                 largest_force(new, n, scheme%joint_weight, scheme%dt))
@@ -91,7 +91,8 @@ contains
     end if
   end subroutine sum_known_forces
 
-  !> Jumps at x = 0 with the supports in place, and a guess: jumps go on as in the last increment.
+  !> Jumps at x = 0 with the supports in place, and a first guess: jumps extrapolated from the last
+  !> increment.
   subroutine set_jumps(system, scheme, before, q, balance)
     type(dam_system), intent(in) :: system
     type(hht), intent(in) :: scheme
@@ -160,8 +161,8 @@ contains
     end associate
   end subroutine add_joints
 
-  !> What the next increment needs of the joints: the rate of their jumps, and the traction
-  !> t1* = (t1 - (1 - gamma) t0*)/gamma of the implicit impulse (7.3).
+  !> Joint data for the next increment: the rate of their jumps, and the traction t1* = (t1 - (1 -
+  !> gamma) t0*)/gamma of the implicit impulse (7.3).
   subroutine carry_joints(system, scheme, before, after)
     type(dam_system), intent(in) :: system
     type(hht), intent(in) :: scheme

@@ -34,7 +34,7 @@ module hht_integrator
   end type hht_method
 
   interface
-    !> Goes from `before` to `after`. Without convergence `after` is of no use.
+    !> Goes from `before` to `after`. Without convergence `after` is invalid.
     module subroutine take_increment(self, model, when, before, after, outcome, error)
       implicit none
       class(hht_method), intent(inout) :: self
@@ -66,7 +66,7 @@ contains
     if (.not. allocated(error)) call start_rates(self%system, now)
   end subroutine open_step
 
-  !> The vectors that HHT takes from one increment to the next, at the start of a step.
+  !> The vectors that HHT passes from one increment to the next, at the start of a step.
   subroutine start_rates(system, now)
     type(dam_system), intent(in) :: system
     type(state), intent(inout) :: now
@@ -80,7 +80,7 @@ contains
     end associate
   end subroutine start_rates
 
-  !> Factors the effective matrix when the size of the increment is a new one.
+  !> Factors the effective matrix when the size of the increment has changed.
   subroutine start_increment(self, model, plan, dt, results, error)
     class(hht_method), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -108,7 +108,7 @@ contains
     call system%add_damping((1.0_rk + scheme%alpha)*scheme%velocity_of_x, values)
   end subroutine effective_values
 
-  !> One increment with the water where the joints were open at its start.
+  !> One increment. Water is where the joints were open at its start.
   subroutine advance(self, model, when, before, after, results, outcome, error)
     class(hht_method), intent(inout) :: self
     type(problem), intent(in) :: model

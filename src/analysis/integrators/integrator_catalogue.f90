@@ -1,6 +1,6 @@
-!> The integrators, the only list of them: the procedure of the deck, the scheme, what such a step
-!> does and who makes it. Keywords, help and the step loop read this list. A new integrator is a
-!> file of its own, and here its `use` and its line in `all_integrators`.
+!> The list of integrators: the procedure of the deck, the scheme, the properties of such a step and
+!> the maker. Keywords, help and the step loop read this list. A new integrator is a file of its
+!> own, and here its `use` and its line in `all_integrators`.
 module integrator_catalogue
   use step_plan, only: step_procedure
   use integrator_type, only: integrator

@@ -42,8 +42,8 @@ module integrator_type
       type(error_type), allocatable, intent(out) :: error
     end subroutine open_step
 
-    !> Goes from `before` to `after` in one increment, energies included. An iteration that does
-    !> not converge is no error; `after` is of no use then.
+    !> Goes from `before` to `after` in one increment, energies included. An iteration that does not
+    !> converge is no error; `after` is then invalid.
     subroutine advance(self, model, when, before, after, results, outcome, error)
       import :: integrator, problem, step_time, state, listener, balance_outcome, error_type
       implicit none
@@ -70,7 +70,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
   end subroutine no_preparation
 
-  !> Adds to the message of an increment that cannot be made smaller.
+  !> Adds a cause to the message of an increment that cannot be made smaller.
   subroutine no_explanation(self, model, plan, when, before, after, error)
     class(integrator), intent(in) :: self
     type(problem), intent(in) :: model

@@ -26,7 +26,7 @@ module static_increment
 
 contains
 
-  !> Goes from `before` to `after`. Without convergence `after` is of no use.
+  !> Goes from `before` to `after`. Without convergence `after` is invalid.
   subroutine take_static_increment(model, system, solids, when, before, after, outcome, error)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
@@ -78,9 +78,9 @@ contains
     end associate
   end subroutine pose_task
 
-  !> The largest of the forces before and after, reactions included. A dam that carries nothing
-  !> (its load went back to zero, or it moves with its supports) is measured by the forces that the
-  !> last digits of its motion make. For cracking solids the largest force so far is kept.
+  !> The largest of the forces before and after, reactions included. For a dam without stress (its
+  !> load returned to zero, or it moves with its supports) the reference is the round-off of the
+  !> forces of its motion. For cracking solids the largest force so far is kept.
   real(rk) function reference_force(diagonal, solids, before, after) result(force)
     real(rk), intent(in) :: diagonal(:) !< (num_total) of K [N/m]
     type(solid_solver), intent(in) :: solids
@@ -103,8 +103,8 @@ contains
     end associate
   end function known_force
 
-  !> Jumps before the free unknowns move, and the first guess: the converged jumps. A joint that has
-  !> carried nothing yet starts bonded.
+  !> Jumps before the free unknowns move, and the first guess: the converged jumps. Without any
+  !> traction so far the iteration starts with closed joints.
   subroutine set_jumps(system, before, q, balance)
     type(dam_system), intent(in) :: system
     type(state), intent(in) :: before

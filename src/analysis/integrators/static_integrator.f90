@@ -1,5 +1,6 @@
-!> Static steps. Loads and supports follow their rule of time; increments are as large as the joints
-!> and the solids allow. A model of elastic solids without joints is factored once and not iterated.
+!> Static steps. Loads and supports follow their rule of time; increments are as large as the
+!> convergence of joints and solids allows. A model of elastic solids without joints is factored
+!> once and not iterated.
 module static_integrator
   use kinds, only: rk
   use errors, only: error_type
@@ -91,7 +92,7 @@ contains
     end associate
   end subroutine start_forces
 
-  !> One increment with the water where the joints are open at its end.
+  !> One increment. Water is where the joints are open at its end.
   subroutine advance(self, model, when, before, after, results, outcome, error)
     class(static_method), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -102,7 +103,7 @@ contains
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
     call results%costs%start('iterate', 'structure', 'solver')
-    call settle_water(self, model, when, before, after, outcome, error)
+    call match_uplift(self, model, when, before, after, outcome, error)
     call results%costs%stop('iterate structure')
     if (allocated(error) .or. .not. outcome%has_converged) return
     call results%costs%start('recover', 'energy', 'solver')
@@ -110,8 +111,8 @@ contains
     call results%costs%stop()
   end subroutine advance
 
-  !> Repeats the increment until the joints that it leaves open are those with water.
-  subroutine settle_water(self, model, when, before, after, outcome, error)
+  !> Repeats the increment until the uplift agrees with the opening of the joints at its end.
+  subroutine match_uplift(self, model, when, before, after, outcome, error)
     class(static_method), intent(inout) :: self
     type(problem), intent(in) :: model
     type(step_time), intent(in) :: when
@@ -122,28 +123,28 @@ contains
     logical :: has_changed
     integer :: pass
     associate (system => self%system)
-      call lead_water(before%joints)
+      call update_water(before%joints)
       do pass = 1, most_passes
         call take_static_increment(model, system, self%solids, when, before, after, outcome, error)
         if (allocated(error) .or. .not. outcome%has_converged) return
-        call lead_water(after%joints)
+        call update_water(after%joints)
         if (.not. has_changed) return
       end do
     end associate
     outcome%has_converged = .false.
-    outcome%failure = 'water and opening of joints (*JOINT LAW, PROFILE=OPEN) do not '// &
-                      'settle: points open and close by turns'
+    outcome%failure = 'uplift and opening of joints (*JOINT LAW, PROFILE=OPEN) do not agree: '// &
+                      'points open and close alternately'
   contains
     !> Water where the joints are open in these states.
-    subroutine lead_water(states)
+    subroutine update_water(states)
       type(joint_state), intent(in) :: states(:)
       call self%solids%solver%costs%start('update', 'uplift', 'load')
       call update_uplift(model, self%system%operator, states, self%system%groups, has_changed)
       call self%solids%solver%costs%stop()
-    end subroutine lead_water
-  end subroutine settle_water
+    end subroutine update_water
+  end subroutine match_uplift
 
-  !> Names the block that the joints cannot hold.
+  !> Names the block whose motion the joints do not restrain.
   subroutine explain_failure(self, model, plan, when, before, after, error)
     class(static_method), intent(in) :: self
     type(problem), intent(in) :: model

@@ -3,8 +3,8 @@
 !> An analysis holds two states, converged and trial. An increment fills the trial state. Accepting
 !> the increment swaps the two; a cut leaves the converged state as it is.
 !>
-!> The state saves and loads itself (state_archive). A new component gets a line in save and load of
-!> its type, there or in joint_archive and point_archive.
+!> state_archive saves and loads the state. A new component gets a line in save and load of its
+!> type, there or in joint_archive and point_archive.
 module analysis_state
   use kinds, only: rk
   use joint_law, only: joint_state
@@ -15,18 +15,18 @@ module analysis_state
   public :: state, increment_status, motion, energy_balance, vibration_mode
 
   !> Energies since the start of the analysis [J]. `error` is the imbalance over `largest`, the
-  !> largest energy so far: a dam that has come to rest holds nothing to compare with.
+  !> largest energy so far: the present energies of a dam at rest are no reference.
   type :: energy_balance
     real(rk) :: external = 0.0_rk, kinetic = 0.0_rk, strain = 0.0_rk, damping = 0.0_rk
     real(rk) :: friction = 0.0_rk
     real(rk) :: fracture = 0.0_rk !< dissipated by cracking and crushing, in joints and solids
     real(rk) :: crushing = 0.0_rk !< the part of `fracture` that is crushing
-    real(rk) :: numerical = 0.0_rk !< taken by the time integration, from its own formula
+    real(rk) :: numerical = 0.0_rk !< dissipated by the time integration, from its own formula
     real(rk) :: initial = 0.0_rk !< kinetic and strain energy at the start of the analysis
     real(rk) :: error = 0.0_rk, largest = 0.0_rk
   end type energy_balance
 
-  !> Where the analysis is, how the last increment went, and the size of the next one.
+  !> Time of the analysis, course of the last increment and size of the next increment.
   type :: increment_status
     integer :: step = 0, increment = 0, iterations = 0
     integer :: augmentations = 0 !< of contact without penetration, in this increment

@@ -1,4 +1,4 @@
-!> Who wants to hear of every increment: the solvers call, the results layer answers.
+!> The interface through which the solvers report increments to the results layer.
 module increment_listener
   use errors, only: error_type
   use logging, only: run_log
@@ -9,10 +9,10 @@ module increment_listener
   private
   public :: listener
 
-  !> Solvers also write what people should know to its log, and their time to its ledger.
+  !> Solvers also write messages to its log, and their computing time to its ledger.
   type, abstract :: listener
     type(run_log) :: log
-    type(ledger) :: costs !< books nothing until it is opened
+    type(ledger) :: costs !< records nothing until it is opened
   contains
     procedure(increment_done), deferred :: increment_done
     procedure(modes_found), deferred :: modes_found

@@ -1,5 +1,5 @@
-!> How the state of an analysis saves and loads itself. Every component of the types has a line in
-!> each procedure of a pair; tests/tools/test_archives.py compares them with the types.
+!> Saves and loads the state of an analysis. Every component of the types has a line in each
+!> procedure of a pair; tests/tools/test_archives.py compares them with the types.
 module state_archive
   use errors, only: error_type
   use archive_type, only: archive
@@ -48,8 +48,8 @@ contains
     call file%report(error)
   end subroutine save_state
 
-  !> Reads the state. It arrives as `start_analysis` makes it for this model, which fixes the sizes.
-  !> After an error the state is of no use.
+  !> Reads the state. The state must be the one of `start_analysis` for this model, which fixes the
+  !> sizes. After an error the state is invalid.
   subroutine load_state(now, file, error)
     type(state), intent(inout) :: now
     class(archive), intent(inout) :: file !< open for reading
@@ -93,7 +93,7 @@ contains
     call file%get('support_start', now%support_start)
   end subroutine load_fields
 
-  !> Writes where the analysis is.
+  !> Writes the status of the analysis.
   subroutine save_status(status, file)
     type(increment_status), intent(in) :: status
     class(archive), intent(inout) :: file

@@ -1,4 +1,4 @@
-!> Between the nodes of a model and the unknowns of a step.
+!> Transfers motion between the nodes of a model and the unknowns of a step.
 module state_transfer
   use kinds, only: rk
   use joint_law, only: joint_state

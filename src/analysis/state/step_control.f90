@@ -1,4 +1,4 @@
-!> The size of increments: grown after easy ones, cut after those that did not converge.
+!> Controls the size of increments: it grows after quick convergence and is cut without convergence.
 module step_control
   use kinds, only: rk
   use step_plan, only: step
@@ -7,12 +7,12 @@ module step_control
   public :: increment_control, start_control
 
   real(rk), parameter :: static_growth = 1.5_rk
-  real(rk), parameter :: dynamic_growth = 2.0_rk !< halving and doubling meet the same sizes again
+  real(rk), parameter :: dynamic_growth = 2.0_rk !< doubling returns to earlier sizes
   real(rk), parameter :: cut_factor = 0.5_rk
-  real(rk), parameter :: smallest_ratio = 0.1_rk !< of an increment cut at once
+  real(rk), parameter :: smallest_ratio = 0.1_rk !< smallest factor of one cut
   integer, parameter :: easy_iterations = 5 !< at most, of an increment that may grow
   integer, parameter :: easy_increments = 2 !< in a row, before a static step grows
-  integer, parameter :: easy_dynamic_increments = 10 !< in a row: a new size is a new factor
+  integer, parameter :: easy_dynamic_increments = 10 !< in a row: a new size is factored anew
   integer, parameter :: most_cuts_in_a_row = 10
   real(rk), parameter :: smallest_static = 1.0e-5_rk !< increment over the step, unless given
   real(rk), parameter :: smallest_dynamic = 1.0e-3_rk !< increment over the first, unless given
@@ -20,7 +20,7 @@ module step_control
 
   !> A new component gets a line in save and load of state_archive.
   type :: increment_control
-    real(rk) :: size = 0.0_rk !< wanted next [s]
+    real(rk) :: size = 0.0_rk !< of the next increment [s]
     real(rk) :: last_size = 0.0_rk !< of the last increment that was cut [s]
     real(rk) :: smallest = 0.0_rk, largest = 0.0_rk !< [s]
     real(rk) :: duration = 0.0_rk !< of the step [s]
@@ -54,8 +54,8 @@ contains
     if (plan%largest_increment >= huge(1.0_rk)) control%largest = control%size
   end subroutine start_control
 
-  !> Size of the increment that starts at a time: the wanted one, but not past the end. A rest that
-  !> differs from it by roundoff only is the wanted one, so that no new factor is needed.
+  !> Size of the increment that starts at a time, not past the end of the step. If the remaining
+  !> time differs by round-off only, the size stays and needs no new factorisation.
   pure real(rk) function next_size(self, time) result(size)
     class(increment_control), intent(in) :: self
     real(rk), intent(in) :: time !< within the step [s]
@@ -78,11 +78,12 @@ contains
     self%easy_so_far = 0
   end subroutine accept
 
-  !> An increment has not converged: halves it, or more where a material asks for it; or gives up.
+  !> An increment has not converged: halves its size, or reduces it further if a material requests
+  !> that, or gives up.
   pure subroutine cut(self, size, ratio, gives_up)
     class(increment_control), intent(inout) :: self
     real(rk), intent(in) :: size !< of the increment that failed [s]
-    real(rk), intent(in) :: ratio !< wanted over present size; 1 where nothing is asked for
+    real(rk), intent(in) :: ratio !< requested over present size; 1 without a request
     logical, intent(out) :: gives_up
     self%last_size = size
     self%cutbacks = self%cutbacks + 1

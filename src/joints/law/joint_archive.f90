@@ -1,5 +1,5 @@
-!> How the history of a joint saves and loads itself. Every component of `joint_state` has a line in
-!> each of the two procedures; tests/tools/test_archives.py compares them with the type.
+!> Saves and loads the history of a joint. Every component of `joint_state` has a line in each of
+!> the two procedures; tests/tools/test_archives.py compares them with the type.
 module joint_archive
   use archive_type, only: archive
   use joint_law, only: joint_state
@@ -27,8 +27,8 @@ contains
     call file%put('water', history%water)
   end subroutine save_joint
 
-  !> Reads the history of one joint from the present group. The history arrives as the law starts
-  !> it, which fixes the sizes.
+  !> Reads the history of one joint from the present group. The history must be in its initial
+  !> state, which fixes the sizes.
   subroutine load_joint(history, file)
     type(joint_state), intent(inout) :: history
     class(archive), intent(inout) :: file

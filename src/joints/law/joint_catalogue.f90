@@ -38,7 +38,7 @@ contains
     allocate (self%entries(self%num_laws)%law, source=law)
   end subroutine add
 
-  !> What each law takes, in the order of the list.
+  !> The keyword entries of the laws, in the order of the list.
   subroutine describe_joint_laws(entries)
     type(keyword_variant), allocatable, intent(out) :: entries(:)
     type(law_list) :: laws

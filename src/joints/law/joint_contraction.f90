@@ -8,7 +8,7 @@
 !> Friction in Newton's iteration: the status is decided on z = lambda + r (v_t - s - lambda/k_t),
 !> lambda the tangential traction of the last iterate. Where |z| > mu p + c, one Newton step on
 !> lambda - (mu p + c) z/|z| = 0 gives the next traction. At a solution this is the return map and
-!> its consistent tangent; on the way it does not cycle, which the return map does.
+!> its consistent tangent. The return map alone may cycle in the iteration; this form does not.
 module joint_contraction
   use contraction_keyword, only: describe_contraction
   use deck_card, only: card
@@ -41,15 +41,15 @@ module joint_contraction
     procedure :: limits
   end type contraction_law
 
-  !> A point that one increment has opened so often has parted: it loses its strength, and within
-  !> the increment its cohesion (theory.md, 2.3).
-  integer, parameter :: parting_openings = 2
+  !> A point that opens this many times within one increment fails: it loses its strength, and
+  !> within the increment its cohesion (theory.md, 2.3).
+  integer, parameter :: openings_to_failure = 2
 
-  !> What the history holds of one point.
+  !> History of one point.
   type :: point_state
     real(rk) :: gap !< with the shift of the contact [m]
     real(rk) :: jump(3), traction(3), slip(2), friction_work, fracture_work
-    real(rk) :: cohesion !< c, or 0 when the point has parted within the increment [Pa]
+    real(rk) :: cohesion !< c, or 0 for a point that has failed within the increment [Pa]
     logical :: is_broken
     integer :: status
   end type point_state
@@ -78,15 +78,15 @@ contains
     end if
   end subroutine read_card
 
-  !> Whether a stiffness is still to come from the solid on the slave side.
+  !> True if a stiffness must be derived from the solid on the slave side.
   pure logical function needs_solid(self)
     class(contraction_law), intent(in) :: self
     needs_solid = min(self%normal_stiffness, self%tangent_stiffness) <= 0.0_rk
   end function needs_solid
 
-  !> k_n = E/thickness and k_t = k_n/(2 (1 + nu)) where the deck gave none (paper_notes.md, 3).
-  !> Where k_n only leads the iteration to contact without penetration (different_meshes.md, 13.5),
-  !> it is the stiffness of a layer of elements; k_t is that of the joint itself there, too.
+  !> k_n = E/thickness and k_t = k_n/(2 (1 + nu)) where the deck gave none (paper_notes.md, 3). For
+  !> contact without penetration k_n only controls the convergence (different_meshes.md, 13.5): it
+  !> is the stiffness of a layer of elements, and k_t is still that of the joint.
   pure subroutine complete(self, solid)
     class(contraction_law), intent(inout) :: self
     type(solid_behind), intent(in) :: solid
@@ -100,7 +100,7 @@ contains
     end if
   end subroutine complete
 
-  !> Bonded where there is strength, else closed, else open by the gap.
+  !> Bonded with a strength, closed without, and open where there is a gap.
   pure subroutine start_state(self, clearance, state)
     class(contraction_law), intent(in) :: self
     real(rk), intent(in) :: clearance(:)
@@ -131,8 +131,8 @@ contains
     strength = self%strength
   end subroutine limits
 
-  !> Elastic energy of the springs at the tractions of the state. A contact that is shifted keeps
-  !> 1/2 q_n times what it penetrates (different_meshes.md, 13.5).
+  !> Elastic energy of the springs at the tractions of the state. A contact with a shift stores 1/2
+  !> q_n times its penetration (different_meshes.md, 13.5).
   pure subroutine stored_energy(self, state, energy)
     class(contraction_law), intent(in) :: self
     type(joint_state), intent(in) :: state
@@ -168,18 +168,18 @@ contains
     real(rk), intent(out) :: iterate(:, :)
     real(rk), intent(out) :: tangent(:, :, :)
     type(point_state) :: before, after
-    logical :: has_parted
+    logical :: has_failed
     integer :: p
     do p = 1, size(jump, 2)
       before = point_state(old%gap(p) + old%shift(p), old%jump(:, p), old%traction(:, p), &
                            old%slip(:, p), old%friction_work(p), old%fracture_work(p), &
                            self%cohesion, old%is_broken(p), old%status(p))
       after = before
-      has_parted = new%num_openings(p) >= parting_openings
-      if (has_parted) after%cohesion = 0.0_rk
+      has_failed = new%num_openings(p) >= openings_to_failure
+      if (has_failed) after%cohesion = 0.0_rk
       after%jump = jump(:, p)
       after%gap = old%gap(p) + new%shift(p)
-      if (.not. (before%is_broken .or. has_parted) .and. &
+      if (.not. (before%is_broken .or. has_failed) .and. &
           jump(1, p)*self%normal_stiffness <= self%strength) then
         call stay_bonded(self, after, iterate(:, p), tangent(:, :, p))
       else if (jump(1, p) + after%gap > 0.0_rk) then
@@ -216,8 +216,8 @@ contains
     end do
   end subroutine stay_bonded
 
-  !> The open joint carries nothing. If it was bonded, the energy stored at the moment of breaking
-  !> is set free; if it was closed, what friction held is used up on the way.
+  !> The open joint carries nothing. A bonded point loses the energy stored at failure as work of
+  !> fracture. A closed point loses the energy of its tangential spring by friction.
   pure subroutine open_point(law, before, point, iterate, tangent)
     type(contraction_law), intent(in) :: law
     type(point_state), intent(in) :: before
@@ -228,7 +228,7 @@ contains
     step = point%jump - before%jump
     opening = before%jump(1) + before%gap
     if (.not. before%is_broken) then
-      share = 0.0_rk ! parted: what was stored before is set free
+      share = 0.0_rk ! failed: the energy stored before is lost
       if (point%jump(1) > law%strength/k(1)) share = (law%strength/k(1) - before%jump(1))/step(1)
       point%fracture_work = before%fracture_work + 0.5_rk*sum(k*(before%jump + share*step)**2)
     else if (opening <= 0.0_rk) then
@@ -246,7 +246,7 @@ contains
     tangent = 0.0_rk
   end subroutine open_point
 
-  !> The closed joint by the law itself: pressure, and the return map of friction.
+  !> Traction of the closed joint: pressure, and the return map of friction.
   pure subroutine close_point(law, before, point)
     type(contraction_law), intent(in) :: law
     type(point_state), intent(in) :: before

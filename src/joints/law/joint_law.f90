@@ -1,4 +1,4 @@
-!> What every joint law can do: traction from relative displacement, for a block of points.
+!> The contract of joint laws: traction from relative displacement, for a block of points.
 !>
 !> Local axes at a point: 1 normal (from master to slave), 2 and 3 in the plane of the joint.
 !> Signs: opening and tension positive.
@@ -19,8 +19,8 @@ module joint_law
 
   integer, parameter :: state_open = 0, state_stick = 1, state_slip = 2, state_bonded = 3
 
-  !> History of all points of one joint; two of them exist, converged and trial. A new component
-  !> gets a line in save and load of joint_archive.
+  !> History of all points of one joint, converged or trial. A new component gets a line in save and
+  !> load of joint_archive.
   type :: joint_state
     real(rk), allocatable :: gap(:) !< (points) at the start; the opening is jump(1) + gap [m]
     !> (points) multiplier of the contact over the normal stiffness, <= 0: contact begins where the
@@ -33,13 +33,13 @@ module joint_law
     !> (points) What the law reports: open (the point touches and carries nothing), stick or slip
     !> (pressed), bonded (it can carry tension)
     integer, allocatable :: status(:)
-    !> (points) How often the iteration of this increment has opened the point. The law decides from
-    !> which number on the point has parted, and what the point loses by that.
+    !> (points) How often the iteration of this increment has opened the point. The law decides at
+    !> which number the point fails, and what the point loses.
     integer, allocatable :: num_openings(:)
     real(rk), allocatable :: friction_work(:) !< dissipated so far [J/m2]
-    real(rk), allocatable :: fracture_work(:) !< set free when the strength was lost [J/m2]
+    real(rk), allocatable :: fracture_work(:) !< dissipated when the strength was lost [J/m2]
     real(rk), allocatable :: internal(:, :) !< (variables, points) the law's own history
-    real(rk), allocatable :: water(:) !< (points) pressure of water in the joint; where there is any
+    real(rk), allocatable :: water(:) !< (points) water pressure, in joints with water
   end type joint_state
 
   !> What a law may derive its stiffness from.
@@ -53,7 +53,7 @@ module joint_law
   type, abstract :: traction_law
     character(:), allocatable :: name !< of the *JOINT LAW, upper case
     real(rk) :: gap = 0.0_rk !< at the start, of every point [m]
-    !> Largest penetration of points in contact [m]; 0: as their stiffness gives it
+    !> Largest penetration of points in contact [m]; 0: pressure over stiffness
     real(rk) :: penetration = 0.0_rk
   contains
     procedure(describe), deferred, nopass :: describe
@@ -63,7 +63,7 @@ module joint_law
     procedure(start_state), deferred :: start_state
     procedure(reference_stiffness), deferred :: reference_stiffness
     procedure(update), deferred :: update
-    procedure :: linearise => linearise_as_it_is
+    procedure :: linearise => linearise_by_update
     procedure(stored_energy), deferred :: stored_energy
     procedure :: limits => no_limits
   end type traction_law
@@ -76,8 +76,8 @@ module joint_law
       type(keyword_variant), intent(out) :: entry
     end subroutine describe
 
-    !> Takes the constants from a card; the card agrees with the law's entry, and defaults of the
-    !> entry are in the card.
+    !> Reads the constants from a card. The card agrees with the law's entry and contains its
+    !> defaults.
     subroutine read_card(self, this, faults)
       import :: traction_law, card, diagnostic_list
       implicit none
@@ -86,7 +86,7 @@ module joint_law
       type(diagnostic_list), intent(inout) :: faults
     end subroutine read_card
 
-    !> History of a joint that has not moved yet, as the law wants it.
+    !> History of a joint that has not moved yet.
     pure subroutine start_state(self, clearance, state)
       import :: traction_law, joint_state, rk
       implicit none
@@ -103,9 +103,9 @@ module joint_law
       real(rk), intent(out) :: k(3)
     end subroutine reference_stiffness
 
-    !> Traction at a trial jump and its derivative. `new` arrives with `num_openings` and `shift`;
-    !> it leaves with jump, traction, status, works and whatever history the law keeps. What `new`
-    !> held before does not count: each evaluation starts from `old`.
+    !> Traction at a trial jump and its derivative. `num_openings` and `shift` of `new` are set by
+    !> the caller. The law sets jump, traction, status, works and its own history. Other values of
+    !> `new` do not count: each evaluation starts from `old`.
     pure subroutine update(self, jump, old, new, tangent)
       import :: traction_law, joint_state, rk
       implicit none
@@ -140,12 +140,12 @@ contains
     type(solid_behind), intent(in) :: solid
   end subroutine complete_nothing
 
-  !> Traction and tangent for the next iterate: the traction of Newton's iteration follows
-  !> iterate + tangent*(correction of the jump), while `new` holds the law's own traction, which
-  !> decides convergence. Default: both are those of `update`. Coulomb friction needs another form
+  !> Traction and tangent for the next iterate: the traction of Newton's iteration follows iterate +
+  !> tangent*(correction of the jump), while `new` contains the law's own traction, which decides
+  !> convergence. Default: both are those of `update`. Coulomb friction needs another form
   !> (theory.md, 2.3): `multiplier` is the tangential traction of the last iterate, `scale` the r of
   !> the augmented form.
-  pure subroutine linearise_as_it_is(self, jump, old, multiplier, scale, new, iterate, tangent)
+  pure subroutine linearise_by_update(self, jump, old, multiplier, scale, new, iterate, tangent)
     class(traction_law), intent(in) :: self
     real(rk), intent(in) :: jump(:, :) !< (3, points) trial [m]
     type(joint_state), intent(in) :: old !< converged history
@@ -156,9 +156,9 @@ contains
     real(rk), intent(out) :: tangent(:, :, :) !< (3, 3, points) [Pa/m], may be unsymmetric
     call self%update(jump, old, new, tangent)
     iterate = new%traction
-  end subroutine linearise_as_it_is
+  end subroutine linearise_by_update
 
-  !> What a closed point may carry, whatever its stiffness: friction, cohesion and strength [Pa].
+  !> Limits of a closed point, whatever its stiffness: friction, cohesion and strength [Pa].
   !> Default: frictionless unilateral contact.
   pure subroutine no_limits(self, friction, cohesion, strength)
     class(traction_law), intent(in) :: self
@@ -168,7 +168,7 @@ contains
     strength = 0.0_rk
   end subroutine no_limits
 
-  !> Room for the history of the points of one joint, all zero but the gap.
+  !> Allocates the history of the points of one joint; all values but the gap are zero.
   pure subroutine allocate_state(gap, state, num_internal)
     real(rk), intent(in) :: gap(:) !< (points) [m]
     type(joint_state), intent(out) :: state

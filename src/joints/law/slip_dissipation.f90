@@ -1,8 +1,7 @@
-!> Work that friction takes along a straight path of the relative displacement.
+!> Work dissipated by friction along a straight path of the relative displacement.
 !>
-!> The slip limit changes linearly along the path. In one direction, and where the direction of slip
-!> does not turn, the result is exact whatever the size of the increment; the elastic part of the
-!> motion takes nothing.
+!> The slip limit changes linearly along the path. While the direction of slip is constant, the
+!> result is exact for any size of the increment. The elastic part of the motion dissipates nothing.
 module slip_dissipation
   use kinds, only: rk
   implicit none
@@ -15,7 +14,7 @@ contains
   pure real(rk) function sliding_work(start, start_limit, trial, limit, k) result(work)
     real(rk), intent(in) :: start(2) !< tangential traction at the start [Pa]
     real(rk), intent(in) :: start_limit !< mu p + c at the start [Pa]
-    real(rk), intent(in) :: trial(2) !< traction at the end had it not slipped [Pa]
+    real(rk), intent(in) :: trial(2) !< elastic trial traction at the end [Pa]
     real(rk), intent(in) :: limit !< mu p + c at the end [Pa]
     real(rk), intent(in) :: k !< tangential stiffness [Pa/m]
     real(rk) :: onset_limit
@@ -25,7 +24,7 @@ contains
     work = 0.5_rk*(onset_limit + limit)*(norm2(trial) - limit)/k
   end function sliding_work
 
-  !> The part of the path at which slip begins: |traction| = limit, both linear in it.
+  !> Fraction of the path at which slip begins: |traction| = limit. Traction and limit are linear.
   pure real(rk) function onset(start, start_limit, trial, limit)
     real(rk), intent(in) :: start(2), start_limit, trial(2), limit
     real(rk) :: a, b, c, root
@@ -42,18 +41,18 @@ contains
     onset = min(1.0_rk, max(0.0_rk, onset))
   end function onset
 
-  !> Dissipation of a joint that closes on the way: only what slips after contact counts, and the
+  !> Dissipation of a joint that closes along the path: only slip after contact counts, and the
   !> limit grows from zero.
   pure real(rk) function closing_work(trial, limit, contact, k) result(work)
-    real(rk), intent(in) :: trial(2) !< traction at the end had it not slipped [Pa]
+    real(rk), intent(in) :: trial(2) !< elastic trial traction at the end [Pa]
     real(rk), intent(in) :: limit !< mu p + c at the end [Pa]
-    real(rk), intent(in) :: contact !< part of the path at which the joint closes
+    real(rk), intent(in) :: contact !< fraction of the path at which the joint closes
     real(rk), intent(in) :: k !< tangential stiffness [Pa/m]
     work = 0.5_rk*limit*max(0.0_rk, (1.0_rk - contact)*norm2(trial) - limit)/k
   end function closing_work
 
-  !> Dissipation of a joint that opens on the way: slip until then, and what the springs still held
-  !> (cohesion) at that moment.
+  !> Dissipation of a joint that opens along the path: slip until the opening, and the energy of the
+  !> tangential springs at the opening (cohesion).
   pure real(rk) function opening_work(start, start_limit, motion, cohesion, k) result(work)
     real(rk), intent(in) :: start(2) !< tangential traction at the start [Pa]
     real(rk), intent(in) :: start_limit !< mu p + c at the start [Pa]

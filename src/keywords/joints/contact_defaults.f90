@@ -1,5 +1,5 @@
-!> The stiffness of the elements behind a joint: KN of a law that wants contact without penetration
-!> and has none of its own (different_meshes.md, 13.5).
+!> The stiffness of the elements behind a joint: the default of KN for contact without penetration
+!> (different_meshes.md, 13.5).
 module contact_defaults
   use element_sizes, only: depth_behind
   use kinds, only: rk

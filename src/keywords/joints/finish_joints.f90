@@ -1,4 +1,4 @@
-!> Joints when the whole deck is read: laws are completed, points are laid.
+!> Builds the joints after the whole deck is read: completes their laws and places their points.
 module finish_joints
   use contact_defaults, only: softest_layer
   use coupling_joint, only: lay_gauss_points, lay_node_points
@@ -19,11 +19,11 @@ module finish_joints
   use write_text, only: as_text
   implicit none
   private
-  public :: complete_joints, farthest_gap, farthest_seam
+  public :: complete_joints, farthest_gap, farthest_contact
 
-  !> How far apart facets may be that the joint acts between, in diagonals of a facet: faces that
-  !> count as touching, and those whose distance is a gap that may close.
-  real(rk), parameter :: farthest_seam = 0.5_rk, farthest_gap = 4.0_rk
+  !> Largest distance of facets that a joint connects, in diagonals of a facet: of faces that count
+  !> as touching, and of faces with a gap that may close.
+  real(rk), parameter :: farthest_contact = 0.5_rk, farthest_gap = 4.0_rk
 
 contains
 
@@ -59,7 +59,7 @@ contains
     integer :: i
     if (model%problem%mesh%num_elements == 0) return
     do i = 1, size(model%joints)
-      if (size(model%joints(i)%elements) + model%joints(i)%slave == 0) return ! its fault is told
+      if (size(model%joints(i)%elements) + model%joints(i)%slave == 0) return ! reported
     end do
     is_bare = model%problem%mesh%element_type == 'JOINT8' .and. model%joint_of_element == 0
     call report_bare(is_bare, 'no joint', 'a *JOINT for each JOINT8 element', model, faults)
@@ -111,7 +111,7 @@ contains
     integer :: i
     associate (request => model%joints(number), &
                place => model%cards(model%joints(number)%spot%card))
-      if (size(request%elements) == 0) return ! its fault is told
+      if (size(request%elements) == 0) return ! its fault is reported
       if (law%needs_solid()) then
         allocate (side(size(request%elements)))
         call find_attached_solids(model%problem%mesh, request%elements, solid, side)
@@ -158,7 +158,7 @@ contains
       new%kind = 'joint'
       allocate (new%law, source=law)
       call find_segments(mesh%x, slave, master, segments, cover, &
-                         merge(farthest_gap, farthest_seam, request%is_measured))
+                         merge(farthest_gap, farthest_contact, request%is_measured))
       if (request%is_nodal) then
         call lay_node_points(mesh%x, slave, master, segments, followers(model, slave), &
                              request%is_measured, new, is_bare)
@@ -167,13 +167,12 @@ contains
         call lay_gauss_points(mesh%x, slave, master, segments, request%is_measured, new)
       end if
       if (new%num_points == 0 .and. segments%num_segments > 0) then
-        call place%fault_at(faults, 1, 1, 'the joint holds nothing: its surfaces have the '// &
-                            'same nodes', 'faces with nodes of their own')
+        call place%fault_at(faults, 1, 1, 'the joint has no points: its surfaces share their '// &
+                            'nodes', 'faces with nodes of their own')
       else if (new%num_points == 0) then
         call place%fault_at(faults, 1, 1, 'the two surfaces do not lie on each other', &
-                            'faces that look at each other, less than '// &
-                            trim(merge('4 facets    ', 'half a facet', request%is_measured))// &
-                            ' apart')
+                            'opposite faces at a distance of less than '// &
+                            trim(merge('4 facets    ', 'half a facet', request%is_measured)))
       else
         call keep_cover(place, request%name, 'JOINT', cover, request%is_measured, model, faults)
       end if
@@ -181,7 +180,7 @@ contains
     call check_claims(number, slave, cover, model, taken, faults)
   end subroutine build_from_surfaces
 
-  !> Nodes that follow others of a face by a tie.
+  !> Nodes that a tie makes depend on nodes of a face.
   pure function followers(model, face) result(is_tied)
     type(draft), intent(in) :: model
     type(facet_set), intent(in) :: face
@@ -200,7 +199,7 @@ contains
     end do
   end function followers
 
-  !> A face takes part as slave once.
+  !> Reports a face that is a slave of two joints.
   subroutine check_claims(number, slave, cover, model, taken, faults)
     integer, intent(in) :: number
     type(facet_set), intent(in) :: slave
@@ -220,8 +219,9 @@ contains
     end associate
   end subroutine check_claims
 
-  !> KN and KT that the deck does not give, from the solids on the slave side (paper_notes.md, 3);
-  !> where interface quads stand there, from those on the master side.
+  !> Derives KN and KT that the deck does not give from the solids on the slave side
+  !> (paper_notes.md, 3). Where this side has interface quads, the solids are those of the master
+  !> side.
   subroutine complete_law(place, solids, behind, corners, model, law, faults)
     type(card), intent(in) :: place !< of the joint
     integer, intent(in) :: solids(:) !< of the slave side, positions
@@ -233,16 +233,17 @@ contains
     integer :: materials(size(solids))
     materials = model%problem%mesh%material_of_element(solids)
     if (size(materials) == 0) then
-      call place%fault(faults, 'no solid behind the joint gives KN and KT', &
+      call place%fault(faults, 'there is no solid behind the joint to derive KN and KT from', &
                        'KN and KT in the *JOINT LAW')
       return
     else if (model%problem%materials(materials(1))%young <= 0.0_rk) then
       call place%fault(faults, "the material of the slave side, '"// &
                        model%problem%materials(materials(1))%name//"', has no E (a UMAT) to "// &
-                       'make KN and KT of', 'KN and KT in the *JOINT LAW')
+                       'derive KN and KT from', 'KN and KT in the *JOINT LAW')
       return
     else if (any(materials /= materials(1))) then
-      call place%warn(faults, "the slave side has several materials; KN and KT are made of '"// &
+      call place%warn(faults, "the slave side has several materials; KN and KT "// &
+                      "are derived from '"// &
                       model%problem%materials(materials(1))%name//"'")
     end if
     associate (slave => model%problem%materials(materials(1)))

@@ -7,7 +7,7 @@ module joined_twice
   use dam_mesh, only: fe_mesh, surface
   use diagnostics, only: diagnostic_list
   use facet_segments, only: find_segments
-  use finish_joints, only: farthest_gap, farthest_seam
+  use finish_joints, only: farthest_gap, farthest_contact
   use kinds, only: rk
   use model_draft, only: draft, origin
   use surface_facets, only: list_surface_facets
@@ -24,7 +24,7 @@ module joined_twice
   type :: pair
     character(:), allocatable :: name !< with its kind: "tie 'T'"
     integer :: surfaces(2) = 0 !< slave and master, positions
-    real(rk) :: farthest = farthest_seam !< largest distance, in diagonals of a facet
+    real(rk) :: farthest = farthest_contact !< largest distance, in diagonals of a facet
     type(origin) :: spot
   end type pair
 

@@ -21,11 +21,11 @@ contains
     spec%name = 'JOINT LAW'
     spec%family = 'joint'
     spec%place = 'model'
-    spec%meaning = 'The law of a joint: traction from relative displacement. Opening and '// &
-                   'tension are positive. '// &
-                   'UPLIFT puts the water of a reservoir into the joint: its '// &
-                   'pressure pushes the faces apart, in the steps and with the factors of the '// &
-                   'reservoir. tn stays the traction of the joint itself.'
+    spec%meaning = 'The law of a joint: traction as a function of relative displacement. '// &
+                   'Opening and tension are positive. UPLIFT applies the water pressure of a '// &
+                   'reservoir to both faces of the joint, in the steps and with the factors '// &
+                   'of the reservoir. tn is the traction of the law without the water '// &
+                   'pressure.'
     spec%example = '*JOINT LAW, NAME=CONTRACTION, FRICTION=0.6'
     spec%most_lines = 0
     spec%chooser = 'TYPE'
@@ -34,14 +34,16 @@ contains
     types = choices_of(spec%variants)
     allocate (spec%parameters, source=[ &
               field('NAME', kind_word, 'name of the law', is_required=.true.), &
-              field('TYPE', kind_choice, 'which law', default=first, choices=types), &
-              field('UPLIFT', kind_word, 'name of a *RESERVOIR whose water is in the joint'), &
-              field('PROFILE', kind_choice, 'how far: LINEAR, full head at the upstream edge '// &
-                    'falling to none at the downstream edge, open or not; OPEN, full head as '// &
-                    'far as the joint is open from the upstream edge on, none elsewhere', &
+              field('TYPE', kind_choice, 'type of the law', default=first, choices=types), &
+              field('UPLIFT', kind_word, 'name of the *RESERVOIR whose water is in the joint'), &
+              field('PROFILE', kind_choice, 'distribution of the water pressure: LINEAR, full '// &
+                    'head at the upstream edge and zero at the '// &
+                    'downstream edge, also in closed joints; OPEN, '// &
+                    'full head where the joint is open from the '// &
+                    'upstream edge on, zero elsewhere', &
                     default='LINEAR', choices='LINEAR | OPEN'), &
-              field('TAIL WATER', kind_word, 'name of a *RESERVOIR at the downstream edge, '// &
-                    'PROFILE=LINEAR')])
+              field('TAIL WATER', kind_word, 'name of the *RESERVOIR at the downstream edge, '// &
+                    'with PROFILE=LINEAR')])
   end subroutine describe_joint_law
 
   subroutine read_joint_law(this, model, faults)
@@ -51,7 +53,8 @@ contains
     type(law_request) :: new
     integer :: i
     call make_joint_law(this%word('TYPE'), new%law)
-    ! The fault of an unknown TYPE is reported; joints that name the law find one.
+    ! An unknown TYPE is reported already. The first law stands in: joints that name it add no
+    ! fault.
     if (.not. allocated(new%law)) call make_joint_law(this%spec%variants(1)%name, new%law)
     new%law%name = this%word('NAME')
     do i = 1, size(model%laws)
@@ -66,7 +69,7 @@ contains
     call add_law(model, new)
   end subroutine read_joint_law
 
-  !> The water in the joint; whether the reservoirs exist is known at the end of the deck.
+  !> Reads the water in the joint. Whether the reservoirs exist is known at the end of the deck.
   subroutine read_water(this, new, faults)
     type(card), intent(in) :: this
     type(law_request), intent(inout) :: new
@@ -75,12 +78,12 @@ contains
     new%tail_water = this%word('TAIL WATER')
     new%profile = this%word('PROFILE')
     if (new%uplift == '' .and. new%tail_water /= '') then
-      call this%fault_parameter(faults, 'TAIL WATER', 'TAIL WATER stands without UPLIFT', &
+      call this%fault_parameter(faults, 'TAIL WATER', 'TAIL WATER is given without UPLIFT', &
                                 'UPLIFT=the reservoir upstream')
     else if (new%uplift == '' .and. this%has('PROFILE')) then
       call this%warn(faults, 'PROFILE has no effect: UPLIFT is not given')
     else if (new%profile == 'OPEN' .and. new%tail_water /= '') then
-      call this%fault_parameter(faults, 'TAIL WATER', 'TAIL WATER stands beside PROFILE=OPEN', &
+      call this%fault_parameter(faults, 'TAIL WATER', 'TAIL WATER is given with PROFILE=OPEN', &
                                 'PROFILE=LINEAR')
     end if
   end subroutine read_water
@@ -90,28 +93,29 @@ contains
     spec%name = 'JOINT'
     spec%family = 'joint'
     spec%place = 'model'
-    spec%meaning = 'A joint: of the JOINT8 elements of a set, or between two surfaces whose '// &
-                   'meshes may differ, without interface elements. Its points are the nodes of '// &
+    spec%meaning = 'A joint: the JOINT8 elements of a set, or two surfaces without interface '// &
+                   'elements, whose meshes may differ. The points of a joint are the nodes of '// &
                    'the slave side, or Gauss points; at the nodes the traction of a stiff '// &
-                   'joint does not oscillate. Between surfaces each node of the slave stands '// &
-                   'on a mortar projection of the master; what has no partner is told. The '// &
-                   'finer side is the better slave, as a rule: it sees more of a traction '// &
-                   'that varies. Take the coarser one where the face itself bends between '// &
-                   'meshes 1:2 and more apart (smoother tractions), or where time counts: the '// &
-                   'joint then has fewer points. '// &
-                   'The normal points from the master to the slave.'
+                   'joint does not oscillate. Between surfaces each node of the slave has a '// &
+                   'mortar projection on the master; nodes without a partner are reported. As '// &
+                   'a rule the finer side is the slave: it resolves a varying traction '// &
+                   'better. The coarser side is the better slave for smooth tractions where '// &
+                   'the surface bends and the element sizes differ by 2 or more, and for a '// &
+                   'shorter computing time (fewer points). The normal points from the master '// &
+                   'to the slave.'
     spec%example = '*JOINT, NAME=J1, LAW=CONTRACTION, ELSET=JOINT1'//nl// &
                    '*JOINT, NAME=J2, LAW=CONTRACTION'//nl//'LEFT_OF_2, RIGHT_OF_2'
     spec%most_lines = 1
     allocate (spec%parameters, source=[ &
               field('NAME', kind_word, 'name of the joint', is_required=.true.), &
               field('LAW', kind_word, 'name of a *JOINT LAW', is_required=.true.), &
-              field('ELSET', kind_word, 'its JOINT8 elements, instead of surfaces'), &
-              field('INTEGRATION', kind_choice, 'where its points are', default='NODES', &
+              field('ELSET', kind_word, 'JOINT8 elements of the joint, instead of surfaces'), &
+              field('INTEGRATION', kind_choice, 'location of the points', default='NODES', &
                     choices='NODES | GAUSS'), &
-              field('CLEARANCE', kind_choice, 'between surfaces: they touch as they are '// &
-                    'meshed, but for the GAP of the law, or their distance as meshed counts '// &
-                    'as well', default='NONE', choices='NONE | MEASURED')])
+              field('CLEARANCE', kind_choice, 'initial distance of the surfaces: NONE, only '// &
+                    'the GAP of the law; MEASURED, the distance in '// &
+                    'the mesh as well', &
+                    default='NONE', choices='NONE | MEASURED')])
     allocate (spec%columns, source=[ &
               field('slave', kind_word, 'slave surface, as a rule the finer one', &
                     is_required=.true.), &
@@ -155,7 +159,7 @@ contains
     model%joints = [model%joints, new]
   end subroutine read_joint
 
-  !> The two surfaces of a joint; they differ, and no joint has both of them already.
+  !> The two surfaces of a joint. They differ, and no other joint lies between them.
   subroutine claim_surfaces(this, model, faults, new)
     type(card), intent(in) :: this
     type(draft), intent(in) :: model

@@ -1,4 +1,4 @@
-!> What is odd about the constants of a concrete, and what they are in a line for people.
+!> Warnings about unusual constants of a concrete, and a summary of the constants in one line.
 module concrete_remarks
   use concrete_request, only: concrete_cards
   use damage_checks, only: find_longest_band, stiffening_table, table_fault
@@ -17,7 +17,7 @@ module concrete_remarks
 
 contains
 
-  !> Tells what is allowed and hardly meant.
+  !> Warns of constants that are allowed but probably a mistake.
   subroutine warn_of_constants(given, model, faults)
     type(concrete_cards), intent(in) :: given !< whose tables are free of faults
     type(draft), intent(in) :: model
@@ -27,8 +27,8 @@ contains
     call warn_of_steep_strain(given, model, faults)
   end subroutine warn_of_constants
 
-  !> Concrete of any quality cracks at a strain of about 1e-4 (f_t 1 to 5 MPa, E 15 to 45 GPa);
-  !> far from that the strength and the modulus are in two units.
+  !> Concrete of any quality cracks at a strain of about 1e-4 (f_t 1 to 5 MPa, E 15 to 45 GPa); at a
+  !> strain far from it the strength and the modulus have different units.
   subroutine warn_of_units(given, model, faults)
     type(concrete_cards), intent(in) :: given
     type(draft), intent(in) :: model
@@ -37,13 +37,13 @@ contains
     strain = given%constants%tension(1, 1)/given%constants%young
     if (strain > 0.01_rk*usual_strain .and. strain < 100.0_rk*usual_strain) return
     call model%cards(given%stiffening%card)%warn( &
-      faults, 'it would crack at a strain f_t/E of '//as_text(strain), 'about '// &
-      as_text(usual_strain)//' for concrete: f_t and E in one unit')
+      faults, 'the concrete cracks at a strain f_t/E of '//as_text(strain), 'about '// &
+      as_text(usual_strain)//' for concrete; f_t and E must have the same unit')
   end subroutine warn_of_units
 
   !> On the tensile meridian of Eq. 19 (s_1 = 2/3 q - p) q (1 + 2/3 gamma) = (3 alpha + gamma) p +
-  !> (1 - alpha) c: where its slope is less than tan psi, q - p tan psi and with it the work of flow
-  !> are negative from some pressure on.
+  !> (1 - alpha) c: where the slope of this line is less than tan psi, q - p tan psi is negative
+  !> above some pressure. The work of plastic flow is then negative, too.
   subroutine warn_of_dilation(given, model, faults)
     type(concrete_cards), intent(in) :: given
     type(draft), intent(in) :: model
@@ -61,7 +61,7 @@ contains
       ' deg with these fb0/fc0 and Kc')
   end subroutine warn_of_dilation
 
-  !> A table over strain whose stress falls faster than the strain grows: a test would snap back.
+  !> Warns of a table over strain whose stress falls so steeply that a test snaps back.
   subroutine warn_of_steep_strain(given, model, faults)
     type(concrete_cards), intent(in) :: given
     type(draft), intent(in) :: model
@@ -75,11 +75,11 @@ contains
     call find_longest_band(as_openings, longest, limit)
     if (longest >= 1.0_rk .or. limit%keyword /= stiffening_table) return
     call model%cards(given%stiffening%card)%warn( &
-      faults, 'the stress falls by more than E times the inelastic strain that comes with it '// &
-      'in row '//as_text(limit%row)//': a test with growing strain passes over it')
+      faults, 'the stress falls by more than E times the increase of inelastic strain in row '// &
+      as_text(limit%row)//': a test under strain control skips this part of the table')
   end subroutine warn_of_steep_strain
 
-  !> Strengths, energy of a crack and widths of the bands.
+  !> The summary: strengths, energy of a crack and widths of the crack bands.
   function describe_concrete(constants, smallest, largest) result(text)
     type(concrete_constants), intent(in) :: constants !< whose tables are free of faults
     real(rk), intent(in) :: smallest, largest !< widths of crack bands in its elements [m]

@@ -1,4 +1,4 @@
-!> What the *CONCRETE keywords of a material have given so far.
+!> The data of the *CONCRETE keywords of a material.
 module concrete_request
   use damage_constants, only: concrete_constants
   use model_draft, only: origin
@@ -6,7 +6,7 @@ module concrete_request
   private
   public :: concrete_cards
 
-  !> A spot with card 0: not given.
+  !> An origin with card 0: the keyword is not given.
   type :: concrete_cards
     integer :: material = 0 !< position
     type(concrete_constants) :: constants

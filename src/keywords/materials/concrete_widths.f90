@@ -1,4 +1,4 @@
-!> Elements of concrete that are longer than a crack band may be, theory.md, (11.12).
+!> Checks the length of concrete elements against the longest crack band (theory.md, 11.12).
 module concrete_widths
   use concrete_request, only: concrete_cards
   use damage_checks, only: find_longest_band, stiffening_table, table_fault
@@ -14,13 +14,13 @@ module concrete_widths
   private
   public :: check_widths
 
-  real(rk), parameter :: rounding = 1.0e-9_rk !< relative slack: an element may be just as long
+  real(rk), parameter :: rounding = 1.0e-9_rk !< relative tolerance of the comparison of lengths
 
 contains
 
-  !> Compares the elements of a material with the widest band that its tables admit, and gives the
-  !> range of their widths. Too long elements are one fault, or one warning if their strength is to
-  !> be lowered.
+  !> Compares the elements of a material with the widest crack band that its tables admit, and
+  !> returns the range of their widths. Elements that are too long make one fault, or one warning if
+  !> LONG ELEMENTS lowers their strength.
   subroutine check_widths(given, model, faults, smallest, largest)
     type(concrete_cards), intent(in) :: given !< whose tables are free of faults
     type(draft), intent(in) :: model
@@ -31,11 +31,11 @@ contains
     type(table_fault) :: limit
     real(rk) :: longest
     integer :: i
-    associate (body => model%problem%mesh)
-      elements = pack([(i, i=1, body%num_elements)], is_solid(body%element_type) &
-                      .and. body%material_of_element == given%material)
+    associate (mesh => model%problem%mesh)
+      elements = pack([(i, i=1, mesh%num_elements)], is_solid(mesh%element_type) &
+                      .and. mesh%material_of_element == given%material)
       allocate (least(size(elements)), most(size(elements)))
-      call measure_widths(body, elements, least, most)
+      call measure_widths(mesh, elements, least, most)
     end associate
     smallest = minval(least)
     largest = maxval(most)
@@ -67,11 +67,13 @@ contains
     card = given%stiffening%card
     remedy = '; or LONG ELEMENTS=LOWER STRENGTH'
     if (limit%keyword == stiffening_table) then
-      problem = problem//'it would give back more energy than a crack in it takes (snap-back)'
+      problem = problem//'its unloading would release more energy than its crack dissipates '// &
+                '(snap-back)'
     else
       card = given%tension_damage%card
       remedy = '; or a smaller damage'//remedy
-      problem = problem//'the plastic strain opening/length - d/(1 - d) sigma/E decreases in it'
+      problem = problem//'in it the plastic strain opening/length - d/(1 - d) sigma/E '// &
+                'decreases'
     end if
     num_others = count(width > longest*(1.0_rk + rounding)) - 1
     if (num_others == 1) problem = problem//'; 1 more is too long'

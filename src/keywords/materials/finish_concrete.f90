@@ -1,4 +1,4 @@
-!> Makes the law of a concrete when the whole deck is read; reports what is missing or wrong.
+!> Makes the law of a concrete after the whole deck is read; reports missing and wrong data.
 module finish_concrete
   use concrete_request, only: concrete_cards
   use concrete_remarks, only: describe_concrete, warn_of_constants
@@ -24,7 +24,7 @@ module finish_concrete
 
 contains
 
-  !> The law of the concrete, if nothing is wrong with it.
+  !> Makes the law of the concrete if its data have no faults.
   subroutine complete(self, model, faults)
     class(concrete_material), intent(inout) :: self
     type(draft), intent(inout) :: model
@@ -52,7 +52,7 @@ contains
     end associate
   end subroutine complete
 
-  !> The keywords that a concrete cannot be without.
+  !> Reports the missing keywords of a concrete.
   subroutine check_members(given, model, faults)
     type(concrete_cards), intent(in) :: given
     type(draft), intent(in) :: model
@@ -64,23 +64,24 @@ contains
     associate (place => model%cards(spot%card))
       if (given%plasticity%card == 0) then
         call place%fault(faults, name//'*CONCRETE DAMAGED PLASTICITY', &
-                         'it beside the tables of concrete')
+                         'this keyword beside the tables of concrete')
       end if
       if (given%constants%young <= 0.0_rk) then
-        call place%fault(faults, name//'*ELASTIC', 'it beside the keywords of concrete')
+        call place%fault(faults, name//'*ELASTIC', 'this keyword beside the keywords of '// &
+                         'concrete')
       end if
       if (given%hardening%card == 0) then
         call place%fault(faults, name//'*CONCRETE COMPRESSION HARDENING', &
-                         'it, with one row for a strength that stays')
+                         'this keyword; one row gives a constant strength')
       end if
       if (given%stiffening%card == 0) then
         call place%fault(faults, name//'*CONCRETE TENSION STIFFENING', &
-                         'it, with the strength and what remains after cracking')
+                         'this keyword, with the strength and the stress after cracking')
       end if
     end associate
   end subroutine check_members
 
-  !> The first of the keywords there are, where to tell what is missing.
+  !> The first keyword of the concrete; missing keywords are reported there.
   pure type(origin) function first_spot(given)
     type(concrete_cards), intent(in) :: given
     first_spot = given%plasticity
@@ -90,7 +91,7 @@ contains
     if (first_spot%card == 0) first_spot = given%compression_damage
   end function first_spot
 
-  !> Every fault of the tables, at its row.
+  !> Reports each fault of the tables at its row.
   subroutine check_tables(given, model, faults)
     type(concrete_cards), intent(in) :: given
     type(draft), intent(in) :: model
@@ -112,7 +113,7 @@ contains
     end do
   end subroutine check_tables
 
-  !> Where a table stands.
+  !> The place of a table in the deck.
   type(origin) function spot_of_table(given, keyword) result(spot)
     type(concrete_cards), intent(in) :: given
     character(*), intent(in) :: keyword !< as damage_checks names it
@@ -126,11 +127,11 @@ contains
     case (hardening_table)
       spot = given%hardening
     case default
-      error stop 'spot_of_table: a table that concrete does not have'
+      error stop 'spot_of_table: unknown table of concrete'
     end select
   end function spot_of_table
 
-  !> A concrete whose tables hold openings has a length, and one that does not snap back.
+  !> Checks LENGTH of a test: tables over openings need a length, and a long cube snaps back.
   subroutine check_test(self, number, model, faults)
     class(concrete_material), intent(in) :: self
     integer, intent(in) :: number !< of the test
@@ -142,8 +143,9 @@ contains
                place => model%cards(model%test_origin(number)%card))
       if (.not. uses_length(given)) return
       if (.not. place%has('LENGTH')) then
-        call place%warn(faults, "LENGTH is not given and turns the openings of '"// &
-                        model%problem%materials(test%material)%name//"' into strains: 1 is taken", &
+        call place%warn(faults, "LENGTH is not given and converts the openings of '"// &
+                        model%problem%materials(test%material)%name// &
+                        "' into strains: 1 m is used", &
                         'LENGTH, the side of an element [m]')
       end if
       call find_longest_band(given%constants, longest, limit)
@@ -160,7 +162,7 @@ contains
     end associate
   end subroutine check_test
 
-  !> A table of the concrete is over openings, or G_f makes it.
+  !> True if a table of the concrete is over openings or is given by G_f.
   pure logical function uses_length(given)
     type(concrete_cards), intent(in) :: given
     uses_length = given%constants%stiffening /= 'STRAIN' .or. &

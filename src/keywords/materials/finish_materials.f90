@@ -1,4 +1,4 @@
-!> Gives materials the laws that their keywords ask for, when the whole deck is read.
+!> Completes the laws of all materials after the whole deck is read.
 module finish_materials
   use diagnostics, only: diagnostic_list
   use finish_user_materials, only: check_library
@@ -9,7 +9,7 @@ module finish_materials
 
 contains
 
-  !> Each request leaves the draft while it is completed, and comes back.
+  !> Completes each request. The request is moved out of the draft meanwhile: both are arguments.
   subroutine complete_materials(model, faults)
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults

@@ -1,4 +1,4 @@
-!> What `keyway --material` needs of a deck: tests, and laws for their materials that suit them.
+!> Checks a deck for `keyway --material`: it has tests, and their materials have suitable laws.
 module finish_tests
   use diagnostics, only: diagnostic_list
   use finish_materials, only: complete_materials
@@ -36,16 +36,16 @@ contains
     end do
   end subroutine complete_tests
 
-  !> The material of a test has a law.
+  !> Reports a material of a test without a law.
   subroutine check_law(model, number, faults)
     type(draft), intent(in) :: model
     integer, intent(in) :: number !< of the test
     type(diagnostic_list), intent(inout) :: faults
     integer :: i
     i = model%problem%tests(number)%material
-    if (i == 0) return ! told
+    if (i == 0) return ! reported
     if (allocated(model%problem%materials(i)%law)) return
-    if (any(model%problem%tests(:number - 1)%material == i)) return ! told
+    if (any(model%problem%tests(:number - 1)%material == i)) return ! reported
     if (has_request(model, i)) return ! reported by the request
     call model%cards(model%material_origin(i)%card)%fault( &
       faults, "material '"//model%problem%materials(i)%name//"' has no stiffness", names_of_laws())

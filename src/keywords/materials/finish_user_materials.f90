@@ -1,5 +1,5 @@
-!> Makes the law of a user material when the whole deck is read: the UMAT gives its stiffness at the
-!> start.
+!> Makes the law of a user material after the whole deck is read. The UMAT returns the stiffness at
+!> the start.
 module finish_user_materials
   use diagnostics, only: diagnostic_list, place, severity_warning
   use element_hex8, only: hex8_gradients
@@ -13,7 +13,7 @@ module finish_user_materials
   private
   public :: check_library, user_material
 
-  !> A spot with card 0: not given.
+  !> An origin with card 0: the keyword is not given.
   type, extends(material_request) :: user_material
     type(user_constants) :: constants
     type(origin) :: spot, depvar
@@ -23,7 +23,7 @@ module finish_user_materials
 
 contains
 
-  !> User materials need a UMAT, reported at the first of them; and a UMAT needs one of them.
+  !> Reports a missing UMAT at the first user material. Warns of a UMAT without a user material.
   subroutine check_library(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
@@ -44,11 +44,11 @@ contains
     deck%file = model%problem%deck_file ! a constructor of the type would take a wrong length
     deck%keyword = ''
     deck%source = ''
-    call faults%add(severity_warning, deck, '--umat is given and no material asks for it', &
+    call faults%add(severity_warning, deck, '--umat is given, but no material uses it', &
                     '*USER MATERIAL in a *MATERIAL')
   end subroutine check_library
 
-  !> Asks the UMAT for the stiffness at the start.
+  !> Makes the law with the stiffness that the UMAT returns at the start.
   subroutine complete(self, model, faults)
     class(user_material), intent(inout) :: self
     type(draft), intent(inout) :: model
@@ -79,29 +79,30 @@ contains
     end associate
   end subroutine complete
 
-  !> A user material has its *USER MATERIAL, and no other law.
+  !> Reports a missing *USER MATERIAL, and a second law.
   subroutine check_cards(self, model, faults)
     type(user_material), intent(in) :: self
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     if (self%spot%card == 0) then
       call model%cards(self%depvar%card)%fault( &
-        faults, "material '"//self%constants%name//"' has no *USER MATERIAL", 'it beside *DEPVAR')
+        faults, "material '"//self%constants%name//"' has no *USER MATERIAL", 'this keyword '// &
+        'beside *DEPVAR')
       return
     end if
     associate (spot => model%cards(self%spot%card))
       if (allocated(model%problem%materials(self%material)%law)) then
-        call spot%fault(faults, "material '"//self%constants%name//"' has an *ELASTIC, too", &
+        call spot%fault(faults, "material '"//self%constants%name//"' also has an *ELASTIC", &
                         'one law: the UMAT gives the elastic stiffness')
       else if (has_request(model, self%material)) then
-        call spot%fault(faults, "material '"//self%constants%name//"' has the keywords of "// &
-                        'another law, too', 'one law')
+        call spot%fault(faults, "material '"//self%constants%name//"' also has the keywords of "// &
+                        'another law', 'one law')
       end if
     end associate
   end subroutine check_cards
 
-  !> The middle of the first element of a material; where there is none, of a cube as long as its
-  !> first *MATERIAL TEST says.
+  !> The centre of the first element of a material. Without elements it is the centre of a cube with
+  !> the LENGTH of the first *MATERIAL TEST of the material.
   subroutine first_point(model, material, points)
     type(draft), intent(in) :: model
     integer, intent(in) :: material !< position

@@ -1,4 +1,4 @@
-!> *CONCRETE DAMAGED PLASTICITY, and what all *CONCRETE keywords share.
+!> *CONCRETE DAMAGED PLASTICITY, and parts common to all *CONCRETE keywords.
 module keywords_concrete
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
@@ -13,12 +13,12 @@ module keywords_concrete
 
   character, parameter :: nl = new_line('a')
 
-  !> Abaqus lets its tables depend on more; why that is refused.
+  !> Abaqus allows further columns in its tables. This reason refuses them.
   character(*), parameter :: no_dependencies = &
                              'the law depends on no rate, temperature or field variable'
 
-  !> A bar in tension keeps its plastic strain across as long as tan psi < 3/2, from (11.7) with
-  !> a = 0: -1/2 + tan psi/3 < 0. Beyond, a crack would open sideways as well.
+  !> In uniaxial tension the lateral plastic strain is negative for tan psi < 3/2, from (11.7) with
+  !> a = 0: -1/2 + tan psi/3 < 0. Above this angle a crack would also open sideways.
   real(rk), parameter :: largest_dilation = 56.3_rk ! [deg], atan(3/2) = 56.31
 
 contains
@@ -41,17 +41,20 @@ contains
     spec%most_lines = 1
     spec%no_further = no_dependencies
     allocate (spec%parameters, source=[ &
-              field('RECOVERY', kind_choice, 'share of tension in a state (r of Eq. 17): the '// &
-                    'weight of Lee and Fenves, or the switch of the paper, which jumps', &
+              field('RECOVERY', kind_choice, 'fraction of tension in a stress state (r of Eq. '// &
+                    '17): the continuous weight of Lee and Fenves, '// &
+                    'or the discontinuous switch of the paper', &
                     default='LEE-FENVES', choices='LEE-FENVES | SIGN')])
     allocate (spec%columns, source=[ &
-              field('dilation', kind_real, 'angle of dilation psi (Eq. 25); from atan 3/2 on a '// &
-                    'crack would open sideways as well', 'deg', is_required=.true., &
+              field('dilation', kind_real, 'dilation angle psi (Eq. 25); above atan 3/2 a '// &
+                    'crack would also open sideways', &
+                    'deg', is_required=.true., &
                     lowest=0.0_rk, highest=largest_dilation, excludes_lowest=.true., &
                     excludes_highest=.true.), &
-              field('offset', kind_real, 'of the flow potential (eccentricity, xi of Eq. 25): '// &
-                    'rounds its apex', default='0.1', lowest=0.0_rk, excludes_lowest=.true.), &
-              field('fb0/fc0', kind_real, 'strength in equal biaxial over uniaxial compression '// &
+              field('offset', kind_real, 'eccentricity of the flow potential (xi of Eq. 25), '// &
+                    'which rounds its apex', &
+                    default='0.1', lowest=0.0_rk, excludes_lowest=.true.), &
+              field('fb0/fc0', kind_real, 'equibiaxial over uniaxial compressive strength '// &
                     '(alpha of Eq. 19)', default='1.16', lowest=1.0_rk), &
               field('Kc', kind_real, 'tensile over compressive meridian (gamma of Eq. 19)', &
                     default='0.6666666666666667', lowest=0.5_rk, highest=1.0_rk, &

@@ -29,7 +29,7 @@ contains
     call list%add(describe_cracking, read_cracking, pass_definitions)
   end subroutine add_concrete
 
-  !> What the four have in common.
+  !> Sets the entries that the four tables share.
   subroutine describe_table(spec, ordinate, abscissa)
     type(keyword), intent(inout) :: spec
     type(field), intent(in) :: ordinate, abscissa
@@ -40,7 +40,7 @@ contains
     allocate (spec%columns, source=[ordinate, abscissa])
   end subroutine describe_table
 
-  !> The rows of a card.
+  !> Reads the rows of a card.
   subroutine read_table(this, table)
     type(card), intent(in) :: this
     real(rk), allocatable, intent(out) :: table(:, :) !< (2, rows): ordinate, abscissa
@@ -54,10 +54,10 @@ contains
   subroutine describe_hardening(spec)
     type(keyword), intent(out) :: spec
     spec%name = 'CONCRETE COMPRESSION HARDENING'
-    spec%meaning = 'Strength in uniaxial compression against inelastic strain, both positive; '// &
-                   'constant past the last row. The inelastic strain is what remains of the '// &
-                   'strain of the test without stress/E, 0 in the first row. One row makes a '// &
-                   'strength that stays.'
+    spec%meaning = 'Strength in uniaxial compression over inelastic strain, both positive; '// &
+                   'constant past the last row. The inelastic strain is the strain of the '// &
+                   'test less stress/E; it is 0 in the first row. One row gives a constant '// &
+                   'strength.'
     spec%example = '*CONCRETE COMPRESSION HARDENING'//nl//'18.3e6, 0.'//nl//'27.6e6, 1.0e-3'//nl// &
                    '3.2e6, 5.0e-3'
     call describe_table(spec, field('sigma_c', kind_real, 'strength', 'Pa', is_required=.true., &
@@ -84,20 +84,21 @@ contains
     type(keyword), intent(out) :: spec
     spec%name = 'CONCRETE TENSION STIFFENING'
     spec%meaning = 'Strength in uniaxial tension after cracking, constant past the last row. '// &
-                   'Against cracking strain (the paper''s Table 1) the energy of a crack grows '// &
-                   'with the elements; against the opening of the crack, or by f_t and G_f '// &
-                   '(linear, closed at the opening 2 G_f/f_t), it is that of the table in any '// &
-                   'mesh: strain = opening/length, the length of the element across the crack. '// &
-                   'No element may then be longer than 2 E G_f/f_t^2, nor than E over the '// &
-                   'steepest slope of the table, for it would break with less than its energy '// &
-                   '(theory 11.5).'
+                   'Over cracking strain (the paper''s Table 1) the energy of a crack grows '// &
+                   'with the size of the elements. Over the opening of the crack, or with f_t '// &
+                   'and G_f (linear, zero at the opening 2 G_f/f_t), the energy does not '// &
+                   'depend on the mesh: strain = opening/length, the length of the element '// &
+                   'across the crack. Then no element may be longer than 2 E G_f/f_t^2, nor '// &
+                   'longer than E over the steepest slope of the table. A longer element '// &
+                   'would break with less energy than the table gives (theory 11.5).'
     spec%example = '*CONCRETE TENSION STIFFENING, TYPE=DISPLACEMENT'//nl//'2.5e6, 0.'//nl// &
                    '0.83e6, 0.06e-3'//nl//'0.05e6, 0.28e-3'
     allocate (spec%parameters, source=[ &
-              field('TYPE', kind_choice, 'what the table is against', &
+              field('TYPE', kind_choice, 'abscissa of the table', &
                     default='STRAIN', choices='STRAIN | DISPLACEMENT | GFI'), &
-              field('LONG ELEMENTS', kind_choice, 'elements that are too long are an error, or '// &
-                    'crack at a lower strength with the same energy and are listed in a warning', &
+              field('LONG ELEMENTS', kind_choice, 'treatment of elements that are too long: '// &
+                    'an error, or a lower strength with the '// &
+                    'same energy and a warning', &
                     default='ERROR', choices='ERROR | LOWER STRENGTH')])
     call describe_table(spec, field('sigma_t', kind_real, 'strength (f_t with GFI)', 'Pa', &
                                     is_required=.true., lowest=0.0_rk), &
@@ -122,7 +123,8 @@ contains
           call this%fault_at(faults, 2, 0, 'a second row with TYPE=GFI', 'one row: f_t, G_f')
           one%given%is_right = .false.
         else if (now%stiffening == 'STRAIN' .and. this%has('LONG ELEMENTS')) then
-          call this%warn(faults, 'LONG ELEMENTS has no effect: TYPE=STRAIN knows no length')
+          call this%warn(faults, 'LONG ELEMENTS has no effect: TYPE=STRAIN does not use the '// &
+                         'length of elements')
         end if
       end associate
       call claim_card(this, model, one%given%stiffening, faults)
@@ -132,20 +134,22 @@ contains
   subroutine describe_crushing(spec)
     type(keyword), intent(out) :: spec
     spec%name = 'CONCRETE COMPRESSION DAMAGE'
-    spec%meaning = 'Loss of stiffness in uniaxial compression against inelastic strain (Eq '// &
-                   '15); constant past the last row. Without it crushing leaves the stiffness.'
+    spec%meaning = 'Loss of stiffness in uniaxial compression over inelastic strain (Eq. 15); '// &
+                   'constant past the last row. Without this table crushing does not reduce '// &
+                   'the stiffness.'
     spec%example = '*CONCRETE COMPRESSION DAMAGE, TENSION RECOVERY=0'//nl//'0., 0.'//nl// &
                    '0.25, 1.0e-3'//nl//'0.8, 5.0e-3'
     allocate (spec%parameters, source=[ &
-              field('TENSION RECOVERY', kind_real, 'w_t of Eq. 16: share of the crushed '// &
-                    'stiffness that comes back in tension', default='0', lowest=0.0_rk, &
+              field('TENSION RECOVERY', kind_real, 'w_t of Eq. 16: fraction of the stiffness '// &
+                    'lost by crushing that recovers in tension', &
+                    default='0', lowest=0.0_rk, &
                     highest=1.0_rk)])
     call describe_table(spec, damage_column('d_c'), &
                         field('strain', kind_real, 'inelastic strain eps - sigma/E', &
                               is_required=.true., lowest=0.0_rk))
   end subroutine describe_crushing
 
-  !> Damage, from 0 to less than 1: the stiffness that is left is (1 - d) E.
+  !> Damage d, 0 <= d < 1: the remaining stiffness is (1 - d) E.
   pure type(field) function damage_column(name)
     character(*), intent(in) :: name
     damage_column = field(name, kind_real, 'damage', is_required=.true., lowest=0.0_rk, &
@@ -169,19 +173,21 @@ contains
   subroutine describe_cracking(spec)
     type(keyword), intent(out) :: spec
     spec%name = 'CONCRETE TENSION DAMAGE'
-    spec%meaning = 'Loss of stiffness in uniaxial tension against cracking strain, or against '// &
-                   'the opening of the crack, which the length of the element turns into '// &
-                   'strain as in *CONCRETE TENSION STIFFENING (Eq. 15); constant past the last '// &
-                   'row. Without it cracking leaves the stiffness. The plastic strain, '// &
-                   'cracking strain - d/(1 - d) sigma/E, must not decrease '// &
-                   'from row to row (NOTES 11).'
+    spec%meaning = 'Loss of stiffness in uniaxial tension over cracking strain, or over the '// &
+                   'opening of the crack (Eq. 15); constant past the last row. The length of '// &
+                   'the element converts openings into strains as in *CONCRETE TENSION '// &
+                   'STIFFENING. Without this table cracking does not reduce the stiffness. '// &
+                   'The plastic strain, cracking strain - d/(1 - d) sigma/E, must not '// &
+                   'decrease from row to row (NOTES 11).'
     spec%example = '*CONCRETE TENSION DAMAGE, TYPE=DISPLACEMENT'//nl//'0., 0.'//nl// &
                    '0.6, 0.06e-3'//nl//'0.95, 0.28e-3'
     allocate (spec%parameters, source=[ &
-              field('TYPE', kind_choice, 'what the table is against', &
+              field('TYPE', kind_choice, 'abscissa of the table', &
                     default='STRAIN', choices='STRAIN | DISPLACEMENT'), &
-              field('COMPRESSION RECOVERY', kind_real, 'w_c of Eq. 16: share of the cracked '// &
-                    'stiffness that comes back in compression', default='1', lowest=0.0_rk, &
+              field('COMPRESSION RECOVERY', kind_real, 'w_c of Eq. 16: fraction of the '// &
+                    'stiffness lost by cracking that '// &
+                    'recovers in compression', &
+                    default='1', lowest=0.0_rk, &
                     highest=1.0_rk)])
     call describe_table(spec, damage_column('d_t'), &
                         field('abscissa', kind_real, 'cracking strain eps - sigma/E, or '// &

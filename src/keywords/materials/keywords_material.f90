@@ -104,7 +104,7 @@ contains
     end associate
   end subroutine read_material_damping
 
-  !> Notes where a keyword of the material stands; a second one is a fault.
+  !> Stores the place of a keyword of the material; reports a second keyword of this kind.
   subroutine claim_card(this, model, spot, faults)
     type(card), intent(in) :: this
     type(draft), intent(in) :: model

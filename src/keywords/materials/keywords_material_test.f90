@@ -25,11 +25,11 @@ contains
     spec%name = 'MATERIAL TEST'
     spec%family = 'material'
     spec%place = 'model'
-    spec%meaning = 'Leads a material at one point along a path of strains and stresses; '// &
-                   'keyway --material job.inp runs it and writes job_material_NAME.csv. No '// &
-                   'nodes, elements or steps are needed, and an analysis passes over it. A '// &
-                   'data line is a leg: from where the material is, straight to the target. '// &
-                   'Several lines make cycles. A falling branch follows a strain only.'// &
+    spec%meaning = 'Drives one material point along a path of strains and stresses. keyway '// &
+                   '--material job.inp runs the test and writes job_material_NAME.csv. A test '// &
+                   'needs no nodes, elements or steps; an analysis ignores it. A data line is '// &
+                   'a leg: a straight path from the present state to the target. Several '// &
+                   'lines make cycles. A softening branch needs strain control.'// &
                    kinds_in_words()
     spec%example = '*MATERIAL TEST, NAME=PULL, TYPE=UNIAXIAL, LENGTH=0.5'//nl//'2e-3'//nl// &
                    '*MATERIAL TEST, NAME=CYCLES, TYPE=UNIAXIAL, INCREMENTS=50'//nl// &
@@ -45,44 +45,49 @@ contains
               field('MATERIAL', kind_word, 'the material', default='the only one of the deck'), &
               field('TYPE', kind_choice, 'kind of test', default='UNIAXIAL', &
                     choices=test_types), &
-              field('CONTROL', kind_choice, 'what the target is; not with GENERAL', &
+              field('CONTROL', kind_choice, 'quantity of the targets; not with GENERAL', &
                     default='STRAIN', choices='STRAIN | STRESS'), &
               field('RATIO', kind_real, 'S22 over S11, with BIAXIAL'), &
               field('CONFINEMENT', kind_real, 'pressure on the sides, with TRIAXIAL', 'Pa', &
                     lowest=0.0_rk), &
-              field('LENGTH', kind_real, 'of the cube it stands for: width of its crack band', &
+              field('LENGTH', kind_real, 'side of the cube that the point represents: width '// &
+                    'of its crack band', &
                     'm', '1', lowest=0.0_rk, excludes_lowest=.true.), &
-              field('INCREMENTS', kind_integer, 'of a leg whose line does not tell', &
+              field('INCREMENTS', kind_integer, 'increments of a leg whose line gives none', &
                     default='100', lowest=1.0_rk), &
-              field('TIME', kind_real, 'of a leg whose line does not tell', 's', '1', &
+              field('TIME', kind_real, 'duration of a leg whose line gives none', 's', '1', &
                     lowest=0.0_rk, excludes_lowest=.true.), &
-              field('CYCLES', kind_integer, 'times that the data lines are gone through', &
+              field('CYCLES', kind_integer, 'number of repetitions of the data lines', &
                     default='1', lowest=1.0_rk), &
-              field('TOLERANCE', kind_real, 'of stresses, over the largest stress so far', &
+              field('TOLERANCE', kind_real, 'tolerance of stresses, over the largest stress '// &
+                    'so far', &
                     default='1e-9', lowest=0.0_rk, highest=0.01_rk, excludes_lowest=.true.)])
     allocate (spec%columns, source=[ &
               field('target', kind_real, 'strain, or stress [Pa], at the end of the leg', &
                     is_required=.true.), &
-              field('increments', kind_integer, 'equal parts of the leg, one row each; else '// &
-                    'INCREMENTS', lowest=1.0_rk), &
-              field('time', kind_real, 'that the leg takes, for laws that feel it; else TIME', &
+              field('increments', kind_integer, 'number of equal increments of the leg, one '// &
+                    'row of results each; INCREMENTS if empty', &
+                    lowest=1.0_rk), &
+              field('time', kind_real, 'duration of the leg, for laws that depend on time; '// &
+                    'TIME if empty', &
                     's', lowest=0.0_rk, excludes_lowest=.true.)])
   end subroutine describe_material_test
 
-  !> What each kind of test does, a line each.
+  !> One line for each kind of test.
   pure function kinds_in_words() result(text)
     character(:), allocatable :: text
     text = nl//'UNIAXIAL: E11; all other stresses zero.'//nl// &
            'BIAXIAL: E11; S22 = RATIO times S11, all other stresses zero.'//nl// &
-           'TRIAXIAL: first the pressure CONFINEMENT all round, then E11; the sides keep it.'// &
+           'TRIAXIAL: first the pressure CONFINEMENT on all sides, then E11 at constant S22 '// &
+           'and S33.'// &
            nl//'OEDOMETER: E11; all other strains zero.'//nl// &
            'SHEAR: gamma 12; all other stresses zero.'//nl// &
            'HYDROSTATIC: E11 = E22 = E33; no shear.'//nl// &
            'With CONTROL=STRESS the targets of all these are S11 (SHEAR: S12).'//nl// &
-           'GENERAL: each component by itself. Its data lines are control, 11, 22, 33, 12, '// &
-           '13, 23, increments, time; the control is six letters, E for a strain and S for a '// &
-           'stress: ESSSSS. An empty control is that of the line before, an empty component '// &
-           'stays where it is.'
+           'GENERAL: each component has its own target. The data lines are control, 11, 22, '// &
+           '33, 12, 13, 23, increments, time; the control is six letters, E for a strain and '// &
+           'S for a stress: ESSSSS. An empty control repeats that of the line before. An '// &
+           'empty component keeps its value.'
   end function kinds_in_words
 
   subroutine read_material_test(this, model, faults)
@@ -113,7 +118,7 @@ contains
     call this%ignore(faults, 'has no effect in an analysis; keyway --material runs it')
   end subroutine read_material_test
 
-  !> The material that is named, or the only one there is.
+  !> The material that the card names, or the only material of the deck.
   subroutine find_material(this, model, faults, found)
     type(card), intent(in) :: this
     type(draft), intent(in) :: model
@@ -142,26 +147,27 @@ contains
                               nearest_word(this%word('MATERIAL'), known))
   end subroutine find_material
 
-  !> Parameters that belong to one kind of test only.
+  !> Reports parameters that belong to another kind of test.
   subroutine check_parameters(this, faults)
     type(card), intent(in) :: this
     type(diagnostic_list), intent(inout) :: faults
     call check_use('RATIO', 'BIAXIAL', 'RATIO=<S22 over S11>')
     call check_use('CONFINEMENT', 'TRIAXIAL', 'CONFINEMENT=<pressure on the sides> [Pa]')
     if (this%word('CONTROL') == 'STRESS' .and. this%word('TYPE') == 'GENERAL') then
-      call this%fault_parameter(faults, 'CONTROL', 'CONTROL has no use for GENERAL', &
+      call this%fault_parameter(faults, 'CONTROL', 'CONTROL does not belong to TYPE=GENERAL', &
                                 'the control of each component in the data lines')
     end if
 
   contains
 
-    !> Tells of a parameter that the test does not take, or that it lacks.
+    !> Reports a parameter that the test does not take, or that the test lacks.
     subroutine check_use(name, kind, wanted)
       character(*), intent(in) :: name, kind, wanted
       if (this%has(name) .eqv. this%word('TYPE') == kind) return
       if (this%has(name)) then
-        call this%fault_parameter(faults, name, name//' has no use for '//this%word('TYPE'), &
-                                  'TYPE='//kind//' with it')
+        call this%fault_parameter(faults, name, name//' does not belong to TYPE='// &
+                                  this%word('TYPE'), &
+                                  'TYPE='//kind//' with '//name)
       else
         call this%fault(faults, kind//' without '//name, wanted)
       end if

@@ -32,19 +32,20 @@ contains
     spec%place = 'material'
     spec%meaning = 'The law of the material is a UMAT of the user, which --umat names on the '// &
                    'command line: keyway --umat law.for job.inp. The data are its constants '// &
-                   '(PROPS), 8 a line. The name of the material arrives as CMNAME. In place of '// &
-                   '*ELASTIC.'
+                   '(PROPS), 8 a line. The name of the material arrives as CMNAME. The '// &
+                   'keyword replaces *ELASTIC.'
     spec%example = '*MATERIAL, NAME=STEEL'//nl//'*USER MATERIAL, CONSTANTS=3'//nl// &
                    '210e9, 0.3, 355e6'//nl//'*DEPVAR'//nl//'7'
     allocate (spec%parameters, source=[ &
               field('CONSTANTS', kind_integer, 'number of constants', is_required=.true., &
                     lowest=0.0_rk), &
-              field('UNSYMM', kind_flag, 'DDSDDE is used as it comes, else symmetrised'), &
-              field('TYPE', kind_choice, 'a law that is not coupled with temperature', &
+              field('UNSYMM', kind_flag, 'DDSDDE is used as the UMAT returns it; without '// &
+                    'UNSYMM it is symmetrised'), &
+              field('TYPE', kind_choice, 'kind of law, without coupling to temperature', &
                     default='MECHANICAL', choices='MECHANICAL')])
     spec%repeats_columns = .true.
     allocate (spec%columns, source=[ &
-              field('constant', kind_real, 'of the law (PROPS)', default='0')])
+              field('constant', kind_real, 'constant of the law (PROPS)', default='0')])
   end subroutine describe_user_material
 
   subroutine read_user_material(this, model, faults)
@@ -61,7 +62,7 @@ contains
     end select
   end subroutine read_user_material
 
-  !> All lines but the last are full, and there are as many constants as the keyword says.
+  !> Reads the constants. All lines but the last are full; CONSTANTS gives the number of constants.
   subroutine read_constants(this, values, faults)
     type(card), intent(in) :: this
     real(rk), allocatable, intent(out) :: values(:)
@@ -74,7 +75,7 @@ contains
       if (this%num_fields(line) > constants_of_line .or. &
           (line < this%num_lines .and. this%num_fields(line) < constants_of_line)) then
         call this%fault_at(faults, line, 0, 'found '//as_text(this%num_fields(line))// &
-                           ' constants', '8 a line, and what is left in the last')
+                           ' constants', '8 a line, the rest in the last line')
         return
       end if
       do i = 1, this%num_fields(line)
@@ -83,7 +84,7 @@ contains
       end do
     end do
     if (num_given == num_wanted) return
-    call this%fault_parameter(faults, 'CONSTANTS', 'CONSTANTS='//as_text(num_wanted)//', and '// &
+    call this%fault_parameter(faults, 'CONSTANTS', 'CONSTANTS='//as_text(num_wanted)//', but '// &
                               as_text(num_given)//' constants follow', 'the same number')
   end subroutine read_constants
 
@@ -98,10 +99,11 @@ contains
     spec%fewest_lines = 1
     spec%checks_own_data = .true.
     allocate (spec%columns, source=[ &
-              field('number', kind_integer, 'of state variables; in further lines that of the '// &
-                    'one that is named', is_required=.true.), &
-              field('name', kind_text, 'of a state variable'), &
-              field('text', kind_text, 'that tells of it')])
+              field('number', kind_integer, 'number of state variables; in further lines the '// &
+                    'number of the variable that is named', &
+                    is_required=.true.), &
+              field('name', kind_text, 'name of a state variable'), &
+              field('text', kind_text, 'description of the state variable')])
   end subroutine describe_depvar
 
   subroutine read_depvar(this, model, faults)

@@ -1,4 +1,4 @@
-!> The list of material laws: the keyword that brings each in, and the procedure that adds all its
+!> The list of material laws: the main keyword of each law, and the procedure that adds its
 !> keywords. A new law is a file with its type (below src/materials), a file with its keywords (in
 !> this room), and here its `use` and its line in `list_laws`.
 module material_catalogue

@@ -138,7 +138,7 @@ contains
     end if
   end function number_at
 
-  !> A line holds no more fields than it may.
+  !> Reports a line with too many fields.
   subroutine check_count(this, line, most, names, faults)
     type(card), intent(in) :: this
     integer, intent(in) :: line, most

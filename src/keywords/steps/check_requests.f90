@@ -1,4 +1,4 @@
-!> Requests for fields that nothing of the model has: a warning each, where the deck asks first.
+!> Warns of requested fields that the model does not have, at the first request of each field.
 module check_requests
   use card_reader, only: field_reader
   use diagnostics, only: diagnostic_list
@@ -43,7 +43,7 @@ contains
     end do
   end subroutine warn_of_missing_fields
 
-  !> The warning; '' where the model has the field. *EL FILE may ask for openings of any model.
+  !> The warning; '' where the model has the field. *EL FILE may request openings of any model.
   function why_missing(model, item, keyword) result(reason)
     type(draft), intent(in) :: model
     type(result_field), intent(in) :: item

@@ -16,8 +16,9 @@ module keywords_output
   public :: read_fields, read_output, read_envelope
 
   character, parameter :: nl = new_line('a')
-  character(*), parameter :: series = ' Fields for the VTK series (job.pvd) and job.h5. Stays '// &
-                             'for the next steps until one has its own.'
+  character(*), parameter :: series = ' The fields go to the VTK series (job.pvd) and to '// &
+                             'job.h5. The request stays for the next steps until a '// &
+                             'step has its own.'
 
 contains
 
@@ -58,7 +59,7 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    if (.not. model%is_in_step) call this%warn(faults, 'stands outside a step')
+    if (.not. model%is_in_step) call this%warn(faults, 'is outside a step')
     model%output_frequency = this%integer('FREQUENCY')
   end subroutine read_output
 
@@ -80,7 +81,7 @@ contains
     allocate (spec%parameters(0))
   end subroutine describe_element_output
 
-  !> Handles all four: they differ in the fields they take and in where the frequency stands.
+  !> Reads all four keywords. They differ in their fields and in the card that gives the frequency.
   subroutine read_fields(this, model, faults)
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
@@ -103,9 +104,10 @@ contains
     spec%name = 'ENVELOPE'
     spec%family = 'output'
     spec%place = 'step'
-    spec%meaning = 'Keeps the extremes over the step: '//fields_in_words('ENVELOPE')//'; with '// &
-                   'place and time in job.json, as fields at the end of the step. Without '// &
-                   'data: S1, S3, OPENING.'
+    spec%meaning = 'Records the extremes over the step: '// &
+                   fields_in_words('ENVELOPE')//'. job.json has their place and time, the '// &
+                   'results at the end of the step have them as '// &
+                   'fields. Without data lines: S1, S3, OPENING.'
     spec%example = '*ENVELOPE'//nl//'S1, S3, OPENING, DAMAGET'
     allocate (spec%parameters(0))
     allocate (spec%columns, source=[ &
@@ -114,7 +116,7 @@ contains
     spec%repeats_columns = .true.
   end subroutine describe_envelope
 
-  !> A field that a card names again is written once.
+  !> Warns of a field that a card names more than once; the field is written once.
   subroutine warn_of_repeats(this, faults)
     type(card), intent(in) :: this
     type(diagnostic_list), intent(inout) :: faults

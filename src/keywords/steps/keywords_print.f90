@@ -21,12 +21,13 @@ module keywords_print
 
 contains
 
-  !> What all requests say: how often, and which fields.
+  !> Adds the entries that all requests share: frequency and fields.
   subroutine add_frequency(spec, choices)
     type(keyword), intent(inout) :: spec
     character(*), intent(in) :: choices !< fields, 'U | V'
     type(field) :: how_often
-    how_often = field('FREQUENCY', kind_integer, 'every so many increments; 0 for never', &
+    how_often = field('FREQUENCY', kind_integer, 'number of increments between outputs; 0 for '// &
+                      'no output', &
                       default='1', lowest=0.0_rk)
     if (allocated(spec%parameters)) then
       spec%parameters = [spec%parameters, how_often]
@@ -63,7 +64,8 @@ contains
     spec%name = 'NODE PRINT'
     spec%meaning = 'History of nodes in job_node_NSET.csv: '//fields_in_words('NODE PRINT')// &
                    '. U, V and A are relative to the base. The last increment of a step is '// &
-                   'always written. Stays for the next steps until one has its own.'
+                   'always written. The request stays for the next steps until a step has its '// &
+                   'own.'
     spec%example = '*NODE PRINT, NSET=CREST, FREQUENCY=2'//nl//'U, A'
     allocate (spec%parameters, source=[ &
               field('NSET', kind_word, 'the nodes', is_required=.true.)])
@@ -102,7 +104,8 @@ contains
     new%name = this%word('ELSET')
     call elements_of_set(this, 'ELSET', model, faults, new%members)
     if (.not. all(is_solid(model%problem%mesh%element_type(new%members)))) then
-      call this%fault_parameter(faults, 'ELSET', 'the set holds elements that are no solids', &
+      call this%fault_parameter(faults, 'ELSET', 'the set contains elements that are not '// &
+                                'solids', &
                                 'solid elements; for joints *JOINT PRINT')
     end if
     new%fields = fields_of(this, 'S')
@@ -113,9 +116,10 @@ contains
     type(keyword), intent(out) :: spec
     spec%name = 'JOINT PRINT'
     spec%meaning = 'History of the points of a joint in job_joint_NAME.csv: '// &
-                   columns_of_joints()//' (0 open, 1 stick, 2 slip, 3 bonded). All columns '// &
-                   'are always written, whatever fields are named. slip1 is horizontal, slip2 '// &
-                   'up or down the joint.'
+                   columns_of_joints()//' (0 open, 1 stick, 2 slip, 3 bonded). The file '// &
+                   'always has all columns, whichever fields the card '// &
+                   'names. slip1 is horizontal, slip2 up or down the '// &
+                   'joint.'
     spec%example = '*JOINT PRINT, JOINT=J1, NSET=CREST'
     allocate (spec%parameters, source=[ &
               field('JOINT', kind_word, 'name of the joint', is_required=.true.), &
@@ -145,7 +149,7 @@ contains
     call add_request(this, of_joints, new, model)
   end subroutine read_joint_print
 
-  !> The first request of a kind in a step takes the place of those kept from before.
+  !> Adds a request. The first request of a kind in a step replaces those of earlier steps.
   subroutine add_request(this, kind, new, model)
     type(card), intent(in) :: this
     integer, intent(in) :: kind !< of_nodes, of_elements, of_joints

@@ -25,15 +25,15 @@ contains
     spec%family = 'step'
     spec%place = 'model'
     spec%meaning = 'Opens a step. Loads, supports and requests for output stay from step to '// &
-                   'step until changed; envelopes are kept for the steps that ask for them. '// &
-                   'Lines of text may follow.'
+                   'step until changed; envelopes are recorded in the steps that request '// &
+                   'them. Lines of text may follow.'
     spec%example = '*STEP, NAME=GRAVITY'//nl//'*STATIC'//nl//'..'//nl//'*END STEP'
     spec%checks_own_data = .true.
     allocate (spec%parameters, source=[ &
               field('NAME', kind_word, 'name of the step', default='STEP-<number>'), &
               field('INC', kind_integer, 'largest number of increments', default='100000'), &
-              field('NLGEOM', kind_choice, 'small strains and rotations: finite ones are not '// &
-                    'analysed', choices='NO')])
+              field('NLGEOM', kind_choice, 'geometric nonlinearity: strains and rotations are small', &
+                    choices='NO')])
     spec%parameters(2)%lowest = 1
   end subroutine describe_step
 
@@ -48,7 +48,7 @@ contains
     end if
     call open_step(model)
     if (model%active_loads%holds('BASE MOTION')) then
-      call this%warn(faults, 'the base motion of an earlier step goes on at its last value')
+      call this%warn(faults, 'the base motion of an earlier step continues at its last value')
     end if
     if (this%has('NAME')) model%now%name = this%word('NAME')
     model%now%max_increments = this%integer('INC')
@@ -69,7 +69,7 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     if (model%now%procedure%name == '') then
-      call this%fault(faults, 'the step does nothing', list_procedures()//' in it')
+      call this%fault(faults, 'the step has no procedure', list_procedures()//' in the step')
     end if
     call check_base_motion(model, faults)
     call check_joint_forces(model, faults)
@@ -90,7 +90,7 @@ contains
     end do
   end subroutine check_base_motion
 
-  !> *CONTROLS may stand before the procedure; here the scheme is known.
+  !> Warns at the end of the step: *CONTROLS may precede the procedure that names the scheme.
   subroutine check_joint_forces(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
@@ -108,8 +108,8 @@ contains
     spec%name = 'STATIC'
     spec%family = 'step'
     spec%place = 'step'
-    spec%meaning = 'Static analysis; loads ramp over the step. The increment shrinks where the '// &
-                   'iteration does not converge and grows where that is easy.'
+    spec%meaning = 'Static analysis; loads ramp over the step. The increment is reduced where '// &
+                   'the iteration does not converge, and grows after quick convergence.'
     spec%example = '*STATIC'//nl//'0.1, 1.'
     spec%most_lines = 1
     allocate (spec%parameters, source=[ &
@@ -117,7 +117,7 @@ contains
     allocate (spec%columns, source=[ &
               field('first increment', kind_real, 'size of the first increment', 's', &
                     'the duration'), &
-              field('duration', kind_real, 'time of the step', 's', '1'), &
+              field('duration', kind_real, 'duration of the step', 's', '1'), &
               field('smallest', kind_real, 'smallest increment', 's', '1e-5 of the duration'), &
               field('largest', kind_real, 'largest increment', 's', 'the duration')])
     call want_positive(spec)
@@ -148,10 +148,11 @@ contains
     spec%name = 'DYNAMIC'
     spec%family = 'step'
     spec%place = 'step'
-    spec%meaning = 'Dynamic analysis; loads act at once. The first one starts from the last '// &
-                   'static state with the acceleration that balances it. HHT is the method of '// &
-                   'Hilber, Hughes & Taylor; with ALPHA=0 it is Newmark''s trapezoidal rule, '// &
-                   'which can feed energy into stiff joints.'
+    spec%meaning = 'Dynamic analysis; loads act with their full value from the start of the '// &
+                   'step. The first dynamic step starts from the last static state, with the '// &
+                   'acceleration that balances its forces. HHT is the method of Hilber, '// &
+                   'Hughes & Taylor; with ALPHA=0 it is Newmark''s trapezoidal rule, which '// &
+                   'can feed energy into stiff joints.'
     spec%example = '*DYNAMIC, ALPHA=-0.05'//nl//'0.01, 10.'
     spec%fewest_lines = 1
     spec%most_lines = 1
@@ -165,8 +166,8 @@ contains
                     lowest=-1.0_rk/3.0_rk, highest=0.0_rk)])
     allocate (spec%columns, source=[ &
               field('increment', kind_real, 'size of an increment', 's', is_required=.true.), &
-              field('duration', kind_real, 'time of the step', 's', is_required=.true.), &
-              field('smallest', kind_real, 'smallest increment after cuts', 's', &
+              field('duration', kind_real, 'duration of the step', 's', is_required=.true.), &
+              field('smallest', kind_real, 'smallest increment after reductions', 's', &
                     '1e-5 of the duration'), &
               field('largest', kind_real, 'largest increment', 's', 'the increment')])
     call want_positive(spec)
@@ -204,8 +205,8 @@ contains
     spec%name = 'FREQUENCY'
     spec%family = 'step'
     spec%place = 'step'
-    spec%meaning = 'Lowest frequencies and modes, with the mass of the water, closed joints '// &
-                   'and sound solids.'
+    spec%meaning = 'Lowest frequencies and modes, with the added mass of the water, closed '// &
+                   'joints and undamaged elements.'
     spec%example = '*FREQUENCY'//nl//'10'
     spec%fewest_lines = 1
     spec%most_lines = 1
@@ -242,7 +243,7 @@ contains
     model%now%is_direct = this%has('DIRECT')
   end subroutine begin_procedure
 
-  !> The data line has something in that field.
+  !> True if the data line has a value in the field.
   pure logical function is_given(this, field)
     type(card), intent(in) :: this
     integer, intent(in) :: field
@@ -274,7 +275,7 @@ contains
     end associate
   end subroutine read_limits
 
-  !> Increments that cannot grow have to fit into INC.
+  !> Warns if increments that cannot grow do not fit into INC.
   subroutine compare_with_inc(this, model, faults)
     type(card), intent(in) :: this
     type(draft), intent(in) :: model
@@ -282,7 +283,8 @@ contains
     real(rk) :: num_needed
     num_needed = model%now%duration/model%now%first_increment
     if (num_needed <= (1.0_rk + 1.0e-9_rk)*model%now%max_increments) return
-    call this%warn(faults, 'the step needs '//as_text(num_needed)//' increments, *STEP, INC='// &
-                   as_text(model%now%max_increments)//' ends it before')
+    call this%warn(faults, 'the step needs '//as_text(num_needed)//' increments, but *STEP, '// &
+                   'INC='// &
+                   as_text(model%now%max_increments)//' ends the step earlier')
   end subroutine compare_with_inc
 end module keywords_step

@@ -1,4 +1,4 @@
-!> What every material can do: stress from strain, for a block of points in one call.
+!> The contract of material laws: stress from strain, for a block of points in one call.
 module material_law
   use kinds, only: rk
   use material_points, only: point_set, point_state, time_increment, update_report, num_energies
@@ -9,9 +9,9 @@ module material_law
   !> Stress from strain. Voigt order 11 22 33 12 13 23, engineering shear, tension positive.
   type, abstract :: stress_law
     integer :: num_state = 0 !< internal variables per point
-    logical :: is_nonlinear = .false. !< else stress = D strain always and the points keep nothing
-    logical :: has_switch = .false. !< its stress jumps; see time_increment%holds_switches
-    logical :: is_serial = .false. !< one call at a time (user subroutines with memory of their own)
+    logical :: is_nonlinear = .false. !< false: stress = D strain, without history
+    logical :: has_switch = .false. !< discontinuous stress: time_increment%holds_switches
+    logical :: is_serial = .false. !< one call at a time (user subroutines with saved data)
     logical :: wants_gradient = .false. !< of the displacement, besides the strain
   contains
     procedure(elastic_stiffness), deferred :: elastic_stiffness
@@ -30,7 +30,7 @@ module material_law
     end subroutine elastic_stiffness
 
     !> Stress and history at the end of an increment, for a block of points. The history starts from
-    !> the converged one, whatever `new` held before.
+    !> the converged one; earlier values of `new` do not count.
     subroutine update(self, points, time, old, new, tangent, report)
       import :: stress_law, rk, point_set, point_state, time_increment, update_report
       implicit none
@@ -38,7 +38,7 @@ module material_law
       type(point_set), intent(in) :: points
       type(time_increment), intent(in) :: time
       type(point_state), intent(in) :: old !< converged
-      type(point_state), intent(inout) :: new !< allocated; comes with strain (and gradient)
+      type(point_state), intent(inout) :: new !< allocated; strain (and gradient) are set
       real(rk), intent(inout) :: tangent(:, :, :) !< (6, 6, points) [Pa], or (6, 6, 0)
       type(update_report), intent(out) :: report
     end subroutine update
@@ -52,7 +52,7 @@ module material_law
     real(rk) :: poisson = 0.0_rk
     real(rk) :: alpha = 0.0_rk, beta = 0.0_rk !< Rayleigh damping [1/s], [s]
     class(stress_law), allocatable :: law
-    character(:), allocatable :: remark !< what else the summary of the model tells, or none
+    character(:), allocatable :: remark !< further text in the summary of the model, if any
   end type material
 
 contains
@@ -71,7 +71,7 @@ contains
     call law%set_start(points, state)
   end subroutine start_points
 
-  !> A history that begins with zeros.
+  !> Default: the history starts with zeros.
   subroutine start_from_zero(self, points, state)
     class(stress_law), intent(in) :: self
     type(point_set), intent(in) :: points
@@ -85,7 +85,7 @@ contains
     class(stress_law), intent(in) :: self
     character(*), intent(in) :: name
     type(point_state), intent(in) :: state
-    real(rk), allocatable, intent(out) :: values(:, :) !< (components, points), unallocated: no such
+    real(rk), allocatable, intent(out) :: values(:, :) !< (components, points), or unallocated
     if (.not. self%is_nonlinear .and. name == 'PE') then
       allocate (values(6, size(state%strain, 2)), source=0.0_rk)
     end if

@@ -1,4 +1,4 @@
-!> Points of a material: who and where they are, what they remember, and the increment they are in.
+!> Points of a material: their place, their state and their time increment.
 module material_points
   use kinds, only: rk
   implicit none
@@ -7,13 +7,13 @@ module material_points
   public :: no_tangent, secant_tangent, consistent_tangent
   public :: stored_energy, fracture_energy, crushing_energy, num_energies
 
-  !> Which tangent an update shall give.
+  !> The tangents that an update can return.
   integer, parameter :: no_tangent = 0
   integer, parameter :: secant_tangent = 1 !< symmetric, positive definite
   integer, parameter :: consistent_tangent = 2 !< derivative of the stress, may be unsymmetric
 
   !> Rows of `point_state%energy`.
-  integer, parameter :: stored_energy = 1 !< what unloading would give back
+  integer, parameter :: stored_energy = 1 !< recovered by unloading
   integer, parameter :: fracture_energy = 2 !< dissipated so far, by cracking or by metal plasticity
   integer, parameter :: crushing_energy = 3 !< dissipated so far, in compression
   integer, parameter :: num_energies = 3
@@ -24,14 +24,14 @@ module material_points
     integer, allocatable :: element(:) !< (points) the user's number of the element
     integer, allocatable :: number(:) !< (points) of the integration point in its element, 1..8
     real(rk), allocatable :: x(:, :) !< (3, points) place [m]
-    !> (3, 3, points) columns are the element's edges as the point sees them, 2 dx/dxi_i [m]. Their
-    !> lengths along the normal of a crack make the width of the band it opens in.
+    !> (3, 3, points) columns are the edge vectors of the element at the point, 2 dx/dxi_i [m].
+    !> Their projections on the normal of a crack give the width of the crack band.
     real(rk), allocatable :: edges(:, :, :)
     real(rk), allocatable :: length(:) !< (points) cube root of the element's volume [m]
   end type point_set
 
-  !> What the points of a block are in, converged or on trial. A new component gets a line in save
-  !> and load of point_archive.
+  !> The state of the points of a block, converged or trial. A new component gets a line in save and
+  !> load of point_archive.
   type :: point_state
     real(rk), allocatable :: strain(:, :) !< (6, points) 11 22 33 12 13 23, engineering shear
     real(rk), allocatable :: stress(:, :) !< (6, points) [Pa]
@@ -39,18 +39,19 @@ module material_points
     real(rk), allocatable :: energy(:, :) !< (num_energies, points) [J/m3]
     !> (3, 3, points) du_i/dx_j; size 0 unless law%wants_gradient.
     real(rk), allocatable :: gradient(:, :, :)
-    !> (points) the stress is the undamaged stiffness times the strain, the tangent that stiffness.
+    !> (points) the stress is D strain and the tangent is D, the undamaged stiffness.
     logical, allocatable :: is_elastic(:)
   end type point_state
 
-  !> The increment of time that an update goes through.
+  !> The time increment of an update.
   type :: time_increment
     integer :: step = 1
     integer :: increment = 1 !< within the step
     real(rk) :: step_time = 0.0_rk, total_time = 0.0_rk !< at its start [s]
     real(rk) :: size = 1.0_rk !< [s]
-    integer :: tangent = consistent_tangent !< wanted
-    !> A switch that makes the stress jump stays as it was at the start of the increment.
+    integer :: tangent = consistent_tangent !< to return
+    !> True: switches that make the stress discontinuous keep their value from the start of the
+    !> increment.
     logical :: holds_switches = .false.
   end type time_increment
 
@@ -58,6 +59,6 @@ module material_points
   type :: update_report
     integer :: failed_point = 0 !< position in the block, 0 for none: the increment must be cut
     character(:), allocatable :: message !< why
-    real(rk) :: size_ratio = 1.0_rk !< below 1: the size the law asks for, over the present one
+    real(rk) :: size_ratio = 1.0_rk !< below 1: size that the law requests, over the present size
   end type update_report
 end module material_points

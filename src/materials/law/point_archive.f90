@@ -1,5 +1,5 @@
-!> How the points of a material save and load themselves. Every component of `point_state` has a
-!> line in each of the two procedures; tests/tools/test_archives.py compares them with the type.
+!> Saves and loads the points of a material. Every component of `point_state` has a line in each of
+!> the two procedures; tests/tools/test_archives.py compares them with the type.
 module point_archive
   use archive_type, only: archive
   use material_points, only: point_state
@@ -21,8 +21,8 @@ contains
     call file%put('is_elastic', points%is_elastic)
   end subroutine save_points
 
-  !> Reads the points of one block from the present group. The points arrive as the law starts them,
-  !> which fixes the sizes.
+  !> Reads the points of one block from the present group. The points must be in their initial
+  !> state, which fixes the sizes.
   subroutine load_points(points, file)
     type(point_state), intent(inout) :: points
     class(archive), intent(inout) :: file

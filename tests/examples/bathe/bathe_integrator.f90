@@ -10,7 +10,8 @@
 !>   (c^2 M + c C + K) x + B^T (area t) = f - M a^ - C v^ - K u0 + s
 !>
 !> with the forces of joints t, of inelastic solids s and of loads f at the end of the part. The
-!> scheme is of second order, has no parameter, and removes at once what dt cannot resolve.
+!> scheme is of second order, has no parameter, and damps motion that dt does not resolve within one
+!> increment.
 module bathe_integrator
   use kinds, only: rk
   use errors, only: error_type
@@ -66,7 +67,7 @@ contains
     allocate (self%middle, source=now)
   end subroutine open_step
 
-  !> Factors the effective matrix when the size of the increment is a new one.
+  !> Factors the effective matrix when the size of the increment has changed.
   subroutine start_increment(self, model, plan, dt, results, error)
     class(bathe_method), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -166,8 +167,8 @@ contains
     after%a = c1*before%v + c2*middle%v + c*after%v
   end subroutine predict_euler
 
-  !> Goes from `before` to `after`, which comes with the prediction. The water is where the joints
-  !> were open at the start. Without convergence `after` is of no use.
+  !> Goes from `before` to `after`, which contains the prediction. Water is where the joints were
+  !> open at the start. Without convergence `after` is invalid.
   subroutine solve_part(self, model, when, before, after, results, outcome, error)
     class(bathe_method), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -272,7 +273,7 @@ contains
     excess = work(e_v, middle%momentum, after%momentum) - work(e_u, middle%inertia, after%inertia)
   end function euler_excess
 
-  !> Integral of a rate over the second part as the formulas of the scheme have it, less that of the
+  !> Integral of a rate over the second part by the formulas of the scheme, less that of the
   !> trapezoidal rule.
   elemental real(rk) function beyond_trapezoidal(dt, rate0, rate1, rate2) result(rest)
     real(rk), intent(in) :: dt !< [s]

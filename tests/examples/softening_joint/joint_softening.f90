@@ -61,12 +61,13 @@ contains
     self%strength = this%real('TENSILE STRENGTH')
     self%fracture_energy = this%real('FRACTURE ENERGY')
     if (2.0_rk*self%fracture_energy*self%normal_stiffness <= self%strength**2) then
-      call this%fault_parameter(faults, 'FRACTURE ENERGY', 'the joint stores more than that '// &
-                                'before it softens', 'more than TENSILE STRENGTH**2/(2 KN)')
+      call this%fault_parameter(faults, 'FRACTURE ENERGY', 'the joint stores more energy than '// &
+                                'this before it softens', &
+                                'more than TENSILE STRENGTH**2/(2 KN)')
     end if
   end subroutine read_card
 
-  !> Intact where the faces touch, without strength where they do not.
+  !> Intact where the faces touch, broken where they have a clearance.
   pure subroutine start_state(self, clearance, state)
     class(softening_law), intent(in) :: self
     real(rk), intent(in) :: clearance(:)
@@ -166,7 +167,8 @@ contains
     if (w > v_0 .and. w < v_f) secant_slope = -v_0*v_f/((v_f - v_0)*w**2)
   end function secant_slope
 
-  !> Work of fracture of pure opening [J/m2]: area below the curve less what unloading gives back.
+  !> Work of fracture of pure opening [J/m2]: area below the curve less the energy recovered by
+  !> unloading.
   pure real(rk) function dissipated(self, w)
     class(softening_law), intent(in) :: self
     real(rk), intent(in) :: w !< largest opening [m]

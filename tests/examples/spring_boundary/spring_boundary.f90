@@ -149,7 +149,8 @@ contains
     call scatter_blocks(numbers, blocks, matrix, values)
   end subroutine add_matrix
 
-  !> Springs in all directions hold a body; the others leave the question to the factorisation.
+  !> Springs in all directions support a model. With other springs the factorisation finds missing
+  !> supports.
   subroutine add_supports(self, node, direction)
     class(ground_springs), intent(in) :: self
     integer, allocatable, intent(inout) :: node(:), direction(:)
