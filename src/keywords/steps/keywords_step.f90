@@ -32,8 +32,8 @@ contains
     allocate (spec%parameters, source=[ &
               field('NAME', kind_word, 'name of the step', default='STEP-<number>'), &
               field('INC', kind_integer, 'largest number of increments', default='100000'), &
-              field('NLGEOM', kind_choice, 'geometric nonlinearity: strains and rotations are small', &
-                    choices='NO')])
+              field('NLGEOM', kind_choice, 'geometric nonlinearity: strains and '// &
+                    'rotations are small', choices='NO')])
     spec%parameters(2)%lowest = 1
   end subroutine describe_step
 
