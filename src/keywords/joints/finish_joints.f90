@@ -242,7 +242,7 @@ contains
                        'derive KN and KT from', 'KN and KT in the *JOINT LAW')
       return
     else if (any(materials /= materials(1))) then
-      call place%warn(faults, "the slave side has several materials; KN and KT "// &
+      call place%warn(faults, 'the slave side has several materials; KN and KT '// &
                       "are derived from '"// &
                       model%problem%materials(materials(1))%name//"'")
     end if
