@@ -1,4 +1,4 @@
-!> Checks the length of concrete elements against the longest crack band (theory.md, 11.12).
+!> Checks the length of concrete elements against the longest crack band (theory.md, (11.12)).
 module concrete_widths
   use concrete_request, only: concrete_cards
   use damage_checks, only: find_longest_band, stiffening_table, table_fault
