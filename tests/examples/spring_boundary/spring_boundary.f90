@@ -154,12 +154,13 @@ contains
   subroutine add_supports(self, node, direction)
     class(ground_springs), intent(in) :: self
     integer, allocatable, intent(inout) :: node(:), direction(:)
-    integer :: a
+    integer, allocatable :: own(:)
+    integer :: a, i
     if (minval(self%stiffness) <= 0.0_rk) return
-    do a = 1, size(self%area, 2)
-      if (norm2(self%area(:, a)) <= 0.0_rk) cycle
-      node = [node, a, a, a]
-      direction = [direction, 1, 2, 3]
+    own = pack([(a, a=1, size(self%area, 2))], norm2(self%area, 1) > 0.0_rk)
+    do i = 1, 3
+      node = [node, own]
+      direction = [direction, spread(i, 1, size(own))]
     end do
   end subroutine add_supports
 
