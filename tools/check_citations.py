@@ -3,7 +3,8 @@
 Pages are cited by name, with a section or, in brackets, an equation: `theory.md, 8` and
 `theory.md, (8.1)`. The numbered notes on the paper are `paper_notes.md, 8`. `Eq. 9` and
 `Eqs. 14-25` are equations of the paper. Links in Markdown lead to files and headings that exist.
-Only comments and docstrings of sources and decks are read: other texts are not citations.
+Comments and docstrings of sources and decks are read, and texts of the program in Fortran (help,
+messages), where pages and bare notes count as citations. Other texts are not citations.
 
 usage: check_citations.py [ROOT]
 """
@@ -32,8 +33,9 @@ PAGE = re.compile(r"(?<![\w{*<])([\w./-]*\w\.md)\b(?!\()")
 MORE = rf"(?:,| and)\s{ITEM}(?![\w.]*\s?[%a-zA-Z])"
 CITED = re.compile(rf"\b([\w-]+\.md)\)?,\s({ITEM}(?:{MORE})*)")
 EQUATION = re.compile(r"\bEqs?\.\s(\d+)(?:(?:-|\sand\s)(\d+))?")
+BARE_NOTE = (re.compile(r"\bNOTES\s\d"), "paper_notes.md, 8")
 OLD = (
-    (re.compile(r"\bNOTES\s\d"), "paper_notes.md, 8"),
+    BARE_NOTE,
     (re.compile(r"\bEqs?\s\d"), "Eq. 9 or Eqs. 14-25"),
     (re.compile(r"\btheory,?\s\(?\d+(?:\.\d+[a-z]?)?\b(?![-e])"), "theory.md, 8 or (8.1)"),
     (re.compile(r"\.md,?\ssections?\s\d"), "theory.md, 8"),
@@ -115,17 +117,33 @@ def comments_of_python(text: str) -> list[str]:
     return lines
 
 
-def comment_of(line: str) -> str:
-    """The comment of a line of Fortran."""
-    quote = ""
+def split_fortran(line: str) -> tuple[str, str]:
+    """The texts in quotes and the comment of a line of Fortran."""
+    quote, texts = "", ""
     for place, letter in enumerate(line):
         if quote:
             quote = "" if letter == quote else quote
+            texts += letter if quote else ""
         elif letter in "'\"":
             quote = letter
         elif letter == "!":
-            return line[place:]
-    return ""
+            return texts, line[place:]
+    return texts, ""
+
+
+def joined(lines: list[str]) -> tuple[str, list[int]]:
+    """Lines joined by blanks, and the start of each line."""
+    starts, place = [], 0
+    for line in lines:
+        starts.append(place)
+        place += len(line) + 1
+    return " ".join(lines), starts
+
+
+def texts_of_fortran(path: Path) -> tuple[str, list[int]]:
+    """Texts in quotes, and the start of each line."""
+    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    return joined([split_fortran(line)[0].strip() for line in lines])
 
 
 def prose(path: Path) -> tuple[str, list[int]]:
@@ -133,19 +151,14 @@ def prose(path: Path) -> tuple[str, list[int]]:
     text = path.read_text(encoding="utf-8", errors="replace")
     lines = text.splitlines()
     if path.suffix == ".f90":
-        lines = [comment_of(line) for line in lines]
+        lines = [split_fortran(line)[1] for line in lines]
     elif path.suffix == ".py":
         lines = comments_of_python(text)
     elif path.suffix == ".inp":
         lines = [line if line.startswith("**") else "" for line in lines]
     if path.suffix != ".md":
         lines = [MARKS.sub("", line) for line in lines]
-    lines = [line.strip() for line in lines]
-    starts, place = [], 0
-    for line in lines:
-        starts.append(place)
-        place += len(line) + 1
-    return " ".join(lines), starts
+    return joined([line.strip() for line in lines])
 
 
 def line_of(starts: list[int], place: int) -> int:
@@ -166,15 +179,24 @@ def check_prose(path: Path, root: Path, pages: dict[str, Page]) -> list[str]:
     text, starts = prose(path)
     place = path.relative_to(root)
     found = [*wrong_spellings(text), *lost_pages(text, path, root, pages)]
-    found += wrong_numbers(text, pages)
-    return [f"{place}:{line_of(starts, at)}: {fault}" for at, fault in found]
+    found += [*wrong_equations(text), *wrong_numbers(text, pages)]
+    faults = [f"{place}:{line_of(starts, at)}: {fault}" for at, fault in found]
+    if path.suffix == ".f90":
+        text, starts = texts_of_fortran(path)
+        found = [*wrong_spellings(text, (BARE_NOTE,)), *wrong_numbers(text, pages)]
+        faults += [f"{place}:{line_of(starts, at)}: {fault}" for at, fault in found]
+    return faults
 
 
-def wrong_spellings(text: str) -> Iterator[tuple[int, str]]:
-    """Citations in an old spelling, and equations that the paper does not have."""
-    for pattern, better in OLD:
+def wrong_spellings(text: str, patterns: tuple = OLD) -> Iterator[tuple[int, str]]:
+    """Citations in an old spelling."""
+    for pattern, better in patterns:
         for found in pattern.finditer(text):
             yield found.start(), f"'{found[0]}': citations are spelt {better}"
+
+
+def wrong_equations(text: str) -> Iterator[tuple[int, str]]:
+    """Equations that the paper does not have."""
     for found in EQUATION.finditer(text):
         if any(int(n) > EQUATIONS_OF_THE_PAPER for n in found.groups() if n):
             yield found.start(), f"'{found[0]}': the paper has no such equation"

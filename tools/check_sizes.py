@@ -1,8 +1,8 @@
-"""Checks sizes of files, folders and procedures, and leftovers, which no linter checks.
+"""Checks sizes of files, folders, procedures and lines of pages, and leftovers.
 
 usage: check_sizes.py [ROOT]
 
-For Python, ruff checks all but the length of files (pyproject.toml).
+No linter checks these. For Python, ruff checks all but the length of files (pyproject.toml).
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from fortran_source import bare, procedures, sources_under
 
 MAX_FILE = 400
 MAX_FOLDER = 15
+MAX_PAGE_LINE = 120
 MAX_PROCEDURE = 60
 MAX_KERNEL = 100
 MAX_ARGUMENTS = 8
@@ -83,6 +84,16 @@ def check_folders(root: Path) -> list[str]:
     ]
 
 
+def check_pages(root: Path) -> list[str]:
+    """Lines of the documentation that are too long, rows of tables included."""
+    return [
+        f"{path.relative_to(root)}:{number}: {len(line)} characters, at most {MAX_PAGE_LINE}"
+        for path in sorted([*root.glob("*.md"), *(root / "docs").rglob("*.md")])
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
+        if len(line) > MAX_PAGE_LINE
+    ]
+
+
 def files(root: Path) -> Iterator[Path]:
     """Sources of the program, its tests and its tools."""
     for folder in ("src", "tests", "tools"):
@@ -94,7 +105,7 @@ def files(root: Path) -> Iterator[Path]:
 
 def check(root: Path) -> list[str]:
     """Every fault found under ROOT."""
-    faults = check_folders(root)
+    faults = check_folders(root) + check_pages(root)
     for path in files(root):
         place = str(path.relative_to(root))
         text = path.read_text(encoding="utf-8")

@@ -63,6 +63,8 @@ def test_right_tree_has_no_faults(tmp_path: Path) -> None:
         ("src/law.f90", "x = 1 ! theory.md, (2.9)\n", "theory.md has no equation 2.9"),
         ("src/law.f90", "!> a\n!> paper_notes.md, 1,\n!> 3\n", "paper_notes.md has no section 3"),
         ("src/law.f90", "! NOTES 2\n", "citations are spelt paper_notes.md, 8"),
+        ("src/law.f90", "x = 'decreases (NOTES 11)'\n", "citations are spelt paper_notes.md, 8"),
+        ("src/law.f90", "x = 'see '// &\n'paper_notes.md, 3'\n", "paper_notes.md has no section 3"),
         ("src/law.f90", "! of Eq 9\n", "citations are spelt Eq. 9 or Eqs. 14-25"),
         ("src/law.f90", "! of Eqs. 24-26\n", "the paper has no such equation"),
         ("src/law.f90", "! theory, (2.1)\n", "citations are spelt theory.md, 8 or (8.1)"),

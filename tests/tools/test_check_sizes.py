@@ -103,6 +103,13 @@ def test_files_of_a_folder_are_counted(tmp_path):
     assert check_sizes.check(tmp_path) == ["src/base/text: 16 files, at most 15"]
 
 
+def test_lines_of_pages_are_measured(tmp_path):
+    row = "| " + "a" * 119 + "\n"
+    assert faults_of(tmp_path, row[1:] + row, "docs/studies/x.md") == [
+        "docs/studies/x.md:2: 121 characters, at most 120"
+    ]
+
+
 def test_python_files_are_measured(tmp_path):
     faults = faults_of(tmp_path, "a = 1\n" * 401, "tools/x.py")
     assert faults == ["tools/x.py: 401 lines, at most 400"]

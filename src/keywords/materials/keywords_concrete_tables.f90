@@ -178,7 +178,7 @@ contains
                    'the element converts openings into strains as in *CONCRETE TENSION '// &
                    'STIFFENING. Without this table cracking does not reduce the stiffness. '// &
                    'The plastic strain, cracking strain - d/(1 - d) sigma/E, must not '// &
-                   'decrease from row to row (NOTES 11).'
+                   'decrease from row to row (paper_notes.md, 11).'
     spec%example = '*CONCRETE TENSION DAMAGE, TYPE=DISPLACEMENT'//nl//'0., 0.'//nl// &
                    '0.6, 0.06e-3'//nl//'0.95, 0.28e-3'
     allocate (spec%parameters, source=[ &
