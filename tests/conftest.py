@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from documented import Documented
 from harness import ROOT, Program
 
 LIMIT_OF_LONG_TESTS = 3600  # [s]
@@ -18,6 +19,8 @@ NOT_NUMERICAL = {"test_input_decks.py"}
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--preset", default="release", help="build of the program (release)")
     parser.addoption("--threads", type=int, help="threads of each run (processors / workers)")
+    text = "write the numbers of the tests to the tables of docs/verification.md (without -n)"
+    parser.addoption("--update-tables", action="store_true", help=text)
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -68,3 +71,11 @@ def make_program(tmp_path: Path, request: pytest.FixtureRequest) -> Callable[[Pa
 def keyway(program_path: Path, make_program: Callable[[Path], Program]) -> Program:
     """Runs a deck and returns its results: keyway(deck, '--option', code=0).csv('node_TIP')."""
     return make_program(program_path)
+
+
+@pytest.fixture
+def documented(request: pytest.FixtureRequest) -> Documented:
+    """Compares numbers with a table: documented('cook', 'C3D8I', '8', 23.67)."""
+    update = request.config.getoption("--update-tables")
+    assert not (update and "PYTEST_XDIST_WORKER" in os.environ), "--update-tables needs one process"
+    return Documented(ROOT / "docs/verification.md", update)

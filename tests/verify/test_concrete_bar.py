@@ -47,13 +47,14 @@ def measure(run) -> tuple[float, float, float]:
 
 @pytest.mark.parametrize("num_rest", [1, 5, 20])
 @pytest.mark.parametrize("element", ["C3D8", "C3D8B", "C3D8I", "C3D8R"])
-def test_the_mesh_does_not_matter(keyway, num_rest, element):
+def test_the_mesh_does_not_matter(keyway, documented, num_rest, element):
     """Force against displacement within 1 % of the strength, energy G_f A within 1 %.
 
     Reference: the closed form of a linear cohesive crack in an elastic bar.
     """
     run = broken_bar(keyway, num_rest, element, poisson=0.0, flow=STRAIGHT)
     apart, work, dissipated = measure(run)
+    documented("bar", element, f"1 + {num_rest}", apart, dissipated)
     assert apart < 0.01
     assert work == pytest.approx(1.0, abs=0.01)
     assert dissipated == pytest.approx(1.0, abs=0.01)
@@ -61,11 +62,12 @@ def test_the_mesh_does_not_matter(keyway, num_rest, element):
 
 @pytest.mark.parametrize("num_rest", [1, 5, 20])
 @pytest.mark.parametrize("damage", DAMAGES)
-def test_damage_keeps_the_energy(keyway, num_rest, damage):
+def test_damage_keeps_the_energy(keyway, documented, num_rest, damage):
     """The same with damage that grows with the opening: damage affects unloading alone."""
     table = ((0.0, 0.0), (damage, LAST_OPENING))
     run = broken_bar(keyway, num_rest, poisson=0.0, flow=STRAIGHT, damage=table)
     apart, work, dissipated = measure(run)
+    documented("bar", f"C3D8, damage up to {damage}", f"1 + {num_rest}", apart, dissipated)
     assert apart < 0.01
     assert work == pytest.approx(1.0, abs=0.01)
     assert dissipated == pytest.approx(1.0, abs=0.01)

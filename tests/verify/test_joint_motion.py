@@ -162,6 +162,35 @@ def bar_on_wall(keyway, elements: int, courant: float, meshes) -> dict[str, floa
     }
 
 
+@pytest.mark.parametrize(
+    ("elements", "courant"),
+    [
+        (25, 1),
+        (25, 0.5),
+        (50, 1),
+        (50, 0.5),
+        (100, 1),
+        (100, 0.5),
+        (100, 0.25),
+        (200, 0.5),
+        (200, 0.25),
+    ],
+)
+def test_bar_on_a_wall_is_as_documented(keyway, documented, elements, courant):
+    """What the mesh leaves of the closed form; the next test has the bounds and their reasons."""
+    found = bar_on_wall(keyway, elements, float(courant), None)
+    columns = {
+        "time": "contact time",
+        "pressure": "pressure (middle half)",
+        "ripple": "ripple",
+        "impulse": "impulse / 2 m v",
+        "left": "energy left",
+        "numerical": "taken",
+    }
+    for name, column in columns.items():
+        documented("wall", (str(elements), f"{courant:g}"), column, found[name])
+
+
 @BOTH_MESHES
 def test_bar_on_a_wall(keyway, meshes):
     """Contact for 6.19677 ms at 7.74597 MPa, then all energy is the bar's again (closed form).

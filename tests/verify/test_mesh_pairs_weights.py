@@ -95,16 +95,15 @@ def inf_sup(keyway, slave_parts: int, master_parts: int, name: str) -> float:
     return float(np.linalg.eigvalsh(total / np.sqrt(np.outer(norm, norm)))[0])
 
 
-def test_stability_does_not_depend_on_refinement_of_one_side(keyway):
-    """Measured: 1.295 with 8 facets on both faces; slave refined to 16 and 32: 0.665, 0.665; master
-    refined to 16: 1.675; 14 against 6: 0.668.
+def test_stability_does_not_depend_on_refinement_of_one_side(keyway, documented):
+    """Refined slave, refined master, and meshes that do not nest.
 
     A traction that changes sign from one fine slave node to the next does work on the slave alone,
     the master being too coarse to follow: half of what two equal faces give, and no less.
     """
-    equal = inf_sup(keyway, 8, 8, "equal")
-    finer = [inf_sup(keyway, n, 8, f"slave_{n}") for n in (16, 32)]
-    assert min(finer) > 0.5 * equal
-    assert finer[1] == pytest.approx(finer[0], rel=0.01)
-    for slave, master in ((8, 16), (14, 6)):
-        assert inf_sup(keyway, slave, master, f"pair_{slave}_{master}") > 0.5 * equal
+    pairs = [(8, 8), (16, 8), (32, 8), (8, 16), (8, 32), (14, 6), (6, 14)]
+    found = {pair: inf_sup(keyway, *pair, "pair_{}_{}".format(*pair)) for pair in pairs}
+    assert min(found.values()) > 0.5 * found[8, 8]
+    assert found[32, 8] == pytest.approx(found[16, 8], rel=0.01)
+    for (slave, master), number in found.items():
+        documented("inf-sup", "", f"{slave} : {master}", number)

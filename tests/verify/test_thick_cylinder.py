@@ -49,23 +49,28 @@ def share_at_the_bore(keyway, element: str, poisson: float) -> float:
 
 @pytest.mark.parametrize("element", ["C3D8B", "C3D8I", "C3D8R"])
 @pytest.mark.parametrize("poisson", [0.49, 0.499, 0.4999])
-def test_nearly_incompressible_does_not_lock(keyway, element, poisson):
+def test_nearly_incompressible_does_not_lock(keyway, documented, element, poisson):
     """2 %: grade A of the paper. The mesh of straight sides alone leaves 1 %."""
-    assert share_at_the_bore(keyway, element, poisson) == pytest.approx(1.0, abs=0.02)
+    found = share_at_the_bore(keyway, element, poisson)
+    assert found == pytest.approx(1.0, abs=0.02)
+    documented("cylinder", str(poisson), element, found)
 
 
 @pytest.mark.parametrize(("poisson", "expected"), [(0.49, 0.846), (0.499, 0.359), (0.4999, 0.053)])
-def test_plain_bricks_lock_as_published(keyway, poisson, expected):
+def test_plain_bricks_lock_as_published(keyway, documented, poisson, expected):
     """The paper's plain quadrilateral with 2 x 2 points in plane strain (QUAD4): three digits,
     0.002 because it loads the nodes of an arc and not of its chord."""
-    assert share_at_the_bore(keyway, "C3D8", poisson) == pytest.approx(expected, abs=0.002)
+    found = share_at_the_bore(keyway, "C3D8", poisson)
+    assert found == pytest.approx(expected, abs=0.002)
+    documented("cylinder", str(poisson), "C3D8", found)
+    documented("cylinder", str(poisson), "published, plain", expected)
 
 
 @pytest.mark.parametrize(
     ("element", "poisson"),
     [("C3D8", 0.3), ("C3D8I", 0.3), ("C3D8R", 0.3), ("C3D8B", 0.3), ("C3D8B", 0.4999)],
 )
-def test_second_order_in_space(keyway, element, poisson):
+def test_second_order_in_space(keyway, documented, element, poisson):
     """Root mean square error at the nodes; 0.1: from the second to the third halving the next
     term of the error is a few percent of the first (C3D8R: a quarter, from above)."""
     counts, errors = np.array([8, 16, 32]), []
@@ -74,4 +79,7 @@ def test_second_order_in_space(keyway, element, poisson):
         r, u = radial_displacements(keyway, element, poisson, rings, count)
         exact = lame(r, poisson)
         errors.append(np.sqrt(np.mean((u - exact) ** 2) / np.mean(exact**2)))
-    assert order_of(1.0 / counts, errors) == pytest.approx(2.0, abs=0.1)
+    order = order_of(1.0 / counts, errors)
+    assert order == pytest.approx(2.0, abs=0.1)
+    what = ("displacement in space, r.m.s.", f"{element}, nu {poisson}")
+    documented("orders", what, "measured", order)
