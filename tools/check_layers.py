@@ -27,6 +27,7 @@ ROOMS = (
     "model/mesh",
     "model/constraints",
     "model/steps",
+    "guests/history",
     "materials/law",
     "materials/concrete",
     "materials/umat",

@@ -11,13 +11,14 @@ set(sources
   integrators/integrator_type.f90
   integrators/static_increment.f90
   integrators/static_integrator.f90
-  solids/inelastic_energy.f90
+  solids/guest_forces.f90
   solids/inelastic_forces.f90
   solids/inelastic_stiffness.f90
   solids/solid_iteration.f90
   solids/solid_tangent.f90
   solids/tangent_choice.f90
   state/analysis_state.f90
+  state/guest_histories.f90
   state/increment_listener.f90
   state/state_archive.f90
   state/state_transfer.f90

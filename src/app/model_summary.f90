@@ -170,11 +170,7 @@ contains
     character(:), allocatable :: text
     integer :: i
     text = ''
-    if (size(model%ties) + size(model%guests) > 0) text = nl//'Ties and interfaces'
-    do i = 1, size(model%ties)
-      text = text//nl//row(model%ties(i)%name, 'TIE, exact: '// &
-                           as_text(size(model%ties(i)%node))//' nodes follow')
-    end do
+    if (size(model%guests) > 0) text = nl//'Ties and interfaces'
     do i = 1, size(model%guests)
       text = text//nl//row(model%guests(i)%item%name, model%guests(i)%item%describe())
     end do

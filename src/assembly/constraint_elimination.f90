@@ -3,6 +3,8 @@ module constraint_elimination
   use kinds, only: rk
   use errors, only: error_type
   use dam_mesh, only: fe_mesh, node_tie
+  use guest_list, only: ties_of
+  use guest_type, only: guest_slot
   use joint_points, only: dam_joint
   use step_plan, only: step_fixity
   use node_dofs, only: dof_map, displacement_dofs
@@ -19,14 +21,15 @@ module constraint_elimination
 contains
 
   !> Numbers the unknowns of a step from its elements, its joints, its ties and its supports.
-  subroutine number_step(mesh, joints, ties, fixities, numbers, error)
+  subroutine number_step(mesh, joints, guests, fixities, numbers, error)
     type(fe_mesh), intent(in) :: mesh
     type(dam_joint), intent(in) :: joints(:)
-    type(node_tie), intent(in) :: ties(:)
+    type(guest_slot), intent(in) :: guests(:) !< with the ties
     type(step_fixity), intent(in) :: fixities(:)
     type(numbering), intent(out) :: numbers
     type(error_type), allocatable, intent(out) :: error
     logical, allocatable :: is_used(:), is_fixed(:, :)
+    type(node_tie), allocatable :: ties(:)
     type(nodal_points) :: points
     type(linear_links) :: links
     type(dof_map) :: dofs
@@ -46,6 +49,7 @@ contains
     end do
     call list_points(joints, points)
     points%is_light = nodes_of_quads(mesh)
+    call ties_of(guests, ties)
     call link_nodes(dofs, points, ties, is_used, is_fixed, links, error)
     if (allocated(error)) return
     call mark_last(joints, links%first_jump, is_used, links%is_last)

@@ -1,8 +1,9 @@
 !> Guests of a model and of a step, in the order of the loops.
 module guest_list
   use kinds, only: rk
+  use dam_mesh, only: node_tie
   use dof_numbering, only: numbering
-  use guest_type, only: guest, guest_reference
+  use guest_type, only: guest, guest_reference, guest_slot
   use matrix_pattern, only: pattern
   use problem_definition, only: problem
   use row_tables, only: row_table
@@ -11,7 +12,7 @@ module guest_list
   implicit none
   private
   public :: guests_of_model, guests_of_step, list_guest_cells, add_guest_matrices, any_has_matrix
-  public :: supports_of_step
+  public :: supports_of_step, ties_of, bonds_of_model
 
 contains
 
@@ -57,6 +58,30 @@ contains
       call guests(i)%item%add_cells(cells)
     end do
   end subroutine list_guest_cells
+
+  !> Groups of nodes that guests connect with each other; joints included.
+  subroutine bonds_of_model(model, groups)
+    type(problem), intent(in), target :: model
+    type(row_table), intent(out) :: groups
+    type(guest_reference), allocatable :: guests(:)
+    integer :: i
+    call guests_of_model(model, guests)
+    do i = 1, size(guests)
+      call guests(i)%item%add_bonds(groups)
+    end do
+    call groups%finish()
+  end subroutine bonds_of_model
+
+  !> Relations between displacements that guests impose.
+  subroutine ties_of(guests, ties)
+    type(guest_slot), intent(in) :: guests(:)
+    type(node_tie), allocatable, intent(out) :: ties(:)
+    integer :: i
+    allocate (ties(0))
+    do i = 1, size(guests)
+      call guests(i)%item%add_ties(ties)
+    end do
+  end subroutine ties_of
 
   !> Whether any guest adds to a matrix.
   pure logical function any_has_matrix(guests, kind)

@@ -7,8 +7,11 @@ module inelastic_blocks
   use element_catalogue, only: is_solid, make_solid
   use element_formulation, only: solid_element
   use gauss_rules, only: hex_point
+  use guest_history, only: history, stored_work
+  use guest_type, only: guest
   use material_law, only: material
-  use material_points, only: point_set
+  use material_points, only: point_set, point_state, stored_energy, fracture_energy, &
+                             crushing_energy
   use shape_hex8, only: edges_at, hex8_dofs, shape_at
   implicit none
   private
@@ -16,14 +19,16 @@ module inelastic_blocks
 
   integer, parameter :: largest_block = 16 !< elements; their points fit the cache of a core
 
-  type :: inelastic_block
+  type, extends(guest) :: inelastic_block
     integer :: material = 0 !< position in the problem's list
-    character(8) :: kind = '' !< of the elements: 'C3D8', ...
     integer, allocatable :: elements(:) !< positions in the mesh
     integer :: points_of_element = 0
     real(rk), allocatable :: b(:, :, :, :) !< (6, 24, points, elements) strain operators [1/m]
     real(rk), allocatable :: weight(:, :) !< (points, elements) volumes of the points [m3]
+    real(rk) :: d(6, 6) = 0.0_rk !< elastic stiffness of the law [Pa]
     type(point_set) :: points !< point q of element e is (e - 1)*points_of_element + q
+  contains
+    procedure :: add_work
   end type inelastic_block
 
 contains
@@ -68,20 +73,21 @@ contains
     integer, intent(in) :: elements(:)
     type(inelastic_block), intent(out) :: part
     class(solid_element), allocatable :: formulation
-    real(rk) :: x(3, 8, size(elements)), d(6, 6)
+    real(rk) :: x(3, 8, size(elements))
     integer :: status(size(elements)), e
     part%material = mesh%material_of_element(elements(1))
-    part%kind = mesh%element_type(elements(1))
+    part%name = materials(part%material)%name
+    part%kind = 'inelastic'
     part%elements = elements
-    call make_solid(part%kind, formulation)
+    call make_solid(mesh%element_type(elements(1)), formulation)
     part%points_of_element = formulation%num_points
     do e = 1, size(elements)
       x(:, :, e) = mesh%x(:, mesh%nodes(:, elements(e)))
     end do
     allocate (part%b(6, hex8_dofs, part%points_of_element, size(elements)), &
               part%weight(part%points_of_element, size(elements)))
-    call materials(part%material)%law%elastic_stiffness(d)
-    call formulation%strain_operator(x, d, part%b, part%weight, status)
+    call materials(part%material)%law%elastic_stiffness(part%d)
+    call formulation%strain_operator(x, part%d, part%b, part%weight, status)
     call place_points(mesh%element_id(elements), x, part)
   end subroutine build_block
 
@@ -111,4 +117,29 @@ contains
       end do
     end associate
   end subroutine place_points
+  !> Energies of the points that have yielded or cracked; all others contribute nothing.
+  subroutine add_work(self, own, total)
+    class(inelastic_block), intent(in) :: self
+    class(history), intent(in) :: own
+    type(stored_work), intent(inout) :: total
+    integer :: e, q, p
+    select type (own)
+    class is (point_state)
+      if (all(own%is_elastic)) return
+      do e = 1, size(self%elements)
+        do q = 1, self%points_of_element
+          p = (e - 1)*self%points_of_element + q
+          if (own%is_elastic(p)) cycle
+          associate (strain => own%strain(:, p), energy => own%energy(:, p), &
+                     volume => self%weight(q, e))
+            total%stored = total%stored + volume*(energy(stored_energy) - 0.5_rk &
+                                                  *dot_product(strain, matmul(self%d, strain)))
+            total%fracture = total%fracture &
+                             + volume*(energy(fracture_energy) + energy(crushing_energy))
+            total%crushing = total%crushing + volume*energy(crushing_energy)
+          end associate
+        end do
+      end do
+    end select
+  end subroutine add_work
 end module inelastic_blocks

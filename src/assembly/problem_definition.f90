@@ -1,6 +1,6 @@
 !> The problem: filled by the keywords, read by the solvers. Effects are guests in its lists.
 module problem_definition
-  use dam_mesh, only: fe_mesh, named_set, node_tie, surface
+  use dam_mesh, only: fe_mesh, named_set, surface
   use amplitudes, only: amplitude
   use step_plan, only: step, initial_value
   use material_law, only: material
@@ -27,7 +27,6 @@ module problem_definition
     type(material_test), allocatable :: tests(:) !< of materials at one point
     logical :: has_lumped_mass = .false.
     type(dam_joint), allocatable :: joints(:)
-    type(node_tie), allocatable :: ties(:) !< without springs
     type(guest_slot), allocatable :: guests(:) !< of every step, without joints
     type(named_cover), allocatable :: covers(:) !< cover of faces of different meshes
     type(inelastic_block), allocatable :: inelastic(:) !< solids whose law is not linear

@@ -51,23 +51,14 @@ contains
     end do
   end subroutine unite_elements
 
-  !> Unites the nodes of ties and couplings.
+  !> Unites the nodes that guests other than joints connect.
   subroutine unite_bonds(model, parent)
     type(problem), intent(in) :: model
     integer, intent(inout) :: parent(:)
     type(row_table) :: cells
-    integer :: i, p, k
-    do i = 1, size(model%ties)
-      associate (tie => model%ties(i))
-        do p = 1, size(tie%node)
-          do k = tie%first(p), tie%first(p + 1) - 1
-            call unite_nodes(tie%node(p), tie%master(k))
-          end do
-        end do
-      end associate
-    end do
+    integer :: i, k
     do i = 1, size(model%guests)
-      call model%guests(i)%item%add_cells(cells)
+      call model%guests(i)%item%add_bonds(cells)
     end do
     call cells%finish()
     do i = 1, cells%num_rows()

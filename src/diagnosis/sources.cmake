@@ -1,6 +1,5 @@
 set(sources
   block_motion.f90
-  bonded_nodes.f90
   free_blocks.f90
   joint_capacity.f90
   rigid_blocks.f90

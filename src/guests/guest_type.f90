@@ -1,18 +1,23 @@
 !> The contract of guests: the effects that a deck brings into a model, such as a reservoir, springs
-!> between meshes, a joint or a load.
+!> between meshes, a tie, a joint or a load.
 !>
 !> The defaults do nothing, so that a guest overrides only what it has. A step calls every guest
 !> that takes part in it, in the order of guest_list; no other code checks whether a guest is
 !> present. Arrays that no guest needs are not allocated.
+!>
+!> A guest whose force is not a constant matrix times the displacements has a history
+!> (guest_history). Its constant stiffness K_g is in the matrix of the step; `update` gives the
+!> remainder K_g u - f, and the iteration on inelastic solids includes it.
 module guest_type
   use kinds, only: rk
-  use dam_mesh, only: fe_mesh
+  use dam_mesh, only: fe_mesh, node_tie
   use dof_numbering, only: numbering
+  use guest_history, only: history, stored_work
   use matrix_pattern, only: pattern
   use row_tables, only: row_table
   implicit none
   private
-  public :: guest, guest_slot, guest_reference
+  public :: guest, guest_slot, guest_reference, offered_field
   public :: stiffness_matrix, damping_matrix, mass_matrix
 
   !> The constant matrices of a step.
@@ -20,17 +25,33 @@ module guest_type
   integer, parameter :: damping_matrix = 2 !< C [N s/m]
   integer, parameter :: mass_matrix = 3 !< M [kg]
 
+  !> A field on nodes that a guest offers.
+  type :: offered_field
+    character(:), allocatable :: name !< upper case
+    character(:), allocatable :: meaning !< a noun phrase
+    character(:), allocatable :: unit
+    integer :: num_components = 1 !< 1 or 3
+  end type offered_field
+
   type, abstract :: guest
     character(:), allocatable :: name !< for the log, the ledger and the list of effects
     character(:), allocatable :: kind !< 'gravity', 'reservoir', 'coupling', ..
   contains
     procedure :: add_cells
+    procedure :: add_bonds
+    procedure :: add_ties
     procedure :: has_matrix
     procedure :: add_matrix
     procedure :: has_force
     procedure :: add_force
     procedure :: add_base_acceleration
     procedure :: add_supports
+    procedure :: start_history
+    procedure :: update
+    procedure :: add_work
+    procedure :: num_fields
+    procedure :: describe_field
+    procedure :: add_field
     procedure :: describe
   end type guest
 
@@ -51,6 +72,21 @@ contains
     class(guest), intent(in) :: self
     type(row_table), intent(inout) :: cells !< positions of nodes in the mesh
   end subroutine add_cells
+
+  !> Appends groups of nodes that the guest connects with each other, for the search for blocks that
+  !> are free to move. Default: the cells.
+  subroutine add_bonds(self, groups)
+    class(guest), intent(in) :: self
+    type(row_table), intent(inout) :: groups !< positions of nodes in the mesh
+    call self%add_cells(groups)
+  end subroutine add_bonds
+
+  !> Appends the relations between displacements that the guest imposes. The numbering eliminates
+  !> them from the unknowns.
+  subroutine add_ties(self, ties)
+    class(guest), intent(in) :: self
+    type(node_tie), allocatable, intent(inout) :: ties(:)
+  end subroutine add_ties
 
   !> Whether the guest adds to a matrix of the step.
   pure logical function has_matrix(self, kind)
@@ -96,6 +132,53 @@ contains
     integer, allocatable, intent(inout) :: node(:) !< positions in the mesh
     integer, allocatable, intent(inout) :: direction(:) !< 1..3, one for each node of the list
   end subroutine add_supports
+
+  !> The history at the start of the analysis; unallocated where the guest has none.
+  subroutine start_history(self, mesh, own)
+    class(guest), intent(in) :: self
+    type(fe_mesh), intent(in) :: mesh
+    class(history), allocatable, intent(out) :: own
+  end subroutine start_history
+
+  !> Finds the history at a trial displacement from the converged one, and adds the initial-stress
+  !> force K_g u - f.
+  subroutine update(self, mesh, u, dt, old, new, excess)
+    class(guest), intent(in) :: self
+    type(fe_mesh), intent(in) :: mesh
+    real(rk), intent(in) :: u(:, :) !< (3, nodes) trial [m]
+    real(rk), intent(in) :: dt !< size of the increment [s]
+    class(history), intent(in) :: old !< converged
+    class(history), intent(inout) :: new
+    real(rk), intent(inout) :: excess(:, :) !< (3, nodes) [N]
+  end subroutine update
+
+  !> Adds the energies of a history. Stored energy counts beyond 1/2 u K_g u.
+  subroutine add_work(self, own, total)
+    class(guest), intent(in) :: self
+    class(history), intent(in) :: own
+    type(stored_work), intent(inout) :: total
+  end subroutine add_work
+
+  !> Number of fields on nodes that the guest offers. They are written with every output of fields.
+  pure integer function num_fields(self)
+    class(guest), intent(in) :: self
+    num_fields = 0
+  end function num_fields
+
+  !> Name, meaning and unit of a field.
+  subroutine describe_field(self, number, field)
+    class(guest), intent(in) :: self
+    integer, intent(in) :: number !< 1..num_fields
+    type(offered_field), intent(out) :: field
+  end subroutine describe_field
+
+  !> Adds the values of a field on the nodes of the guest.
+  subroutine add_field(self, number, own, values)
+    class(guest), intent(in) :: self
+    integer, intent(in) :: number !< 1..num_fields
+    class(history), intent(in) :: own
+    real(rk), intent(inout) :: values(:, :) !< (components, nodes)
+  end subroutine add_field
 
   !> The description of the guest for the summary of the model.
   function describe(self) result(text)

@@ -1,4 +1,5 @@
 set(sources
   guest_type.f90
+  history/guest_history.f90
   scatter_matrix.f90
 )

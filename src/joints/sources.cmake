@@ -13,7 +13,7 @@ set(sources
   iteration/newton_condensed.f90
   iteration/newton_full.f90
   law/contraction_keyword.f90
-  law/joint_archive.f90
+  law/joint_history.f90
   law/joint_catalogue.f90
   law/joint_contraction.f90
   law/joint_law.f90

@@ -74,7 +74,7 @@ contains
       problem%deck_file = path
       problem%heading = ''
       allocate (problem%surfaces(0), problem%amplitudes(0), problem%materials(0), problem%joints(0))
-      allocate (problem%ties(0), problem%guests(0), problem%covers(0))
+      allocate (problem%guests(0), problem%covers(0))
       allocate (problem%loads(0), problem%initial_values(0), problem%tests(0))
       allocate (problem%steps(count([(model%cards(i)%keyword == 'STEP', i=1, size(model%cards))])))
     end associate

@@ -4,8 +4,7 @@ module verify_model
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use element_hex8, only: hex8_gradients
-  use guest_list, only: supports_of_step
-  use bonded_nodes, only: list_groups
+  use guest_list, only: bonds_of_model, supports_of_step
   use kinds, only: rk
   use load_gravity, only: gravity_load
   use model_draft, only: draft
@@ -164,7 +163,7 @@ contains
     integer, allocatable :: body(:), example(:), node(:), direction(:)
     integer :: i, b
     integer :: num_before
-    call list_groups(model%problem, groups)
+    call bonds_of_model(model%problem, groups)
     call find_bodies(model%problem%mesh, groups, body, example)
     num_before = faults%num_errors
     do i = 1, size(model%problem%steps)

@@ -18,7 +18,6 @@ set(sources
   law/material_elastic.f90
   law/material_law.f90
   law/material_points.f90
-  law/point_archive.f90
   umat/material_user.f90
   umat/umat_bridge.c
   umat/umat_build.f90

@@ -2,6 +2,7 @@ set(sources
   fields/field_help.f90
   fields/field_table.f90
   fields/field_type.f90
+  fields/guest_fields.f90
   fields/joint_fields.f90
   fields/motion_fields.f90
   fields/solid_fields.f90

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import h5py
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -57,6 +58,38 @@ def test_bar_on_a_spring(example):
     beta = brentq(lambda b: YOUNG * b * np.tan(b * LENGTH) - 1e8, 1e-9, 1.5 / LENGTH)
     # Elements of consistent mass raise it by (beta h)^2/24 = 1e-6, h = 0.25 m.
     assert min(abs(2 * np.pi * found / (beta * WAVE) - 1)) < 3e-6
+
+
+def test_surface_slides(example):
+    """A rigid bar is pushed past the strength of its springs and returns with a slip.
+
+    Its foot of 1 m2 carries k_t u up to tau = 3e4 Pa: pushed by 1 mm it slides by
+    u - tau/k_t = 0.4 mm, which dissipates tau times the slip; pushed back to 0 the springs carry
+    -k_t times the slip.
+    """
+    k_t, strength, push = 5e7, 3e4, 1e-3
+    slip = push - strength / k_t
+    steps = "".join(
+        f"*STEP\n*STATIC\n0.125, 1.\n*BOUNDARY\nALL, 1, 1, {u}\nALL, 2, 3, 0.\n"
+        "*NODE PRINT, NSET=ALL\nRF\n*NODE FILE\nU\n*END STEP\n"
+        for u in (push, 0.0)
+    )
+    run = example("spring_boundary")(bar(f"1e8, {k_t}, 0., 0., {strength}", steps))
+    table = run.csv("node_ALL")
+    last = [np.flatnonzero(table["step"] == step)[-4 * (NUMBER + 1) :] for step in (1, 2)]
+    # Round-off of sums over 164 nodes.
+    assert sum(table["RF1"][last[0]]) == pytest.approx(strength, rel=1e-9)
+    assert sum(table["RF1"][last[1]]) == pytest.approx(-k_t * slip, rel=1e-9)
+    energy = run.json["steps"][0]["energy"]
+    assert energy["friction"] == pytest.approx(strength * slip, rel=1e-9)
+    assert energy["strain"] == pytest.approx(0.5 * strength**2 / k_t, rel=1e-9)
+    # The trapezoidal rule misses at most k_t du^2/8 in the increment du with the kink of the law.
+    assert energy["external"] == pytest.approx(strength * (push - 0.5 * strength / k_t), rel=0.02)
+    with h5py.File(run.folder / f"{run.job}.h5") as file:
+        increments = file["steps/0002/increments"]
+        last = increments[max(increments)]["GROUND_SLIP"]
+        assert np.allclose(last[:4], [slip, 0.0, 0.0], rtol=1e-9, atol=1e-15)
+        assert not np.any(last[4:])
 
 
 def test_dashpots_absorb_a_wave(example):

@@ -66,15 +66,15 @@ TYPES = (
     of_state("increment_control", "src/analysis/state/step_control.f90", "control"),
     of_state(
         "joint_state",
-        "src/joints/law/joint_law.f90",
+        "src/joints/law/joint_history.f90",
         "joint",
-        "src/joints/law/joint_archive.f90",
+        "src/joints/law/joint_history.f90",
     ),
     of_state(
         "point_state",
         "src/materials/law/material_points.f90",
         "points",
-        "src/materials/law/point_archive.f90",
+        "src/materials/law/material_points.f90",
     ),
     of_record(
         "run_record",
@@ -145,7 +145,11 @@ def body(source: str, name: str) -> str:
 def body_with_parts(source: str, name: str) -> str:
     """A procedure with those of its file that it calls for the same object."""
     own = body(source, name)
-    parts = [called for called in ("load_fields", "compare_lists") if f"call {called}(" in own]
+    parts = [
+        called
+        for called in ("load_fields", "save_histories", "load_histories", "compare_lists")
+        if f"call {called}(" in own
+    ]
     return "\n".join([own, *(body(source, called) for called in parts)])
 
 
@@ -176,8 +180,8 @@ def test_values_keep_their_names():
     """The name in the file is that of the component."""
     for path in (
         STATE_ARCHIVE,
-        "src/joints/law/joint_archive.f90",
-        "src/materials/law/point_archive.f90",
+        "src/joints/law/joint_history.f90",
+        "src/materials/law/material_points.f90",
     ):
         for name, value in re.findall(r"%(?:put|get)\('(\w+)', (\w+%\w+)", without_comments(path)):
             assert value.split("%")[1] == name, (path, name, value)

@@ -22,7 +22,7 @@ contains
     call make_material(model)
     call make_mesh(across, along, over, num_blocks, model)
     allocate (model%joints(num_blocks - 1), model%loads(0))
-    allocate (model%ties(0), model%guests(0))
+    allocate (model%guests(0))
     do b = 1, num_blocks - 1
       call make_joint(across, along, over, b, num_blocks, model, model%joints(b))
     end do

@@ -18,9 +18,11 @@ module full_state
 
 contains
 
-  !> Three nodes, four unknowns, two joints of two points, one block of five points.
+  !> Three nodes, four unknowns, two joints of two points, one block of five points, a guest without
+  !> history and one whose history is that of points.
   subroutine make_full_state(now)
     type(state), allocatable, intent(out) :: now
+    type(point_state) :: points
     integer :: n, i
     n = 0
     allocate (now)
@@ -32,11 +34,13 @@ contains
     call fill(now%reaction, n)
     call fill(now%support_start, n)
     call fill_motion(now%motion, n)
-    allocate (now%joints(2), now%points(1))
+    allocate (now%joints(2), now%points(1), now%guests(2))
     do i = 1, 2
       call fill_joint(now%joints(i), n)
     end do
     call fill_points(now%points(1), n)
+    call fill_points(points, n)
+    allocate (now%guests(2)%item, source=points)
   end subroutine make_full_state
 
   !> Where the analysis is.

@@ -51,7 +51,7 @@ contains
                                               x(i), width, height, x(i), 0.0_rk, height], [3, 4])
     end do
     allocate (model%materials(n), model%joints(0), model%loads(0), model%amplitudes(0), &
-              model%ties(0), model%guests(0), &
+              model%guests(0), &
               model%initial_values(0), model%steps(0))
     do i = 1, n
       model%mesh%nodes(:, i) = [4*i - 3, 4*i - 2, 4*i - 1, 4*i, 4*i + 1, 4*i + 2, 4*i + 3, 4*i + 4]

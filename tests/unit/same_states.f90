@@ -4,6 +4,7 @@ module same_states
   use kinds, only: rk, long
   use step_control, only: increment_control
   use analysis_state, only: state, increment_status, energy_balance, motion
+  use guest_history, only: history_slot
   use joint_law, only: joint_state
   use material_points, only: point_state
   use testing, only: test_log, check
@@ -38,7 +39,26 @@ contains
     do i = 1, size(a%points)
       call compare_points(log, what//'points%', a%points(i), b%points(i))
     end do
+    do i = 1, size(a%guests)
+      call compare_guests(log, what//'guests%', a%guests(i), b%guests(i))
+    end do
   end subroutine compare_states
+
+  !> Histories of guests: of type point_state where there are any.
+  subroutine compare_guests(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    type(history_slot), intent(in) :: a, b
+    call check(log, allocated(a%item) .eqv. allocated(b%item), what//'item')
+    if (.not. (allocated(a%item) .and. allocated(b%item))) return
+    select type (first => a%item)
+    type is (point_state)
+      select type (second => b%item)
+      type is (point_state)
+        call compare_points(log, what, first, second)
+      end select
+    end select
+  end subroutine compare_guests
 
   !> Where the analysis is.
   subroutine compare_status(log, what, a, b)

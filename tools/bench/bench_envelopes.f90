@@ -60,7 +60,7 @@ contains
     integer :: i
     deallocate (model%joints)
     allocate (model%joints(0))
-    call number_step(model%mesh, model%joints, model%ties, fixities, numbers, error)
+    call number_step(model%mesh, model%joints, model%guests, fixities, numbers, error)
     call guests_of_model(model, guests)
     call list_cells(model%mesh, guests, cells)
     call build_pattern(numbers, cells, matrix)

@@ -41,7 +41,7 @@ program bench_linear
   end do
   call make_arch(sizes(1), sizes(2), sizes(3), sizes(4), model, fixities)
   call begin()
-  call number_step(model%mesh, model%joints, model%ties, fixities, numbers, error)
+  call number_step(model%mesh, model%joints, model%guests, fixities, numbers, error)
   call note('number')
   call guests_of_model(model, guests)
   call list_cells(model%mesh, guests, cells)

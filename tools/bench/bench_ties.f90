@@ -32,7 +32,7 @@ program bench_ties
   call read_problem(trim(path), model, faults, echo)
   if (faults%has_errors()) error stop 'the deck has faults'
   call note('read')
-  call number_step(model%mesh, model%joints, model%ties, model%steps(1)%fixities, numbers, error)
+  call number_step(model%mesh, model%joints, model%guests, model%steps(1)%fixities, numbers, error)
   if (allocated(error)) error stop 'numbering'
   call note('number')
   call guests_of_model(model, guests)

@@ -8,8 +8,8 @@ module energy_account
   use kinds, only: rk
   use global_vectors, only: dot, total, work
   use problem_definition, only: problem
-  use inelastic_energy, only: solid_work, sum_solid_work
-  use joint_forces, only: joint_work, sum_joint_work
+  use guest_history, only: stored_work
+  use guest_histories, only: sum_work
   use analysis_state, only: energy_balance, motion, state
   use step_system, only: dam_system
   implicit none
@@ -117,19 +117,14 @@ contains
                  new%internal(first:) - new%elastic(first:))
   end function inelastic_work
 
-  !> Change of stored and dissipated energy of joints and inelastic solids, beyond 1/2 q K q.
+  !> Change of stored and dissipated energy of guests with a history, beyond 1/2 q K q.
   real(rk) function change_of_stores(model, before, after) result(change)
     type(problem), intent(in) :: model
     type(state), intent(in) :: before, after
-    type(joint_work) :: old_joints, new_joints
-    type(solid_work) :: old_solids, new_solids
-    call sum_joint_work(model%joints, before%joints, old_joints)
-    call sum_joint_work(model%joints, after%joints, new_joints)
-    call sum_solid_work(model, before%points, old_solids)
-    call sum_solid_work(model, after%points, new_solids)
-    change = new_joints%stored - old_joints%stored + new_joints%friction - old_joints%friction &
-             + new_joints%fracture - old_joints%fracture &
-             + (new_solids%stored - old_solids%stored + new_solids%fracture - old_solids%fracture)
+    type(stored_work) :: old, new
+    call sum_work(model, before, old)
+    call sum_work(model, after, new)
+    change = new%stored - old%stored + new%friction - old%friction + new%fracture - old%fracture
   end function change_of_stores
 
   !> Energies of the state.
@@ -137,17 +132,15 @@ contains
     type(problem), intent(in) :: model
     real(rk), intent(in) :: diagonal(:) !< (num_total) of K [N/m]
     type(state), intent(inout) :: now
-    type(joint_work) :: joints
-    type(solid_work) :: solids
-    call sum_joint_work(model%joints, now%joints, joints)
-    call sum_solid_work(model, now%points, solids)
+    type(stored_work) :: guests
+    call sum_work(model, now, guests)
     associate (own => now%motion, energy => now%energy)
       energy%kinetic = 0.0_rk
       if (allocated(own%momentum)) energy%kinetic = 0.5_rk*dot(own%v, own%momentum)
-      energy%strain = 0.5_rk*dot(own%q, own%elastic) + joints%stored + solids%stored
-      energy%friction = joints%friction
-      energy%fracture = joints%fracture + solids%fracture
-      energy%crushing = solids%crushing
+      energy%strain = 0.5_rk*dot(own%q, own%elastic) + guests%stored
+      energy%friction = guests%friction
+      energy%fracture = guests%fracture
+      energy%crushing = guests%crushing
       energy%largest = max(energy%largest, idle_share*total(diagonal*own%q**2))
       call find_error(energy)
     end associate

@@ -83,7 +83,6 @@ contains
     real(rk), intent(out) :: rhs(:)
     rhs = (1.0_rk + scheme%alpha)*(after%external - after%viscous - after%elastic) &
           - scheme%alpha*(before%external - before%viscous - before%internal)
-    if (system%operator%num_points == 0) return
     if (scheme%carries_impulse) then
       call system%operator%add_forces(-scheme%old_joint_weight*before%carried, rhs)
     else
@@ -101,7 +100,6 @@ contains
     type(force_balance), intent(inout) :: balance
     allocate (balance%offset(3, system%operator%num_points), &
               balance%guess(3, system%operator%num_points))
-    if (system%operator%num_points == 0) return
     call system%operator%jumps(q, balance%offset)
     call gather_jumps(system%operator, before%joints, balance%guess)
     balance%guess = balance%guess + scheme%dt*before%motion%jump_rate
@@ -136,7 +134,7 @@ contains
       new%balanced = bulk*(new%external - new%viscous - new%internal) &
                      - scheme%alpha*(old%external - old%viscous - old%internal)
     end associate
-    if (system%operator%num_points > 0) call add_joints(system, scheme, before, after, rhs)
+    call add_joints(system, scheme, before, after, rhs)
   end subroutine correct
 
   !> The forces of the joints in the residual and in the balance.

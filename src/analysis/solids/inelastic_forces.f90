@@ -8,7 +8,7 @@
 module inelastic_forces
   use kinds, only: rk
   use problem_definition, only: problem
-  use node_dofs, only: add_vectors, gather_vectors, zero_vectors
+  use node_dofs, only: add_vectors, gather_vectors
   use dof_numbering, only: numbering
   use inelastic_blocks, only: inelastic_block
   use element_matrices, only: strains_at_points
@@ -84,13 +84,9 @@ contains
     type(problem), intent(in) :: model
     type(point_state), intent(in) :: points(:) !< (blocks)
     type(block_answer), intent(inout) :: answers(:) !< (blocks)
-    real(rk) :: d(6, 6)
     integer :: i
     do i = 1, size(answers)
-      associate (part => model%inelastic(i))
-        call model%materials(part%material)%law%elastic_stiffness(d)
-        call sum_block(part, d, points(i), answers(i))
-      end associate
+      call sum_block(model%inelastic(i), points(i), answers(i))
     end do
   end subroutine recall_points
 
@@ -103,7 +99,7 @@ contains
     type(point_state), intent(in) :: old
     type(point_state), intent(inout) :: new
     type(block_answer), intent(inout) :: answer
-    real(rk) :: moved(hex8_dofs, size(part%elements)), d(6, 6)
+    real(rk) :: moved(hex8_dofs, size(part%elements))
     integer :: e, num_tangents
     num_tangents = merge(0, part%points%num_points, time%tangent == no_tangent)
     if (size(answer%tangent, 3) /= num_tangents) then
@@ -117,9 +113,8 @@ contains
       call find_strains(part, moved, new%strain)
       if (law%wants_gradient) call find_gradients(model%mesh%x, model%mesh%nodes, part, moved, new)
       call law%update(part%points, time, old, new, answer%tangent, answer%report)
-      call law%elastic_stiffness(d)
     end associate
-    call sum_block(part, d, new, answer)
+    call sum_block(part, new, answer)
   end subroutine update_block
 
   !> eps = B u at the points of all elements.
@@ -161,9 +156,8 @@ contains
   end function tensor_of
 
   !> sum w B^T (D eps - sigma) of each element.
-  pure subroutine sum_block(part, d, new, answer)
+  pure subroutine sum_block(part, new, answer)
     type(inelastic_block), intent(in) :: part
-    real(rk), intent(in) :: d(6, 6) !< [Pa]
     type(point_state), intent(in) :: new
     type(block_answer), intent(inout) :: answer
     real(rk) :: excess(6)
@@ -175,7 +169,7 @@ contains
         p = (e - 1)*part%points_of_element + q
         if (new%is_elastic(p)) cycle
         answer%has_excess(e) = .true.
-        excess = part%weight(q, e)*(matmul(d, new%strain(:, p)) - new%stress(:, p))
+        excess = part%weight(q, e)*(matmul(part%d, new%strain(:, p)) - new%stress(:, p))
         do i = 1, hex8_dofs
           answer%force(i, e) = answer%force(i, e) + sum(part%b(:, i, q, e)*excess)
         end do
@@ -183,15 +177,16 @@ contains
     end do
   end subroutine sum_block
 
-  !> Initial-stress force of all blocks in the unknowns of a step.
-  subroutine sum_excess(model, numbers, answers, excess)
+  !> Initial-stress force of all blocks and of other guests in the unknowns of a step.
+  subroutine sum_excess(model, numbers, answers, of_guests, excess)
     type(problem), intent(in) :: model
     type(numbering), intent(in) :: numbers
     type(block_answer), intent(in) :: answers(:)
+    real(rk), intent(in) :: of_guests(:, :) !< (3, nodes) [N]
     real(rk), intent(out) :: excess(:) !< (num_total) [N]
     real(rk), allocatable :: nodal(:, :)
     integer :: i, e
-    nodal = zero_vectors(model%mesh%num_nodes)
+    nodal = of_guests
     do i = 1, size(answers)
       do e = 1, size(answers(i)%has_excess)
         if (.not. answers(i)%has_excess(e)) cycle

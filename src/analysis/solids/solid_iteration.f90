@@ -1,4 +1,5 @@
-!> Equilibrium of an increment with inelastic solids (theory.md, 12):
+!> Equilibrium of an increment with inelastic solids, and other guests with a history (theory.md,
+!> 12):
 !>
 !>   K_eff x + joints(x) = rhs + w s(start + x)
 !>
@@ -14,8 +15,10 @@ module solid_iteration
   use analysis_state, only: state, motion
   use global_vectors, only: multiply, norm
   use material_points, only: time_increment
+  use node_dofs, only: zero_vectors
   use inelastic_forces, only: block_answer, open_answers, update_points, recall_points, &
                               sum_excess, find_failure
+  use guest_forces, only: has_histories, recall_guests, update_guests
   use joint_forces, only: gather_jumps
   use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
   use step_system, only: dam_system
@@ -45,6 +48,7 @@ module solid_iteration
     type(time_increment) :: time
     type(tangent_matrix) :: matrix
     type(block_answer), allocatable :: answers(:) !< (blocks)
+    real(rk), allocatable :: guest_excess(:, :) !< (3, nodes) of guests with a history [N]
     real(rk), allocatable :: excess(:) !< (num_total) initial-stress force of the last iterate [N]
     type(mixer) :: mixer
   contains
@@ -94,19 +98,21 @@ contains
     self%choices = choices
     self%chosen = choices(1)
     call multiply(system%matrix, system%stiffness, now%motion%q, now%motion%elastic)
-    if (size(now%points) > 0) then
+    if (size(now%points) > 0 .or. has_histories(now%guests)) then
       allocate (self%excess(system%matrix%num_total))
+      self%guest_excess = zero_vectors(model%mesh%num_nodes)
       call open_answers(model%inelastic, self%answers)
       call recall_points(model, now%points, self%answers)
-      call sum_excess(model, system%numbers, self%answers, self%excess)
+      call recall_guests(model, now%u, now%guests, self%guest_excess)
+      call sum_excess(model, system%numbers, self%answers, self%guest_excess, self%excess)
     end if
     call self%set_internal(now%motion)
   end subroutine open_solids
 
-  !> Whether any solid is inelastic.
+  !> Whether any solid is inelastic, or another guest has a history.
   pure logical function has_inelastic(self)
     class(solid_solver), intent(in) :: self
-    has_inelastic = allocated(self%answers)
+    has_inelastic = allocated(self%excess)
   end function has_inelastic
 
   !> Internal force, sum of B^T sigma, from K q and the laws evaluated at q.
@@ -232,7 +238,7 @@ contains
     associate (task => now%task)
       last_x = task%x
       task%balance%rhs = now%rhs + self%weight*now%guess
-      if (outcome%iterations > 0 .and. system%operator%num_points > 0) then
+      if (outcome%iterations > 0) then
         task%balance%starts_closed = .false.
         call gather_jumps(system%operator, after%joints, task%balance%guess)
       end if
@@ -249,7 +255,8 @@ contains
       call system%numbers%expand(task%start + task%x, u)
       call self%solver%costs%start('update', 'inelastic solids', 'inelastic')
       call update_points(model, u, self%time, before%points, after%points, self%answers)
-      call sum_excess(model, system%numbers, self%answers, self%excess)
+      call update_guests(model, u, self%time%size, before%guests, after%guests, self%guest_excess)
+      call sum_excess(model, system%numbers, self%answers, self%guest_excess, self%excess)
       call self%solver%costs%stop()
       call find_failure(model, self%answers, outcome%size_ratio, outcome%failure)
       now%is_lost = allocated(outcome%failure)

@@ -4,9 +4,10 @@
 !> the increment swaps the two; a cut leaves the converged state as it is.
 !>
 !> state_archive saves and loads the state. A new component gets a line in save and load of its
-!> type, there or in joint_archive and point_archive.
+!> type, there or with the history.
 module analysis_state
   use kinds, only: rk
+  use guest_history, only: history_slot
   use joint_law, only: joint_state
   use material_points, only: point_state
   use step_control, only: increment_control
@@ -70,6 +71,7 @@ module analysis_state
     type(motion) :: motion !< the same in the unknowns of the step, with the forces
     type(joint_state), allocatable :: joints(:) !< (joints of the problem)
     type(point_state), allocatable :: points(:) !< (inelastic blocks of the problem)
+    type(history_slot), allocatable :: guests(:) !< (guests of the problem)
   end type state
 
   type :: vibration_mode

@@ -3,9 +3,7 @@
 module state_archive
   use errors, only: error_type
   use archive_type, only: archive
-  use write_text, only: as_text
-  use joint_archive, only: save_joint, load_joint
-  use point_archive, only: save_points, load_points
+  use guest_histories, only: history_reference, list_histories
   use step_control, only: increment_control
   use analysis_state, only: state, increment_status, energy_balance, motion
   implicit none
@@ -19,7 +17,6 @@ contains
     type(state), intent(in) :: now
     class(archive), intent(inout) :: file !< open for writing
     type(error_type), allocatable, intent(out) :: error
-    integer :: i
     call file%open_group('state')
     call file%open_group('status')
     call save_status(now%increment_status, file)
@@ -32,18 +29,7 @@ contains
     call file%open_group('motion')
     call save_motion(now%motion, file)
     call file%close_group()
-    call file%put('num_joints', size(now%joints))
-    do i = 1, size(now%joints)
-      call file%open_group('joint_'//as_text(i))
-      call save_joint(now%joints(i), file)
-      call file%close_group()
-    end do
-    call file%put('num_blocks', size(now%points))
-    do i = 1, size(now%points)
-      call file%open_group('points_'//as_text(i))
-      call save_points(now%points(i), file)
-      call file%close_group()
-    end do
+    call save_histories(now, file)
     call file%close_group()
     call file%report(error)
   end subroutine save_state
@@ -54,7 +40,6 @@ contains
     type(state), intent(inout) :: now
     class(archive), intent(inout) :: file !< open for reading
     type(error_type), allocatable, intent(out) :: error
-    integer :: i
     call file%open_group('state')
     call file%open_group('status')
     call load_status(now%increment_status, file)
@@ -63,21 +48,46 @@ contains
     call file%open_group('motion')
     call load_motion(now%motion, file)
     call file%close_group()
-    call file%confirm('num_joints', size(now%joints))
-    do i = 1, size(now%joints)
-      call file%open_group('joint_'//as_text(i))
-      call load_joint(now%joints(i), file)
-      call file%close_group()
-    end do
-    call file%confirm('num_blocks', size(now%points))
-    do i = 1, size(now%points)
-      call file%open_group('points_'//as_text(i))
-      call load_points(now%points(i), file)
-      call file%close_group()
-    end do
+    call load_histories(now, file)
     call file%close_group()
     call file%report(error)
   end subroutine load_state
+
+  !> Writes the histories of joints, inelastic solids and other guests.
+  subroutine save_histories(now, file)
+    type(state), intent(in) :: now
+    class(archive), intent(inout) :: file
+    type(history_reference), allocatable :: list(:)
+    integer :: i
+    call file%put('num_joints', size(now%joints))
+    call file%put('num_blocks', size(now%points))
+    call file%put('num_guests', size(now%guests))
+    call list_histories(now, list)
+    do i = 1, size(list)
+      if (.not. associated(list(i)%own)) cycle
+      call file%open_group(list(i)%key)
+      call list(i)%own%save(file)
+      call file%close_group()
+    end do
+  end subroutine save_histories
+
+  !> Reads them; the model fixes which there are.
+  subroutine load_histories(now, file)
+    type(state), intent(inout) :: now
+    class(archive), intent(inout) :: file
+    type(history_reference), allocatable :: list(:)
+    integer :: i
+    call file%confirm('num_joints', size(now%joints))
+    call file%confirm('num_blocks', size(now%points))
+    call file%confirm('num_guests', size(now%guests))
+    call list_histories(now, list)
+    do i = 1, size(list)
+      if (.not. associated(list(i)%own)) cycle
+      call file%open_group(list(i)%key)
+      call list(i)%own%load(file)
+      call file%close_group()
+    end do
+  end subroutine load_histories
 
   !> Reads the fields at nodes. A step without inertia has no velocities and accelerations.
   subroutine load_fields(now, file)

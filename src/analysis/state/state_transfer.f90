@@ -95,7 +95,6 @@ contains
     type(state), intent(inout) :: now
     real(rk) :: traction(3, operator%num_points)
     now%motion%contact = 0.0_rk
-    if (operator%num_points == 0) return
     call gather_tractions(operator, now%joints, traction)
     call operator%add_forces(traction, now%motion%contact)
   end subroutine sum_contact

@@ -3,6 +3,11 @@ module initial_state
   use kinds, only: rk
   use node_dofs, only: zero_vectors
   use problem_definition, only: problem
+  use dam_mesh, only: node_tie
+  use guest_list, only: ties_of
+  use guest_forces, only: update_guests
+  use guest_histories, only: start_histories
+  use guest_history, only: history_slot
   use joint_points, only: dam_joint, relative_displacement
   use joint_law, only: joint_state
   use joint_forces, only: start_joints
@@ -24,6 +29,7 @@ contains
     type(problem), intent(in) :: model
     type(state), allocatable, intent(out) :: now
     type(error_type), allocatable, intent(out) :: error
+    type(node_tie), allocatable :: ties(:)
     integer :: i, n
     n = model%mesh%num_nodes
     allocate (now)
@@ -32,7 +38,8 @@ contains
     now%a = zero_vectors(n)
     now%reaction = zero_vectors(n)
     call start_joints(model%joints, now%joints)
-    call start_histories(model, now)
+    call start_points_of_solids(model, now)
+    call start_histories(model, now%guests)
     if (.not. allocated(model%initial_values)) return
     do i = 1, size(model%initial_values)
       associate (given => model%initial_values(i))
@@ -43,18 +50,20 @@ contains
         end if
       end associate
     end do
-    call follow_ties(model%ties, now%u, error)
-    if (.not. allocated(error)) call follow_ties(model%ties, now%v, error)
+    call ties_of(model%guests, ties)
+    call follow_ties(ties, now%u, error)
+    if (.not. allocated(error)) call follow_ties(ties, now%v, error)
     if (allocated(error)) return
     if (.not. any(abs(now%u) > 0.0_rk)) return
     do i = 1, size(model%joints)
       call move_joint(model%joints(i), now%u, now%joints(i))
     end do
+    call move_guests(model, now)
     call strain_points(model, now, error)
   end subroutine start_analysis
 
   !> Initial histories of the points of inelastic solids.
-  subroutine start_histories(model, now)
+  subroutine start_points_of_solids(model, now)
     type(problem), intent(in) :: model
     type(state), intent(inout) :: now
     integer :: i, num_blocks
@@ -66,7 +75,7 @@ contains
         call start_points(model%materials(part%material)%law, part%points, now%points(i))
       end associate
     end do
-  end subroutine start_histories
+  end subroutine start_points_of_solids
 
   !> Updates inelastic solids for the initial displacements.
   subroutine strain_points(model, now, error)
@@ -84,6 +93,17 @@ contains
     call find_failure(model, answers, size_ratio, why)
     if (allocated(why)) call raise(error, 'initial displacements: '//why)
   end subroutine strain_points
+
+  !> Updates the histories of guests for the initial displacements.
+  subroutine move_guests(model, now)
+    type(problem), intent(in) :: model
+    type(state), intent(inout) :: now
+    type(history_slot), allocatable :: old(:)
+    real(rk), allocatable :: excess(:, :)
+    old = now%guests
+    excess = zero_vectors(model%mesh%num_nodes)
+    call update_guests(model, now%u, 0.0_rk, old, now%guests, excess)
+  end subroutine move_guests
 
   !> Updates a joint for the initial displacements.
   subroutine move_joint(joint, u, history)

@@ -70,7 +70,7 @@ contains
     type(row_table) :: cells
     call costs%start('assemble', 'structure', 'solver')
     call guests_of_step(model, plan, guests)
-    call number_step(model%mesh, model%joints, model%ties, plan%fixities, system%numbers, error)
+    call number_step(model%mesh, model%joints, model%guests, plan%fixities, system%numbers, error)
     if (allocated(error)) return
     call list_cells(model%mesh, guests, cells)
     call build_pattern(system%numbers, cells, system%matrix)

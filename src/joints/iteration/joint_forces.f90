@@ -1,16 +1,14 @@
-!> The laws of all joints at once: tractions, tangents and energies of all points of the operator.
+!> The laws of all joints at once: tractions and tangents of all points of the operator.
 module joint_forces
   use kinds, only: rk
-  use global_vectors, only: dot
   use joint_law, only: joint_state, state_open
   use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use contact_augmentation, only: contact_multiplier
   implicit none
   private
-  public :: joint_field, joint_work, start_joints, reference_stiffness
+  public :: joint_field, start_joints, reference_stiffness
   public :: evaluate_joints, gather_tractions, gather_jumps, gather_gaps, linear_tractions
-  public :: sum_joint_work
 
   !> Jumps, tractions and tangents of all points of all joints in one row.
   type :: joint_field
@@ -36,11 +34,6 @@ module joint_forces
     real(rk) :: start_force = 0.0_rk !< 2-norm of area*traction in the last converged state [N]
     real(rk) :: bulk_force = 0.0_rk !< reference force of the bulk [N]
   end type joint_field
-
-  !> Energies of all joints [J].
-  type :: joint_work
-    real(rk) :: stored = 0.0_rk, friction = 0.0_rk, fracture = 0.0_rk
-  end type joint_work
 
 contains
 
@@ -138,21 +131,4 @@ contains
       traction(:, p) = field%iterate(:, p) + matmul(field%tangent(:, :, p), correction(:, p))
     end do
   end subroutine linear_tractions
-
-  !> Energies stored and dissipated in all joints.
-  subroutine sum_joint_work(joints, states, work)
-    type(dam_joint), intent(in) :: joints(:)
-    type(joint_state), intent(in) :: states(:)
-    type(joint_work), intent(out) :: work
-    real(rk), allocatable :: stored(:)
-    integer :: j
-    do j = 1, size(joints)
-      allocate (stored(joints(j)%num_points))
-      call joints(j)%law%stored_energy(states(j), stored)
-      work%stored = work%stored + dot(joints(j)%area, stored)
-      work%friction = work%friction + dot(joints(j)%area, states(j)%friction_work)
-      work%fracture = work%fracture + dot(joints(j)%area, states(j)%fracture_work)
-      deallocate (stored)
-    end do
-  end subroutine sum_joint_work
 end module joint_forces

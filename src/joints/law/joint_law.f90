@@ -10,37 +10,14 @@
 module joint_law
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
+  use joint_history, only: allocate_state, joint_state, state_bonded, state_open, state_slip, &
+                           state_stick
   use keyword_spec, only: keyword_variant
   use kinds, only: rk
   implicit none
   private
   public :: traction_law, joint_state, solid_behind, allocate_state
   public :: state_open, state_stick, state_slip, state_bonded
-
-  integer, parameter :: state_open = 0, state_stick = 1, state_slip = 2, state_bonded = 3
-
-  !> History of all points of one joint, converged or trial. A new component gets a line in save and
-  !> load of joint_archive.
-  type :: joint_state
-    real(rk), allocatable :: gap(:) !< (points) at the start; the opening is jump(1) + gap [m]
-    !> (points) multiplier of the contact over the normal stiffness, <= 0: contact begins where the
-    !> opening is -shift, so that the joint carries pressure without penetration [m]
-    real(rk), allocatable :: shift(:)
-    real(rk), allocatable :: jump(:, :) !< (3, points) relative displacement [m]
-    real(rk), allocatable :: traction(:, :) !< (3, points) by the law at `jump` [Pa]
-    real(rk), allocatable :: slip(:, :) !< (2, points) irrecoverable sliding [m]
-    logical, allocatable :: is_broken(:) !< tensile strength lost
-    !> (points) What the law reports: open (the point touches and carries nothing), stick or slip
-    !> (pressed), bonded (it can carry tension)
-    integer, allocatable :: status(:)
-    !> (points) How often the iteration of this increment has opened the point. The law decides at
-    !> which number the point fails, and what the point loses.
-    integer, allocatable :: num_openings(:)
-    real(rk), allocatable :: friction_work(:) !< dissipated so far [J/m2]
-    real(rk), allocatable :: fracture_work(:) !< dissipated when the strength was lost [J/m2]
-    real(rk), allocatable :: internal(:, :) !< (variables, points) the law's own history
-    real(rk), allocatable :: water(:) !< (points) water pressure, in joints with water
-  end type joint_state
 
   !> What a law may derive its stiffness from.
   type :: solid_behind
@@ -167,24 +144,4 @@ contains
     cohesion = 0.0_rk
     strength = 0.0_rk
   end subroutine no_limits
-
-  !> Allocates the history of the points of one joint; all values but the gap are zero.
-  pure subroutine allocate_state(gap, state, num_internal)
-    real(rk), intent(in) :: gap(:) !< (points) [m]
-    type(joint_state), intent(out) :: state
-    integer, intent(in), optional :: num_internal !< variables of the law's own history (0)
-    integer :: num_points, num_own
-    num_points = size(gap)
-    num_own = 0
-    if (present(num_internal)) num_own = num_internal
-    state%gap = gap
-    allocate (state%shift(num_points), source=0.0_rk)
-    allocate (state%jump(3, num_points), state%traction(3, num_points), source=0.0_rk)
-    allocate (state%slip(2, num_points), source=0.0_rk)
-    allocate (state%friction_work(num_points), state%fracture_work(num_points), source=0.0_rk)
-    allocate (state%internal(num_own, num_points), source=0.0_rk)
-    allocate (state%is_broken(num_points), source=.false.)
-    allocate (state%num_openings(num_points), source=0)
-    allocate (state%status(num_points), source=state_open)
-  end subroutine allocate_state
 end module joint_law

@@ -9,9 +9,11 @@
 !> node are tied to other nodes of the face.
 module joint_points
   use dam_mesh, only: fe_mesh
+  use global_vectors, only: dot
+  use guest_history, only: history, stored_work
   use guest_type, only: guest
   use kinds, only: rk
-  use joint_law, only: traction_law
+  use joint_law, only: joint_state, traction_law
   use row_tables, only: row_table
   use small_matrix, only: cross_product
   implicit none
@@ -53,6 +55,7 @@ module joint_points
     type(joint_cells) :: cells
   contains
     procedure :: add_cells
+    procedure :: add_work
   end type dam_joint
 
 contains
@@ -66,6 +69,21 @@ contains
       call cells%append(self%node(self%first(p):self%first(p + 1) - 1))
     end do
   end subroutine add_cells
+
+  !> Energy of the springs of the law, and the work dissipated in the joint.
+  subroutine add_work(self, own, total)
+    class(dam_joint), intent(in) :: self
+    class(history), intent(in) :: own
+    type(stored_work), intent(inout) :: total
+    real(rk) :: stored(self%num_points)
+    select type (own)
+    class is (joint_state)
+      call self%law%stored_energy(own, stored)
+      total%stored = total%stored + dot(self%area, stored)
+      total%friction = total%friction + dot(self%area, own%friction_work)
+      total%fracture = total%fracture + dot(self%area, own%fracture_work)
+    end select
+  end subroutine add_work
 
   !> Points of two coincident faces: as many slave as master nodes a point, with the same
   !> weights.

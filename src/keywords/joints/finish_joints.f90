@@ -3,11 +3,13 @@ module finish_joints
   use contact_defaults, only: softest_layer
   use coupling_joint, only: lay_gauss_points, lay_node_points
   use cover_checks, only: claim_facets, claims, keep_cover, open_claims, report_bare
+  use dam_mesh, only: node_tie
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use element_joint8, only: build_joint_points, find_attached_solids
   use errors, only: error_type
   use facet_segments, only: find_segments, leave_bare
+  use guest_list, only: ties_of
   use joint_law, only: solid_behind, traction_law
   use joint_points, only: dam_joint
   use kinds, only: rk
@@ -181,16 +183,18 @@ contains
   end subroutine build_from_surfaces
 
   !> Nodes that a tie makes depend on nodes of a face.
-  pure function followers(model, face) result(is_tied)
+  function followers(model, face) result(is_tied)
     type(draft), intent(in) :: model
     type(facet_set), intent(in) :: face
     logical, allocatable :: is_tied(:)
     logical, allocatable :: is_there(:)
+    type(node_tie), allocatable :: ties(:)
     integer :: i, k
     allocate (is_tied(model%problem%mesh%num_nodes), source=.false.)
     is_there = mark_corners(model%problem%mesh%num_nodes, face)
-    do i = 1, size(model%problem%ties)
-      associate (tie => model%problem%ties(i))
+    call ties_of(model%problem%guests, ties)
+    do i = 1, size(ties)
+      associate (tie => ties(i))
         do k = 1, size(tie%node)
           is_tied(tie%node(k)) = is_tied(tie%node(k)) .or. &
                                  any(is_there(tie%master(tie%first(k):tie%first(k + 1) - 1)))

@@ -1,6 +1,6 @@
 !> Builds the ties after the whole deck is read, since they depend on the supports of all steps.
 module finish_ties
-  use coupling_tie, only: build_tie_rows
+  use coupling_tie, only: build_tie_rows, exact_tie
   use cover_checks, only: keep_cover
   use dam_mesh, only: node_tie
   use deck_card, only: card
@@ -8,8 +8,10 @@ module finish_ties
   use errors, only: error_type
   use facet_segments, only: find_segments
   use finish_interfaces, only: append_coupling
+  use guest_list, only: ties_of
+  use guest_type, only: guest
   use kinds, only: rk
-  use model_draft, only: draft, tie_request
+  use model_draft, only: add_guest, draft, tie_request
   use node_dofs, only: num_directions, zero_vectors
   use surface_coupling, only: build_coupling, coupling
   use surface_facets, only: list_surface_facets
@@ -36,16 +38,18 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     logical, allocatable :: is_fixed(:, :), is_always(:, :)
-    type(node_tie), allocatable :: adjusting(:)
-    integer :: i
+    type(node_tie), allocatable :: adjusting(:), ties(:)
+    integer :: i, num_before
     if (size(model%ties) == 0) return
     allocate (adjusting(0))
+    num_before = 0
     call collect_supports(model, is_fixed, is_always)
     do i = 1, size(model%ties)
       call build_tie(model%ties(i), is_fixed, is_always, model, faults)
       if (faults%has_errors()) return
-      if (.not. model%ties(i)%adjusts) cycle
-      adjusting = [adjusting, model%problem%ties(size(model%problem%ties))]
+      call ties_of(model%problem%guests, ties)
+      if (model%ties(i)%adjusts) adjusting = [adjusting, ties(num_before + 1:)]
+      num_before = size(ties)
     end do
     call adjust_nodes(adjusting, model, faults)
     call check_initial_values(.false., model, faults)
@@ -96,7 +100,9 @@ contains
     type(facet_set) :: slave, master
     type(segment_set) :: segments
     type(surface_cover) :: cover
-    type(node_tie) :: tie
+    class(guest), allocatable :: item
+    type(exact_tie) :: tie
+    type(node_tie), allocatable :: earlier(:)
     type(coupling), allocatable :: springs
     logical, allocatable :: is_idle(:, :)
     associate (problem => model%problem, place => model%cards(request%spot%card))
@@ -118,22 +124,26 @@ contains
       call keep_cover(place, request%name, 'TIE', cover, .false., model, faults)
       if (request%stiffness > 0.0_rk) return
       tie%name = request%name
-      call build_tie_rows(problem%mesh%x, slave, master, segments, is_fixed, problem%ties, tie, &
+      tie%kind = 'tie'
+      tie%rows%name = request%name
+      call ties_of(problem%guests, earlier)
+      call build_tie_rows(problem%mesh%x, slave, master, segments, is_fixed, earlier, tie%rows, &
                           is_idle)
-      if (size(tie%node) == 0) then
+      if (size(tie%rows%node) == 0) then
         call place%fault_at(faults, request%spot%line, 1, 'the tie constrains no node: '// &
                             'supports or earlier ties hold every node of the slave surface', &
                             'slave and master exchanged')
         return
       end if
-      if (size(tie%master) > most_followed*size(tie%node)) then
+      if (size(tie%rows%master) > most_followed*size(tie%rows%node)) then
         call place%warn(faults, 'a node of the slave surface follows '// &
-                        as_text(size(tie%master)/size(tie%node))//' others in the mean, which '// &
-                        'makes large and dense equations', 'the finer surface as slave')
+                        as_text(size(tie%rows%master)/size(tie%rows%node))//' others in the '// &
+                        'mean, which makes large and dense equations', 'the finer surface as slave')
       end if
       call report_idle(place, slave%node, is_idle, is_always, model, faults)
-      problem%ties = [problem%ties, tie]
     end associate
+    allocate (item, source=tie)
+    call add_guest(model, item)
   end subroutine build_tie
 
   !> Reports facets that transmit no force because supports of some steps or earlier ties hold all
@@ -170,6 +180,7 @@ contains
     real(rk), allocatable :: given(:, :), taken(:, :)
     logical, allocatable :: is_given(:, :)
     type(error_type), allocatable :: error
+    type(node_tie), allocatable :: ties(:)
     character(:), allocatable :: kind, values
     integer :: i, worst(2)
     given = zero_vectors(model%problem%mesh%num_nodes)
@@ -183,7 +194,8 @@ contains
     end do
     if (.not. any(is_given)) return
     taken = given
-    call follow_ties(model%problem%ties, taken, error)
+    call ties_of(model%problem%guests, ties)
+    call follow_ties(ties, taken, error)
     if (allocated(error)) then
       call model%cards(model%ties(1)%spot%card)%fault(faults, 'the ties: '//error%message)
       return

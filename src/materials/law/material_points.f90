@@ -1,5 +1,7 @@
 !> Points of a material: their place, their state and their time increment.
 module material_points
+  use archive_type, only: archive
+  use guest_history, only: history
   use kinds, only: rk
   implicit none
   private
@@ -31,8 +33,8 @@ module material_points
   end type point_set
 
   !> The state of the points of a block, converged or trial. A new component gets a line in save and
-  !> load of point_archive.
-  type :: point_state
+  !> load.
+  type, extends(history) :: point_state
     real(rk), allocatable :: strain(:, :) !< (6, points) 11 22 33 12 13 23, engineering shear
     real(rk), allocatable :: stress(:, :) !< (6, points) [Pa]
     real(rk), allocatable :: internal(:, :) !< (law%num_state, points)
@@ -41,6 +43,9 @@ module material_points
     real(rk), allocatable :: gradient(:, :, :)
     !> (points) the stress is D strain and the tangent is D, the undamaged stiffness.
     logical, allocatable :: is_elastic(:)
+  contains
+    procedure :: save => save_points
+    procedure :: load => load_points
   end type point_state
 
   !> The time increment of an update.
@@ -61,4 +66,30 @@ module material_points
     character(:), allocatable :: message !< why
     real(rk) :: size_ratio = 1.0_rk !< below 1: size that the law requests, over the present size
   end type update_report
+contains
+
+  !> Writes the points of one block into the present group.
+  subroutine save_points(self, file)
+    class(point_state), intent(in) :: self
+    class(archive), intent(inout) :: file
+    call file%put('strain', self%strain)
+    call file%put('stress', self%stress)
+    call file%put('internal', self%internal)
+    call file%put('energy', self%energy)
+    call file%put('gradient', self%gradient)
+    call file%put('is_elastic', self%is_elastic)
+  end subroutine save_points
+
+  !> Reads the points of one block from the present group. The points must be in their initial
+  !> state, which fixes the sizes.
+  subroutine load_points(self, file)
+    class(point_state), intent(inout) :: self
+    class(archive), intent(inout) :: file
+    call file%get('strain', self%strain)
+    call file%get('stress', self%stress)
+    call file%get('internal', self%internal)
+    call file%get('energy', self%energy)
+    call file%get('gradient', self%gradient)
+    call file%get('is_elastic', self%is_elastic)
+  end subroutine load_points
 end module material_points

@@ -9,7 +9,7 @@ module field_type
   private
   public :: result_field
   public :: at_nodes, at_points, at_joints, on_faces, place_names
-  public :: by_solver, by_recovery, by_law, by_joint
+  public :: by_solver, by_recovery, by_law, by_joint, by_guest
   public :: scalar, vector, tensor, counted
   public :: values_on_nodes, values_at_points, values_of_block, values_of_joint, width_of, presence
 
@@ -26,6 +26,7 @@ module field_type
   character(*), parameter :: by_recovery = 'stress recovery'
   character(*), parameter :: by_law = 'material law'
   character(*), parameter :: by_joint = 'joint law'
+  character(*), parameter :: by_guest = 'guest'
 
   !> Endings of the names of components.
   character(*), parameter :: scalar = ''

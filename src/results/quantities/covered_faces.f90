@@ -29,9 +29,6 @@ contains
     do i = 1, size(model%joints)
       if (.not. model%joints(i)%is_matching) call mark_joint(model, skin, i, is_covered)
     end do
-    do i = 1, size(model%ties)
-      call mark_between(model%mesh, skin, [model%ties(i)%node, model%ties(i)%master], is_covered)
-    end do
     do i = 1, size(model%guests)
       call mark_between(model%mesh, skin, coupled_nodes(model%guests(i)%item), is_covered)
     end do
@@ -71,13 +68,13 @@ contains
     end do
   end subroutine add_normals
 
-  !> Nodes that a guest couples.
+  !> Nodes that a guest connects.
   function coupled_nodes(item) result(nodes)
     class(guest), intent(in) :: item
     integer, allocatable :: nodes(:)
     type(row_table) :: cells
     integer :: i
-    call item%add_cells(cells)
+    call item%add_bonds(cells)
     call cells%finish()
     allocate (nodes(0))
     if (any(cells%first(2:) - cells%first(:cells%num_rows()) > 1)) then

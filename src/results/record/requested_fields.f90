@@ -3,7 +3,7 @@ module requested_fields
   use problem_definition, only: problem
   use analysis_state, only: state
   use field_table, only: find_field
-  use field_type, only: at_joints, by_law
+  use field_type, only: at_joints, by_guest, by_law
   use run_records, only: run_record
   use result_writer, only: is_due
   implicit none
@@ -12,7 +12,8 @@ module requested_fields
 
 contains
 
-  !> Fields of all requests with output now, each once, as rows of the record's table. A field that
+  !> Fields of all requests with output now, each once, as rows of the record's table; fields of
+  !> guests accompany them. A field that
   !> the analysis does not have now is left out, with one warning. For fields of laws the reader of
   !> the deck has warned.
   subroutine list_due_fields(model, now, record, fields)
@@ -40,6 +41,9 @@ contains
         end do
       end associate
     end do
+    if (size(fields) == 0) return
+    fields = [fields, pack([(f, f=1, size(record%fields))], &
+                           [(record%fields(f)%provider == by_guest, f=1, size(record%fields))])]
   end subroutine list_due_fields
 
   !> Can this field be written on nodes now?

@@ -12,6 +12,7 @@ module run_records
   use law_fields, only: mean_of_elements
   use stress_fields, only: recovered_fields
   use field_table, only: list_fields, find_field
+  use guest_fields, only: add_guest_fields
   use field_type, only: result_field, at_points, at_joints
   implicit none
   private
@@ -62,6 +63,7 @@ contains
     type(problem), intent(in) :: model
     integer :: j
     call list_fields(self%fields)
+    call add_guest_fields(model, self%fields)
     call find_dam_faces(model, self%skin)
     allocate (self%joints(size(model%joints)), self%envelopes(0), self%active(0))
     allocate (self%warnings(0), self%files(0))

@@ -103,9 +103,6 @@ contains
     do i = 1, size(guests)
       call put_effect(guests(i)%item%name, guests(i)%item%kind)
     end do
-    do i = 1, size(model%ties)
-      call put_effect(model%ties(i)%name, 'tie')
-    end do
     do i = 1, size(model%materials)
       if (is_inelastic(model, i)) call put_effect(model%materials(i)%name, 'inelastic')
       if (max(model%materials(i)%alpha, model%materials(i)%beta) > 0.0_rk) then

@@ -43,7 +43,7 @@ contains
     type(row_table) :: cells
     type(error_type), allocatable :: error
     call make_arch(2, 3, 4, 3, model, fixities)
-    call number_step(model%mesh, model%joints, model%ties, fixities, numbers, error)
+    call number_step(model%mesh, model%joints, model%guests, fixities, numbers, error)
     call check(log, allocated(error) .eqv. .false., 'numbering')
     call check(log, numbers%num_jumps == 2*3*12, 'a jump for every pair')
     call guests_of_model(model, guests)
@@ -99,7 +99,7 @@ contains
     type(error_type), allocatable :: error
     real(rk), allocatable :: values(:), q(:), y(:)
     call make_arch(2, 3, 4, 3, apart, fixities)
-    call number_step(apart%mesh, apart%joints(:0), apart%ties, fixities(:0), own, error)
+    call number_step(apart%mesh, apart%joints(:0), apart%guests, fixities(:0), own, error)
     call list_cells(apart%mesh, [guest_reference ::], cells)
     call build_pattern(own, cells, own_matrix)
     call assemble_stiffness(apart, own, own_matrix, values, error)

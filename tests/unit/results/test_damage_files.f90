@@ -75,7 +75,7 @@ contains
     law%num_state = 8
     law%is_nonlinear = .true.
     allocate (model%materials(2), model%joints(0), model%loads(0), model%amplitudes(0), &
-              model%ties(0), model%guests(0), &
+              model%guests(0), &
               model%initial_values(0), model%node_sets(0))
     model%materials(1)%name = 'CONCRETE'
     model%materials(1)%density = 2400.0_rk

@@ -92,7 +92,7 @@ contains
   subroutine make_joint(model)
     type(problem), intent(inout) :: model
     integer :: p
-    allocate (model%joints(1), model%ties(0), model%guests(0))
+    allocate (model%joints(1), model%guests(0))
     associate (item => model%joints(1))
       item%name = 'MIDDLE'
       item%kind = 'joint'

@@ -42,7 +42,7 @@ contains
     type(error_type), allocatable :: error
     integer :: j, k
     call make_arch(1, 3, 6, 2, model, fixities)
-    call number_step(model%mesh, model%joints, model%ties, fixities, numbers, error)
+    call number_step(model%mesh, model%joints, model%guests, fixities, numbers, error)
     call guests_of_model(model, guests)
     call list_cells(model%mesh, guests, cells)
     call build_pattern(numbers, cells, matrix)

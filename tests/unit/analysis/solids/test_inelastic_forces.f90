@@ -16,7 +16,8 @@ program test_inelastic_forces
   use inelastic_forces, only: block_answer, open_answers, update_points, recall_points, &
                               sum_excess, find_failure
   use inelastic_stiffness, only: lost_stiffness
-  use inelastic_energy, only: solid_work, sum_solid_work
+  use guest_history, only: stored_work
+  use node_dofs, only: zero_vectors
   use row_tables, only: row_table
   use step_plan, only: step_fixity
   use row_model, only: make_row
@@ -57,8 +58,8 @@ contains
                                                      shape(model%mesh%x)))
     model%mesh%material_of_element = 1
     call put_law(damage_law(elastic=elastic_law(young=3.0e10_rk, poisson=0.2_rk)), [1], model)
-    call number_step(model%mesh, model%joints, model%ties, [step_fixity(node=1, dof=1)], numbers, &
-                     error)
+    call number_step(model%mesh, model%joints, model%guests, [step_fixity(node=1, dof=1)], &
+                     numbers, error)
     call guests_of_model(model, guests)
     call list_cells(model%mesh, guests, cells)
     call build_pattern(numbers, cells, matrix)
@@ -87,7 +88,7 @@ contains
     real(rk) :: u(3, model%mesh%num_nodes)
     call numbers%expand(q, u)
     call update_points(model, u, time_increment(tangent=tangent), old, new, answers)
-    call sum_excess(model, numbers, answers, excess)
+    call sum_excess(model, numbers, answers, zero_vectors(model%mesh%num_nodes), excess)
   end subroutine find_excess
 
   subroutine elastic_points_release_nothing(log)
@@ -151,14 +152,17 @@ contains
   subroutine states_are_recalled(log)
     type(test_log), intent(inout) :: log
     type(block_answer), allocatable :: others(:)
-    type(solid_work) :: total
+    type(stored_work) :: total
+    integer :: i
     real(rk), dimension(numbers%num_total) :: excess, recalled
     call find_excess(field(3.0e-4_rk), secant_tangent, excess)
     call open_answers(model%inelastic, others)
     call recall_points(model, new, others)
-    call sum_excess(model, numbers, others, recalled)
+    call sum_excess(model, numbers, others, zero_vectors(model%mesh%num_nodes), recalled)
     call check(log, all(abs(excess - recalled) <= 0.0_rk), 'excess forces are recalled')
-    call sum_solid_work(model, new, total)
+    do i = 1, size(new)
+      call model%inelastic(i)%add_work(new(i), total)
+    end do
     ! Linear elastic-damage: stored - 1/2 eps D eps = -1/2 u . excess.
     call check_close(log, total%stored, -0.5_rk*dot_product(field(3.0e-4_rk), excess), &
                      1.0e-12_rk*abs(total%stored), 'stored energy')

@@ -10,6 +10,7 @@ program test_state_archive
   use state_archive, only: save_state, load_state
   use step_loop, only: run_all_steps
   use joint_contraction, only: contraction_law
+  use material_points, only: point_state
   use material_elastic, only: elastic_law
   use row_model, only: make_row, put_at_wall, shake_base, new_step, fix
   use softening_law, only: damage_law, put_law
@@ -66,7 +67,8 @@ contains
     call make_full_state(saved)
     call write_state(saved, log)
     allocate (now)
-    allocate (now%u(3, 3), now%joints(2), now%points(1))
+    allocate (now%u(3, 3), now%joints(2), now%points(1), now%guests(2))
+    allocate (point_state :: now%guests(2)%item)
     allocate (now%joints(1)%gap(2), now%joints(2)%gap(2), source=0.0_rk)
     call read_state(now, error)
     call check(log,.not. allocated(error), 'the state is loaded')

@@ -1,7 +1,8 @@
 !> Joints as the results see them: what is drawn on which corner, which points lie on a face of the
 !> dam, openings on nodes, faces that are no free surface. Scenes are made by hand.
 program test_joint_surface
-  use dam_mesh, only: node_tie, surface
+  use coupling_tie, only: exact_tie
+  use dam_mesh, only: surface
   use kinds, only: rk
   use analysis_state, only: state
   use covered_faces, only: mark_joined
@@ -51,7 +52,7 @@ contains
     model%mesh%element_type = ['JOINT8  ', 'JOINT8  ']
     model%mesh%node_id = [(100 + n, n=1, 12)]
     model%mesh%element_id = [1, 2]
-    allocate (model%joints(1), model%ties(0), model%guests(0))
+    allocate (model%joints(1), model%guests(0))
     allocate (model%joints(1)%law, source=contraction_law(name='LAW', gap=0.5_rk))
     call build_joint_points(model%mesh, [1, 2], is_nodal, model%joints(1), error)
     if (allocated(error)) error stop 'make_kink'
@@ -207,7 +208,7 @@ contains
     model%mesh%element_type = ['C3D8', 'C3D8', 'C3D8', 'C3D8', 'C3D8']
     model%mesh%node_id = [(i, i=1, 28)]
     model%mesh%element_id = [(e, e=1, 5)]
-    allocate (model%ties(0), model%guests(0), model%joints(1))
+    allocate (model%guests(0), model%joints(1))
     allocate (model%joints(1)%law, source=contraction_law(name='LAW', gap=0.5_rk))
     call lay_points(model%joints(1))
     model%joints(1)%x = model%mesh%x(:, :8)
@@ -337,7 +338,7 @@ contains
     type(test_log), intent(inout) :: log
     type(problem) :: model
     type(surface) :: skin
-    type(node_tie) :: tie
+    type(exact_tie) :: tie
     logical, allocatable :: is_covered(:)
     integer :: i
     call make_columns(model)
@@ -347,16 +348,17 @@ contains
     call check(log, all(pack(skin%face, is_covered .and. skin%element <= 3) == 6), 'S6 of slaves')
     call check(log, all(pack(skin%face, is_covered .and. skin%element > 3) == 4), 'S4 of masters')
     ! Node 2 hangs on others of the slave face: it has no multiplier of its own (a cross point).
-    tie%node = [1, 3, 4, 5, 6, 7, 8]
-    tie%first = [(1 + 6*i, i=0, 7)]
-    tie%master = [([17, 18, 19, 20, 21, 22], i=1, 7)]
-    tie%master(1) = 2
-    tie%weight = spread(1/6.0_rk, 1, 42)
+    tie%rows%node = [1, 3, 4, 5, 6, 7, 8]
+    tie%rows%first = [(1 + 6*i, i=0, 7)]
+    tie%rows%master = [2, 18, 19, 20, 21, 22, ([17, 18, 19, 20, 21, 22], i=2, 7)]
+    tie%rows%weight = spread(1/6.0_rk, 1, 42)
     deallocate (model%joints)
     allocate (model%joints(0))
     call mark_joined(model, skin, is_covered)
     call check(log, count(is_covered) == 0, 'nothing is covered by nothing')
-    model%ties = [tie]
+    deallocate (model%guests)
+    allocate (model%guests(1))
+    allocate (model%guests(1)%item, source=tie)
     call mark_joined(model, skin, is_covered)
     call check(log, count(is_covered) == 5, 'five facets under the tie')
   end subroutine joined_faces_are_covered
@@ -376,7 +378,7 @@ contains
                                  0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1], [3, 8]), rk)
     model%mesh%nodes = reshape([1, 2, 3, 4, 5, 6, 7, 8], [8, 1])
     model%mesh%element_type = ['C3D8']
-    allocate (model%joints(1), model%ties(0), model%guests(0))
+    allocate (model%joints(1), model%guests(0))
     associate (item => model%joints(1))
       item%num_points = 12
       item%is_matching = .false.

@@ -41,7 +41,7 @@ contains
     law%is_nonlinear = .true.
     model%materials(2)%law = law
     model%mesh = arch%mesh
-    allocate (model%joints(0), model%loads(0), model%ties(0), model%guests(0))
+    allocate (model%joints(0), model%loads(0), model%guests(0))
     associate (m => model%mesh)
       do e = 1, m%num_elements
         m%element_type(e) = kinds_of_solids(1 + mod(e, 4))

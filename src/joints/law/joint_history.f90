@@ -1,0 +1,100 @@
+!> The history of a joint: what its points change in time.
+!>
+!> Every component of `joint_state` has a line in save and in load; tests/tools/test_archives.py
+!> compares them with the type.
+module joint_history
+  use archive_type, only: archive
+  use guest_history, only: history
+  use kinds, only: rk
+  implicit none
+  private
+  public :: joint_state, allocate_state
+  public :: state_open, state_stick, state_slip, state_bonded
+
+  integer, parameter :: state_open = 0, state_stick = 1, state_slip = 2, state_bonded = 3
+
+  !> History of all points of one joint, converged or trial. A new component gets a line in save and
+  !> load.
+  type, extends(history) :: joint_state
+    real(rk), allocatable :: gap(:) !< (points) at the start; the opening is jump(1) + gap [m]
+    !> (points) multiplier of the contact over the normal stiffness, <= 0: contact begins where the
+    !> opening is -shift, so that the joint carries pressure without penetration [m]
+    real(rk), allocatable :: shift(:)
+    real(rk), allocatable :: jump(:, :) !< (3, points) relative displacement [m]
+    real(rk), allocatable :: traction(:, :) !< (3, points) by the law at `jump` [Pa]
+    real(rk), allocatable :: slip(:, :) !< (2, points) irrecoverable sliding [m]
+    logical, allocatable :: is_broken(:) !< tensile strength lost
+    !> (points) What the law reports: open (the point touches and carries nothing), stick or slip
+    !> (pressed), bonded (it can carry tension)
+    integer, allocatable :: status(:)
+    !> (points) How often the iteration of this increment has opened the point. The law decides at
+    !> which number the point fails, and what the point loses.
+    integer, allocatable :: num_openings(:)
+    real(rk), allocatable :: friction_work(:) !< dissipated so far [J/m2]
+    real(rk), allocatable :: fracture_work(:) !< dissipated when the strength was lost [J/m2]
+    real(rk), allocatable :: internal(:, :) !< (variables, points) the law's own history
+    real(rk), allocatable :: water(:) !< (points) water pressure, in joints with water
+  contains
+    procedure :: save => save_joint
+    procedure :: load => load_joint
+  end type joint_state
+
+contains
+
+  !> Writes the history of one joint into the present group.
+  subroutine save_joint(self, file)
+    class(joint_state), intent(in) :: self
+    class(archive), intent(inout) :: file
+    call file%put('gap', self%gap)
+    call file%put('shift', self%shift)
+    call file%put('jump', self%jump)
+    call file%put('traction', self%traction)
+    call file%put('slip', self%slip)
+    call file%put('is_broken', self%is_broken)
+    call file%put('status', self%status)
+    call file%put('num_openings', self%num_openings)
+    call file%put('friction_work', self%friction_work)
+    call file%put('fracture_work', self%fracture_work)
+    call file%put('internal', self%internal)
+    call file%put('water', self%water)
+  end subroutine save_joint
+
+  !> Reads the history of one joint from the present group. The history must be in its initial
+  !> state, which fixes the sizes.
+  subroutine load_joint(self, file)
+    class(joint_state), intent(inout) :: self
+    class(archive), intent(inout) :: file
+    call file%get('gap', self%gap)
+    call file%get('shift', self%shift)
+    call file%get('jump', self%jump)
+    call file%get('traction', self%traction)
+    call file%get('slip', self%slip)
+    call file%get('is_broken', self%is_broken)
+    call file%get('status', self%status)
+    call file%get('num_openings', self%num_openings)
+    call file%get('friction_work', self%friction_work)
+    call file%get('fracture_work', self%fracture_work)
+    call file%get('internal', self%internal)
+    if (allocated(self%gap)) call file%get('water', self%water, shape(self%gap))
+  end subroutine load_joint
+
+  !> Allocates the history of the points of one joint; all values but the gap are zero.
+  pure subroutine allocate_state(gap, state, num_internal)
+    real(rk), intent(in) :: gap(:) !< (points) [m]
+    type(joint_state), intent(out) :: state
+    integer, intent(in), optional :: num_internal !< variables of the law's own history (0)
+    integer :: num_points, num_own
+    num_points = size(gap)
+    num_own = 0
+    if (present(num_internal)) num_own = num_internal
+    state%gap = gap
+    allocate (state%shift(num_points), source=0.0_rk)
+    allocate (state%jump(3, num_points), state%traction(3, num_points), source=0.0_rk)
+    allocate (state%slip(2, num_points), source=0.0_rk)
+    allocate (state%friction_work(num_points), state%fracture_work(num_points), source=0.0_rk)
+    allocate (state%internal(num_own, num_points), source=0.0_rk)
+    allocate (state%is_broken(num_points), source=.false.)
+    allocate (state%num_openings(num_points), source=0)
+    allocate (state%status(num_points), source=state_open)
+  end subroutine allocate_state
+end module joint_history
