@@ -60,6 +60,7 @@ ROOMS = (
     "keywords/joints",
     "keywords/steps",
     "keywords/loads",
+    "keywords/checks",
     "keywords",
     "app",
 )

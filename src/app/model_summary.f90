@@ -4,6 +4,7 @@ module model_summary
   use joint_points, only: dam_joint
   use kinds, only: rk
   use material_law, only: material
+  use motion_peaks, only: peak_of_motion
   use problem_definition, only: problem
   use step_plan, only: step, step_load
   use text_buffers, only: text_buffer
@@ -232,7 +233,7 @@ contains
         call lines%add(nl//'Step '//as_text(i)//' '//now%name//nl//procedure_of(now)//nl// &
                        row('supports', as_text(size(now%fixities))//' degrees of freedom'))
         do j = 1, size(now%loads)
-          call lines%add(nl//work_of(model, now%loads(j)))
+          call lines%add(nl//work_of(model, i, now%loads(j)))
         end do
         call lines%add(requests_of(now))
       end associate
@@ -241,8 +242,9 @@ contains
   end function steps_of
 
   !> A load that is active in a step.
-  pure function work_of(model, work) result(text)
+  pure function work_of(model, number, work) result(text)
     type(problem), intent(in) :: model
+    integer, intent(in) :: number !< of the step
     type(step_load), intent(in) :: work
     character(:), allocatable :: text
     text = row('load '//as_text(work%load), model%loads(work%load)%item%name//': factor '// &
@@ -250,6 +252,7 @@ contains
     if (work%amplitude > 0) then
       text = text//', amplitude '//model%amplitudes(work%amplitude)%name
     end if
+    text = text//peak_of_motion(model, number, work)
   end function work_of
 
   pure function procedure_of(now) result(text)

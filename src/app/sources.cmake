@@ -3,6 +3,7 @@ set(sources
   cli.f90
   main.f90
   model_summary.f90
+  motion_peaks.f90
   run_analysis.f90
   run_material.f90
   shared_costs.f90

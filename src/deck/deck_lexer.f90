@@ -2,7 +2,7 @@
 module deck_lexer
   use card_lines, only: file_name, line_origin
   use deck_card, only: card, card_parameter
-  use deck_source, only: read_source, source_line, source_text, spot_in_source
+  use deck_source, only: names_abaqus, read_source, source_line, source_text, spot_in_source
   use deck_words, only: is_blank, next_word, split_parameter, strip_quotes
   use diagnostics, only: diagnostic_list, severity_error
   use keyword_spec, only: find_spec, keyword
@@ -19,14 +19,16 @@ contains
   !>
   !> A keyword line that ends in a comma continues in the next line if that line holds parameters: a
   !> '=', or first a parameter that `specs` has for the keyword. Else the comma is ignored.
-  subroutine read_cards(path, specs, cards, faults)
+  subroutine read_cards(path, specs, cards, faults, is_from_cae)
     character(*), intent(in) :: path !< of the deck
     type(keyword), intent(in) :: specs(:) !< of all keywords
     type(card), allocatable, intent(out) :: cards(:) !< in the order of the deck
     type(diagnostic_list), intent(inout) :: faults
+    logical, intent(out), optional :: is_from_cae !< the file names Abaqus/CAE as its author
     type(source_text) :: source
     integer :: first, last, i
     call read_source(path, source, faults)
+    if (present(is_from_cae)) is_from_cae = names_abaqus(source)
     call fault_headless_data(source, faults)
     allocate (cards(count(source%lines(:source%num_lines)%is_keyword)))
     last = 0

@@ -7,9 +7,11 @@ module deck_source
   implicit none
   private
   public :: source_text, source_file, source_line, read_source, spot_in_source
+  public :: names_abaqus
 
   character, parameter :: line_feed = achar(10), return = achar(13)
   character(*), parameter :: byte_order_mark = char(239)//char(187)//char(191) !< UTF-8
+  integer, parameter :: letters_of_head = 2000 !< of a file, where programs name themselves
   integer, parameter :: deepest = 100 !< levels of *INCLUDE
 
   !> One file.
@@ -46,6 +48,19 @@ contains
     nowhere%file = path
     call read_file(path, nowhere, parents, source, faults)
   end subroutine read_source
+
+  !> Whether Abaqus/CAE names itself at the beginning of a file.
+  pure logical function names_abaqus(source)
+    type(source_text), intent(in) :: source
+    integer :: i
+    names_abaqus = .false.
+    do i = 1, size(source%files)
+      associate (text => source%files(i)%text)
+        names_abaqus = names_abaqus .or. &
+                       index(upper_case(text(:min(len(text), letters_of_head))), 'ABAQUS/CAE') > 0
+      end associate
+    end do
+  end function names_abaqus
 
   !> Adds the lines of one file, with the lines of included files in their places.
   recursive subroutine read_file(path, named_at, parents, source, faults)

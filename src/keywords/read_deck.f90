@@ -1,7 +1,11 @@
 !> Reads a deck into the problem, in passes over its cards; all faults are collected.
 module read_deck
   use card_check, only: check_card, match_card
+  use check_loads, only: warn_of_loads
+  use check_mesh, only: warn_of_mesh
   use check_requests, only: warn_of_missing_fields
+  use check_steps, only: verify_steps
+  use check_unused, only: warn_of_unused
   use deck_echo, only: echo_of_cards
   use deck_lexer, only: read_cards
   use diagnostics, only: diagnostic_list, place, severity_error
@@ -34,7 +38,7 @@ contains
     type(draft) :: model
     integer, allocatable :: keyword_of_card(:)
     call list_keywords(list)
-    call read_cards(path, list%specs, model%cards, faults)
+    call read_cards(path, list%specs, model%cards, faults, model%is_from_cae)
     if (size(model%cards) == 0 .and. .not. faults%has_errors()) then
       call faults%add(severity_error, place(file=path, keyword='', source=''), &
                       'the deck is empty', 'keywords, lines that begin with *')
@@ -60,7 +64,11 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     call complete_model(model, faults)
     if (.not. faults%has_errors()) call verify(model, faults)
+    if (.not. faults%has_errors()) call verify_steps(model, faults)
     if (faults%has_errors()) return
+    call warn_of_mesh(model, faults)
+    call warn_of_unused(model, faults)
+    call warn_of_loads(model, faults)
     call list_inelastic_blocks(model%problem%mesh, model%problem%materials, model%problem%inelastic)
     call warn_of_missing_fields(model, faults)
   end subroutine complete_and_verify
@@ -79,6 +87,7 @@ contains
       allocate (problem%steps(count([(model%cards(i)%keyword == 'STEP', i=1, size(model%cards))])))
     end associate
     allocate (model%surface_origin(0), model%material_origin(0), model%test_origin(0))
+    allocate (model%record_factor(0))
     allocate (model%sections(0), model%laws(0), model%joints(0))
     allocate (model%material_requests(0), model%procedure_card(0), model%ties(0))
     allocate (model%interfaces(0))
@@ -186,7 +195,22 @@ contains
     call trim_mesh(model)
     call model%supports%prepare(model%problem%mesh%num_nodes)
     call model%point_forces%prepare(model%problem%mesh%num_nodes)
+    call mark_nodes_of_elements(model)
     allocate (model%joint_of_element(model%problem%mesh%num_elements), source=0)
     allocate (model%interface_of_element(model%problem%mesh%num_elements), source=0)
   end subroutine open_tables
+
+  !> Marks the nodes that an element has.
+  subroutine mark_nodes_of_elements(model)
+    type(draft), intent(inout) :: model
+    integer :: e, k
+    allocate (model%has_element(model%problem%mesh%num_nodes), source=.false.)
+    associate (nodes => model%problem%mesh%nodes)
+      do e = 1, model%problem%mesh%num_elements
+        do k = 1, size(nodes, 1)
+          if (nodes(k, e) > 0) model%has_element(nodes(k, e)) = .true.
+        end do
+      end do
+    end associate
+  end subroutine mark_nodes_of_elements
 end module read_deck

@@ -1,4 +1,9 @@
 set(sources
+  checks/check_loads.f90
+  checks/check_mesh.f90
+  checks/check_steps.f90
+  checks/check_unused.f90
+  checks/deck_scan.f90
   deck_echo.f90
   draft/keyword_handler.f90
   draft/model_draft.f90
@@ -50,6 +55,7 @@ set(sources
   steps/keywords_output.f90
   steps/keywords_print.f90
   steps/keywords_step.f90
+  steps/record_units.f90
   verify_blocks.f90
   verify_model.f90
 )

@@ -83,7 +83,7 @@ def test_peer_record(keyway):
     text, files = deck_of(Trial(is_coarse=True, options=DeckOptions(), duration=4.0))
     old = "*AMPLITUDE, NAME=MOTION_Y, INPUT=motion_1.txt, FORMAT=VALUES, DT=0.01"
     assert old in text
-    text = text.replace(old, "*AMPLITUDE, NAME=MOTION_Y, INPUT=record.AT2, FORMAT=AT2, SCALE=9.81")
+    text = text.replace(old, "*AMPLITUDE, NAME=MOTION_Y, INPUT=record.AT2, FORMAT=AT2, UNIT=G")
     run = keyway(text, files={**files, "record.AT2": path.read_text(encoding="utf-8")})
     assert run.json["steps"][1]["cutbacks"] == 0
     assert run.json["envelopes"]["OPENING"]["anywhere"]["value"] > 1e-3

@@ -88,6 +88,9 @@ module model_draft
     type(origin), allocatable :: node_origin(:), element_origin(:)
     type(set_list) :: node_sets, element_sets
     type(origin), allocatable :: surface_origin(:), material_origin(:), test_origin(:)
+    real(rk), allocatable :: record_factor(:) !< (amplitudes) of a unit that only the file names
+    logical :: is_from_cae = .false. !< a comment names Abaqus/CAE
+    logical, allocatable :: has_element(:) !< (nodes) an element has the node
     logical :: runs_tests = .false. !< the deck is read for its *MATERIAL TESTs
     type(section_request), allocatable :: sections(:)
     type(law_request), allocatable :: laws(:)

@@ -9,6 +9,7 @@ module keywords_base_motion
   use load_base_motion, only: base_motion
   use model_draft, only: draft
   use named_things, only: find_amplitude
+  use record_units, only: find_further_scale
   use write_text, only: as_text
   implicit none
   private
@@ -25,13 +26,13 @@ contains
                    'base; the added mass of the water is included. The motion continues in '// &
                    'later steps: a history over step time keeps its last value. A second '// &
                    'motion in one direction adds in the same step, and replaces in a later one.'
-    spec%example = '*BASE MOTION, DOF=1, AMPLITUDE=QUAKE, SCALE=9.81'
+    spec%example = '*BASE MOTION, DOF=1, AMPLITUDE=QUAKE'
     spec%most_lines = 0
     allocate (spec%parameters, source=[ &
               field('DOF', kind_integer, 'direction', is_required=.true., &
                     lowest=1.0_rk, highest=3.0_rk), &
               field('AMPLITUDE', kind_word, 'history of the acceleration', is_required=.true.), &
-              field('SCALE', kind_real, 'factor that gives it in m/s2', '', '1'), &
+              field('SCALE', kind_real, 'factor that gives the history in m/s2', '', '1'), &
               field('TYPE', kind_choice, 'what the history is', default='ACCELERATION', &
                     choices='ACCELERATION')])
   end subroutine describe_base_motion
@@ -42,13 +43,15 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(base_motion) :: shaking
     class(load), allocatable :: item
+    real(rk) :: scale
     integer :: history
     call find_amplitude(this, model, faults, history)
     if (history == 0) return
+    call find_further_scale(this, model%record_factor(history), faults, scale)
     shaking%kind = 'base motion'
     shaking%dof = this%integer('DOF')
     allocate (item, source=shaking)
     call put_load(model, item, 'base motion '//as_text(this%integer('DOF')), 'BASE MOTION', &
-                  as_text(this%integer('DOF')), '', this%real('SCALE'), history)
+                  as_text(this%integer('DOF')), '', scale, history)
   end subroutine read_base_motion
 end module keywords_base_motion

@@ -13,6 +13,7 @@ module keywords_loads
   use model_draft, only: draft
   use named_things, only: elements_at, find_amplitude, find_surface_at, nodes_at
   use nearest_words, only: nearest_choice
+  use write_text, only: as_text
   implicit none
   private
   public :: describe_cload, describe_dload, describe_dsload, read_cload, read_dload, read_dsload
@@ -62,6 +63,7 @@ contains
     do line = 1, this%num_lines
       call nodes_at(this, line, 1, model, faults, nodes)
       if (this%integer_at(line, 2) < 1 .or. this%integer_at(line, 2) > 3) cycle ! reported already
+      call check_nodes(this, line, nodes, model, faults)
       associate (table => model%point_forces, dof => this%integer_at(line, 2))
         if (any(table%is_new(dof, nodes) .and. table%history(dof, nodes) /= history)) then
           call this%fault_at(faults, line, 1, 'a force with another amplitude acts there', &
@@ -71,6 +73,27 @@ contains
       end associate
     end do
   end subroutine read_cload
+
+  !> A force needs an element that takes it.
+  subroutine check_nodes(this, line, nodes, model, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line, nodes(:)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: problem
+    integer :: num_bare, i
+    num_bare = count(.not. model%has_element(nodes))
+    if (num_bare == 0 .or. faults%has_errors()) return ! the elements may have faults
+    i = nodes(findloc(model%has_element(nodes), .false., dim=1))
+    problem = 'node '//as_text(model%problem%mesh%node_id(i))// &
+              ' belongs to no element: the force on it has no effect'
+    if (num_bare == size(nodes)) then
+      call this%fault_at(faults, line, 1, problem, 'nodes of elements')
+    else
+      if (num_bare > 1) problem = problem//'; also '//as_text(num_bare - 1)//' more of the set'
+      call this%warn_at(faults, line, 1, problem)
+    end if
+  end subroutine check_nodes
 
   subroutine describe_dload(spec)
     type(keyword), intent(out) :: spec
@@ -135,6 +158,11 @@ contains
     if (label == 'GRAV') expected = 'g [m/s2] and the direction x, y, z'
     if (this%num_fields(line) > num_numbers + 2) then
       call this%fault_at(faults, line, num_numbers + 3, 'too many numbers', expected)
+    end if
+    if (label == 'GRAV' .and. any(this%num_fields(line) == [4, 5])) then
+      call this%fault_at(faults, line, this%num_fields(line) + 1, 'the direction of gravity '// &
+                         'has '//as_text(this%num_fields(line) - 3)//' of 3 components', expected)
+      return
     end if
     do i = 3, num_numbers + 2
       if (this%is_real_at(line, i)) cycle

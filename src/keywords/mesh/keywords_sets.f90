@@ -92,7 +92,12 @@ contains
         cycle
       end if
       do i = 1, this%num_fields(line)
-        if (this%is_empty_at(line, i)) cycle
+        if (this%is_empty_at(line, i)) then
+          call this%fault_at(faults, line, i, 'found an empty field', &
+                             'the id of '//trim(merge('an', 'a ', kind == 'element'))//' '// &
+                             kind//' or the name of a set')
+          cycle
+        end if
         if (kind == 'node') call nodes_at(this, line, i, model, faults, some)
         if (kind == 'element') call elements_at(this, line, i, model, faults, some)
         call append(members, used, some)
@@ -112,7 +117,7 @@ contains
     type(position_table), intent(in) :: table
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable, intent(out) :: members(:)
-    integer :: range(3), id, i
+    integer :: range(3), id, i, num_ids
     allocate (members(0))
     range = [0, 0, 1]
     do i = 1, min(3, this%num_fields(line))
@@ -127,7 +132,9 @@ contains
                          'first, last, step: integers > 0 with first <= last')
       return
     end if
-    members = spread(0, 1, 1 + (range(2) - range(1))/range(3))
+    ! The range ends at the first missing id: more than all ids are never looked at.
+    num_ids = 1 + (range(2) - range(1))/range(3)
+    members = spread(0, 1, min(num_ids, table%num_ids() + 1))
     do i = 1, size(members)
       id = range(1) + (i - 1)*range(3)
       members(i) = table%find(id)

@@ -8,6 +8,7 @@ module keywords_amplitude
   use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_text, kind_word
   use kinds, only: rk
   use model_draft, only: draft
+  use record_units, only: choices_of_units, factor_of_unit, find_own_factor
   use write_text, only: as_text
   implicit none
   private
@@ -27,7 +28,7 @@ contains
                    'between its points, constant outside them. From data lines or '// &
                    'from a file (INPUT, relative to the deck). VALUES and AT2 begin at time 0.'
     spec%example = '*AMPLITUDE, NAME=RAMP'//nl//'0., 0., 1., 1.'//nl// &
-                   '*AMPLITUDE, NAME=QUAKE, INPUT=record.AT2, FORMAT=AT2, SCALE=9.81'
+                   '*AMPLITUDE, NAME=QUAKE, INPUT=record.AT2, FORMAT=AT2, UNIT=G'
     allocate (spec%parameters, source=[ &
               field('NAME', kind_word, 'name of the history', is_required=.true.), &
               field('TIME', kind_choice, 'clock of the history', default='STEP TIME', &
@@ -37,6 +38,9 @@ contains
                     default='PAIRS', choices='PAIRS | VALUES | AT2'), &
               field('DT', kind_real, 'time between VALUES', 's', lowest=0.0_rk, &
                     excludes_lowest=.true.), &
+              field('UNIT', kind_choice, 'unit of a record of acceleration, which is turned '// &
+                    'into m/s2; without UNIT values stay as they are, but an AT2 file is '// &
+                    'turned by the unit that its header names', choices=choices_of_units), &
               field('SCALE', kind_real, 'factor of all values', '', '1')])
     allocate (spec%columns, source=[ &
               field('time', kind_real, 'time (or, with VALUES, a value)', 's'), &
@@ -50,6 +54,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(amplitude) :: new
     type(number_file) :: numbers
+    real(rk) :: own_factor
     integer :: i, num_before
     num_before = faults%num_errors
     new%name = this%word('NAME')
@@ -60,10 +65,15 @@ contains
                                 "' is defined twice", 'a name that is used once')
     end do
     call collect_numbers(this, faults, numbers)
-    if (faults%num_errors == num_before) call shape_history(this, numbers, faults, new)
+    own_factor = 1.0_rk
+    if (faults%num_errors == num_before) then
+      call shape_history(this, numbers, faults, new, own_factor)
+      if (allocated(new%value)) new%value = new%value*factor_of_unit(this%word('UNIT'))*own_factor
+    end if
     if (.not. allocated(new%time)) new%time = [0.0_rk] ! the name exists, its faults are reported
     if (.not. allocated(new%value)) new%value = [0.0_rk]
     model%problem%amplitudes = [model%problem%amplitudes, new]
+    model%record_factor = [model%record_factor, own_factor]
   end subroutine read_amplitude
 
   !> The numbers of the card or of its file.
@@ -97,11 +107,13 @@ contains
   end subroutine collect_numbers
 
   !> Turns the numbers into times and values by FORMAT.
-  subroutine shape_history(this, numbers, faults, new)
+  subroutine shape_history(this, numbers, faults, new, own_factor)
     type(card), intent(in) :: this
     type(number_file), intent(in) :: numbers
     type(diagnostic_list), intent(inout) :: faults
     type(amplitude), intent(inout) :: new
+    real(rk), intent(inout) :: own_factor !< of the unit that only the file names
+    character(:), allocatable :: unit
     real(rk) :: dt
     integer :: i, num_points
     if (size(numbers%values) == 0 .and. this%has('INPUT')) then
@@ -129,7 +141,10 @@ contains
         call this%fault_parameter(faults, 'FORMAT', 'AT2 without a file', 'INPUT=<file>')
         return
       end if
-      call read_at2_header(numbers%path, this%place_of('INPUT'), faults, num_points, dt)
+      call read_at2_header(numbers%path, this%place_of('INPUT'), faults, num_points, dt, unit)
+      if (num_points > 0 .and. .not. this%has('UNIT')) then
+        call find_own_factor(this, unit, faults, own_factor)
+      end if
       if (num_points > 0 .and. num_points /= size(numbers%values)) then
         call this%fault_parameter(faults, 'INPUT', 'the file holds '// &
                                   as_text(size(numbers%values))//' values', &

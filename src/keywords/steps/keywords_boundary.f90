@@ -8,6 +8,7 @@ module keywords_boundary
   use model_draft, only: draft
   use named_things, only: find_amplitude, nodes_at
   use nearest_words, only: nearest_choice
+  use write_text, only: as_text
   implicit none
   private
   public :: describe_boundary, read_boundary
@@ -57,11 +58,39 @@ contains
       call nodes_at(this, line, 1, model, faults, nodes)
       call read_dofs(this, line, faults, first, last)
       call read_value(this, line, model%is_in_step, faults, value)
+      call warn_of_second_value(this, line, nodes, [first, last], value, history, model, faults)
       do dof = first, last
         call model%supports%put(nodes, dof, value, history)
       end do
     end do
   end subroutine read_boundary
+
+  !> Of two displacements of a degree of freedom in one step the last acts.
+  subroutine warn_of_second_value(this, line, nodes, dofs, value, history, model, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line, nodes(:)
+    integer, intent(in) :: dofs(2) !< the first and the last
+    real(rk), intent(in) :: value !< [m]
+    integer, intent(in) :: history !< amplitude, 0 for none
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: dof, i
+    associate (table => model%supports)
+      do dof = dofs(1), dofs(2)
+        do i = 1, size(nodes)
+          if (.not. table%is_new(dof, nodes(i))) cycle
+          if (abs(table%value(dof, nodes(i)) - value) <= 0.0_rk .and. &
+              (table%history(dof, nodes(i)) == history .or. abs(value) <= 0.0_rk)) cycle
+          call this%warn_at(faults, line, 1, 'node '// &
+                            as_text(model%problem%mesh%node_id(nodes(i)))//' has a '// &
+                            'displacement in direction '//as_text(dof)//' in this step '// &
+                            'already, '//as_text(table%value(dof, nodes(i)))//' m; the '// &
+                            'last one acts, '//as_text(value)//' m')
+          return
+        end do
+      end do
+    end associate
+  end subroutine warn_of_second_value
 
   !> Range of degrees of freedom; empty after a fault.
   subroutine read_dofs(this, line, faults, first, last)

@@ -21,6 +21,7 @@ module id_map
     procedure :: reserve
     procedure :: insert
     procedure :: find
+    procedure :: num_ids
   end type position_table
 
 contains
@@ -60,6 +61,12 @@ contains
     position = 0
     if (self%count > 0) position = self%position(seat_of(self, id))
   end function find
+
+  !> Number of ids.
+  pure integer function num_ids(self)
+    class(position_table), intent(in) :: self
+    num_ids = self%count
+  end function num_ids
 
   !> The seat of an id, or the empty seat for it.
   pure integer function seat_of(self, id) result(seat)

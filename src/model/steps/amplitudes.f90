@@ -3,7 +3,9 @@ module amplitudes
   use kinds, only: rk
   implicit none
   private
-  public :: amplitude, amplitude_at
+  public :: amplitude, amplitude_at, one_g
+
+  real(rk), parameter :: one_g = 9.81_rk !< unit of records of ground motion [m/s2]
 
   type :: amplitude
     character(:), allocatable :: name !< upper case

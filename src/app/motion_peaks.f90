@@ -1,0 +1,58 @@
+!> Peaks of the base motions of a step, for the summary of a model.
+module motion_peaks
+  use amplitudes, only: one_g
+  use kinds, only: rk
+  use load_base_motion, only: base_motion
+  use problem_definition, only: problem
+  use step_plan, only: step_load
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: peak_of_motion
+
+contains
+
+  !> ', peak 3.07 m/s2 = 0.313 g at t = 2.14 s' of a base motion; '' of other loads.
+  pure function peak_of_motion(model, number, work) result(text)
+    type(problem), intent(in) :: model
+    integer, intent(in) :: number !< of the step
+    type(step_load), intent(in) :: work
+    character(:), allocatable :: text
+    real(rk) :: peak, last
+    integer :: i
+    text = ''
+    select type (motion => model%loads(work%load)%item)
+    type is (base_motion)
+      if (work%amplitude == 0) then
+        text = ', constant '//in_both_units(abs(work%end_factor))
+        return
+      end if
+      associate (record => model%amplitudes(work%amplitude))
+        last = end_of_step(model, number, record%uses_total_time)
+        i = max(maxloc(abs(record%value), dim=1, mask=record%time <= last), 1)
+        peak = abs(work%end_factor*record%value(i))
+        text = ', peak '//in_both_units(peak)//' at t = '//as_text(record%time(i))//' s'
+      end associate
+    end select
+  end function peak_of_motion
+
+  !> '3.07 m/s2 = 0.313 g'.
+  pure function in_both_units(acceleration) result(text)
+    real(rk), intent(in) :: acceleration !< [m/s2]
+    character(:), allocatable :: text
+    character(24) :: room
+    write (room, '(f0.4)') acceleration/one_g
+    text = trim(room)
+    if (text(1:1) == '.') text = '0'//text
+    text = as_text(acceleration)//' m/s2 = '//text//' g'
+  end function in_both_units
+
+  !> End of a step on its own clock or on that of the analysis [s].
+  pure real(rk) function end_of_step(model, number, is_total)
+    type(problem), intent(in) :: model
+    integer, intent(in) :: number !< of the step
+    logical, intent(in) :: is_total
+    end_of_step = model%steps(number)%duration
+    if (is_total) end_of_step = sum(model%steps(:number)%duration)
+  end function end_of_step
+end module motion_peaks

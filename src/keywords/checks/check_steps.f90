@@ -1,0 +1,214 @@
+!> Warns of what a step holds without effect or twice; refuses a base that moves an unheld model.
+module check_steps
+  use card_reader, only: field_reader
+  use deck_card, only: card
+  use deck_scan, only: is_keyword, steps_of_cards
+  use diagnostics, only: diagnostic_list
+  use guest_list, only: supports_of_step
+  use load_base_motion, only: base_motion
+  use model_draft, only: draft
+  use step_plan, only: field_name_length
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: verify_steps
+
+  integer, parameter :: longest_key = field_name_length + 16 !< name of a field and position
+
+contains
+
+  !> The deck must have no errors.
+  subroutine verify_steps(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: step(size(model%cards))
+    step = steps_of_cards(model)
+    call warn_of_names(model, step, faults)
+    call warn_of_loads_on_modes(model, step, faults)
+    call warn_of_reservoirs(model, step, faults)
+    call warn_of_envelopes(model, step, faults)
+    call warn_of_initial_displacements(model, faults)
+    call verify_shaken_supports(model, step, faults)
+  end subroutine verify_steps
+
+  !> Two steps of one name.
+  subroutine warn_of_names(model, step, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: step(:) !< of each card
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i, j
+    do i = 1, size(step)
+      if (.not. is_keyword(model%cards(i), 'STEP')) cycle
+      if (.not. model%cards(i)%has('NAME')) cycle
+      do j = 1, step(i) - 1
+        if (model%problem%steps(j)%name /= model%cards(i)%word('NAME')) cycle
+        call model%cards(i)%warn(faults, "step '"//model%cards(i)%text('NAME')// &
+                                 "' has the name of step "//as_text(j)// &
+                                 ': both run, and results distinguish them by their numbers')
+        exit
+      end do
+    end do
+  end subroutine warn_of_names
+
+  !> *FREQUENCY takes masses and stiffness, no forces.
+  subroutine warn_of_loads_on_modes(model, step, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: step(:) !< of each card
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: later
+    integer :: i
+    do i = 1, size(step)
+      if (step(i) == 0) cycle
+      if (.not. model%problem%steps(step(i))%procedure%finds_modes) cycle
+      if (.not. (is_keyword(model%cards(i), 'CLOAD') .or. is_keyword(model%cards(i), 'DLOAD') .or. &
+                 is_keyword(model%cards(i), 'DSLOAD'))) cycle
+      if (model%cards(i)%num_lines == 0) cycle ! OP=NEW alone ends loads
+      later = ''
+      if (any(.not. model%problem%steps(step(i):)%procedure%finds_modes)) then
+        later = '; the load acts from the next *STATIC or *DYNAMIC on'
+      end if
+      call model%cards(i)%warn(faults, 'has no effect in a step *FREQUENCY'//later)
+    end do
+  end subroutine warn_of_loads_on_modes
+
+  !> One reservoir twice in a step: both press.
+  subroutine warn_of_reservoirs(model, step, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: step(:) !< of each card
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i, j
+    do i = 1, size(step)
+      if (.not. is_keyword(model%cards(i), 'RESERVOIR')) cycle
+      do j = 1, i - 1
+        if (step(j) /= step(i) .or. .not. is_keyword(model%cards(j), 'RESERVOIR')) cycle
+        if (model%cards(j)%word('NAME') /= model%cards(i)%word('NAME')) cycle
+        call model%cards(i)%warn(faults, "reservoir '"//model%cards(i)%text('NAME')// &
+                                 "' is given twice in this step: the pressures and the added "// &
+                                 'masses of both act')
+        exit
+      end do
+    end do
+  end subroutine warn_of_reservoirs
+
+  !> A field in two *ENVELOPE cards of a step. Values at nodes and at points are two fields.
+  subroutine warn_of_envelopes(model, step, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: step(:) !< of each card
+    type(diagnostic_list), intent(inout) :: faults
+    character(longest_key), allocatable :: seen(:), own(:)
+    character(field_name_length) :: word
+    integer :: i, k, opened
+    allocate (seen(0))
+    opened = 0
+    do i = 1, size(step)
+      if (step(i) /= opened) seen = [character(longest_key) ::]
+      opened = step(i)
+      if (.not. is_keyword(model%cards(i), 'ENVELOPE')) cycle
+      call list_envelope(model%cards(i), own)
+      do k = 1, size(own)
+        if (.not. any(seen == own(k))) cycle
+        word = own(k) (:field_name_length)
+        call model%cards(i)%warn(faults, 'an *ENVELOPE of this step requests '//trim(word)// &
+                                 ' already; it is recorded once')
+        exit
+      end do
+      seen = [character(longest_key) :: seen, own]
+    end do
+  end subroutine warn_of_envelopes
+
+  !> Fields of a card, each followed by its position.
+  subroutine list_envelope(this, keys)
+    type(card), intent(in) :: this
+    character(longest_key), allocatable, intent(out) :: keys(:)
+    type(field_reader) :: reader
+    character(field_name_length) :: word
+    character(:), allocatable :: position
+    allocate (keys(0))
+    position = this%word('POSITION')
+    do while (reader%advance(this))
+      word = this%word_at(reader%line, reader%field)
+      if (word /= '') keys = [character(longest_key) :: keys, word//position]
+    end do
+    if (size(keys) > 0) return
+    keys = [character(longest_key) :: 'S1      '//position, 'S3      '//position, &
+            'OPENING '//position]
+  end subroutine list_envelope
+
+  !> A static step finds its displacements from its loads; only histories of joints and inelastic
+  !> solids and prescribed displacements start from the initial ones.
+  subroutine warn_of_initial_displacements(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: why
+    integer :: i
+    if (all(model%problem%initial_values%is_velocity)) return
+    if (size(model%problem%joints) > 0) return
+    do i = 1, size(model%problem%materials)
+      if (model%problem%materials(i)%law%is_nonlinear) return
+    end do
+    if (any_starts_a_support(model)) return
+    why = 'no step moves the model'
+    do i = 1, size(model%problem%steps)
+      if (model%problem%steps(i)%procedure%has_inertia) return
+      if (.not. model%problem%steps(i)%procedure%is_static()) cycle
+      why = 'the first step is *STATIC and finds the displacements of its loads'
+      exit
+    end do
+    do i = 1, size(model%cards)
+      if (.not. is_keyword(model%cards(i), 'INITIAL CONDITIONS')) cycle
+      if (model%cards(i)%word('TYPE') /= 'DISPLACEMENT') cycle
+      call model%cards(i)%warn(faults, 'initial displacements have no effect: '//why)
+      return
+    end do
+  end subroutine warn_of_initial_displacements
+
+  !> Whether a support of the first step begins at an initial displacement.
+  pure logical function any_starts_a_support(model) result(is_start)
+    type(draft), intent(in) :: model
+    integer :: i
+    is_start = .false.
+    do i = 1, size(model%problem%initial_values)
+      associate (given => model%problem%initial_values(i), &
+                 supports => model%problem%steps(1)%fixities)
+        is_start = is_start .or. &
+                   any(supports%node == given%node .and. supports%dof == given%dof)
+      end associate
+    end do
+  end function any_starts_a_support
+
+  !> A model that nothing connects to the base does not feel its motion.
+  subroutine verify_shaken_supports(model, step, faults)
+    type(draft), intent(in), target :: model
+    integer, intent(in) :: step(:) !< of each card
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable :: node(:), direction(:)
+    integer :: s, i, place
+    do s = 1, size(model%problem%steps)
+      if (.not. model%problem%steps(s)%procedure%has_inertia) cycle
+      if (.not. is_shaken(model, s)) cycle
+      call supports_of_step(model%problem, model%problem%steps(s), node, direction)
+      if (size(node) > 0) cycle
+      place = model%procedure_card(s)
+      do i = 1, size(step)
+        if (step(i) == s .and. is_keyword(model%cards(i), 'BOUNDARY')) place = i
+      end do
+      call model%cards(place)%fault(faults, 'the base moves, but no support connects the model '// &
+                                    'to it in this step', '*BOUNDARY with supports')
+      return
+    end do
+  end subroutine verify_shaken_supports
+
+  !> Whether a step has a motion of the base.
+  pure logical function is_shaken(model, s)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: s !< step
+    integer :: i
+    is_shaken = .false.
+    do i = 1, size(model%problem%steps(s)%loads)
+      select type (item => model%problem%loads(model%problem%steps(s)%loads(i)%load)%item)
+      type is (base_motion)
+        is_shaken = .true.
+      end select
+    end do
+  end function is_shaken
+end module check_steps

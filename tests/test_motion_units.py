@@ -1,0 +1,67 @@
+"""Units of base motion: an AT2 record, UNIT and SCALE; what --check prints of the peak."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+BASE = Path(__file__).parent / "errors" / "base" / "block.inp"
+G = 9.81  # m/s2, docs/deck.md
+PEAK = 0.3  # of the record, in its unit
+
+RECORD = """A RECORD
+OF A STATION
+{header}
+NPTS=   5, DT=   .0100 SEC
+ 0. 0.2 -0.3 0.1 0.
+"""
+
+
+def peak_line(program: Path, folder: Path, header: str, amplitude: str, motion: str = "") -> str:
+    """The line of --check about the base motion."""
+    deck = BASE.read_text(encoding="utf-8")
+    deck = deck.replace(
+        "*STEP\n*STATIC\n*DLOAD\nDAM, GRAV, 9.81, 0., 0., -1.\n",
+        f"*AMPLITUDE, NAME=QUAKE, INPUT=record.at2, FORMAT=AT2{amplitude}\n*STEP\n"
+        f"*DYNAMIC\n0.01, 1.\n*BASE MOTION, DOF=1, AMPLITUDE=QUAKE{motion}\n",
+    )
+    assert "*BASE MOTION" in deck
+    (folder / "deck.inp").write_text(deck, encoding="utf-8")
+    (folder / "record.at2").write_text(RECORD.format(header=header), encoding="utf-8")
+    done = subprocess.run(
+        [str(program.resolve()), "--check", "deck.inp"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    (line,) = (x for x in done.stdout.splitlines() if x.strip().startswith("load "))
+    return line
+
+
+@pytest.mark.parametrize(
+    ("header", "amplitude", "motion", "expected"),
+    [
+        ("ACCELERATION TIME SERIES IN UNITS OF G", "", "", PEAK * G),
+        ("The units are (g)", "", "", PEAK * G),
+        ("ACCELERATION IN CM/SEC/SEC", "", "", PEAK / 100),
+        ("units: m/s2", "", "", PEAK),
+        ("UNITS OF G", ", UNIT=G, SCALE=2.", "", PEAK * G * 2),
+        ("UNITS OF G", ", UNIT=G", ", SCALE=0.5", PEAK * G / 2),
+        ("no unit", ", UNIT=CM/S2", "", PEAK / 100),
+        ("no unit", ", UNIT=M/S2, SCALE=3.", "", PEAK * 3),
+        # The user's conversion is not repeated; its digits are kept.
+        ("UNITS OF G", ", SCALE=9.80665", "", PEAK * 9.80665),
+        ("UNITS OF G", "", ", SCALE=9.80665", PEAK * 9.80665),
+    ],
+)
+def test_peak(program_path, tmp_path, header, amplitude, motion, expected) -> None:
+    line = peak_line(program_path, tmp_path, header, amplitude, motion)
+    words = line[line.index("peak ") :].split()
+    assert words[2] == "m/s2"
+    assert float(words[1]) == pytest.approx(expected, rel=1e-5), "six digits are printed"
+    assert words[5] == "g"
+    assert float(words[4]) == pytest.approx(expected / G, abs=6e-5), "four decimals are printed"
+    assert words[-2:] == ["0.02", "s"]
