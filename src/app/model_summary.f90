@@ -9,6 +9,7 @@ module model_summary
   use step_plan, only: step, step_load
   use text_buffers, only: text_buffer
   use write_text, only: as_text
+  use print_kinds, only: kinds_of_prints
   implicit none
   private
   public :: summary_of, summary_of_tests
@@ -286,8 +287,8 @@ contains
     integer :: i
     text = ''
     do i = 1, size(now%prints)
-      text = text//nl//row('print', now%prints(i)%kind//' '//now%prints(i)%name//':'// &
-                           words(now%prints(i)%fields)//' every '// &
+      text = text//nl//row('print', trim(kinds_of_prints(now%prints(i)%kind)%subject)//' '// &
+                           now%prints(i)%name//':'//words(now%prints(i)%fields)//' every '// &
                            as_text(now%prints(i)%frequency))
     end do
     do i = 1, size(now%outputs)

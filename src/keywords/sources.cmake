@@ -19,6 +19,7 @@ set(sources
   joints/keywords_joint.f90
   joints/keywords_tie.f90
   keyword_catalogue.f90
+  loads/dload_labels.f90
   loads/enter_load.f90
   loads/finish_uplift.f90
   loads/keywords_base_motion.f90

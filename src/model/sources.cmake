@@ -15,5 +15,6 @@ set(sources
   steps/dof_tables.f90
   steps/load_books.f90
   steps/material_tests.f90
+  steps/print_kinds.f90
   steps/step_plan.f90
 )

@@ -3,7 +3,9 @@
 import subprocess
 from pathlib import Path
 
+import h5py
 import pytest
+import pyvista
 from harness import ROOT
 from make_fields import read_pages, table
 
@@ -35,6 +37,20 @@ def test_keywords_take_the_fields_of_the_table(program_path: Path, pages) -> Non
         offered = data.split("one of ")[1].split(", ")
         expected = [p["field"] for p in pages if f"*{keyword}" in p["requested by"].split(", ")]
         assert offered == expected
+
+
+def test_envelope_of_openings_needs_joints(keyway):
+    """Without joints no file has the field, as the warning says; S1 and S3 are the usual fields."""
+    text = (ROOT / "input/cantilever.inp").read_text(encoding="utf-8")
+    at = text.index("*ENVELOPE")
+    run = keyway(text[:at] + "*ENVELOPE\nS1, OPENING\n*END STEP\n")
+    warnings = " ".join(run.json["warnings"])
+    assert "the model has no joints; OPENING is not written" in warnings + run.stderr
+    assert set(run.json["envelopes"]) == {"S1"}
+    names = set(pyvista.read(run.folder / "job_vtk/job_envelope_step1.vtu").point_data)
+    assert names == {"NODE_ID", "S1_MAX", "S1_MAX_TIME"}
+    with h5py.File(run.folder / "job.h5") as file:
+        assert set(file["steps/0001/envelopes"]) == {"S1_MAX", "S1_MAX_TIME"}
 
 
 @pytest.mark.parametrize(("name", "nearest"), [("DAMAGE", "DAMAGET"), ("OPENIN", "OPENING")])

@@ -14,6 +14,7 @@ module model_draft
   use problem_definition, only: problem
   use set_lists, only: set_list
   use step_plan, only: step
+  use print_kinds, only: kinds_of_prints
   implicit none
   private
   public :: draft, add_guest, add_law, add_load, origin
@@ -117,7 +118,7 @@ module model_draft
     real(rk) :: total_time = 0.0_rk !< at the start of the step [s]
     logical :: has_new_output = .false. !< *NODE FILE or a similar keyword in this step
     integer :: output_frequency = 1 !< of the last *OUTPUT
-    logical :: prints_given(3) = .false. !< *NODE, *EL, *JOINT PRINT in this step
+    logical :: prints_given(size(kinds_of_prints)) = .false. !< kinds that this step has requested
   contains
     procedure :: here
   end type draft

@@ -3,13 +3,13 @@ module keywords_loads
   use applied_load, only: load
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
-  use element_catalogue, only: is_solid
+  use dload_labels, only: choices_of_labels, dload_label, find_label, labels_in_words, &
+                          list_labels, meaning_of_labels, num_labels
   use enter_load, only: put_load
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real, kind_reference, &
                           kind_word
   use kinds, only: rk
-  use load_gravity, only: gravity_load
-  use load_pressure, only: face_of_word, faces_of_elements, pressure_load
+  use load_pressure, only: pressure_load
   use model_draft, only: draft
   use named_things, only: elements_at, find_amplitude, find_surface_at, nodes_at
   use nearest_words, only: nearest_choice
@@ -19,8 +19,6 @@ module keywords_loads
   public :: describe_cload, describe_dload, describe_dsload, read_cload, read_dload, read_dsload
 
   character, parameter :: nl = new_line('a')
-  character(*), parameter :: labels = 'GRAV | P1 | P2 | P3 | P4 | P5 | P6 | HP1 | HP2 | HP3 | '// &
-                             'HP4 | HP5 | HP6'
 
 contains
 
@@ -99,16 +97,14 @@ contains
     type(keyword), intent(out) :: spec
     call add_load_parameters(spec)
     spec%name = 'DLOAD'
-    spec%meaning = 'Weight and pressures on elements. GRAV, g, x, y, z: an acceleration along '// &
-                   '(x, y, z), a vector of any length. P1..P6, p: pressure on a face, '// &
-                   'positive towards the element. HP1..HP6, p, z_top, z_ref: hydrostatic along '// &
-                   'axis 3, zero at z_top and above, p at z_ref.'
+    spec%meaning = 'Weight and pressures on elements. '//meaning_of_labels()
     spec%example = '*DLOAD'//nl//'DAM, GRAV, 9.81, 0., 0., -1.'//nl//'UPSTREAM, P3, 1e5'//nl// &
                    'UPSTREAM, HP3, 1.03e6, 105., 0.'
     spec%checks_own_data = .true.
     allocate (spec%columns, source=[ &
               field('element', kind_reference, 'the elements'), &
-              field('label', kind_choice, 'what acts', is_required=.true., choices=labels), &
+              field('label', kind_choice, 'what acts', is_required=.true., &
+                    choices=choices_of_labels()), &
               field('magnitude', kind_real, 'acceleration [m/s2] or pressure [Pa]', &
                     is_required=.true.), &
               field('x or z_top', kind_real, 'direction, or height of pressure zero [m]'), &
@@ -120,124 +116,49 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
+    type(dload_label) :: labels(num_labels)
     integer, allocatable :: elements(:)
-    integer :: line, history, num_before
+    integer :: line, history, num_before, found
+    call list_labels(labels)
     call find_amplitude(this, model, faults, history)
     if (this%word('OP') == 'NEW') call model%active_loads%clear_old('DLOAD')
     do line = 1, this%num_lines
       num_before = faults%num_errors
       call elements_at(this, line, 1, model, faults, elements)
-      call check_label(this, line, faults)
+      call check_label(this, line, labels, found, faults)
       if (faults%num_errors > num_before) cycle
-      if (this%word_at(line, 2) == 'GRAV') then
-        call put_gravity(this, line, elements, history, model, faults)
-      else
-        call put_pressure(this, line, elements, history, model, faults)
-      end if
+      call labels(found)%put(this, line, elements, history, model, faults)
     end do
   end subroutine read_dload
 
-  !> The label and its numbers.
-  subroutine check_label(this, line, faults)
+  !> Checks the label of a line and its numbers.
+  subroutine check_label(this, line, labels, found, faults)
     type(card), intent(in) :: this
     integer, intent(in) :: line
+    type(dload_label), intent(in) :: labels(:)
+    integer, intent(out) :: found !< position of the label, 0 when there is none
     type(diagnostic_list), intent(inout) :: faults
-    character(:), allocatable :: label, expected
-    integer :: num_numbers, i
-    label = this%word_at(line, 2)
-    if (index(' | '//labels//' | ', ' | '//label//' | ') == 0 .or. label == '') then
+    character(:), allocatable :: choices
+    integer :: i
+    found = find_label(labels, this%word_at(line, 2))
+    if (found == 0) then
+      choices = choices_of_labels()
       call this%fault_at(faults, line, 2, "found '"//this%text_at(line, 2)//"'", &
-                         'GRAV, P1..P6 or HP1..HP6', nearest_choice(label, labels))
+                         labels_in_words(), nearest_choice(this%word_at(line, 2), choices))
       return
     end if
-    num_numbers = 1
-    expected = 'a pressure [Pa]'
-    if (label(1:1) == 'H') num_numbers = 3
-    if (label(1:1) == 'H') expected = 'p [Pa], z_top, z_ref [m]'
-    if (label == 'GRAV') num_numbers = 4
-    if (label == 'GRAV') expected = 'g [m/s2] and the direction x, y, z'
-    if (this%num_fields(line) > num_numbers + 2) then
-      call this%fault_at(faults, line, num_numbers + 3, 'too many numbers', expected)
-    end if
-    if (label == 'GRAV' .and. any(this%num_fields(line) == [4, 5])) then
-      call this%fault_at(faults, line, this%num_fields(line) + 1, 'the direction of gravity '// &
-                         'has '//as_text(this%num_fields(line) - 3)//' of 3 components', expected)
-      return
-    end if
-    do i = 3, num_numbers + 2
-      if (this%is_real_at(line, i)) cycle
-      if (label == 'GRAV' .and. this%is_empty_at(line, i) .and. i > 3) cycle
-      call this%fault_at(faults, line, i, "found '"//this%text_at(line, i)//"'", expected)
-      return
-    end do
-  end subroutine check_label
-
-  subroutine put_gravity(this, line, elements, history, model, faults)
-    type(card), intent(in) :: this
-    integer, intent(in) :: line, elements(:), history
-    type(draft), intent(inout) :: model
-    type(diagnostic_list), intent(inout) :: faults
-    type(gravity_load) :: weight
-    class(load), allocatable :: item
-    real(rk) :: direction(3)
-    direction = [this%real_at(line, 4), this%real_at(line, 5), this%real_at(line, 6)]
-    if (norm2(direction) <= 0.0_rk) then
-      call this%fault_at(faults, line, 4, 'gravity without a direction', &
-                         'x, y, z of the direction')
-      return
-    end if
-    direction = direction/norm2(direction)
-    weight%kind = 'gravity'
-    weight%elements = elements
-    weight%acceleration = direction
-    allocate (item, source=weight)
-    call put_load(model, item, 'gravity '//this%word_at(line, 1), 'DLOAD', &
-                  this%word_at(line, 1)//' GRAV', pattern_of(direction), &
-                  this%real_at(line, 3), history)
-  end subroutine put_gravity
-
-  subroutine put_pressure(this, line, elements, history, model, faults)
-    type(card), intent(in) :: this
-    integer, intent(in) :: line, elements(:), history
-    type(draft), intent(inout) :: model
-    type(diagnostic_list), intent(inout) :: faults
-    type(pressure_load) :: push
-    class(load), allocatable :: item
-    character(:), allocatable :: label
-    real(rk) :: heights(2)
-    label = this%word_at(line, 2)
-    if (.not. all(is_solid(model%problem%mesh%element_type(elements)))) then
-      call this%fault_at(faults, line, 1, 'pressure on an element that is not a solid', &
-                         'solid elements')
-      return
-    end if
-    push%kind = 'pressure'
-    push%faces = faces_of_elements(elements, face_of_word(label))
-    push%pressure = 1.0_rk
-    push%is_hydrostatic = label(1:1) == 'H'
-    heights = 0.0_rk
-    if (push%is_hydrostatic) then
-      heights = [this%real_at(line, 4), this%real_at(line, 5)]
-      if (heights(2) >= heights(1)) then
-        call this%fault_at(faults, line, 5, "found '"//this%text_at(line, 5)//"'", &
-                           'z_ref below z_top, '//this%text_at(line, 4)//' m')
-        return
+    associate (label => labels(found))
+      if (this%num_fields(line) > label%num_numbers + 2) then
+        call this%fault_at(faults, line, label%num_numbers + 3, 'too many numbers', label%expected)
       end if
-      push%top = heights(1)
-      push%reference = heights(2)
-    end if
-    allocate (item, source=push)
-    call put_load(model, item, 'pressure '//this%word_at(line, 1)//' '//label, 'DLOAD', &
-                  this%word_at(line, 1)//' '//label, pattern_of(heights), &
-                  this%real_at(line, 3), history)
-  end subroutine put_pressure
-
-  !> Numbers as a text to compare: equal texts mean equal patterns.
-  pure function pattern_of(numbers) result(text)
-    real(rk), intent(in) :: numbers(:)
-    character(24*size(numbers)) :: text
-    write (text, '(*(es24.16e3))') numbers
-  end function pattern_of
+      do i = 3, label%num_numbers + 2
+        if (this%is_real_at(line, i)) cycle
+        if (this%is_empty_at(line, i) .and. i > label%fewest_numbers + 2) cycle
+        call this%fault_at(faults, line, i, "found '"//this%text_at(line, i)//"'", label%expected)
+        return
+      end do
+    end associate
+  end subroutine check_label
 
   subroutine describe_dsload(spec)
     type(keyword), intent(out) :: spec

@@ -50,14 +50,11 @@ contains
     character(*), intent(in) :: keyword
     character(:), allocatable :: reason
     reason = ''
+    if (item%is_in(model%problem)) return
     if (item%place == at_joints .and. keyword == 'ENVELOPE') then
-      if (size(model%problem%joints) == 0) then
-        reason = 'the model has no joints; '//item%name//' is not written'
-      end if
+      reason = 'the model has no joints; '//item%name//' is not written'
     else if (item%provider == by_law) then
-      if (item%width(model%problem) == 0) then
-        reason = 'no material of the model has '//item%name//'; it is not written'
-      end if
+      reason = 'no material of the model has '//item%name//'; it is not written'
     end if
   end function why_missing
 end module check_requests

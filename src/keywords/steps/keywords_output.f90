@@ -107,7 +107,7 @@ contains
     spec%meaning = 'Records the extremes over the step: '// &
                    fields_in_words('ENVELOPE')//'. job.json has their place and time, the '// &
                    'results at the end of the step have them as '// &
-                   'fields. Without data lines: S1, S3, OPENING.'
+                   'fields. Without data lines: S1, S3 and, where there are joints, OPENING.'
     spec%example = '*ENVELOPE'//nl//'S1, S3, OPENING, DAMAGET'
     allocate (spec%parameters(0))
     allocate (spec%columns, source=[ &

@@ -9,6 +9,8 @@ module keywords_print
   use model_draft, only: draft
   use named_things, only: elements_of_set, longest_name, nodes_of_set
   use nearest_words, only: nearest_word
+  use print_kinds, only: file_pattern, kinds_of_prints, prints_of_elements, prints_of_joints, &
+                         prints_of_nodes
   use step_plan, only: field_name_length, print_request
   implicit none
   private
@@ -17,7 +19,6 @@ module keywords_print
   public :: add_frequency, fields_of
 
   character, parameter :: nl = new_line('a')
-  integer, parameter :: of_nodes = 1, of_elements = 2, of_joints = 3
 
 contains
 
@@ -59,17 +60,31 @@ contains
     if (size(fields) == 0) fields = [character(field_name_length) :: default]
   end function fields_of
 
+  !> Name of the keyword; for its meaning, the file and what the file holds.
+  subroutine open_print(spec, kind)
+    type(keyword), intent(inout) :: spec
+    integer, intent(in) :: kind !< position in `kinds_of_prints`
+    associate (item => kinds_of_prints(kind))
+      spec%name = trim(item%keyword)
+      if (item%has_all_fields) then
+        spec%meaning = file_pattern(item)//': '//columns_of_joints()
+      else
+        spec%meaning = file_pattern(item)//': '//fields_in_words(spec%name)
+      end if
+    end associate
+  end subroutine open_print
+
   subroutine describe_node_print(spec)
     type(keyword), intent(out) :: spec
-    spec%name = 'NODE PRINT'
-    spec%meaning = 'History of nodes in job_node_NSET.csv: '//fields_in_words('NODE PRINT')// &
+    call open_print(spec, prints_of_nodes)
+    spec%meaning = 'History of nodes in '//spec%meaning// &
                    '. U, V and A are relative to the base. The last increment of a step is '// &
                    'always written. The request stays for the next steps until a step has its '// &
                    'own.'
     spec%example = '*NODE PRINT, NSET=CREST, FREQUENCY=2'//nl//'U, A'
     allocate (spec%parameters, source=[ &
               field('NSET', kind_word, 'the nodes', is_required=.true.)])
-    call add_frequency(spec, choices_of('NODE PRINT'))
+    call add_frequency(spec, choices_of(spec%name))
   end subroutine describe_node_print
 
   subroutine read_node_print(this, model, faults)
@@ -77,22 +92,21 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(print_request) :: new
-    new%kind = 'NODE'
+    new%kind = prints_of_nodes
     new%name = this%word('NSET')
     call nodes_of_set(this, 'NSET', model, faults, new%members)
     new%fields = fields_of(this, 'U')
-    call add_request(this, of_nodes, new, model)
+    call add_request(this, new, model)
   end subroutine read_node_print
 
   subroutine describe_el_print(spec)
     type(keyword), intent(out) :: spec
-    spec%name = 'EL PRINT'
-    spec%meaning = 'History of elements at their integration points in job_el_ELSET.csv: '// &
-                   fields_in_words('EL PRINT')//'.'
+    call open_print(spec, prints_of_elements)
+    spec%meaning = 'History of elements at their integration points in '//spec%meaning//'.'
     spec%example = '*EL PRINT, ELSET=HEEL'//nl//'S'
     allocate (spec%parameters, source=[ &
               field('ELSET', kind_word, 'the elements', is_required=.true.)])
-    call add_frequency(spec, choices_of('EL PRINT'))
+    call add_frequency(spec, choices_of(spec%name))
   end subroutine describe_el_print
 
   subroutine read_el_print(this, model, faults)
@@ -100,7 +114,7 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(print_request) :: new
-    new%kind = 'ELEMENT'
+    new%kind = prints_of_elements
     new%name = this%word('ELSET')
     call elements_of_set(this, 'ELSET', model, faults, new%members)
     if (.not. all(is_solid(model%problem%mesh%element_type(new%members)))) then
@@ -109,14 +123,14 @@ contains
                                 'solid elements; for joints *JOINT PRINT')
     end if
     new%fields = fields_of(this, 'S')
-    call add_request(this, of_elements, new, model)
+    call add_request(this, new, model)
   end subroutine read_el_print
 
   subroutine describe_joint_print(spec)
     type(keyword), intent(out) :: spec
-    spec%name = 'JOINT PRINT'
-    spec%meaning = 'History of the points of a joint in job_joint_NAME.csv: '// &
-                   columns_of_joints()//' (0 open, 1 stick, 2 slip, 3 bonded). The file '// &
+    call open_print(spec, prints_of_joints)
+    spec%meaning = 'History of the points of a joint in '//spec%meaning// &
+                   ' (0 open, 1 stick, 2 slip, 3 bonded). The file '// &
                    'always has all columns, whichever fields the card '// &
                    'names. slip1 is horizontal, slip2 up or down the '// &
                    'joint.'
@@ -124,7 +138,7 @@ contains
     allocate (spec%parameters, source=[ &
               field('JOINT', kind_word, 'name of the joint', is_required=.true.), &
               field('NSET', kind_word, 'only the points nearest to these nodes')])
-    call add_frequency(spec, choices_of('JOINT PRINT'))
+    call add_frequency(spec, choices_of(spec%name))
   end subroutine describe_joint_print
 
   subroutine read_joint_print(this, model, faults)
@@ -134,7 +148,7 @@ contains
     type(print_request) :: new
     character(longest_name) :: known(size(model%joints))
     integer :: i
-    new%kind = 'JOINT'
+    new%kind = prints_of_joints
     new%name = this%word('JOINT')
     allocate (new%members(0), new%near_nodes(0), new%fields(0))
     do i = 1, size(known)
@@ -146,13 +160,12 @@ contains
                                 "' so far", 'the name of a *JOINT', nearest_word(new%name, known))
     end if
     if (this%has('NSET')) call nodes_of_set(this, 'NSET', model, faults, new%near_nodes)
-    call add_request(this, of_joints, new, model)
+    call add_request(this, new, model)
   end subroutine read_joint_print
 
   !> Adds a request. The first request of a kind in a step replaces those of earlier steps.
-  subroutine add_request(this, kind, new, model)
+  subroutine add_request(this, new, model)
     type(card), intent(in) :: this
-    integer, intent(in) :: kind !< of_nodes, of_elements, of_joints
     type(print_request), intent(inout) :: new
     type(draft), intent(inout) :: model
     type(print_request), allocatable :: kept(:)
@@ -160,11 +173,11 @@ contains
     new%frequency = this%integer('FREQUENCY')
     allocate (kept(0))
     do i = 1, size(model%now%prints)
-      if (model%now%prints(i)%kind == new%kind .and. .not. model%prints_given(kind)) cycle
+      if (model%now%prints(i)%kind == new%kind .and. .not. model%prints_given(new%kind)) cycle
       kept = [kept, model%now%prints(i)]
     end do
     if (new%frequency > 0) kept = [kept, new]
     call move_alloc(kept, model%now%prints)
-    model%prints_given(kind) = .true.
+    model%prints_given(new%kind) = .true.
   end subroutine add_request
 end module keywords_print

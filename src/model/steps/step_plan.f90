@@ -30,7 +30,7 @@ module step_plan
 
   !> *NODE PRINT, *EL PRINT or *JOINT PRINT.
   type :: print_request
-    character(:), allocatable :: kind !< 'NODE', 'ELEMENT' or 'JOINT'
+    integer :: kind = 0 !< position in `kinds_of_prints`
     character(:), allocatable :: name !< of the set or joint, upper case; part of the file's name
     integer, allocatable :: members(:) !< positions of nodes, elements or joint
     integer, allocatable :: near_nodes(:) !< *JOINT PRINT, NSET: only the points nearest to them

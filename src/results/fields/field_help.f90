@@ -5,6 +5,7 @@ module field_help
   use keyword_help, only: hanging
   use nearest_words, only: nearest_word
   use parse_text, only: single_blanks, upper_case
+  use print_kinds, only: file_pattern, kinds_of_prints
   implicit none
   private
   public :: field_lines, field_page
@@ -103,14 +104,17 @@ contains
   pure function keywords(item) result(text)
     type(result_field), intent(in) :: item
     character(:), allocatable :: text
-    character(14), parameter :: names(8) = ['NODE PRINT    ', 'EL PRINT      ', 'JOINT PRINT   ', &
-                                            'NODE FILE     ', 'NODE OUTPUT   ', 'EL FILE       ', &
+    character(14), parameter :: names(5) = ['NODE FILE     ', 'NODE OUTPUT   ', 'EL FILE       ', &
                                             'ELEMENT OUTPUT', 'ENVELOPE      ']
-    character(14), parameter :: as(8) = ['NODE PRINT    ', 'EL PRINT      ', 'JOINT PRINT   ', &
-                                         'NODE FILE     ', 'NODE FILE     ', 'EL FILE       ', &
+    character(14), parameter :: as(5) = ['NODE FILE     ', 'NODE FILE     ', 'EL FILE       ', &
                                          'EL FILE       ', 'ENVELOPE      ']
+    character(11) :: print_keyword
     integer :: i
     text = ''
+    do i = 1, size(kinds_of_prints)
+      print_keyword = kinds_of_prints(i)%keyword
+      if (item%is_allowed_in(trim(print_keyword))) text = text//', *'//trim(print_keyword)
+    end do
     do i = 1, size(names)
       if (item%is_allowed_in(trim(as(i)))) text = text//', *'//trim(names(i))
     end do
@@ -122,10 +126,13 @@ contains
   pure function files_of(item) result(text)
     type(result_field), intent(in) :: item
     character(:), allocatable :: text
+    integer :: i
     text = ''
-    if (item%is_allowed_in('NODE PRINT')) text = text//', job_node_NSET.csv'
-    if (item%is_allowed_in('EL PRINT')) text = text//', job_el_ELSET.csv'
-    if (item%is_allowed_in('JOINT PRINT')) text = text//', job_joint_NAME.csv'
+    do i = 1, size(kinds_of_prints)
+      if (item%is_allowed_in(trim(kinds_of_prints(i)%keyword))) then
+        text = text//', '//file_pattern(kinds_of_prints(i))
+      end if
+    end do
     if (is_in_series(item)) text = text//', job.pvd'
     if (associated(item%of_joint)) text = text//', job_joints.pvd'
     if (is_in_series(item) .or. item%place == at_joints) text = text//', job.h5'

@@ -56,6 +56,7 @@ module field_type
   contains
     procedure :: width
     procedure :: num_endings
+    procedure :: is_in
     procedure :: is_available
     procedure :: is_allowed_in
     procedure :: component
@@ -147,6 +148,14 @@ contains
     integer :: i
     num_endings = 1 + count([(self%endings(i:i) == ',', i=1, len(self%endings))])
   end function num_endings
+
+  !> Does the model have the field?
+  logical function is_in(self, model)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: model
+    is_in = self%width(model) > 0
+    if (self%place == at_joints) is_in = is_in .and. size(model%joints) > 0
+  end function is_in
 
   !> Does the analysis have the field now?
   logical function is_available(self, model, now)

@@ -87,7 +87,7 @@ contains
     do i = 1, size(model%steps(step)%envelope)
       associate (name => model%steps(step)%envelope(i))
         f = find_field(self%fields, trim(name))
-        if (self%fields(f)%width(model) == 0) cycle
+        if (.not. self%fields(f)%is_in(model)) cycle
         k = findloc(self%envelopes%row, f, dim=1)
         if (k == 0) self%envelopes = [self%envelopes, fresh]
         if (k == 0) k = size(self%envelopes)

@@ -5,12 +5,22 @@ module history_rows
   use analysis_state, only: state
   use field_type, only: result_field
   use run_records, only: run_record
+  use print_kinds, only: print_kind, kinds_of_prints, prints_of_nodes, prints_of_elements, &
+                         prints_of_joints
+  use csv_files, only: csv_file
   use json_writer, only: lower
   use text_buffers, only: text_buffer
   implicit none
   private
-  public :: name_part, keyword_of, header_of
-  public :: add_node_rows, add_element_rows, add_joint_rows
+  public :: history_file, header_of, add_rows
+
+  !> One file. The columns are the fields of all steps.
+  type, extends(csv_file) :: history_file
+    integer :: kind = 0 !< position in `kinds_of_prints`
+    character(:), allocatable :: name !< of the set or joint
+    integer, allocatable :: fields(:) !< rows of the record's table
+    integer :: joint = 0 !< position of the joint, 0 for other kinds
+  end type history_file
 
   !> A field at the points of some solids.
   type :: point_values
@@ -24,53 +34,43 @@ module history_rows
 
 contains
 
-  !> Part of the file name.
-  pure function name_part(kind) result(text)
-    character(*), intent(in) :: kind
-    character(:), allocatable :: text
-    select case (kind)
-    case ('NODE')
-      text = 'node'
-    case ('ELEMENT')
-      text = 'el'
-    case default
-      text = 'joint'
-    end select
-  end function name_part
-
-  !> The keyword that requests such a table.
-  pure function keyword_of(kind) result(text)
-    character(*), intent(in) :: kind
-    character(:), allocatable :: text
-    text = trim(kind)//' PRINT'
-    if (kind == 'ELEMENT') text = 'EL PRINT'
-  end function keyword_of
-
   !> The header line.
   function header_of(model, table, kind, fields) result(header)
     type(problem), intent(in) :: model
     type(result_field), intent(in) :: table(:) !< all fields
-    character(*), intent(in) :: kind !< 'NODE', 'ELEMENT' or 'JOINT'
+    type(print_kind), intent(in) :: kind
     integer, intent(in) :: fields(:) !< rows of the table, in the order of the request
     character(:), allocatable :: header
     integer :: i
-    select case (kind)
-    case ('NODE')
-      header = 'step,increment,time,node'
-    case ('ELEMENT')
-      header = 'step,increment,time,element,point'
-    case default
-      header = 'step,increment,time,point,x,y,z'
+    header = 'step,increment,time,'//trim(kind%columns)
+    if (kind%has_all_fields) then
       do i = 1, size(table)
-        if (.not. table(i)%is_allowed_in('JOINT PRINT')) cycle
+        if (.not. table(i)%is_allowed_in(trim(kind%keyword))) cycle
         header = header//','//lower(table(i)%columns(table(i)%width(model)))
       end do
       return
-    end select
+    end if
     do i = 1, size(fields)
       header = header//','//table(fields(i))%columns(table(fields(i))%width(model))
     end do
   end function header_of
+
+  !> The rows of chosen nodes, elements or points of a joint.
+  subroutine add_rows(file, model, now, record, chosen)
+    type(history_file), intent(inout) :: file
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    type(run_record), intent(inout) :: record
+    integer, intent(in) :: chosen(:)
+    select case (file%kind)
+    case (prints_of_nodes)
+      call add_node_rows(file%lines, model, now, record, file%fields, chosen)
+    case (prints_of_elements)
+      call add_element_rows(file%lines, model, now, record, file%fields, chosen)
+    case default
+      call add_joint_rows(file%lines, model, now, record, file%joint, chosen)
+    end select
+  end subroutine add_rows
 
   !> Step, increment and total time.
   subroutine add_time(lines, now)
@@ -166,9 +166,11 @@ contains
     integer, intent(in) :: joint !< position in the problem
     integer, intent(in) :: points(:)
     type(list_values) :: values(size(record%fields))
+    character(:), allocatable :: keyword
     integer :: k, p, i
+    keyword = trim(kinds_of_prints(prints_of_joints)%keyword)
     do i = 1, size(record%fields)
-      if (.not. record%fields(i)%is_allowed_in('JOINT PRINT')) cycle
+      if (.not. record%fields(i)%is_allowed_in(keyword)) cycle
       call record%fields(i)%of_joint(model, now, joint, values(i)%at)
     end do
     do k = 1, size(points)

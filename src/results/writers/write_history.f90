@@ -9,21 +9,13 @@ module write_history
   use result_writer, only: writer, is_due
   use requested_fields, only: is_of_law
   use field_table, only: find_field
-  use history_rows, only: name_part, keyword_of, header_of, add_node_rows, add_element_rows, &
-                          add_joint_rows
-  use csv_files, only: csv_file
+  use history_rows, only: history_file, header_of, add_rows
+  use print_kinds, only: kinds_of_prints, prints_of_joints
   use file_system, only: safe_name, file_name
   use write_text, only: as_text
   implicit none
   private
   public :: history_files
-
-  !> One file. The columns are the fields of all steps.
-  type, extends(csv_file) :: history_file
-    character(:), allocatable :: kind, name
-    integer, allocatable :: fields(:) !< rows of the record's table
-    integer :: joint = 0 !< position of the joint, 0 for other kinds
-  end type history_file
 
   type, extends(writer) :: history_files
     private
@@ -52,9 +44,9 @@ contains
       end do
     end do
     do f = 1, size(self%files)
-      associate (file => self%files(f))
-        call file%open(stem//'_'//name_part(file%kind)//'_'//unique_name(self%files, f)//'.csv', &
-                       header_of(model, record%fields, file%kind, file%fields), error)
+      associate (file => self%files(f), kind => kinds_of_prints(self%files(f)%kind))
+        call file%open(stem//'_'//trim(kind%part)//'_'//unique_name(self%files, f)//'.csv', &
+                       header_of(model, record%fields, kind, file%fields), error)
         if (allocated(error)) return
         call record%list_file(file_name(file%path))
       end associate
@@ -90,16 +82,16 @@ contains
       more(:f - 1) = files
       more(f)%kind = request%kind
       more(f)%name = request%name
-      if (request%kind == 'JOINT') more(f)%joint = request%members(1)
+      if (request%kind == prints_of_joints) more(f)%joint = request%members(1)
       allocate (more(f)%fields(0))
       call move_alloc(more, files)
     end if
     do i = 1, size(request%fields)
       k = find_field(record%fields, trim(request%fields(i)))
       if (any(files(f)%fields == k)) cycle
-      if (is_printed(model, record, request%kind, k)) then
+      if (is_printed(model, record, kinds_of_prints(request%kind)%keyword, k)) then
         files(f)%fields = [files(f)%fields, k]
-      else if (request%kind /= 'JOINT' .and. .not. is_of_law(record, k)) then
+      else if (request%kind /= prints_of_joints .and. .not. is_of_law(record, k)) then
         call record%warn_once(trim(request%fields(i))//' of '//request%name// &
                               ' is not printed: the model does not have this field')
       end if
@@ -107,14 +99,14 @@ contains
   end subroutine add_request
 
   !> Does this model have the field for such a table?
-  logical function is_printed(model, record, kind, f)
+  logical function is_printed(model, record, keyword, f)
     type(problem), intent(in) :: model
     type(run_record), intent(in) :: record
-    character(*), intent(in) :: kind !< 'NODE', 'ELEMENT' or 'JOINT'
+    character(*), intent(in) :: keyword !< of the request
     integer, intent(in) :: f !< row of the record's table, 0: an unknown field
     is_printed = .false.
     if (f == 0) return
-    if (.not. record%fields(f)%is_allowed_in(keyword_of(kind))) return
+    if (.not. record%fields(f)%is_allowed_in(trim(keyword))) return
     is_printed = record%fields(f)%width(model) > 0
   end function is_printed
 
@@ -142,14 +134,7 @@ contains
       associate (file => self%files(f))
         call choose_members(model, now, file, chosen)
         if (size(chosen) == 0) cycle
-        select case (file%kind)
-        case ('NODE')
-          call add_node_rows(file%lines, model, now, record, file%fields, chosen)
-        case ('ELEMENT')
-          call add_element_rows(file%lines, model, now, record, file%fields, chosen)
-        case default
-          call add_joint_rows(file%lines, model, now, record, file%joint, chosen)
-        end select
+        call add_rows(file, model, now, record, chosen)
         call file%save(error)
         if (allocated(error)) return
       end associate
@@ -169,7 +154,7 @@ contains
       associate (request => model%steps(now%step)%prints(r))
         if (request%kind /= file%kind .or. request%name /= file%name) cycle
         if (.not. is_due(now, request%frequency)) cycle
-        if (file%kind == 'JOINT') then
+        if (file%kind == prints_of_joints) then
           chosen = united(chosen, points_of(model, request, file%joint))
         else
           chosen = united(chosen, request%members)

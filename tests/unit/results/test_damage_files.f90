@@ -8,6 +8,7 @@ program test_damage_files
   use errors, only: error_type
   use diagnostics, only: diagnostic_list
   use step_plan, only: step, print_request, field_request
+  use print_kinds, only: prints_of_elements
   use material_law, only: start_points
   use material_elastic, only: elastic_law
   use material_points, only: fracture_energy, crushing_energy
@@ -100,7 +101,7 @@ contains
     plan%name = 'cracking'
     plan%procedure = procedure_named('STATIC')
     allocate (plan%fixities(0), plan%loads(0))
-    plan%prints = [print_request('ELEMENT', 'BODY', [1, 2, 3, 4], [integer ::], &
+    plan%prints = [print_request(prints_of_elements, 'BODY', [1, 2, 3, 4], [integer ::], &
                                  ['S       ', 'PE      ', 'DAMAGET ', 'SDV     '], 1)]
     plan%outputs = [field_request(['U       ', 'S       ', 'E       ', 'PE      ', 'DAMAGET ', &
                                    'DAMAGEC ', 'SDV     '], 1)]

@@ -8,6 +8,7 @@ program test_result_files
   use errors, only: error_type
   use diagnostics, only: diagnostic_list, place, severity_ignored, severity_warning
   use step_plan, only: step, print_request, field_request
+  use print_kinds, only: prints_of_elements, prints_of_joints, prints_of_nodes
   use material_elastic, only: elastic_law
   use joint_contraction, only: contraction_law
   use joint_points, only: draw_elements, dam_joint, list_faces
@@ -116,9 +117,11 @@ contains
     type(problem), intent(inout) :: model
     type(step) :: plan
     type(print_request) :: nodes, elements, points
-    nodes = print_request('NODE', 'TOP', [13, 14], [integer ::], ['U   ', 'RF  ', 'SDV '], 1)
-    elements = print_request('ELEMENT', 'TWO/BLOCKS', [1, 2], [integer ::], ['S ', 'SP'], 1)
-    points = print_request('JOINT', 'MIDDLE', [1], [15], ['OPENING'], 1)
+    nodes = print_request(prints_of_nodes, 'TOP', [13, 14], [integer ::], &
+                          ['U   ', 'RF  ', 'SDV '], 1)
+    elements = print_request(prints_of_elements, 'TWO/BLOCKS', [1, 2], [integer ::], &
+                             ['S ', 'SP'], 1)
+    points = print_request(prints_of_joints, 'MIDDLE', [1], [15], ['OPENING'], 1)
     plan%name = 'dead weight'
     plan%procedure = procedure_named('STATIC')
     allocate (plan%fixities(0), plan%loads(0))
@@ -127,7 +130,7 @@ contains
     plan%envelope = ['S1      ', 'OPENING ', 'DAMAGET ']
     allocate (model%steps(3))
     model%steps(1) = plan
-    nodes = print_request('NODE', 'TOP', [14, 20], [integer ::], ['V'], 2)
+    nodes = print_request(prints_of_nodes, 'TOP', [14, 20], [integer ::], ['V'], 2)
     points%near_nodes = [integer ::]
     plan%name = 'earthquake'
     plan%procedure = procedure_named('DYNAMIC')
