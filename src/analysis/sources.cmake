@@ -9,6 +9,8 @@ set(sources
   integrators/initial_acceleration.f90
   integrators/integrator_catalogue.f90
   integrators/integrator_type.f90
+  integrators/massless_acceleration.f90
+  integrators/start_acceleration.f90
   integrators/static_increment.f90
   integrators/static_integrator.f90
   solids/guest_forces.f90

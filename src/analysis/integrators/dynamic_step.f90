@@ -13,7 +13,7 @@ module dynamic_step
   use step_system, only: dam_system, build_structure, build_inertia, build_damping, &
                          build_loads
   use step_loads, only: step_time, external_force, prescribed_values
-  use initial_acceleration, only: find_acceleration
+  use start_acceleration, only: find_start
   use tangent_choice, only: choose_tangents
   use energy_account, only: open_account
   use solid_iteration, only: solid_solver
@@ -84,8 +84,9 @@ contains
       call multiply(system%matrix, system%mass, own%v, own%momentum)
       call system%find_damping_force(own%v, own%viscous)
       call sum_contact(system%operator, now)
-      call find_acceleration(system%matrix, system%mass, system%numbers%node, &
-                             own%external - own%internal - own%viscous - own%contact, own%a, error)
+      call find_start(model, system, now%joints, own%external, &
+                      own%external - own%internal - own%viscous - own%contact, own%a, error)
+      if (allocated(error)) return
       call multiply(system%matrix, system%mass, own%a, own%inertia)
       own%balanced = own%inertia
     end associate

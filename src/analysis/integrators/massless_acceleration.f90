@@ -1,0 +1,133 @@
+!> Initial acceleration where M is singular: massless rock, a joint whose slave is the dam on such
+!> rock, added mass on massless nodes (theory.md, 7.1).
+!>
+!> What has no mass is in static balance at all times: N^T (f - f_int) = 0, N a basis of the motions
+!> without mass. The second derivative of this balance gives N^T K a = 0. With P = M + eps K, the
+!> matrix P^-1 M P^-1 gives vectors that satisfy N^T K a = 0 and ignores the part of r on N, which
+!> a static displacement of the massless part takes. Conjugate gradients for M a = r with this
+!> preconditioner therefore find the acceleration of the constrained form without N.
+module massless_acceleration
+  use kinds, only: rk
+  use errors, only: error_type
+  use matrix_pattern, only: pattern
+  use global_vectors, only: dot, multiply, diagonal
+  use linear_solver, only: equation_solver
+  use solver_catalogue, only: make_solver, symmetric_solver
+  use initial_acceleration, only: find_massive
+  implicit none
+  private
+  public :: find_constrained_acceleration, find_weight
+
+  !> eps times the mean square frequency of the unknowns with mass. Measured on an arch dam on a
+  !> perimetral joint, 800 times as stiff as the elements: 1e-3 takes 43 iterations, 1e-5 takes 6,
+  !> 1e-7 takes 3 and loses three digits, for the condition of P grows with 1/eps.
+  real(rk), parameter :: share_of_stiffness = 1.0e-5_rk
+  integer, parameter :: most_iterations = 300
+  real(rk), parameter :: largest_growth = 1.0e4_rk !< of the correction over the smallest one
+  !> Of the correction, in the norm of M: the end of the iteration, and the largest one accepted
+  !> where round-off ends the iteration. Both over the acceleration that the loads alone give.
+  real(rk), parameter :: tolerance = 1.0e-12_rk, largest_correction = 1.0e-6_rk
+
+contains
+
+  !> Solves M a = r with N^T K a = 0. Fails where K holds a massless part by nothing; without an
+  !> error the iteration may end without convergence. `worst` is then an unknown of the place.
+  subroutine find_constrained_acceleration(matrix, mass, sum_of_both, load, r, a, worst, error)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:) !< values of M
+    real(rk), intent(in) :: sum_of_both(:) !< values of P = M + eps K, closed joints in K
+    real(rk), intent(in) :: load(:) !< (num_total) part of r that sets the tolerance [N]
+    real(rk), intent(in) :: r(:) !< (num_total) [N]
+    real(rk), intent(out) :: a(:) !< (num_total) zero on prescribed unknowns [m/s2]
+    integer, intent(out) :: worst !< 0: none
+    type(error_type), allocatable, intent(out) :: error
+    class(equation_solver), allocatable :: solver
+    a = 0.0_rk
+    worst = 0
+    call make_solver(symmetric_solver, solver, error)
+    if (.not. allocated(error)) call solver%analyse(matrix, error)
+    if (allocated(error)) return
+    call solver%factorise(matrix, sum_of_both, error)
+    worst = solver%failed_unknown
+    if (.not. allocated(error)) call iterate(matrix, mass, solver, load, r, a, worst, error)
+  end subroutine find_constrained_acceleration
+
+  !> eps: a share of mass over stiffness, summed over the unknowns with mass; 0 without any mass.
+  subroutine find_weight(matrix, mass, stiffness, eps)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:), stiffness(:)
+    real(rk), intent(out) :: eps !< [s2]
+    real(rk), dimension(matrix%num_total) :: m, k
+    logical, allocatable :: is_massive(:)
+    call diagonal(matrix, mass, m)
+    call diagonal(matrix, stiffness, k)
+    call find_massive(matrix, m, is_massive)
+    eps = 0.0_rk
+    if (any(is_massive)) eps = share_of_stiffness*sum(m, is_massive)/sum(k, is_massive)
+  end subroutine find_weight
+
+  !> Conjugate gradients for M a = r with the preconditioner P^-1 M P^-1. Round-off of a large
+  !> static force on the massless part ends the decrease: the best iterate is the answer.
+  subroutine iterate(matrix, mass, solver, load, r, a, worst, error)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:)
+    class(equation_solver), intent(inout) :: solver !< of P
+    real(rk), intent(in) :: load(:), r(:)
+    real(rk), intent(inout) :: a(:)
+    integer, intent(inout) :: worst
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), dimension(matrix%num_total) :: rest, z, p, product, now
+    real(rk) :: reference, last_size, size_of_rest, smallest_size, curvature
+    integer :: i
+    call precondition(matrix, mass, solver, load, z, reference, error)
+    if (allocated(error)) return
+    rest = r
+    p = 0.0_rk
+    now = 0.0_rk
+    last_size = huge(1.0_rk)
+    smallest_size = huge(1.0_rk)
+    do i = 0, most_iterations
+      call precondition(matrix, mass, solver, rest, z, size_of_rest, error)
+      if (allocated(error)) return
+      if (i == 0) reference = max(reference, size_of_rest)
+      if (size_of_rest < smallest_size) then
+        smallest_size = size_of_rest
+        a = now
+      end if
+      if (size_of_rest <= tolerance**2*reference &
+          .or. size_of_rest > largest_growth**2*smallest_size) exit
+      p = z + size_of_rest/last_size*p
+      call multiply(matrix, mass, p, product)
+      curvature = dot(p, product)
+      if (.not. curvature > 0.0_rk) exit
+      now = now + size_of_rest/curvature*p
+      rest = rest - size_of_rest/curvature*product
+      last_size = size_of_rest
+    end do
+    if (smallest_size > largest_correction**2*reference) worst = maxloc(abs(z), 1)
+  end subroutine iterate
+
+  !> z = P^-1 M P^-1 rest, and rest . z.
+  subroutine precondition(matrix, mass, solver, rest, z, size_of_rest, error)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:)
+    class(equation_solver), intent(inout) :: solver
+    real(rk), intent(in) :: rest(:)
+    real(rk), intent(out) :: z(:), size_of_rest
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: half(size(rest)), x(matrix%num_free, 1)
+    half = 0.0_rk
+    z = 0.0_rk
+    size_of_rest = 0.0_rk
+    x(:, 1) = rest(:matrix%num_free)
+    call solver%solve(x, error)
+    if (allocated(error)) return
+    half(:matrix%num_free) = x(:, 1)
+    call multiply(matrix, mass, half, z)
+    size_of_rest = dot(half, z)
+    x(:, 1) = z(:matrix%num_free)
+    call solver%solve(x, error)
+    z = 0.0_rk
+    z(:matrix%num_free) = x(:, 1)
+  end subroutine precondition
+end module massless_acceleration

@@ -1,0 +1,86 @@
+!> The acceleration that a dynamic step starts with, with or without mass everywhere.
+module start_acceleration
+  use kinds, only: rk
+  use errors, only: error_type, raise
+  use problem_definition, only: problem
+  use joint_law, only: joint_state, state_open
+  use joint_forces, only: reference_stiffness
+  use joint_iteration, only: closed_tangent
+  use step_system, only: dam_system
+  use initial_acceleration, only: find_acceleration
+  use massless_acceleration, only: find_constrained_acceleration, find_weight
+  implicit none
+  private
+  public :: find_start
+
+contains
+
+  !> Acceleration of all unknowns under the forces r. Open points of joints hold nothing; where a
+  !> massless part has no other hold, all points are taken as closed, as they are in K_eff.
+  subroutine find_start(model, system, joints, load, r, a, error)
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    type(joint_state), intent(in) :: joints(:) !< at the start of the step
+    real(rk), intent(in) :: load(:) !< (num_total) part of r that sets the tolerance [N]
+    real(rk), intent(in) :: r(:) !< (num_total) [N]
+    real(rk), intent(out) :: a(:) !< (num_total) [m/s2]
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: values(:)
+    logical :: is_definite, leaves_open
+    integer :: worst
+    call find_acceleration(system%matrix, system%mass, r, a, is_definite)
+    if (is_definite) return
+    leaves_open = .true.
+    do
+      call add_small_stiffness(model, system, joints, leaves_open, values)
+      if (.not. allocated(values)) return ! no mass anywhere
+      call find_constrained_acceleration(system%matrix, system%mass, values, load, r, a, worst, &
+                                         error)
+      if (worst == 0) return
+      if (.not. leaves_open) exit
+      leaves_open = .false.
+    end do
+    call name_place(system%numbers%describe(worst, model%mesh%node_id), error)
+  end subroutine find_start
+
+  !> Error: a massless part that nothing holds, or an iteration that does not converge.
+  subroutine name_place(place, error)
+    character(*), intent(in) :: place
+    type(error_type), allocatable, intent(inout) :: error !< allocated: P cannot be factored
+    logical :: is_free
+    is_free = allocated(error)
+    if (is_free) deallocate (error)
+    if (is_free) then
+      call raise(error, 'no initial acceleration at '//place//': a part without mass is free '// &
+                 'to move; add supports, connect the part by a tie or a joint, or give its '// &
+                 'material a *DENSITY')
+    else
+      call raise(error, 'no initial acceleration: the iteration does not converge at '//place// &
+                 '; give massless parts a small *DENSITY')
+    end if
+  end subroutine name_place
+
+  !> Values of M + eps K with the joints in K; not allocated where nothing has mass.
+  subroutine add_small_stiffness(model, system, joints, leaves_open, values)
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    type(joint_state), intent(in) :: joints(:)
+    logical, intent(in) :: leaves_open !< open points have no stiffness
+    real(rk), allocatable, intent(out) :: values(:)
+    real(rk), allocatable :: k(:, :), stiffness(:)
+    real(rk) :: eps
+    integer :: j
+    call find_weight(system%matrix, system%mass, system%stiffness, eps)
+    if (.not. eps > 0.0_rk) return
+    call reference_stiffness(model%joints, system%operator, k)
+    do j = 1, merge(size(joints), 0, leaves_open)
+      associate (first => system%operator%first_point(j), &
+                 last => system%operator%first_point(j + 1) - 1)
+        where (spread(joints(j)%status == state_open, 1, 3)) k(:, first:last) = 0.0_rk
+      end associate
+    end do
+    stiffness = system%stiffness
+    call system%operator%add_stiffness(closed_tangent(k), system%matrix, stiffness)
+    values = system%mass + eps*stiffness
+  end subroutine add_small_stiffness
+end module start_acceleration
