@@ -84,3 +84,21 @@ def test_many_modes_hold_the_total_mass(keyway):
     expected = sum(8.0 / (math.pi * (2 * k + 1)) ** 2 for k in range(len(along)))
     assert expected > 0.98
     assert along.sum() == pytest.approx(expected * MASS, rel=3e-3)
+
+
+@pytest.mark.parametrize(
+    "size, counts", [((200.0, 1.0, 1.0), (100, 1, 1)), ((300.0, 30.0, 1.0), (60, 6, 1))]
+)
+def test_slender_bodies_have_modes(keyway, size, counts):
+    """A beam 200:1 and a plate 300 x 30 x 1, fixed at one end: round-off of the forces of elements
+    is 1e-6 of K phi and more. Euler-Bernoulli: 1.8751^2/(2 pi) sqrt(E t^2/(12 rho))/L^2. nu = 0;
+    1e-3: squared element length over wave length."""
+    mesh, number = box_mesh(counts, stretched(size))
+    mesh.node_sets["BASE"] = number[0].ravel()
+    cards = (
+        elastic(MODULUS, 0.0, DENSITY) + "*BOUNDARY\nBASE, 1, 3\n*STEP\n*FREQUENCY\n2\n*END STEP\n"
+    )
+    modes = keyway(brick_deck(mesh, "C3D8I", cards)).json["steps"][0]["frequencies"]
+    root = 1.875104068711961  # of cos x cosh x = -1
+    exact = root**2 / (2 * math.pi) * size[2] * math.sqrt(MODULUS / 12 / DENSITY) / size[0] ** 2
+    assert modes[0]["hz"] == pytest.approx(exact, rel=1e-3)

@@ -14,8 +14,6 @@ module step_control
   integer, parameter :: easy_increments = 2 !< in a row, before a static step grows
   integer, parameter :: easy_dynamic_increments = 10 !< in a row: a new size is factored anew
   integer, parameter :: most_cuts_in_a_row = 10
-  real(rk), parameter :: smallest_static = 1.0e-5_rk !< increment over the step, unless given
-  real(rk), parameter :: smallest_dynamic = 1.0e-3_rk !< increment over the first, unless given
   real(rk), parameter :: roundoff = 1.0e-9_rk !< of times, over the increment
 
   !> A new component gets a line in save and load of state_archive.
@@ -44,11 +42,10 @@ contains
     control%duration = plan%duration
     control%is_direct = plan%is_direct
     control%smallest = plan%smallest_increment
-    if (control%smallest <= 0.0_rk) control%smallest = smallest_static*plan%duration
+    if (control%smallest <= 0.0_rk) control%smallest = plan%default_smallest()
     control%smallest = min(control%smallest, control%size)
     control%largest = min(plan%largest_increment, plan%duration)
     if (.not. is_dynamic) return
-    if (plan%smallest_increment <= 0.0_rk) control%smallest = smallest_dynamic*control%size
     control%growth = dynamic_growth
     control%easy_needed = easy_dynamic_increments
     if (plan%largest_increment >= huge(1.0_rk)) control%largest = control%size

@@ -11,6 +11,7 @@ module step_report
   use step_system, only: dam_system
   use admissible_slip, only: check_slip
   use user_increments, only: end_user_increment
+  use failure_remedy, only: name_remedy, name_slave_side
   use write_text, only: as_text
   implicit none
   private
@@ -57,6 +58,7 @@ contains
     type(state), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
     character(240) :: text
+    character(:), allocatable :: remedy
     integer :: p, j
     if (allocated(outcome%failure)) then
       call raise(error, failure_text(outcome, now))
@@ -72,15 +74,16 @@ contains
         outcome%residual, ' after ', outcome%iterations, ' iterations with an increment of ', &
         now%control%last_size, ', last equilibrium at time ', now%total_time
     end if
+    remedy = name_remedy(model%steps(now%step), now%control, outcome%iterations)
     p = outcome%worst_point
     if (p == 0) then
-      call raise(error, trim(text)//worst_node(model, system, outcome, now%step))
+      call raise(error, trim(text)//worst_node(model, system, outcome, now%step)//remedy)
       return
     end if
     j = count(system%operator%first_point <= p)
     p = p - system%operator%first_point(j) + 1
     call raise(error, trim(text)//'; largest in joint '//model%joints(j)%name//' at '// &
-               place_text(model%joints(j)%x(:, p)))
+               place_text(model%joints(j)%x(:, p))//name_slave_side(model%joints(j))//remedy)
   end subroutine report_failure
 
   !> Largest residual of inelastic solids: '; largest at node 12 at (0., 1., 3.)'.

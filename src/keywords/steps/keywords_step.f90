@@ -15,7 +15,6 @@ module keywords_step
   public :: read_step, read_end_step, read_static, read_dynamic, read_frequency
 
   character, parameter :: nl = new_line('a')
-  real(rk), parameter :: smallest_share = 1.0e-5_rk !< of the duration, as in Abaqus
 
 contains
 
@@ -118,7 +117,8 @@ contains
               field('first increment', kind_real, 'size of the first increment', 's', &
                     'the duration'), &
               field('duration', kind_real, 'duration of the step', 's', '1'), &
-              field('smallest', kind_real, 'smallest increment', 's', '1e-5 of the duration'), &
+              field('smallest', kind_real, 'smallest increment', 's', &
+                    '1e-5 of the duration, at most 1e-3 of the first increment'), &
               field('largest', kind_real, 'largest increment', 's', 'the duration')])
     call want_positive(spec)
   end subroutine describe_static
@@ -168,7 +168,7 @@ contains
               field('increment', kind_real, 'size of an increment', 's', is_required=.true.), &
               field('duration', kind_real, 'duration of the step', 's', is_required=.true.), &
               field('smallest', kind_real, 'smallest increment after reductions', 's', &
-                    '1e-5 of the duration'), &
+                    '1e-3 of the increment'), &
               field('largest', kind_real, 'largest increment', 's', 'the increment')])
     call want_positive(spec)
   end subroutine describe_dynamic
@@ -257,7 +257,7 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     associate (now => model%now)
-      now%smallest_increment = min(now%first_increment, smallest_share*now%duration)
+      now%smallest_increment = now%default_smallest()
       if (is_given(this, 3)) now%smallest_increment = this%real_at(1, 3)
       if (is_given(this, 4)) now%largest_increment = this%real_at(1, 4)
       if (now%first_increment > now%duration) then

@@ -93,7 +93,14 @@ module step_plan
     type(field_request), allocatable :: outputs(:)
     character(field_name_length), allocatable :: envelope(:) !< fields of *ENVELOPE
     type(step_controls) :: controls
+  contains
+    procedure :: default_smallest
   end type step
+
+  !> Smallest increments unless the deck names one. They do not depend on the duration of a dynamic
+  !> step: a record of 60 s may be cut as often as one of 5 s.
+  real(rk), parameter :: smallest_of_duration = 1.0e-5_rk !< static, as in Abaqus
+  real(rk), parameter :: smallest_of_increment = 1.0e-3_rk !< over the first increment
 contains
 
   !> Whether loads ramp over the step, without inertia.
@@ -101,4 +108,13 @@ contains
     class(step_procedure), intent(in) :: self
     is_static = .not. (self%has_inertia .or. self%finds_modes) .and. self%name /= ''
   end function is_static
+
+  !> The smallest increment where the deck names none. A static step whose first increment is small
+  !> can be cut as well.
+  pure real(rk) function default_smallest(self) result(smallest)
+    class(step), intent(in) :: self
+    smallest = smallest_of_increment*self%first_increment
+    if (.not. self%procedure%has_inertia) smallest = min(smallest_of_duration*self%duration, &
+                                                         smallest)
+  end function default_smallest
 end module step_plan

@@ -1,0 +1,56 @@
+"""Smallest increments, and what the message names where an increment has no equilibrium."""
+
+import pytest
+from joint_decks import Block, dynamic, static, weight
+
+PULL = "*CLOAD\nTOP, 3, 1e9\n"  # [N] on each node: the block is lifted off its bed
+
+
+def checked_increments(keyway, line: str, procedure: str) -> str:
+    """The line of --check with the increments of a step."""
+    deck = Block((1.0, 1.0, 1.0)).deck(f"*STEP, INC=1000000\n*{procedure}\n{line}\n*END STEP\n")
+    shown = keyway(deck, "--check").stdout
+    return next(row for row in shown.splitlines() if "duration" in row)
+
+
+@pytest.mark.parametrize("duration", ["5", "60", "600"])
+def test_smallest_dynamic_increment_does_not_depend_on_the_duration(keyway, duration):
+    assert "(1e-5 to 0.01)" in checked_increments(keyway, f"0.01, {duration}", "DYNAMIC")
+
+
+@pytest.mark.parametrize(
+    "line, smallest", [("0.1, 1", "1e-5"), ("1e-5, 1", "1e-8"), ("1, 1, 0.5", "0.5")]
+)
+def test_smallest_static_increment(keyway, line, smallest):
+    assert f"({smallest} to" in checked_increments(keyway, line, "STATIC")
+
+
+def message_of(keyway, steps: str, **block) -> str:
+    return keyway(Block((1.0, 1.0, 1.0), **block).deck(steps), code=1).json["message"]
+
+
+def test_message_names_direct(keyway):
+    step = static(PULL, "0.5, 1").replace("*STATIC", "*STATIC, DIRECT")
+    assert "the increment is fixed (DIRECT): leave DIRECT out" in message_of(keyway, step)
+
+
+def test_message_names_iterations(keyway):
+    """One iteration is too few to open a bed that is closed at the start."""
+    controls = "*CONTROLS, ITERATIONS=1\n"
+    message = message_of(keyway, dynamic(controls + PULL, 0.1, 1.0))
+    assert "DIRECT" in message
+    assert "or allow more than ITERATIONS=1 (*CONTROLS)" in message
+
+
+def test_message_names_the_smallest_increment(keyway):
+    message = message_of(keyway, static(weight() + PULL, "0.5, 1, 0.1"))
+    assert "the smallest increment of the step is 0.1 s: name a smaller one" in message
+    assert "on the data line of *STATIC" in message
+
+
+def test_message_names_the_finer_slave(keyway):
+    """A block of 9 nodes below on a base of one facet."""
+    message = message_of(keyway, static(PULL), meshes=(1, 1), counts=(3, 3, 1))
+    assert ", whose slave has the finer mesh: make the coarser surface the slave" in message
+    message = message_of(keyway, static(PULL), meshes=(3, 3), counts=(1, 1, 1))
+    assert "finer mesh" not in message
