@@ -14,6 +14,7 @@ set(sources
   integrators/static_increment.f90
   integrators/static_integrator.f90
   solids/guest_forces.f90
+  solids/increment_balance.f90
   solids/inelastic_forces.f90
   solids/inelastic_stiffness.f90
   solids/solid_iteration.f90

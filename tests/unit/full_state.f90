@@ -106,7 +106,7 @@ contains
     type(motion), intent(inout) :: own
     integer, intent(inout) :: n
     allocate (own%q(4), own%v(4), own%a(4), own%external(4), own%elastic(4), own%internal(4), &
-              own%contact(4), own%balanced(4), own%elastic_rate(4), own%elastic_jerk(4), &
+              own%contact(4), own%balanced(4), &
               own%viscous(4), own%viscous_rate(4), own%momentum(4), own%inertia(4), &
               own%carried(3, 4), own%jump_rate(3, 4))
     call fill(own%q, n)
@@ -117,8 +117,6 @@ contains
     call fill(own%internal, n)
     call fill(own%contact, n)
     call fill(own%balanced, n)
-    call fill(own%elastic_rate, n)
-    call fill(own%elastic_jerk, n)
     call fill(own%viscous, n)
     call fill(own%viscous_rate, n)
     call fill(own%momentum, n)

@@ -134,8 +134,6 @@ contains
     call compare(log, what//'internal', a%internal, b%internal)
     call compare(log, what//'contact', a%contact, b%contact)
     call compare(log, what//'balanced', a%balanced, b%balanced)
-    call compare(log, what//'elastic_rate', a%elastic_rate, b%elastic_rate)
-    call compare(log, what//'elastic_jerk', a%elastic_jerk, b%elastic_jerk)
     call compare(log, what//'viscous', a%viscous, b%viscous)
     call compare(log, what//'viscous_rate', a%viscous_rate, b%viscous_rate)
     call compare(log, what//'momentum', a%momentum, b%momentum)

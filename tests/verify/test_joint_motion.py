@@ -131,6 +131,33 @@ CONTACT = 2.0 * BAR["length"] / WAVE  # 6.19677e-3 s
 PRESSURE = BAR["density"] * WAVE * BAR["speed"]  # 7.74597e6 Pa
 
 
+def test_stiff_block_slides_far(keyway):
+    """2000 increments of HHT with alpha 0: a stiff block slides 6 m on a base that accelerates.
+
+    Nothing damps errors of the forces here, so none may add up from increment to increment. Closed
+    form: friction 0.5 of the weight leaves 8 - 5 = 3 m/s2. Tolerance: the block starts to slide
+    within the first increments, and the elastic slip of 5 m/s2 * mass/KT = 4e-7 m is left over.
+    """
+    duration = 2.0
+    block = Block(
+        (1.0, 1.0, 1.0),
+        density=2400.0,
+        young=3e10,
+        law="KN=3e10, KT=3e10, FRICTION=0.5",
+        cards=amplitude("PUSH", np.array([0.0, duration]), np.array([8.0, 8.0])),
+    )
+    motion = "*BASE MOTION, DOF=1, AMPLITUDE=PUSH, TYPE=ACCELERATION\n"
+    print_last = "*NODE PRINT, NSET=BODY, FREQUENCY=2000\nU, V\n"
+    steps = static(weight(10.0)) + dynamic(motion + print_last, 0.001, duration, alpha=0.0)
+    run = keyway(block.deck(steps))
+    assert run.json["steps"][1]["increments"] == 2000
+    assert run.json["steps"][1]["cutbacks"] == 0
+    table = run.csv("node_BODY")
+    last = table["time"] > 2.9
+    assert table["U1"][last] == pytest.approx(-0.5 * 3.0 * duration**2, rel=1e-3)
+    assert table["V1"][last] == pytest.approx(-3.0 * duration, rel=1e-3)
+
+
 def bar_on_wall(keyway, elements: int, courant: float, meshes) -> dict[str, float]:
     """Contact time, pressure and energy of a bar that flies against a wall at z = 0."""
     dt = courant * BAR["length"] / elements / WAVE

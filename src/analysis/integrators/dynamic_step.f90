@@ -14,7 +14,6 @@ module dynamic_step
                          build_loads
   use step_loads, only: step_time, external_force, prescribed_values
   use start_acceleration, only: find_start
-  use tangent_choice, only: choose_tangents
   use energy_account, only: open_account
   use solid_iteration, only: solid_solver
   implicit none
@@ -47,7 +46,7 @@ contains
     call build_loads(model, plan, now%u, system, results%costs)
     now%num_unknowns = system%matrix%num_free
     call start_motion(system%numbers, model%joints, now, has_inertia=.true.)
-    call solids%open(model, system, choose_tangents(model, plan), now)
+    call solids%open(model, system, plan, now)
     call results%costs%start('solve', 'initial acceleration', 'solver')
     call start_forces(system, model, plan, now, error)
     call results%costs%stop()

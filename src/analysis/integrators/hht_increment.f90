@@ -1,20 +1,26 @@
-!> One increment of HHT in the unknown x = u1 - u^ (theory.md, 7.1-7.2):
+!> One increment of HHT in the unknown x = u1 - u0 (theory.md, 7.1-7.2):
 !>
-!>   K_eff x + w B^T (area t1) = (1 + alpha)(f1 - C v^ - K u^) - alpha (f0 - C v0 - f_int0) - w0 J0
+!>   K_eff x + w B^T (area t1) = (1 + alpha)(f1 - C v^ - K u0) - alpha (f0 - C v0 - f_int0) - w0 J0
+!>                               + (M/(beta dt^2) + (1 + alpha) gamma/(beta dt) C) (u^ - u0)
 !>   K_eff = M/(beta dt^2) + (1 + alpha) (gamma/(beta dt) C + K)
 !>
 !> Inelastic solids add (1 + alpha) s on the right, s their initial-stress force (12.2).
 !>
 !> Products per increment: M a1, C a1 and K u1. They give all forces at the end and the residual;
-!> K u^, C v and M v follow from the forces of the increment before.
+!> C v and M v follow from the forces of the increment before. K u1 is a product of its own in every
+!> increment: a sum of K v and K a over increments keeps their round-off, which does not decay
+!> without damping and reaches the weight of a stiff block that slides for a second.
 submodule(hht_integrator) hht_increment
   use global_vectors, only: length
   use dynamic_step, only: largest_force
   use joint_forces, only: gather_jumps
   use equilibrium, only: force_balance
-  use solid_iteration, only: increment_task
-  use step_equilibrium, only: add_moving_supports, check_bulk
+  use increment_balance, only: increment_task
+  use step_equilibrium, only: add_moving_supports
   implicit none
+
+  !> Floor of the reference force, as a fraction of norm(diag(K) q): far above the round-off of K q.
+  real(rk), parameter :: roundoff_share = 1.0e-9_rk
 
 contains
 
@@ -28,66 +34,78 @@ contains
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
     type(increment_task) :: task
-    real(rk), dimension(self%system%matrix%num_total) :: moved, rhs
+    integer :: iterations
     associate (system => self%system, scheme => self%scheme, solids => self%solids, &
                n => self%system%matrix%num_free, old => before%motion, new => after%motion)
-      call predict(scheme, old, new)
-      call external_force(system%groups, model%amplitudes, when, new%external)
-      moved = new%q
-      call prescribed_values(system%supports, model%amplitudes, when, moved)
-      moved = moved - new%q
-      call sum_known_forces(system, scheme, old, new, rhs)
-      task%balance%rhs = rhs(:n)
-      call add_moving_supports(system, solids%values, moved, task%balance%rhs)
-      task%start = new%q + moved
-      call set_jumps(system, scheme, before, task%start, task%balance)
-      task%balance%reference_force = largest_force(old, n, scheme%joint_weight, scheme%dt)
-      allocate (task%x(system%matrix%num_total))
-      if (solids%has_inelastic()) then
-        task%reference_force = max(task%balance%reference_force, before%largest_force, &
-                                   length(new%external(:n)))
-      end if
-      call solids%solve_increment(model, system, task, before, after, outcome, error)
-      if (allocated(error) .or. .not. outcome%has_converged) return
-      call correct(system, scheme, solids, task%x + moved, before, after, rhs)
-      ! With reactions: displaced supports may be the only load of the dam.
-      after%largest_force = max(task%balance%reference_force, length(new%internal), &
-                                task%reference_force, &
-                                largest_force(new, n, scheme%joint_weight, scheme%dt))
-      call check_bulk(rhs(:n), after%largest_force, solids%solver%controls%residual_tolerance, &
-                      outcome)
+      call pose_task(self, model, when, before, after, task)
+      iterations = 0
+      do
+        call solids%solve_increment(model, system, task, before, after, outcome, error)
+        if (allocated(error) .or. .not. outcome%has_converged) return
+        iterations = iterations + outcome%iterations
+        call correct(system, scheme, solids, task, before, after)
+        ! With reactions: displaced supports may be the only load of the dam.
+        after%largest_force = max(task%balance%reference_force, length(new%internal), &
+                                  task%reference_force, roundoff_share*length(system%diagonal &
+                                                                              *new%q), &
+                                  largest_force(new, n, scheme%joint_weight, scheme%dt))
+        call task%check_balance(new%balanced(:n) - new%inertia(:n), after%largest_force, outcome)
+        if (.not. task%is_refined) exit
+      end do
+      outcome%iterations = iterations
     end associate
   end subroutine take_increment
 
-  !> u^, v^, a = 0 and the forces that go with them.
-  subroutine predict(scheme, before, after)
-    type(hht), intent(in) :: scheme
-    type(motion), intent(in) :: before
-    type(motion), intent(inout) :: after
-    associate (dt => scheme%dt, rest => (1.0_rk - scheme%gamma)*scheme%dt)
-      after%q = before%q + dt*before%v + dt**2*(0.5_rk - scheme%beta)*before%a
-      after%v = before%v + rest*before%a
-      after%momentum = before%momentum + rest*before%inertia
-      after%viscous = before%viscous + rest*before%viscous_rate
-      after%elastic = before%elastic + dt*before%elastic_rate &
-                      + dt**2*(0.5_rk - scheme%beta)*before%elastic_jerk
-      after%elastic_rate = before%elastic_rate + rest*before%elastic_jerk
+  !> The problem of the increment in the unknown x = u1 - u0; prescribed unknowns are in place.
+  subroutine pose_task(self, model, when, before, after, task)
+    class(hht_method), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(step_time), intent(in) :: when !< the end of the increment
+    type(state), intent(in) :: before
+    type(state), intent(inout) :: after
+    type(increment_task), intent(out) :: task
+    real(rk), dimension(self%system%matrix%num_total) :: moved, rhs
+    associate (system => self%system, scheme => self%scheme, &
+               n => self%system%matrix%num_free, old => before%motion, new => after%motion)
+      call external_force(system%groups, model%amplitudes, when, new%external)
+      moved = old%q
+      call prescribed_values(system%supports, model%amplitudes, when, moved)
+      task%start = moved
+      moved = moved - old%q
+      call sum_known_forces(system, scheme, old, new%external, rhs)
+      task%balance%rhs = rhs(:n)
+      call add_moving_supports(system, self%solids%values, moved, task%balance%rhs)
+      call set_jumps(system, scheme, before, task%start, task%balance)
+      task%balance%reference_force = largest_force(old, n, scheme%joint_weight, scheme%dt)
+      allocate (task%x(system%matrix%num_total))
+      if (self%solids%has_inelastic()) then
+        task%reference_force = max(task%balance%reference_force, before%largest_force, &
+                                   length(new%external(:n)))
+      end if
     end associate
-  end subroutine predict
+  end subroutine pose_task
 
-  !> The right-hand side, all rows; prescribed ones are not used.
-  subroutine sum_known_forces(system, scheme, before, after, rhs)
+  !> The right-hand side, all rows; prescribed ones are not used. With u1 = u0 the acceleration is
+  !> -p/(beta dt^2), p = dt v0 + dt^2 (1/2 - beta) a0.
+  subroutine sum_known_forces(system, scheme, before, external, rhs)
     type(dam_system), intent(in) :: system
     type(hht), intent(in) :: scheme
-    type(motion), intent(in) :: before, after !< after: predicted
+    type(motion), intent(in) :: before
+    real(rk), intent(in) :: external(:) !< at the end [N]
     real(rk), intent(out) :: rhs(:)
-    rhs = (1.0_rk + scheme%alpha)*(after%external - after%viscous - after%elastic) &
-          - scheme%alpha*(before%external - before%viscous - before%internal)
-    if (scheme%carries_impulse) then
-      call system%operator%add_forces(-scheme%old_joint_weight*before%carried, rhs)
-    else
-      rhs = rhs - scheme%old_joint_weight*before%contact
-    end if
+    associate (dt => scheme%dt, bulk => 1.0_rk + scheme%alpha, &
+               half => scheme%dt**2*(0.5_rk - scheme%beta))
+      rhs = bulk*(external - before%elastic) &
+            - scheme%alpha*(before%external - before%viscous - before%internal) &
+            + scheme%acceleration_of_x*(dt*before%momentum + half*before%inertia) &
+            - bulk*(before%viscous + (1.0_rk - scheme%gamma)*dt*before%viscous_rate) &
+            + bulk*scheme%velocity_of_x*(dt*before%viscous + half*before%viscous_rate)
+      if (scheme%carries_impulse) then
+        call system%operator%add_forces(-scheme%old_joint_weight*before%carried, rhs)
+      else
+        rhs = rhs - scheme%old_joint_weight*before%contact
+      end if
+    end associate
   end subroutine sum_known_forces
 
   !> Jumps at x = 0 with the supports in place, and a first guess: jumps extrapolated from the last
@@ -96,7 +114,7 @@ contains
     type(dam_system), intent(in) :: system
     type(hht), intent(in) :: scheme
     type(state), intent(in) :: before
-    real(rk), intent(in) :: q(:) !< predicted, supports in place
+    real(rk), intent(in) :: q(:) !< at the start, supports at the end of the increment
     type(force_balance), intent(inout) :: balance
     allocate (balance%offset(3, system%operator%num_points), &
               balance%guess(3, system%operator%num_points))
@@ -105,50 +123,42 @@ contains
     balance%guess = balance%guess + scheme%dt*before%motion%jump_rate
   end subroutine set_jumps
 
-  !> Motion and forces at the end; `rhs` returns the residual.
-  subroutine correct(system, scheme, solids, x, before, after, rhs)
+  !> Motion and forces at the end.
+  subroutine correct(system, scheme, solids, task, before, after)
     type(dam_system), intent(in) :: system
     type(hht), intent(in) :: scheme
     type(solid_solver), intent(in) :: solids
-    real(rk), intent(in) :: x(:) !< (num_total) [m]
+    type(increment_task), intent(in) :: task !< solved
     type(state), intent(in) :: before
     type(state), intent(inout) :: after
-    real(rk), intent(inout) :: rhs(:)
-    real(rk) :: predicted(size(x)), weight
-    associate (old => before%motion, new => after%motion, bulk => 1.0_rk + scheme%alpha)
-      new%a = scheme%acceleration_of_x*x
-      new%q = new%q + x
-      new%v = new%v + scheme%velocity_of_x*x
-      weight = scheme%gamma*scheme%dt
+    associate (old => before%motion, new => after%motion, dt => scheme%dt, &
+               rest => (1.0_rk - scheme%gamma)*scheme%dt, bulk => 1.0_rk + scheme%alpha)
+      new%q = task%start + task%x
+      new%a = scheme%acceleration_of_x*(new%q - old%q - dt*old%v &
+                                        - dt**2*(0.5_rk - scheme%beta)*old%a)
+      new%v = old%v + rest*old%a + scheme%gamma*dt*new%a
       call multiply(system%mass_pattern, system%mass_entries, new%a, new%inertia)
-      new%momentum = new%momentum + weight*new%inertia
-      predicted = new%elastic
-      call multiply(system%matrix, system%stiffness, new%q, new%elastic)
-      new%elastic_jerk = scheme%acceleration_of_x*(new%elastic - predicted)
-      new%elastic_rate = new%elastic_rate + weight*new%elastic_jerk
-      call solids%set_internal(new)
-      rhs = rhs - new%inertia - bulk*(new%internal - predicted)
+      new%momentum = old%momentum + rest*old%inertia + scheme%gamma*dt*new%inertia
       call system%find_damping_force(new%a, new%viscous_rate)
-      new%viscous = new%viscous + weight*new%viscous_rate
-      rhs = rhs - bulk*weight*new%viscous_rate
+      new%viscous = old%viscous + rest*old%viscous_rate + scheme%gamma*dt*new%viscous_rate
+      call multiply(system%matrix, system%stiffness, new%q, new%elastic)
+      call solids%set_internal(new)
       new%balanced = bulk*(new%external - new%viscous - new%internal) &
                      - scheme%alpha*(old%external - old%viscous - old%internal)
     end associate
-    call add_joints(system, scheme, before, after, rhs)
+    call add_joints(system, scheme, before, after)
   end subroutine correct
 
-  !> The forces of the joints in the residual and in the balance.
-  subroutine add_joints(system, scheme, before, after, rhs)
+  !> The forces of the joints in the balance.
+  subroutine add_joints(system, scheme, before, after)
     type(dam_system), intent(in) :: system
     type(hht), intent(in) :: scheme
     type(state), intent(in) :: before
     type(state), intent(inout) :: after
-    real(rk), intent(inout) :: rhs(:)
-    real(rk) :: joint_force(size(rhs))
+    real(rk) :: joint_force(system%matrix%num_total)
     call sum_contact(system%operator, after)
     call carry_joints(system, scheme, before, after)
     associate (old => before%motion, new => after%motion)
-      rhs = rhs - scheme%joint_weight*new%contact
       joint_force = scheme%joint_weight*new%contact
       if (scheme%carries_impulse) then
         call system%operator%add_forces(scheme%old_joint_weight*old%carried, joint_force)

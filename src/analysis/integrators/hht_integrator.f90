@@ -71,11 +71,9 @@ contains
     type(dam_system), intent(in) :: system
     type(state), intent(inout) :: now
     associate (own => now%motion, n => system%matrix%num_total, p => system%operator%num_points)
-      allocate (own%elastic_rate(n), own%elastic_jerk(n), own%viscous_rate(n), source=0.0_rk)
+      allocate (own%viscous_rate(n), source=0.0_rk)
       allocate (own%carried(3, p), own%jump_rate(3, p), source=0.0_rk)
       call gather_tractions(system%operator, now%joints, own%carried)
-      call multiply(system%matrix, system%stiffness, own%v, own%elastic_rate)
-      call multiply(system%matrix, system%stiffness, own%a, own%elastic_jerk)
       call system%find_damping_force(own%a, own%viscous_rate)
     end associate
   end subroutine start_rates

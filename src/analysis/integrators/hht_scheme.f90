@@ -1,7 +1,7 @@
 !> The constants of a step of the method of Hilber, Hughes & Taylor (theory.md, (7.1)-(7.2)).
 !>
-!> With the predictors u^ = u0 + dt v0 + dt^2 (1/2 - beta) a0 and v^ = v0 + dt (1 - gamma) a0 the
-!> unknown is x = u1 - u^; then a1 = x/(beta dt^2) and v1 = v^ + gamma dt a1.
+!> With the predictors u^ = u0 + dt v0 + dt^2 (1/2 - beta) a0 and v^ = v0 + dt (1 - gamma) a0:
+!> a1 = (u1 - u^)/(beta dt^2) and v1 = v^ + gamma dt a1.
 module hht_scheme
   use kinds, only: rk
   implicit none

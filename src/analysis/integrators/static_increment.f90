@@ -13,10 +13,11 @@ module static_increment
   use analysis_state, only: state
   use state_transfer, only: sum_contact
   use equilibrium, only: force_balance, balance_outcome
-  use step_equilibrium, only: add_moving_supports, check_bulk
+  use step_equilibrium, only: add_moving_supports
   use step_system, only: dam_system
   use step_loads, only: step_time, external_force, prescribed_values
-  use solid_iteration, only: solid_solver, increment_task
+  use increment_balance, only: increment_task
+  use solid_iteration, only: solid_solver
   implicit none
   private
   public :: take_static_increment
@@ -37,18 +38,25 @@ contains
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
     type(increment_task) :: task
+    integer :: iterations
     call pose_task(model, system, solids, when, before, after, task)
-    call solids%solve_increment(model, system, task, before, after, outcome, error)
-    if (allocated(error) .or. .not. outcome%has_converged) return
-    associate (old => before%motion, new => after%motion, n => system%matrix%num_free)
-      new%q = new%q + task%x
-      call multiply(system%matrix, system%stiffness, new%q, new%elastic)
-      call solids%set_internal(new)
-      call sum_contact(system%operator, after)
-      new%balanced = 0.0_rk
-      after%largest_force = reference_force(system%diagonal, solids, before, after)
-      call check_bulk(new%external(:n) - new%internal(:n) - new%contact(:n), &
-                      after%largest_force, solids%solver%controls%residual_tolerance, outcome)
+    iterations = 0
+    associate (new => after%motion, n => system%matrix%num_free)
+      do
+        call solids%solve_increment(model, system, task, before, after, outcome, error)
+        if (allocated(error) .or. .not. outcome%has_converged) return
+        iterations = iterations + outcome%iterations
+        new%q = task%start + task%x
+        call multiply(system%matrix, system%stiffness, new%q, new%elastic)
+        call solids%set_internal(new)
+        call sum_contact(system%operator, after)
+        new%balanced = 0.0_rk
+        after%largest_force = reference_force(system%diagonal, solids, before, after)
+        call task%check_balance(new%external(:n) - new%internal(:n) - new%contact(:n), &
+                                after%largest_force, outcome)
+        if (.not. task%is_refined) exit
+      end do
+      outcome%iterations = iterations
     end associate
   end subroutine take_static_increment
 

@@ -67,7 +67,7 @@ contains
     now%num_unknowns = self%system%matrix%num_free
     now%joint_condition = max(now%joint_condition, self%solids%solver%condition)
     call start_motion(self%system%numbers, model%joints, now, has_inertia=.false.)
-    call self%solids%open(model, self%system, choices, now)
+    call self%solids%open(model, self%system, plan, now)
     if (self%solids%has_inelastic()) self%solids%values = self%system%stiffness
     call start_forces(self, model, plan, now)
     call results%costs%start('recover', 'energy', 'solver')

@@ -20,29 +20,23 @@ module solid_iteration
                               sum_excess, find_failure
   use guest_forces, only: has_histories, recall_guests, update_guests
   use joint_forces, only: gather_jumps
-  use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
+  use equilibrium, only: equilibrium_solver, balance_outcome
+  use increment_balance, only: increment_task
   use step_system, only: dam_system
   use anderson_mixing, only: mixer
   use solid_tangent, only: tangent_matrix
-  use tangent_choice, only: tangent
+  use step_plan, only: step
+  use tangent_choice, only: tangent, choose_tangents
   implicit none
   private
-  public :: increment_task, solid_solver
-
-  !> The problem of one increment.
-  type :: increment_task
-    type(force_balance) :: balance !< without the initial-stress force
-    real(rk), allocatable :: start(:) !< (num_total) u at x = 0, supports in place [m]
-    real(rk), allocatable :: x(:) !< (num_total) solution; zero on prescribed unknowns [m]
-    real(rk) :: reference_force = 0.0_rk !< largest known force [N]
-    logical :: counts_reactions = .false. !< reactions are part of the reference force
-  end type increment_task
+  public :: solid_solver
 
   !> Solver of increments.
   type :: solid_solver
     class(equilibrium_solver), allocatable :: solver !< with a linear bulk
     real(rk), allocatable :: values(:) !< of K_eff, without joints
     real(rk) :: weight = 1.0_rk !< of the forces of the solids
+    real(rk) :: tolerance = 0.0_rk !< of the balance of all forces, over the reference force
     type(tangent), allocatable :: choices(:) !< tried one after the other
     type(tangent) :: chosen !< the present one
     type(time_increment) :: time
@@ -89,14 +83,15 @@ module solid_iteration
 contains
 
   !> Opens a step with the internal forces of its initial state.
-  subroutine open_solids(self, model, system, choices, now)
+  subroutine open_solids(self, model, system, plan, now)
     class(solid_solver), intent(inout) :: self
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
-    type(tangent), intent(in) :: choices(:)
+    type(step), intent(in) :: plan
     type(state), intent(inout) :: now
-    self%choices = choices
-    self%chosen = choices(1)
+    self%tolerance = plan%controls%residual_tolerance
+    self%choices = choose_tangents(model, plan)
+    self%chosen = self%choices(1)
     call multiply(system%matrix, system%stiffness, now%motion%q, now%motion%elastic)
     if (size(now%points) > 0 .or. has_histories(now%guests)) then
       allocate (self%excess(system%matrix%num_total))
@@ -156,6 +151,12 @@ contains
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
     integer :: i
+    task%tolerance = self%tolerance
+    self%solver%controls%residual_tolerance = task%share*self%tolerance
+    if (task%is_refined) then
+      task%balance%starts_closed = .false.
+      call gather_jumps(system%operator, after%joints, task%balance%guess)
+    end if
     if (.not. self%has_inelastic()) then
       call self%solver%solve_balance(task%balance, model%joints, before%joints, after%joints, &
                                      task%x, outcome, error)
@@ -215,6 +216,12 @@ contains
     n = system%matrix%num_free
     call self%mixer%forget()
     now%rhs = now%task%balance%rhs
+    if (now%task%is_refined) then
+      call self%matrix%multiply_lost(system%matrix, now%task%x, product)
+      now%guess = self%excess(:n) - product(:n)
+      now%moved = norm(now%task%start + now%task%x - before%motion%q)
+      return
+    end if
     now%task%x = 0.0_rk
     call self%matrix%multiply_lost(system%matrix, now%task%start - before%motion%q, product)
     now%guess = before%motion%elastic(:n) - before%motion%internal(:n) + product(:n)

@@ -55,7 +55,6 @@ module analysis_state
     real(rk), allocatable :: internal(:) !< (num_total) sum of B^T sigma over the elements [N]
     real(rk), allocatable :: contact(:) !< (num_total) B^T (area t), the joints by their laws [N]
     real(rk), allocatable :: balanced(:) !< (num_total) M a as the balance of forces gives it [N]
-    real(rk), allocatable :: elastic_rate(:), elastic_jerk(:) !< K v [N/s], K a [N/s2]
     real(rk), allocatable :: viscous(:), viscous_rate(:) !< C v [N], C a [N/s]
     real(rk), allocatable :: momentum(:), inertia(:) !< M v [N s], M a [N]
     real(rk), allocatable :: carried(:, :) !< (3, points) t* of the implicit joint impulse [Pa]

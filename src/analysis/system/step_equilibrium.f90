@@ -5,16 +5,16 @@ module step_equilibrium
   use dam_mesh, only: fe_mesh
   use problem_definition, only: problem
   use step_plan, only: step
-  use global_vectors, only: norm, multiply
+  use global_vectors, only: multiply
   use solver_catalogue, only: make_solver, symmetric_solver
-  use equilibrium, only: equilibrium_solver, balance_outcome
+  use equilibrium, only: equilibrium_solver
   use equilibrium_linear, only: linear_equilibrium
   use equilibrium_catalogue, only: condensed_solver, full_solver, make_joint_solver
   use step_system, only: dam_system
   use write_text, only: as_text
   implicit none
   private
-  public :: make_equilibrium, prepare_equilibrium, add_moving_supports, check_bulk
+  public :: make_equilibrium, prepare_equilibrium, add_moving_supports
 
   !> Most joint points for the dense compliance, which takes about 2 GB (three matrices of
   !> 8*(3*points)^2 bytes). With more points full Newton factors in each iteration; it needs the
@@ -109,16 +109,4 @@ contains
     call multiply(system%matrix, values, x, product)
     rhs = rhs - product(:size(rhs))
   end subroutine add_moving_supports
-
-  !> Final check of convergence: residual of the free unknowns with the joint forces of the laws.
-  subroutine check_bulk(unbalance, reference, tolerance, outcome)
-    real(rk), intent(in) :: unbalance(:) !< (free unknowns) [N]
-    real(rk), intent(in) :: reference !< [N]
-    real(rk), intent(in) :: tolerance
-    type(balance_outcome), intent(inout) :: outcome
-    real(rk) :: residual
-    residual = norm(unbalance)/max(reference, tiny(1.0_rk))
-    outcome%residual = max(outcome%residual, residual)
-    outcome%has_converged = residual <= tolerance
-  end subroutine check_bulk
 end module step_equilibrium

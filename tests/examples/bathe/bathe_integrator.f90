@@ -24,12 +24,12 @@ module bathe_integrator
   use joint_forces, only: gather_jumps
   use joint_water, only: update_uplift
   use equilibrium, only: balance_outcome
-  use step_equilibrium, only: add_moving_supports, check_bulk, prepare_equilibrium
+  use step_equilibrium, only: add_moving_supports, prepare_equilibrium
   use step_system, only: dam_system
   use step_loads, only: external_force, prescribed_values, step_time
   use dynamic_step, only: largest_force, open_dynamic_step
   use energy_account, only: add_dynamic_work
-  use solid_iteration, only: increment_task
+  use increment_balance, only: increment_task
   use integrator_type, only: integrator
   implicit none
   private
@@ -229,7 +229,7 @@ contains
   !> Motion and forces at the end of a part, and their residual.
   subroutine correct(self, task, x, dt, after, outcome)
     class(bathe_method), intent(in) :: self
-    type(increment_task), intent(in) :: task
+    type(increment_task), intent(inout) :: task
     real(rk), intent(in) :: x(:) !< (num_total) [m]
     real(rk), intent(in) :: dt !< length of the part [s]
     type(state), intent(inout) :: after
@@ -247,8 +247,7 @@ contains
                                 length(new%internal), &
                                 largest_force(new, n, 1.0_rk, dt))
       after%joint_condition = max(after%joint_condition, self%solids%solver%condition)
-      call check_bulk(new%balanced(:n) - new%inertia(:n), after%largest_force, &
-                      self%solids%solver%controls%residual_tolerance, outcome)
+      call task%check_balance(new%balanced(:n) - new%inertia(:n), after%largest_force, outcome)
     end associate
   end subroutine correct
 

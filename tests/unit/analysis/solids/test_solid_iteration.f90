@@ -15,12 +15,12 @@ program test_solid_iteration
   use softening_law, only: damage_law, put_law
   use equilibrium, only: balance_outcome
   use state_transfer, only: start_motion
-  use solid_iteration, only: solid_solver, increment_task
+  use increment_balance, only: increment_task
+  use solid_iteration, only: solid_solver
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium, add_moving_supports
   use step_loads, only: step_time, prescribed_values
   use run_ledger, only: ledger
   use step_system, only: dam_system, build_structure, build_loads
-  use tangent_choice, only: choose_tangents
   use testing, only: test_log, check, check_close
   implicit none
 
@@ -319,7 +319,7 @@ contains
     call make_equilibrium(model%steps(1), system, .false., solids%solver, error)
     call prepare_equilibrium(model, system, system%stiffness, 1.0_rk, solids%solver, error)
     call start_motion(system%numbers, model%joints, now, has_inertia=.false.)
-    call solids%open(model, system, choose_tangents(model, model%steps(1)), now)
+    call solids%open(model, system, model%steps(1), now)
     call solids%open_increment(now, 1.0_rk)
     solids%values = system%stiffness
     after = now
