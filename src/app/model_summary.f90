@@ -26,18 +26,29 @@ contains
     text = 'Model'//nl//row('nodes', as_text(model%mesh%num_nodes))//nl// &
            row('elements', as_text(model%mesh%num_elements)//types_of(model))//nl// &
            row('mass', trim(merge('lumped    ', 'consistent', model%has_lumped_mass)))
-    text = text//sets_of('Node sets', 'nodes', model%node_sets)
-    text = text//sets_of('Element sets', 'elements', model%element_sets)
-    text = text//surfaces_of(model)//materials_of(model)//joints_of(model)//ties_of(model)// &
-           covers_of(model)//amplitudes_of(model)
-    text = text//loads_of(model)//steps_of(model)//tests_of(model)
+    text = text//titled('Node sets', sets_of('nodes', model%node_sets))// &
+           titled('Element sets', sets_of('elements', model%element_sets))// &
+           titled('Surfaces', surfaces_of(model))//titled('Materials', materials_of(model))// &
+           titled('Joints', joints_of(model))//titled('Ties and interfaces', ties_of(model))// &
+           titled('Faces of different meshes', covers_of(model))// &
+           titled('Amplitudes', amplitudes_of(model))//titled('Loads', loads_of(model))// &
+           steps_of(model)//titled('Material tests', tests_of(model))
   end function summary_of
+
+  !> A title and the rows below it; nothing where there are no rows.
+  pure function titled(title, rows) result(text)
+    character(*), intent(in) :: title
+    character(*), intent(in) :: rows !< each begins with new_line
+    character(:), allocatable :: text
+    text = rows
+    if (len(rows) > 0) text = nl//title//rows
+  end function titled
 
   !> The materials and tests of `keyway --material`.
   function summary_of_tests(model) result(text)
     type(problem), intent(in) :: model
     character(:), allocatable :: text !< lines with new_line between them
-    text = materials_of(model)//tests_of(model)
+    text = titled('Materials', materials_of(model))//titled('Material tests', tests_of(model))
     text = text(len(nl) + 1:)
   end function summary_of_tests
 
@@ -63,13 +74,12 @@ contains
     end do
   end function types_of
 
-  pure function sets_of(title, things, sets) result(text)
-    character(*), intent(in) :: title, things
+  pure function sets_of(things, sets) result(text)
+    character(*), intent(in) :: things !< what the sets hold
     type(named_set), intent(in) :: sets(:)
     character(:), allocatable :: text
     type(text_buffer) :: lines
     integer :: i
-    if (size(sets) > 0) call lines%add(nl//title)
     do i = 1, size(sets)
       call lines%add(nl//row(sets(i)%name, as_text(size(sets(i)%members))//' '//things))
     end do
@@ -81,7 +91,6 @@ contains
     character(:), allocatable :: text
     type(text_buffer) :: lines
     integer :: i
-    if (size(model%surfaces) > 0) call lines%add(nl//'Surfaces')
     do i = 1, size(model%surfaces)
       call lines%add(nl//row(model%surfaces(i)%name, as_text(size(model%surfaces(i)%face))// &
                              ' faces'))
@@ -94,7 +103,6 @@ contains
     character(:), allocatable :: text
     integer :: i
     text = ''
-    if (size(model%materials) > 0) text = nl//'Materials'
     do i = 1, size(model%materials)
       associate (now => model%materials(i))
         text = text//nl//row(now%name, elastic_text(now)//', density '//as_text(now%density)// &
@@ -129,7 +137,6 @@ contains
     character(:), allocatable :: text
     integer :: i
     text = ''
-    if (size(model%tests) > 0) text = nl//'Material tests'
     do i = 1, size(model%tests)
       associate (now => model%tests(i))
         text = text//nl//row(now%name, now%kind//' of '//model%materials(now%material)%name// &
@@ -146,7 +153,6 @@ contains
     real(rk) :: k(3)
     integer :: i
     text = ''
-    if (size(model%joints) > 0) text = nl//'Joints'
     do i = 1, size(model%joints)
       call model%joints(i)%law%reference_stiffness(k)
       text = text//nl//row(model%joints(i)%name, make_of(model%joints(i))//', '// &
@@ -172,7 +178,6 @@ contains
     character(:), allocatable :: text
     integer :: i
     text = ''
-    if (size(model%guests) > 0) text = nl//'Ties and interfaces'
     do i = 1, size(model%guests)
       text = text//nl//row(model%guests(i)%item%name, model%guests(i)%item%describe())
     end do
@@ -184,7 +189,6 @@ contains
     character(:), allocatable :: text
     integer :: i
     text = ''
-    if (size(model%covers) > 0) text = nl//'Faces of different meshes'
     do i = 1, size(model%covers)
       associate (now => model%covers(i)%cover)
         text = text//nl//row(model%covers(i)%name, '*'//model%covers(i)%kind//': '// &
@@ -201,7 +205,6 @@ contains
     character(:), allocatable :: text
     integer :: i
     text = ''
-    if (size(model%amplitudes) > 0) text = nl//'Amplitudes'
     do i = 1, size(model%amplitudes)
       associate (now => model%amplitudes(i))
         text = text//nl//row(now%name, as_text(size(now%time))//' points, '// &
@@ -217,7 +220,6 @@ contains
     character(:), allocatable :: text
     type(text_buffer) :: lines
     integer :: i
-    if (size(model%loads) > 0) call lines%add(nl//'Loads')
     do i = 1, size(model%loads)
       call lines%add(nl//row(as_text(i), model%loads(i)%item%name))
     end do

@@ -12,5 +12,4 @@ set(sources
   mortar/mortar_balance.f90
   mortar/mortar_facet.f90
   mortar/mortar_projection.f90
-  mortar/mortar_table.f90
 )

@@ -3,7 +3,7 @@ module face_pairs
   use facet_segments, only: find_segments
   use kinds, only: rk
   use mortar_projection, only: project
-  use mortar_table, only: mortar_rows
+  use mortar_balance, only: mortar_rows
   use surface_segments, only: facet_set, segment_set, surface_cover
   implicit none
   private
@@ -103,10 +103,10 @@ contains
     integer :: a, k
     real(rk) :: sum_of(size(f, 1))
     error = 0.0_rk
-    do a = 1, rows%num_rows
+    do a = 1, rows%num_rows()
       sum_of = -f(:, rows%node(a))
       do k = rows%first(a), rows%first(a + 1) - 1
-        sum_of = sum_of + rows%weight(k)*f(:, rows%master(k))
+        sum_of = sum_of + rows%weight(k)*f(:, rows%item(k))
       end do
       error = max(error, maxval(abs(sum_of)))
     end do

@@ -1,9 +1,10 @@
 !> Rows of different length in one list (compressed rows).
 module row_tables
+  use kinds, only: rk
   use growing_lists, only: append_items => append, make_room
   implicit none
   private
-  public :: row_table, group_by_key, transpose_rows
+  public :: row_table, weighted_rows, group_by_key, transpose_rows
 
   !> Row i is item(first(i):first(i + 1) - 1). A table is built row by row (`append`, at the end
   !> `finish`), by `group_by_key`, or written as a whole.
@@ -17,6 +18,11 @@ module row_tables
     procedure :: num_rows
     procedure :: row
   end type row_table
+
+  !> Rows whose items have weights: row i stands for the sum of weight(k) f(item(k)).
+  type, extends(row_table) :: weighted_rows
+    real(rk), allocatable :: weight(:) !< (items)
+  end type weighted_rows
 
 contains
 

@@ -10,7 +10,7 @@ module coupling_joint
   use kinds, only: rk
   use mortar_facet, only: facet_extent
   use mortar_projection, only: project
-  use mortar_table, only: mortar_rows
+  use mortar_balance, only: mortar_rows
   use segment_quadrature, only: integrate_segment, segment_points
   use surface_facets, only: mark_corners
   use surface_segments, only: facet_set, segment_set
@@ -47,10 +47,10 @@ contains
     is_neighbour = mark_corners(size(x, 2), slave) .and. is_tied .and. .not. is_shared
     call project(x, slave, master, segments, is_shared .or. is_neighbour, rows)
     built%is_nodal = .true.
-    call open_points(rows%num_rows, rows%num_rows + size(rows%master), built)
-    do p = 1, rows%num_rows
+    call open_points(rows%num_rows(), rows%num_rows() + size(rows%item), built)
+    do p = 1, rows%num_rows()
       associate (first => rows%first(p), last => rows%first(p + 1) - 1)
-        call add_row(p, rows%node(p), rows%area(p), rows%master(first:last), &
+        call add_row(p, rows%node(p), rows%area(p), rows%item(first:last), &
                      rows%weight(first:last), is_neighbour, built)
       end associate
       built%rotation(:, :, p) = local_axes(-rows%normal(:, p))
@@ -58,7 +58,7 @@ contains
     built%x = x(:, rows%node)
     built%admissible_slip = rows%facet_size
     built%clearance = merge(rows%gap, 0.0_rk, is_measured)
-    call close_points(rows%num_rows, built)
+    call close_points(rows%num_rows(), built)
     call list_cells(slave, segments, rows%is_bare, built%cells)
     call move_alloc(rows%is_bare, is_bare)
   end subroutine lay_node_points

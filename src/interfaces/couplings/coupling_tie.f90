@@ -12,7 +12,7 @@ module coupling_tie
   use guest_type, only: guest
   use kinds, only: rk
   use mortar_projection, only: project
-  use mortar_table, only: mortar_rows
+  use mortar_balance, only: mortar_rows
   use row_tables, only: row_table
   use surface_facets, only: mark_corners
   use surface_segments, only: facet_set, segment_set
@@ -39,7 +39,7 @@ contains
     integer :: k
     associate (rows => self%rows)
       do k = 1, size(rows%node)
-        call groups%append([rows%node(k), rows%master(rows%first(k):rows%first(k + 1) - 1)])
+        call groups%append([rows%node(k), rows%item(rows%first(k):rows%first(k + 1) - 1)])
       end do
     end associate
   end subroutine add_bonds
@@ -70,7 +70,7 @@ contains
     integer :: i, j, f
     tie%node = [integer ::]
     tie%first = [1]
-    tie%master = [integer ::]
+    tie%item = [integer ::]
     tie%weight = [real(rk) ::]
     allocate (tie%is_tied(3, 0))
     allocate (is_idle(3, size(slave%node, 2)), source=.false.)
@@ -97,11 +97,12 @@ contains
     logical, intent(in) :: directions(3)
     type(node_tie), intent(inout) :: tie
     integer :: num_before
-    num_before = size(tie%master)
+    num_before = size(tie%item)
     tie%node = [tie%node, rows%node]
-    tie%is_tied = reshape([tie%is_tied, spread(directions, 2, rows%num_rows)], [3, size(tie%node)])
+    tie%is_tied = reshape([tie%is_tied, spread(directions, 2, rows%num_rows())], &
+                          [3, size(tie%node)])
     tie%first = [tie%first, num_before + rows%first(2:)]
-    tie%master = [tie%master, rows%master]
+    tie%item = [tie%item, rows%item]
     tie%weight = [tie%weight, rows%weight]
   end subroutine add_rows
 
@@ -152,10 +153,10 @@ contains
       if (row(1, node) == 0) cycle
       associate (tie => ties(row(1, node)))
         do k = tie%first(row(2, node)), tie%first(row(2, node) + 1) - 1
-          if (is_followed(tie%master(k))) cycle
-          is_followed(tie%master(k)) = .true.
+          if (is_followed(tie%item(k))) cycle
+          is_followed(tie%item(k)) = .true.
           top = top + 1
-          stack(top) = tie%master(k)
+          stack(top) = tie%item(k)
         end do
       end associate
     end do

@@ -11,10 +11,23 @@
 !> conditions of a node are combined beforehand so that their block of the matrix is the identity.
 module mortar_balance
   use kinds, only: rk
-  use mortar_table, only: mortar_rows
+  use row_tables, only: weighted_rows
   implicit none
   private
-  public :: balance_weights
+  public :: balance_weights, mortar_rows
+
+  !> The rows of a mortar projection (different_meshes.md, 13.2). Row a gives the displacement of
+  !> the master face opposite a node of the slave face, from nodes of the master face and bound ones
+  !> of the slave face; the weights add up to 1.
+  type, extends(weighted_rows) :: mortar_rows
+    integer, allocatable :: node(:) !< (rows) node of the slave face
+    real(rk), allocatable :: area(:) !< (rows) A_a = int N_a dA [m2]
+    real(rk), allocatable :: pressed(:, :) !< (3, rows) int N_a n dA: force of a unit pressure [m2]
+    real(rk), allocatable :: normal(:, :) !< (3, rows) unit, out of the slave's solid
+    real(rk), allocatable :: gap(:) !< (rows) (1/A_a) int phi_a gap dA, from slave to master [m]
+    real(rk), allocatable :: facet_size(:) !< (rows) shortest side of the facets that meet there [m]
+    logical, allocatable :: is_bare(:) !< (slave facets) too little covered to be used
+  end type mortar_rows
 
   !> Differences below this fraction of the largest nodal force are round-off.
   real(rk), parameter :: balanced = 1.0e-12_rk
@@ -56,10 +69,10 @@ contains
     type(conditions) :: system
     real(rk), allocatable :: missing(:, :), change(:)
     integer :: a, k
-    if (rows%num_rows == 0) return
+    if (rows%num_rows() == 0) return
     call list_columns(rows, size(x, 2), system)
     allocate (system%force(3, size(rows%weight)))
-    do a = 1, rows%num_rows
+    do a = 1, rows%num_rows()
       do k = rows%first(a), rows%first(a + 1) - 1
         system%force(:, k) = rows%pressed(:, a)
       end do
@@ -82,15 +95,15 @@ contains
     integer, allocatable :: number(:)
     integer :: k, used
     allocate (number(num_nodes), source=0)
-    allocate (system%column(size(rows%master)), system%node(size(rows%master)))
+    allocate (system%column(size(rows%item)), system%node(size(rows%item)))
     used = 0
-    do k = 1, size(rows%master)
-      if (number(rows%master(k)) == 0) then
+    do k = 1, size(rows%item)
+      if (number(rows%item(k)) == 0) then
         used = used + 1
-        number(rows%master(k)) = used
-        system%node(used) = rows%master(k)
+        number(rows%item(k)) = used
+        system%node(used) = rows%item(k)
       end if
-      system%column(k) = number(rows%master(k))
+      system%column(k) = number(rows%item(k))
     end do
     system%node = system%node(:used)
   end subroutine list_columns
@@ -116,14 +129,14 @@ contains
     type(conditions), intent(inout) :: system
     real(rk) :: part
     integer :: a, k, i, c
-    allocate (system%basis(4, size(rows%master)), source=0.0_rk)
+    allocate (system%basis(4, size(rows%item)), source=0.0_rk)
     allocate (system%combine(3, 3, size(system%node)), source=0.0_rk)
-    do a = 1, rows%num_rows
+    do a = 1, rows%num_rows()
       associate (first => rows%first(a), last => rows%first(a + 1) - 1)
-        call build_basis(x(:, rows%master(first:last)), system%basis(:, first:last))
+        call build_basis(x(:, rows%item(first:last)), system%basis(:, first:last))
       end associate
     end do
-    do k = 1, size(rows%master)
+    do k = 1, size(rows%item)
       c = system%column(k)
       part = max(0.0_rk, 1.0_rk - sum(system%basis(:, k)**2))
       do i = 1, 3
@@ -134,7 +147,7 @@ contains
     do c = 1, size(system%node)
       call factor_block(turn**2, system%combine(:, :, c))
     end do
-    do k = 1, size(rows%master)
+    do k = 1, size(rows%item)
       system%force(:, k) = matmul(system%combine(:, :, system%column(k)), system%force(:, k))
     end do
   end subroutine build_conditions
@@ -231,7 +244,7 @@ contains
     real(rk), intent(in) :: y(:, :) !< (3, columns)
     real(rk), intent(out) :: step(:) !< (weights)
     integer :: a, k, i, last
-    do a = 1, rows%num_rows
+    do a = 1, rows%num_rows()
       last = rows%first(a + 1) - 1
       do k = rows%first(a), last
         step(k) = dot_product(system%force(:, k), y(:, system%column(k)))

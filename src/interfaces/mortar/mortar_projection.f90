@@ -2,16 +2,15 @@
 !> (different_meshes.md, 13.2).
 !>
 !> Row a belongs to node a of the slave face. Its displacement relative to the master face is
-!>   u(node(a)) - sum_k weight(k) u(master(k)),   k = first(a) .. first(a + 1) - 1,
+!>   u(node(a)) - sum_k weight(k) u(item(k)),   k = first(a) .. first(a + 1) - 1,
 !> weights (1/A_a) int phi_a N_m dA with the dual functions phi of mortar_facet and the area
 !> A_a = int N_a dA.
 !> The weights add up to 1, and a linear field is exact if the faces coincide.
 module mortar_projection
   use joint_points, only: share_a_plane
   use kinds, only: rk
-  use mortar_balance, only: balance_weights
+  use mortar_balance, only: balance_weights, mortar_rows
   use mortar_facet, only: facet_extent, facet_part, integrate_facet, share_bound
-  use mortar_table, only: mortar_rows
   use row_tables, only: group_by_key, row_table
   use segment_quadrature, only: segment_points
   use surface_segments, only: facet_set, segment_set
@@ -29,6 +28,7 @@ module mortar_projection
 
   !> Rows during assembly.
   type :: gathering
+    integer :: num_rows = 0
     integer, allocatable :: newest(:) !< (nodes) last row of each node, 0 for none
     integer, allocatable :: next(:) !< (rows) the previous row of the same node
     integer :: num_terms = 0
@@ -174,8 +174,8 @@ contains
       if (share_a_plane(rows%normal(:, row), normal)) return
       row = gathered%next(row)
     end do
-    rows%num_rows = rows%num_rows + 1
-    row = rows%num_rows
+    gathered%num_rows = gathered%num_rows + 1
+    row = gathered%num_rows
     gathered%next(row) = gathered%newest(node)
     gathered%newest(node) = row
     rows%node(row) = node
@@ -192,7 +192,7 @@ contains
     type(row_table) :: terms
     integer, allocatable :: at(:)
     integer :: n, a, i, k, used, node
-    n = rows%num_rows
+    n = gathered%num_rows
     rows%node = rows%node(:n)
     rows%area = rows%area(:n)
     rows%gap = rows%gap(:n)/rows%area
@@ -200,7 +200,7 @@ contains
     rows%pressed = rows%normal(:, :n)
     rows%normal = rows%normal(:, :n)/spread(norm2(rows%normal(:, :n), dim=1), 1, 3)
     call group_by_key(gathered%row(:gathered%num_terms), n, terms)
-    allocate (rows%first(n + 1), rows%master(gathered%num_terms), rows%weight(gathered%num_terms))
+    allocate (rows%first(n + 1), rows%item(gathered%num_terms), rows%weight(gathered%num_terms))
     allocate (at(size(gathered%newest)), source=0)
     used = 0
     rows%first(1) = 1
@@ -212,16 +212,16 @@ contains
           used = used + 1
           k = used
           at(node) = k
-          rows%master(k) = node
+          rows%item(k) = node
           rows%weight(k) = 0.0_rk
         end if
         rows%weight(k) = rows%weight(k) + gathered%value(terms%item(i))/rows%area(a)
       end do
-      at(rows%master(rows%first(a):used)) = 0
+      at(rows%item(rows%first(a):used)) = 0
       call drop_round_off(rows%first(a), used, rows)
       rows%first(a + 1) = used + 1
     end do
-    rows%master = rows%master(:used)
+    rows%item = rows%item(:used)
     rows%weight = rows%weight(:used)
   end subroutine close_rows
 
@@ -239,7 +239,7 @@ contains
         dropped = dropped + rows%weight(k)
       else
         used = used + 1
-        rows%master(used) = rows%master(k)
+        rows%item(used) = rows%item(k)
         rows%weight(used) = rows%weight(k)
       end if
     end do

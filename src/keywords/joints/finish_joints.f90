@@ -197,7 +197,7 @@ contains
       associate (tie => ties(i))
         do k = 1, size(tie%node)
           is_tied(tie%node(k)) = is_tied(tie%node(k)) .or. &
-                                 any(is_there(tie%master(tie%first(k):tie%first(k + 1) - 1)))
+                                 any(is_there(tie%item(tie%first(k):tie%first(k + 1) - 1)))
         end do
       end associate
     end do

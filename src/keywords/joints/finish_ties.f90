@@ -135,9 +135,9 @@ contains
                             'slave and master exchanged')
         return
       end if
-      if (size(tie%rows%master) > most_followed*size(tie%rows%node)) then
+      if (size(tie%rows%item) > most_followed*size(tie%rows%node)) then
         call place%warn(faults, 'a node of the slave surface follows '// &
-                        as_text(size(tie%rows%master)/size(tie%rows%node))//' others in the '// &
+                        as_text(size(tie%rows%item)/size(tie%rows%node))//' others in the '// &
                         'mean, which makes large and dense equations', 'the finer surface as slave')
       end if
       call report_idle(place, slave%node, is_idle, is_always, model, faults)

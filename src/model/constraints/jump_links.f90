@@ -63,7 +63,7 @@ contains
     integer :: i, most_rows, most_masters
     call allocate_links(points, ties, links)
     most_rows = size(points%slave) + sum([(size(ties(i)%node), i=1, size(ties))])
-    most_masters = size(points%master) + sum([(size(ties(i)%master), i=1, size(ties))])
+    most_masters = size(points%master) + sum([(size(ties(i)%item), i=1, size(ties))])
     call graph%start(any(is_fixed(:num_directions, :), 1), most_rows, most_masters)
     do i = 1, size(ties)
       call link_tie(dofs, ties(i), graph, links)
@@ -84,7 +84,7 @@ contains
     num_terms = num_directions*(size(points%master) + num_rows(size(points%slave)))
     do i = 1, size(ties)
       num_links = num_links + num_directions*size(ties(i)%node)
-      num_terms = num_terms + num_directions*size(ties(i)%master)
+      num_terms = num_terms + num_directions*size(ties(i)%item)
     end do
     allocate (links%dof(num_links), links%term(num_terms), links%coefficient(num_terms))
     allocate (links%first(num_links + 1), source=1)
@@ -117,10 +117,10 @@ contains
     integer :: k, i
     do k = 1, size(tie%node)
       associate (first => tie%first(k), last => tie%first(k + 1) - 1)
-        call graph%add_row(tie%node(k), tie%master(first:last))
+        call graph%add_row(tie%node(k), tie%item(first:last))
         do i = 1, num_directions
           if (.not. tie%is_tied(i, k)) cycle
-          call add_link(dofs%dof_of(tie%node(k), i), dofs%dof_of(tie%master(first:last), i), &
+          call add_link(dofs%dof_of(tie%node(k), i), dofs%dof_of(tie%item(first:last), i), &
                         tie%weight(first:last), links)
         end do
       end associate
@@ -201,7 +201,6 @@ contains
     integer :: rank, node, p, num_nodes
     num_nodes = size(dofs%first) - 1
     call list_edges(points, links%first_jump, num_nodes, first, edge)
-    if (size(edge) == 0) return
     allocate (is_seen(num_nodes), is_slave(num_nodes), source=.false.)
     allocate (queue(num_nodes))
     do p = 1, size(points%slave)

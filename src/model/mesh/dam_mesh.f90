@@ -5,6 +5,7 @@
 !> appear only in messages and results.
 module dam_mesh
   use kinds, only: rk
+  use row_tables, only: weighted_rows
   implicit none
   private
   public :: fe_mesh, named_set, surface, node_tie
@@ -34,16 +35,12 @@ module dam_mesh
     integer, allocatable :: face(:) !< 1..6
   end type surface
 
-  !> One *TIE with an exact constraint, as links of single nodes of its slave face:
-  !> u(node) = sum_k weight(k) u(master(k)), k = first(i) .. first(i + 1) - 1, in the directions
-  !> that are tied. A node may have several rows, in different directions, if supports differ by
-  !> direction.
-  type :: node_tie
+  !> One *TIE with an exact constraint: row i gives u(node(i)) from the nodes that node(i) follows,
+  !> on either face, in the directions that are tied; the weights add up to 1. A node may have
+  !> several rows, in different directions, if supports differ by direction.
+  type, extends(weighted_rows) :: node_tie
     character(:), allocatable :: name !< upper case
     integer, allocatable :: node(:) !< (ties) the node that follows
     logical, allocatable :: is_tied(:, :) !< (3, ties) the tied directions
-    integer, allocatable :: first(:) !< (ties + 1)
-    integer, allocatable :: master(:) !< nodes it follows, on either face
-    real(rk), allocatable :: weight(:) !< they add up to 1
   end type node_tie
 end module dam_mesh

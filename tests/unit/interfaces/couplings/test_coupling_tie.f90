@@ -90,7 +90,7 @@ contains
     is_fixed(:, 30) = .true. ! a node of the master may be held
     call tie_faces(x, slave, master, is_fixed, none, ties(1))
     call check(log, size(ties(1)%node) == 20 .and. all(ties(1)%is_tied), 'one row for each node')
-    call check(log, all(ties(1)%master > 20), 'which follows nodes of the master')
+    call check(log, all(ties(1)%item > 20), 'which follows nodes of the master')
     call check_linear(x, ties, 'nothing held')
   end subroutine all_nodes_follow
 
@@ -110,7 +110,7 @@ contains
                'free directions follow, once, held ones do not')
     call check(log, all(times(:, 21:) == 0), 'nor the master')
     do k = 1, size(ties(1)%node)
-      associate (followed => ties(1)%master(ties(1)%first(k):ties(1)%first(k + 1) - 1))
+      associate (followed => ties(1)%item(ties(1)%first(k):ties(1)%first(k + 1) - 1))
         if (any(followed <= 20 .and. followed /= ties(1)%node(k))) exit
       end associate
     end do
@@ -136,12 +136,12 @@ contains
     before(1)%node = [1, 21]
     before(1)%is_tied = reshape([.false., .true., .true., .true., .true., .true.], [3, 2])
     before(1)%first = [1, 2, 3]
-    before(1)%master = [44, 30]
+    before(1)%item = [44, 30]
     before(1)%weight = [1.0_rk, 1.0_rk]
     before(2)%node = [30]
     before(2)%is_tied = reshape([.true., .true., .false.], [3, 1])
     before(2)%first = [1, 3]
-    before(2)%master = [2, 44]
+    before(2)%item = [2, 44]
     before(2)%weight = [0.5_rk, 0.5_rk]
     master%node = merge(5, master%node, master%node == 44)
     call find_bound(1, slave, master, is_fixed(1, :), before, is_bound)

@@ -48,10 +48,10 @@ contains
     call lay_bent(geometry, n, m, pair)
     call lay_bent('flat', n, m, plane)
     force = -nodal_vectors(pair%x, pair%master)
-    do a = 1, pair%rows%num_rows
+    do a = 1, pair%rows%num_rows()
       do k = pair%rows%first(a), pair%rows%first(a + 1) - 1
-        force(:, pair%rows%master(k)) = force(:, pair%rows%master(k)) &
-                                        - pair%rows%weight(k)*pair%rows%pressed(:, a)
+        force(:, pair%rows%item(k)) = force(:, pair%rows%item(k)) &
+                                      - pair%rows%weight(k)*pair%rows%pressed(:, a)
       end do
     end do
     call check_close(log, maxval(abs(force))/maxval(norm2(pair%rows%pressed, dim=1)), 0.0_rk, &
@@ -71,9 +71,9 @@ contains
     real(rk) :: matrix(size(pair%x, 2), size(pair%x, 2))
     integer :: a, k
     matrix = 0.0_rk
-    do a = 1, pair%rows%num_rows
+    do a = 1, pair%rows%num_rows()
       do k = pair%rows%first(a), pair%rows%first(a + 1) - 1
-        matrix(pair%rows%node(a), pair%rows%master(k)) = pair%rows%weight(k)
+        matrix(pair%rows%node(a), pair%rows%item(k)) = pair%rows%weight(k)
       end do
     end do
   end function matrix

@@ -6,7 +6,7 @@ program test_mortar_projection
   use gauss_rules, only: line5_point, line5_weight
   use kinds, only: rk
   use mortar_projection, only: project
-  use mortar_table, only: mortar_rows
+  use mortar_balance, only: mortar_rows
   use shape_quad4, only: facet_derivative, facet_shape
   use small_matrix, only: cross_product
   use surface_segments, only: facet_set
@@ -59,9 +59,9 @@ contains
     real(rk) :: force(num_nodes)
     integer :: a, k
     force = 0.0_rk
-    do a = 1, rows%num_rows
+    do a = 1, rows%num_rows()
       do k = rows%first(a), rows%first(a + 1) - 1
-        force(rows%master(k)) = force(rows%master(k)) + rows%area(a)*rows%weight(k)
+        force(rows%item(k)) = force(rows%item(k)) + rows%area(a)*rows%weight(k)
       end do
     end do
   end function carried
@@ -76,9 +76,9 @@ contains
     call add_sheet(parts(3, 10.0_rk), parts(4, 1.0_rk), .true., pair%x, pair%master)
     pair%x = bent(pair%x, 'skew')
     call join(pair)
-    call check(log, pair%rows%num_rows == 20, 'one row a node')
+    call check(log, pair%rows%num_rows() == 20, 'one row a node')
     call check(log, all(pair%rows%first == [(a, a=1, 21)]), 'one master a row')
-    call check(log, all(pair%rows%master == pair%rows%node + 20), 'the twin')
+    call check(log, all(pair%rows%item == pair%rows%node + 20), 'the twin')
     call check_close(log, maxval(abs(pair%rows%weight - 1.0_rk)), 0.0_rk, round_off, 'weight 1')
     call check_close(log, maxval(abs(pair%rows%gap)), 0.0_rk, round_off, 'no gap')
     call check(log, all(abs(pair%rows%normal(3, :) - 1.0_rk) < round_off), 'out of the slave')
@@ -114,7 +114,7 @@ contains
     pair%x = bent(pair%x, geometry)
     size_of = maxval(abs(pair%x))
     call join(pair)
-    call check(log, pair%rows%num_rows == num, trim(name)//': one row a node')
+    call check(log, pair%rows%num_rows() == num, trim(name)//': one row a node')
     allocate (f(4, size(pair%x, 2)))
     f(:3, :) = pair%x/size_of
     f(4, :) = 1.0_rk
@@ -140,7 +140,7 @@ contains
     call add_sheet(0.1_rk + 0.5_rk*parts(3, 1.0_rk), 0.31_rk + 0.22_rk*parts(2, 1.0_rk), .true., &
                    pair%x, pair%master)
     call join(pair)
-    call check(log, pair%rows%num_rows == 12, 'nodes of the facets that are touched')
+    call check(log, pair%rows%num_rows() == 12, 'nodes of the facets that are touched')
     allocate (f(4, size(pair%x, 2)))
     f(:3, :) = pair%x
     f(4, :) = 1.0_rk
@@ -165,7 +165,7 @@ contains
     call add_sheet(parts(2, 1.0_rk), parts(1, 1.0_rk), .false., pair%x, pair%slave)
     call add_sheet(0.505_rk*parts(1, 1.0_rk), parts(1, 1.0_rk), .true., pair%x, pair%master)
     call join(pair)
-    call check(log, pair%rows%num_rows == 4, 'nodes of the first facet only')
+    call check(log, pair%rows%num_rows() == 4, 'nodes of the first facet only')
     call check(log, all(pair%rows%is_bare .eqv. [.false., .true.]), 'the second is bare')
     call check_close(log, sum(pair%rows%area), 0.5_rk, round_off, 'area of the first')
   end subroutine slivers_are_bare
@@ -186,7 +186,7 @@ contains
     allocate (is_bound(size(pair%x, 2)), source=.false.)
     is_bound([1, 2, 3, 4, 5, 9, 13, 11]) = .true.
     call project(pair%x, pair%slave, pair%master, pair%segments, is_bound, pair%rows)
-    call check(log, pair%rows%num_rows == 8, 'rows of the free nodes')
+    call check(log, pair%rows%num_rows() == 8, 'rows of the free nodes')
     call check(log, count(is_bound(pair%rows%node)) == 0, 'none of a bound node')
     allocate (f(4, size(pair%x, 2)))
     f(:3, :) = pair%x/maxval(abs(pair%x))
@@ -203,7 +203,7 @@ contains
                      'constant traction on the slave')
     is_bound([(i, i=1, 16)]) = .true.
     call project(pair%x, pair%slave, pair%master, pair%segments, is_bound, pair%rows)
-    call check(log, pair%rows%num_rows == 0, 'no row where all are bound')
+    call check(log, pair%rows%num_rows() == 0, 'no row where all are bound')
   end subroutine bound_nodes_give_their_share
 
   !> A right-angled bend: two rows on its edge, or one on request.
@@ -220,13 +220,13 @@ contains
       pair%x(1, i) = 0.5_rk
     end do
     call join(pair)
-    call check(log, pair%rows%num_rows == 18, 'three nodes have two rows')
+    call check(log, pair%rows%num_rows() == 18, 'three nodes have two rows')
     call check_close(log, field_error(pair%rows, pair%x), 0.0_rk, round_off, 'linear fields')
     call check(log, all(abs(maxval(abs(pair%rows%normal), dim=1) - 1.0_rk) < round_off), &
                'normals of the two planes')
     call check_close(log, sum(pair%rows%area), 1.0_rk, round_off, 'whole area')
     call join(pair, merges_planes=.true.)
-    call check(log, pair%rows%num_rows == 15, 'one row a node')
+    call check(log, pair%rows%num_rows() == 15, 'one row a node')
     call check_close(log, field_error(pair%rows, pair%x), 0.0_rk, round_off, 'linear fields')
     call check_close(log, sum(pair%rows%area), 1.0_rk, round_off, 'whole area')
   end subroutine planes_have_rows
@@ -244,7 +244,7 @@ contains
     pair%master%node = reshape([5, 7, 6, 6, 7, 8, 6, 6], [4, 2])
     pair%master%element = [1, 1]
     call join(pair)
-    call check(log, pair%rows%num_rows == 4, 'one row a node')
+    call check(log, pair%rows%num_rows() == 4, 'one row a node')
     call check_close(log, field_error(pair%rows, pair%x), 0.0_rk, round_off, 'linear fields')
     call check_close(log, sum(pair%rows%area), 1.0_rk, round_off, 'whole area')
     force = carried(pair%rows, 8)

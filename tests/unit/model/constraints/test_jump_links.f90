@@ -54,7 +54,7 @@ contains
     tie%node = [node]
     allocate (tie%is_tied(3, 1), source=.true.)
     tie%first = [1, size(master) + 1]
-    tie%master = master
+    tie%item = master
     tie%weight = weight
   end function tie_of
 

@@ -350,7 +350,7 @@ contains
     ! Node 2 hangs on others of the slave face: it has no multiplier of its own (a cross point).
     tie%rows%node = [1, 3, 4, 5, 6, 7, 8]
     tie%rows%first = [(1 + 6*i, i=0, 7)]
-    tie%rows%master = [2, 18, 19, 20, 21, 22, ([17, 18, 19, 20, 21, 22], i=2, 7)]
+    tie%rows%item = [2, 18, 19, 20, 21, 22, ([17, 18, 19, 20, 21, 22], i=2, 7)]
     tie%rows%weight = spread(1/6.0_rk, 1, 42)
     deallocate (model%joints)
     allocate (model%joints(0))
