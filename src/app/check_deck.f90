@@ -1,12 +1,13 @@
 !> Reads a deck, reports its faults, and prints a summary of the model.
 module check_deck
-  use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+  use, intrinsic :: iso_fortran_env, only: error_unit
   use cli, only: command_line
   use diagnostic_text, only: text_of_errors, text_of_warnings
   use diagnostics, only: diagnostic_list
   use errors, only: deck_is_wrong, error_type, raise
   use model_summary, only: summary_of, summary_of_tests
   use problem_definition, only: problem
+  use process_limits, only: print_text
   use read_deck, only: read_problem
   use umat_loader, only: user_library
   use user_routines, only: load_user_routines
@@ -36,15 +37,18 @@ contains
   end subroutine load_deck
 
   !> Prints the deck with its defaults and a summary of the model.
-  subroutine report_model(given, model, echo)
+  subroutine report_model(given, model, echo, error)
     type(command_line), intent(in) :: given
     type(problem), intent(in) :: model
     character(*), intent(in) :: echo
-    write (output_unit, '(a)') 'The deck with its defaults', echo, ''
+    type(error_type), allocatable, intent(out) :: error
+    character, parameter :: nl = new_line('a')
+    character(:), allocatable :: summary
     if (given%is_material) then
-      write (output_unit, '(a)') summary_of_tests(model)
+      summary = summary_of_tests(model)
     else
-      write (output_unit, '(a)') summary_of(model)
+      summary = summary_of(model)
     end if
+    call print_text('The deck with its defaults'//nl//echo//nl//nl//summary, error)
   end subroutine report_model
 end module check_deck

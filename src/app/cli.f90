@@ -1,6 +1,5 @@
 !> The command line: options, and output that needs no deck.
 module cli
-  use, intrinsic :: iso_fortran_env, only: output_unit
   use build_info, only: compiler, compiler_flags, libraries, program_version
   use errors, only: deck_is_wrong, error_type, raise
   use field_help, only: field_lines, field_page
@@ -9,13 +8,16 @@ module cli
   use keyword_help, only: describe_keyword, list_keywords
   use nearest_words, only: nearest_choice
   use parse_text, only: parse_integer, upper_case
+  use process_limits, only: print_text
   use umat_build, only: umat_file
   use umat_loader, only: umat_request
+  use write_text, only: as_text
   implicit none
   private
   public :: command_line, parse_command_line, print_answer
 
   character, parameter :: nl = new_line('a')
+  integer, parameter :: most_threads = 256 !< each needs memory of its own
 
   !> The options that the user gave.
   type :: command_line
@@ -185,9 +187,9 @@ contains
     type(error_type), allocatable, intent(out) :: error
     logical :: is_integer
     call parse_integer(word, given%num_threads, is_integer)
-    if (is_integer .and. given%num_threads > 0) return
-    call raise(error, "keyway: found '-j "//word//"'; expected a number of threads > 0", &
-               deck_is_wrong)
+    if (is_integer .and. given%num_threads > 0 .and. given%num_threads <= most_threads) return
+    call raise(error, "keyway: found '-j "//word//"'; expected a number of threads from 1 to "// &
+               as_text(most_threads), deck_is_wrong)
   end subroutine read_threads
 
   subroutine read_deck_name(word, given, error)
@@ -224,17 +226,13 @@ contains
     type(error_type), allocatable, intent(out) :: error
     is_answered = .true.
     if (given%is_empty) then
-      call print_line('Keyway '//program_version//': finite-element analysis of concrete dams')
-      call print_line('Start it with a deck:')
-      call print_line('')
-      call print_line(usage())
+      call print_text('Keyway '//program_version//': finite-element analysis of concrete dams'// &
+                      nl//'Start it with a deck:'//nl//nl//usage(), error)
     else if (given%wants_help) then
-      call print_line(usage())
+      call print_text(usage(), error)
     else if (given%wants_version) then
-      call print_line('keyway '//program_version)
-      call print_line('compiler:  '//compiler)
-      call print_line('flags:     '//compiler_flags)
-      call print_line('libraries: '//libraries)
+      call print_text('keyway '//program_version//nl//'compiler:  '//compiler//nl//'flags:     '// &
+                      compiler_flags//nl//'libraries: '//libraries, error)
     else if (given%wants_keywords) then
       call print_keywords(given%keyword, error)
     else if (given%wants_fields) then
@@ -252,11 +250,11 @@ contains
     logical :: is_known
     call list_all(list)
     if (name == '') then
-      call print_line(list_keywords(list%specs))
+      call print_text(list_keywords(list%specs), error)
       return
     end if
     call describe_keyword(list%specs, name, text, is_known)
-    if (is_known) call print_line(text)
+    if (is_known) call print_text(text, error)
     if (.not. is_known) call raise(error, 'keyway: '//text, deck_is_wrong)
   end subroutine print_keywords
 
@@ -266,16 +264,11 @@ contains
     character(:), allocatable :: text
     logical :: is_known
     if (name == '') then
-      call print_line(field_lines())
+      call print_text(field_lines(), error)
       return
     end if
     call field_page(name, text, is_known)
-    if (is_known) call print_line(text)
+    if (is_known) call print_text(text, error)
     if (.not. is_known) call raise(error, 'keyway: '//text, deck_is_wrong)
   end subroutine print_fields
-
-  subroutine print_line(text)
-    character(*), intent(in) :: text
-    write (output_unit, '(a)') text
-  end subroutine print_line
 end module cli

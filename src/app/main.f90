@@ -2,13 +2,15 @@
 program keyway
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
-  use blas_threads, only: restart_with_fast_libraries
+  use blas_threads, only: restart_with_fast_libraries, warm_up_blas
   use check_deck, only: load_deck, report_model
   use cli, only: command_line, parse_command_line, print_answer
   use diagnostics, only: diagnostic_list
   use errors, only: error_type
   use kinds, only: rk
+  use omp_lib, only: omp_get_max_threads, omp_set_num_threads
   use problem_definition, only: problem
+  use process_limits, only: end_trial, prepare_process, try_memory
   use run_analysis, only: run_problem
   use run_ledger, only: ledger
   use run_material, only: run_tests
@@ -31,9 +33,11 @@ program keyway
   type(diagnostic_list) :: remarks
   character(:), allocatable :: echo
   type(ledger) :: costs
+  integer(c_int) :: num_threads
   logical :: is_answered
   real(rk) :: started_at
 
+  call prepare_process()
   started_at = wall_clock()
   call costs%open(started_at)
   call costs%start('start', 'program', 'run')
@@ -48,13 +52,18 @@ program keyway
     stop
   end if
   call restart_with_fast_libraries()
+  if (options%num_threads > 0) call omp_set_num_threads(options%num_threads)
+  num_threads = int(omp_get_max_threads(), c_int)
+  call try_memory(num_threads)
+  if (.not. options%is_check) call warm_up_blas(num_threads)
+  call end_trial()
   call costs%stop()
   call costs%start('read', 'deck', 'deck')
   call load_deck(options, model, remarks, echo, error)
   call costs%stop()
   call end_on(error)
   if (options%is_check) then
-    call report_model(options, model, echo)
+    call report_model(options, model, echo, error)
   else if (options%is_material) then
     call run_tests(model, options, echo, started_at, error)
   else

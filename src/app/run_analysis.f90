@@ -1,6 +1,5 @@
 !> One analysis: opens the results, runs the steps, and closes the results even after a failure.
 module run_analysis
-  use omp_lib, only: omp_set_num_threads
   use kinds, only: rk
   use errors, only: error_type, raise, system_failed
   use diagnostics, only: diagnostic_list
@@ -35,7 +34,6 @@ contains
     type(result_folder) :: results
     type(state), allocatable :: now
     type(error_type), allocatable :: failure
-    if (given%num_threads > 0) call omp_set_num_threads(given%num_threads)
     call make_folder(given%folder, error)
     if (allocated(error)) return
     call results%log%open(given%is_quiet, error, &

@@ -1,4 +1,6 @@
 set(sources
+  process_limits.c
+  process_limits.f90
   errors.f90
   files/archive_storage.f90
   files/archive_type.f90
@@ -24,6 +26,7 @@ set(sources
   math/tensor6.f90
   report/diagnostic_text.f90
   report/diagnostics.f90
+  report/fault_kinds.f90
   report/ledger_text.f90
   report/logging.f90
   report/run_ledger.f90

@@ -4,16 +4,16 @@ module card_check
   use diagnostics, only: diagnostic_list, place, severity_error
   use field_text, only: expected_in, names_of_columns, text_or_nothing
   use keyword_spec, only: field, find_spec, keyword, kind_choice, kind_flag, kind_integer, &
-                          kind_real, later, spec_of_variant, without_effect
+                          kind_real, kind_word, later, spec_of_variant, without_effect
   use kinds, only: rk
   use nearest_words, only: nearest_choice, nearest_word
-  use parse_text, only: parse_integer, parse_real, single_blanks, upper_case
+  use parse_text, only: largest_number, parse_integer, parse_real, single_blanks, upper_case
   use write_text, only: as_text
   implicit none
   private
   public :: check_card, match_card
 
-  integer, parameter :: longest_name = 80 !< letters of a name compared for 'did you mean'
+  integer, parameter :: longest_name = 80 !< letters of a name, as in Abaqus
 
 contains
 
@@ -257,6 +257,10 @@ contains
     select case (wanted%kind)
     case (kind_real)
       call parse_real(word, value, is_right)
+      if (is_right .and. abs(value) > largest_number) then
+        problem = "found '"//word//"', beyond "//as_text(largest_number)
+        return
+      end if
       is_right = is_right .and. is_in_range(value, wanted)
     case (kind_integer)
       call parse_integer(word, number, is_right)
@@ -264,11 +268,29 @@ contains
     case (kind_choice)
       is_right = is_choice(word, text_or_nothing(wanted%choices))
       if (.not. is_right) nearest = nearest_choice(word, text_or_nothing(wanted%choices))
+    case (kind_word)
+      problem = fault_of_name(word)
+      is_right = .true.
     case default
       is_right = .true.
     end select
     if (.not. is_right) problem = "found '"//word//"'"
   end subroutine check_word
+
+  !> What is wrong with a name: names are used for files and in HDF5. '' for a good name.
+  pure function fault_of_name(word) result(problem)
+    character(*), intent(in) :: word
+    character(:), allocatable :: problem
+    integer :: i
+    problem = ''
+    if (len(word) > longest_name) then
+      problem = 'a name of '//as_text(len(word))//' letters, more than '//as_text(longest_name)
+    else if (word == '.' .or. word == '..') then
+      problem = "found '"//word//"', which is no name"
+    else if (any([(ichar(word(i:i)) < ichar(' '), i=1, len(word))])) then
+      problem = 'a name with a control character'
+    end if
+  end function fault_of_name
 
   !> Whether the value lies in the range of the field.
   pure logical function is_in_range(value, wanted)

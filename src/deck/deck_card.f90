@@ -9,7 +9,7 @@ module deck_card
   use diagnostics, only: diagnostic_list, place, severity_error, severity_ignored, severity_warning
   use keyword_spec, only: column_default, keyword, parameter_default
   use kinds, only: rk
-  use parse_text, only: parse_integer, parse_real, upper_case
+  use parse_text, only: largest_number, parse_integer, parse_real, upper_case
   implicit none
   private
   public :: card, card_parameter
@@ -189,6 +189,7 @@ contains
     real(rk) :: value
     call self%lines%find_field(line, field, first, last)
     call parse_real(self%lines%body(first:last), value, is_real_at)
+    is_real_at = is_real_at .and. abs(value) <= largest_number
   end function is_real_at
 
   !> Whether the field holds an integer.

@@ -1,6 +1,7 @@
 !> Files of a deck on the disk.
 module deck_file
   use kinds, only: long
+  use process_limits, only: why_no_file
   implicit none
   private
   public :: load_file, path_beside
@@ -15,7 +16,8 @@ contains
     character(200) :: message
     integer(long) :: num_bytes
     integer :: unit, status
-    reason = ''
+    reason = why_no_file(path)
+    if (len(reason) > 0) return
     open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
           action='read', iostat=status, iomsg=message)
     if (status /= 0) then
@@ -26,9 +28,10 @@ contains
     if (num_bytes < 0 .or. num_bytes >= huge(1)) then
       reason = 'not a file of less than 2 GB'
     else
-      allocate (character(num_bytes) :: text)
-      message = ''
-      if (num_bytes > 0) read (unit, iostat=status, iomsg=message) text
+      allocate (character(num_bytes) :: text, stat=status)
+      message = 'not enough memory'
+      if (status == 0) message = ''
+      if (status == 0 .and. num_bytes > 0) read (unit, iostat=status, iomsg=message) text
       if (status /= 0) reason = cause(message)
     end if
     close (unit)

@@ -28,6 +28,27 @@ int keyway_blas_uses_openmp(void)
   return find("openblas_get_parallel", &get) && get() == 2;
 }
 
+void dgemm_(const char *a_form, const char *b_form, const int *m, const int *n, const int *k,
+            const double *alpha, const double *a, const int *lda, const double *b, const int *ldb,
+            const double *beta, double *c, const int *ldc, size_t, size_t);
+void dpotrf_(const char *uplo, const int *n, double *a, const int *lda, int *info, size_t);
+
+/* Lets the BLAS take its memory for so many threads: OpenBLAS keeps it, and would wait for it for
+ * ever once the analysis has taken the rest. */
+void keyway_warm_up_blas(int threads)
+{
+  enum { n = 192 };
+  static double a[n * n], c[n * n];
+  const int size = n;
+  const double one = 1.0, zero = 0.0;
+  int info;
+  for (int i = 0; i < n; i++) a[i * (n + 1)] = 1.0;
+  keyway_set_blas_threads(threads);
+  dgemm_("N", "N", &size, &size, &size, &one, a, &size, a, &size, &zero, c, &size, 1, 1);
+  dpotrf_("L", &size, c, &size, &info, 1);
+  keyway_set_blas_threads(1);
+}
+
 /* The fastest kernels of OpenBLAS that this processor can run, NULL when there is no choice. */
 static const char *fitting_kernels(void)
 {

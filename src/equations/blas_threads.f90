@@ -6,7 +6,7 @@ module blas_threads
   use omp_lib, only: omp_get_max_active_levels, omp_get_max_threads, omp_set_max_active_levels
   implicit none
   private
-  public :: use_many_threads, use_one_thread, restart_with_fast_libraries
+  public :: use_many_threads, use_one_thread, restart_with_fast_libraries, warm_up_blas
 
   interface
     subroutine keyway_set_blas_threads(threads) bind(c)
@@ -14,6 +14,13 @@ module blas_threads
       implicit none
       integer(c_int), value :: threads
     end subroutine keyway_set_blas_threads
+
+    !> Lets the BLAS take its memory for so many threads.
+    subroutine warm_up_blas(threads) bind(c, name='keyway_warm_up_blas')
+      import :: c_int
+      implicit none
+      integer(c_int), value :: threads
+    end subroutine warm_up_blas
 
     function keyway_blas_uses_openmp() result(answer) bind(c)
       import :: c_int

@@ -3,6 +3,7 @@ module read_deck
   use card_check, only: check_card, match_card
   use check_loads, only: warn_of_loads
   use check_mesh, only: warn_of_mesh
+  use check_names, only: verify_names
   use check_requests, only: warn_of_missing_fields
   use check_steps, only: verify_steps
   use check_unused, only: warn_of_unused
@@ -64,6 +65,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     call complete_model(model, faults)
     if (.not. faults%has_errors()) call verify(model, faults)
+    if (.not. faults%has_errors()) call verify_names(model, faults)
     if (.not. faults%has_errors()) call verify_steps(model, faults)
     if (faults%has_errors()) return
     call warn_of_mesh(model, faults)

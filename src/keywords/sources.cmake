@@ -1,6 +1,7 @@
 set(sources
   checks/check_loads.f90
   checks/check_mesh.f90
+  checks/check_names.f90
   checks/check_steps.f90
   checks/check_unused.f90
   checks/deck_scan.f90

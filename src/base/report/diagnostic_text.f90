@@ -5,6 +5,7 @@
 !>           | ^^^^^^
 module diagnostic_text
   use diagnostics, only: diagnostic, diagnostic_list, place, severity_error
+  use fault_kinds, only: fault_kind
   use write_text, only: as_text
   implicit none
   private
@@ -17,23 +18,56 @@ module diagnostic_text
 
 contains
 
-  !> The errors kept, by file and line, and the number of further errors.
+  !> The errors kept, and how many more there are of each kind. Things that do not exist come after
+  !> the other errors, of which they may be consequences; many of one kind are one error.
   pure function text_of_errors(list) result(text)
     type(diagnostic_list), intent(in) :: list
     character(:), allocatable :: text !< lines separated by new_line; '' without errors
     integer :: order(list%num_kept), i
+    integer :: num_shown(list%kinds%num_kinds)
     text = ''
     order = order_by_place(list)
+    num_shown = 0
     do i = 1, list%num_kept
-      if (i > 1) text = text//new_line('a')
-      text = text//text_of_diagnostic(list%errors(order(i)))
+      associate (fault => list%errors(order(i)))
+        if (is_many(list, fault%kind) .and. num_shown(fault%kind) == 1) cycle
+        num_shown(fault%kind) = num_shown(fault%kind) + 1
+        text = text//new_line('a')//text_of_diagnostic(fault)
+      end associate
     end do
-    if (list%num_errors > list%num_kept) then
-      text = text//new_line('a')//'and '//as_text(list%num_errors - list%num_kept)//' more'
-    end if
+    do i = 1, size(num_shown)
+      associate (kind => list%kinds%kinds(i))
+        if (kind%num > num_shown(i)) then
+          text = text//new_line('a')//further_errors(kind, kind%num - num_shown(i))
+        end if
+      end associate
+    end do
+    text = text(min(2, len(text) + 1):)
   end function text_of_errors
 
-  !> Positions of the errors by file and line; errors of one line stay in the order found.
+  !> Whether errors of a kind are shown as one.
+  pure logical function is_many(list, kind)
+    type(diagnostic_list), intent(in) :: list
+    integer, intent(in) :: kind
+    is_many = list%kinds%kinds(kind)%num > list%kinds%kinds(kind)%most_shown
+  end function is_many
+
+  !> 'and 96 more in lines 14 to 107: *ELSET: element .. does not exist'.
+  pure function further_errors(kind, num) result(text)
+    type(fault_kind), intent(in) :: kind
+    integer, intent(in) :: num !< errors that are not shown
+    character(:), allocatable :: text
+    text = 'and '//as_text(num)//' more'
+    if (kind%file /= '' .and. kind%last_line > kind%first_line) then
+      text = text//' in lines '//as_text(kind%first_line)//' to '//as_text(kind%last_line)
+    else if (kind%file /= '' .and. kind%last_line > 0) then
+      text = text//' in line '//as_text(kind%last_line)
+    end if
+    text = text//': '//printable(kind%name)
+  end function further_errors
+
+  !> Positions of the errors by file and line, missing things last; errors of one line stay in the
+  !> order found.
   pure function order_by_place(list) result(order)
     type(diagnostic_list), intent(in) :: list
     integer :: order(list%num_kept)
@@ -43,6 +77,7 @@ contains
         if (list%errors(j)%spot%file == list%errors(i)%spot%file) exit
       end do
       file(i) = j
+      if (list%kinds%kinds(list%errors(i)%kind)%is_reference) file(i) = j + list%num_kept
       do j = i - 1, 1, -1
         if (file(order(j)) < file(i) .or. file(order(j)) == file(i) .and. &
             list%errors(order(j))%spot%line <= list%errors(i)%spot%line) exit

@@ -2,6 +2,7 @@
 !>
 !> One list collects all faults while the deck is read; diagnostic_text makes messages of them.
 module diagnostics
+  use fault_kinds, only: kind_list
   implicit none
   private
   public :: place, diagnostic, diagnostic_list
@@ -29,6 +30,7 @@ module diagnostics
     character(:), allocatable :: expected !< what was expected, '' for none
     character(:), allocatable :: nearest !< a known word of similar spelling, or ''
     type(place) :: first !< place of an earlier definition; no file: none
+    integer :: kind = 0 !< of an error, position in the list of kinds
   end type diagnostic
 
   !> Everything found in a deck, in the order found.
@@ -38,6 +40,7 @@ module diagnostics
     type(diagnostic), allocatable :: errors(:) !< the first `num_kept` are in use
     type(diagnostic), allocatable :: warnings(:) !< the first `num_warnings` are in use
     integer :: num_kept = 0
+    type(kind_list) :: kinds !< of all errors
   contains
     procedure :: add => add_diagnostic
     procedure :: has_errors
@@ -67,11 +70,30 @@ contains
     if (present(first)) new%first = first
     if (severity == severity_error) then
       self%num_errors = self%num_errors + 1
-      if (self%num_kept < most_kept) call append_diagnostic(self%errors, self%num_kept, new)
+      call keep_error(self, new)
     else
       call append_diagnostic(self%warnings, self%num_warnings, new)
     end if
   end subroutine add_diagnostic
+
+  !> Keeps one of the first errors; of missing things only a few, so that their cause, which may be
+  !> found later, has a place.
+  subroutine keep_error(self, new)
+    type(diagnostic_list), intent(inout) :: self
+    type(diagnostic), intent(inout) :: new
+    character(:), allocatable :: keyword
+    logical :: is_kept
+    keyword = ''
+    if (allocated(new%spot%keyword)) keyword = new%spot%keyword
+    call self%kinds%count(keyword, new%problem, new%spot%file, new%kind)
+    associate (kind => self%kinds%kinds(new%kind))
+      is_kept = self%num_kept < most_kept .and. &
+                kind%num <= kind%most_shown
+      if (is_kept) call append_diagnostic(self%errors, self%num_kept, new)
+      if (is_kept .and. (kind%num == 1 .or. .not. kind%is_reference)) return
+    end associate
+    call self%kinds%note_line(new%kind, new%spot%line)
+  end subroutine keep_error
 
   !> Whether the deck cannot be run.
   pure logical function has_errors(self)

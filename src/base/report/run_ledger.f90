@@ -11,6 +11,7 @@
 !> Only one thread may start and stop parts.
 module run_ledger
   use kinds, only: rk
+  use process_limits, only: note_part
   use timer, only: peak_memory, wall_clock
   implicit none
   private
@@ -107,6 +108,7 @@ contains
       book%latest = part
       call book_time(book, book%parts(part)%num_calls < num_weighed_calls)
       call push(book, part)
+      call note_part(book%parts(part)%name())
     end associate
   end subroutine start_part
 
@@ -222,6 +224,7 @@ contains
       end associate
       book%depth = book%depth - 1
     end do
+    if (book%depth > 0) call note_part(book%parts(book%running(book%depth))%name())
   end subroutine stop_down_to
 
   !> Adds a part to a list, or its shares to the parts of the members.

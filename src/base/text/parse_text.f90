@@ -4,8 +4,11 @@ module parse_text
   use kinds, only: long, rk
   implicit none
   private
+  public :: largest_number
   public :: parse_real, parse_integer, upper_case, single_blanks, without_blanks
 
+  !> Input beyond this number is refused: its square is beyond all numbers.
+  real(rk), parameter :: largest_number = 1.0e150_rk
   integer, parameter :: most_digits = 18 !< any number of so many digits fits 64 bits
   integer(long), parameter :: exact_limit = 2_long**53 !< integers below are exact reals
   integer, parameter :: largest_power = 22 !< 10**22 is the last exact power of ten

@@ -17,6 +17,8 @@ module keywords_material_test
   character, parameter :: nl = new_line('a')
   character(*), parameter :: test_types = 'UNIAXIAL | BIAXIAL | TRIAXIAL | OEDOMETER | '// &
                              'SHEAR | HYDROSTATIC | GENERAL'
+  !> Of a leg and of a test: every increment is a row of the result.
+  real(rk), parameter :: most_increments = 1.0e6_rk, most_cycles = 1.0e5_rk
 
 contains
 
@@ -54,11 +56,11 @@ contains
                     'of its crack band', &
                     'm', '1', lowest=0.0_rk, excludes_lowest=.true.), &
               field('INCREMENTS', kind_integer, 'increments of a leg whose line gives none', &
-                    default='100', lowest=1.0_rk), &
+                    default='100', lowest=1.0_rk, highest=most_increments), &
               field('TIME', kind_real, 'duration of a leg whose line gives none', 's', '1', &
                     lowest=0.0_rk, excludes_lowest=.true.), &
               field('CYCLES', kind_integer, 'number of repetitions of the data lines', &
-                    default='1', lowest=1.0_rk), &
+                    default='1', lowest=1.0_rk, highest=most_cycles), &
               field('TOLERANCE', kind_real, 'tolerance of stresses, over the largest stress '// &
                     'so far', &
                     default='1e-9', lowest=0.0_rk, highest=0.01_rk, excludes_lowest=.true.)])

@@ -16,6 +16,7 @@ module keywords_user_material
 
   character, parameter :: nl = new_line('a')
   integer, parameter :: constants_of_line = 8
+  integer, parameter :: most_variables = 1000000 !< more at one point are a slip
 
 contains
 
@@ -32,7 +33,7 @@ contains
     spec%place = 'material'
     spec%meaning = 'The law of the material is a UMAT of the user, which --umat names on the '// &
                    'command line: keyway --umat law.for job.inp. The data are its constants '// &
-                   '(PROPS), 8 a line. The name of the material arrives as CMNAME. The '// &
+                   '(PROPS), at most 8 a line. The name of the material arrives as CMNAME. The '// &
                    'keyword replaces *ELASTIC.'
     spec%example = '*MATERIAL, NAME=STEEL'//nl//'*USER MATERIAL, CONSTANTS=3'//nl// &
                    '210e9, 0.3, 355e6'//nl//'*DEPVAR'//nl//'7'
@@ -62,31 +63,53 @@ contains
     end select
   end subroutine read_user_material
 
-  !> Reads the constants. All lines but the last are full; CONSTANTS gives the number of constants.
+  !> Reads the constants, at most 8 a line. If all are given they count in sequence. Else lines that
+  !> end in a comma have empty fields up to the eighth, which are zero.
   subroutine read_constants(this, values, faults)
     type(card), intent(in) :: this
     real(rk), allocatable, intent(out) :: values(:)
     type(diagnostic_list), intent(inout) :: faults
-    integer :: line, i, num_given, num_wanted
+    integer :: line, i, num_given, num_wanted, place
+    logical :: is_in_sequence
     num_wanted = this%integer('CONSTANTS')
-    allocate (values(max(num_wanted, 0)), source=0.0_rk)
-    num_given = 0
+    num_given = sum([(this%num_fields(line), line=1, this%num_lines)])
+    is_in_sequence = num_given == num_wanted .or. .not. fills_lines(this, num_wanted)
+    allocate (values(max(min(num_wanted, constants_of_line*this%num_lines), 0)), source=0.0_rk)
+    place = 0
     do line = 1, this%num_lines
-      if (this%num_fields(line) > constants_of_line .or. &
-          (line < this%num_lines .and. this%num_fields(line) < constants_of_line)) then
-        call this%fault_at(faults, line, 0, 'found '//as_text(this%num_fields(line))// &
-                           ' constants', '8 a line, the rest in the last line')
+      if (this%num_fields(line) > constants_of_line) then
+        call this%fault_at(faults, line, constants_of_line + 1, 'found '// &
+                           as_text(this%num_fields(line))//' constants', 'at most 8 a line')
         return
       end if
+      if (.not. is_in_sequence) place = constants_of_line*(line - 1)
       do i = 1, this%num_fields(line)
-        num_given = num_given + 1
-        if (num_given <= num_wanted) values(num_given) = this%real_at(line, i)
+        place = place + 1
+        if (place <= size(values)) values(place) = this%real_at(line, i)
       end do
     end do
-    if (num_given == num_wanted) return
+    if (num_given == num_wanted .or. .not. is_in_sequence) return
     call this%fault_parameter(faults, 'CONSTANTS', 'CONSTANTS='//as_text(num_wanted)//', but '// &
                               as_text(num_given)//' constants follow', 'the same number')
   end subroutine read_constants
+
+  !> Whether the lines hold the constants once their empty fields count: a short line ends in a
+  !> comma.
+  pure logical function fills_lines(this, num_wanted)
+    type(card), intent(in) :: this
+    integer, intent(in) :: num_wanted
+    integer :: line, num_here
+    fills_lines = num_wanted <= constants_of_line*this%num_lines .and. &
+                  num_wanted > constants_of_line*(this%num_lines - 1)
+    if (.not. fills_lines) return
+    do line = 1, this%num_lines
+      num_here = min(constants_of_line, num_wanted - constants_of_line*(line - 1))
+      fills_lines = fills_lines .and. this%num_fields(line) <= num_here
+      if (this%num_fields(line) < num_here) then
+        fills_lines = fills_lines .and. this%ends_in_comma(line)
+      end if
+    end do
+  end function fills_lines
 
   subroutine describe_depvar(spec)
     type(keyword), intent(out) :: spec
@@ -116,9 +139,11 @@ contains
     type is (user_material)
       call claim_card(this, model, now%depvar, faults)
       number = this%integer_at(1, 1)
-      if (this%num_fields(1) /= 1 .or. .not. this%is_integer_at(1, 1) .or. number < 0) then
+      if (this%num_fields(1) /= 1 .or. .not. this%is_integer_at(1, 1) .or. number < 0 .or. &
+          number > most_variables) then
         call this%fault_at(faults, 1, 1, "found '"//this%text_at(1, 1)//"'", &
-                           'the number of state variables, an integer >= 0, alone in its line')
+                           'the number of state variables, an integer from 0 to '// &
+                           as_text(most_variables)//', alone in its line')
         return
       end if
       now%constants%num_variables = number

@@ -11,6 +11,8 @@ module material_test_legs
 
   integer, parameter :: num_components = 6
 
+  integer, parameter :: most_increments = 1000000 !< of a leg, as of INCREMENTS
+
 contains
 
   !> All legs of a test, its cycles one after the other.
@@ -107,9 +109,11 @@ contains
     leg%duration = this%real('TIME')
     if (.not. this%is_empty_at(line, field)) then
       leg%num_increments = this%integer_at(line, field)
-      if (.not. this%is_integer_at(line, field) .or. leg%num_increments < 1) then
+      if (.not. this%is_integer_at(line, field) .or. leg%num_increments < 1 .or. &
+          leg%num_increments > most_increments) then
         call this%fault_at(faults, line, field, "found '"//this%text_at(line, field)//"'", &
-                           'number of increments, an integer >= 1')
+                           'number of increments, an integer from 1 to '// &
+                           as_text(most_increments))
       end if
     end if
     if (.not. this%is_empty_at(line, field + 1)) then

@@ -4,7 +4,8 @@ module history_file
   use diagnostics, only: diagnostic_list, place, severity_error
   use growing_lists, only: make_room
   use kinds, only: rk
-  use parse_text, only: parse_integer, parse_real, upper_case
+  use parse_text, only: largest_number, parse_integer, parse_real, upper_case
+  use process_limits, only: why_no_file
   use record_units, only: unit_in_header
   implicit none
   private
@@ -29,9 +30,15 @@ contains
     type(place), intent(in) :: spot !< place of the file name in the deck
     type(diagnostic_list), intent(inout) :: faults
     type(number_file), intent(out) :: numbers
-    character(:), allocatable :: line
+    character(:), allocatable :: line, reason
     integer :: unit, status, number, used
     numbers%path = path
+    reason = why_no_file(path)
+    if (len(reason) > 0) then
+      call faults%add(severity_error, spot, "cannot read '"//path//"': "//reason)
+      allocate (numbers%values(0), numbers%line(0))
+      return
+    end if
     allocate (numbers%values(1024), numbers%line(1024))
     used = 0
     open (newunit=unit, file=path, status='old', action='read', iostat=status)
@@ -89,6 +96,7 @@ contains
       call make_room(numbers%values, used, 1)
       call make_room(numbers%line, used, 1)
       call parse_real(line(first:last), numbers%values(used + 1), is_number)
+      is_number = is_number .and. abs(numbers%values(used + 1)) <= largest_number
       if (.not. is_number) then
         call faults%add(severity_error, spot_in_file(numbers%path, number, first, last, line, &
                                                      spot), &
@@ -131,7 +139,7 @@ contains
     dt = 0.0_rk
     unit_name = ''
     open (newunit=unit, file=path, status='old', action='read', iostat=status)
-    if (status /= 0) return ! `read_numbers` reports it
+    if (status /= 0) return ! reported before
     do i = 1, num_at2_headers
       call read_line(unit, line, status)
       if (unit_name == '') unit_name = unit_in_header(line)

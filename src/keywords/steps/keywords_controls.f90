@@ -29,7 +29,7 @@ contains
                     lowest=0.0_rk, highest=1.0_rk, excludes_lowest=.true.), &
               field('ITERATIONS', kind_integer, 'most iterations before the increment is cut; '// &
                     'five times as many with a constant matrix of the solids (TANGENT)', &
-                    default='15', lowest=1.0_rk), &
+                    default='15', lowest=1.0_rk, highest=1.0e4_rk), &
               field('JOINT SOLVER', kind_choice, 'iterate on the joints alone (condensed) or '// &
                     'on everything (full Newton)', default='AUTO', &
                     choices=joint_solvers), &

@@ -108,7 +108,8 @@ contains
     end do
     text = text_of_errors(list)
     call check(log, index(text, 'dam.inp:20:') > 0 .and. index(text, 'dam.inp:21:') == 0, 'twenty')
-    call check_text(log, text(len(text) - 9:), 'and 5 more', 'the rest')
+    call check_text(log, text(index(text, lf, back=.true.) + 1:), &
+                    'and 5 more in lines 21 to 25: *ELASTIC: w', 'the rest')
     call check(log, list%num_warnings == 25, 'every warning is kept')
   end subroutine many
 

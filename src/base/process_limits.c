@@ -1,0 +1,181 @@
+/* Limits of the process: memory, the three standard files, files that are none.
+ *
+ * The linker turns the calls of the Fortran library that report a failed allocation into those
+ * below. They have no arguments of the program, so the name of the part that is at work is kept
+ * here. */
+#define _GNU_SOURCE
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { system_failed = 3 };
+static const size_t blas_bytes = 144u << 20; /* OpenBLAS takes 128 MB for a thread; and its stack */
+static const long long spare_bytes = 256ll << 20; /* above what is free: memory that is never used */
+
+static char part[256] = "the program";
+
+/* The part of the program that is at work, for the message on missing memory. */
+void keyway_note_part(const char *name) { snprintf(part, sizeof part, "%s", name); }
+
+static void end_at_once(int signal_number)
+{
+  (void)signal_number;
+  _exit(system_failed);
+}
+
+/* Ends the program. What is registered with atexit, such as the mark in the summary of a run, comes
+ * first; OpenBLAS, which comes last, waits for ever for memory that is not there. */
+static _Noreturn void end_program(void)
+{
+  signal(SIGALRM, end_at_once);
+  alarm(1);
+  exit(system_failed);
+}
+
+static _Noreturn void end_without_memory(const char *what)
+{
+  fprintf(stderr, "keyway: not enough memory in part '%s': %s\n", part, what);
+  end_program();
+}
+
+_Noreturn void __wrap__gfortran_os_error_at(const char *where, const char *format, ...)
+{
+  char what[256];
+  va_list rest;
+  (void)where;
+  va_start(rest, format);
+  vsnprintf(what, sizeof what, format, rest);
+  va_end(rest);
+  end_without_memory(what);
+}
+
+_Noreturn void __wrap__gfortran_os_error(const char *what) { end_without_memory(what); }
+
+_Noreturn void __wrap__gfortran_runtime_error(const char *format, ...)
+{
+  char what[256];
+  va_list rest;
+  va_start(rest, format);
+  vsnprintf(what, sizeof what, format, rest);
+  va_end(rest);
+  if (strstr(what, "memory") || strstr(what, "llocat")) end_without_memory(what);
+  fprintf(stderr, "keyway: fault of the program in part '%s': %s\n", part, what);
+  end_program();
+}
+
+/* A file that a program has not given becomes one that reads as empty and takes nothing: results
+ * would else be opened under its number. */
+static void open_standard_files(void)
+{
+  static const char *const stand_in[3] = {"/dev/null", "/dev/full", "/dev/null"};
+  for (int i = 0; i < 3; i++)
+    if (fcntl(i, F_GETFD) == -1 && errno == EBADF && open(stand_in[i], O_RDWR) < 0) return;
+}
+
+/* A number from a file of the kernel, after a word; -1 where there is none. */
+static long long number_in(const char *path, const char *word)
+{
+  char line[256];
+  long long value = -1;
+  FILE *file = fopen(path, "r");
+  if (!file) return -1;
+  while (value < 0 && fgets(line, sizeof line, file))
+    if (strncmp(line, word, strlen(word)) == 0 && sscanf(line + strlen(word), "%lld", &value) != 1)
+      value = -1;
+  fclose(file);
+  return value;
+}
+
+/* Bytes that a control group leaves; -1 without a limit. */
+static long long left_by_group(const char *limit, const char *used)
+{
+  long long most = number_in(limit, ""), now = number_in(used, "");
+  return most < 0 || now < 0 || most < now ? -1 : most - now;
+}
+
+static long long smaller(long long a, long long b) { return a < 0 || (b >= 0 && b < a) ? b : a; }
+
+/* Memory beyond what is there is refused when it is asked for. Without a limit the kernel promises
+ * it and ends the process when it is used. */
+static void limit_memory(void)
+{
+  struct rlimit now;
+  long long free_kb = number_in("/proc/meminfo", "MemAvailable:");
+  long long swap_kb = number_in("/proc/meminfo", "SwapFree:");
+  long long most = free_kb < 0 ? -1 : 1024 * (free_kb + (swap_kb > 0 ? swap_kb : 0));
+  most = smaller(most, left_by_group("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"));
+  most = smaller(most, left_by_group("/sys/fs/cgroup/memory/memory.limit_in_bytes",
+                                     "/sys/fs/cgroup/memory/memory.usage_in_bytes"));
+  if (most < 0 || getrlimit(RLIMIT_DATA, &now) != 0) return;
+  most += spare_bytes;
+  if (now.rlim_cur != RLIM_INFINITY && now.rlim_cur <= (rlim_t)most) return;
+  now.rlim_cur = (rlim_t)most;
+  setrlimit(RLIMIT_DATA, &now);
+}
+
+/* The first call of the program. */
+void keyway_prepare_process(void) { open_standard_files(); }
+
+static int num_tried;
+
+static _Noreturn void end_without_blas(int signal_number)
+{
+  char what[128];
+  (void)signal_number;
+  snprintf(part, sizeof part, "BLAS");
+  snprintf(what, sizeof what, "128 MB for each of %d threads; fewer threads (-j) need less", num_tried);
+  end_without_memory(what);
+}
+
+/* Tries the memory that OpenBLAS takes for its threads: without it OpenBLAS waits for ever. It also
+ * counts as missing when OpenBLAS has not got it in time, before keyway_end_trial. */
+void keyway_try_memory(int threads)
+{
+  enum { most_seconds = 10 };
+  size_t size = blas_bytes * (size_t)threads;
+  void *room = mmap(NULL, size, PROT_READ | PROT_WRITE,
+                    MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  num_tried = threads;
+  if (room == MAP_FAILED) end_without_blas(0);
+  munmap(room, size);
+  signal(SIGALRM, end_without_blas);
+  alarm(most_seconds);
+}
+
+/* OpenBLAS has its memory. From now on the process is limited to what the machine has. */
+void keyway_end_trial(void)
+{
+  alarm(0);
+  signal(SIGALRM, SIG_DFL);
+  limit_memory();
+}
+
+/* 0: there is no such file, 1: a file, 2: a folder, 3: a device or a pipe. */
+int keyway_kind_of_file(const char *path)
+{
+  struct stat found;
+  if (stat(path, &found) != 0) return 0;
+  if (S_ISREG(found.st_mode)) return 1;
+  return S_ISDIR(found.st_mode) ? 2 : 3;
+}
+
+/* Writes to the standard output without a buffer; 0: the output is closed or full. */
+int keyway_write_output(const char *text, size_t length)
+{
+  while (length > 0) {
+    ssize_t taken = write(1, text, length);
+    if (taken < 0 && errno == EINTR) continue;
+    if (taken <= 0) return 0;
+    text += taken;
+    length -= (size_t)taken;
+  }
+  return 1;
+}

@@ -1,0 +1,75 @@
+!> Refuses two names that are one in job.h5, where a '/' becomes a '_'.
+module check_names
+  use diagnostics, only: diagnostic_list
+  use file_system, only: link_name
+  use model_draft, only: draft
+  implicit none
+  private
+  public :: verify_names
+
+  integer, parameter :: name_length = 80 !< of names, card_check
+
+contains
+
+  !> The deck must have no errors.
+  subroutine verify_names(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    character(name_length), allocatable :: names(:)
+    integer :: i
+    allocate (names(model%node_sets%num_sets))
+    do i = 1, size(names)
+      names(i) = model%node_sets%sets(i)%name
+    end do
+    call compare(names, 'NSET', model, faults)
+    deallocate (names)
+    allocate (names(model%element_sets%num_sets))
+    do i = 1, size(names)
+      names(i) = model%element_sets%sets(i)%name
+    end do
+    call compare(names, 'ELSET', model, faults)
+    deallocate (names)
+    allocate (names(size(model%problem%surfaces)))
+    do i = 1, size(names)
+      names(i) = model%problem%surfaces(i)%name
+    end do
+    call compare(names, 'NAME', model, faults)
+    deallocate (names)
+    allocate (names(size(model%joints)))
+    do i = 1, size(names)
+      names(i) = model%joints(i)%name
+    end do
+    call compare(names, 'NAME', model, faults)
+  end subroutine verify_names
+
+  !> Reports names with a '/' that are another name without it.
+  subroutine compare(names, parameter_name, model, faults)
+    character(*), intent(in) :: names(:)
+    character(*), intent(in) :: parameter_name !< that gives the names
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i, j, place
+    do i = 1, size(names)
+      if (index(names(i), '/') == 0) cycle
+      do j = 1, size(names)
+        if (j == i .or. link_name(names(i)) /= link_name(names(j))) cycle
+        place = card_with(names(i), parameter_name, model)
+        if (place == 0) cycle
+        call model%cards(place)%fault_parameter( &
+          faults, parameter_name, "'"//trim(names(i))//"' and '"//trim(names(j))// &
+          "' are one name in job.h5", "names that differ by more than '/' and '_'")
+        return
+      end do
+    end do
+  end subroutine compare
+
+  !> The first card whose parameter has this value, 0 without one.
+  pure integer function card_with(name, parameter_name, model) result(found)
+    character(*), intent(in) :: name, parameter_name
+    type(draft), intent(in) :: model
+    do found = 1, size(model%cards)
+      if (model%cards(found)%word(parameter_name) == name) return
+    end do
+    found = 0
+  end function card_with
+end module check_names
