@@ -20,6 +20,7 @@ enum { system_failed = 3 };
 static const size_t blas_bytes = 144u << 20; /* OpenBLAS takes 128 MB for a thread; and its stack */
 static const long long spare_bytes = 256ll << 20; /* above what is free: memory that is never used */
 
+static void (*escape)(const char *); /* leaves a call of a user routine, if one runs */
 static char part[256] = "the program";
 
 /* The part of the program that is at work, for the message on missing memory. */
@@ -40,8 +41,12 @@ static _Noreturn void end_program(void)
   exit(system_failed);
 }
 
+/* The function is called when memory is missing, before the program ends. */
+void keyway_on_missing_memory(void (*function)(const char *)) { escape = function; }
+
 static _Noreturn void end_without_memory(const char *what)
 {
+  if (escape) escape(what);
   fprintf(stderr, "keyway: not enough memory in part '%s': %s\n", part, what);
   end_program();
 }

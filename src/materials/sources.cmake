@@ -20,6 +20,8 @@ set(sources
   law/material_points.f90
   umat/material_user.f90
   umat/umat_bridge.c
+  umat/umat_command.c
+  umat/umat_crash.c
   umat/umat_build.f90
   umat/umat_concrete.f90
   umat/umat_damage_plasticity.f90

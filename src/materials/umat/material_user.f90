@@ -12,7 +12,8 @@ module material_user
   use umat_guards, only: fault_of_call, guarded_state, has_cholesky_factor, largest_asymmetry, &
                          size_of_guard
   use umat_interface, only: keyway_umat_call, keyway_umat_disable_traps, &
-                            keyway_umat_restore_traps, keyway_umat_start, failure_reason, &
+                            keyway_umat_restore_folder, keyway_umat_restore_traps, &
+                            keyway_umat_start, failure_reason, &
                             umat_arguments
   use umat_loader, only: user_library
   use umat_tangent, only: compare_tangent, num_probes, strain_probes
@@ -126,13 +127,13 @@ contains
     real(rk), intent(inout) :: tangent(:, :, :)
     type(update_report), intent(out) :: report
     type(umat_arguments) :: now
-    type(guarded_state) :: variables
+    type(guarded_state) :: variables, constants
     character(:), allocatable :: fault
     integer :: p
     call keyway_umat_disable_traps()
     do p = 1, points%num_points
       call prepare_call(self, points, p, time, old, new, now)
-      call call_point(self, old%internal(:, p), now, variables, fault)
+      call call_point(self, old%internal(:, p), now, variables, constants, fault)
       if (len(fault) > 0) then
         report%failed_point = p
         report%size_ratio = 1.0_rk
@@ -156,6 +157,10 @@ contains
       end if
     end do
     call keyway_umat_restore_traps()
+    if (keyway_umat_restore_folder() == 0 .or. report%failed_point > 0) return
+    report%failed_point = 1
+    report%size_ratio = 1.0_rk
+    report%message = 'UMAT: the routine changes the working folder'
   end subroutine update
 
   pure type(call_place) function place_of(self, points, p, time) result(place)
@@ -211,29 +216,34 @@ contains
   end subroutine set_place
 
   !> One guarded call, from the converged history in each iteration.
-  subroutine call_point(self, history, now, variables, fault)
+  subroutine call_point(self, history, now, variables, constants, fault)
     class(user_law), intent(in) :: self
     real(rk), intent(in) :: history(:) !< of the point: state variables, SSE, SPD, SCD
     type(umat_arguments), intent(inout) :: now
-    type(guarded_state), intent(inout), target :: variables
+    type(guarded_state), intent(inout), target :: variables, constants
     character(:), allocatable, intent(out) :: fault !< '' for a valid result
-    real(rk), target :: constants(size(self%constants%values) + 1)
     integer :: n
     n = self%constants%num_variables
-    constants(:size(self%constants%values)) = self%constants%values
+    call constants%fill(self%constants%values)
     call variables%fill(history(:n))
     now%sse = history(n + 1)
     now%spd = history(n + 2)
     now%scd = history(n + 3)
     now%statev = c_loc(variables%room(size_of_guard + 1))
-    now%props = c_loc(constants)
+    now%props = c_loc(constants%room(size_of_guard + 1))
     if (allocated(self%library%found%bad_start)) then
       fault = self%library%found%bad_start
     else if (keyway_umat_call(self%library%umat, now) /= 0) then
       fault = failure_reason()
     else
       fault = fault_of_call(now, variables)
+      if (len(fault) == 0 .and. .not. constants%is_intact()) then
+        fault = 'the routine writes outside of its '//as_text(size(self%constants%values))// &
+                ' constants (PROPS)'
+      end if
     end if
+    variables%is_marked = len(fault) == 0
+    constants%is_marked = len(fault) == 0
   end subroutine call_point
 
   !> Stores stress, history and energies of a valid result. If the UMAT leaves SSE at zero, the
@@ -293,7 +303,7 @@ contains
     real(rk), intent(in) :: start(6), history(:) !< stress and history before the increment
     type(umat_arguments), intent(in) :: answer
     type(umat_arguments) :: now
-    type(guarded_state) :: variables
+    type(guarded_state) :: variables, constants
     type(tangent_check) :: check
     character(:), allocatable :: fault
     real(rk) :: dstran(6, num_probes), stress(6, num_probes)
@@ -306,7 +316,7 @@ contains
       now%dstran = dstran(:, i)
       now%ddsdde = 0.0_rk
       now%pnewdt = no_request
-      call call_point(self, history, now, variables, fault)
+      call call_point(self, history, now, variables, constants, fault)
       is_sound(i) = len(fault) == 0
       stress(:, i) = now%stress
     end do
@@ -336,6 +346,9 @@ contains
         fault = failure_reason()
       else
         fault = variables%fault()
+      end if
+      if (len(fault) == 0 .and. keyway_umat_restore_folder() /= 0) then
+        fault = 'the routine changes the working folder'
       end if
       if (len(fault) > 0) then
         self%library%found%bad_start = 'SDVINI at element '//as_text(points%element(p))// &

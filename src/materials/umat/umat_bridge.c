@@ -2,16 +2,19 @@
  * A UMAT that stops (XIT, STDB_ABQERR with -3, STOP) jumps back to the guarded call, which keeps
  * the message. The type in umat_interface holds the arguments in Fortran. */
 #define _GNU_SOURCE
-#include <dirent.h>
 #include <dlfcn.h>
 #include <fenv.h>
 #include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+void keyway_umat_catch_crashes(void); /* umat_crash.c */
+void keyway_umat_use_own_stack(void);
 
 struct arguments {
   double stress[6], ddsdde[36], sse, spd, scd, rpl, ddsddt[6], drplde[6], drpldt;
@@ -47,6 +50,9 @@ static _Thread_local struct {
   unsigned char holds[last_mutex + 1];
 } guard;
 
+/* Set when a routine has crashed: it may have damaged memory and is not called again. */
+static char crash_message[512];
+
 static void let_go_of_mutexes(void)
 {
   for (int i = 0; i <= last_mutex; i++) {
@@ -54,6 +60,15 @@ static void let_go_of_mutexes(void)
     pthread_mutex_unlock(&mutexes[i]);
     guard.holds[i] = 0;
   }
+}
+
+/* Leaves the guarded call of this thread after a crash; returns where there is none. */
+void keyway_umat_escape(const char *what)
+{
+  if (!guard.is_set) return;
+  snprintf(guard.message, sizeof guard.message, "the routine has crashed: %s", what);
+  memcpy(crash_message, guard.message, sizeof crash_message);
+  longjmp(guard.place, 1);
 }
 
 /* Ends the guarded call; without one (in a thread made by the UMAT) the process. */
@@ -82,27 +97,99 @@ static _Noreturn void stop_with_message(const char *format, ...)
 /* Reason of the last stop in this thread; at most `size` bytes with the null. */
 void keyway_umat_message(char *message, size_t size) { snprintf(message, size, "%s", guard.message); }
 
-/* Runs a call; the function returns 1 if the routine stops. */
-#define GUARDED(call)             \
-  do {                            \
-    if (setjmp(guard.place)) {    \
-      guard.is_set = 0;           \
-      let_go_of_mutexes();        \
-      return 1;                   \
-    }                             \
-    guard.is_set = 1;             \
-    call;                         \
-    guard.is_set = 0;             \
+/* Runs a call; the function returns 1 if the routine stops, or has crashed before. */
+#define GUARDED(call)                                                     \
+  do {                                                                    \
+    if (crash_message[0]) {                                               \
+      memcpy(guard.message, crash_message, sizeof guard.message);         \
+      return 1;                                                           \
+    }                                                                     \
+    keyway_umat_use_own_stack();                                          \
+    if (setjmp(guard.place)) {                                            \
+      guard.is_set = 0;                                                   \
+      let_go_of_mutexes();                                                \
+      return 1;                                                           \
+    }                                                                     \
+    guard.is_set = 1;                                                     \
+    call;                                                                 \
+    guard.is_set = 0;                                                     \
   } while (0)
+
+/* The arrays of a call, each between guard words. */
+enum { guard_words = 32 };
+static const uint64_t guard_word = 0xe613a5c3b7d29f41u;
+#define ARRAYS(X)                                                                              \
+  X(stress) X(ddsdde) X(ddsddt) X(drplde) X(stran) X(dstran) X(time) X(predef) X(dpred)        \
+  X(coords) X(drot) X(dfgrd0) X(dfgrd1) X(kstep) X(cmname)
+#define ROOM(name) union { char bytes[sizeof((struct arguments *)0)->name]; double align; } name; \
+  uint64_t after_##name[guard_words];
+static _Thread_local struct {
+  int has_guards;
+  uint64_t before_all[guard_words];
+  ARRAYS(ROOM)
+} room;
+
+static void set_guards(uint64_t *words)
+{
+  for (int i = 0; i < guard_words; i++) words[i] = guard_word;
+}
+
+/* 0, or the number of the first word that was written, from 1. */
+static int written_word(const uint64_t *words)
+{
+  uint64_t difference = 0;
+  for (int i = 0; i < guard_words; i++) difference |= words[i] ^ guard_word;
+  if (difference == 0) return 0;
+  for (int i = 0; i < guard_words; i++)
+    if (words[i] != guard_word) return i + 1;
+  return 0;
+}
+
+#define SET(name) set_guards(room.after_##name);
+#define COPY_IN(name) memcpy(room.name.bytes, a->name, sizeof a->name);
+#define COPY_OUT(name) memcpy(a->name, room.name.bytes, sizeof a->name);
+#define CHECK(name)                                                                         \
+  if (!culprit && (where = written_word(room.after_##name))) culprit = #name;
+
+/* 1 with a message if the routine wrote outside of its arrays. */
+static int has_written_outside(void)
+{
+  const char *culprit = NULL;
+  char name[16];
+  int where = 0;
+  size_t i;
+  if (written_word(room.before_all)) culprit = "stress";
+  ARRAYS(CHECK)
+  if (!culprit) return 0;
+  room.has_guards = 0;
+  for (i = 0; i + 1 < sizeof name && culprit[i]; i++) name[i] = (char)(culprit[i] & ~32);
+  name[i] = '\0';
+  for (i = 0; name[i]; i++)
+    if (culprit[i] >= '0' && culprit[i] <= '9') name[i] = culprit[i];
+  snprintf(guard.message, sizeof guard.message, "the routine writes outside of its array %s%s", name,
+           where > 0 ? ", behind the end" : ", before the beginning");
+  return 1;
+}
 
 int keyway_umat_call(umat_routine *umat, struct arguments *a)
 {
-  GUARDED(umat(a->stress, a->statev, a->ddsdde, &a->sse, &a->spd, &a->scd, &a->rpl, a->ddsddt,
-               a->drplde, &a->drpldt, a->stran, a->dstran, a->time, &a->dtime, &a->temp, &a->dtemp,
-               a->predef, a->dpred, a->cmname, &a->ndi, &a->nshr, &a->ntens, &a->nstatv, a->props,
-               &a->nprops, a->coords, a->drot, &a->pnewdt, &a->celent, a->dfgrd0, a->dfgrd1,
-               &a->noel, &a->npt, &a->layer, &a->kspt, a->kstep, &a->kinc, sizeof a->cmname));
-  return 0;
+  if (!room.has_guards) {
+    set_guards(room.before_all);
+    ARRAYS(SET)
+    room.has_guards = 1;
+  }
+  ARRAYS(COPY_IN)
+  GUARDED(umat((double *)room.stress.bytes, a->statev, (double *)room.ddsdde.bytes, &a->sse, &a->spd,
+               &a->scd, &a->rpl, (double *)room.ddsddt.bytes, (double *)room.drplde.bytes, &a->drpldt,
+               (double *)room.stran.bytes, (double *)room.dstran.bytes, (double *)room.time.bytes,
+               &a->dtime, &a->temp, &a->dtemp, (double *)room.predef.bytes,
+               (double *)room.dpred.bytes, room.cmname.bytes, &a->ndi, &a->nshr, &a->ntens,
+               &a->nstatv, a->props, &a->nprops, (double *)room.coords.bytes,
+               (double *)room.drot.bytes, &a->pnewdt, &a->celent, (double *)room.dfgrd0.bytes,
+               (double *)room.dfgrd1.bytes, &a->noel, &a->npt, &a->layer, &a->kspt,
+               (int *)room.kstep.bytes, &a->kinc, sizeof a->cmname));
+  ARRAYS(COPY_OUT)
+  return has_written_outside();
 }
 
 int keyway_umat_start(sdvini_routine *sdvini, struct arguments *a)
@@ -129,35 +216,12 @@ void keyway_umat_restore_traps(void) { fesetenv(&traps); }
 void *keyway_umat_open(const char *path, char *message, size_t size)
 {
   void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND);
+  keyway_umat_catch_crashes();
   snprintf(message, size, "%s", handle ? "" : dlerror());
   return handle;
 }
 
 void *keyway_umat_find(void *handle, const char *name) { return dlsym(handle, name); }
-
-/* Makes a temporary folder; its path with a null, or an empty text. */
-void keyway_make_temporary(char *path, size_t size)
-{
-  const char *parent = getenv("TMPDIR");
-  if (!parent || !*parent) parent = P_tmpdir;
-  if ((size_t)snprintf(path, size, "%s/keyway_umat_XXXXXX", parent) >= size || !mkdtemp(path))
-    path[0] = '\0';
-}
-
-/* Removes a folder with the files in it. */
-void keyway_remove_temporary(const char *path)
-{
-  char file[4096];
-  struct dirent *entry;
-  DIR *folder = opendir(path);
-  if (!folder) return;
-  while ((entry = readdir(folder))) {
-    if ((size_t)snprintf(file, sizeof file, "%s/%s", path, entry->d_name) < sizeof file)
-      unlink(file); /* not '.' and '..': unlink leaves folders alone */
-  }
-  closedir(folder);
-  rmdir(path);
-}
 
 /* The job, for GETJOBNAME and GETOUTDIR; number of warnings and errors of the UMAT. */
 static char job_name[257], job_folder[4097];
@@ -241,6 +305,17 @@ void getpartinfo_(const int *intnum, const int *jtyp, char *cpname, int *locnum,
   warn("GETPARTINFO is not provided");
 }
 
+/* Tables of properties are not provided; without the routines a library that names them would not
+ * load. */
+#define MISSING(routine, name) \
+  _Noreturn void routine(void) { stop_with_message("%s is not provided", name); }
+MISSING(getpropertytable_, "GETPROPERTYTABLE")
+MISSING(getparametertable_, "GETPARAMETERTABLE")
+MISSING(getparametertablerow_, "GETPARAMETERTABLEROW")
+MISSING(queryparametertable_, "QUERYPARAMETERTABLE")
+MISSING(gettablecollection_, "GETTABLECOLLECTION")
+MISSING(settablecollection_, "SETTABLECOLLECTION")
+
 /* STOP, ERROR STOP, EXIT and failed run-time checks of a library that Keyway has linked: the linker
  * turned their names into these. */
 _Noreturn void __wrap__gfortran_stop_string(const char *text, size_t length, _Bool quiet)
@@ -281,3 +356,5 @@ _Noreturn void __wrap__gfortran_runtime_error_at(const char *place, const char *
   va_end(rest);
   stop_with_message("%s: %s", place, text);
 }
+
+_Noreturn void __wrap__gfortran_abort(void) { stop_with_message("CALL ABORT"); }

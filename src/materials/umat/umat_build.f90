@@ -1,5 +1,6 @@
 !> Builds a shared library from the sources of a UMAT.
 module umat_build
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char, c_size_t
   use build_info, only: compiler_path
   use deck_file, only: load_file
   use errors, only: deck_is_wrong, error_type, raise, system_failed
@@ -29,13 +30,28 @@ module umat_build
                              '-Wl,--wrap=_gfortran_error_stop_string '// &
                              '-Wl,--wrap=_gfortran_error_stop_numeric '// &
                              '-Wl,--wrap=_gfortran_exit_i4 '// &
-                             '-Wl,--wrap=_gfortran_runtime_error_at'
+                             '-Wl,--wrap=_gfortran_runtime_error_at '// &
+                             '-Wl,--wrap=_gfortran_os_error_at '// &
+                             '-Wl,--wrap=_gfortran_os_error '// &
+                             '-Wl,--wrap=_gfortran_abort'
   !> The include file of UMATs: implicit typing and precision of the interface.
   character(*), parameter :: include_file = &
                              '      IMPLICIT REAL*8(A-H,O-Z)'//nl// &
                              '      PARAMETER (NPRECD=2)'//nl
   integer, parameter :: most_letters = 4000 !< of the compiler's output in a message
-  integer, parameter :: command_not_found = 127 !< status of the shell
+  integer, parameter :: command_not_found = 127 !< status, umat_command.c
+
+  interface
+    !> Runs a command without a shell; its output goes to a file.
+    function keyway_umat_run(words, length, output) result(status) bind(c)
+      import :: c_char, c_int, c_size_t
+      implicit none
+      ! allow(assumed-size)
+      character(kind=c_char), intent(in) :: words(*), output(*)
+      integer(c_size_t), value :: length
+      integer(c_int) :: status
+    end function keyway_umat_run
+  end interface
 
 contains
 
@@ -62,22 +78,22 @@ contains
     objects = ''
     do i = 1, size(files)
       if (allocated(error)) return
-      object = quoted(files(i)%path)
+      object = files(i)%path
       if (.not. is_object(files(i)%path)) then
-        object = quoted(folder//'/umat_'//as_text(i)//'.o')
+        object = folder//'/umat_'//as_text(i)//'.o'
         call compile(files(i)%path, user_flags, folder, object, error)
       end if
-      objects = objects//' '//object
+      objects = objects//word(object)
     end do
     if (allocated(error)) return
-    call run(flags_of_linker//objects//' '//user_flags//' -o '//quoted(library), folder, &
-             'cannot link the UMAT', error)
+    call run(words_of(flags_of_linker)//objects//words_of(user_flags)//word('-o')// &
+             word(library), folder, 'cannot link the UMAT', error)
   end subroutine build_library
 
   !> Compiles one source.
   subroutine compile(path, user_flags, folder, object, error)
     character(*), intent(in) :: path, user_flags, folder
-    character(*), intent(in) :: object !< path, quoted
+    character(*), intent(in) :: object !< path
     type(error_type), allocatable, intent(out) :: error
     type(source_form) :: form
     character(:), allocatable :: text, reason, flags
@@ -91,26 +107,25 @@ contains
     if (form%is_free) flags = flags_of_free_form
     flags = flags_of_old_code//' '//flags
     if (form%has_directives) flags = flags//' -cpp'
-    call run('-c '//flags//' -I'//quoted(folder_of(path))//' -I'//quoted(folder)//' -J'// &
-             quoted(folder)//' '//user_flags//' -o '//object//' '//quoted(path), folder, &
+    call run(words_of('-c '//flags)//word('-I'//folder_of(path))//word('-I'//folder)// &
+             word('-J'//folder)//words_of(user_flags)//word('-o')//word(object)// &
+             word(path), folder, &
              "cannot compile the UMAT '"//path//"', taken for "// &
              trim(merge('free ', 'fixed', form%is_free))//' form', error)
   end subroutine compile
 
-  !> Runs the compiler; on failure the message is its output.
+  !> Runs the compiler without a shell; on failure the message is its output.
   subroutine run(arguments, folder, what_fails, error)
-    character(*), intent(in) :: arguments, folder, what_fails
+    character(*), intent(in) :: arguments !< words, each with a null at its end
+    character(*), intent(in) :: folder, what_fails
     type(error_type), allocatable, intent(out) :: error
     character(:), allocatable :: command, words, reason
-    integer :: status, launched
-    command = compiler()
-    status = 0
-    launched = 0
-    call execute_command_line(command//' '//arguments//' >'//quoted(folder//'/words')//' 2>&1', &
-                              exitstat=status, cmdstat=launched)
-    if (status == 0 .and. launched == 0) return
-    if (status == command_not_found .or. launched /= 0) then
-      call raise(error, 'keyway: '//what_fails//': '//command//' was not found', system_failed)
+    integer :: status
+    command = word(compiler())//arguments
+    status = int(keyway_umat_run(command, len(command, c_size_t), folder//'/words'//c_null_char))
+    if (status == 0) return
+    if (status == command_not_found) then
+      call raise(error, 'keyway: '//what_fails//': '//compiler()//' was not found', system_failed)
       return
     end if
     call load_file(folder//'/words', words, reason)
@@ -125,8 +140,43 @@ contains
     logical :: exists
     inquire (file=compiler_path, exist=exists)
     command = 'gfortran'
-    if (exists) command = quoted(compiler_path)
+    if (exists) command = compiler_path
   end function compiler
+
+  !> A word of a command.
+  pure function word(text)
+    character(*), intent(in) :: text
+    character(:), allocatable :: word
+    word = text//c_null_char
+  end function word
+
+  !> The words of a text: blanks separate words, quotes protect blanks. Nothing else has a meaning.
+  pure function words_of(text) result(words)
+    character(*), intent(in) :: text
+    character(:), allocatable :: words !< each with a null at its end
+    character :: quote
+    integer :: i
+    logical :: is_open
+    words = ''
+    quote = ' '
+    is_open = .false.
+    do i = 1, len(text)
+      if (quote /= ' ') then
+        if (text(i:i) /= quote) words = words//text(i:i)
+        if (text(i:i) == quote) quote = ' '
+      else if (text(i:i) == '"' .or. text(i:i) == '''') then
+        quote = text(i:i)
+        is_open = .true.
+      else if (text(i:i) == ' ') then
+        if (is_open) words = words//c_null_char
+        is_open = .false.
+      else
+        words = words//text(i:i)
+        is_open = .true.
+      end if
+    end do
+    if (is_open) words = words//c_null_char
+  end function words_of
 
   !> Whether a file goes to the linker without compilation.
   pure logical function is_object(path)
@@ -142,19 +192,6 @@ contains
     folder = path(:index(path, '/', back=.true.))
     if (folder == '') folder = '.'
   end function folder_of
-
-  !> A text as one word of the shell.
-  pure function quoted(word) result(text)
-    character(*), intent(in) :: word
-    character(:), allocatable :: text
-    integer :: i
-    text = ''''
-    do i = 1, len(word)
-      if (word(i:i) == '''') text = text//'''\''' ! close, quoted quote, open
-      text = text//word(i:i)
-    end do
-    text = text//''''
-  end function quoted
 
   subroutine write_text_file(path, text, error)
     character(*), intent(in) :: path, text

@@ -8,16 +8,18 @@ module umat_guards
   private
   public :: guarded_state, fault_of_call, has_cholesky_factor, largest_asymmetry, size_of_guard
 
-  integer, parameter :: size_of_guard = 8 !< words before and behind the state variables
+  integer, parameter :: size_of_guard = 256 !< words before and behind the state variables
   !> A number that no law writes by chance.
   real(rk), parameter :: guard_word = -7.236514893620175e183_rk
 
   !> State variables between guard words.
   type :: guarded_state
     real(rk), allocatable :: room(:)
+    logical :: is_marked = .false. !< the guard words are set
   contains
     procedure :: fill
     procedure :: values
+    procedure :: is_intact
     procedure :: fault => fault_of_state
   end type guarded_state
 
@@ -31,8 +33,12 @@ contains
     if (allocated(self%room)) then
       if (size(self%room) /= n + 2*size_of_guard) deallocate (self%room)
     end if
-    if (.not. allocated(self%room)) allocate (self%room(n + 2*size_of_guard))
-    self%room = guard_word
+    if (.not. allocated(self%room)) then
+      allocate (self%room(n + 2*size_of_guard))
+      self%is_marked = .false.
+    end if
+    if (.not. self%is_marked) self%room = guard_word
+    self%is_marked = .true.
     self%room(size_of_guard + 1:size_of_guard + n) = variables
   end subroutine fill
 
@@ -49,16 +55,23 @@ contains
     integer :: i, n
     n = size(self%room) - 2*size_of_guard
     fault = ''
-    do i = 1, size_of_guard
-      if (.not. is_guard(self%room(i)) .or. .not. is_guard(self%room(size_of_guard + n + i))) then
-        fault = 'the routine writes outside of its '//as_text(n)//' state variables (STATEV); '// &
-                'set their number by *DEPVAR'
-        return
-      end if
-    end do
+    if (.not. self%is_intact()) then
+      fault = 'the routine writes outside of its '//as_text(n)//' state variables (STATEV); '// &
+              'set their number by *DEPVAR'
+      return
+    end if
     i = first_not_finite(self%room(size_of_guard + 1:size_of_guard + n))
     if (i > 0) fault = 'STATEV('//as_text(i)//') is not a number'
   end function fault_of_state
+
+  !> Whether nothing was written before and behind the values.
+  pure logical function is_intact(self)
+    class(guarded_state), intent(in) :: self
+    integer :: n
+    n = size(self%room) - 2*size_of_guard
+    is_intact = all(is_guard(self%room(:size_of_guard))) .and. &
+                all(is_guard(self%room(size_of_guard + n + 1:)))
+  end function is_intact
 
   !> Compares bits: a comparison with NaN would trap.
   pure elemental logical function is_guard(word)

@@ -8,6 +8,7 @@ module umat_interface
   public :: keyway_umat_open, keyway_umat_find, keyway_umat_set_job, keyway_umat_counts
   public :: keyway_umat_count, keyway_umat_stop, keyway_umat_disable_traps
   public :: keyway_umat_restore_traps, keyway_make_temporary, keyway_remove_temporary
+  public :: keyway_umat_restore_folder
   public :: failure_reason, text_from_c
 
   integer, parameter :: longest_message = 512
@@ -129,6 +130,13 @@ module umat_interface
     subroutine keyway_umat_restore_traps() bind(c)
       implicit none
     end subroutine keyway_umat_restore_traps
+
+    !> Goes back to the working folder of the start; 1 if a routine had changed it.
+    function keyway_umat_restore_folder() result(has_moved) bind(c)
+      import :: c_int
+      implicit none
+      integer(c_int) :: has_moved
+    end function keyway_umat_restore_folder
 
     !> Makes a temporary folder; an empty path on failure.
     subroutine keyway_make_temporary(path, size) bind(c)

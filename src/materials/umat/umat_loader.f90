@@ -8,7 +8,8 @@ module umat_loader
   use umat_findings, only: findings, text_of_check
   use umat_interface, only: keyway_make_temporary, keyway_remove_temporary, keyway_umat_counts, &
                             keyway_umat_external, keyway_umat_find, keyway_umat_disable_traps, &
-                            keyway_umat_open, keyway_umat_restore_traps, keyway_umat_set_job, &
+                            keyway_umat_open, keyway_umat_restore_folder, &
+                            keyway_umat_restore_traps, keyway_umat_set_job, &
                             failure_reason, text_from_c
   use umat_services, only: message_unit
   use write_text, only: as_text
@@ -162,6 +163,10 @@ contains
                                   real(time, c_double), real(size, c_double), int(step, c_int), &
                                   int(increment, c_int))
     call keyway_umat_restore_traps()
+    if (keyway_umat_restore_folder() /= 0 .and. status == 0) then
+      call raise(error, 'UEXTERNALDB of the UMAT changes the working folder', analysis_failed)
+      return
+    end if
     if (status == 0) return
     call raise(error, 'UEXTERNALDB of the UMAT stopped (LOP '//as_text(moment)//', step '// &
                as_text(step)//', increment '//as_text(increment)//'): '//failure_reason(), &
