@@ -12,6 +12,7 @@ set(sources
   concrete/damage_point.f90
   concrete/damage_return.f90
   concrete/damage_screen.f90
+  concrete/damage_split.f90
   concrete/damage_tangent.f90
   concrete/damage_yield.f90
   concrete/material_damage_plasticity.f90

@@ -64,7 +64,7 @@ class Material:
             meridian_ratio=self.meridian_ratio,
             tension_recovery=self.tension_recovery,
             compression_recovery=self.compression_recovery,
-            recovers_by_sign=self.recovery == "SIGN",
+            recovery=self.recovery,
         )
 
 

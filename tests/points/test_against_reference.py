@@ -19,6 +19,8 @@ from reference.viscous import relax
 
 EVERYTHING = Material(**CRUSHING, tension_recovery=0.5)
 SWITCH = Material(**CRUSHING, recovery="SIGN")
+SPLIT = Material(**CRUSHING, recovery="ENERGY")
+SPLIT_HALF = replace(SPLIT, tension_recovery=0.5, compression_recovery=0.5, poisson=0.3)
 
 
 def straight(*ends) -> list[Leg]:
@@ -40,6 +42,14 @@ PATHS = {
                                       [2.5, 4, 1, 6, 3, 2])),
     "crush_then_twist": (EVERYTHING, straight([-20, 0, 0, 0, 0, 0], [-20, 3, 3, 12, 5, -8])),
     "switch": (SWITCH, straight([2, -1, 0, 3, 0, 0], [-9, 2, 1, 5, 1, 0], [-2, 4, 0, 3, 0, 0])),
+    "split_tension": (SPLIT, [Leg.of("ESSEEE", [e, 0, 0, 0, 0, 0]) for e in (3e-4, 1e-4, 8e-4)]),
+    "split_shear": (SPLIT, straight([0, 0, 0, 8, 0, 0], [0, 0, 0, -8, 0, 0])),
+    "split_oedometer": (SPLIT, straight([5, 0, 0, 0, 0, 0], [-30, 0, 0, 0, 0, 0])),
+    "split_rotating": (SPLIT_HALF, straight([2, -1, 0, 3, 0, 0], [-9, 2, 1, 5, 1, 0],
+                                            [-2, 4, 0, 3, 0, 0])),
+    "split_twist": (SPLIT_HALF, straight([-20, 0, 0, 0, 0, 0], [-20, 3, 3, 12, 5, -8])),
+    "split_paper": (replace(JINPING, recovery="ENERGY"), straight([4, 1, 0, 4, 2, 0],
+                                                                  [-2, 0, 0, 2, -3, 0])),
     "paper": (JINPING, straight([2, 0, 0, 1, 0, 0], [4, 1, 0, 4, 2, 0])),
 }  # fmt: skip
 

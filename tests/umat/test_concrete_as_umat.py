@@ -20,6 +20,7 @@ DECKS = {
     "openings": (MATERIALS / "dam_concrete.inp").read_text(),
     "two stresses": (MATERIALS / "kupfer.inp").read_text(),
     "viscosity, recovery by sign": CYCLES.replace(SURFACE, SLOW),
+    "viscosity, recovery by energy": CYCLES.replace(SURFACE, SLOW.replace("SIGN", "ENERGY")),
 }
 # Two cubes of 0.5 m in a row, the second a twentieth weaker, pulled until it has cracked and
 # pressed until the crack has closed.

@@ -103,7 +103,7 @@ def slopes(point: Point, strain: np.ndarray, step: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize("viscosity", [0.0, 0.3])
-@pytest.mark.parametrize("recovery", [0.0, 1.0])
+@pytest.mark.parametrize("recovery", [0.0, 1.0, 2.0])
 def test_tangent(library, viscosity, recovery):
     """DDSDDE along paths with reversals against differences: 1e-6 of the largest entry.
 
@@ -137,7 +137,7 @@ def with_constant(number: int, value: float) -> list[float]:
 SCALARS = [
     (1, 0.0, "E_0 > 0"), (1, float("nan"), "E_0 > 0"), (2, 0.5, "nu between"),
     (3, 60.0, "degrees between"), (4, 0.0, "an offset > 0"), (5, 0.9, "f_b0/f_c0 >= 1"),
-    (6, 0.5, "K_c above 0.5"), (7, -1.0, "a viscosity >= 0"), (8, 2.0, "recovery 0 or 1"),
+    (6, 0.5, "K_c above 0.5"), (7, -1.0, "a viscosity >= 0"), (8, 3.0, "recovery 0, 1 or 2"),
     (9, 1.5, "w_t between"), (10, -0.5, "w_c between"), (11, 3.0, "tension against"),
     (12, 2.0, "tension damage against"), (13, 2.0, "long elements"), (14, -1.0, "a width >= 0"),
     (15, 0.0, "a number of rows"), (16, -1.0, "a number of rows"), (17, 0.0, "a number of rows"),

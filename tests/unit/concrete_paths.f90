@@ -12,6 +12,7 @@
 module concrete_paths
   use damage_curves, only: curve_value, value_of_curve
   use damage_model, only: concrete_model, place_curves, placed_curves
+  use damage_split, only: tension_at
   use damage_point, only: point_answer, point_history, point_motion, update_point
   use damage_yield, only: yield_at, yield_value
   use kinds, only: rk
@@ -171,8 +172,7 @@ contains
                   + (model%bulk - 2.0_rk/3.0_rk*model%shear) &
                   *sum(strain(1:3) - new%backbone%strain(1:3))
     rows = 1
-    call value_of_curve(model%tension, placed%tension, placed%factor, new%backbone%measures(1), &
-                        rows(1), tension)
+    call tension_at(model, placed, new%backbone%measures(1), rows(1), tension)
     call value_of_curve(model%compression, placed%compression, 1.0_rk, new%backbone%measures(2), &
                         rows(2), compression)
     principal = principal_values(stress)

@@ -13,6 +13,7 @@ TABLES = (
 )
 SURFACE = (None, 0.1, 1.16, 2.0 / 3.0, 0.0)  # psi has no default
 KINDS = {"STRAIN": 0, "DISPLACEMENT": 1, "GFI": 2}
+RECOVERIES = ("LEE-FENVES", "SIGN", "ENERGY")
 NUM_STATE = 17
 A_LINE = 8  # constants
 
@@ -70,7 +71,7 @@ def constants_of(cards: list[Card]) -> list[float]:
     scalars = [
         *found["ELASTIC"].numbers[0][:2],
         *surface,
-        float(plastic.options.get("RECOVERY") == "SIGN"),
+        float(RECOVERIES.index(plastic.options.get("RECOVERY", "LEE-FENVES"))),
         float(crushing.options.get("TENSION RECOVERY", 0)),
         float(tension.options.get("COMPRESSION RECOVERY", 1)),
         KINDS[stiffening.options.get("TYPE", "STRAIN")],

@@ -43,8 +43,9 @@ contains
     allocate (spec%parameters, source=[ &
               field('RECOVERY', kind_choice, 'fraction of tension in a stress state (r of Eq. '// &
                     '17): the continuous weight of Lee and Fenves, '// &
-                    'or the discontinuous switch of the paper', &
-                    default='LEE-FENVES', choices='LEE-FENVES | SIGN')])
+                    'or the discontinuous switch of the paper; or ENERGY: '// &
+                    'a split of the stress that creates no energy', &
+                    default='LEE-FENVES', choices='LEE-FENVES | SIGN | ENERGY')])
     allocate (spec%columns, source=[ &
               field('dilation', kind_real, 'dilation angle psi (Eq. 25); above atan 3/2 a '// &
                     'crack would also open sideways', &
@@ -77,7 +78,7 @@ contains
         now%biaxial_ratio = this%real_at(1, 3)
         now%meridian_ratio = this%real_at(1, 4)
         now%viscosity = this%real_at(1, 5)
-        now%recovers_by_sign = this%word('RECOVERY') == 'SIGN'
+        now%recovery = this%word('RECOVERY')
       end associate
       call claim_card(this, model, one%given%plasticity, faults)
     end select

@@ -14,7 +14,8 @@ module damage_constants
     real(rk) :: biaxial_ratio = 1.16_rk !< f_b0/f_c0; alpha of Eq. 19 follows (paper_notes.md, 9)
     real(rk) :: meridian_ratio = 2.0_rk/3.0_rk !< K_c; gamma of Eq. 19 follows (paper_notes.md, 9)
     real(rk) :: viscosity = 0.0_rk !< of Duvaut and Lions [s]
-    logical :: recovers_by_sign = .false. !< r of Eq. 17, else the weight of paper_notes.md, 8
+    !> 'LEE-FENVES' (r of paper_notes.md, 8), 'SIGN' (r of Eq. 17) or 'ENERGY' (theory.md, (11.3a))
+    character(10) :: recovery = 'LEE-FENVES'
     character(12) :: stiffening = 'STRAIN' !< 'STRAIN', 'DISPLACEMENT' or 'GFI'
     !> sigma_t [Pa] against cracking strain or opening [m]; GFI: one row, f_t [Pa] and G_f [N/m]
     real(rk), allocatable :: tension(:, :)

@@ -3,17 +3,19 @@ module damage_energy
   use damage_curves, only: curve_value, value_of_curve
   use damage_increment, only: plastic_state
   use damage_model, only: concrete_model, placed_curves
+  use damage_split, only: energy_split, nominal_stress, split_stress, stiffness_left, tension_at
   use damage_yield, only: yield_at, yield_value
   use kinds, only: rk
-  use tensor6, only: principal_values, second_invariant, trace
+  use tensor6, only: principal_axes, principal_values, second_invariant, trace
   implicit none
   private
-  public :: flow_path, onset_of_flow, dissipated_work, cracking_share
+  public :: flow_path, onset_of_flow, dissipated_work, dissipated_by_split, cracking_share
 
   !> Plastic flow and damage of an increment.
   type :: flow_path
     real(rk) :: onset(6) = 0.0_rk, finish(6) = 0.0_rk !< effective stresses [Pa]
     real(rk) :: flow(6) = 0.0_rk !< increment of plastic strain, engineering shear
+    real(rk) :: growth(2) = 0.0_rk !< of d_t, d_c
     real(rk) :: damages(2) = 0.0_rk !< d at start and end, both with the final weight r
   end type flow_path
 
@@ -33,8 +35,7 @@ contains
     real(rk) :: principal(3)
     integer :: rows(2)
     rows = 1
-    call value_of_curve(model%tension, placed%tension, placed%factor, old%measures(1), rows(1), &
-                        tension)
+    call tension_at(model, placed, old%measures(1), rows(1), tension)
     call value_of_curve(model%compression, placed%compression, 1.0_rk, old%measures(2), rows(2), &
                         compression)
     principal = principal_values(start)
@@ -63,6 +64,37 @@ contains
                 *(undamaged_energy(model, path%onset) + undamaged_energy(model, path%finish))
     end associate
   end function dissipated_work
+
+  !> The same with RECOVERY=ENERGY: each part of the effective stress has its own stiffness and its
+  !> own energy.
+  pure subroutine dissipated_by_split(model, path, old, new, work, cracked)
+    type(concrete_model), intent(in) :: model
+    type(flow_path), intent(in) :: path
+    type(stiffness_left), intent(in) :: old, new !< at both ends of the increment
+    real(rk), intent(out) :: work(2) !< by flow, by damage [J/m3]
+    real(rk), intent(out) :: cracked !< share of d_t in the work of damage
+    type(energy_split) :: split
+    real(rk) :: stresses(6, 2), s(3), axes(3, 3), left(2), nominal(6, 2), energy(2), losses(2)
+    integer :: i
+    stresses = reshape([path%onset, path%finish], [6, 2])
+    left = 0.5_rk*(old%value + new%value)
+    energy = 0.0_rk
+    do i = 1, 2
+      call principal_axes(stresses(:, i), s, axes)
+      call split_stress(model, s, split)
+      nominal(:, i) = nominal_stress(stresses(:, i), axes, split, left)
+      energy = energy + 0.5_rk*split%energy
+    end do
+    work(1) = 0.5_rk*dot_product(nominal(:, 1) + nominal(:, 2), path%flow)
+    if (work(1) < 0.0_rk) then
+      nominal(:, 2) = nominal_stress(stresses(:, 2), axes, split, new%value)
+      work(1) = dot_product(nominal(:, 2), path%flow)
+    end if
+    work(2) = dot_product(energy, old%value - new%value)
+    losses = -matmul(energy, new%by_damage)*path%growth
+    cracked = 1.0_rk
+    if (losses(2) > 0.0_rk) cracked = losses(1)/sum(losses)
+  end subroutine dissipated_by_split
 
   !> Share of cracking in the work of flow: the work in the principal directions in tension. A crack
   !> that opens under pressure along its faces counts as cracking for any weight r.

@@ -19,6 +19,7 @@ module damage_model
     real(rk) :: rounding = 0.0_rk !< a of Eq. 25 [Pa]; see rounding_of
     real(rk) :: tension_recovery = 0.0_rk, compression_recovery = 1.0_rk !< w_t, w_c of Eq. 16
     logical :: recovers_by_sign = .false. !< r of Eq. 17
+    logical :: splits_energy = .false. !< RECOVERY=ENERGY: see damage_split
     real(rk) :: viscosity = 0.0_rk !< [s]
     logical :: by_opening = .false. !< the curve in tension depends on the crack band
     type(strength_curve) :: tension, compression
@@ -51,7 +52,8 @@ contains
     model%tan_dilation = tan(constants%dilation*degree)
     model%tension_recovery = constants%tension_recovery
     model%compression_recovery = constants%compression_recovery
-    model%recovers_by_sign = constants%recovers_by_sign
+    model%recovers_by_sign = constants%recovery == 'SIGN'
+    model%splits_energy = constants%recovery == 'ENERGY'
     model%viscosity = constants%viscosity
     model%by_opening = constants%stiffening /= 'STRAIN'
     call make_tension_curve(constants, model%tension)

@@ -1,9 +1,12 @@
 !> One increment at a point of plastic-damage concrete: kernel of the material of the deck and of
 !> the user subroutine for other programs.
 module damage_point
-  use damage_energy, only: cracking_share, dissipated_work, flow_path, onset_of_flow
+  use damage_energy, only: cracking_share, dissipated_by_split, dissipated_work, flow_path, &
+                           onset_of_flow
   use damage_increment, only: elastic_stress, increment_result, integrate_increment, plastic_state
   use damage_model, only: concrete_model, placed_curves, stiffness_of
+  use damage_split, only: energy_split, left_after, nominal_stress, split_stress, &
+                          stiffness_left, stiffness_of_split
   use damage_tangent, only: effective_tangent, has_regular_flow, share_row
   use damage_yield, only: damage_gradient, tension_share, total_damage
   use kinds, only: rk
@@ -49,6 +52,8 @@ module damage_point
     real(rk) :: lag = 0.0_rk !< share of the previous history after relaxation
     real(rk) :: share = 0.0_rk, share_by(3) = 0.0_rk !< r of the stiffness, dr/ds_i
     type(damage_gradient) :: d
+    type(energy_split) :: split !< RECOVERY=ENERGY; else d counts
+    type(stiffness_left) :: left
   end type end_state
 
 contains
@@ -74,16 +79,21 @@ contains
     finish%axes = backbone%axes
     finish%principal = backbone%flow%s
     if (model%viscosity > 0.0_rk) call relax(model, motion, old, new, finish)
-    call recover(model, motion, old, new%damage, finish)
-    answer%stress = (1.0_rk - finish%d%value)*finish%stress
+    if (model%splits_energy) then
+      call split_stress(model, finish%principal, finish%split)
+      call left_after(model, new%damage(1), new%damage(2), finish%left)
+      answer%stress = nominal_stress(finish%stress, finish%axes, finish%split, finish%left%value)
+    else
+      call recover(model, motion, old, new%damage, finish)
+      answer%stress = (1.0_rk - finish%d%value)*finish%stress
+    end if
     answer%stored = 0.5_rk*dot_product(answer%stress, motion%strain - new%plastic_strain)
     if (backbone%has_yielded .or. model%viscosity > 0.0_rk) then
       call dissipate(model, motion, old, placed, backbone, finish, new, answer)
     end if
     if (.not. motion%wants_tangent) return
     if (motion%is_secant .or. .not. has_regular_flow(model, backbone)) then
-      call stiffness_of(model, answer%tangent)
-      answer%tangent = (1.0_rk - finish%d%value)*answer%tangent
+      call find_secant(model, finish, answer%tangent)
     else
       call differentiate_stress(model, backbone, finish, answer%tangent)
     end if
@@ -126,6 +136,19 @@ contains
     finish%d = total_damage(model, damage(1), damage(2), finish%share)
   end subroutine recover
 
+  !> Derivative of the stress by the elastic strain at constant damage and weight r.
+  pure subroutine find_secant(model, finish, secant)
+    type(concrete_model), intent(in) :: model
+    type(end_state), intent(in) :: finish
+    real(rk), intent(out) :: secant(6, 6)
+    if (model%splits_energy) then
+      call stiffness_of_split(model, finish%axes, finish%split, finish%left%value, secant)
+    else
+      call stiffness_of(model, secant)
+      secant = (1.0_rk - finish%d%value)*secant
+    end if
+  end subroutine find_secant
+
   !> d stress/d strain = (1 - d) ds/d strain - s (dd/d strain)^T, theory.md, (11.16).
   pure subroutine differentiate_stress(model, backbone, finish, tangent)
     type(concrete_model), intent(in) :: model
@@ -139,9 +162,14 @@ contains
       call stiffness_of(model, elastic)
       tangent = tangent + finish%lag*(elastic - tangent)
     end if
-    slopes = (1.0_rk - finish%lag)*[finish%d%by_tension*backbone%flow%tension%damage_slope, &
-                                    finish%d%by_compression*backbone%flow%compression%damage_slope]
-    damage = matmul(measures, slopes)
+    slopes = (1.0_rk - finish%lag)*[backbone%flow%tension%damage_slope, &
+                                    backbone%flow%compression%damage_slope]
+    if (model%splits_energy) then
+      measures = measures*spread(slopes, 1, 6)
+      call differentiate_split(model, finish, measures, tangent)
+      return
+    end if
+    damage = matmul(measures, slopes*[finish%d%by_tension, finish%d%by_compression])
     if (abs(finish%d%by_share) > 0.0_rk .and. any(abs(finish%share_by) > 0.0_rk)) then
       damage = damage + finish%d%by_share*share_row(finish%share_by, finish%axes, tangent)
     end if
@@ -149,6 +177,28 @@ contains
       tangent(:, i) = (1.0_rk - finish%d%value)*tangent(:, i) - finish%stress*damage(i)
     end do
   end subroutine differentiate_stress
+
+  !> The same with RECOVERY=ENERGY, theory.md, (11.16a).
+  pure subroutine differentiate_split(model, finish, damages, tangent)
+    type(concrete_model), intent(in) :: model
+    type(end_state), intent(in) :: finish
+    real(rk), intent(in) :: damages(6, 2) !< derivatives of d_t, d_c by the strain
+    real(rk), intent(inout) :: tangent(6, 6) !< on entry that of the effective stress [Pa]
+    real(rk) :: frozen(6, 6), strain(6), parts(6, 2), by_damage(6, 2)
+    integer :: i
+    call stiffness_of_split(model, finish%axes, finish%split, finish%left%value, frozen)
+    parts(:, 1) = nominal_stress(finish%stress, finish%axes, finish%split, [1.0_rk, 0.0_rk])
+    parts(:, 2) = finish%stress - parts(:, 1)
+    by_damage = matmul(parts, finish%left%by_damage)
+    do i = 1, 6
+      associate (column => tangent(:, i))
+        strain(1:3) = ((1.0_rk + model%poisson)*column(1:3) - model%poisson*sum(column(1:3))) &
+                      /model%young
+        strain(4:6) = column(4:6)/model%shear
+      end associate
+      tangent(:, i) = matmul(frozen, strain) + matmul(by_damage, damages(i, :))
+    end do
+  end subroutine differentiate_split
 
   !> Dissipation of the increment. Work of flow is cracking in principal directions in tension and
   !> crushing in those in compression. Work of damage is cracking by d_t and crushing by d_c.
@@ -163,8 +213,8 @@ contains
     type(point_answer), intent(inout) :: answer !< its fracture and crushing are set
     type(damage_gradient) :: before
     type(flow_path) :: path
+    type(stiffness_left) :: left
     real(rk) :: trial(6), work(2), share(2), losses(2)
-    before = total_damage(model, old%damage(1), old%damage(2), finish%share)
     path%onset = elastic_stress(model, motion%before - old%plastic_strain)
     if (model%viscosity <= 0.0_rk) then
       trial = elastic_stress(model, motion%strain - old%plastic_strain)
@@ -173,15 +223,22 @@ contains
     end if
     path%finish = finish%stress
     path%flow = new%plastic_strain - old%plastic_strain
-    path%damages = [before%value, finish%d%value]
-    work = dissipated_work(model, path)
+    path%growth = new%damage - old%damage
+    if (model%splits_energy) then
+      call left_after(model, old%damage(1), old%damage(2), left)
+      call dissipated_by_split(model, path, left, finish%left, work, share(2))
+    else
+      before = total_damage(model, old%damage(1), old%damage(2), finish%share)
+      path%damages = [before%value, finish%d%value]
+      work = dissipated_work(model, path)
+      losses = [finish%d%by_tension, finish%d%by_compression]*path%growth
+      share(2) = 1.0_rk
+      if (losses(2) > 0.0_rk) share(2) = losses(1)/sum(losses)
+    end if
     associate (flow => backbone%flow)
       share(1) = cracking_share(flow%s, 1.5_rk*flow%q/flow%radius*backbone%trial%shape &
                                 + model%tan_dilation/3.0_rk)
     end associate
-    losses = [finish%d%by_tension, finish%d%by_compression]*(new%damage - old%damage)
-    share(2) = 1.0_rk
-    if (losses(2) > 0.0_rk) share(2) = losses(1)/sum(losses)
     answer%fracture = dot_product(share, work)
     answer%crushing = dot_product(1.0_rk - share, work)
   end subroutine dissipate

@@ -10,6 +10,7 @@
 module damage_return
   use damage_curves, only: curve_value, value_of_curve
   use damage_model, only: concrete_model, placed_curves
+  use damage_split, only: tension_at
   use damage_yield, only: tension_share, yield_at, yield_value
   use kinds, only: rk
   implicit none
@@ -110,8 +111,7 @@ contains
     type(concrete_model), intent(in) :: model
     type(placed_curves), intent(in) :: placed
     type(flow_state), intent(inout) :: flow
-    call value_of_curve(model%tension, placed%tension, placed%factor, flow%measures(1), &
-                        flow%rows(1), flow%tension)
+    call tension_at(model, placed, flow%measures(1), flow%rows(1), flow%tension)
     call value_of_curve(model%compression, placed%compression, 1.0_rk, flow%measures(2), &
                         flow%rows(2), flow%compression)
     flow%f = yield_at(model, flow%q, flow%p, flow%s(1), flow%tension%strength, &

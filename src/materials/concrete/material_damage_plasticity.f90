@@ -43,7 +43,7 @@ contains
     end if
     call make_concrete_model(constants, law%model)
     law%is_nonlinear = .true.
-    law%has_switch = constants%recovers_by_sign
+    law%has_switch = constants%recovery == 'SIGN'
     law%num_state = num_state_of(constants%viscosity)
   end subroutine make_concrete_law
 

@@ -14,6 +14,7 @@ module umat_concrete
   integer, parameter :: own_width = 14 !< in place of CELENT
   integer, parameter :: first_count = 15 !< position of the first of four numbers of rows
   character(12), parameter :: kinds_of_table(0:2) = ['STRAIN      ', 'DISPLACEMENT', 'GFI         ']
+  character(10), parameter :: recoveries(0:2) = ['LEE-FENVES', 'SIGN      ', 'ENERGY    ']
 
 contains
 
@@ -38,7 +39,7 @@ contains
     constants%biaxial_ratio = props(5)
     constants%meridian_ratio = props(6)
     constants%viscosity = props(7)
-    constants%recovers_by_sign = nint(props(8)) == 1
+    constants%recovery = recoveries(nint(props(8)))
     constants%tension_recovery = props(9)
     constants%compression_recovery = props(10)
     constants%stiffening = kinds_of_table(nint(props(11)))
@@ -75,7 +76,7 @@ contains
     call require(props(5) >= 1.0_rk, 5, 'f_b0/f_c0 >= 1')
     call require(props(6) > 0.5_rk .and. props(6) <= 1.0_rk, 6, 'K_c above 0.5, at most 1')
     call require(props(7) >= 0.0_rk, 7, 'a viscosity >= 0')
-    call require(any(nint(props(8)) == [0, 1]), 8, 'recovery 0 or 1')
+    call require(any(nint(props(8)) == [0, 1, 2]), 8, 'recovery 0, 1 or 2')
     call require(abs(props(9) - 0.5_rk) <= 0.5_rk, 9, 'w_t between 0 and 1')
     call require(abs(props(10) - 0.5_rk) <= 0.5_rk, 10, 'w_c between 0 and 1')
     call require(any(nint(props(11)) == [0, 1, 2]), 11, 'tension against 0, 1 or 2')

@@ -5,6 +5,7 @@
 !>   base/kinds.f90 base/text/write_text.f90 base/math/small_matrix.f90 base/math/tensor6.f90
 !>   materials/concrete/damage_constants.f90 materials/concrete/damage_curves.f90
 !>   materials/concrete/damage_checks.f90 materials/concrete/damage_model.f90
+!>   materials/concrete/damage_split.f90
 !>   materials/concrete/damage_yield.f90 materials/concrete/crack_band.f90
 !>   materials/concrete/damage_return.f90 materials/concrete/damage_increment.f90
 !>   materials/concrete/damage_tangent.f90 materials/concrete/damage_energy.f90
@@ -14,7 +15,8 @@
 !>
 !> Constants, PROPS, in consistent units (docs/concrete_umat.md has an example):
 !>    1 E_0            2 nu              3 dilation angle [deg]   4 offset (0.1)
-!>    5 f_b0/f_c0      6 K_c             7 viscosity [s]          8 recovery: 0 Lee-Fenves, 1 sign
+!>    5 f_b0/f_c0      6 K_c             7 viscosity [s]
+!>    8 recovery: 0 Lee-Fenves, 1 sign, 2 energy
 !>    9 w_t           10 w_c
 !>   11 tension against: 0 cracking strain, 1 opening, 2 one row f_t, G_f
 !>   12 tension damage against: 0 cracking strain, 1 opening

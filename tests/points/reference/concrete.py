@@ -55,6 +55,59 @@ def mises(stress: np.ndarray) -> np.ndarray:
     return np.sqrt(1.5 * deviator(stress) ** 2 @ SHEARS)
 
 
+class Split:
+    """The closest point of no tension to a stress, in the energy norm, by trial of all faces.
+
+    In principal directions the stresses without tension are a cone of eight faces: on each a set of
+    components is zero. The closest point of a face's plane follows from linear algebra; the closest
+    one of the cone is the nearest of those that have no tension.
+    """
+
+    def __init__(self, stiffness: np.ndarray):
+        self.stiffness = stiffness  # (3, 3) of principal strains [Pa]
+        self.compliance = np.linalg.inv(stiffness)
+        self.faces = [self._face([bool(mask & bit) for bit in (1, 2, 4)]) for mask in range(8)]
+        self._bar = self._face([True, False, False])  # of a bar pulled along the first axis
+
+    def _face(self, is_open: list[bool]) -> np.ndarray:
+        """Stiffness (3, 3) of the plane where the open components of stress are zero."""
+        opened = np.flatnonzero(is_open)
+        columns = self.stiffness[:, opened]
+        inner = self.stiffness[np.ix_(opened, opened)]
+        return self.stiffness - columns @ np.linalg.solve(inner, columns.T)
+
+    def parts(self, stress: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The part without tension [Pa], and the energies [J/m3] of the rest and of this part."""
+        values, axes = np.linalg.eigh(stress[..., PLACES])
+        strains = values @ self.compliance
+        trials = np.stack([strains @ face for face in self.faces], axis=-2)
+        away = values[..., None, :] - trials
+        distances = 0.5 * np.einsum("...i,ij,...j", away, self.compliance, away)
+        size = np.max(np.abs(values), axis=-1, initial=0.0)[..., None]
+        distances = np.where(trials.max(axis=-1) > 1e-12 * size, np.inf, distances)
+        best = np.argmin(distances, axis=-1)[..., None]
+        pressed = np.take_along_axis(trials, best[..., None], axis=-2)[..., 0, :]
+        tensor = np.einsum("...ij,...j,...kj->...ik", axes, pressed, axes)
+        whole = 0.5 * np.sum(values * strains, axis=-1)
+        rest = np.take_along_axis(distances, best, axis=-1)[..., 0]
+        components = tensor[..., [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+        return components, np.stack([rest, whole - rest], axis=-1)
+
+    def fraction_of_bar(self, modulus: float, pressed: float) -> float:
+        """Fraction of the opened stiffness for which a bar in tension has a modulus [Pa].
+
+        Both parts are orthogonal, so that the compliance of the bar is the sum of theirs.
+        """
+        own = self.compliance @ self._bar @ self.compliance
+        rest = self.compliance - own
+        return rest[0, 0] / (1.0 / modulus - own[0, 0] / pressed)
+
+    def of_bar(self, left: np.ndarray) -> np.ndarray:
+        """Principal effective stresses of a bar under a nominal stress of 1, along the first."""
+        nominal = left[0] * (self.stiffness - self._bar) + left[1] * self._bar
+        return self.stiffness @ np.linalg.solve(nominal, [1.0, 0.0, 0.0])
+
+
 @dataclass(frozen=True)
 class Concrete:
     """Constants of a concrete."""
@@ -69,7 +122,7 @@ class Concrete:
     meridian_ratio: float = 2.0 / 3.0  # K_c
     tension_recovery: float = 0.0  # w_t
     compression_recovery: float = 1.0  # w_c
-    recovers_by_sign: bool = False  # Eq. 17, else the weight of Lee and Fenves
+    recovery: str = "LEE-FENVES"  # or SIGN (Eq. 17), ENERGY
 
     @property
     def alpha(self) -> float:
@@ -106,9 +159,33 @@ class Concrete:
 
     def strengths(self, plastic: np.ndarray) -> np.ndarray:
         """Effective strengths (2) [Pa] at tensile and compressive plastic strains."""
-        return np.array(
-            [self.tension.effective(plastic[0]), self.compression.effective(plastic[1])]
+        tensile = self.tension.effective(plastic[0])
+        compressive = self.compression.effective(plastic[1])
+        if self.recovery == "ENERGY":
+            tensile = self._strength_of_bar(*self.tension.at(plastic[0]))
+        return np.array([tensile, compressive])
+
+    def _strength_of_bar(self, nominal: float, damage: float) -> float:
+        """Effective strength for which a bar with free sides yields under a nominal stress."""
+        left = self.left(damage, 0.0)
+        opened = self.split.of_bar(left)
+        stress = np.concatenate([nominal * opened, np.zeros(3)])
+        compressive = self.compression.strength[0]
+        far, near = (  # F is linear in 1/t (Eqs. 19, 23)
+            self.yield_value(stress, stress[0], np.array([nominal / inverse, compressive]))
+            for inverse in (1.0, 2.0)
         )
+        return float(nominal * (near - far) / (near - 2.0 * far))
+
+    def strength_slopes(self, plastic: np.ndarray) -> np.ndarray:
+        """Derivatives of the effective strengths by their plastic strains [Pa]."""
+        found = [self.tension.slopes(plastic[0])[0], self.compression.slopes(plastic[1])[0]]
+        if self.recovery == "ENERGY" and found[0] != 0.0:  # 0 behind the last row
+            step = 1e-9  # Of strains of 1e-4
+            ends = (self.strengths(plastic + np.array([way, 0.0]))[0] for way in (step, -step))
+            above, below = ends
+            found[0] = (above - below) / (2.0 * step)
+        return np.array(found)
 
     def exceeds(self, stress: np.ndarray, plastic: np.ndarray) -> float:
         """F at a state [Pa]."""
@@ -131,9 +208,32 @@ class Concrete:
 
     def share(self, stress: np.ndarray) -> np.ndarray:
         """r of Eqs. 16-18, for the recovery of stiffness."""
-        if self.recovers_by_sign:
+        if self.recovery == "SIGN":
             return np.where(np.sum(stress[..., :3], axis=-1) > 0.0, 1.0, 0.0)
         return weight(principal(stress))
+
+    @cached_property
+    def split(self) -> Split:
+        """Of RECOVERY=ENERGY."""
+        return Split(self.stiffness[:3, :3])
+
+    def left(self, tensile: float, compressive: float) -> np.ndarray:
+        """Fractions of both stiffnesses, of the opened part first (RECOVERY=ENERGY).
+
+        Uniaxial tension without crushing has the stiffness (1 - d_t) E.
+        """
+        pressed = 1.0 - (1.0 - self.compression_recovery) * tensile
+        opened = self.split.fraction_of_bar((1.0 - tensile) * self.young, pressed)
+        still = 1.0 - (1.0 - self.tension_recovery) * compressive
+        return np.array([opened * still, pressed * (1.0 - compressive)])
+
+    def nominal(self, stress: np.ndarray, tensile: float, compressive: float) -> np.ndarray:
+        """Nominal stress of effective ones; stresses in the last index."""
+        if self.recovery == "ENERGY":
+            left = self.left(tensile, compressive)
+            pressed, _ = self.split.parts(stress)
+            return left[0] * (stress - pressed) + left[1] * pressed
+        return (1.0 - self.loss(self.share(stress), tensile, compressive))[..., None] * stress
 
     def loss(self, share, tensile, compressive):
         """d of Eqs. 15-16, from the share r and the damages of tension and compression."""

@@ -50,7 +50,7 @@ class History:
     stress: np.ndarray  # nominal [Pa]
     plastic: np.ndarray  # plastic strain (rows, 6)
     hardening: np.ndarray  # tensile and compressive plastic strain (rows, 2)
-    damage: np.ndarray  # d_t, d_c, d (rows, 3)
+    damage: np.ndarray  # d_t, d_c (rows, 2)
     work: np.ndarray  # [J/m3]
     dissipated: np.ndarray  # [J/m3]
 
@@ -99,15 +99,10 @@ class Point:
             self._latest = key, found
         return self._latest[1]
 
-    def loss(self, state: np.ndarray) -> float:
-        """d of Eqs. 15-16, of whole tables: d has no jump at their rows."""
-        effective = self.law.stiffness @ (state[STRAIN] - state[PLASTIC])
-        tensile, compressive = damages(self.law, state)
-        return float(self.law.loss(self.law.share(effective), tensile, compressive))
-
     def stress(self, state: np.ndarray) -> np.ndarray:
-        """Nominal stress, Eq. 14 [Pa]."""
-        return (1.0 - self.loss(state)) * (self.law.stiffness @ (state[STRAIN] - state[PLASTIC]))
+        """Nominal stress [Pa], of whole tables: damage has no jump at their rows."""
+        effective = self.law.stiffness @ (state[STRAIN] - state[PLASTIC])
+        return self.law.nominal(effective, *damages(self.law, state))
 
     def follow(self, leg: Leg, moments: np.ndarray) -> np.ndarray:
         """States at moments of a leg (0 to 1); the point is left at the end of it."""
@@ -165,8 +160,7 @@ class Point:
         effort.count_phase(now)
 
         def wanted(time, state, rates):
-            stress = (1.0 - rates.damage) * rates.stress
-            behind = np.where(leg.is_strain, 0.0, start + rate * time - stress)
+            behind = np.where(leg.is_strain, 0.0, start + rate * time - rates.nominal)
             return strain_rate(rates, flows, leg.is_strain, rate + PULL * behind)
 
         def change(time, state):
@@ -216,11 +210,8 @@ class Point:
 
 def state_rate(rates: Rates, strain: np.ndarray, multiplier: float) -> np.ndarray:
     """Rate of the whole state."""
-    whole = 1.0 - rates.damage
-    stored = 0.5 * rates.stress @ np.linalg.solve(rates.law.stiffness, rates.stress)
-    by_flow = whole * rates.stress @ rates.flow
-    lost = (by_flow + stored * np.sum(rates.damage_by_multiplier)) * multiplier
-    energy = [whole * rates.stress @ strain, lost]
+    lost = (rates.nominal @ rates.flow + rates.lost_by_multiplier) * multiplier
+    energy = [rates.nominal @ strain, lost]
     return np.concatenate([strain, rates.flow * multiplier, rates.growth * multiplier, energy])
 
 
@@ -240,7 +231,7 @@ def run(law: Concrete, legs: Sequence[Leg], rows: int = 50) -> History:
         stress=np.array([point.stress(state) for state in states]),
         plastic=states[:, PLASTIC],
         hardening=states[:, HISTORY],
-        damage=np.array([[*damages(law, state), point.loss(state)] for state in states]),
+        damage=np.array([damages(law, state) for state in states]),
         work=states[:, ENERGY][:, 0],
         dissipated=states[:, ENERGY][:, 1],
     )

@@ -42,12 +42,11 @@ def gradients(law: Concrete, stress: np.ndarray, plastic: np.ndarray) -> Gradien
     values = law.yield_value(stresses, largest + step * MOVES[:, :6] @ normal, moved)
     shares = law.share(stresses)
     change = (values[:8] - values[8:16]) / 2.0
-    slopes = np.array([law.tension.slopes(plastic[0])[0], law.compression.slopes(plastic[1])[0]])
     return Gradients(
         value=float(values[-1]),
         share=float(shares[-1]),
         by_stress=change[:6] / step,
-        by_plastic=change[6:] / (STEP * strengths) * slopes,
+        by_plastic=change[6:] / (STEP * strengths) * law.strength_slopes(plastic),
         share_by_stress=(shares[:6] - shares[8:14]) / (2.0 * step),
     )
 
@@ -64,10 +63,10 @@ class Rates:
     growth: np.ndarray  # h
     slope: np.ndarray  # dl = slope . deps [1]
     drift: float  # dl by which a drift of F is drawn back, over a leg
-    damage: float
+    nominal: np.ndarray  # [Pa]
     tangent_elastic: np.ndarray  # of the nominal stress while the flow rests (6, 6) [Pa]
     tangent_flow: np.ndarray  # its change with the multiplier (6) [Pa]
-    damage_by_multiplier: np.ndarray  # (2) dd by tension, by compression, at a fixed share
+    lost_by_multiplier: float  # energy lost by damage [J/m3]
 
     def multiplier(self, strain_rate: np.ndarray) -> float:
         """dl without the correction of drift."""
@@ -84,8 +83,29 @@ def rates_of(law: Concrete, elastic_strain: np.ndarray, plastic: np.ndarray) -> 
     modulus = found.by_stress @ stiffness @ flow - found.by_plastic @ growth
     if modulus <= 0.0:
         raise ArithmeticError("softens faster than the effective stress can follow")
-    share, value = found.share, found.value
-    tensile, compressive = law.tension.at(plastic[0])[1], law.compression.at(plastic[1])[1]
+    damages = np.array([law.tension.at(plastic[0])[1], law.compression.at(plastic[1])[1]])
+    slopes = np.array([law.tension.slopes(plastic[0])[1], law.compression.slopes(plastic[1])[1]])
+    recovery = split_rates if law.recovery == "ENERGY" else weighted_rates
+    elastic, by_multiplier, lost = recovery(law, found, stress, damages, slopes * growth)
+    return Rates(
+        law=law,
+        stress=stress,
+        plastic=plastic,
+        value=found.value,
+        flow=flow,
+        growth=growth,
+        slope=found.by_stress @ stiffness / modulus,
+        drift=PULL * found.value / modulus,
+        nominal=law.nominal(stress, *damages),
+        tangent_elastic=elastic,
+        tangent_flow=-elastic @ flow + by_multiplier,
+        lost_by_multiplier=lost,
+    )
+
+
+def weighted_rates(law: Concrete, found: Gradients, stress, damages, growth):
+    """Eqs. 14-16: tangent at rest, change of stress and energy lost by the growth of damage."""
+    share, (tensile, compressive) = found.share, damages
     damage = law.loss(share, tensile, compressive)
     # d is linear in d_t and in d_c, and quadratic in r: these differences are its slopes.
     by_damage = np.array(
@@ -98,23 +118,22 @@ def rates_of(law: Concrete, elastic_strain: np.ndarray, plastic: np.ndarray) -> 
         law.loss(share + STEP, tensile, compressive) - law.loss(share - STEP, tensile, compressive)
     ) / (2.0 * STEP)
     by_stress = by_share * found.share_by_stress
-    slopes = np.array([law.tension.slopes(plastic[0])[1], law.compression.slopes(plastic[1])[1]])
-    by_multiplier = by_damage * slopes * growth
-    elastic = (1.0 - damage) * stiffness - np.outer(stress, by_stress @ stiffness)
-    return Rates(
-        law=law,
-        stress=stress,
-        plastic=plastic,
-        value=value,
-        flow=flow,
-        growth=growth,
-        slope=found.by_stress @ stiffness / modulus,
-        drift=PULL * value / modulus,
-        damage=float(damage),
-        tangent_elastic=elastic,
-        tangent_flow=-elastic @ flow - stress * np.sum(by_multiplier),
-        damage_by_multiplier=by_multiplier,
-    )
+    stored = 0.5 * stress @ np.linalg.solve(law.stiffness, stress)
+    rate = np.sum(by_damage * growth)
+    elastic = (1.0 - damage) * law.stiffness - np.outer(stress, by_stress @ law.stiffness)
+    return elastic, -stress * rate, stored * rate
+
+
+def split_rates(law: Concrete, found: Gradients, stress, damages, growth):
+    """The same with RECOVERY=ENERGY, by central differences; the energy lost is that at rest."""
+    step = STEP * (np.max(np.abs(stress)) + law.tension.strength[0])
+    moved = law.nominal(stress + step * np.vstack([np.eye(6), -np.eye(6)]), *damages)
+    elastic = (moved[:6] - moved[6:]).T / (2.0 * step) @ law.stiffness
+    pressed, energies = law.split.parts(stress)
+    short = STEP / (1.0 + np.max(growth))
+    above, below = (law.left(*(damages + way * short * growth)) for way in (1.0, -1.0))
+    rate = (above - below) / (2.0 * short)
+    return elastic, rate[0] * (stress - pressed) + rate[1] * pressed, -float(rate @ energies)
 
 
 def strain_rate(rates: Rates, flows: bool, given: np.ndarray, rate: np.ndarray) -> np.ndarray:

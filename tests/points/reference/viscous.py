@@ -38,7 +38,7 @@ def lag(values: np.ndarray, times: np.ndarray, viscosity: float) -> np.ndarray:
 def relax(law: Concrete, history: History, times: np.ndarray, viscosity: float) -> Lagging:
     """A strain-driven history with viscosity [s]; its rows must be close together in time."""
     plastic = lag(history.plastic, times, viscosity)
-    damage = lag(history.damage[:, :2], times, viscosity)
+    damage = lag(history.damage, times, viscosity)
     effective = (history.strain - plastic) @ law.stiffness
-    loss = law.loss(law.share(effective), damage[:, 0], damage[:, 1])
-    return Lagging(plastic, damage, (1.0 - loss)[:, None] * effective)
+    stress = [law.nominal(s, *d) for s, d in zip(effective, damage, strict=True)]
+    return Lagging(plastic, damage, np.array(stress))

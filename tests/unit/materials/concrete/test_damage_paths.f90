@@ -9,7 +9,7 @@ program test_damage_paths
   use kinds, only: rk
   use testing, only: check, test_log
   implicit none
-  integer, parameter :: num_concretes = 10
+  integer, parameter :: num_concretes = 12
   real(rk), parameter :: degree = acos(-1.0_rk)/180.0_rk
   type(test_log) :: log
   type(concrete_constants) :: concrete
@@ -20,9 +20,16 @@ program test_damage_paths
   call try(table_one(), 'Table 1')
   call try(damaged(lee_fenves()), 'damage to 0.99')
   concrete = damaged(lee_fenves())
-  concrete%recovers_by_sign = .true.
+  concrete%recovery = 'SIGN'
   concrete%tension_recovery = 0.5_rk
   call try(concrete, 'recovery by sign')
+  concrete = damaged(lee_fenves())
+  concrete%recovery = 'ENERGY'
+  call try(concrete, 'recovery by energy')
+  concrete = table_one()
+  concrete%recovery = 'ENERGY'
+  concrete%poisson = 0.3_rk
+  call try(concrete, 'recovery by energy, nu 0.3')
   concrete = damaged(lee_fenves())
   concrete%biaxial_ratio = 1.0_rk
   concrete%meridian_ratio = 0.52_rk

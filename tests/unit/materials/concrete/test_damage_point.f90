@@ -19,14 +19,21 @@ program test_damage_point
   call tangents(table_one(), 'Table 1')
   call tangents(lee_fenves(), 'Lee and Fenves')
   concrete = lee_fenves()
-  concrete%recovers_by_sign = .true.
+  concrete%recovery = 'SIGN'
   concrete%tension_recovery = 0.5_rk
   call tangents(concrete, 'recovery by sign')
-  concrete%recovers_by_sign = .false.
+  concrete%recovery = 'LEE-FENVES'
   concrete%compression_recovery = 0.5_rk
   call tangents(concrete, 'recoveries 0.5')
   concrete%viscosity = 2.0_rk
   call tangents(concrete, 'viscosity')
+  concrete = lee_fenves()
+  concrete%recovery = 'ENERGY'
+  call tangents(concrete, 'recovery by energy')
+  concrete%compression_recovery = 0.5_rk
+  concrete%tension_recovery = 0.5_rk
+  concrete%viscosity = 2.0_rk
+  call tangents(concrete, 'recovery by energy, recoveries 0.5, viscosity')
   write (*, '(3(a,i0))') 'states at a corner of the law ', num_corners, ', yielding ', num_yielding
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
