@@ -4,16 +4,22 @@ module damage_energy
   use damage_increment, only: plastic_state
   use damage_model, only: concrete_model, placed_curves
   use damage_split, only: energy_split, nominal_stress, split_stress, stiffness_left, tension_at
-  use damage_yield, only: yield_at, yield_value
+  use damage_yield, only: damage_gradient, tension_share, total_damage, yield_at, yield_value
   use kinds, only: rk
   use tensor6, only: principal_axes, principal_values, second_invariant, trace
   implicit none
   private
-  public :: flow_path, onset_of_flow, dissipated_work, dissipated_by_split, cracking_share
+  public :: flow_path, onset_of_flow, dissipated_work, dissipated_by_split, created_work
+  public :: crushing_share, fraction_of_crushing
+
+  !> Crushing starts at this fraction of the strength in compression, and is full at the strength.
+  real(rk), parameter :: start_of_crushing = 0.95_rk
+  integer, parameter :: num_parts = 4 !< of a path, for the mean of energies on it
 
   !> Plastic flow and damage of an increment.
   type :: flow_path
-    real(rk) :: onset(6) = 0.0_rk, finish(6) = 0.0_rk !< effective stresses [Pa]
+    !> Effective stresses: at the start, at first yield, at the end [Pa]
+    real(rk) :: start(6) = 0.0_rk, onset(6) = 0.0_rk, finish(6) = 0.0_rk
     real(rk) :: flow(6) = 0.0_rk !< increment of plastic strain, engineering shear
     real(rk) :: growth(2) = 0.0_rk !< of d_t, d_c
     real(rk) :: damages(2) = 0.0_rk !< d at start and end, both with the final weight r
@@ -67,14 +73,14 @@ contains
 
   !> The same with RECOVERY=ENERGY: each part of the effective stress has its own stiffness and its
   !> own energy.
-  pure subroutine dissipated_by_split(model, path, old, new, work, cracked)
+  pure subroutine dissipated_by_split(model, path, old, new, work, losses)
     type(concrete_model), intent(in) :: model
     type(flow_path), intent(in) :: path
     type(stiffness_left), intent(in) :: old, new !< at both ends of the increment
     real(rk), intent(out) :: work(2) !< by flow, by damage [J/m3]
-    real(rk), intent(out) :: cracked !< share of d_t in the work of damage
+    real(rk), intent(out) :: losses(2) !< of the work of damage, those by d_t and d_c [J/m3]
     type(energy_split) :: split
-    real(rk) :: stresses(6, 2), s(3), axes(3, 3), left(2), nominal(6, 2), energy(2), losses(2)
+    real(rk) :: stresses(6, 2), s(3), axes(3, 3), left(2), nominal(6, 2), energy(2)
     integer :: i
     stresses = reshape([path%onset, path%finish], [6, 2])
     left = 0.5_rk*(old%value + new%value)
@@ -92,20 +98,62 @@ contains
     end if
     work(2) = dot_product(energy, old%value - new%value)
     losses = -matmul(energy, new%by_damage)*path%growth
-    cracked = 1.0_rk
-    if (losses(2) > 0.0_rk) cracked = losses(1)/sum(losses)
   end subroutine dissipated_by_split
 
-  !> Share of cracking in the work of flow: the work in the principal directions in tension. A crack
-  !> that opens under pressure along its faces counts as cracking for any weight r.
-  pure real(rk) function cracking_share(s, flow) result(share)
+  !> Energy that the weight of recovery creates on a straight path of effective stress at constant
+  !> damage: the integral of -W_0 dd(r), because a part of the stiffness comes and goes under load.
+  pure real(rk) function created_work(model, from, to, damage) result(work)
+    type(concrete_model), intent(in) :: model
+    real(rk), intent(in) :: from(6), to(6) !< [Pa]
+    real(rk), intent(in) :: damage(2) !< d_t, d_c
+    type(damage_gradient) :: d(2)
+    real(rk) :: stress(6), energy(2)
+    integer :: i
+    work = 0.0_rk
+    if (model%splits_energy .or. all(damage <= 0.0_rk)) return
+    do i = 0, num_parts
+      stress = from + (to - from)*i/num_parts
+      energy(2) = undamaged_energy(model, stress)
+      d(2) = total_damage(model, damage(1), damage(2), weight_of(model, stress))
+      if (i > 0) work = work - 0.5_rk*sum(energy)*(d(2)%value - d(1)%value)
+      energy(1) = energy(2)
+      d(1) = d(2)
+    end do
+  end function created_work
+
+  !> r of Eq. 17 or of paper_notes.md, 8.
+  pure real(rk) function weight_of(model, stress) result(share)
+    type(concrete_model), intent(in) :: model
+    real(rk), intent(in) :: stress(6) !< effective [Pa]
+    real(rk) :: gradient(3)
+    if (model%recovers_by_sign) then
+      share = merge(1.0_rk, 0.0_rk, trace(stress) > 0.0_rk)
+    else
+      call tension_share(principal_values(stress), share, gradient)
+    end if
+  end function weight_of
+
+  !> Share of crushing in the work of flow: the work in principal directions under pressure, where
+  !> the largest pressure is the strength in compression. Below the strength a crack that slides or
+  !> opens under pressure along its faces does this work.
+  pure real(rk) function crushing_share(s, flow, strength) result(share)
     real(rk), intent(in) :: s(3) !< principal effective stresses [Pa]
     real(rk), intent(in) :: flow(3) !< in their directions, of any size
+    real(rk), intent(in) :: strength !< effective, in compression [Pa]
     real(rk) :: whole
     whole = dot_product(s, flow)
-    share = merge(1.0_rk, 0.0_rk, s(1) > 0.0_rk)
-    if (whole > 0.0_rk) share = min(1.0_rk, max(0.0_rk, sum(s*flow, s > 0.0_rk)/whole))
-  end function cracking_share
+    share = merge(0.0_rk, 1.0_rk, s(1) > 0.0_rk)
+    if (whole > 0.0_rk) share = min(1.0_rk, max(0.0_rk, sum(s*flow, s < 0.0_rk)/whole))
+    share = share*fraction_of_crushing(s(3), strength)
+  end function crushing_share
+
+  !> 0 up to a pressure just below the strength in compression, 1 from the strength on.
+  pure real(rk) function fraction_of_crushing(smallest, strength) result(fraction)
+    real(rk), intent(in) :: smallest !< principal effective stress [Pa]
+    real(rk), intent(in) :: strength !< effective, in compression [Pa]
+    fraction = (-smallest/strength - start_of_crushing)/(1.0_rk - start_of_crushing)
+    fraction = min(1.0_rk, max(0.0_rk, fraction))
+  end function fraction_of_crushing
 
   !> Elastic energy of an effective stress without damage [J/m3].
   pure real(rk) function undamaged_energy(model, stress) result(energy)

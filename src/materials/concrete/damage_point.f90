@@ -1,8 +1,8 @@
 !> One increment at a point of plastic-damage concrete: kernel of the material of the deck and of
 !> the user subroutine for other programs.
 module damage_point
-  use damage_energy, only: cracking_share, dissipated_by_split, dissipated_work, flow_path, &
-                           onset_of_flow
+  use damage_energy, only: created_work, crushing_share, dissipated_by_split, dissipated_work, &
+                           flow_path, fraction_of_crushing, onset_of_flow
   use damage_increment, only: elastic_stress, increment_result, integrate_increment, plastic_state
   use damage_model, only: concrete_model, placed_curves, stiffness_of
   use damage_split, only: energy_split, left_after, nominal_stress, split_stress, &
@@ -41,6 +41,7 @@ module damage_point
     real(rk) :: tangent(6, 6) = 0.0_rk !< d stress/d strain [Pa]
     real(rk) :: stored = 0.0_rk !< stress : elastic strain/2 [J/m3]
     real(rk) :: fracture = 0.0_rk, crushing = 0.0_rk !< dissipated in the increment [J/m3]
+    real(rk) :: created = 0.0_rk !< by recovery of stiffness in the increment [J/m3]
     logical :: is_elastic = .true. !< never yielded
     logical :: has_converged = .true.
   end type point_answer
@@ -68,6 +69,7 @@ contains
     type(point_answer), intent(out) :: answer
     type(increment_result) :: backbone
     type(end_state) :: finish
+    type(flow_path) :: path
     call integrate_increment(model, motion%before, motion%strain, motion%edges, old%backbone, &
                              placed, backbone)
     answer%has_converged = backbone%has_converged
@@ -88,8 +90,13 @@ contains
       answer%stress = (1.0_rk - finish%d%value)*finish%stress
     end if
     answer%stored = 0.5_rk*dot_product(answer%stress, motion%strain - new%plastic_strain)
+    call find_path(model, motion, old, placed, backbone, finish, new, path)
     if (backbone%has_yielded .or. model%viscosity > 0.0_rk) then
-      call dissipate(model, motion, old, placed, backbone, finish, new, answer)
+      call dissipate(model, old, backbone, finish, path, answer)
+    end if
+    if (.not. (model%recovers_by_sign .and. motion%holds_switch)) then
+      answer%created = created_work(model, path%start, path%onset, old%damage) &
+                       + created_work(model, path%onset, path%finish, old%damage + 0.5_rk*path%growth)
     end if
     if (.not. motion%wants_tangent) return
     if (motion%is_secant .or. .not. has_regular_flow(model, backbone)) then
@@ -200,9 +207,8 @@ contains
     end do
   end subroutine differentiate_split
 
-  !> Dissipation of the increment. Work of flow is cracking in principal directions in tension and
-  !> crushing in those in compression. Work of damage is cracking by d_t and crushing by d_c.
-  pure subroutine dissipate(model, motion, old, placed, backbone, finish, new, answer)
+  !> The path of the effective stress in the increment.
+  pure subroutine find_path(model, motion, old, placed, backbone, finish, new, path)
     type(concrete_model), intent(in) :: model
     type(point_motion), intent(in) :: motion
     type(point_history), intent(in) :: old
@@ -210,36 +216,51 @@ contains
     type(increment_result), intent(in) :: backbone
     type(end_state), intent(in) :: finish
     type(point_history), intent(in) :: new
-    type(point_answer), intent(inout) :: answer !< its fracture and crushing are set
-    type(damage_gradient) :: before
-    type(flow_path) :: path
-    type(stiffness_left) :: left
-    real(rk) :: trial(6), work(2), share(2), losses(2)
-    path%onset = elastic_stress(model, motion%before - old%plastic_strain)
-    if (model%viscosity <= 0.0_rk) then
-      trial = elastic_stress(model, motion%strain - old%plastic_strain)
-      path%onset = onset_of_flow(model, placed, path%onset, old%backbone, trial, &
-                                 backbone%trial_excess)
-    end if
+    type(flow_path), intent(out) :: path
+    real(rk) :: trial(6)
+    path%start = elastic_stress(model, motion%before - old%plastic_strain)
+    path%onset = path%start
     path%finish = finish%stress
     path%flow = new%plastic_strain - old%plastic_strain
     path%growth = new%damage - old%damage
+    if (model%viscosity > 0.0_rk) return
+    path%onset = path%finish
+    if (.not. backbone%has_yielded) return
+    trial = elastic_stress(model, motion%strain - old%plastic_strain)
+    path%onset = onset_of_flow(model, placed, path%start, old%backbone, trial, &
+                               backbone%trial_excess)
+  end subroutine find_path
+
+  !> Dissipation of the increment. Work of flow under pressures that have the strength in compression
+  !> is crushing, other work of flow cracking; work of damage likewise, by d_c and by d_t.
+  pure subroutine dissipate(model, old, backbone, finish, path, answer)
+    type(concrete_model), intent(in) :: model
+    type(point_history), intent(in) :: old
+    type(increment_result), intent(in) :: backbone
+    type(end_state), intent(in) :: finish
+    type(flow_path), intent(inout) :: path
+    type(point_answer), intent(inout) :: answer !< its fracture and crushing are set
+    type(stiffness_left) :: left
+    type(damage_gradient) :: before
+    real(rk) :: work(2), share(2), losses(2)
     if (model%splits_energy) then
       call left_after(model, old%damage(1), old%damage(2), left)
-      call dissipated_by_split(model, path, left, finish%left, work, share(2))
+      call dissipated_by_split(model, path, left, finish%left, work, losses)
     else
       before = total_damage(model, old%damage(1), old%damage(2), finish%share)
       path%damages = [before%value, finish%d%value]
       work = dissipated_work(model, path)
       losses = [finish%d%by_tension, finish%d%by_compression]*path%growth
-      share(2) = 1.0_rk
-      if (losses(2) > 0.0_rk) share(2) = losses(1)/sum(losses)
     end if
     associate (flow => backbone%flow)
-      share(1) = cracking_share(flow%s, 1.5_rk*flow%q/flow%radius*backbone%trial%shape &
-                                + model%tan_dilation/3.0_rk)
+      share(1) = crushing_share(flow%s, 1.5_rk*flow%q/flow%radius*backbone%trial%shape &
+                                + model%tan_dilation/3.0_rk, flow%compression%strength)
+      share(2) = 0.0_rk
+      if (losses(2) > 0.0_rk) then
+        share(2) = losses(2)/sum(losses)*fraction_of_crushing(flow%s(3), flow%compression%strength)
+      end if
     end associate
-    answer%fracture = dot_product(share, work)
-    answer%crushing = dot_product(1.0_rk - share, work)
+    answer%fracture = dot_product(1.0_rk - share, work)
+    answer%crushing = dot_product(share, work)
   end subroutine dissipate
 end module damage_point

@@ -11,7 +11,7 @@ module material_damage_plasticity
   use errors, only: deck_is_wrong, error_type, raise
   use kinds, only: rk
   use material_law, only: stress_law
-  use material_points, only: crushing_energy, fracture_energy, no_tangent, point_set, &
+  use material_points, only: created_energy, crushing_energy, fracture_energy, no_tangent, point_set, &
                              point_state, secant_tangent, stored_energy, time_increment, &
                              update_report
   use write_text, only: as_text
@@ -136,6 +136,7 @@ contains
     new%energy(stored_energy, i) = answer%stored
     new%energy(fracture_energy, i) = old%energy(fracture_energy, i) + answer%fracture
     new%energy(crushing_energy, i) = old%energy(crushing_energy, i) + answer%crushing
+    new%energy(created_energy, i) = old%energy(created_energy, i) + answer%created
   end subroutine yield_point
 
   !> PE, DAMAGET, DAMAGEC, SDV.

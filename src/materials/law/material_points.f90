@@ -7,7 +7,7 @@ module material_points
   private
   public :: point_set, point_state, time_increment, update_report
   public :: no_tangent, secant_tangent, consistent_tangent
-  public :: stored_energy, fracture_energy, crushing_energy, num_energies
+  public :: stored_energy, fracture_energy, crushing_energy, created_energy, num_energies
 
   !> The tangents that an update can return.
   integer, parameter :: no_tangent = 0
@@ -18,7 +18,8 @@ module material_points
   integer, parameter :: stored_energy = 1 !< recovered by unloading
   integer, parameter :: fracture_energy = 2 !< dissipated so far, by cracking or by metal plasticity
   integer, parameter :: crushing_energy = 3 !< dissipated so far, in compression
-  integer, parameter :: num_energies = 3
+  integer, parameter :: created_energy = 4 !< made so far by a law without potential; may be negative
+  integer, parameter :: num_energies = 4
 
   !> The points of a block: constant during the analysis.
   type :: point_set

@@ -2,7 +2,7 @@
 !> energy.
 module damage_readings
   use kinds, only: rk
-  use material_points, only: fracture_energy, crushing_energy
+  use material_points, only: created_energy, crushing_energy, fracture_energy
   use shape_hex8, only: corner_of_point
   use inelastic_blocks, only: inelastic_block
   use problem_definition, only: problem
@@ -22,8 +22,8 @@ module damage_readings
 
   !> Names of the columns of `damage_row`.
   character(*), parameter :: damage_columns = 'DAMAGET,DAMAGEC,volume_10,volume_50,volume_90,'// &
-                             'inelastic_volume,cracking,crushing'
-  integer, parameter :: num_columns = 8
+                             'inelastic_volume,cracking,crushing,created'
+  integer, parameter :: num_columns = 9
 
   !> The largest damage since the start, and its point.
   type :: damage_extreme
@@ -46,6 +46,7 @@ module damage_readings
     real(rk) :: inelastic_volume = 0.0_rk !< of points that have left elasticity [m3]
     integer :: inelastic_elements = 0 !< with a point that has left elasticity
     real(rk) :: cracking = 0.0_rk, crushing = 0.0_rk !< energy dissipated in solids so far [J]
+    real(rk) :: created = 0.0_rk !< energy created by laws without potential so far [J]
   end type damage_record
 
 contains
@@ -98,6 +99,7 @@ contains
     record%inelastic_elements = 0
     record%cracking = 0.0_rk
     record%crushing = 0.0_rk
+    record%created = 0.0_rk
     do i = 1, size(model%inelastic)
       if (all(now%points(i)%is_elastic)) cycle
       call field_of_block(model, now, i, 'DAMAGET', tension)
@@ -142,6 +144,7 @@ contains
                                   sum(weight, mask=.not. points%is_elastic(first:last))
         record%cracking = record%cracking + sum(weight*points%energy(fracture_energy, first:last))
         record%crushing = record%crushing + sum(weight*points%energy(crushing_energy, first:last))
+        record%created = record%created + sum(weight*points%energy(created_energy, first:last))
         if (.not. allocated(tension)) cycle
         do level = 1, size(levels)
           if (maxval(tension(1, first:last)) < least(level)) exit
@@ -158,6 +161,6 @@ contains
     type(damage_record), intent(in) :: record
     real(rk) :: row(num_columns)
     row = [record%tension%at%value, record%compression%at%value, record%volume, &
-           record%inelastic_volume, record%cracking, record%crushing]
+           record%inelastic_volume, record%cracking, record%crushing, record%created]
   end function damage_row
 end module damage_readings

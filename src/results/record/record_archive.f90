@@ -132,6 +132,7 @@ contains
     call file%put('inelastic_elements', record%inelastic_elements)
     call file%put('cracking', record%cracking)
     call file%put('crushing', record%crushing)
+    call file%put('created', record%created)
   end subroutine save_damage_record
 
   !> Reads the damage of solids.
@@ -150,6 +151,7 @@ contains
     call file%get('inelastic_elements', record%inelastic_elements)
     call file%get('cracking', record%cracking)
     call file%get('crushing', record%crushing)
+    call file%get('created', record%created)
     if (file%has_failed()) return
     record%volume = volume
     record%elements = elements

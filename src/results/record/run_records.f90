@@ -43,7 +43,8 @@ module run_records
     type(text_item), allocatable :: warnings(:)
     type(text_item), allocatable :: files(:) !< names of the files beside job.json
     integer :: step = 0 !< the present step
-    real(rk) :: most_taken = 0.0_rk !< largest numerical dissipation in this step so far [J]
+    !> Largest dissipation by the time stepping in this step so far [J]
+    real(rk) :: most_taken = 0.0_rk
     real(rk) :: last_strain = 0.0_rk, last_fracture = 0.0_rk !< energies, previous increment [J]
   contains
     procedure :: open => open_record
@@ -51,7 +52,7 @@ module run_records
     procedure :: note
     procedure :: warn_once
     procedure :: list_file
-    procedure, private :: check_time_stepping, check_crack_energy
+    procedure, private :: check_law, check_time_stepping, check_crack_energy
     procedure, private :: update_envelope, note_nodes, note_points, note_joints
   end type run_record
 
@@ -105,6 +106,10 @@ contains
     type(state), intent(in) :: now
     integer :: j, i
     call self%stresses%invalidate()
+    if (self%damage%is_present) then
+      call note_damage(model, now, self%damage)
+      call self%check_law(now)
+    end if
     if (model%steps(now%step)%procedure%has_inertia) then
       call self%check_time_stepping(now, model%steps(now%step)%procedure%uses_alpha)
     end if
@@ -117,20 +122,32 @@ contains
     do j = 1, size(model%joints)
       call note_joint(self%joints(j), model%joints(j), now%joints(j), now%total_time)
     end do
-    if (self%damage%is_present) call note_damage(model, now, self%damage)
     do i = 1, size(self%active)
       call self%update_envelope(model, now, self%envelopes(self%active(i)))
     end do
   end subroutine note
 
+  !> Warns when the recovery of stiffness of concrete drives the motion: no increment cures this.
+  subroutine check_law(self, now)
+    class(run_record), intent(inout) :: self
+    type(state), intent(in) :: now
+    if (self%damage%created <= largest_gain*now%energy%largest) return
+    call self%warn_once('the law of concrete has created more than a tenth of the energy '// &
+                        '("created" in job.json) where cracks close and open: its stress has no '// &
+                        'potential, and smaller increments do not help; take RECOVERY=ENERGY')
+  end subroutine check_law
+
   !> Warns when the time stepping drives the motion. The balance of energy does not show this error.
+  !> What the laws of solids create is not its doing.
   subroutine check_time_stepping(self, now, uses_alpha)
     class(run_record), intent(inout) :: self
     type(state), intent(in) :: now
     logical, intent(in) :: uses_alpha !< the scheme has an ALPHA for numerical damping
     character(:), allocatable :: advice
-    self%most_taken = max(self%most_taken, now%energy%numerical)
-    if (self%most_taken - now%energy%numerical <= largest_gain*now%energy%largest) return
+    real(rk) :: taken
+    taken = now%energy%numerical + self%damage%created
+    self%most_taken = max(self%most_taken, taken)
+    if (self%most_taken - taken <= largest_gain*now%energy%largest) return
     advice = 'smaller increments'
     if (uses_alpha) advice = advice//', or an ALPHA further below 0'
     call self%warn_once('the time stepping has added more than a tenth of the energy '// &

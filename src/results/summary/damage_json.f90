@@ -34,6 +34,7 @@ contains
     call json%put_real(record%cracking, 'cracking')
     call json%put_real(record%crushing, 'crushing')
     call json%close_object()
+    call json%put_real(record%created, 'created')
     call json%close_object()
   end subroutine put_damage
 

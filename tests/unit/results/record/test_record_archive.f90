@@ -74,6 +74,7 @@ contains
       damage%inelastic_elements = 10
       damage%cracking = 5.5_rk
       damage%crushing = 6.5_rk
+      damage%created = 7.5_rk
     end associate
     record%envelopes(1)%wants_smallest = .true.
     record%envelopes(2)%is_empty = .false.
@@ -141,6 +142,7 @@ contains
                  b%damage%inelastic_elements)
     call compare(log, 'cracking', a%damage%cracking, b%damage%cracking)
     call compare(log, 'crushing', a%damage%crushing, b%damage%crushing)
+    call compare(log, 'created', a%damage%created, b%damage%created)
     call compare_lists(log, a, b)
   end subroutine compare_records
 
