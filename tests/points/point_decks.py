@@ -59,6 +59,7 @@ class Curve:
     work: np.ndarray  # [J/m3]
     stored: np.ndarray  # [J/m3]
     dissipated: np.ndarray  # cracking and crushing [J/m3]
+    crushing: np.ndarray  # of it [J/m3]
 
     def at_legs(self, values: np.ndarray, increments: int) -> np.ndarray:
         """Rows at the ends of the legs."""
@@ -131,4 +132,5 @@ class Curves:
             work=table["work"],
             stored=table["stored"],
             dissipated=table["fracture"] + table["crushing"],
+            crushing=table["crushing"],
         )

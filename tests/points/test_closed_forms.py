@@ -117,6 +117,22 @@ def test_recovery_of_stiffness(keyway, compression_recovery, tension_recovery, r
     assert found == pytest.approx(expected, rel=1e-4)
 
 
+def test_crushing_is_at_the_strength_in_compression(keyway):
+    """A core that is pressed dissipates by crushing alone, a crack that slides below it by none.
+
+    The largest pressure on the path of the crack is a half of the 30 MPa of the concrete.
+    """
+    pressed = led(keyway, JINPING, uniaxial(-3e-3), 20)
+    assert pressed.crushing[-1] == pytest.approx(pressed.dissipated[-1], rel=1e-9)
+    assert pressed.crushing[-1] > 0.0
+    ends = ([4e-4, 0, 0, 0, 0, 0], [2e-4, -4e-4, 0, 9e-4, 0, 0], [2e-4, -4e-4, 0, -9e-4, 0, 0])
+    slid = led(keyway, JINPING, [Leg.of("EEEEEE", np.array(end)) for end in ends], 20)
+    lost = slid.at_legs(slid.dissipated, 20)
+    assert lost[2] > 1.5 * lost[0]
+    assert slid.stress[:, 1].min() > -15e6
+    assert slid.crushing.max() == 0.0
+
+
 @pytest.mark.parametrize("ratio", [1.05, 1.125, 1.16, 1.2])
 def test_biaxial_strength(keyway, ratio):
     """With a constant strength the stress stays at f_b0 for all strains."""

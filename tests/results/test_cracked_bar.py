@@ -75,6 +75,8 @@ S, SP, PE, DAMAGET, DAMAGEC
 S, E, PE, DAMAGET, DAMAGEC, SDV
 *ENVELOPE
 S1, DAMAGET
+*ENVELOPE, POSITION=POINTS
+S1, S3
 *END STEP
 """
 
@@ -112,6 +114,22 @@ def test_no_point_carries_more_than_the_strength(run):
     assert table["SP1"].max() <= STRENGTH * (1 + 1e-7)
     assert table["SP1"].max() >= 0.9 * STRENGTH
     assert run.json["envelopes"]["S1"]["anywhere"]["value"] <= 2 * STRENGTH
+
+
+def test_envelope_of_points(run):
+    """Extremes at points are those of the table of points, and bound the picture on the nodes."""
+    table, found = run.csv("el_WEAK"), run.json["envelopes"]
+    largest = found["S1_POINT"]["anywhere"]
+    # The strong cubes carry the same force; around the weak layer their stress is not uniform.
+    assert table["SP1"].max() <= largest["value"] * (1 + PRINTED)
+    assert largest["value"] <= 2 * STRENGTH * (1 + 1e-7)
+    assert found["S3_POINT"]["anywhere"]["value"] <= table["SP3"].min() + 1e-9 * STRENGTH
+    grid = pyvista.read(next((run.folder / "bar_vtk").glob("*envelope*.vtu")))
+    assert grid.point_data["S1_POINT_MAX"].max() <= largest["value"] * (1 + PRINTED)
+    assert grid.point_data["S3_POINT_MIN"].min() >= found["S3_POINT"]["anywhere"]["value"] - 1e-3
+    with h5py.File(run.folder / "bar.h5") as file:
+        stored = file["steps/0001/envelopes/S1_POINT_MAX"][:]
+    assert stored == pytest.approx(grid.point_data["S1_POINT_MAX"])
 
 
 def test_points_are_the_same_in_every_file(run):

@@ -1,8 +1,9 @@
 !> Warns of requested fields that the model does not have, at the first request of each field.
 module check_requests
   use card_reader, only: field_reader
+  use deck_card, only: card
   use diagnostics, only: diagnostic_list
-  use field_table, only: find_field, list_fields
+  use field_table, only: ending_of_points, find_field, list_fields
   use field_type, only: at_joints, by_law, result_field
   use model_draft, only: draft
   implicit none
@@ -22,6 +23,7 @@ contains
     type(field_reader) :: reader
     type(result_field), allocatable :: table(:)
     character(:), allocatable :: reason
+    character(:), allocatable :: name
     logical, allocatable :: is_reported(:)
     integer :: i, f
     call list_fields(table)
@@ -31,7 +33,9 @@ contains
         if (.not. any(request%keyword == requests)) cycle
         reader = field_reader()
         do while (reader%advance(request))
-          f = find_field(table, request%word_at(reader%line, reader%field))
+          name = request%word_at(reader%line, reader%field)
+          f = find_field(table, name)
+          if (is_of_points(request)) f = max(f, find_field(table, name//ending_of_points))
           if (f == 0) cycle
           if (is_reported(f)) cycle
           reason = why_missing(model, table(f), request%keyword)
@@ -42,6 +46,13 @@ contains
       end associate
     end do
   end subroutine warn_of_missing_fields
+
+  !> Is it *ENVELOPE, POSITION=POINTS?
+  logical function is_of_points(request)
+    type(card), intent(in) :: request
+    is_of_points = .false.
+    if (request%keyword == 'ENVELOPE') is_of_points = request%word('POSITION') == 'POINTS'
+  end function is_of_points
 
   !> The warning; '' where the model has the field. *EL FILE may request openings of any model.
   function why_missing(model, item, keyword) result(reason)

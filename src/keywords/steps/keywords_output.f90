@@ -3,7 +3,8 @@ module keywords_output
   use card_reader, only: field_reader
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
-  use field_table, only: choices_of, fields_in_words
+  use field_table, only: choices_of, ending_of_points, fields_in_words, find_field, list_fields
+  use field_type, only: at_points, result_field
   use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, without_effect
   use keywords_print, only: add_frequency, fields_of
   use kinds, only: rk
@@ -107,9 +108,15 @@ contains
     spec%meaning = 'Records the extremes over the step: '// &
                    fields_in_words('ENVELOPE')//'. job.json has their place and time, the '// &
                    'results at the end of the step have them as '// &
-                   'fields. Without data lines: S1, S3 and, where there are joints, OPENING.'
-    spec%example = '*ENVELOPE'//nl//'S1, S3, OPENING, DAMAGET'
-    allocate (spec%parameters(0))
+                   'fields. Without data lines: S1, S3 and, where there are joints, OPENING. '// &
+                   'POSITION=POINTS takes the stresses S1 and S3 at the integration points of '// &
+                   'materials with a law, where the law bounds them; their results are '// &
+                   'named S1_POINT and S3_POINT. S1 and S3 at nodes are extrapolated.'
+    spec%example = '*ENVELOPE'//nl//'S1, S3, OPENING, DAMAGET'//nl// &
+                   '*ENVELOPE, POSITION=POINTS'//nl//'S1, S3'
+    allocate (spec%parameters, source=[ &
+              field('POSITION', kind_choice, 'where the fields are taken', default='NODES', &
+                    choices='NODES | POINTS')])
     allocate (spec%columns, source=[ &
               field('field', kind_choice, 'a field', &
                     choices=choices_of('ENVELOPE'))])
@@ -135,6 +142,27 @@ contains
     end do
   end subroutine warn_of_repeats
 
+  !> Replaces fields by those of integration points; a fault for a field without such values.
+  subroutine take_points(this, fields, faults)
+    type(card), intent(in) :: this
+    character(field_name_length), intent(inout) :: fields(:)
+    type(diagnostic_list), intent(inout) :: faults
+    type(result_field), allocatable :: table(:)
+    integer :: i, f
+    call list_fields(table)
+    do i = 1, size(fields)
+      if (find_field(table, trim(fields(i))//ending_of_points) > 0) then
+        fields(i) = trim(fields(i))//ending_of_points
+        cycle
+      end if
+      f = find_field(table, trim(fields(i)))
+      if (f == 0) cycle
+      if (table(f)%place == at_points) cycle
+      call this%fault(faults, trim(fields(i))//' has no values at integration points', &
+                      'S1, S3, DAMAGET or DAMAGEC with POSITION=POINTS')
+    end do
+  end subroutine take_points
+
   subroutine read_envelope(this, model, faults)
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
@@ -142,7 +170,12 @@ contains
     character(field_name_length), allocatable :: fields(:)
     fields = fields_of(this, '')
     call warn_of_repeats(this, faults)
-    if (fields(1) == '') fields = [character(field_name_length) :: 'S1', 'S3', 'OPENING']
+    if (this%word('POSITION') == 'POINTS') then
+      if (fields(1) == '') fields = [character(field_name_length) :: 'S1', 'S3']
+      call take_points(this, fields, faults)
+    else if (fields(1) == '') then
+      fields = [character(field_name_length) :: 'S1', 'S3', 'OPENING']
+    end if
     model%now%envelope = [character(field_name_length) :: model%now%envelope, fields]
   end subroutine read_envelope
 

@@ -10,7 +10,7 @@ module damage_energy
   implicit none
   private
   public :: flow_path, onset_of_flow, dissipated_work, dissipated_by_split, created_work
-  public :: crushing_share, fraction_of_crushing
+  public :: crushing_share, fraction_of_crushing, stored_work
 
   !> Crushing starts at this fraction of the strength in compression, and is full at the strength.
   real(rk), parameter :: start_of_crushing = 0.95_rk
@@ -110,7 +110,6 @@ contains
     real(rk) :: stress(6), energy(2)
     integer :: i
     work = 0.0_rk
-    if (model%splits_energy .or. all(damage <= 0.0_rk)) return
     do i = 0, num_parts
       stress = from + (to - from)*i/num_parts
       energy(2) = undamaged_energy(model, stress)
@@ -120,6 +119,16 @@ contains
       d(1) = d(2)
     end do
   end function created_work
+
+  !> Energy of an effective stress with the weight r of this stress [J/m3].
+  pure real(rk) function stored_work(model, stress, damage) result(work)
+    type(concrete_model), intent(in) :: model
+    real(rk), intent(in) :: stress(6) !< [Pa]
+    real(rk), intent(in) :: damage(2) !< d_t, d_c
+    type(damage_gradient) :: d
+    d = total_damage(model, damage(1), damage(2), weight_of(model, stress))
+    work = (1.0_rk - d%value)*undamaged_energy(model, stress)
+  end function stored_work
 
   !> r of Eq. 17 or of paper_notes.md, 8.
   pure real(rk) function weight_of(model, stress) result(share)

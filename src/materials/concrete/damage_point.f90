@@ -2,7 +2,7 @@
 !> the user subroutine for other programs.
 module damage_point
   use damage_energy, only: created_work, crushing_share, dissipated_by_split, dissipated_work, &
-                           flow_path, fraction_of_crushing, onset_of_flow
+                           flow_path, fraction_of_crushing, onset_of_flow, stored_work
   use damage_increment, only: elastic_stress, increment_result, integrate_increment, plastic_state
   use damage_model, only: concrete_model, placed_curves, stiffness_of
   use damage_split, only: energy_split, left_after, nominal_stress, split_stress, &
@@ -28,6 +28,7 @@ module damage_point
     real(rk) :: edges(3, 3) = 0.0_rk !< columns: edges of its element [m]; an isotropic length l as
     !! l times the unit matrix
     real(rk) :: time = 0.0_rk !< of the increment, for viscosity [s]
+    real(rk) :: stored = 0.0_rk !< energy at its start [J/m3]
     logical :: wants_tangent = .true.
     !> The symmetric (1 - d) D instead of the consistent tangent. It also replaces a consistent
     !> tangent that does not exist: see has_regular_flow.
@@ -94,10 +95,7 @@ contains
     if (backbone%has_yielded .or. model%viscosity > 0.0_rk) then
       call dissipate(model, old, backbone, finish, path, answer)
     end if
-    if (.not. (model%recovers_by_sign .and. motion%holds_switch)) then
-      answer%created = created_work(model, path%start, path%onset, old%damage) &
-                       + created_work(model, path%onset, path%finish, old%damage + 0.5_rk*path%growth)
-    end if
+    call count_created(model, motion, old, path, answer)
     if (.not. motion%wants_tangent) return
     if (motion%is_secant .or. .not. has_regular_flow(model, backbone)) then
       call find_secant(model, finish, answer%tangent)
@@ -231,8 +229,25 @@ contains
                                backbone%trial_excess)
   end subroutine find_path
 
-  !> Dissipation of the increment. Work of flow under pressures that have the strength in compression
-  !> is crushing, other work of flow cracking; work of damage likewise, by d_c and by d_t.
+  !> Energy created by the recovery of stiffness in the increment. A switch that is held creates
+  !> none; what it holds back is created when it is free again.
+  pure subroutine count_created(model, motion, old, path, answer)
+    type(concrete_model), intent(in) :: model
+    type(point_motion), intent(in) :: motion
+    type(point_history), intent(in) :: old
+    type(flow_path), intent(in) :: path
+    type(point_answer), intent(inout) :: answer !< its created energy is set
+    if (model%splits_energy .or. all(old%damage + path%growth <= 0.0_rk)) return
+    if (model%recovers_by_sign) then
+      if (motion%holds_switch .and. any(old%damage > 0.0_rk)) return
+      answer%created = stored_work(model, path%start, old%damage) - motion%stored
+    end if
+    answer%created = answer%created + created_work(model, path%start, path%onset, old%damage) &
+                     + created_work(model, path%onset, path%finish, old%damage + 0.5_rk*path%growth)
+  end subroutine count_created
+
+  !> Dissipation of the increment. Work of flow under pressures that have the strength in
+  !> compression is crushing, other work of flow cracking; work of damage likewise, by d_c and d_t.
   pure subroutine dissipate(model, old, backbone, finish, path, answer)
     type(concrete_model), intent(in) :: model
     type(point_history), intent(in) :: old

@@ -11,9 +11,9 @@ module material_damage_plasticity
   use errors, only: deck_is_wrong, error_type, raise
   use kinds, only: rk
   use material_law, only: stress_law
-  use material_points, only: created_energy, crushing_energy, fracture_energy, no_tangent, point_set, &
-                             point_state, secant_tangent, stored_energy, time_increment, &
-                             update_report
+  use material_points, only: created_energy, crushing_energy, fracture_energy, no_tangent, &
+                             point_set, point_state, secant_tangent, stored_energy, &
+                             time_increment, update_report
   use write_text, only: as_text
   implicit none
   private
@@ -128,6 +128,7 @@ contains
     type(point_history) :: before, after
     motion%before = old%strain(:, i)
     motion%strain = new%strain(:, i)
+    motion%stored = old%energy(stored_energy, i)
     call unpack_history(old%internal(:, i), before)
     call update_point(model, motion, before, placed, after, answer)
     call pack_history(after, new%internal(:, i))

@@ -18,7 +18,7 @@ module material_points
   integer, parameter :: stored_energy = 1 !< recovered by unloading
   integer, parameter :: fracture_energy = 2 !< dissipated so far, by cracking or by metal plasticity
   integer, parameter :: crushing_energy = 3 !< dissipated so far, in compression
-  integer, parameter :: created_energy = 4 !< made so far by a law without potential; may be negative
+  integer, parameter :: created_energy = 4 !< so far, by a law without potential; may be < 0
   integer, parameter :: num_energies = 4
 
   !> The points of a block: constant during the analysis.

@@ -10,15 +10,19 @@ module field_table
   use solid_fields, only: stress_on_nodes, stress_of_solids, stress_of_block, strain_on_nodes, &
                           strain_of_solids, strain_of_block, principals_on_nodes, &
                           principals_of_solids, largest_on_nodes, smallest_on_nodes, law_width, &
-                          law_on_nodes, law_of_solids, law_of_block
+                          law_on_nodes, law_of_solids, law_of_block, largest_near_nodes, &
+                          smallest_near_nodes, largest_of_block, smallest_of_block, width_in_blocks
   use joint_fields, only: has_joints, opening_on_nodes, opening_of_joint, slip_of_joint, &
                           traction_of_joint, state_of_joint, used_slip_of_joint, water_of_joint
   use json_writer, only: lower
   implicit none
   private
   public :: list_fields, find_field, choices_of, fields_in_words, columns_of_joints
+  public :: ending_of_points
 
   integer, parameter :: most_fields = 100
+  !> Of the names of fields whose envelope is that of integration points.
+  character(*), parameter :: ending_of_points = '_POINT'
 
 contains
 
@@ -92,7 +96,29 @@ contains
                place=at_nodes, wants_smallest=.true., &
                remark='Smallest principal stress of the mean tensor at a node.', &
                provider=by_recovery, requests='ENVELOPE', on_nodes=smallest_on_nodes))
+    call list_stresses_of_laws(rows, last)
   end subroutine list_stresses
+
+  !> Stresses at the points of materials with a law.
+  subroutine list_stresses_of_laws(rows, last)
+    type(result_field), intent(inout) :: rows(:)
+    integer, intent(inout) :: last !< number of fields so far
+    call enter(rows, last, result_field( &
+               name='S1'//ending_of_points, meaning='largest tension at integration points', &
+               endings=scalar, unit='Pa', place=at_points, &
+               remark='Largest principal stress at the points of materials with a law, as the '// &
+               'law gives it: concrete does not exceed f_t in uniaxial tension. S1 at nodes '// &
+               'extrapolates and may. On nodes the mean of the nearest points.', &
+               provider=by_law, requests='ENVELOPE', count=width_in_blocks, &
+               on_nodes=largest_near_nodes, of_block=largest_of_block))
+    call enter(rows, last, result_field( &
+               name='S3'//ending_of_points, meaning='largest compression at integration points', &
+               endings=scalar, unit='Pa', place=at_points, wants_smallest=.true., &
+               remark='Smallest principal stress at the points of materials with a law, as the '// &
+               'law gives it. On nodes the mean of the nearest points.', &
+               provider=by_law, requests='ENVELOPE', count=width_in_blocks, &
+               on_nodes=smallest_near_nodes, of_block=smallest_of_block))
+  end subroutine list_stresses_of_laws
 
   !> Fields of joints.
   subroutine list_fields_of_joints(rows, last)

@@ -4,7 +4,7 @@ module solid_fields
   use problem_definition, only: problem
   use analysis_state, only: state
   use law_fields, only: field_at_points, field_of_block, width_of_field
-  use stress_fields, only: recovered_fields
+  use stress_fields, only: principals, recovered_fields
   use tensor6, only: principal_values
   use field_type, only: result_field
   implicit none
@@ -12,7 +12,8 @@ module solid_fields
   public :: stress_on_nodes, stress_of_solids, stress_of_block
   public :: strain_on_nodes, strain_of_solids, strain_of_block
   public :: principals_on_nodes, principals_of_solids, largest_on_nodes, smallest_on_nodes
-  public :: law_width, law_on_nodes, law_of_solids, law_of_block
+  public :: largest_near_nodes, smallest_near_nodes, largest_of_block, smallest_of_block
+  public :: width_in_blocks, law_width, law_on_nodes, law_of_solids, law_of_block
 
 contains
 
@@ -132,6 +133,57 @@ contains
     call stresses%need_principals(model, now)
     values = stresses%node_principal(3:3, :)
   end subroutine smallest_on_nodes
+
+  !> 1 where a material has a law with states at its points, else 0.
+  integer function width_in_blocks(self, model)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: model
+    width_in_blocks = 0
+    if (.not. allocated(model%inelastic)) return
+    if (size(model%inelastic) > 0) width_in_blocks = self%num_endings()
+  end function width_in_blocks
+
+  !> S1_POINT on nodes.
+  subroutine largest_near_nodes(self, model, now, stresses, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    type(recovered_fields), intent(inout) :: stresses
+    real(rk), allocatable, intent(out) :: values(:, :) !< (1, nodes) [Pa]
+    call stresses%points_on_nodes(model, now, 1, values)
+  end subroutine largest_near_nodes
+
+  !> S3_POINT on nodes.
+  subroutine smallest_near_nodes(self, model, now, stresses, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    type(recovered_fields), intent(inout) :: stresses
+    real(rk), allocatable, intent(out) :: values(:, :) !< (1, nodes) [Pa]
+    call stresses%points_on_nodes(model, now, 3, values)
+  end subroutine smallest_near_nodes
+
+  !> S1_POINT of a block.
+  subroutine largest_of_block(self, model, now, block, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    integer, intent(in) :: block
+    real(rk), allocatable, intent(out) :: values(:, :) !< (1, points) [Pa]
+    values = principals(now%points(block)%stress)
+    values = values(1:1, :)
+  end subroutine largest_of_block
+
+  !> S3_POINT of a block.
+  subroutine smallest_of_block(self, model, now, block, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    integer, intent(in) :: block
+    real(rk), allocatable, intent(out) :: values(:, :) !< (1, points) [Pa]
+    values = principals(now%points(block)%stress)
+    values = values(3:3, :)
+  end subroutine smallest_of_block
 
   !> Components of a field of laws.
   integer function law_width(self, model)

@@ -59,7 +59,7 @@ contains
     type(damage_record), intent(out) :: record
     integer :: i
     record%is_present = max(width_of_field(model, 'DAMAGET'), width_of_field(model, 'DAMAGEC')) > 0
-    if (.not. record%is_present) return
+    if (.not. allocated(model%inelastic)) return
     allocate (record%faces(size(model%inelastic)))
     do i = 1, size(model%inelastic)
       associate (nodes => model%mesh%nodes(:, model%inelastic(i)%elements))

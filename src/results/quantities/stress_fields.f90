@@ -39,6 +39,7 @@ module stress_fields
     procedure :: need_node_stress
     procedure :: need_principals
     procedure :: field_on_nodes
+    procedure :: points_on_nodes
     procedure, private :: correct_inelastic
   end type recovered_fields
 
@@ -178,6 +179,28 @@ contains
       call average_at_nodes(self%plan, at_points, is_bounded, values)
     end if
   end subroutine field_on_nodes
+
+  !> A principal stress of the points on the nodes: the mean of the points next to a node, within the
+  !> range of their values.
+  subroutine points_on_nodes(self, model, now, number, values)
+    class(recovered_fields), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    integer, intent(in) :: number !< 1: the largest, 3: the smallest
+    real(rk), allocatable, intent(out) :: values(:, :) !< (1, nodes) [Pa]
+    real(rk), allocatable :: at_points(:, :, :), principal(:, :)
+    logical, allocatable :: is_bounded(:)
+    integer :: s
+    call self%need_points(model, now)
+    allocate (at_points(1, max_points, self%plan%num_solids))
+    do s = 1, self%plan%num_solids
+      principal = principals(self%point_stress(:, :, s))
+      at_points(1, :, s) = principal(number, :)
+    end do
+    allocate (values(1, model%mesh%num_nodes))
+    allocate (is_bounded(self%plan%num_solids), source=.true.)
+    call average_at_nodes(self%plan, at_points, is_bounded, values)
+  end subroutine points_on_nodes
 
   !> Computes the principal stresses on the nodes from the mean tensor, once an increment.
   subroutine need_principals(self, model, now)

@@ -133,8 +133,8 @@ contains
     type(state), intent(in) :: now
     if (self%damage%created <= largest_gain*now%energy%largest) return
     call self%warn_once('the law of concrete has created more than a tenth of the energy '// &
-                        '("created" in job.json) where cracks close and open: its stress has no '// &
-                        'potential, and smaller increments do not help; take RECOVERY=ENERGY')
+                        '("created" in job.json) where cracks close and open: its stress has '// &
+                        'no potential, and smaller increments do not help; take RECOVERY=ENERGY')
   end subroutine check_law
 
   !> Warns when the time stepping drives the motion. The balance of energy does not show this error.
