@@ -13,7 +13,6 @@ from tied_blocks import Blocks, node_set
 
 CONCRETE = Chapter("Concrete")
 STRENGTH = 2.48e6  # Table 1 of the paper [Pa]
-ENERGY_LAW = "RECOVERY=ENERGY"
 
 
 def cycled(keyway, recovery: str, cycles: int):
@@ -46,15 +45,15 @@ def add_cycles(recovery: str, **more) -> None:
 
 add_cycles("LEE-FENVES")
 add_cycles("SIGN")
-add_cycles("ENERGY", waits_for=ENERGY_LAW)
+add_cycles("ENERGY")
 
 
-def thrown(keyway, recovery: str):
+def thrown(keyway, recovery: str, increment: float = 1e-4):
     """A bar of ten elements, held at one end; the other end starts with 2 m/s."""
     concrete = paper_concrete(recovery=recovery, density=2400.0)
     bar = Bar(concrete, length=10.0, side=1.0, num_rest=9)
     end = [(node, 1, 2.0) for node in bar_end(bar)]
-    step = "*STEP, INC=100000\n*DYNAMIC, ALPHA=0.\n1e-4, 0.02\n*END STEP\n"
+    step = f"*STEP, INC=100000\n*DYNAMIC, ALPHA=0.\n{increment!r}, 0.02\n*END STEP\n"
     return keyway(bar.deck(initial("VELOCITY", end) + step))
 
 
@@ -78,12 +77,12 @@ def thrown_lee_fenves(keyway):
 @CONCRETE.case(
     "bar thrown, RECOVERY=ENERGY",
     "a bar cracks and closes as waves run through it, undamped",
-    "energy that nothing supplies, over the largest",
+    "energy that nothing supplies, over the largest, with increments of 2.5e-6 s: the law creates "
+    "none, and the error of the time stepping is of second order",
     1e-6,
-    waits_for=ENERGY_LAW,
 )
 def thrown_energy(keyway):
-    run = thrown(keyway, "ENERGY")
+    run = thrown(keyway, "ENERGY", 2.5e-6)
     assert energies(run)["fracture"][-1] > 0.0
     return fed(run), [run]
 
