@@ -17,6 +17,7 @@ set(sources
   solids/increment_balance.f90
   solids/inelastic_forces.f90
   solids/inelastic_stiffness.f90
+  solids/lost_damping.f90
   solids/solid_iteration.f90
   solids/solid_tangent.f90
   solids/tangent_choice.f90

@@ -6,7 +6,7 @@ module model_summary
   use material_law, only: material
   use motion_peaks, only: peak_of_motion
   use problem_definition, only: problem
-  use step_plan, only: step, step_load
+  use step_plan, only: step, step_damping, step_load
   use text_buffers, only: text_buffer
   use write_text, only: as_text
   use print_kinds, only: kinds_of_prints
@@ -107,8 +107,8 @@ contains
       associate (now => model%materials(i))
         text = text//nl//row(now%name, elastic_text(now)//', density '//as_text(now%density)// &
                              ' kg/m3, damping ALPHA '//as_text(now%alpha)//' 1/s, BETA '// &
-                             as_text(now%beta)//' s'// &
-                             elements_of(model, i))
+                             as_text(now%beta)//' s, BASE '// &
+                             name_of_base(now%damps_current)//elements_of(model, i))
         if (allocated(now%remark)) text = text//nl//row('', now%remark)
       end associate
     end do
@@ -277,11 +277,24 @@ contains
                          ', ITERATIONS '//as_text(now%controls%max_iterations)// &
                          ', JOINT SOLVER '//trim(now%controls%joint_solver)// &
                          ', JOINT FORCES '//trim(now%controls%joint_forces))
-    if (now%damping_ratio > 0.0_rk) then
-      text = text//nl//row('damping', 'RATIO '//as_text(now%damping_ratio)//' at '// &
-                           as_text(now%damping_f1)//' and '//as_text(now%damping_f2)//' Hz')
-    end if
+    text = text//damping_of(now%damping)
   end function procedure_of
+
+  pure function damping_of(now) result(text)
+    type(step_damping), intent(in) :: now
+    character(:), allocatable :: text
+    text = ''
+    if (.not. now%ratio > 0.0_rk) return
+    text = nl//row('damping', 'RATIO '//as_text(now%ratio)//' at '//as_text(now%f1)//' and '// &
+                   as_text(now%f2)//' Hz, BASE '//name_of_base(now%is_current))
+  end function damping_of
+
+  !> The stiffness that BETA multiplies.
+  pure function name_of_base(is_current) result(text)
+    logical, intent(in) :: is_current
+    character(:), allocatable :: text
+    text = trim(merge('CURRENT', 'INITIAL', is_current))
+  end function name_of_base
 
   pure function requests_of(now) result(text)
     type(step), intent(in) :: now

@@ -214,12 +214,13 @@ CONCRETE = """25e9, 0.
 """
 
 
-def test_concrete_that_cracks(example):
+@pytest.mark.parametrize("damping", ["", "*DAMPING, BETA=1e-5, BASE=CURRENT\n"])
+def test_concrete_that_cracks(example, damping):
     """Concrete thrown upwards at its top, beyond its strength: it cracks once, in a quarter of its
     period, and oscillates on. 1 %: both schemes resolve the crack with 60 increments or more.
     """
     model = edited(
-        MODEL, (DAMPING, ""), ("39.47841760435743, 0.\n", CONCRETE), ("\n3.\n", "\n2400.\n")
+        MODEL, (DAMPING, damping), ("39.47841760435743, 0.\n", CONCRETE), ("\n3.\n", "\n2400.\n")
     )
     model += "*INITIAL CONDITIONS, TYPE=VELOCITY\n"
     model += "".join(f"{node}, 3, 0.8\n" for node in (5, 6, 7, 8))

@@ -136,6 +136,7 @@ contains
     call compare(log, what//'balanced', a%balanced, b%balanced)
     call compare(log, what//'viscous', a%viscous, b%viscous)
     call compare(log, what//'viscous_rate', a%viscous_rate, b%viscous_rate)
+    call compare(log, what//'lost_damping', a%lost_damping, b%lost_damping)
     call compare(log, what//'momentum', a%momentum, b%momentum)
     call compare(log, what//'inertia', a%inertia, b%inertia)
     call compare(log, what//'carried', a%carried, b%carried)

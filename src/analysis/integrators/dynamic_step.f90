@@ -48,7 +48,7 @@ contains
     call start_motion(system%numbers, model%joints, now, has_inertia=.true.)
     call solids%open(model, system, plan, now)
     call results%costs%start('solve', 'initial acceleration', 'solver')
-    call start_forces(system, model, plan, now, error)
+    call start_forces(system, solids, model, plan, now, error)
     call results%costs%stop()
     if (allocated(error)) return
     call results%costs%start('recover', 'energy', 'solver')
@@ -67,8 +67,9 @@ contains
 
   !> Forces at the start of the step and the acceleration that balances them. Supports that follow
   !> an amplitude start with its velocity.
-  subroutine start_forces(system, model, plan, now, error)
+  subroutine start_forces(system, solids, model, plan, now, error)
     type(dam_system), intent(inout) :: system
+    type(solid_solver), intent(inout) :: solids
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan
     type(state), intent(inout) :: now
@@ -80,6 +81,7 @@ contains
       call update_uplift(model, system%operator, now%joints, system%groups, has_changed)
       call external_force(system%groups, model%amplitudes, when, own%external)
       call start_supports(model, system, when, 1.0e-3_rk*plan%first_increment, own%v)
+      call solids%start_lost_damping(model, system, plan, now)
       call multiply(system%matrix, system%mass, own%v, own%momentum)
       call system%find_damping_force(own%v, own%viscous)
       call sum_contact(system%operator, now)

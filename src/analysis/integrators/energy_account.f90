@@ -70,18 +70,20 @@ contains
     !> Change of the kinetic energy beyond du . M a_mean, from the formulas of the scheme [J]
     real(rk), intent(in) :: excess
     real(rk), allocatable :: du(:)
-    real(rk) :: taken
+    real(rk) :: taken, lost
     associate (old => before%motion, new => after%motion, n => system%matrix%num_free)
       du = new%q - old%q
       call add_external(du, n, old, new, after%energy)
-      after%energy%damping = after%energy%damping + work(du, old%viscous, new%viscous)
+      lost = 0.0_rk
+      if (allocated(new%lost_damping)) lost = work(du, old%lost_damping, new%lost_damping)
+      after%energy%damping = after%energy%damping + work(du, old%viscous, new%viscous) - lost
       taken = work(du(:n), old%external(:n), new%external(:n)) &
               - work(du(:n), old%viscous(:n), new%viscous(:n)) &
               - work(du(:n), old%elastic(:n), new%elastic(:n)) &
               - work(du(:n), old%balanced(:n), new%balanced(:n)) &
               + work(du(n + 1:), old%contact(n + 1:), new%contact(n + 1:)) &
               + inelastic_work(du(n + 1:), old, new, n) &
-              - change_of_stores(model, before, after) - excess
+              - change_of_stores(model, before, after) - excess + lost
     end associate
     after%energy%numerical = after%energy%numerical + taken
     call set_stored(model, system%diagonal, after)

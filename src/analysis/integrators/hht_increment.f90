@@ -81,6 +81,10 @@ contains
       if (self%solids%has_inelastic()) then
         task%reference_force = max(task%balance%reference_force, before%largest_force, &
                                    length(new%external(:n)))
+        ! v1 by (7.2) with u1 = task%start + x
+        task%velocity_of_x = scheme%velocity_of_x
+        task%velocity = old%v + (1.0_rk - scheme%gamma)*scheme%dt*old%a + scheme%velocity_of_x &
+                        *(moved - scheme%dt*old%v - scheme%dt**2*(0.5_rk - scheme%beta)*old%a)
       end if
     end associate
   end subroutine pose_task

@@ -14,6 +14,8 @@ module increment_balance
   type :: increment_task
     type(force_balance) :: balance !< without the initial-stress force
     real(rk), allocatable :: start(:) !< (num_total) u at x = 0, supports in place [m]
+    real(rk), allocatable :: velocity(:) !< (num_total) at x = 0; dynamic steps only [m/s]
+    real(rk) :: velocity_of_x = 0.0_rk !< dv/dx [1/s]
     real(rk), allocatable :: x(:) !< (num_total) solution; zero on prescribed unknowns [m]
     real(rk) :: reference_force = 0.0_rk !< largest known force [N]
     logical :: counts_reactions = .false. !< reactions are part of the reference force

@@ -29,6 +29,7 @@ module inelastic_forces
     real(rk), allocatable :: force(:, :) !< (24, elements) sum w B^T (D eps - sigma) [N]
     real(rk), allocatable :: tangent(:, :, :) !< (6, 6, points) [Pa], or (6, 6, 0)
     logical, allocatable :: has_excess(:) !< (elements) with a point that is not elastic
+    real(rk), allocatable :: lost(:, :) !< (24, elements) lost damping force [N], if any
     type(update_report) :: report
   end type block_answer
 

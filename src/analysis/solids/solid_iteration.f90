@@ -16,6 +16,7 @@ module solid_iteration
   use global_vectors, only: multiply, norm
   use material_points, only: time_increment
   use node_dofs, only: zero_vectors
+  use lost_damping, only: damping_loss
   use inelastic_forces, only: block_answer, open_answers, update_points, recall_points, &
                               sum_excess, find_failure
   use guest_forces, only: has_histories, recall_guests, update_guests
@@ -44,11 +45,12 @@ module solid_iteration
     type(block_answer), allocatable :: answers(:) !< (blocks)
     real(rk), allocatable :: guest_excess(:, :) !< (3, nodes) of guests with a history [N]
     real(rk), allocatable :: excess(:) !< (num_total) initial-stress force of the last iterate [N]
+    type(damping_loss) :: loss !< its force is part of `excess`
     type(mixer) :: mixer
   contains
     procedure :: open => open_solids
     procedure :: open_increment, solve_increment, effort, set_internal
-    procedure :: has_inelastic
+    procedure :: has_inelastic, start_lost_damping
     procedure, private :: iterate_on_forces, start_iteration, solve_iterate, measure_iterate
     procedure, private :: choose_guess, linearise
   end type solid_solver
@@ -104,6 +106,22 @@ contains
     call self%set_internal(now%motion)
   end subroutine open_solids
 
+  !> Adds the damping force that cracks have lost at the start of a dynamic step.
+  subroutine start_lost_damping(self, model, system, plan, now)
+    class(solid_solver), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    type(step), intent(in) :: plan
+    type(state), intent(inout) :: now !< with its velocities
+    type(increment_task) :: task
+    call self%loss%open(model, plan)
+    if (.not. self%has_inelastic()) return
+    task%velocity = now%motion%v
+    task%x = 0.0_rk*now%motion%v
+    call self%loss%add_force(model, system%numbers, task, now%points, self%answers, self%excess)
+    call self%set_internal(now%motion)
+  end subroutine start_lost_damping
+
   !> Whether any solid is inelastic, or another guest has a history.
   pure logical function has_inelastic(self)
     class(solid_solver), intent(in) :: self
@@ -116,6 +134,7 @@ contains
     type(motion), intent(inout) :: moving
     moving%internal = moving%elastic
     if (allocated(self%excess)) moving%internal = moving%internal - self%excess
+    if (allocated(self%loss%force)) moving%lost_damping = self%loss%force
   end subroutine set_internal
 
   !> Sets the time of the laws.
@@ -264,6 +283,8 @@ contains
       call update_points(model, u, self%time, before%points, after%points, self%answers)
       call update_guests(model, u, self%time%size, before%guests, after%guests, self%guest_excess)
       call sum_excess(model, system%numbers, self%answers, self%guest_excess, self%excess)
+      call self%loss%add_force(model, system%numbers, task, before%points, self%answers, &
+                               self%excess)
       call self%solver%costs%stop()
       call find_failure(model, self%answers, outcome%size_ratio, outcome%failure)
       now%is_lost = allocated(outcome%failure)

@@ -56,6 +56,9 @@ module analysis_state
     real(rk), allocatable :: contact(:) !< (num_total) B^T (area t), the joints by their laws [N]
     real(rk), allocatable :: balanced(:) !< (num_total) M a as the balance of forces gives it [N]
     real(rk), allocatable :: viscous(:), viscous_rate(:) !< C v [N], C a [N/s]
+    !> (num_total) damping force that cracks have lost, part of `internal` with opposite sign [N];
+    !> allocated with *DAMPING, BASE=CURRENT only
+    real(rk), allocatable :: lost_damping(:)
     real(rk), allocatable :: momentum(:), inertia(:) !< M v [N s], M a [N]
     real(rk), allocatable :: carried(:, :) !< (3, points) t* of the implicit joint impulse [Pa]
     real(rk), allocatable :: jump_rate(:, :) !< (3, points) in the last increment [m/s]

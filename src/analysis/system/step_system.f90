@@ -114,8 +114,8 @@ contains
     logical :: is_rayleigh
     alpha = 0.0_rk
     beta = 0.0_rk
-    if (plan%damping_ratio > 0.0_rk) then
-      call rayleigh_coefficients(plan%damping_ratio, plan%damping_f1, plan%damping_f2, alpha, beta)
+    if (plan%damping%ratio > 0.0_rk) then
+      call rayleigh_coefficients(plan%damping%ratio, plan%damping%f1, plan%damping%f2, alpha, beta)
     end if
     call guests_of_step(model, plan, guests)
     is_rayleigh = alpha + beta + sum(abs(model%materials%alpha) + abs(model%materials%beta)) &

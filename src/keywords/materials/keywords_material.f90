@@ -2,7 +2,7 @@
 module keywords_material
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
-  use keyword_spec, only: keyword, field, kind_real, kind_word
+  use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_word
   use kinds, only: rk
   use material_law, only: material
   use model_draft, only: draft, origin
@@ -10,7 +10,7 @@ module keywords_material
   private
   public :: describe_material, describe_density, describe_material_damping
   public :: read_material, read_density, read_material_damping
-  public :: claim_card
+  public :: base_of_damping, claim_card
 
   character, parameter :: nl = new_line('a')
 
@@ -88,8 +88,17 @@ contains
     spec%most_lines = 0
     allocate (spec%parameters, source=[ &
               field('ALPHA', kind_real, 'factor of the mass', '1/s', '0', lowest=0.0_rk), &
-              field('BETA', kind_real, 'factor of the stiffness', 's', '0', lowest=0.0_rk)])
+              field('BETA', kind_real, 'factor of the stiffness', 's', '0', lowest=0.0_rk), &
+              base_of_damping()])
   end subroutine describe_material_damping
+
+  !> BASE of both *DAMPING keywords.
+  function base_of_damping() result(base)
+    type(field) :: base
+    base = field('BASE', kind_choice, 'the stiffness that damps: that of the undamaged solids, '// &
+                 'or that of the solids with their present damage', default='INITIAL', &
+                 choices='INITIAL | CURRENT')
+  end function base_of_damping
 
   subroutine read_material_damping(this, model, faults)
     type(card), intent(in) :: this
@@ -101,6 +110,7 @@ contains
       end if
       now%alpha = this%real('ALPHA')
       now%beta = this%real('BETA')
+      now%damps_current = this%word('BASE') == 'CURRENT'
     end associate
   end subroutine read_material_damping
 

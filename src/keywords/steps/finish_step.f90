@@ -27,9 +27,7 @@ contains
         new%prints = before%prints
         new%outputs = before%outputs
         new%controls = before%controls
-        new%damping_ratio = before%damping_ratio
-        new%damping_f1 = before%damping_f1
-        new%damping_f2 = before%damping_f2
+        new%damping = before%damping
       end associate
     end if
     model%now = new

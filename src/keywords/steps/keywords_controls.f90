@@ -4,6 +4,7 @@ module keywords_controls
   use diagnostics, only: diagnostic_list
   use equilibrium_catalogue, only: names_of_joint_solvers
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real
+  use keywords_material, only: base_of_damping
   use kinds, only: rk
   use model_draft, only: draft
   implicit none
@@ -74,17 +75,19 @@ contains
               field('F1', kind_real, 'lower frequency', 'Hz', is_required=.true., &
                     lowest=0.0_rk, excludes_lowest=.true.), &
               field('F2', kind_real, 'upper frequency', 'Hz', is_required=.true., &
-                    lowest=0.0_rk, excludes_lowest=.true.)])
+                    lowest=0.0_rk, excludes_lowest=.true.), &
+              base_of_damping()])
   end subroutine describe_step_damping
 
   subroutine read_step_damping(this, model, faults)
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    model%now%damping_ratio = this%real('RATIO')
-    model%now%damping_f1 = this%real('F1')
-    model%now%damping_f2 = this%real('F2')
-    if (model%now%damping_f2 > model%now%damping_f1) return
+    model%now%damping%ratio = this%real('RATIO')
+    model%now%damping%f1 = this%real('F1')
+    model%now%damping%f2 = this%real('F2')
+    model%now%damping%is_current = this%word('BASE') == 'CURRENT'
+    if (model%now%damping%f2 > model%now%damping%f1) return
     call this%fault_parameter(faults, 'F2', "found '"//this%text('F2')//"'", &
                               'a frequency above F1 [Hz]')
   end subroutine read_step_damping

@@ -3,6 +3,7 @@
 module material_damage_plasticity
   use damage_checks, only: find_table_faults, table_fault
   use damage_constants, only: concrete_constants
+  use damage_increment, only: elastic_stress
   use damage_history, only: last_backbone, last_damage, last_measure, last_strain, pack_history, &
                             unpack_history, width_row
   use damage_model, only: concrete_model, make_concrete_model, placed_curves, stiffness_of
@@ -25,6 +26,7 @@ module material_damage_plasticity
     procedure :: elastic_stiffness
     procedure :: update
     procedure :: read_field
+    procedure :: find_stiffness_factors
   end type concrete_law
 
 contains
@@ -159,4 +161,20 @@ contains
       return
     end select
   end subroutine read_field
+
+  !> Norm of the stress over that of the effective stress. At zero stress the factor is 1.
+  subroutine find_stiffness_factors(self, state, factor)
+    class(concrete_law), intent(in) :: self
+    type(point_state), intent(in) :: state
+    real(rk), intent(out) :: factor(:)
+    real(rk) :: effective
+    integer :: i
+    do i = 1, size(factor)
+      factor(i) = 1.0_rk
+      if (state%is_elastic(i)) cycle
+      effective = norm2(elastic_stress(self%model, state%strain(:, i) &
+                                       - state%internal(:last_strain, i)))
+      if (effective > 0.0_rk) factor(i) = min(1.0_rk, norm2(state%stress(:, i))/effective)
+    end do
+  end subroutine find_stiffness_factors
 end module material_damage_plasticity

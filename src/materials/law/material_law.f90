@@ -18,6 +18,7 @@ module material_law
     procedure(update), deferred :: update
     procedure :: set_start => start_from_zero
     procedure :: read_field => no_field
+    procedure :: find_stiffness_factors => no_loss
   end type stress_law
 
   abstract interface
@@ -51,6 +52,7 @@ module material_law
     real(rk) :: young = 0.0_rk !< E of the undamaged material [Pa], for defaults of joints
     real(rk) :: poisson = 0.0_rk
     real(rk) :: alpha = 0.0_rk, beta = 0.0_rk !< Rayleigh damping [1/s], [s]
+    logical :: damps_current = .false. !< beta acts on the damaged stiffness
     class(stress_law), allocatable :: law
     character(:), allocatable :: remark !< further text in the summary of the model, if any
   end type material
@@ -90,4 +92,12 @@ contains
       allocate (values(6, size(state%strain, 2)), source=0.0_rk)
     end if
   end subroutine no_field
+
+  !> Default: a law without damage keeps its stiffness.
+  subroutine no_loss(self, state, factor)
+    class(stress_law), intent(in) :: self
+    type(point_state), intent(in) :: state
+    real(rk), intent(out) :: factor(:) !< (points) stiffness over the undamaged one, 0..1
+    factor = 1.0_rk
+  end subroutine no_loss
 end module material_law

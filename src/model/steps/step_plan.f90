@@ -5,7 +5,7 @@ module step_plan
   implicit none
   private
   public :: step, step_load, step_fixity, print_request, field_request, step_controls
-  public :: initial_value, step_procedure, field_name_length
+  public :: step_damping, initial_value, step_procedure, field_name_length
 
   integer, parameter :: field_name_length = 8 !< of names of fields that a deck may give
 
@@ -75,6 +75,13 @@ module step_plan
     procedure :: is_static
   end type step_procedure
 
+  !> *DAMPING of a step.
+  type :: step_damping
+    real(rk) :: ratio = 0.0_rk !< of Rayleigh damping; 0 for none
+    real(rk) :: f1 = 0.0_rk, f2 = 0.0_rk !< where the ratio holds [Hz]
+    logical :: is_current = .false. !< BASE=CURRENT: by the damaged stiffness
+  end type step_damping
+
   type :: step
     character(:), allocatable :: name
     type(step_procedure) :: procedure
@@ -85,8 +92,7 @@ module step_plan
     integer :: max_increments = 100000 !< *STEP, INC
     real(rk) :: alpha = -0.05_rk !< of a scheme with `uses_alpha`
     integer :: num_modes = 0 !< *FREQUENCY
-    real(rk) :: damping_ratio = 0.0_rk !< *DAMPING in a step; 0 for none
-    real(rk) :: damping_f1 = 0.0_rk, damping_f2 = 0.0_rk !< [Hz]
+    type(step_damping) :: damping
     type(step_load), allocatable :: loads(:) !< all active loads, also those of earlier steps
     type(step_fixity), allocatable :: fixities(:) !< all supports, also those of earlier steps
     type(print_request), allocatable :: prints(:)

@@ -110,7 +110,7 @@ contains
       end if
     end do
     do i = 1, size(model%steps)
-      if (model%steps(i)%damping_ratio > 0.0_rk) call put_effect(model%steps(i)%name, 'damping')
+      if (model%steps(i)%damping%ratio > 0.0_rk) call put_effect(model%steps(i)%name, 'damping')
     end do
     call json%close_array()
 

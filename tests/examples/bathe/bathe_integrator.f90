@@ -218,6 +218,8 @@ contains
       if (self%solids%has_inelastic()) then
         task%reference_force = max(task%balance%reference_force, before%largest_force, &
                                    length(new%external(:n)))
+        task%velocity = new%v + self%c*moved
+        task%velocity_of_x = self%c
       end if
       allocate (task%balance%offset(3, num_points), task%balance%guess(3, num_points))
       call system%operator%jumps(task%start, task%balance%offset)
