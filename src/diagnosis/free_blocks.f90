@@ -80,8 +80,7 @@ contains
       text = idle_motion(model, task)
     end if
     if (text == '') then
-      text = '; the same model of rigid blocks has an equilibrium, which may need prestress; '// &
-             'use smaller increments, or more ITERATIONS (*CONTROLS)'// &
+      text = '; the same model of rigid blocks has an equilibrium, which may need prestress'// &
              separated_block(model, task%blocks, last)
     end if
     error%message = error%message//text

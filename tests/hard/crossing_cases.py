@@ -16,10 +16,10 @@ JOINT_ITERATION = "the iteration of frictional joints"
 Model = tuple[Blocks, list[tuple[str, str]], list[str]]  # blocks, joints, names of moving blocks
 
 
-def joints(friction: float, pairs: list[tuple[str, str]]) -> str:
+def joints(friction: float, pairs: list[tuple[str, str]], law: str = "J") -> str:
     """Joints J0, J1, .. without strength between pairs of surfaces, slave first."""
-    text = f"*JOINT LAW, NAME=LAW, FRICTION={friction!r}, THICKNESS=0.02\n"
-    faces = (f"*JOINT, NAME=J{k}, LAW=LAW\n{', '.join(pair)}\n" for k, pair in enumerate(pairs))
+    text = f"*JOINT LAW, NAME={law}, FRICTION={friction!r}\n"
+    faces = (f"*JOINT, NAME={law}{k}, LAW={law}\n{', '.join(p)}\n" for k, p in enumerate(pairs))
     return text + "".join(faces)
 
 
@@ -46,7 +46,7 @@ def four_blocks(meshes: tuple[int, int]) -> Model:
     return blocks, pairs, ["A", "B", "C", "D"]
 
 
-def stand(keyway, blocks, pairs, names, friction: float, push: str = "", more: str = ""):
+def stand(keyway, blocks, pairs, names, friction: float, push="", more=""):
     """Static balance under weight; the number is that of the cut-backs."""
     cards = joints(friction, pairs) + foot(blocks, "GROUND") + more
     deck = blocks.deck({"": CONCRETE, "GROUND": ROCK}, cards + static(gravity(names) + push))
@@ -108,24 +108,25 @@ def arch(count: int, along: int, through: int, thick: float) -> Model:
     return blocks, pairs, names
 
 
-def add_arch(count: int, along: int, through: int, thick: float, **more) -> None:
+def add_arch(name: str, count: int, meshes: tuple[int, int], thick: float, **more) -> None:
     @CROSSINGS.case(
-        f"arch of {count} blocks" + (" in fine meshes" if more else ""),
-        "an arch without strength under its weight in one increment, friction 0.6",
+        f"{name} of {count} blocks",
+        f"an arch {thick} m thick without strength under its weight in one increment, friction 0.6",
         "cut-backs until static balance",
         0,
         **more,
     )
     def judge(keyway):
-        blocks, pairs, names = arch(count, along, through, thick)
+        blocks, pairs, names = arch(count, *meshes, thick)
         held = np.concatenate([blocks.nodes["LEFT"].ravel(), blocks.nodes["RIGHT"].ravel()])
         cards = joints(0.6, pairs) + node_set("HELD", held) + "*BOUNDARY\nHELD, 1, 3\n"
         run = keyway(blocks.deck({"": CONCRETE}, cards + static(gravity(names))))
         return sum(step["cutbacks"] for step in run.json["steps"]), [run]
 
 
-add_arch(12, 2, 4, 1.5)
-add_arch(10, 8, 8, 2.0, full=True)
+add_arch("arch", 12, (2, 4), 1.5)
+add_arch("thin arch", 12, (4, 8), 1.3, waits_for=JOINT_ITERATION)
+add_arch("arch in fine meshes", 10, (8, 8), 2.0, full=True)
 
 
 def monoliths(facets: int) -> Model:
@@ -196,25 +197,31 @@ add_monoliths(3, 0.7, 0.3, JOINT_ITERATION)
 
 @CROSSINGS.case(
     "lift joint across contraction joints",
-    "three monoliths on joints, a lift joint at half height with meshes 2:3, no strength",
+    "three monoliths 30 m high on joints, a lift joint at 14 m, meshes 2:3, no strength, water",
     "cut-backs until static balance",
     0,
+    waits_for=JOINT_ITERATION,
 )
 def lift_joint(keyway):
     blocks = Blocks()
-    blocks.add("GROUND", (5, -10.0, 40.0), (4, -15.0, 30.0), (2, -15.0, 0.0))
+    blocks.add("ROCK", (10, -10.0, 40.0), (8, -15.0, 25.0), (3, -15.0, 0.0))
     names, pairs = [], []
-    for k in range(3):
-        blocks.add(f"L{k}", (2, 10.0 * k, 10.0 * (k + 1)), (3, 0.0, 15.0), (2, 0.0, 10.0))
-        blocks.add(f"U{k}", (3, 10.0 * k, 10.0 * (k + 1)), (2, 0.0, 10.0), (2, 10.0, 20.0))
-        pairs += [(f"L{k}_Z0", "GROUND_Z1"), (f"U{k}_Z0", f"L{k}_Z1")]
+    for k, n in enumerate((2, 3, 2)):
+        x, y = (n, 10.0 * k, 10.0 * (k + 1)), (n, 0.0, 10.0)
+        blocks.add(f"L{k}", x, y, (n + 1, 0.0, 14.0))
+        blocks.add(f"U{k}", x, y, (n + 1, 14.0, 30.0))
+        pairs += [(f"L{k}_Z0", "ROCK_Z1"), (f"U{k}_Z0", f"L{k}_Z1")]
         names += [f"L{k}", f"U{k}"]
-    pairs += [(f"{part}{k + 1}_X0", f"{part}{k}_X1") for k in range(2) for part in "LU"]
-    push = blocks.side("U0", "Y0")
-    weight = 3 * (15.0 + 10.0) * 100.0 * 2400.0 * GRAVITY
-    cards = node_set("SIDE", push)
-    load = f"*CLOAD\nSIDE, 2, {0.05 * weight / len(push)!r}\n"
-    return stand(keyway, blocks, pairs, names, 0.6, load, cards)
+    upright = [(f"{part}{k}_X1", f"{part}{k + 1}_X0") for k in range(2) for part in "LU"]
+    cards = joints(0.8, pairs) + joints(0.6, upright, "C") + foot(blocks, "ROCK")
+    for name, sides, dof in (("ALONG", ("X0", "X1"), 1), ("ACROSS", ("Y0", "Y1"), 2)):
+        held = np.concatenate([blocks.side("ROCK", side) for side in sides])
+        cards += node_set(name, np.unique(held)) + f"*BOUNDARY\n{name}, {dof}\n"
+    cards += f"*SURFACE, NAME=UP, TYPE=ELEMENT\n{upstream_faces(blocks, names)}"
+    water = "*RESERVOIR, NAME=LAKE, SURFACE=UP, LEVEL=15., BED=0.\n"
+    deck = blocks.deck({"": CONCRETE, "ROCK": ROCK}, cards + static(gravity(names) + water))
+    run = keyway(deck)
+    return sum(step["cutbacks"] for step in run.json["steps"]), [run]
 
 
 @CROSSINGS.case(
