@@ -48,3 +48,10 @@ def test_energy_from_a_weight(keyway, recovery):
     assert by_law == pytest.approx(found, rel=0.15)
     assert any("the law of concrete has created" in text for text in run.json["warnings"])
     assert not any("time stepping" in text for text in run.json["warnings"])
+
+
+def test_warning_of_a_stress_that_jumps(keyway):
+    """With RECOVERY=SIGN large increments are not to blame either: its stress jumps."""
+    run = thrown_bar(keyway, "SIGN", 1e-4)
+    assert any("the law of concrete has created" in text for text in run.json["warnings"])
+    assert not any("time stepping" in text for text in run.json["warnings"])

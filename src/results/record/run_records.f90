@@ -108,10 +108,10 @@ contains
     call self%stresses%invalidate()
     if (self%damage%is_present) then
       call note_damage(model, now, self%damage)
-      call self%check_law(now)
+      call self%check_law(model, now)
     end if
     if (model%steps(now%step)%procedure%has_inertia) then
-      call self%check_time_stepping(now, model%steps(now%step)%procedure%uses_alpha)
+      call self%check_time_stepping(model, now)
     end if
     if (self%damage%is_present) call self%check_crack_energy(model, now)
     if (now%has_held_switches) then
@@ -128,32 +128,49 @@ contains
   end subroutine note
 
   !> Warns when the recovery of stiffness of concrete drives the motion: no increment cures this.
-  subroutine check_law(self, now)
+  subroutine check_law(self, model, now)
     class(run_record), intent(inout) :: self
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
-    if (self%damage%created <= largest_gain*now%energy%largest) return
+    real(rk) :: gain
+    gain = self%damage%created
+    if (has_jumps(model)) gain = max(gain, -now%energy%numerical)
+    if (gain <= largest_gain*now%energy%largest) return
     call self%warn_once('the law of concrete has created more than a tenth of the energy '// &
                         '("created" in job.json) where cracks close and open: its stress has '// &
                         'no potential, and smaller increments do not help; take RECOVERY=ENERGY')
   end subroutine check_law
 
   !> Warns when the time stepping drives the motion. The balance of energy does not show this error.
-  !> What the laws of solids create is not its doing.
-  subroutine check_time_stepping(self, now, uses_alpha)
+  !> What the laws of solids create is not its doing, nor is a stress that jumps: no increment is
+  !> small enough for a jump.
+  subroutine check_time_stepping(self, model, now)
     class(run_record), intent(inout) :: self
+    type(problem), intent(in) :: model
     type(state), intent(in) :: now
-    logical, intent(in) :: uses_alpha !< the scheme has an ALPHA for numerical damping
     character(:), allocatable :: advice
     real(rk) :: taken
     taken = now%energy%numerical + self%damage%created
     self%most_taken = max(self%most_taken, taken)
     if (self%most_taken - taken <= largest_gain*now%energy%largest) return
+    if (has_jumps(model)) return
     advice = 'smaller increments'
-    if (uses_alpha) advice = advice//', or an ALPHA further below 0'
+    if (model%steps(now%step)%procedure%uses_alpha) advice = advice//', or an ALPHA further below 0'
     call self%warn_once('the time stepping has added more than a tenth of the energy '// &
                         '("numerical" in the energy balance): do not trust this motion; try '// &
                         advice)
   end subroutine check_time_stepping
+
+  !> Does the stress of a cracked material jump?
+  logical function has_jumps(model)
+    type(problem), intent(in) :: model
+    integer :: i
+    has_jumps = .false.
+    do i = 1, size(model%materials)
+      if (.not. allocated(model%materials(i)%law)) cycle
+      has_jumps = has_jumps .or. model%materials(i)%law%has_switch
+    end do
+  end function has_jumps
 
   !> Warns when cracks dissipate much of the stored energy in one static increment: the structure
   !> has jumped from one equilibrium to another.
