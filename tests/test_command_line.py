@@ -170,7 +170,7 @@ def test_reads_150_000_nodes_in_two_seconds(program_path: Path, tmp_path: Path) 
         (["--fields", "traction"], 0, "stdout", "TN,T1,T2"),
         (["--chekc", "a.inp"], 2, "stderr", "did you mean '--check'?"),
         (["--umat", "lib.so", "a.inp"], 2, "stderr", "cannot load the UMAT"),
-        (["--continue", "a.inp"], 2, "stderr", "--continue is not available yet"),
+        (["--continue", "nowhere.inp"], 2, "stderr", "cannot read 'nowhere.inp'"),
         (["-q"], 2, "stderr", "no deck is named"),
         (["-j", "many", "a.inp"], 2, "stderr", "expected a number of threads from 1 to 256"),
         (["-o"], 2, "stderr", "-o needs a value"),

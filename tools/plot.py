@@ -30,7 +30,7 @@ from keyway_tools.pictures_curves import (
 )
 from keyway_tools.pictures_joints import plot_joint_areas
 from keyway_tools.pictures_material import COMPONENTS, plot_material, read_curve
-from keyway_tools.results import Results, find_jobs
+from keyway_tools.results import Results, find_jobs, why_incomplete
 
 
 def draw_job(results: Results, folder: Path) -> Iterator[Path | None]:
@@ -106,6 +106,9 @@ def main(arguments: list[str] | None = None) -> int:
     folder = chosen.output or chosen.results
     folder.mkdir(parents=True, exist_ok=True)
     for job in jobs:
+        why = why_incomplete(chosen.results, job)
+        if why:
+            print(f"plot: {job} is incomplete: {why}", file=sys.stderr)
         num_pictures = 0
         for picture in draw_job(Results(chosen.results, job), folder):
             if picture is not None:

@@ -30,6 +30,7 @@ module cli
     logical :: is_check = .false. !< read and verify only
     logical :: is_material = .false. !< run the tests of materials, not the analysis
     logical :: is_quiet = .false.
+    logical :: is_continued = .false. !< go on from the last checkpoint
     logical :: wants_keywords = .false., wants_fields = .false.
     logical :: wants_version = .false., wants_help = .false.
     logical :: is_empty = .false. !< no argument at all
@@ -47,6 +48,7 @@ contains
     text = 'usage: keyway [options] job.inp'//nl// &
            '  -o DIR             folder of the results (default: .)'//nl// &
            '  -j N               threads'//nl// &
+           '  --continue         go on from the last checkpoint of this job in DIR'//nl// &
            '  --check            read and verify only, print a summary of the model'//nl// &
            '  --material         run the tests of materials (*MATERIAL TEST), no analysis'//nl// &
            '  --umat FILE ..     the user''s own materials: UMAT as Fortran source or '// &
@@ -85,6 +87,11 @@ contains
     if (given%is_empty .or. given%wants_help .or. given%wants_version) return
     call check_umat_options(given, error)
     if (allocated(error)) return
+    if (given%is_continued .and. (given%is_check .or. given%is_material)) then
+      call raise(error, 'keyway: --continue goes with an analysis, not with --check or '// &
+                 '--material'//nl//usage(), deck_is_wrong)
+      return
+    end if
     if (given%wants_keywords .or. given%wants_fields .or. len(given%deck) > 0) return
     if (size(given%umat%files) > 0 .and. len(given%umat%target) > 0) return
     call raise(error, 'keyway: no deck is named'//nl//usage(), deck_is_wrong)
@@ -138,7 +145,8 @@ contains
     case ('--umat-check')
       given%umat%checks_tangent = .true.
     case ('--continue')
-      call raise(error, 'keyway: '//word//' is not available yet', deck_is_wrong)
+      given%is_continued = .true.
+      given%umat%is_continued = .true.
     case default
       call read_deck_name(word, given, error)
     end select

@@ -6,6 +6,7 @@ program keyway
   use check_deck, only: load_deck, report_model
   use cli, only: command_line, parse_command_line, print_answer
   use diagnostics, only: diagnostic_list
+  use earlier_results, only: mark_earlier_results
   use errors, only: error_type
   use kinds, only: rk
   use omp_lib, only: omp_get_max_threads, omp_set_num_threads
@@ -61,6 +62,7 @@ program keyway
   call costs%start('read', 'deck', 'deck')
   call load_deck(options, model, remarks, echo, error)
   call costs%stop()
+  if (allocated(error)) call mark_earlier_results(options, model)
   call end_on(error)
   if (options%is_check) then
     call report_model(options, model, echo, error)

@@ -1,9 +1,11 @@
 !> One analysis: opens the results, runs the steps, and closes the results even after a failure.
 module run_analysis
   use kinds, only: rk
-  use errors, only: error_type, raise, system_failed
+  use errors, only: analysis_failed, error_type, raise, system_failed
   use diagnostics, only: diagnostic_list
-  use file_system, only: base_name, make_folder
+  use file_system, only: make_folder
+  use run_lock, only: job_lock
+  use stop_signals, only: catch_signals, has_met_file_limit
   use ledger_text, only: text_of_ledger
   use run_ledger, only: ledger
   use timer, only: peak_memory, wall_clock
@@ -15,7 +17,7 @@ module run_analysis
   use shared_costs, only: share_costs
   use result_files, only: result_folder
   use cli, only: command_line
-  use user_routines, only: end_user_routines
+  use user_routines, only: close_user_routines, end_user_routines
   implicit none
   private
   public :: run_problem
@@ -32,26 +34,49 @@ contains
     real(rk), intent(in) :: started_at !< wall clock [s]
     type(error_type), allocatable, intent(out) :: error
     type(result_folder) :: results
-    type(state), allocatable :: now
-    type(error_type), allocatable :: failure
-    call make_folder(given%folder, error)
-    if (allocated(error)) return
-    call results%log%open(given%is_quiet, error, &
-                          given%folder//'/'//base_name(model%deck_file)//'.log')
-    if (allocated(error)) return
-    call results%log%note(echo)
+    type(job_lock) :: lock
     results%costs = costs
     call share_costs(model, costs)
-    call results%open(model, given%folder, remarks, error)
-    if (allocated(error)) return
-    call costs%start('assemble', 'initial state', 'solver')
-    call start_analysis(model, now, error)
-    call costs%stop()
+    call results%prepare(model, given%folder, remarks, error)
+    if (.not. allocated(error)) call make_folder(given%folder, error)
+    if (.not. allocated(error)) call lock%take(results%stem//'.lock', error)
+    if (allocated(error)) then
+      call close_user_routines(model)
+      return
+    end if
+    call run_alone(model, given, echo, costs, started_at, lock%earlier, results, error)
+    call catch_signals('')
+    call lock%give_back()
+  end subroutine run_problem
+
+  !> Opens the results, runs the steps and closes the results.
+  subroutine run_alone(model, given, echo, costs, started_at, earlier, results, error)
+    type(problem), intent(in) :: model
+    type(command_line), intent(in) :: given
+    character(*), intent(in) :: echo
+    type(ledger), intent(in) :: costs
+    real(rk), intent(in) :: started_at !< wall clock [s]
+    character(*), intent(in) :: earlier !< process whose run of the job did not end, '' for none
+    type(result_folder), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    type(state), allocatable :: now
+    type(error_type), allocatable :: failure
+    call open_run(model, given, echo, earlier, costs, results, now, error)
+    if (allocated(error)) then
+      call close_user_routines(model)
+      return
+    end if
+    if (.not. allocated(now)) then
+      call costs%start('assemble', 'initial state', 'solver')
+      call start_analysis(model, now, error)
+      call costs%stop()
+    end if
     if (.not. allocated(error)) call run_all_steps(model, now, results, error)
     call end_user_routines(model, now%total_time, results%log, failure)
     if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
     call costs%stop_all()
     if (allocated(error)) then
+      call name_limit(error)
       call results%log%note(error%message)
       call results%finish(model, now, 'stopped', error%message, failure)
       call results%log%note(text_of_ledger(costs))
@@ -62,8 +87,57 @@ contains
       call results%log%say(text_of_ledger(costs))
     end if
     call results%log%close()
+    if (allocated(failure)) call name_limit(failure)
     if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
     if (allocated(error) .or. .not. results%log%has_failed) return
     call raise(error, "cannot write the log in '"//given%folder//"' (disk full?)", system_failed)
-  end subroutine run_problem
+    call name_limit(error)
+  end subroutine run_alone
+
+  !> Opens log and results, of a new run or of one that goes on.
+  subroutine open_run(model, given, echo, earlier, costs, results, now, error)
+    type(problem), intent(in) :: model
+    type(command_line), intent(in) :: given
+    character(*), intent(in) :: echo
+    character(*), intent(in) :: earlier
+    type(ledger), intent(in) :: costs
+    type(result_folder), intent(inout) :: results
+    type(state), allocatable, intent(out) :: now !< of the checkpoint; not allocated in a new run
+    type(error_type), allocatable, intent(out) :: error
+    character(:), allocatable :: remark
+    if (given%is_continued) then
+      call costs%start('assemble', 'initial state', 'solver')
+      call start_analysis(model, now, error)
+      call costs%stop()
+      if (.not. allocated(error)) call results%load(model, now, remark, error)
+      if (allocated(error)) return
+    end if
+    call results%log%open(given%is_quiet, error, results%stem//'.log', given%is_continued)
+    if (allocated(error)) return
+    call results%log%note(echo)
+    if (earlier /= '') then
+      call results%log%say('the earlier run of this job (process and host: '//earlier// &
+                           ') was killed')
+    end if
+    call catch_signals(results%stem//'.json')
+    if (.not. given%is_continued) then
+      call results%open(model, error)
+      return
+    end if
+    if (remark /= '') call results%log%say('warning: '//remark// &
+                                           '; the checkpoint before it is used')
+    call results%log%say('goes on from increment '//as_text(now%increment)//" of step '"// &
+                         model%steps(now%step)%name//"', time "//as_text(now%total_time))
+    call results%go_on(model, error)
+  end subroutine open_run
+
+  !> A write that failed at the limit of file sizes: the user has set the limit, the system has not
+  !> failed.
+  subroutine name_limit(error)
+    type(error_type), allocatable, intent(inout) :: error
+    if (error%exit_code /= system_failed) return
+    if (.not. has_met_file_limit()) return
+    error%exit_code = analysis_failed
+    error%message = 'stopped by the limit of file sizes (ulimit -f): '//error%message
+  end subroutine name_limit
 end module run_analysis

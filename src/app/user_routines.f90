@@ -6,10 +6,11 @@ module user_routines
   use kinds, only: rk
   use logging, only: run_log
   use problem_definition, only: problem
+  use run_lock, only: job_lock
   use umat_loader, only: at_end, open_library, user_library
   implicit none
   private
-  public :: load_user_routines, end_user_routines
+  public :: load_user_routines, end_user_routines, close_user_routines
 
 contains
 
@@ -18,13 +19,25 @@ contains
     type(command_line), intent(in) :: given
     type(user_library), pointer, intent(out) :: umat !< lives as long as the program
     type(error_type), allocatable, intent(out) :: error
+    type(job_lock) :: lock
     nullify (umat)
     if (size(given%umat%files) == 0) return
     call make_folder(given%folder, error)
     if (allocated(error)) return
+    ! The UMAT's messages go to job.msg, which another run may be writing.
+    call lock%take(given%folder//'/'//base_name(given%deck)//'.lock', error)
+    if (allocated(error)) return
+    call lock%give_back()
     allocate (umat)
     call open_library(given%umat, base_name(given%deck), given%folder, umat, error)
   end subroutine load_user_routines
+
+  !> Closes the library of a run that does not start.
+  subroutine close_user_routines(model)
+    type(problem), intent(in) :: model
+    character(:), allocatable :: ignored
+    if (associated(model%umat)) call model%umat%close(ignored)
+  end subroutine close_user_routines
 
   !> Calls UEXTERNALDB at the end of the run, and writes the checks of the UMAT to the log.
   subroutine end_user_routines(model, time, log, error)

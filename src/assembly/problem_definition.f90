@@ -1,5 +1,7 @@
 !> The problem: filled by the keywords, read by the solvers. Effects are guests in its lists.
 module problem_definition
+  use card_digests, only: card_digest
+  use file_identity, only: file_path
   use dam_mesh, only: fe_mesh, named_set, surface
   use amplitudes, only: amplitude
   use step_plan, only: step, initial_value
@@ -19,6 +21,8 @@ module problem_definition
   type :: problem
     character(:), allocatable :: deck_file !< as given on the command line
     character(:), allocatable :: heading
+    type(file_path), allocatable :: inputs(:) !< all files that were read
+    type(card_digest), allocatable :: cards(:) !< of the deck, without material tests
     type(fe_mesh) :: mesh
     type(named_set), allocatable :: node_sets(:), element_sets(:)
     type(surface), allocatable :: surfaces(:)

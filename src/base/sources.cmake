@@ -31,6 +31,12 @@ set(sources
   report/logging.f90
   report/run_ledger.f90
   report/timer.f90
+  system/file_identity.f90
+  system/run_lock.f90
+  system/stop_signals.f90
+  system/system_calls.c
+  system/undo_driver.c
+  system/undo_journal.f90
   text/nearest_words.f90
   text/number_ranges.f90
   text/parse_text.f90

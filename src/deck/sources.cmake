@@ -1,5 +1,6 @@
 set(sources
   card_check.f90
+  card_digests.f90
   card_lines.f90
   card_reader.f90
   deck_card.f90

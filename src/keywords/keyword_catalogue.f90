@@ -27,6 +27,7 @@ module keyword_catalogue
   use keywords_section, only: describe_solid_section, read_solid_section
   use keywords_sets, only: describe_elset, describe_nset, describe_surface, read_elset, &
                            read_nset, read_surface
+  use keywords_restart, only: describe_restart, read_restart
   use keywords_step, only: describe_dynamic, describe_end_step, describe_frequency, &
                            describe_static, describe_step, read_dynamic, read_end_step, &
                            read_frequency, read_static, read_step
@@ -102,6 +103,7 @@ contains
     call list%add(describe_node_output, read_fields, pass_rest)
     call list%add(describe_element_output, read_fields, pass_rest)
     call list%add(describe_envelope, read_envelope, pass_rest)
+    call list%add(describe_restart, read_restart, pass_rest)
     call list%add(describe_preprint, read_output, pass_rest)
   end subroutine add_output_keywords
 end module keyword_catalogue

@@ -3,6 +3,7 @@ module read_deck
   use card_check, only: check_card, match_card
   use check_loads, only: warn_of_loads
   use check_mesh, only: warn_of_mesh
+  use card_digests, only: digests_of_cards, list_input_files
   use check_names, only: verify_names
   use check_requests, only: warn_of_missing_fields
   use check_steps, only: verify_steps
@@ -54,6 +55,10 @@ contains
       call complete_tests(model, faults)
     else
       call complete_and_verify(model, faults)
+    end if
+    call list_input_files(model%cards, model%problem%inputs)
+    if (.not. (model%runs_tests .or. faults%has_errors())) then
+      call digests_of_cards(model%cards, model%problem%cards)
     end if
     call move_alloc(model%problem, full_problem)
     echo = echo_of_cards(model%cards)

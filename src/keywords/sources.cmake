@@ -54,6 +54,7 @@ set(sources
   steps/keywords_controls.f90
   steps/keywords_initial.f90
   steps/keywords_later.f90
+  steps/keywords_restart.f90
   steps/keywords_output.f90
   steps/keywords_print.f90
   steps/keywords_step.f90

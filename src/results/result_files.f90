@@ -1,9 +1,10 @@
 !> The listener that writes all results of a run into one folder.
 !>
-!> Order of use: `open`, the calls of the solvers, `finish` (also after a failure).
+!> Order of use: `prepare`; `open`, or `load` and `go_on` from a checkpoint; the calls of the
+!> solvers; `finish` (also after a failure).
 module result_files
   use kinds, only: rk
-  use errors, only: error_type
+  use errors, only: deck_is_wrong, error_type, raise
   use diagnostics, only: diagnostic_list
   use timer, only: wall_clock
   use write_text, only: as_text
@@ -12,12 +13,17 @@ module result_files
   use increment_listener, only: listener
   use run_records, only: run_record
   use run_summaries, only: run_summary
-  use result_writer, only: starts_analysis
+  use result_writer, only: is_due, starts_analysis
   use writer_catalogue, only: writer_item, list_writers
   use summary_json, only: write_summary
   use sha256, only: digest_of_file
   use earlier_files, only: remove_earlier_files
-  use file_system, only: base_name, make_folder
+  use file_identity, only: add_path, file_path, is_same_file
+  use file_system, only: base_name
+  use stop_signals, only: is_asked_to_stop, name_of_signal
+  use checkpoint_files, only: list_checkpoint_files, remove_checkpoints, restore_results, &
+                              return_to_old
+  use run_checkpoint, only: run_position, load_checkpoint, save_checkpoint, start_journals
   implicit none
   private
   public :: result_folder
@@ -32,14 +38,19 @@ module result_files
     logical, private :: has_unwritten_envelopes = .false.
     real(rk), private :: summarised_at = 0.0_rk !< wall clock [s]
     integer, private :: num_warnings_printed = 0
+    integer, private :: num_checkpoints = 0
+    logical, private :: is_from_old = .false. !< the last checkpoint is damaged
     type(writer_item), allocatable, private :: writers(:)
   contains
+    procedure :: prepare
     procedure :: open => open_results
+    procedure :: load
+    procedure :: go_on
     procedure :: increment_done
     procedure :: modes_found
     procedure :: finish
-    procedure, private :: open_writers
     procedure, private :: start_step
+    procedure, private :: keep_or_stop
     procedure, private :: write_increment
     procedure, private :: write_last
     procedure, private :: write_envelopes
@@ -49,13 +60,16 @@ module result_files
 
 contains
 
-  !> Opens all files. `remarks` are the warnings of the deck.
-  subroutine open_results(self, model, folder, remarks, error)
+  !> Prepares the results in memory. Fails where a file that was read would be written over; nothing
+  !> is written.
+  subroutine prepare(self, model, folder, remarks, error)
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: model
-    character(*), intent(in) :: folder !< made unless it exists
-    type(diagnostic_list), intent(in) :: remarks
+    character(*), intent(in) :: folder
+    type(diagnostic_list), intent(in) :: remarks !< warnings of the deck
     type(error_type), allocatable, intent(out) :: error
+    type(file_path), allocatable :: paths(:)
+    integer :: w
     call self%costs%start('open', 'results', 'output')
     self%summary%remarks = remarks
     self%summary%message = ''
@@ -63,26 +77,77 @@ contains
     allocate (self%summary%steps(0))
     self%stem = folder//'/'//base_name(model%deck_file)
     call self%record%open(model)
-    call make_folder(folder, error)
-    if (.not. allocated(error)) call remove_earlier_files(self%stem)
-    if (.not. allocated(error)) call self%open_writers(model, error)
+    call list_writers(self%writers)
+    allocate (paths(0))
+    call add_path(paths, self%stem//'.json')
+    call add_path(paths, self%stem//'.log')
+    call add_path(paths, self%stem//'.lock')
+    call list_checkpoint_files(self%stem, paths)
+    do w = 1, size(self%writers)
+      call self%writers(w)%item%list_paths(model, self%stem, self%record, paths)
+    end do
+    call refuse_inputs(model, paths, error)
+    call self%costs%stop()
+  end subroutine prepare
+
+  !> Opens all files of a new run; those of an earlier run are removed.
+  subroutine open_results(self, model, error)
+    class(result_folder), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(error_type), allocatable, intent(out) :: error
+    integer :: w
+    call self%costs%start('open', 'results', 'output')
+    call remove_earlier_files(self%stem, inputs_of(model))
+    call remove_checkpoints(self%stem)
+    do w = 1, size(self%writers)
+      call self%writers(w)%item%open(model, self%stem, self%record, error)
+      if (allocated(error)) exit
+    end do
     self%is_open = .not. allocated(error)
     call self%costs%stop()
     if (self%is_open) call self%summarise(model, error)
   end subroutine open_results
 
-  !> Opens one writer after the other.
-  subroutine open_writers(self, model, error)
+  !> Loads the checkpoint of the run that is to go on. Changes no file.
+  subroutine load(self, model, now, remark, error)
+    class(result_folder), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), allocatable, intent(inout) :: now !< as `start_analysis` makes it; then as saved
+    character(:), allocatable, intent(out) :: remark !< '' or why an older checkpoint is used
+    type(error_type), allocatable, intent(out) :: error
+    type(run_position) :: fresh, found
+    fresh%now = now
+    fresh%record = self%record
+    fresh%summary = self%summary
+    call load_checkpoint(self%stem, model, fresh, self%writers, found, remark, error)
+    if (allocated(error)) return
+    call move_alloc(found%now, now)
+    self%record = found%record
+    self%summary = found%summary
+    self%num_checkpoints = found%number
+    self%is_from_old = found%is_old
+    self%num_warnings_printed = size(self%record%warnings)
+    self%has_unwritten_envelopes = size(self%record%active) > 0 .and. .not. now%is_last_of_step
+  end subroutine load
+
+  !> Sets all files back to the checkpoint that was loaded, and opens them.
+  subroutine go_on(self, model, error)
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: model
     type(error_type), allocatable, intent(out) :: error
     integer :: w
-    call list_writers(self%writers)
+    call self%costs%start('open', 'results', 'output')
+    call restore_results(self%stem, self%num_checkpoints, error)
+    if (self%is_from_old .and. .not. allocated(error)) call return_to_old(self%stem)
     do w = 1, size(self%writers)
-      call self%writers(w)%item%open(model, self%stem, self%record, error)
-      if (allocated(error)) return
+      if (allocated(error)) exit
+      call self%writers(w)%item%go_on(model, self%stem, self%record, error)
     end do
-  end subroutine open_writers
+    self%is_open = .not. allocated(error)
+    if (self%is_open) call start_journals(self%stem, self%num_checkpoints, self%writers, error)
+    call self%costs%stop()
+    if (self%is_open) call self%summarise(model, error)
+  end subroutine go_on
 
   !> Records, writes and logs a converged increment.
   subroutine increment_done(self, model, now, error)
@@ -107,7 +172,32 @@ contains
     if (wall_clock() - self%summarised_at > seconds_between_summaries) then
       call self%summarise(model, error)
     end if
+    if (.not. allocated(error)) call self%keep_or_stop(model, now, error)
   end subroutine increment_done
+
+  !> Writes a checkpoint where one is due, and ends the run where a signal asks to stop. The start
+  !> of a step is no place to go on from.
+  subroutine keep_or_stop(self, model, now, error)
+    class(result_folder), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    type(error_type), allocatable, intent(out) :: error
+    logical :: is_stop
+    if (now%increment == 0) return
+    is_stop = is_asked_to_stop()
+    if (now%is_last_of_step .and. now%step == size(model%steps)) is_stop = .false.
+    if (is_stop .or. is_due(now, model%steps(now%step)%checkpoint_frequency)) then
+      call self%costs%start('write', 'checkpoint', 'output')
+      call save_checkpoint(self%stem, self%num_checkpoints + 1, model, now, self%record, &
+                           self%summary, self%writers, error)
+      self%num_checkpoints = self%num_checkpoints + 1
+      call self%costs%stop()
+    end if
+    if (allocated(error) .or. .not. is_stop) return
+    call raise(error, 'stopped by '//name_of_signal()//' after increment '// &
+               as_text(now%increment)//" of step '"//model%steps(now%step)%name//"', time "// &
+               as_text(now%total_time)//'; keyway --continue goes on from here')
+  end subroutine keep_or_stop
 
   !> Calls every writer, each with its line in the ledger.
   subroutine write_increment(self, model, now, error)
@@ -162,6 +252,12 @@ contains
       if (allocated(error)) return
     end do
     call self%summarise(model, error)
+    if (allocated(error) .or. step == size(model%steps)) return
+    if (is_asked_to_stop()) then
+      call raise(error, 'stopped by '//name_of_signal()//" after step '"// &
+                 model%steps(step)%name//"'; keyway --continue goes on from the last "// &
+                 'checkpoint, if there is one')
+    end if
   end subroutine modes_found
 
   !> A step begins.
@@ -221,6 +317,39 @@ contains
     call self%summarise(model, failure)
     call keep_first(error, failure)
   end subroutine finish
+
+  !> A file that is read must not be one that the run writes.
+  subroutine refuse_inputs(model, paths, error)
+    type(problem), intent(in) :: model
+    type(file_path), intent(in) :: paths(:) !< that will be written
+    type(error_type), allocatable, intent(out) :: error
+    type(file_path), allocatable :: inputs(:)
+    integer :: i, p
+    inputs = inputs_of(model)
+    do i = 1, size(inputs)
+      do p = 1, size(paths)
+        if (.not. is_same_file(inputs(i)%path, paths(p)%path)) cycle
+        call raise(error, "keyway: the run would write over '"//inputs(i)%path// &
+                   "', which it reads, as '"//paths(p)%path// &
+                   "'; rename the file, or give another folder with -o", deck_is_wrong)
+        return
+      end do
+    end do
+  end subroutine refuse_inputs
+
+  !> All files that the run reads.
+  function inputs_of(model) result(inputs)
+    type(problem), intent(in) :: model
+    type(file_path), allocatable :: inputs(:)
+    integer :: i
+    allocate (inputs(0))
+    if (allocated(model%inputs)) inputs = model%inputs
+    call add_path(inputs, model%deck_file)
+    if (.not. associated(model%umat)) return
+    do i = 1, size(model%umat%files)
+      call add_path(inputs, model%umat%files(i)%path)
+    end do
+  end function inputs_of
 
   !> Keeps the first of two failures.
   subroutine keep_first(error, failure)

@@ -1,4 +1,7 @@
 set(sources
+  checkpoints/checkpoint_files.f90
+  checkpoints/checkpoint_identity.f90
+  checkpoints/run_checkpoint.f90
   fields/field_help.f90
   fields/field_table.f90
   fields/field_type.f90
@@ -28,6 +31,7 @@ set(sources
   summary/joint_json.f90
   summary/material_summary.f90
   summary/run_summaries.f90
+  summary/summary_archive.f90
   summary/summary_json.f90
   summary/umat_json.f90
   writers/hdf5_fields.f90

@@ -13,6 +13,8 @@ ROOT = Path(__file__).parents[2]
 STATE = "src/analysis/state/analysis_state.f90"
 STATE_ARCHIVE = "src/analysis/state/state_archive.f90"
 RECORD_ARCHIVE = "src/results/record/record_archive.f90"
+SUMMARY = "src/results/summary/run_summaries.f90"
+SUMMARY_ARCHIVE = "src/results/summary/summary_archive.f90"
 SAME_STATES = "tests/unit/same_states.f90"
 FULL_STATE = "tests/unit/full_state.f90"
 RECORD_TEST = "tests/unit/results/record/test_record_archive.f90"
@@ -63,6 +65,7 @@ TYPES = (
     of_state("increment_status", STATE, "status"),
     of_state("energy_balance", STATE, "energy"),
     of_state("motion", STATE, "motion"),
+    of_state("last_matrix", STATE, "matrix"),
     of_state("increment_control", "src/analysis/state/step_control.f90", "control"),
     of_state(
         "joint_state",
@@ -109,6 +112,23 @@ TYPES = (
     ),
     of_record("envelope", "src/results/quantities/envelopes.f90", "envelope", "compare_lists"),
     of_record("extreme", "src/results/quantities/extremes.f90", "extremes", "compare_extremes"),
+    # tests/results/test_restart.py compares job.json of runs that go on with that of a whole run.
+    Saved(
+        "run_summary",
+        SUMMARY,
+        ((SUMMARY_ARCHIVE, "save_summary"), (SUMMARY_ARCHIVE, "load_summary")),
+        {
+            "status": "of the end of the run",
+            "message": "of the end of the run",
+            "deck_digest": "of the deck",
+            "remarks": "of the deck",
+        },
+    ),
+    Saved(
+        "step_summary",
+        SUMMARY,
+        ((SUMMARY_ARCHIVE, "save_step"), (SUMMARY_ARCHIVE, "load_step")),
+    ),
 )
 
 

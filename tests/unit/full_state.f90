@@ -2,7 +2,7 @@
 !> tests/tools/test_archives.py finds a component that is missing here.
 module full_state
   use kinds, only: rk
-  use analysis_state, only: state, increment_status, energy_balance, motion
+  use analysis_state, only: state, increment_status, energy_balance, last_matrix, motion
   use step_control, only: increment_control
   use joint_law, only: joint_state
   use material_points, only: point_state
@@ -33,6 +33,7 @@ contains
     call fill(now%a, n)
     call fill(now%reaction, n)
     call fill(now%support_start, n)
+    call fill_matrix(now%matrix, n)
     call fill_motion(now%motion, n)
     allocate (now%joints(2), now%points(1), now%guests(2))
     do i = 1, 2
@@ -125,6 +126,18 @@ contains
     call fill(own%carried, n)
     call fill(own%jump_rate, n)
   end subroutine fill_motion
+
+  !> The last matrix.
+  subroutine fill_matrix(matrix, n)
+    type(last_matrix), intent(inout) :: matrix
+    integer, intent(inout) :: n
+    call fill(matrix%number, n)
+    matrix%is_elastic = .false.
+    matrix%is_symmetric = .false.
+    call fill(matrix%increment_size, n)
+    allocate (matrix%lost(5))
+    call fill(matrix%lost, n)
+  end subroutine fill_matrix
 
   !> History of a joint.
   subroutine fill_joint(history, n)

@@ -3,7 +3,7 @@
 module same_states
   use kinds, only: rk, long
   use step_control, only: increment_control
-  use analysis_state, only: state, increment_status, energy_balance, motion
+  use analysis_state, only: state, increment_status, energy_balance, last_matrix, motion
   use guest_history, only: history_slot
   use joint_law, only: joint_state
   use material_points, only: point_state
@@ -32,6 +32,7 @@ contains
     call compare(log, what//'a', a%a, b%a)
     call compare(log, what//'reaction', a%reaction, b%reaction)
     call compare(log, what//'support_start', a%support_start, b%support_start)
+    call compare_matrix(log, what//'matrix%', a%matrix, b%matrix)
     call compare_motion(log, what//'motion%', a%motion, b%motion)
     do i = 1, size(a%joints)
       call compare_joint(log, what//'joints%', a%joints(i), b%joints(i))
@@ -142,6 +143,18 @@ contains
     call compare(log, what//'carried', a%carried, b%carried)
     call compare(log, what//'jump_rate', a%jump_rate, b%jump_rate)
   end subroutine compare_motion
+
+  !> The last matrix.
+  subroutine compare_matrix(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    type(last_matrix), intent(in) :: a, b
+    call compare(log, what//'number', a%number, b%number)
+    call compare(log, what//'is_elastic', a%is_elastic, b%is_elastic)
+    call compare(log, what//'is_symmetric', a%is_symmetric, b%is_symmetric)
+    call compare(log, what//'increment_size', a%increment_size, b%increment_size)
+    call compare(log, what//'lost', a%lost, b%lost)
+  end subroutine compare_matrix
 
   !> History of a joint.
   subroutine compare_joint(log, what, a, b)

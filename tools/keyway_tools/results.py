@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
+import socket
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -28,7 +30,8 @@ _SOLIDS = ("C3D8", "C3D8B", "C3D8I", "C3D8R")
 
 def find_jobs(folder: Path) -> list[str]:
     """Names of the jobs whose fields (job.h5) lie in a folder."""
-    return sorted(path.stem for path in folder.glob("*.h5") if not path.stem.endswith(".ckpt"))
+    checkpoints = (".ckpt", ".ckpt_old", ".ckpt_new")
+    return sorted(path.stem for path in folder.glob("*.h5") if not path.stem.endswith(checkpoints))
 
 
 def is_summary(path: Path) -> bool:
@@ -39,6 +42,35 @@ def is_summary(path: Path) -> bool:
         return False
     has_keys = isinstance(content, dict) and {"program", "status"} <= content.keys()
     return has_keys and "tests" not in content
+
+
+def why_incomplete(folder: Path, job: str) -> str:
+    """Why a run has not finished: '' if it has, or if job.json does not say."""
+    try:
+        content = json.loads((folder / f"{job}.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return ""
+    if content.get("status") == "stopped":
+        return content.get("message") or "the run has stopped"
+    if content.get("status") == "running":
+        return _why_running(folder / f"{job}.lock")
+    return ""
+
+
+def _why_running(lock: Path) -> str:
+    """Whether a run whose summary says "running" does run: then it holds the lock of job.lock."""
+    killed, runs = "the run was killed", "the run is not at its end yet"
+    try:
+        with lock.open(encoding="utf-8") as file:
+            process, _, host = file.read().strip().partition(" ")
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except FileNotFoundError:
+        return killed
+    except OSError:
+        return runs
+    if host and host != socket.gethostname():
+        return f"{runs}, or it was killed (process {process} on host {host})"
+    return killed
 
 
 @dataclass

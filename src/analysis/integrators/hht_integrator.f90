@@ -90,7 +90,7 @@ contains
     self%scheme = make_scheme(plan%alpha, dt, plan%controls%joint_forces)
     call effective_values(self%system, self%scheme, self%solids%values)
     self%solids%weight = 1.0_rk + plan%alpha
-    self%solids%matrix%is_elastic = .true.
+    call self%solids%matrix%start_elastic(dt)
     call results%costs%start('iterate', 'structure', 'solver')
     call prepare_equilibrium(model, self%system, self%solids%values, self%scheme%joint_weight, &
                              self%solids%solver, error)

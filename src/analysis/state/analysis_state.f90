@@ -13,7 +13,7 @@ module analysis_state
   use step_control, only: increment_control
   implicit none
   private
-  public :: state, increment_status, motion, energy_balance, vibration_mode
+  public :: state, increment_status, last_matrix, motion, energy_balance, vibration_mode
 
   !> Energies since the start of the analysis [J]. `error` is the imbalance over `largest`, the
   !> largest energy so far: the present energies of a dam at rest are no reference.
@@ -64,12 +64,22 @@ module analysis_state
     real(rk), allocatable :: jump_rate(:, :) !< (3, points) in the last increment [m/s]
   end type motion
 
+  !> The matrix that the last iteration has ended with. The next increment starts with it.
+  type :: last_matrix
+    integer :: number = 0 !< of its factorisation in this step
+    logical :: is_elastic = .true. !< it is K_eff, without the loss of stiffness
+    logical :: is_symmetric = .true.
+    real(rk) :: increment_size = 0.0_rk !< that K_eff was made for; 0 in static steps [s]
+    real(rk), allocatable :: lost(:) !< loss of stiffness [N/m], where it is not elastic
+  end type last_matrix
+
   type, extends(increment_status) :: state
     real(rk), allocatable :: u(:, :) !< (3, nodes) displacement relative to the base [m]
     real(rk), allocatable :: v(:, :), a(:, :) !< (3, nodes) [m/s], [m/s2]; dynamic steps only
     real(rk), allocatable :: reaction(:, :) !< (3, nodes) zero where nothing is fixed [N]
     !> (fixities of the step) displacement at the start of the step, where supports start from [m]
     real(rk), allocatable :: support_start(:)
+    type(last_matrix) :: matrix
     type(motion) :: motion !< the same in the unknowns of the step, with the forces
     type(joint_state), allocatable :: joints(:) !< (joints of the problem)
     type(point_state), allocatable :: points(:) !< (inelastic blocks of the problem)

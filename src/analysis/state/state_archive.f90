@@ -5,10 +5,10 @@ module state_archive
   use archive_type, only: archive
   use guest_histories, only: history_reference, list_histories
   use step_control, only: increment_control
-  use analysis_state, only: state, increment_status, energy_balance, motion
+  use analysis_state, only: state, increment_status, energy_balance, last_matrix, motion
   implicit none
   private
-  public :: save_state, load_state
+  public :: save_state, load_state, save_energy, load_energy
 
 contains
 
@@ -26,6 +26,9 @@ contains
     call file%put('a', now%a)
     call file%put('reaction', now%reaction)
     call file%put('support_start', now%support_start)
+    call file%open_group('matrix')
+    call save_matrix(now%matrix, file)
+    call file%close_group()
     call file%open_group('motion')
     call save_motion(now%motion, file)
     call file%close_group()
@@ -45,6 +48,9 @@ contains
     call load_status(now%increment_status, file)
     call file%close_group()
     call load_fields(now, file)
+    call file%open_group('matrix')
+    call load_matrix(now%matrix, file)
+    call file%close_group()
     call file%open_group('motion')
     call load_motion(now%motion, file)
     call file%close_group()
@@ -102,6 +108,29 @@ contains
     if (allocated(now%support_start)) deallocate (now%support_start)
     call file%get('support_start', now%support_start)
   end subroutine load_fields
+
+  !> Writes the last matrix.
+  subroutine save_matrix(matrix, file)
+    type(last_matrix), intent(in) :: matrix
+    class(archive), intent(inout) :: file
+    call file%put('number', matrix%number)
+    call file%put('is_elastic', matrix%is_elastic)
+    call file%put('is_symmetric', matrix%is_symmetric)
+    call file%put('increment_size', matrix%increment_size)
+    call file%put('lost', matrix%lost)
+  end subroutine save_matrix
+
+  !> Reads the last matrix.
+  subroutine load_matrix(matrix, file)
+    type(last_matrix), intent(inout) :: matrix
+    class(archive), intent(inout) :: file
+    call file%get('number', matrix%number)
+    call file%get('is_elastic', matrix%is_elastic)
+    call file%get('is_symmetric', matrix%is_symmetric)
+    call file%get('increment_size', matrix%increment_size)
+    if (allocated(matrix%lost)) deallocate (matrix%lost)
+    call file%get('lost', matrix%lost)
+  end subroutine load_matrix
 
   !> Writes the status of the analysis.
   subroutine save_status(status, file)

@@ -5,7 +5,7 @@ module step_loop
   use errors, only: error_type, raise, system_failed
   use problem_definition, only: problem
   use step_plan, only: step
-  use analysis_state, only: state
+  use analysis_state, only: last_matrix, state
   use state_transfer, only: store_motion
   use step_control, only: start_control
   use increment_listener, only: listener
@@ -76,6 +76,7 @@ contains
     now%residual = 0.0_rk
     now%is_last_of_step = .false.
     now%step_start = now%total_time
+    now%matrix = last_matrix()
     associate (fixed => plan%fixities)
       now%support_start = [(now%u(fixed(k)%dof, fixed(k)%node), k=1, size(fixed))]
     end associate
@@ -103,12 +104,33 @@ contains
       if (size(now%motion%q) == size(loaded%motion%q) &
           .and. now%num_unknowns == loaded%num_unknowns) then
         call move_alloc(loaded, now)
+        call restore_matrix(model, plan, method, now, results, error)
         return
       end if
     end if
     call raise(error, "the loaded state does not belong to step '"//plan%name//"' of this "// &
                'model: supports, ties or the procedure of the step are others', system_failed)
   end subroutine reopen_step
+
+  !> Factors the matrix that the loaded increment has ended with.
+  subroutine restore_matrix(model, plan, method, now, results, error)
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    class(integrator), intent(inout) :: method
+    type(state), intent(in) :: now
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    if (now%matrix%increment_size > 0.0_rk) then
+      call method%start_increment(model, plan, now%matrix%increment_size, results, error)
+      if (allocated(error)) return
+    end if
+    associate (solids => method%solids)
+      solids%matrix%number = now%matrix%number
+      if (.not. solids%has_inelastic()) return
+      call solids%matrix%restore(model, method%system, solids%values, solids%weight, &
+                                 solids%solver, now%matrix, error)
+    end associate
+  end subroutine restore_matrix
 
   !> Whether a loaded state has what its step needs to go on.
   pure logical function fits(plan, loaded)
@@ -179,6 +201,7 @@ contains
     associate (trial => next%trial, groups => method%system%groups)
       call store_motion(method%system%numbers, trial)
       call record_uplift(model, plan%loads, groups, next%when, trial%joints, results%costs)
+      call method%solids%matrix%store(trial%matrix)
       call trial%control%accept(method%solids%effort(next%outcome%own_iterations()))
     end associate
     call swap(now, next%trial)

@@ -23,6 +23,7 @@ module archive_type
     procedure, private :: get_logical, get_logicals_1, get_text
     generic :: get => get_real, get_reals_1, get_reals_2, get_reals_3, get_integer, &
       get_integers_1, get_integers_2, get_integers_3, get_logical, get_logicals_1, get_text
+    procedure :: put_long_text, get_long_text
     procedure :: confirm
   end type archive
 
@@ -162,6 +163,17 @@ contains
     character(*), intent(in) :: text
     if (.not. self%has_failed()) call self%write_text(name, text)
   end subroutine put_text
+
+  !> A text of any length, as the numbers of its letters: HDF5 limits the size of a text.
+  subroutine put_long_text(self, name, text)
+    class(archive), intent(inout) :: self
+    character(*), intent(in) :: name
+    character(*), intent(in) :: text
+    integer, allocatable :: letters(:)
+    integer :: i
+    letters = [(iachar(text(i:i)), i=1, len(text))]
+    call self%put(name, letters)
+  end subroutine put_long_text
 
   !> One real.
   subroutine get_real(self, name, value)
@@ -342,4 +354,21 @@ contains
     if (allocated(text)) deallocate (text)
     if (is_present) call self%read_text(name, text)
   end subroutine get_text
+
+  !> A text of any length.
+  subroutine get_long_text(self, name, text)
+    class(archive), intent(inout) :: self
+    character(*), intent(in) :: name
+    character(:), allocatable, intent(out) :: text
+    integer, allocatable :: letters(:)
+    integer :: i
+    call self%get(name, letters)
+    text = ''
+    if (self%has_failed() .or. .not. allocated(letters)) return
+    deallocate (text)
+    allocate (character(size(letters)) :: text)
+    do i = 1, size(letters)
+      text(i:i) = achar(letters(i))
+    end do
+  end subroutine get_long_text
 end module archive_type

@@ -1,21 +1,25 @@
 !> Removes the files of an earlier run of the same job, so that none is taken for a result of this
 !> run. Only files listed in the earlier summary and its numbered VTK files are removed.
 module earlier_files
+  use file_identity, only: file_path, is_same_file
   use file_system, only: file_name
+  use errors, only: error_type
+  use whole_files, only: remove_file, write_whole_file
   implicit none
   private
-  public :: remove_earlier_files
+  public :: remove_earlier_files, remove_series, mark_earlier_summary
 
 contains
 
   !> Removes the files of the earlier run. `stem`: folder and name of the job.
-  subroutine remove_earlier_files(stem)
+  subroutine remove_earlier_files(stem, inputs)
     character(*), intent(in) :: stem
+    type(file_path), intent(in) :: inputs(:) !< files that this run reads: they stay
     character(1024) :: line
     logical :: is_in_list
     integer :: unit, status
-    call remove_series(stem//'_vtk/'//file_name(stem)//'_')
-    call remove_series(stem//'_vtk/'//file_name(stem)//'_joints_')
+    call remove_series(stem//'_vtk/'//file_name(stem)//'_', 1)
+    call remove_series(stem//'_vtk/'//file_name(stem)//'_joints_', 1)
     open (newunit=unit, file=stem//'.json', status='old', action='read', iostat=status)
     if (status /= 0) return
     is_in_list = .false.
@@ -23,19 +27,53 @@ contains
       read (unit, '(a)', iostat=status) line
       if (status /= 0) exit
       if (is_in_list .and. index(line, ']') > 0) exit
-      if (is_in_list) call remove_listed(stem, trim(line))
+      if (is_in_list) call remove_listed(stem, trim(line), inputs)
       if (index(line, '"files": [') > 0) is_in_list = .true.
     end do
     close (unit)
   end subroutine remove_earlier_files
 
-  !> Removes PREFIX0001.vtu, PREFIX0002.vtu and so on.
-  subroutine remove_series(prefix)
+  !> Gives the summary of the earlier run the status "stopped" and a message.
+  subroutine mark_earlier_summary(path, message)
+    character(*), intent(in) :: path
+    character(*), intent(in) :: message !< without quotes and backslashes
+    character(:), allocatable :: text
+    type(error_type), allocatable :: ignored
+    integer :: unit, num_bytes, status
+    open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
+          action='read', iostat=status)
+    if (status /= 0) return
+    inquire (unit=unit, size=num_bytes)
+    allocate (character(num_bytes) :: text)
+    read (unit, iostat=status) text
+    close (unit)
+    if (status /= 0) return
+    call replace_line('"status": ', '"stopped",')
+    call replace_line('"message": ', '"'//message//'",')
+    call write_whole_file(path, text, ignored)
+
+  contains
+
+    !> Replaces what follows a name in its line.
+    subroutine replace_line(name, value)
+      character(*), intent(in) :: name, value
+      integer :: first, length
+      first = index(text, name) + len(name)
+      if (first == len(name)) return
+      length = index(text(first:), new_line('a')) - 1
+      if (length < 0) return
+      text = text(:first - 1)//value//text(first + length:)
+    end subroutine replace_line
+  end subroutine mark_earlier_summary
+
+  !> Removes PREFIX0001.vtu, PREFIX0002.vtu and so on, from a number on.
+  subroutine remove_series(prefix, first)
     character(*), intent(in) :: prefix
+    integer, intent(in) :: first !< number
     character(12) :: digits
     logical :: exists
     integer :: number
-    number = 0
+    number = first - 1
     do
       number = number + 1
       write (digits, '(i0.4)') number
@@ -46,23 +84,21 @@ contains
   end subroutine remove_series
 
   !> Removes one entry of the list; a file whose name does not begin with the job's stays.
-  subroutine remove_listed(stem, line)
+  subroutine remove_listed(stem, line, inputs)
     character(*), intent(in) :: stem
     character(*), intent(in) :: line !< of the summary, '    "dam_energy.csv",'
-    character(:), allocatable :: job
-    integer :: first, last
+    type(file_path), intent(in) :: inputs(:)
+    character(:), allocatable :: job, path
+    integer :: first, last, i
     job = file_name(stem)
     first = index(line, '"') + 1
     last = index(line, '"', back=.true.) - 1
     if (last < first) return
     if (index(line(first:last), job) /= 1 .or. index(line, '../') > 0) return
-    call remove_file(stem(:len(stem) - len(job))//line(first:last))
+    path = stem(:len(stem) - len(job))//line(first:last)
+    do i = 1, size(inputs)
+      if (is_same_file(path, inputs(i)%path)) return
+    end do
+    call remove_file(path)
   end subroutine remove_listed
-
-  subroutine remove_file(path)
-    character(*), intent(in) :: path
-    integer :: unit, status
-    open (newunit=unit, file=path, status='old', iostat=status)
-    if (status == 0) close (unit, status='delete')
-  end subroutine remove_file
 end module earlier_files

@@ -5,6 +5,7 @@
 module hdf5_files
   use hdf5, only: h5dont_atexit_f
   use hdf5, only: hid_t, hsize_t, size_t, h5open_f, h5eset_auto_f, h5fcreate_f, h5fclose_f
+  use hdf5, only: h5fopen_f, h5f_acc_rdwr_f
   use hdf5, only: h5fflush_f, h5f_acc_trunc_f, h5f_scope_global_f, h5gcreate_f, h5gclose_f
   use hdf5, only: h5screate_simple_f, h5screate_f, h5sclose_f, h5s_scalar_f
   use hdf5, only: h5s_unlimited_f, h5s_select_set_f, h5sselect_hyperslab_f, h5dcreate_f
@@ -14,6 +15,7 @@ module hdf5_files
   use hdf5, only: h5tset_size_f, h5tset_strpad_f, h5tclose_f, h5t_str_nullpad_f
   use hdf5, only: h5t_native_double, h5t_native_integer, h5t_c_s1
   use kinds, only: rk
+  use undo_journal, only: start_journal, undo_access
   implicit none
   private
   public :: hdf5_file, start_hdf5, text_type
@@ -23,6 +25,8 @@ module hdf5_files
     logical :: has_failed = .false.
   contains
     procedure :: create
+    procedure :: open_again
+    procedure :: start_undo
     procedure :: make_group
     procedure, private :: put_reals_1
     procedure, private :: put_reals_2
@@ -50,12 +54,41 @@ contains
   subroutine create(self, path)
     class(hdf5_file), intent(inout) :: self
     character(*), intent(in) :: path
-    integer :: status
+    integer(hid_t) :: access
+    integer :: status, ignored
     call start_hdf5(status)
     call self%note(status)
-    call h5fcreate_f(path, h5f_acc_trunc_f, self%id, status)
+    access = undo_access()
+    call h5fcreate_f(path, h5f_acc_trunc_f, self%id, status, access_prp=access)
     call self%note(status)
+    call h5pclose_f(access, ignored)
   end subroutine create
+
+  !> Opens a file that exists, to add to it.
+  subroutine open_again(self, path)
+    class(hdf5_file), intent(inout) :: self
+    character(*), intent(in) :: path
+    integer(hid_t) :: access
+    integer :: status, ignored
+    call start_hdf5(status)
+    call self%note(status)
+    access = undo_access()
+    call h5fopen_f(path, h5f_acc_rdwr_f, self%id, status, access_prp=access)
+    call self%note(status)
+    call h5pclose_f(access, ignored)
+  end subroutine open_again
+
+  !> Starts the journal of a checkpoint, which can set the file back to this moment.
+  subroutine start_undo(self, journal, number)
+    class(hdf5_file), intent(inout) :: self
+    character(*), intent(in) :: journal !< path
+    integer, intent(in) :: number !< of the checkpoint
+    logical :: is_good
+    call self%flush()
+    if (self%has_failed) return
+    call start_journal(self%id, journal, number, is_good)
+    self%has_failed = .not. is_good
+  end subroutine start_undo
 
   !> Starts the library, also if it is started already.
   subroutine start_hdf5(status)

@@ -15,6 +15,8 @@ module hdf5_tables
     integer :: num_kept = 0, num_written = 0
   contains
     procedure :: start => start_rows
+    procedure :: go_on
+    procedure :: num_rows
     procedure :: add => add_table_row
     procedure :: write_rows
   end type growing_table
@@ -32,6 +34,24 @@ contains
     allocate (self%rows(1 + count([(columns(i:i) == ',', i=1, len(columns))]), capacity))
     call file%start_table(path, columns)
   end subroutine start_rows
+
+  !> Goes on with a table that is in the file.
+  subroutine go_on(self, path, columns, num_rows)
+    class(growing_table), intent(inout) :: self
+    character(*), intent(in) :: path
+    character(*), intent(in) :: columns !< their names, with commas between
+    integer, intent(in) :: num_rows !< rows in the file
+    integer :: i
+    self%path = path
+    allocate (self%rows(1 + count([(columns(i:i) == ',', i=1, len(columns))]), capacity))
+    self%num_written = num_rows
+  end subroutine go_on
+
+  !> Rows in the file and in memory.
+  pure integer function num_rows(self)
+    class(growing_table), intent(in) :: self
+    num_rows = self%num_written + self%num_kept
+  end function num_rows
 
   !> Adds a row.
   subroutine add_table_row(self, file, row)

@@ -3,7 +3,8 @@ module pvd_files
   use kinds, only: rk
   use errors, only: error_type
   use text_buffers, only: text_buffer, text_of
-  use whole_files, only: write_whole_file
+  use archive_type, only: archive
+  use whole_files, only: remove_file, write_whole_file
   implicit none
   private
   public :: pvd_file, frame_name
@@ -18,6 +19,10 @@ module pvd_files
   contains
     procedure :: open => open_pvd
     procedure :: add => add_entry
+    procedure :: save_position
+    procedure :: load_position
+    procedure :: open_again
+    procedure, private :: rewrite
   end type pvd_file
 
 contains
@@ -39,10 +44,45 @@ contains
     type(error_type), allocatable, intent(out) :: error
     call self%entries%add('<DataSet timestep="'//text_of(time)//'" part="0" file="'// &
                           escaped(self%folder//name)//'"/>'//nl)
+    call self%rewrite(error)
+  end subroutine add_entry
+
+  !> Stores the entries in a checkpoint.
+  subroutine save_position(self, file)
+    class(pvd_file), intent(in) :: self
+    class(archive), intent(inout) :: file !< open for writing
+    call file%put_long_text('entries', self%entries%contents())
+  end subroutine save_position
+
+  !> Reads the entries from a checkpoint.
+  subroutine load_position(self, file)
+    class(pvd_file), intent(inout) :: self
+    class(archive), intent(inout) :: file !< open for reading
+    character(:), allocatable :: entries
+    call file%get_long_text('entries', entries)
+    call self%entries%clear()
+    call self%entries%add(entries)
+  end subroutine load_position
+
+  !> Sets the list on the disk back to the entries of the checkpoint; no file without entries.
+  subroutine open_again(self, error)
+    class(pvd_file), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: error
+    if (self%entries%length > 0) then
+      call self%rewrite(error)
+    else
+      call remove_file(self%path)
+    end if
+  end subroutine open_again
+
+  !> Writes the list anew.
+  subroutine rewrite(self, error)
+    class(pvd_file), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: error
     call write_whole_file(self%path, '<?xml version="1.0"?>'//nl//'<VTKFile type="Collection" '// &
                           'version="1.0" byte_order="LittleEndian">'//nl//'<Collection>'//nl// &
                           self%entries%contents()//'</Collection>'//nl//'</VTKFile>'//nl, error)
-  end subroutine add_entry
+  end subroutine rewrite
 
   !> A text as the value of an XML attribute.
   pure function escaped(text) result(safe)

@@ -12,6 +12,7 @@ module raw_files
     integer(long) :: num_bytes = 0 !< of all good writes
   contains
     procedure :: create
+    procedure :: open_again
     procedure :: is_open
     procedure :: put => put_raw
     procedure :: close => close_file
@@ -27,6 +28,16 @@ module raw_files
       integer(c_int), intent(in), value :: mode
       integer(c_int) :: descriptor
     end function c_creat
+
+    !> Opens a file for appending and cuts it off (system_calls.c).
+    function c_open_again(path, num_bytes) result(descriptor) bind(c, name='keyway_open_again')
+      import :: c_char, c_int, c_long
+      implicit none
+      ! allow(assumed-size)
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_long), intent(in), value :: num_bytes
+      integer(c_int) :: descriptor
+    end function c_open_again
 
     !> POSIX write: the number of bytes written, or -1.
     function c_write(descriptor, bytes, num_bytes) result(num_taken) bind(c, name='write')
@@ -70,6 +81,17 @@ contains
     self%num_bytes = 0
     is_good = self%descriptor >= 0
   end subroutine create
+
+  !> Opens a file after its first bytes; what follows them is cut off. Fails for a shorter file.
+  subroutine open_again(self, path, num_bytes, is_good)
+    class(raw_file), intent(inout) :: self
+    character(*), intent(in) :: path
+    integer(long), intent(in) :: num_bytes
+    logical, intent(out) :: is_good
+    self%descriptor = c_open_again(path//c_null_char, int(num_bytes, c_long))
+    self%num_bytes = num_bytes
+    is_good = self%descriptor >= 0
+  end subroutine open_again
 
   !> Whether the file is open.
   pure logical function is_open(self)

@@ -5,7 +5,7 @@ module whole_files
   use raw_files, only: raw_file
   implicit none
   private
-  public :: whole_file, write_whole_file, move_file
+  public :: whole_file, write_whole_file, move_file, remove_file
 
   type :: whole_file
     private
@@ -78,6 +78,13 @@ contains
     logical, intent(out) :: is_moved
     is_moved = c_rename(from//c_null_char, to//c_null_char) == 0
   end subroutine move_file
+
+  !> Removes a file; a file that does not exist is no failure.
+  subroutine remove_file(path)
+    character(*), intent(in) :: path
+    integer(c_int) :: status
+    status = c_unlink(path//c_null_char)
+  end subroutine remove_file
 
   !> Writes a whole file.
   subroutine write_whole_file(path, text, error)

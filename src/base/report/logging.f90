@@ -6,6 +6,7 @@ module logging
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: error_unit
   use errors, only: error_type, raise, system_failed
+  use kinds, only: long
   use raw_files, only: raw_file
   implicit none
   private
@@ -43,16 +44,23 @@ module logging
 contains
 
   !> Opens the log; without a path lines go to stderr only.
-  subroutine open_log(self, is_quiet, error, path)
+  subroutine open_log(self, is_quiet, error, path, is_continued)
     class(run_log), intent(inout) :: self
     logical, intent(in) :: is_quiet !< only errors go to stderr
     type(error_type), allocatable, intent(out) :: error
-    character(*), intent(in), optional :: path !< of the file, written over
+    character(*), intent(in), optional :: path !< of the file
+    logical, intent(in), optional :: is_continued !< append to the file; default: write it anew
     logical :: is_good
+    integer(long) :: num_bytes
     self%is_quiet = is_quiet
     self%is_terminal = isatty(standard_error) == 1
     if (.not. present(path)) return
-    call self%file%create(path, is_good)
+    is_good = .false.
+    if (present(is_continued)) then
+      inquire (file=path, size=num_bytes) ! -1 for no file
+      if (is_continued .and. num_bytes >= 0) call self%file%open_again(path, num_bytes, is_good)
+    end if
+    if (.not. is_good) call self%file%create(path, is_good)
     if (is_good) return
     call raise(error, "cannot write the log '"//path//"'", system_failed)
   end subroutine open_log

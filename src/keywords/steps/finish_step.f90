@@ -27,6 +27,7 @@ contains
         new%prints = before%prints
         new%outputs = before%outputs
         new%controls = before%controls
+        new%checkpoint_frequency = before%checkpoint_frequency
         new%damping = before%damping
       end associate
     end if

@@ -1,25 +1,15 @@
 !> Keywords that are known and not available yet: each is an error at its place in the deck.
 module keywords_later
   use keyword_handler, only: keyword_list
-  use keyword_spec, only: field, kind_flag, kind_integer, later
+  use keyword_spec, only: later
   implicit none
   private
   public :: add_later_keywords
 
 contains
 
-  subroutine add_later_keywords(list)
-    type(keyword_list), intent(inout) :: list
-    call add_later(list, 'RESTART', 'output', 'anywhere', 'Writes a checkpoint every so many '// &
-                   'increments.')
-    call add_parameter(list, field('WRITE', kind_flag, 'writes checkpoints'))
-    call add_parameter(list, field('FREQUENCY', kind_integer, 'every so many increments', &
-                                   default='1'))
-    call add_foreign(list)
-  end subroutine add_later_keywords
-
   !> Keywords of Abaqus and CalculiX.
-  subroutine add_foreign(list)
+  subroutine add_later_keywords(list)
     type(keyword_list), intent(inout) :: list
     character(*), parameter :: family = 'other programs'
     call add_later(list, 'PART', family, 'model', 'Opens a part.')
@@ -42,7 +32,7 @@ contains
     call add_later(list, 'COUPLING', family, 'model', 'Couples a surface to a node.')
     call add_later(list, 'TRANSFORM', family, 'model', 'Axes of nodes.')
     call add_later(list, 'ORIENTATION', family, 'model', 'Axes of a material.')
-  end subroutine add_foreign
+  end subroutine add_later_keywords
 
   !> Adds a keyword without a handler.
   subroutine add_later(list, name, family, place, meaning)
@@ -59,13 +49,4 @@ contains
       allocate (spec%parameters(0), spec%columns(0))
     end associate
   end subroutine add_later
-
-  !> Adds a parameter to the keyword added last.
-  subroutine add_parameter(list, new)
-    type(keyword_list), intent(inout) :: list
-    type(field), intent(in) :: new
-    associate (spec => list%specs(list%num_keywords))
-      spec%parameters = [spec%parameters, new]
-    end associate
-  end subroutine add_parameter
 end module keywords_later

@@ -31,6 +31,7 @@ module umat_loader
     character(:), allocatable :: target !< path to keep the library, '' for none
     logical :: is_threadsafe = .false. !< may be called by several threads at once
     logical :: checks_tangent = .false. !< compare DDSDDE with differences of STRESS
+    logical :: is_continued = .false. !< the run goes on from a checkpoint
   end type umat_request
 
   type :: user_library
@@ -76,10 +77,10 @@ contains
       call keyway_remove_temporary(temporary//c_null_char)
     end if
     if (allocated(error)) return
-    call open_message_file(folder//'/'//job//'.msg', error)
-    if (.not. allocated(error)) then
-      call library%call_external(at_start, [0.0_rk, 0.0_rk], 0.0_rk, 0, 0, error)
-    end if
+    call open_message_file(folder//'/'//job//'.msg', request%is_continued, error)
+    if (allocated(error)) return
+    call library%call_external(merge(at_restart, at_start, request%is_continued), &
+                               [0.0_rk, 0.0_rk], 0.0_rk, 0, 0, error)
   end subroutine open_library
 
   !> Builds the library of the request and keeps it for later runs.
@@ -139,11 +140,16 @@ contains
   end subroutine load
 
   !> Opens unit 7 for output and messages of the UMAT. Unit 6 is the standard output.
-  subroutine open_message_file(path, error)
+  subroutine open_message_file(path, is_continued, error)
     character(*), intent(in) :: path
+    logical, intent(in) :: is_continued !< append to the file
     type(error_type), allocatable, intent(out) :: error
     integer :: status
-    open (unit=message_unit, file=path, status='replace', action='readwrite', iostat=status)
+    if (is_continued) then
+      open (unit=message_unit, file=path, position='append', action='readwrite', iostat=status)
+    else
+      open (unit=message_unit, file=path, status='replace', action='readwrite', iostat=status)
+    end if
     if (status /= 0) call raise(error, "keyway: cannot write '"//path//"'", system_failed)
   end subroutine open_message_file
 

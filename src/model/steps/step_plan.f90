@@ -99,6 +99,7 @@ module step_plan
     type(field_request), allocatable :: outputs(:)
     character(field_name_length), allocatable :: envelope(:) !< fields of *ENVELOPE
     type(step_controls) :: controls
+    integer :: checkpoint_frequency = 0 !< *RESTART: every so many increments, 0 for none
   contains
     procedure :: default_smallest
   end type step

@@ -24,6 +24,7 @@ module stress_fields
     logical :: has_points = .false., has_node_strain = .false. !< valid for this increment
     logical :: has_node_stress = .false., has_principals = .false.
     integer :: num_recoveries = 0 !< number of requests for stresses on the nodes
+    logical :: had_operator = .false. !< at the checkpoint that the run goes on from
     type(nodal_operator) :: operator
     logical, allocatable :: is_inelastic(:) !< (solids) a point has left elasticity
     integer, allocatable :: inelastic_nodes(:) !< nodes whose means include such solids
@@ -123,6 +124,10 @@ contains
     self%num_recoveries = self%num_recoveries + 1
     if (.not. allocated(self%node_stress)) allocate (self%node_stress(6, model%mesh%num_nodes))
     call self%need_inelastic(model, now)
+    if (self%had_operator .and. .not. self%has_operator) then
+      call make_nodal_operator(model, self%plan, self%operator)
+      self%has_operator = .true.
+    end if
     if (self%has_operator) then
       call apply_operator(self%operator, now%u, self%node_stress)
       call self%correct_inelastic(now)
@@ -180,8 +185,8 @@ contains
     end if
   end subroutine field_on_nodes
 
-  !> A principal stress of the points on the nodes: the mean of the points next to a node, within the
-  !> range of their values.
+  !> A principal stress of the points on the nodes: the mean of the points next to a node, within
+  !> the range of their values.
   subroutine points_on_nodes(self, model, now, number, values)
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: model

@@ -29,6 +29,9 @@ contains
     call file%put('most_taken', record%most_taken)
     call file%put('last_strain', record%last_strain)
     call file%put('last_fracture', record%last_fracture)
+    ! Stresses by the operator and through the points differ by round-off.
+    call file%put('num_recoveries', record%stresses%num_recoveries)
+    call file%put('has_operator', record%stresses%has_operator .or. record%stresses%had_operator)
     call file%put('num_joints', size(record%joints))
     do i = 1, size(record%joints)
       call file%open_group('joint_'//as_text(i))
@@ -63,6 +66,8 @@ contains
     call file%get('most_taken', record%most_taken)
     call file%get('last_strain', record%last_strain)
     call file%get('last_fracture', record%last_fracture)
+    call file%get('num_recoveries', record%stresses%num_recoveries)
+    call file%get('has_operator', record%stresses%had_operator)
     call file%confirm('num_joints', size(record%joints))
     do i = 1, size(record%joints)
       call file%open_group('joint_'//as_text(i))

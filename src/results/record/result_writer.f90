@@ -4,6 +4,8 @@ module result_writer
   use errors, only: error_type
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
+  use archive_type, only: archive
+  use file_identity, only: file_path
   use run_ledger, only: ledger
   use run_records, only: run_record
   implicit none
@@ -15,6 +17,11 @@ module result_writer
   contains
     procedure(open_writer), deferred :: open
     procedure(write_increment), deferred :: write_increment
+    procedure :: list_paths
+    procedure :: save_position
+    procedure :: load_position
+    procedure :: go_on
+    procedure :: start_undo
     procedure :: write_modes
     procedure :: write_envelopes
     procedure :: write_costs
@@ -46,6 +53,46 @@ module result_writer
   end interface
 
 contains
+
+  !> Adds the paths of the files that it will write, where other files may be.
+  subroutine list_paths(self, model, stem, record, paths)
+    class(writer), intent(inout) :: self
+    type(problem), intent(in) :: model
+    character(*), intent(in) :: stem !< folder and name of the job
+    type(run_record), intent(inout) :: record !< open
+    type(file_path), allocatable, intent(inout) :: paths(:)
+  end subroutine list_paths
+
+  !> Completes the files on disk and stores in a checkpoint where they end.
+  subroutine save_position(self, file, error)
+    class(writer), intent(inout) :: self
+    class(archive), intent(inout) :: file !< open for writing, in a group of this writer
+    type(error_type), allocatable, intent(out) :: error
+  end subroutine save_position
+
+  !> Reads from a checkpoint where the files ended, and changes no file.
+  subroutine load_position(self, file)
+    class(writer), intent(inout) :: self
+    class(archive), intent(inout) :: file !< open for reading, in the group of this writer
+  end subroutine load_position
+
+  !> The run goes on from the checkpoint that was loaded: takes the place of `open`.
+  subroutine go_on(self, model, stem, record, error)
+    class(writer), intent(inout) :: self
+    type(problem), intent(in) :: model
+    character(*), intent(in) :: stem !< folder and name of the job
+    type(run_record), intent(inout) :: record !< of the checkpoint
+    type(error_type), allocatable, intent(out) :: error
+    call self%open(model, stem, record, error)
+  end subroutine go_on
+
+  !> A checkpoint is complete: what is written from now on can be undone.
+  subroutine start_undo(self, journal, number, error)
+    class(writer), intent(inout) :: self
+    character(*), intent(in) :: journal !< path
+    integer, intent(in) :: number !< of the checkpoint
+    type(error_type), allocatable, intent(out) :: error
+  end subroutine start_undo
 
   !> A *FREQUENCY step has found its modes.
   subroutine write_modes(self, model, step, modes, record, error)

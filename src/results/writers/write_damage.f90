@@ -6,7 +6,9 @@ module write_damage
   use damage_readings, only: damage_columns, damage_row
   use run_records, only: run_record
   use result_writer, only: writer, is_due
+  use archive_type, only: archive
   use csv_files, only: csv_file
+  use file_identity, only: add_path, file_path
   use file_system, only: file_name
   implicit none
   private
@@ -17,9 +19,15 @@ module write_damage
     type(csv_file) :: file
   contains
     procedure :: open => open_damage
+    procedure :: go_on => go_on_with_damage
+    procedure :: list_paths => list_damage
+    procedure :: save_position => save_damage
+    procedure :: load_position => load_damage
     procedure :: write_increment => write_row
     procedure :: finish => close_damage
   end type damage_file
+
+  character(*), parameter :: header = 'step,increment,time,'//damage_columns
 
 contains
 
@@ -33,8 +41,45 @@ contains
     self%is_idle = .not. record%damage%is_present
     if (self%is_idle) return
     call record%list_file(file_name(stem)//'_damage.csv')
-    call self%file%open(stem//'_damage.csv', 'step,increment,time,'//damage_columns, error)
+    call self%file%open(stem//'_damage.csv', header, error)
   end subroutine open_damage
+
+  !> Goes on with the file.
+  subroutine go_on_with_damage(self, model, stem, record, error)
+    class(damage_file), intent(inout) :: self
+    type(problem), intent(in) :: model
+    character(*), intent(in) :: stem
+    type(run_record), intent(inout) :: record
+    type(error_type), allocatable, intent(out) :: error
+    self%is_idle = .not. record%damage%is_present
+    if (self%is_idle) return
+    call self%file%go_on(stem//'_damage.csv', header, error)
+  end subroutine go_on_with_damage
+
+  !> The path of the file.
+  subroutine list_damage(self, model, stem, record, paths)
+    class(damage_file), intent(inout) :: self
+    type(problem), intent(in) :: model
+    character(*), intent(in) :: stem
+    type(run_record), intent(inout) :: record
+    type(file_path), allocatable, intent(inout) :: paths(:)
+    call add_path(paths, stem//'_damage.csv')
+  end subroutine list_damage
+
+  !> Stores the length of the file.
+  subroutine save_damage(self, file, error)
+    class(damage_file), intent(inout) :: self
+    class(archive), intent(inout) :: file
+    type(error_type), allocatable, intent(out) :: error
+    call self%file%save_position('num_bytes', file)
+  end subroutine save_damage
+
+  !> Reads the length of the file.
+  subroutine load_damage(self, file)
+    class(damage_file), intent(inout) :: self
+    class(archive), intent(inout) :: file
+    call self%file%load_position('num_bytes', file)
+  end subroutine load_damage
 
   !> Writes one row.
   subroutine write_row(self, model, now, record, error)

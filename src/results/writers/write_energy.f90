@@ -6,7 +6,9 @@ module write_energy
   use energy_readings, only: energy_columns, energy_row
   use run_records, only: run_record
   use result_writer, only: writer, is_due
+  use archive_type, only: archive
   use csv_files, only: csv_file
+  use file_identity, only: add_path, file_path
   use file_system, only: file_name
   implicit none
   private
@@ -17,9 +19,15 @@ module write_energy
     type(csv_file) :: file
   contains
     procedure :: open => open_energy
+    procedure :: go_on => go_on_with_energy
+    procedure :: list_paths => list_energy
+    procedure :: save_position => save_energy
+    procedure :: load_position => load_energy
     procedure :: write_increment => write_energies
     procedure :: finish => close_energy
   end type energy_file
+
+  character(*), parameter :: header = 'step,increment,time,'//energy_columns
 
 contains
 
@@ -31,8 +39,43 @@ contains
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     call record%list_file(file_name(stem)//'_energy.csv')
-    call self%file%open(stem//'_energy.csv', 'step,increment,time,'//energy_columns, error)
+    call self%file%open(stem//'_energy.csv', header, error)
   end subroutine open_energy
+
+  !> Goes on with the file.
+  subroutine go_on_with_energy(self, model, stem, record, error)
+    class(energy_file), intent(inout) :: self
+    type(problem), intent(in) :: model
+    character(*), intent(in) :: stem
+    type(run_record), intent(inout) :: record
+    type(error_type), allocatable, intent(out) :: error
+    call self%file%go_on(stem//'_energy.csv', header, error)
+  end subroutine go_on_with_energy
+
+  !> The path of the file.
+  subroutine list_energy(self, model, stem, record, paths)
+    class(energy_file), intent(inout) :: self
+    type(problem), intent(in) :: model
+    character(*), intent(in) :: stem
+    type(run_record), intent(inout) :: record
+    type(file_path), allocatable, intent(inout) :: paths(:)
+    call add_path(paths, stem//'_energy.csv')
+  end subroutine list_energy
+
+  !> Stores the length of the file.
+  subroutine save_energy(self, file, error)
+    class(energy_file), intent(inout) :: self
+    class(archive), intent(inout) :: file
+    type(error_type), allocatable, intent(out) :: error
+    call self%file%save_position('num_bytes', file)
+  end subroutine save_energy
+
+  !> Reads the length of the file.
+  subroutine load_energy(self, file)
+    class(energy_file), intent(inout) :: self
+    class(archive), intent(inout) :: file
+    call self%file%load_position('num_bytes', file)
+  end subroutine load_energy
 
   !> Writes one row.
   subroutine write_energies(self, model, now, record, error)

@@ -15,6 +15,8 @@ module write_hdf5
   use result_writer, only: writer, is_due
   use requested_fields, only: list_due_fields, asks_for_joints
   use envelopes, only: name_of_field
+  use archive_type, only: archive
+  use file_identity, only: add_path, file_path
   use hdf5_files, only: hdf5_file
   use hdf5_tables, only: growing_table
   use hdf5_ledger, only: write_ledger
@@ -27,6 +29,7 @@ module write_hdf5
   public :: hdf5_results
 
   integer, parameter :: layout_version = 1
+  character(*), parameter :: increment_columns = 'step,increment,time,size,iterations,residual'
   real(rk), parameter :: seconds_between_flushes = 2.0_rk
 
   type, extends(writer) :: hdf5_results
@@ -37,8 +40,14 @@ module write_hdf5
     real(rk) :: flushed_at = 0.0_rk !< wall clock [s]
     type(growing_table) :: increments, energies, damages
     type(growing_table), allocatable :: joints(:)
+    integer :: num_rows = 0 !< of each table at the checkpoint
   contains
     procedure :: open => open_hdf5
+    procedure :: go_on => go_on_with_hdf5
+    procedure :: list_paths => list_hdf5
+    procedure :: save_position => save_hdf5
+    procedure :: load_position => load_hdf5
+    procedure :: start_undo
     procedure :: write_increment => write_data
     procedure :: write_modes => write_mode_data
     procedure :: write_envelopes => write_envelope_data
@@ -73,7 +82,7 @@ contains
       call file%make_group('/history')
       call file%make_group('/history/joints')
       call self%increments%start(file, '/history/increments', &
-                                 'step,increment,time,size,iterations,residual')
+                                 increment_columns)
       call self%energies%start(file, '/history/energy', 'step,increment,time,'//energy_columns)
       if (record%damage%is_present) then
         call self%damages%start(file, '/history/damage', 'step,increment,time,'//damage_columns)
@@ -86,6 +95,74 @@ contains
     end associate
     call self%flush_rows(error)
   end subroutine open_hdf5
+
+  !> Goes on with the file, which a journal has set back to the checkpoint.
+  subroutine go_on_with_hdf5(self, model, stem, record, error)
+    class(hdf5_results), intent(inout) :: self
+    type(problem), intent(in) :: model
+    character(*), intent(in) :: stem
+    type(run_record), intent(inout) :: record
+    type(error_type), allocatable, intent(out) :: error
+    integer :: j
+    self%path = stem//'.h5'
+    call self%file%open_again(self%path)
+    if (self%file%has_failed) then
+      call raise(error, "cannot continue '"//self%path//"': the file is missing or damaged", &
+                 system_failed)
+      return
+    end if
+    associate (rows => self%num_rows)
+      call self%increments%go_on('/history/increments', increment_columns, rows)
+      call self%energies%go_on('/history/energy', 'step,increment,time,'//energy_columns, rows)
+      if (record%damage%is_present) then
+        call self%damages%go_on('/history/damage', 'step,increment,time,'//damage_columns, rows)
+      end if
+      allocate (self%joints(size(model%joints)))
+      do j = 1, size(model%joints)
+        call self%joints(j)%go_on('/history/joints/'//link_name(model%joints(j)%name), &
+                                  'step,increment,time,'//reading_names, rows)
+      end do
+    end associate
+  end subroutine go_on_with_hdf5
+
+  !> The path of the file.
+  subroutine list_hdf5(self, model, stem, record, paths)
+    class(hdf5_results), intent(inout) :: self
+    type(problem), intent(in) :: model
+    character(*), intent(in) :: stem
+    type(run_record), intent(inout) :: record
+    type(file_path), allocatable, intent(inout) :: paths(:)
+    call add_path(paths, stem//'.h5')
+  end subroutine list_hdf5
+
+  !> Flushes the file and stores what it holds.
+  subroutine save_hdf5(self, file, error)
+    class(hdf5_results), intent(inout) :: self
+    class(archive), intent(inout) :: file
+    type(error_type), allocatable, intent(out) :: error
+    call self%flush_rows(error)
+    call file%put('step', self%step)
+    call file%put('num_rows', self%increments%num_rows())
+  end subroutine save_hdf5
+
+  !> Reads what the file holds.
+  subroutine load_hdf5(self, file)
+    class(hdf5_results), intent(inout) :: self
+    class(archive), intent(inout) :: file
+    call file%get('step', self%step)
+    call file%get('num_rows', self%num_rows)
+  end subroutine load_hdf5
+
+  !> Starts the journal of a checkpoint.
+  subroutine start_undo(self, journal, number, error)
+    class(hdf5_results), intent(inout) :: self
+    character(*), intent(in) :: journal !< path
+    integer, intent(in) :: number !< of the checkpoint
+    type(error_type), allocatable, intent(out) :: error
+    call self%file%start_undo(journal, number)
+    if (self%file%has_failed) call raise(error, "cannot write '"//journal//"' (disk full?)", &
+                                         system_failed)
+  end subroutine start_undo
 
   !> Writes the histories of every increment, and the fields requested now.
   subroutine write_data(self, model, now, record, error)

@@ -11,6 +11,8 @@ module write_history
   use field_table, only: find_field
   use history_rows, only: history_file, header_of, add_rows
   use print_kinds, only: kinds_of_prints, prints_of_joints
+  use archive_type, only: archive
+  use file_identity, only: add_path, file_path
   use file_system, only: safe_name, file_name
   use write_text, only: as_text
   implicit none
@@ -20,8 +22,13 @@ module write_history
   type, extends(writer) :: history_files
     private
     type(history_file), allocatable :: files(:)
+    type(history_file), allocatable :: kept(:) !< of a checkpoint: names and lengths
   contains
     procedure :: open => open_histories
+    procedure :: go_on => go_on_with_histories
+    procedure :: list_paths => list_histories
+    procedure :: save_position => save_histories
+    procedure :: load_position => load_histories
     procedure :: write_increment => write_rows
     procedure :: finish => close_files
   end type history_files
@@ -35,23 +42,118 @@ contains
     character(*), intent(in) :: stem
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
-    integer :: s, r, f
-    allocate (self%files(0))
-    do s = 1, size(model%steps)
-      if (.not. allocated(model%steps(s)%prints)) cycle
-      do r = 1, size(model%steps(s)%prints)
-        call add_request(model, model%steps(s)%prints(r), record, self%files)
-      end do
-    end do
+    integer :: f
+    call list_files(model, record, self%files)
     do f = 1, size(self%files)
-      associate (file => self%files(f), kind => kinds_of_prints(self%files(f)%kind))
-        call file%open(stem//'_'//trim(kind%part)//'_'//unique_name(self%files, f)//'.csv', &
-                       header_of(model, record%fields, kind, file%fields), error)
+      associate (file => self%files(f))
+        call file%open(path_of(stem, self%files, f), header_of_file(model, record, file), error)
         if (allocated(error)) return
         call record%list_file(file_name(file%path))
       end associate
     end do
   end subroutine open_histories
+
+  !> Goes on with the files of the checkpoint, and opens those that are new.
+  subroutine go_on_with_histories(self, model, stem, record, error)
+    class(history_files), intent(inout) :: self
+    type(problem), intent(in) :: model
+    character(*), intent(in) :: stem
+    type(run_record), intent(inout) :: record
+    type(error_type), allocatable, intent(out) :: error
+    integer :: f, k
+    call list_files(model, record, self%files)
+    do f = 1, size(self%files)
+      associate (file => self%files(f))
+        do k = 1, size(self%kept)
+          if (self%kept(k)%name /= file%name .or. self%kept(k)%kind /= file%kind) cycle
+          file%csv_file = self%kept(k)%csv_file
+        end do
+        call file%go_on(path_of(stem, self%files, f), header_of_file(model, record, file), error)
+        if (allocated(error)) return
+        call record%list_file(file_name(file%path))
+      end associate
+    end do
+  end subroutine go_on_with_histories
+
+  !> The paths of all files.
+  subroutine list_histories(self, model, stem, record, paths)
+    class(history_files), intent(inout) :: self
+    type(problem), intent(in) :: model
+    character(*), intent(in) :: stem
+    type(run_record), intent(inout) :: record
+    type(file_path), allocatable, intent(inout) :: paths(:)
+    type(history_file), allocatable :: files(:)
+    integer :: f
+    call list_files(model, record, files)
+    do f = 1, size(files)
+      call add_path(paths, path_of(stem, files, f))
+    end do
+  end subroutine list_histories
+
+  !> Stores names and lengths of the files.
+  subroutine save_histories(self, file, error)
+    class(history_files), intent(inout) :: self
+    class(archive), intent(inout) :: file
+    type(error_type), allocatable, intent(out) :: error
+    integer :: f
+    call file%put('num_files', size(self%files))
+    do f = 1, size(self%files)
+      call file%put('kind_'//as_text(f), self%files(f)%kind)
+      call file%put_long_text('name_'//as_text(f), self%files(f)%name)
+      call self%files(f)%save_position('num_bytes_'//as_text(f), file)
+    end do
+  end subroutine save_histories
+
+  !> Reads names and lengths of the files.
+  subroutine load_histories(self, file)
+    class(history_files), intent(inout) :: self
+    class(archive), intent(inout) :: file
+    integer :: f, num_files
+    num_files = 0
+    call file%get('num_files', num_files)
+    if (allocated(self%kept)) deallocate (self%kept)
+    allocate (self%kept(num_files))
+    do f = 1, num_files
+      call file%get('kind_'//as_text(f), self%kept(f)%kind)
+      call file%get_long_text('name_'//as_text(f), self%kept(f)%name)
+      call self%kept(f)%load_position('num_bytes_'//as_text(f), file)
+    end do
+  end subroutine load_histories
+
+  !> The files of all steps, not open yet.
+  subroutine list_files(model, record, files)
+    type(problem), intent(in) :: model
+    type(run_record), intent(inout) :: record
+    type(history_file), allocatable, intent(out) :: files(:)
+    integer :: s, r
+    allocate (files(0))
+    do s = 1, size(model%steps)
+      if (.not. allocated(model%steps(s)%prints)) cycle
+      do r = 1, size(model%steps(s)%prints)
+        call add_request(model, model%steps(s)%prints(r), record, files)
+      end do
+    end do
+  end subroutine list_files
+
+  !> The path of a file.
+  pure function path_of(stem, files, f) result(path)
+    character(*), intent(in) :: stem
+    type(history_file), intent(in) :: files(:)
+    integer, intent(in) :: f !< position of the file
+    character(:), allocatable :: path
+    associate (kind => kinds_of_prints(files(f)%kind))
+      path = stem//'_'//trim(kind%part)//'_'//unique_name(files, f)//'.csv'
+    end associate
+  end function path_of
+
+  !> The header line of a file.
+  function header_of_file(model, record, file) result(header)
+    type(problem), intent(in) :: model
+    type(run_record), intent(in) :: record
+    type(history_file), intent(in) :: file
+    character(:), allocatable :: header
+    header = header_of(model, record%fields, kinds_of_prints(file%kind), file%fields)
+  end function header_of_file
 
   !> The name of a set or joint in its file name. Where another file has this name (sets 'A B' and
   !> 'A_B'), the position of the file is appended.

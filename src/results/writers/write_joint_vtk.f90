@@ -12,6 +12,9 @@ module write_joint_vtk
   use joint_surface, only: drawn_joints, joint_values, find_drawn_joints, means_on_corners, &
                            heaviest_on_corners, nodes_to_corners
   use vtk_order, only: cell_of_polygon
+  use archive_type, only: archive
+  use earlier_files, only: remove_series
+  use file_identity, only: add_path, file_path
   use vtu_files, only: vtu_file
   use pvd_files, only: pvd_file, frame_name
   use file_system, only: file_name, make_folder
@@ -29,6 +32,10 @@ module write_joint_vtk
     type(pvd_file) :: frames
   contains
     procedure :: open => open_joint_vtk
+    procedure :: go_on => go_on_with_joint_vtk
+    procedure :: list_paths => list_joint_vtk
+    procedure :: save_position => save_joint_vtk
+    procedure :: load_position => load_joint_vtk
     procedure :: write_increment => write_frame
     procedure, private :: prepare
     procedure, private :: fill
@@ -48,6 +55,46 @@ contains
     self%stem = file_name(stem)//'_joints'
     call self%frames%open(stem//'_joints.pvd', file_name(stem)//'_vtk/')
   end subroutine open_joint_vtk
+
+  !> Removes what was written after the checkpoint.
+  subroutine go_on_with_joint_vtk(self, model, stem, record, error)
+    class(joint_series), intent(inout) :: self
+    type(problem), intent(in) :: model
+    character(*), intent(in) :: stem
+    type(run_record), intent(inout) :: record
+    type(error_type), allocatable, intent(out) :: error
+    call self%open(model, stem, record, error)
+    if (self%is_idle) return
+    call remove_series(self%folder//self%stem//'_', self%num_frames + 1)
+    call self%frames%open_again(error)
+  end subroutine go_on_with_joint_vtk
+
+  !> The list of the series.
+  subroutine list_joint_vtk(self, model, stem, record, paths)
+    class(joint_series), intent(inout) :: self
+    type(problem), intent(in) :: model
+    character(*), intent(in) :: stem
+    type(run_record), intent(inout) :: record
+    type(file_path), allocatable, intent(inout) :: paths(:)
+    if (size(model%joints) > 0) call add_path(paths, stem//'_joints.pvd')
+  end subroutine list_joint_vtk
+
+  !> Stores the frames so far.
+  subroutine save_joint_vtk(self, file, error)
+    class(joint_series), intent(inout) :: self
+    class(archive), intent(inout) :: file
+    type(error_type), allocatable, intent(out) :: error
+    call file%put('num_frames', self%num_frames)
+    call self%frames%save_position(file)
+  end subroutine save_joint_vtk
+
+  !> Reads the frames so far.
+  subroutine load_joint_vtk(self, file)
+    class(joint_series), intent(inout) :: self
+    class(archive), intent(inout) :: file
+    call file%get('num_frames', self%num_frames)
+    call self%frames%load_position(file)
+  end subroutine load_joint_vtk
 
   !> Writes a file of the series when fields of joints are requested now.
   subroutine write_frame(self, model, now, record, error)

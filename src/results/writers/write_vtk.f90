@@ -12,7 +12,11 @@ module write_vtk
   use law_fields, only: mean_of_elements
   use envelopes, only: name_of_field
   use vtk_order, only: tensor_in_vtk_order, tensor_names_in_vtk_order, cell_of_solid
+  use archive_type, only: archive
+  use earlier_files, only: remove_series
+  use file_identity, only: add_path, file_path
   use vtu_files, only: vtu_file
+  use whole_files, only: remove_file
   use pvd_files, only: pvd_file, frame_name
   use text_buffers, only: text_of
   use file_system, only: file_name, make_folder
@@ -30,6 +34,10 @@ module write_vtk
     type(pvd_file) :: frames
   contains
     procedure :: open => open_vtk
+    procedure :: go_on => go_on_with_vtk
+    procedure :: list_paths => list_vtk
+    procedure :: save_position => save_vtk
+    procedure :: load_position => load_vtk
     procedure :: write_increment => write_frame
     procedure :: write_modes => write_mode_shapes
     procedure :: write_envelopes
@@ -50,6 +58,63 @@ contains
     self%job = file_name(stem)
     call self%frames%open(stem//'.pvd', self%job//'_vtk/')
   end subroutine open_vtk
+
+  !> Removes what was written after the checkpoint.
+  subroutine go_on_with_vtk(self, model, stem, record, error)
+    class(vtk_series), intent(inout) :: self
+    type(problem), intent(in) :: model
+    character(*), intent(in) :: stem
+    type(run_record), intent(inout) :: record
+    type(error_type), allocatable, intent(out) :: error
+    integer, parameter :: most_steps = 1000 !< that a deck before its change is taken to have
+    integer :: s
+    call self%open(model, stem, record, error)
+    call remove_series(self%folder//self%job//'_', self%num_frames + 1)
+    do s = max(1, record%step), max(most_steps, size(model%steps))
+      call remove_unlisted(self, '_envelope_step'//text_of(s)//'.vtu', record)
+      call remove_unlisted(self, '_modes_step'//text_of(s)//'.vtu', record)
+    end do
+    call self%frames%open_again(error)
+  end subroutine go_on_with_vtk
+
+  !> Removes a file outside the series unless the checkpoint lists it.
+  subroutine remove_unlisted(self, ending, record)
+    class(vtk_series), intent(in) :: self
+    character(*), intent(in) :: ending !< of the name
+    type(run_record), intent(in) :: record
+    integer :: i
+    do i = 1, size(record%files)
+      if (record%files(i)%text == self%job//'_vtk/'//self%job//ending) return
+    end do
+    call remove_file(self%folder//self%job//ending)
+  end subroutine remove_unlisted
+
+  !> The list of the series; its folder holds nothing but results.
+  subroutine list_vtk(self, model, stem, record, paths)
+    class(vtk_series), intent(inout) :: self
+    type(problem), intent(in) :: model
+    character(*), intent(in) :: stem
+    type(run_record), intent(inout) :: record
+    type(file_path), allocatable, intent(inout) :: paths(:)
+    call add_path(paths, stem//'.pvd')
+  end subroutine list_vtk
+
+  !> Stores the frames so far.
+  subroutine save_vtk(self, file, error)
+    class(vtk_series), intent(inout) :: self
+    class(archive), intent(inout) :: file
+    type(error_type), allocatable, intent(out) :: error
+    call file%put('num_frames', self%num_frames)
+    call self%frames%save_position(file)
+  end subroutine save_vtk
+
+  !> Reads the frames so far.
+  subroutine load_vtk(self, file)
+    class(vtk_series), intent(inout) :: self
+    class(archive), intent(inout) :: file
+    call file%get('num_frames', self%num_frames)
+    call self%frames%load_position(file)
+  end subroutine load_vtk
 
   !> Writes a file of the series when a field is requested now.
   subroutine write_frame(self, model, now, record, error)

@@ -82,7 +82,7 @@ contains
       self%solids%values = system%stiffness + c**2*system%mass
       call system%add_damping(c, self%solids%values)
     end associate
-    self%solids%matrix%is_elastic = .true.
+    call self%solids%matrix%start_elastic(dt)
     call results%costs%start('iterate', 'structure', 'solver')
     call prepare_equilibrium(model, self%system, self%solids%values, 1.0_rk, self%solids%solver, &
                              error)

@@ -15,6 +15,7 @@ program test_damage_files
   use inelastic_blocks, only: list_inelastic_blocks
   use problem_definition, only: problem
   use analysis_state, only: state
+  use file_system, only: make_folder
   use result_files, only: result_folder
   use hand_law, only: by_hand, set_elastic
   use testing, only: test_log, check
@@ -35,7 +36,10 @@ program test_damage_files
   call make_model()
   call results%costs%open()
   call results%log%open(.true., error)
-  call results%open(model, trim(folder), remarks, error)
+  call make_folder(trim(folder), error)
+  call results%prepare(model, trim(folder), remarks, error)
+  call check_success(error, 'results are prepared')
+  call results%open(model, error)
   call check_success(error, 'results open')
   do increment = 1, num_increments
     call set_state(increment)

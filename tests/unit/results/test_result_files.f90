@@ -14,6 +14,7 @@ program test_result_files
   use joint_points, only: draw_elements, dam_joint, list_faces
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
+  use file_system, only: make_folder
   use result_files, only: result_folder
   use testing, only: test_log, check, check_close
   implicit none
@@ -156,7 +157,10 @@ contains
     call remarks%add(severity_warning, place(deck, 8, 1, 9, 'NODE', ''), 'odd "name"')
     call results%costs%open()
     call results%log%open(.true., error)
-    call results%open(model, trim(folder), remarks, error)
+    call make_folder(trim(folder), error)
+    call results%prepare(model, trim(folder), remarks, error)
+    call check_success(error, 'results are prepared')
+    call results%open(model, error)
     call check_success(error, 'results open')
     do i = 1, 2
       call announce(results, model, 1, i, 0.5_rk*i, i == 2)

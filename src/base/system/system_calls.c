@@ -1,0 +1,200 @@
+/* Signals, the lock of a run, and the identity of files.
+ *
+ * A signal may arrive at any moment; its handler may only set flags and use system calls. The flags
+ * below are therefore the one state of the program that no caller owns. */
+#define _DEFAULT_SOURCE
+#define _POSIX_C_SOURCE 200809L
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { longest_path = 4096, read_at_most = 4096, num_fatal = 7 };
+
+static volatile sig_atomic_t first_signal, has_met_limit;
+static char summary_path[longest_path]; /* of job.json; empty: nothing to mark */
+static const int fatal[num_fatal] = {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGQUIT, SIGSYS};
+static struct sigaction before[num_fatal];
+
+/* Turns the status "running" of job.json into "stopped", in place; signal handlers may call it. */
+static void mark_summary(void) {
+  static const char running[] = "\"status\": \"running\"", stopped[] = "\"status\": \"stopped\"";
+  char text[read_at_most];
+  ssize_t length, i;
+  int file;
+  if (!summary_path[0]) return;
+  file = open(summary_path, O_RDWR | O_CLOEXEC);
+  if (file < 0) return;
+  length = pread(file, text, sizeof text, 0);
+  for (i = 0; i + (ssize_t)sizeof running - 1 <= length; i++)
+    if (memcmp(text + i, running, sizeof running - 1) == 0) {
+      if (pwrite(file, stopped, sizeof stopped - 1, i) < 0) break;
+      break;
+    }
+  close(file);
+}
+
+/* Ends the process by a signal, as if the program had no handler. */
+static void end_by(int signal_number) {
+  sigset_t only;
+  signal(signal_number, SIG_DFL);
+  sigemptyset(&only);
+  sigaddset(&only, signal_number);
+  sigprocmask(SIG_UNBLOCK, &only, NULL);
+  raise(signal_number);
+}
+
+/* The first signal asks the run to stop after its increment, the second ends it at once. */
+static void ask_to_stop(int signal_number) {
+  if (first_signal == 0) {
+    first_signal = signal_number;
+    return;
+  }
+  mark_summary();
+  end_by(signal_number);
+}
+
+static void note_limit(int signal_number) {
+  (void)signal_number;
+  has_met_limit = 1;
+}
+
+/* A crash: the former handler comes next, which ends the call of a UMAT or prints where. */
+static void leave_mark(int signal_number) {
+  int i;
+  mark_summary();
+  summary_path[0] = '\0';
+  for (i = 0; i < num_fatal; i++)
+    if (fatal[i] == signal_number) sigaction(signal_number, &before[i], NULL);
+  raise(signal_number);
+}
+
+static void catch_one(int signal_number, void (*handler)(int)) {
+  struct sigaction now, old;
+  memset(&now, 0, sizeof now);
+  now.sa_handler = handler;
+  now.sa_flags = SA_RESTART;
+  sigemptyset(&now.sa_mask);
+  /* A signal that the caller ignores (nohup, background jobs) stays ignored. */
+  if (sigaction(signal_number, NULL, &old) == 0 && old.sa_handler == SIG_IGN) return;
+  sigaction(signal_number, &now, NULL);
+}
+
+/* From now on signals stop the run after its increment, and a crash marks job.json at PATH. The empty
+ * path: the run has ended, nothing is marked any more. */
+void keyway_catch_signals(const char *path) {
+  static int is_caught = 0;
+  struct sigaction now;
+  int i;
+  summary_path[0] = '\0';
+  if (strlen(path) < sizeof summary_path) strcpy(summary_path, path);
+  if (is_caught || !path[0]) return;
+  is_caught = 1;
+  catch_one(SIGINT, ask_to_stop);
+  catch_one(SIGTERM, ask_to_stop);
+  catch_one(SIGHUP, ask_to_stop);
+  catch_one(SIGXCPU, ask_to_stop);
+  memset(&now, 0, sizeof now);
+  now.sa_handler = note_limit;
+  now.sa_flags = SA_RESTART;
+  sigemptyset(&now.sa_mask);
+  sigaction(SIGXFSZ, &now, NULL);
+  now.sa_handler = leave_mark;
+  now.sa_flags = SA_ONSTACK; /* that of umat_crash.c: a routine may have used up its own */
+  for (i = 0; i < num_fatal; i++) sigaction(fatal[i], &now, &before[i]);
+  atexit(mark_summary);
+}
+
+/* The signal that asked to stop, 0 for none. */
+int keyway_stop_signal(void) { return first_signal; }
+
+/* Whether a write met the limit of file sizes. */
+int keyway_has_met_limit(void) { return has_met_limit; }
+
+/* What a lock file says: the process and its host, as "123 host". */
+static void read_holder(int file, char *holder, size_t room) {
+  ssize_t length = pread(file, holder, room - 1, 0);
+  holder[length > 0 ? length : 0] = '\0';
+  holder[strcspn(holder, "\n")] = '\0';
+}
+
+/* Whether a file is empty or holds "123 host": another file of this name is not written over. */
+static int is_lock(const char *holder) {
+  size_t digits = strspn(holder, "0123456789");
+  return digits > 0 && holder[digits] == ' ' && strlen(holder) < 300;
+}
+
+/* Whether the lock that a process left behind may be taken over: the process is of this host (the
+ * kernel has dropped its lock, so it has ended). */
+static int is_of_this_host(const char *holder, const char *host) {
+  const char *blank = strchr(holder, ' ');
+  return !blank || strcmp(blank + 1, host) == 0;
+}
+
+/* Takes the lock file PATH. Returns its descriptor, or -1: it cannot be made, -2: another process has
+ * it, -3: it was left by a process of another host. `holder`: who has it or has left it, "" for none. */
+int keyway_take_lock(const char *path, char *holder, size_t room) {
+  char host[256] = "", text[300];
+  struct stat opened, named;
+  int file, length;
+  gethostname(host, sizeof host - 1);
+  for (;;) {
+    holder[0] = '\0';
+    file = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (file < 0) return -1;
+    if (flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      read_holder(file, holder, room);
+      close(file);
+      return -2;
+    }
+    /* The process that had the lock may have removed the file in between. */
+    if (stat(path, &named) == 0 && fstat(file, &opened) == 0 && named.st_ino == opened.st_ino &&
+        named.st_dev == opened.st_dev)
+      break;
+    close(file);
+  }
+  read_holder(file, holder, room);
+  if (holder[0] && !is_lock(holder)) {
+    close(file);
+    return -1;
+  }
+  if (!is_of_this_host(holder, host)) {
+    close(file);
+    return -3;
+  }
+  length = snprintf(text, sizeof text, "%ld %s\n", (long)getpid(), host);
+  if (ftruncate(file, 0) != 0 || pwrite(file, text, (size_t)length, 0) != length) {
+    close(file);
+    return -1;
+  }
+  return file;
+}
+
+/* Gives the lock back and removes its file. */
+void keyway_give_lock(int file, const char *path) {
+  unlink(path);
+  close(file);
+}
+
+/* Opens a file for appending after its first LENGTH bytes; what follows them is cut off. -1: the file
+ * cannot be opened, -2: it is shorter. */
+int keyway_open_again(const char *path, long length) {
+  struct stat found;
+  int file = open(path, O_WRONLY | O_APPEND | O_CLOEXEC);
+  if (file < 0) return -1;
+  if (fstat(file, &found) == 0 && found.st_size >= length && ftruncate(file, length) == 0) return file;
+  close(file);
+  return -2;
+}
+
+/* Whether two paths name one file. */
+int keyway_is_same_file(const char *first, const char *second) {
+  struct stat a, b;
+  return stat(first, &a) == 0 && stat(second, &b) == 0 && a.st_dev == b.st_dev &&
+         a.st_ino == b.st_ino;
+}

@@ -1,0 +1,288 @@
+/* A file driver of HDF5 that can set a file back to an earlier moment.
+ *
+ * HDF5 overwrites its own structures in place. A process that is killed meanwhile leaves a file that
+ * may be unreadable, and a continued run needs the file as it was at the checkpoint. After
+ * keyway_undo_start the driver therefore copies each page of the file to a journal before the first
+ * write into the page. keyway_undo_restore writes these pages back and cuts the file to its length.
+ *
+ * A journal begins with `header`; records follow: address, length, bytes. A record is complete before
+ * the file changes, so a last record that is cut off belongs to a page that is still as it was. */
+#define _POSIX_C_SOURCE 200809L
+#define _FILE_OFFSET_BITS 64
+#include <fcntl.h>
+#include <hdf5.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#if H5_VERSION_GE(1, 13, 0)
+#include <H5FDdevelop.h>
+#endif
+
+enum { page_size = 4096 };
+static const char magic[8] = "KEYWAYU1";
+
+typedef struct {
+  char magic[8];
+  uint64_t number; /* of the checkpoint */
+  uint64_t length; /* of the file at that moment */
+} header;
+
+typedef struct {
+  H5FD_t base; /* first, as HDF5 requires */
+  int descriptor;
+  haddr_t end_of_address, end_of_file;
+  int journal;     /* -1: none */
+  haddr_t guarded; /* length of the file when the journal was started */
+  unsigned char *is_kept; /* one for each page */
+  dev_t device;
+  ino_t inode;
+} undo_file;
+
+static int put_all(int descriptor, const void *bytes, size_t size, off_t place) {
+  const char *next = bytes;
+  while (size > 0) {
+    ssize_t done = pwrite(descriptor, next, size, place);
+    if (done <= 0) return -1;
+    next += done;
+    place += done;
+    size -= (size_t)done;
+  }
+  return 0;
+}
+
+/* Reads what there is; zeros stand for what lies beyond the end of the file. */
+static int get_all(int descriptor, void *bytes, size_t size, off_t place) {
+  char *next = bytes;
+  while (size > 0) {
+    ssize_t done = pread(descriptor, next, size, place);
+    if (done < 0) return -1;
+    if (done == 0) break;
+    next += done;
+    place += done;
+    size -= (size_t)done;
+  }
+  memset(next, 0, size);
+  return 0;
+}
+
+/* Copies the pages of [first, end) to the journal, those below `guarded` and not copied yet. */
+static int keep_pages(undo_file *self, haddr_t first, haddr_t end) {
+  unsigned char room[2 * sizeof(uint64_t) + page_size];
+  if (self->journal < 0) return 0;
+  if (end > self->guarded) end = self->guarded;
+  for (haddr_t page = first / page_size; page * page_size < end; page++) {
+    uint64_t place[2] = {page * page_size, page_size};
+    if (self->is_kept[page]) continue;
+    if (place[0] + place[1] > self->guarded) place[1] = self->guarded - place[0];
+    memcpy(room, place, sizeof place);
+    if (get_all(self->descriptor, room + sizeof place, place[1], (off_t)place[0]) < 0) return -1;
+    off_t tail = lseek(self->journal, 0, SEEK_END);
+    if (tail < 0 || put_all(self->journal, room, sizeof place + place[1], tail) < 0) return -1;
+    self->is_kept[page] = 1;
+  }
+  return 0;
+}
+
+static void end_journal(undo_file *self) {
+  if (self->journal >= 0) close(self->journal);
+  free(self->is_kept);
+  self->journal = -1;
+  self->is_kept = NULL;
+}
+
+static H5FD_t *open_file(const char *name, unsigned flags, hid_t fapl, haddr_t most) {
+  int mode = flags & H5F_ACC_RDWR ? O_RDWR : O_RDONLY;
+  struct stat found;
+  undo_file *self = calloc(1, sizeof *self);
+  (void)fapl;
+  (void)most;
+  if (!self) return NULL;
+  if (flags & H5F_ACC_TRUNC) mode |= O_TRUNC;
+  if (flags & H5F_ACC_CREAT) mode |= O_CREAT;
+  if (flags & H5F_ACC_EXCL) mode |= O_EXCL;
+  self->journal = -1;
+  self->descriptor = open(name, mode | O_CLOEXEC, 0666);
+  if (self->descriptor < 0 || fstat(self->descriptor, &found) != 0) {
+    if (self->descriptor >= 0) close(self->descriptor);
+    free(self);
+    return NULL;
+  }
+  self->end_of_file = (haddr_t)found.st_size;
+  self->device = found.st_dev;
+  self->inode = found.st_ino;
+  return &self->base;
+}
+
+static herr_t close_file(H5FD_t *file) {
+  undo_file *self = (undo_file *)file;
+  int status = close(self->descriptor);
+  end_journal(self);
+  free(self);
+  return status == 0 ? 0 : -1;
+}
+
+static int compare_files(const H5FD_t *first, const H5FD_t *second) {
+  const undo_file *a = (const undo_file *)first, *b = (const undo_file *)second;
+  if (a->device != b->device) return a->device < b->device ? -1 : 1;
+  if (a->inode != b->inode) return a->inode < b->inode ? -1 : 1;
+  return 0;
+}
+
+/* The flags of HDF5's own driver for files. */
+static herr_t query(const H5FD_t *file, unsigned long *flags) {
+  (void)file;
+  *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
+           H5FD_FEAT_AGGREGATE_SMALLDATA | H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
+  return 0;
+}
+
+static haddr_t get_eoa(const H5FD_t *file, H5FD_mem_t kind) {
+  (void)kind;
+  return ((const undo_file *)file)->end_of_address;
+}
+
+static herr_t set_eoa(H5FD_t *file, H5FD_mem_t kind, haddr_t address) {
+  (void)kind;
+  ((undo_file *)file)->end_of_address = address;
+  return 0;
+}
+
+static haddr_t get_eof(const H5FD_t *file, H5FD_mem_t kind) {
+  (void)kind;
+  return ((const undo_file *)file)->end_of_file;
+}
+
+static herr_t get_handle(H5FD_t *file, hid_t fapl, void **handle) {
+  (void)fapl;
+  *handle = file;
+  return 0;
+}
+
+static herr_t read_bytes(H5FD_t *file, H5FD_mem_t kind, hid_t plan, haddr_t address, size_t size,
+                         void *bytes) {
+  (void)kind;
+  (void)plan;
+  return get_all(((undo_file *)file)->descriptor, bytes, size, (off_t)address);
+}
+
+static herr_t write_bytes(H5FD_t *file, H5FD_mem_t kind, hid_t plan, haddr_t address, size_t size,
+                          const void *bytes) {
+  undo_file *self = (undo_file *)file;
+  (void)kind;
+  (void)plan;
+  if (keep_pages(self, address, address + size) < 0) return -1;
+  if (put_all(self->descriptor, bytes, size, (off_t)address) < 0) return -1;
+  if (address + size > self->end_of_file) self->end_of_file = address + size;
+  return 0;
+}
+
+/* Gives the file the length that HDF5 takes it to have. */
+static herr_t set_length(H5FD_t *file, hid_t plan, hbool_t is_closing) {
+  undo_file *self = (undo_file *)file;
+  (void)plan;
+  (void)is_closing;
+  if (self->end_of_address == self->end_of_file) return 0;
+  if (keep_pages(self, self->end_of_address, self->end_of_file) < 0) return -1;
+  if (ftruncate(self->descriptor, (off_t)self->end_of_address) != 0) return -1;
+  self->end_of_file = self->end_of_address;
+  return 0;
+}
+
+/* A file that another process has locked is not opened, as with HDF5's own driver. */
+static herr_t lock_file(H5FD_t *file, hbool_t is_written) {
+  return flock(((undo_file *)file)->descriptor, (is_written ? LOCK_EX : LOCK_SH) | LOCK_NB);
+}
+
+static herr_t unlock_file(H5FD_t *file) {
+  return flock(((undo_file *)file)->descriptor, LOCK_UN);
+}
+
+static const H5FD_class_t driver_class = {
+#if H5_VERSION_GE(1, 13, 0)
+    .version = H5FD_CLASS_VERSION,
+    .value = (H5FD_class_value_t)512, /* for experiments, not registered with the HDF Group */
+#endif
+    .name = "keyway_undo",
+    .maxaddr = ((haddr_t)1 << 62) - 1,
+    .fc_degree = H5F_CLOSE_WEAK,
+    .open = open_file,
+    .close = close_file,
+    .cmp = compare_files,
+    .query = query,
+    .get_eoa = get_eoa,
+    .set_eoa = set_eoa,
+    .get_eof = get_eof,
+    .get_handle = get_handle,
+    .read = read_bytes,
+    .write = write_bytes,
+    .truncate = set_length,
+    .lock = lock_file,
+    .unlock = unlock_file,
+    .fl_map = H5FD_FLMAP_DICHOTOMY,
+};
+
+/* A property list for files with this driver; the caller closes it. */
+int64_t keyway_undo_access(void) {
+  static hid_t driver = -1;
+  hid_t access;
+  if (driver < 0 || H5Iis_valid(driver) <= 0) driver = H5FDregister(&driver_class);
+  access = H5Pcreate(H5P_FILE_ACCESS);
+  if (driver < 0 || access < 0) return -1;
+  return H5Pset_driver(access, driver, NULL) < 0 ? -1 : access;
+}
+
+/* Starts the journal of a checkpoint: the present file is what a restore gives. 0: it is started. */
+int keyway_undo_start(int64_t file, const char *path, int number) {
+  void *handle = NULL;
+  undo_file *self;
+  header top;
+  if (H5Fget_vfd_handle((hid_t)file, H5P_DEFAULT, &handle) < 0 || !handle) return -1;
+  self = handle;
+  end_journal(self);
+  self->journal = open(path, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (self->journal < 0) return -1;
+  memcpy(top.magic, magic, sizeof magic);
+  top.number = (uint64_t)number;
+  top.length = self->guarded = self->end_of_file;
+  self->is_kept = calloc(self->guarded / page_size + 1, 1);
+  if (!self->is_kept || put_all(self->journal, &top, sizeof top, 0) < 0) {
+    end_journal(self);
+    return -1;
+  }
+  return 0;
+}
+
+/* Number of the checkpoint that a journal belongs to; -1 without a valid journal. */
+int keyway_undo_number(const char *path) {
+  header top;
+  int journal = open(path, O_RDONLY | O_CLOEXEC), number = -1;
+  if (journal < 0) return -1;
+  if (read(journal, &top, sizeof top) == (ssize_t)sizeof top &&
+      memcmp(top.magic, magic, sizeof magic) == 0)
+    number = (int)top.number;
+  close(journal);
+  return number;
+}
+
+/* Sets a file back to the moment when its journal was started. 0: it is done. */
+int keyway_undo_restore(const char *path, const char *journal_path) {
+  header top;
+  uint64_t place[2];
+  unsigned char room[page_size];
+  int status = -1, file = open(path, O_RDWR | O_CLOEXEC);
+  int journal = open(journal_path, O_RDONLY | O_CLOEXEC);
+  if (file >= 0 && journal >= 0 && read(journal, &top, sizeof top) == (ssize_t)sizeof top) {
+    status = 0;
+    while (status == 0 && read(journal, place, sizeof place) == (ssize_t)sizeof place) {
+      if (place[1] > page_size || read(journal, room, place[1]) != (ssize_t)place[1]) break;
+      status = put_all(file, room, place[1], (off_t)place[0]);
+    }
+    if (status == 0) status = ftruncate(file, (off_t)top.length);
+  }
+  if (file >= 0 && close(file) != 0) status = -1;
+  if (journal >= 0) close(journal);
+  return status;
+}

@@ -1,0 +1,76 @@
+!> Sets an HDF5 file back to a checkpoint: the file driver keeps what later writes replace
+!> (undo_driver.c).
+module undo_journal
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_int64_t, c_null_char
+  use hdf5, only: hid_t
+  implicit none
+  private
+  public :: undo_access, start_journal, number_of_journal, restore_file
+
+  interface
+    !> A list of file access properties with the driver; below 0 after a failure.
+    function c_access() result(access) bind(c, name='keyway_undo_access')
+      import :: c_int64_t
+      implicit none
+      integer(c_int64_t) :: access
+    end function c_access
+
+    !> 0 for success.
+    function c_start(file, path, number) result(status) bind(c, name='keyway_undo_start')
+      import :: c_char, c_int, c_int64_t
+      implicit none
+      integer(c_int64_t), intent(in), value :: file
+      ! allow(assumed-size)
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int), intent(in), value :: number
+      integer(c_int) :: status
+    end function c_start
+
+    !> -1 without a valid journal.
+    function c_number(path) result(number) bind(c, name='keyway_undo_number')
+      import :: c_char, c_int
+      implicit none
+      ! allow(assumed-size)
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int) :: number
+    end function c_number
+
+    !> 0 for success.
+    function c_restore(path, journal) result(status) bind(c, name='keyway_undo_restore')
+      import :: c_char, c_int
+      implicit none
+      ! allow(assumed-size)
+      character(kind=c_char), intent(in) :: path(*), journal(*)
+      integer(c_int) :: status
+    end function c_restore
+  end interface
+
+contains
+
+  !> A list of file access properties with the driver, to be closed; below 0 after a failure.
+  integer(hid_t) function undo_access()
+    undo_access = int(c_access(), hid_t)
+  end function undo_access
+
+  !> Starts the journal of a checkpoint of a file that is open with `undo_access` and flushed.
+  subroutine start_journal(file, path, number, is_good)
+    integer(hid_t), intent(in) :: file
+    character(*), intent(in) :: path !< of the journal
+    integer, intent(in) :: number !< of the checkpoint
+    logical, intent(out) :: is_good
+    is_good = c_start(int(file, c_int64_t), path//c_null_char, int(number, c_int)) == 0
+  end subroutine start_journal
+
+  !> Number of the checkpoint that a journal belongs to, -1 without one.
+  integer function number_of_journal(path) result(number)
+    character(*), intent(in) :: path
+    number = c_number(path//c_null_char)
+  end function number_of_journal
+
+  !> Sets a file, which must not be open, back to the start of a journal.
+  subroutine restore_file(path, journal, is_good)
+    character(*), intent(in) :: path, journal
+    logical, intent(out) :: is_good
+    is_good = c_restore(path//c_null_char, journal//c_null_char) == 0
+  end subroutine restore_file
+end module undo_journal

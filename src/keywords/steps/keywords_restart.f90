@@ -1,0 +1,39 @@
+!> *RESTART.
+module keywords_restart
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use keyword_spec, only: field, keyword, kind_flag, kind_integer
+  use model_draft, only: draft
+  implicit none
+  private
+  public :: describe_restart, read_restart
+
+contains
+
+  subroutine describe_restart(spec)
+    type(keyword), intent(out) :: spec
+    spec%name = 'RESTART'
+    spec%family = 'output'
+    spec%place = 'step'
+    spec%meaning = 'Writes checkpoints from this step on: after every FREQUENCY-th '// &
+                   'increment and at the end of a step. keyway --continue goes on from '// &
+                   'the last one. Two are kept.'
+    spec%example = '*RESTART, WRITE, FREQUENCY=20'
+    spec%most_lines = 0
+    allocate (spec%parameters, source=[ &
+              field('WRITE', kind_flag, 'writes checkpoints', is_required=.true.), &
+              field('FREQUENCY', kind_integer, 'every so many increments; 0: none', default='1')])
+    spec%parameters(2)%lowest = 0
+    allocate (spec%columns(0))
+  end subroutine describe_restart
+
+  subroutine read_restart(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    model%now%checkpoint_frequency = this%integer('FREQUENCY')
+    if (model%now%checkpoint_frequency <= model%now%max_increments) return
+    call this%warn(faults, 'FREQUENCY is larger than *STEP, INC: checkpoints are written at '// &
+                   'the end of steps only')
+  end subroutine read_restart
+end module keywords_restart

@@ -1,0 +1,167 @@
+!> A checkpoint of a run: the state, the record, the summary, and where the files of results end.
+module run_checkpoint
+  use analysis_state, only: state
+  use checkpoint_files, only: checkpoint_path, new_checkpoint_path, journal_path, keep_checkpoint, &
+                              keep_journal
+  use checkpoint_identity, only: check_identity, save_identity
+  use errors, only: deck_is_wrong, error_type, raise, system_failed
+  use hdf5_archive, only: hdf5_store
+  use problem_definition, only: problem
+  use record_archive, only: load_record, save_record
+  use run_records, only: run_record
+  use run_summaries, only: run_summary
+  use state_archive, only: load_state, save_state
+  use summary_archive, only: load_summary, save_summary
+  use write_text, only: as_text
+  use writer_catalogue, only: writer_item
+  implicit none
+  private
+  public :: run_position, save_checkpoint, load_checkpoint, start_journals
+
+  !> What a checkpoint stores of a run.
+  type :: run_position
+    type(state), allocatable :: now
+    type(run_record) :: record
+    type(run_summary) :: summary
+    integer :: number = 0 !< of the checkpoint, from 1
+    logical :: is_old = .false. !< it is the one before the last
+  end type run_position
+
+contains
+
+  !> Writes the checkpoint, and starts the journal of what later writes replace in job.h5.
+  subroutine save_checkpoint(stem, number, model, now, record, summary, writers, error)
+    character(*), intent(in) :: stem !< folder and name of the job
+    integer, intent(in) :: number !< of the checkpoint, from 1
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    type(run_record), intent(in) :: record
+    type(run_summary), intent(in) :: summary
+    type(writer_item), intent(inout) :: writers(:)
+    type(error_type), allocatable, intent(out) :: error
+    type(error_type), allocatable :: failure
+    type(hdf5_store) :: file
+    call file%create(new_checkpoint_path(stem))
+    call file%put('number', number)
+    call file%put('step', now%step)
+    call save_identity(model, file)
+    call save_state(now, file, error)
+    if (.not. allocated(error)) call save_record(record, file, error)
+    if (.not. allocated(error)) call save_summary(summary, file, error)
+    if (.not. allocated(error)) call save_positions(writers, file, error)
+    call file%close(failure)
+    if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
+    if (.not. allocated(error)) call keep_checkpoint(stem, error)
+    if (allocated(error)) return
+    call keep_journal(stem)
+    call start_journals(stem, number, writers, error)
+  end subroutine save_checkpoint
+
+  !> Starts the journal of the last checkpoint.
+  subroutine start_journals(stem, number, writers, error)
+    character(*), intent(in) :: stem
+    integer, intent(in) :: number !< of the checkpoint
+    type(writer_item), intent(inout) :: writers(:)
+    type(error_type), allocatable, intent(out) :: error
+    integer :: w
+    do w = 1, size(writers)
+      if (writers(w)%item%is_idle) cycle
+      call writers(w)%item%start_undo(journal_path(stem, is_old=.false.), number, error)
+      if (allocated(error)) return
+    end do
+  end subroutine start_journals
+
+  !> Stores where the files of all writers end.
+  subroutine save_positions(writers, file, error)
+    type(writer_item), intent(inout) :: writers(:)
+    type(hdf5_store), intent(inout) :: file
+    type(error_type), allocatable, intent(out) :: error
+    integer :: w
+    do w = 1, size(writers)
+      call file%open_group('writer_'//as_text(w))
+      call file%put('is_idle', writers(w)%item%is_idle)
+      if (.not. writers(w)%item%is_idle) call writers(w)%item%save_position(file, error)
+      call file%close_group()
+      if (allocated(error)) return
+    end do
+    call file%report(error)
+  end subroutine save_positions
+
+  !> Loads the last checkpoint; when it is damaged, the one before. No file is changed.
+  subroutine load_checkpoint(stem, model, fresh, writers, found, remark, error)
+    character(*), intent(in) :: stem !< folder and name of the job
+    type(problem), intent(in) :: model
+    type(run_position), intent(in) :: fresh !< the start of the analysis, which fixes sizes
+    type(writer_item), intent(inout) :: writers(:)
+    type(run_position), intent(out) :: found
+    character(:), allocatable, intent(out) :: remark !< '' or why the last one was not used
+    type(error_type), allocatable, intent(out) :: error
+    type(error_type), allocatable :: failure
+    logical :: is_there(2)
+    integer :: i
+    remark = ''
+    do i = 1, 2
+      inquire (file=checkpoint_path(stem, i == 2), exist=is_there(i))
+      if (.not. is_there(i)) cycle
+      found = fresh
+      found%is_old = i == 2
+      call load_one(checkpoint_path(stem, i == 2), model, writers, found, failure, error)
+      if (allocated(error)) return
+      if (.not. allocated(failure)) return
+      if (remark == '') remark = failure%message
+    end do
+    if (any(is_there)) then
+      call raise(error, 'keyway: --continue: '//remark, system_failed)
+    else
+      call raise(error, "keyway: --continue: there is no checkpoint '"// &
+                 checkpoint_path(stem, is_old=.false.)//"' (*RESTART, WRITE in the deck)", &
+                 deck_is_wrong)
+    end if
+  end subroutine load_checkpoint
+
+  !> Loads one checkpoint.
+  subroutine load_one(path, model, writers, found, failure, error)
+    character(*), intent(in) :: path
+    type(problem), intent(in) :: model
+    type(writer_item), intent(inout) :: writers(:)
+    type(run_position), intent(inout) :: found !< the start of the analysis
+    type(error_type), allocatable, intent(out) :: failure !< the file is damaged
+    type(error_type), allocatable, intent(out) :: error !< the file belongs to another run
+    type(error_type), allocatable :: ignored
+    type(hdf5_store) :: file
+    integer :: step
+    step = 0
+    call file%open(path)
+    call file%get('number', found%number)
+    call file%get('step', step)
+    call file%report(failure)
+    if (.not. allocated(failure)) call check_identity(model, file, step, error)
+    if (allocated(error)) then
+      if (error%exit_code /= deck_is_wrong) call move_alloc(error, failure)
+    end if
+    if (.not. (allocated(failure) .or. allocated(error))) then
+      call load_state(found%now, file, failure)
+      if (.not. allocated(failure)) call load_record(found%record, file, failure)
+      if (.not. allocated(failure)) call load_summary(found%summary, file, failure)
+      if (.not. allocated(failure)) call load_positions(writers, file, failure)
+    end if
+    call file%close(ignored)
+  end subroutine load_one
+
+  !> Reads where the files of all writers ended.
+  subroutine load_positions(writers, file, error)
+    type(writer_item), intent(inout) :: writers(:)
+    type(hdf5_store), intent(inout) :: file
+    type(error_type), allocatable, intent(out) :: error
+    logical :: is_idle
+    integer :: w
+    is_idle = .true.
+    do w = 1, size(writers)
+      call file%open_group('writer_'//as_text(w))
+      call file%get('is_idle', is_idle)
+      if (.not. is_idle) call writers(w)%item%load_position(file)
+      call file%close_group()
+    end do
+    call file%report(error)
+  end subroutine load_positions
+end module run_checkpoint
