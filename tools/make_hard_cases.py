@@ -14,7 +14,7 @@ sys.path[:0] = [str(ROOT / "tests" / folder) for folder in ("hard", "verify", ".
 from catalogue import CASES, PAGE, page_of, row_of, rows_of_page  # noqa: E402
 from harness import Program  # noqa: E402
 
-LIMIT = 7200.0  # time of a run [s]
+LIMIT = 14400.0  # time of a run [s]
 
 
 def run_case(case, program: Path) -> str:

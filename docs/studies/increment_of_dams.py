@@ -17,11 +17,11 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tools")]
 
-from dam_trials import run_trial, trial_of  # noqa: E402
+from dam_trials import UNDAMPED, run_trial, trial_of  # noqa: E402
 from harness import Program, Run  # noqa: E402
 
 DAMPED = (0.05, 2.0, 10.0)
-TRIALS = ((0.5, DAMPED), (1.0, DAMPED), (2.0, DAMPED))
+TRIALS = ((0.5, DAMPED), (1.0, DAMPED), (2.0, DAMPED), (1.0, UNDAMPED))
 REFERENCE, INCREMENTS = 0.00125, (0.01, 0.005, 0.0025)  # [s]
 FIELDS = ("S1", "S3", "U", "OPENING")
 

@@ -3,9 +3,11 @@
 import pytest
 from catalogue import CASES, HOLDS, NOT_RUN, PAGE, page_of, rows_of_page
 
+LIMIT = 4 * 3600  # of a long case [s]
+
 
 def marked(case):
-    marks = [pytest.mark.full] if case.full else []
+    marks = [pytest.mark.full, pytest.mark.timeout(LIMIT)] if case.full else []
     if case.waits_for:
         marks.append(pytest.mark.xfail(reason=f"waits for {case.waits_for}", strict=False))
     return pytest.param(case, id=case.name, marks=marks)
