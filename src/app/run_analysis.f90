@@ -3,6 +3,7 @@ module run_analysis
   use kinds, only: rk
   use errors, only: analysis_failed, error_type, raise, system_failed
   use diagnostics, only: diagnostic_list
+  use earlier_files, only: mark_earlier_summary
   use file_system, only: make_folder
   use run_lock, only: job_lock
   use stop_signals, only: catch_signals, has_met_file_limit
@@ -64,6 +65,11 @@ contains
     call open_run(model, given, echo, earlier, costs, results, now, error)
     if (allocated(error)) then
       call close_user_routines(model)
+      call name_limit(error)
+      if (.not. given%is_continued) then
+        call mark_earlier_summary(results%stem//'.json', 'a later run could not open its '// &
+                                  'results; some files of this run are removed')
+      end if
       return
     end if
     if (.not. allocated(now)) then
@@ -112,6 +118,7 @@ contains
       if (.not. allocated(error)) call results%load(model, now, remark, error)
       if (allocated(error)) return
     end if
+    call catch_signals(results%stem//'.json')
     call results%log%open(given%is_quiet, error, results%stem//'.log', given%is_continued)
     if (allocated(error)) return
     call results%log%note(echo)
@@ -119,7 +126,6 @@ contains
       call results%log%say('the earlier run of this job (process and host: '//earlier// &
                            ') was killed')
     end if
-    call catch_signals(results%stem//'.json')
     if (.not. given%is_continued) then
       call results%open(model, error)
       return

@@ -104,6 +104,24 @@ def test_the_limit_of_file_sizes_stops_the_run(program_path, long_deck, tmp_path
     assert differences(whole, out) == []
 
 
+def test_results_that_cannot_be_opened(program_path, tmp_path):
+    path = tmp_path / "job.inp"
+    path.write_text(SHORT)
+    subprocess.run([program_path, "-q", path], check=True, cwd=tmp_path)
+
+    def limit() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, resource.RLIM_INFINITY))
+        signal.signal(signal.SIGXFSZ, signal.SIG_DFL)
+
+    done = subprocess.run(
+        [program_path, "-q", path], stderr=subprocess.PIPE, text=True, cwd=tmp_path, preexec_fn=limit
+    )
+    assert done.returncode == 1
+    assert "stopped by the limit of file sizes" in done.stderr
+    assert not (tmp_path / "job.json").exists()  # the summary of the first run is too long
+    assert not (tmp_path / "job.lock").exists()
+
+
 def test_a_crash_is_marked(program_path, long_deck, tmp_path):
     out = tmp_path / "out"
     process = start(program_path, "-q", "-o", out, long_deck)

@@ -33,12 +33,13 @@ contains
     close (unit)
   end subroutine remove_earlier_files
 
-  !> Gives the summary of the earlier run the status "stopped" and a message.
+  !> Gives the summary of the earlier run the status "stopped" and a message; removes the summary
+  !> where it cannot be written.
   subroutine mark_earlier_summary(path, message)
     character(*), intent(in) :: path
     character(*), intent(in) :: message !< without quotes and backslashes
     character(:), allocatable :: text
-    type(error_type), allocatable :: ignored
+    type(error_type), allocatable :: error
     integer :: unit, num_bytes, status
     open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
           action='read', iostat=status)
@@ -50,7 +51,8 @@ contains
     if (status /= 0) return
     call replace_line('"status": ', '"stopped",')
     call replace_line('"message": ', '"'//message//'",')
-    call write_whole_file(path, text, ignored)
+    call write_whole_file(path, text, error)
+    if (allocated(error)) call remove_file(path)
 
   contains
 
