@@ -74,6 +74,23 @@ def test_little_memory(program_path, tmp_path, megabytes) -> None:
         assert "not enough memory in part '" in done.stderr
 
 
+@pytest.mark.parametrize("megabytes", [300, 330, 345])
+def test_openblas_does_not_wait_for_memory(program_path, tmp_path, megabytes) -> None:
+    """A mesh takes the memory that OpenBLAS wants later; OpenBLAS would ask for it for ever."""
+    size = megabytes * 2**20
+    deck = BLOCK.parents[3] / "input" / "xingbiling_matching" / "xingbiling_matching.inp"
+    done = run(
+        program_path,
+        tmp_path,
+        *("--check", "-j", "1", str(deck)),
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (size, size)),
+        stdout=subprocess.DEVNULL,
+    )
+    assert done.returncode in (0, SYSTEM_FAILED), done.stderr
+    if done.returncode == SYSTEM_FAILED:
+        assert "not enough memory in part '" in done.stderr
+
+
 def test_more_state_variables_than_memory(program_path, tmp_path) -> None:
     """A count that no machine has room for is refused with its place."""
     deck = BLOCK.read_text(encoding="utf-8")

@@ -56,7 +56,7 @@ program keyway
   if (options%num_threads > 0) call omp_set_num_threads(options%num_threads)
   num_threads = int(omp_get_max_threads(), c_int)
   call try_memory(num_threads)
-  if (.not. options%is_check) call warm_up_blas(num_threads)
+  call warm_up_blas(num_threads)
   call end_trial()
   call costs%stop()
   call costs%start('read', 'deck', 'deck')

@@ -14,6 +14,7 @@
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 enum { system_failed = 3 };
@@ -36,6 +37,8 @@ static void end_at_once(int signal_number)
  * first; OpenBLAS, which comes last, waits for ever for memory that is not there. */
 static _Noreturn void end_program(void)
 {
+  static int is_ending;
+  if (is_ending++) _exit(system_failed);
   signal(SIGALRM, end_at_once);
   alarm(1);
   exit(system_failed);
@@ -46,8 +49,9 @@ void keyway_on_missing_memory(void (*function)(const char *)) { escape = functio
 
 static _Noreturn void end_without_memory(const char *what)
 {
+  static int is_reported;
   if (escape) escape(what);
-  fprintf(stderr, "keyway: not enough memory in part '%s': %s\n", part, what);
+  if (!is_reported++) fprintf(stderr, "keyway: not enough memory in part '%s': %s\n", part, what);
   end_program();
 }
 
@@ -129,15 +133,11 @@ static void limit_memory(void)
 /* The first call of the program. */
 void keyway_prepare_process(void) { open_standard_files(); }
 
-static int num_tried;
-
 static _Noreturn void end_without_blas(int signal_number)
 {
-  char what[128];
   (void)signal_number;
   snprintf(part, sizeof part, "BLAS");
-  snprintf(what, sizeof what, "128 MB for each of %d threads; fewer threads (-j) need less", num_tried);
-  end_without_memory(what);
+  end_without_memory("it takes 128 MB for each thread; fewer threads (-j) need less");
 }
 
 /* Tries the memory that OpenBLAS takes for its threads: without it OpenBLAS waits for ever. It also
@@ -148,7 +148,6 @@ void keyway_try_memory(int threads)
   size_t size = blas_bytes * (size_t)threads;
   void *room = mmap(NULL, size, PROT_READ | PROT_WRITE,
                     MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  num_tried = threads;
   if (room == MAP_FAILED) end_without_blas(0);
   munmap(room, size);
   signal(SIGALRM, end_without_blas);
@@ -162,6 +161,32 @@ void keyway_end_trial(void)
   signal(SIGALRM, SIG_DFL);
   limit_memory();
 }
+
+#ifndef __SANITIZE_ADDRESS__
+/* OpenBLAS asks for its memory again and again, for ever, when there is none. Its calls of mmap come
+ * here, because symbols of the program precede those of the libraries. */
+static void *map(void *place, size_t size, int protection, int flags, int file, off_t from)
+{
+  enum { most_failures = 50 };
+  static int num_failures; /* in a row */
+  void *room = (void *)syscall(SYS_mmap, place, size, protection, flags, file, from);
+  if (room != MAP_FAILED || size < (100u << 20) || errno != ENOMEM)
+    num_failures = 0;
+  else if (++num_failures > most_failures)
+    end_without_blas(0);
+  return room;
+}
+
+void *mmap(void *place, size_t size, int protection, int flags, int file, off_t from)
+{
+  return map(place, size, protection, flags, file, from);
+}
+
+void *mmap64(void *place, size_t size, int protection, int flags, int file, off_t from)
+{
+  return map(place, size, protection, flags, file, from);
+}
+#endif
 
 /* 0: there is no such file, 1: a file, 2: a folder, 3: a device or a pipe. */
 int keyway_kind_of_file(const char *path)

@@ -33,20 +33,32 @@ void dgemm_(const char *a_form, const char *b_form, const int *m, const int *n, 
             const double *beta, double *c, const int *ldc, size_t, size_t);
 void dpotrf_(const char *uplo, const int *n, double *a, const int *lda, int *info, size_t);
 
+void dsymv_(const char *uplo, const int *n, const double *alpha, const double *a, const int *lda,
+            const double *x, const int *incx, const double *beta, double *y, const int *incy, size_t);
+
+/* Calls of the kinds that take memory of their own: products and factors of matrices, products with
+ * vectors. */
+static void call_blas(void)
+{
+  enum { n = 192 };
+  static double a[n * n], c[n * n], x[n], y[n];
+  const int size = n, step = 1;
+  const double one = 1.0, zero = 0.0;
+  int info;
+  for (int i = 0; i < n; i++) a[i * (n + 1)] = 1.0;
+  dgemm_("N", "N", &size, &size, &size, &one, a, &size, a, &size, &zero, c, &size, 1, 1);
+  dpotrf_("L", &size, c, &size, &info, 1);
+  dsymv_("L", &size, &one, a, &size, x, &step, &zero, y, &step, 1);
+}
+
 /* Lets the BLAS take its memory for so many threads: OpenBLAS keeps it, and would wait for it for
  * ever once the analysis has taken the rest. */
 void keyway_warm_up_blas(int threads)
 {
-  enum { n = 192 };
-  static double a[n * n], c[n * n];
-  const int size = n;
-  const double one = 1.0, zero = 0.0;
-  int info;
-  for (int i = 0; i < n; i++) a[i * (n + 1)] = 1.0;
   keyway_set_blas_threads(threads);
-  dgemm_("N", "N", &size, &size, &size, &one, a, &size, a, &size, &zero, c, &size, 1, 1);
-  dpotrf_("L", &size, c, &size, &info, 1);
+  call_blas();
   keyway_set_blas_threads(1);
+  call_blas();
 }
 
 /* The fastest kernels of OpenBLAS that this processor can run, NULL when there is no choice. */

@@ -74,34 +74,6 @@ for value in (0.4, 0.6, 0.8):
 add_crossing(0.6, (1, 10))
 
 
-def add_shaken_crossing(friction: float, waits_for: str = "") -> None:
-    @CROSSINGS.case(
-        f"X crossing, shaken, friction {friction}",
-        "four blocks without strength round an edge, meshes 2:3, shaken by 0.5 g up and along",
-        "error of the energy balance over 1e-6; cut-backs",
-        1.0,
-        waits_for=waits_for,
-    )
-    def judge(keyway):
-        blocks, pairs, names = four_blocks((2, 3))
-        time = np.linspace(0.0, 0.5, 101)
-        cards = joints(friction, pairs) + foot(blocks, "GROUND")
-        shake = ""
-        for dof, hz in ((1, 3.0), (3, 5.0)):
-            wave = 0.5 * GRAVITY * np.sin(2.0 * np.pi * hz * time)
-            cards += amplitude(f"WAVE{dof}", time, wave)
-            shake += f"*BASE MOTION, DOF={dof}, AMPLITUDE=WAVE{dof}, TYPE=ACCELERATION\n"
-        step = f"*STEP, INC=100000\n*DYNAMIC\n0.005, 0.5\n{shake}*END STEP\n"
-        deck = blocks.deck({"": CONCRETE, "GROUND": ROCK}, cards + static(gravity(names)) + step)
-        run = keyway(deck)
-        cuts = sum(step["cutbacks"] for step in run.json["steps"])
-        return max(unbalance(run) / 1e-6, cuts), [run]
-
-
-add_shaken_crossing(0.4)
-add_shaken_crossing(0.8, JOINT_ITERATION)
-
-
 @CROSSINGS.case(
     "T crossing",
     "a block bridges the joint between two others, meshes 2:3, no strength, friction 0.6",
