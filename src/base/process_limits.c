@@ -113,7 +113,7 @@ static long long left_by_group(const char *limit, const char *used)
 static long long smaller(long long a, long long b) { return a < 0 || (b >= 0 && b < a) ? b : a; }
 
 /* Memory beyond what is there is refused when it is asked for. Without a limit the kernel promises
- * it and ends the process when it is used. */
+ * it and ends the process when it is used. A sanitizer reserves terabytes that it never uses. */
 static void limit_memory(void)
 {
   struct rlimit now;
@@ -123,6 +123,9 @@ static void limit_memory(void)
   most = smaller(most, left_by_group("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"));
   most = smaller(most, left_by_group("/sys/fs/cgroup/memory/memory.limit_in_bytes",
                                      "/sys/fs/cgroup/memory/memory.usage_in_bytes"));
+#ifdef __SANITIZE_ADDRESS__
+  most = -1;
+#endif
   if (most < 0 || getrlimit(RLIMIT_DATA, &now) != 0) return;
   most += spare_bytes;
   if (now.rlim_cur != RLIM_INFINITY && now.rlim_cur <= (rlim_t)most) return;
