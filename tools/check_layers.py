@@ -24,6 +24,7 @@ ROOMS = (
     "base/files",
     "base/report",
     "equations",
+    "equations/low_rank",
     "deck",
     "model/mesh",
     "model/constraints",

@@ -10,6 +10,7 @@ set(sources
   integrators/integrator_catalogue.f90
   integrators/integrator_type.f90
   integrators/massless_acceleration.f90
+  integrators/modal_damping.f90
   integrators/start_acceleration.f90
   integrators/static_increment.f90
   integrators/static_integrator.f90

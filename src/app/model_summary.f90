@@ -284,9 +284,17 @@ contains
     type(step_damping), intent(in) :: now
     character(:), allocatable :: text
     text = ''
-    if (.not. now%ratio > 0.0_rk) return
-    text = nl//row('damping', 'RATIO '//as_text(now%ratio)//' at '//as_text(now%f1)//' and '// &
-                   as_text(now%f2)//' Hz, BASE '//name_of_base(now%is_current))
+    if (now%ratio > 0.0_rk) then
+      text = nl//row('damping', 'RATIO '//as_text(now%ratio)//' at '//as_text(now%f1)//' and '// &
+                     as_text(now%f2)//' Hz, BASE '//name_of_base(now%is_current))
+    end if
+    if (.not. now%modal_ratio > 0.0_rk) return
+    text = text//nl//row('modal damping', 'RATIO '//as_text(now%modal_ratio)//', ')
+    if (now%num_modes > 0) then
+      text = text//'MODES '//as_text(now%num_modes)
+    else
+      text = text//'HIGHEST '//as_text(now%highest)//' Hz'
+    end if
   end function damping_of
 
   !> The stiffness that BETA multiplies.

@@ -6,6 +6,7 @@ set(sources
   cholmod_bridge.c
   global_vectors.f90
   linear_solver.f90
+  low_rank/solver_low_rank.f90
   matrix_condition.f90
   matrix_pattern.f90
   metis_bridge.c

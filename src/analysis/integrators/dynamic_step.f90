@@ -8,6 +8,7 @@ module dynamic_step
   use analysis_state, only: motion, state
   use state_transfer, only: start_motion, store_motion, sum_contact
   use increment_listener, only: listener
+  use modal_damping, only: build_modal_damping
   use joint_water, only: update_uplift
   use step_equilibrium, only: make_equilibrium
   use step_system, only: dam_system, build_structure, build_inertia, build_damping, &
@@ -41,6 +42,7 @@ contains
       call build_structure(model, plan, system, costs, error)
       if (.not. allocated(error)) call build_inertia(model, plan, system, costs, error)
       if (.not. allocated(error)) call build_damping(model, plan, system, costs, error)
+      if (.not. allocated(error)) call build_modal_damping(model, plan, system, costs, error)
       if (allocated(error)) return
     end associate
     call build_loads(model, plan, now%u, system, results%costs)

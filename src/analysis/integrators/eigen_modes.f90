@@ -15,7 +15,7 @@ module eigen_modes
   use arpack, only: lanczos
   implicit none
   private
-  public :: find_modes
+  public :: find_modes, solve_modes, num_massive
 
   integer, parameter :: few = 200 !< most unknowns with mass for the dense problem
   real(rk), parameter :: smallest_share = 1.0e-12_rk !< smallest 1/f^2 of a mode, over the largest
@@ -50,12 +50,41 @@ contains
     integer, intent(in) :: num_modes
     type(vibration_mode), allocatable, intent(out) :: modes(:)
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: lambda(:), phi(:, :), d(:)
+    real(rk), allocatable :: lambda(:), phi(:, :)
+    call solve_modes(matrix, stiffness, mass, solver, num_modes, lambda, phi, error)
+    if (.not. allocated(error)) call describe_modes(matrix, numbers, mass, lambda, phi, modes)
+  end subroutine find_modes
+
+  !> Free unknowns with mass.
+  function list_massive(matrix, mass) result(massive)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:) !< values of M
     integer, allocatable :: massive(:)
+    real(rk) :: d(matrix%num_total)
     integer :: j
-    allocate (d(matrix%num_total))
     call diagonal(matrix, mass, d)
     allocate (massive, source=pack([(j, j=1, matrix%num_free)], d(:matrix%num_free) > 0.0_rk))
+  end function list_massive
+
+  !> Number of free unknowns with mass: the most modes there can be.
+  integer function num_massive(matrix, mass)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:) !< values of M
+    num_massive = size(list_massive(matrix, mass))
+  end function num_massive
+
+  !> The lowest modes in the unknowns, ascending, with unit modal mass.
+  subroutine solve_modes(matrix, stiffness, mass, solver, num_modes, lambda, phi, error)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: stiffness(:) !< values of K, closed joints included
+    real(rk), intent(in) :: mass(:) !< values of M, added mass included
+    class(equation_solver), intent(inout) :: solver !< holds the factor of `stiffness`
+    integer, intent(in) :: num_modes
+    real(rk), allocatable, intent(out) :: lambda(:) !< (modes) squared circular frequency [1/s2]
+    real(rk), allocatable, intent(out) :: phi(:, :) !< (num_free, modes)
+    type(error_type), allocatable, intent(out) :: error
+    integer, allocatable :: massive(:)
+    massive = list_massive(matrix, mass)
     if (size(massive) < num_modes) then
       call refuse(num_modes, size(massive), error)
       return
@@ -69,9 +98,7 @@ contains
     if (allocated(error)) return
     call sort_modes(lambda, phi)
     call check_residuals(matrix, stiffness, mass, lambda, phi, error)
-    if (allocated(error)) return
-    call describe_modes(matrix, numbers, mass, lambda, phi, modes)
-  end subroutine find_modes
+  end subroutine solve_modes
 
   !> Error: more modes are requested than exist.
   subroutine refuse(num_modes, num_massive, error)

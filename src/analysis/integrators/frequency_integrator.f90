@@ -8,12 +8,9 @@ module frequency_integrator
   use increment_listener, only: listener
   use equilibrium, only: balance_outcome
   use equilibrium_linear, only: linear_equilibrium
-  use solver_catalogue, only: make_solver, symmetric_solver
-  use step_equilibrium, only: prepare_equilibrium
+  use step_equilibrium, only: factorise_closed
   use step_loads, only: step_time
   use step_system, only: build_structure, build_inertia
-  use joint_forces, only: reference_stiffness
-  use joint_iteration, only: closed_tangent
   use eigen_modes, only: find_modes
   use integrator_type, only: integrator
   implicit none
@@ -35,7 +32,7 @@ contains
     allocate (frequency_method :: method)
   end subroutine make_frequency
 
-  !> Stiffness with closed joints, and mass.
+  !> Stiffness and mass.
   subroutine open_step(self, model, plan, now, results, error)
     class(frequency_method), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -43,16 +40,11 @@ contains
     type(state), intent(inout) :: now
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: reference(:, :)
     call build_structure(model, plan, self%system, results%costs, error)
     if (.not. allocated(error)) then
       call build_inertia(model, plan, self%system, results%costs, error)
     end if
     if (allocated(error)) return
-    associate (system => self%system)
-      call reference_stiffness(model%joints, system%operator, reference)
-      call system%operator%add_stiffness(closed_tangent(reference), system%matrix, system%stiffness)
-    end associate
     now%num_unknowns = self%system%matrix%num_free
   end subroutine open_step
 
@@ -79,17 +71,12 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(linear_equilibrium) :: balance
     type(vibration_mode), allocatable :: modes(:)
+    real(rk), allocatable :: closed(:)
     associate (system => self%system)
-      call results%costs%start('analyse', 'structure', 'solver')
-      call make_solver(symmetric_solver, balance%factor, error)
-      if (.not. allocated(error)) call balance%factor%analyse(system%matrix, error)
-      call results%costs%stop()
+      call factorise_closed(model, system, results%costs, closed, balance, error)
       if (allocated(error)) return
-      balance%costs = results%costs
       call results%costs%start('solve', 'modes', 'solver')
-      call prepare_equilibrium(model, system, system%stiffness, 1.0_rk, balance, error)
-      if (allocated(error)) return
-      call find_modes(system%matrix, system%numbers, system%stiffness, system%mass, &
+      call find_modes(system%matrix, system%numbers, closed, system%mass, &
                       balance%factor, plan%num_modes, modes, error)
       call results%costs%stop()
     end associate

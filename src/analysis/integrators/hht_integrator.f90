@@ -12,7 +12,7 @@ module hht_integrator
   use joint_forces, only: gather_tractions
   use joint_water, only: update_uplift
   use equilibrium, only: balance_outcome
-  use step_equilibrium, only: prepare_equilibrium
+  use step_equilibrium, only: prepare_equilibrium, set_modal_damping
   use step_system, only: dam_system
   use step_loads, only: step_time, external_force, prescribed_values
   use dynamic_step, only: open_dynamic_step
@@ -92,6 +92,8 @@ contains
     self%solids%weight = 1.0_rk + plan%alpha
     call self%solids%matrix%start_elastic(dt)
     call results%costs%start('iterate', 'structure', 'solver')
+    call set_modal_damping(self%system, self%solids%weight*self%scheme%velocity_of_x, &
+                           self%solids%solver)
     call prepare_equilibrium(model, self%system, self%solids%values, self%scheme%joint_weight, &
                              self%solids%solver, error)
     call results%costs%stop()

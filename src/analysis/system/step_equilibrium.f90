@@ -10,11 +10,15 @@ module step_equilibrium
   use equilibrium, only: equilibrium_solver
   use equilibrium_linear, only: linear_equilibrium
   use equilibrium_catalogue, only: condensed_solver, full_solver, make_joint_solver
+  use joint_forces, only: reference_stiffness
+  use joint_iteration, only: closed_tangent
+  use run_ledger, only: ledger
   use step_system, only: dam_system
   use write_text, only: as_text
   implicit none
   private
-  public :: make_equilibrium, prepare_equilibrium, add_moving_supports
+  public :: make_equilibrium, prepare_equilibrium, factorise_closed, set_modal_damping
+  public :: add_moving_supports
 
   !> Most joint points for the dense compliance, which takes about 2 GB (three matrices of
   !> 8*(3*points)^2 bytes). With more points full Newton factors in each iteration; it needs the
@@ -96,6 +100,35 @@ contains
       call move_alloc(cause, error)
     end if
   end subroutine prepare_equilibrium
+
+  !> Factors K with closed joints.
+  subroutine factorise_closed(model, system, costs, closed, balance, error)
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    type(ledger), intent(in) :: costs
+    real(rk), allocatable, intent(out) :: closed(:) !< values of the matrix
+    type(linear_equilibrium), intent(out) :: balance
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: reference(:, :)
+    call reference_stiffness(model%joints, system%operator, reference)
+    allocate (closed, source=system%stiffness)
+    call system%operator%add_stiffness(closed_tangent(reference), system%matrix, closed)
+    call costs%start('analyse', 'structure', 'solver')
+    call make_solver(symmetric_solver, balance%factor, error)
+    if (.not. allocated(error)) call balance%factor%analyse(system%matrix, error)
+    call costs%stop()
+    if (allocated(error)) return
+    balance%costs = costs
+    call prepare_equilibrium(model, system, closed, 1.0_rk, balance, error)
+  end subroutine factorise_closed
+
+  !> Gives modal damping to the solver; acts from `prepare_equilibrium` on.
+  subroutine set_modal_damping(system, factor, balance)
+    type(dam_system), intent(in) :: system
+    real(rk), intent(in) :: factor !< of C in K_eff [1/s]
+    class(equilibrium_solver), intent(inout) :: balance
+    if (size(system%modal, 2) > 0) balance%low_rank = sqrt(factor)*system%modal
+  end subroutine set_modal_damping
 
   !> Subtracts the forces of moving supports on the free unknowns from the right-hand side.
   subroutine add_moving_supports(system, values, x, rhs)

@@ -7,7 +7,7 @@ module step_system
   use step_plan, only: step
   use dof_numbering, only: numbering
   use constraint_elimination, only: number_step
-  use global_vectors, only: diagonal, multiply
+  use global_vectors, only: diagonal, dot, multiply
   use matrix_pattern, only: pattern, drop_zeros
   use pattern_builder, only: list_cells, build_pattern
   use assemble_elements, only: assemble_stiffness, assemble_mass, assemble_damping
@@ -30,6 +30,8 @@ module step_system
     type(pattern) :: mass_pattern !< of the entries of M that are not zero, for products
     real(rk), allocatable :: mass_entries(:) !< their values [kg]
     real(rk), allocatable :: damping(:) !< values of C; size 0 where nothing damps
+    !> (num_free, modes) U of modal damping: C has the term U U^T; no columns without it
+    real(rk), allocatable :: modal(:, :)
     type(jump_operator) :: operator
     type(load_group), allocatable :: groups(:)
     type(support), allocatable :: supports(:)
@@ -39,19 +41,25 @@ module step_system
 
 contains
 
-  !> C v; zero where nothing damps.
+  !> C v; zero where nothing damps. Modal damping acts on the free unknowns alone.
   subroutine find_damping_force(self, v, force)
     class(dam_system), intent(in) :: self
     real(rk), intent(in) :: v(:) !< (num_total)
     real(rk), intent(out) :: force(:) !< (num_total)
+    integer :: k
     if (size(self%damping) > 0) then
       call multiply(self%matrix, self%damping, v, force)
     else
       force = 0.0_rk
     end if
+    do k = 1, size(self%modal, 2)
+      associate (u => self%modal(:, k), n => size(self%modal, 1))
+        force(:n) = force(:n) + dot(u, v(:n))*u
+      end associate
+    end do
   end subroutine find_damping_force
 
-  !> Adds a multiple of C to the values of a matrix.
+  !> Adds a multiple of C, without modal damping, to the values of a matrix.
   subroutine add_damping(self, factor, values)
     class(dam_system), intent(in) :: self
     real(rk), intent(in) :: factor
@@ -80,6 +88,7 @@ contains
     call add_guest_matrices(guests, stiffness_matrix, model, system%numbers, system%matrix, &
                             system%stiffness, costs)
     allocate (system%mass(0), system%damping(0), system%diagonal(system%matrix%num_total))
+    allocate (system%modal(system%matrix%num_free, 0))
     call diagonal(system%matrix, system%stiffness, system%diagonal)
     call costs%stop('assemble structure')
   end subroutine build_structure

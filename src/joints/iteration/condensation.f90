@@ -12,6 +12,7 @@ module condensation
   use joint_iteration, only: start_iteration, excess_traction, closed_tangent
   use joint_compliance, only: find_compliance, find_friction_scale
   use matrix_condition, only: estimate_condition
+  use solver_low_rank, only: add_low_rank
   use blas_threads, only: use_many_threads, use_one_thread
   use jump_block, only: jump_schur_block, extract_schur_block, schur_compliance
   use newton_condensed, only: condensed_joints, iterate_on_jumps
@@ -51,6 +52,7 @@ contains
     allocate (closed, source=values)
     call operator%add_stiffness(weight*closed_tangent(self%condensed%k_ref), matrix, closed)
     call self%costs%start('factor', 'structure', 'solver')
+    call add_low_rank(self%low_rank, self%factor)
     call self%factor%factorise(matrix, closed, error)
     self%num_factorisations = self%num_factorisations + 1
     call self%costs%stop()

@@ -50,6 +50,8 @@ module equilibrium
   type, abstract :: equilibrium_solver
     class(equation_solver), allocatable :: factor !< of the symmetric, positive definite matrix
     type(step_controls) :: controls
+    !> (free unknowns, rank) U: the matrix is K_eff + U U^T; not allocated for K_eff alone
+    real(rk), allocatable :: low_rank(:, :)
     type(jump_operator) :: operator !< of the joints
     real(rk) :: weight = 1.0_rk !< of the joint forces
     integer :: num_factorisations = 0

@@ -7,6 +7,7 @@ module equilibrium_linear
   use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use linear_solver, only: equation_solver
+  use solver_low_rank, only: add_low_rank
   use solver_catalogue, only: make_solver, unsymmetric_solver
   use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
   implicit none
@@ -43,8 +44,10 @@ contains
     end if
     call self%costs%start('factor', 'structure', 'solver')
     if (.not. self%is_unsymmetric) then
+      call add_low_rank(self%low_rank, self%factor)
       call self%factor%factorise(matrix, values, error)
     else
+      call add_low_rank(self%low_rank, self%unsymmetric_factor)
       call self%unsymmetric_factor%factorise(matrix, values, error)
     end if
     call self%costs%stop()

@@ -14,6 +14,7 @@ module newton_full
   use joint_compliance, only: find_compliance, find_friction_scale
   use linear_solver, only: equation_solver
   use matrix_condition, only: estimate_condition
+  use solver_low_rank, only: add_low_rank
   use solver_catalogue, only: make_solver, unsymmetric_solver
   use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
   implicit none
@@ -133,6 +134,7 @@ contains
     if (.not. self%is_unsymmetric) then
       allocate (values, source=self%values)
       call operator%add_stiffness(self%weight*tangent, self%matrix, values)
+      call add_low_rank(self%low_rank, self%factor)
       call self%factor%factorise(self%matrix, values, error)
       call self%costs%stop()
       return
@@ -149,6 +151,7 @@ contains
       values = self%values
     end if
     call operator%add_stiffness(self%weight*tangent, self%full_matrix, values)
+    call add_low_rank(self%low_rank, self%unsymmetric_factor)
     call self%unsymmetric_factor%factorise(self%full_matrix, values, error)
     call self%costs%stop()
   end subroutine factorise_tangent

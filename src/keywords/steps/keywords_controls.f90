@@ -3,10 +3,11 @@ module keywords_controls
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use equilibrium_catalogue, only: names_of_joint_solvers
-  use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real
+  use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, kind_real
   use keywords_material, only: base_of_damping
   use kinds, only: rk
   use model_draft, only: draft
+  use step_plan, only: step_damping
   implicit none
   private
   public :: describe_controls, describe_step_damping, read_controls, read_step_damping
@@ -65,30 +66,88 @@ contains
     spec%name = 'DAMPING'
     spec%family = 'step'
     spec%place = 'step'
-    spec%meaning = 'Rayleigh damping of the whole model by one ratio at two frequencies, '// &
-                   'in addition to that of the materials, from this step on.'
-    spec%example = '*DAMPING, RATIO=0.05, F1=2., F2=10.'
+    spec%meaning = 'Damping of the whole model, in addition to that of the materials, from '// &
+                   'this step on: Rayleigh damping by one ratio at two frequencies, or with '// &
+                   'MODAL one ratio for each of the lowest modes of the undamaged model with '// &
+                   'closed joints and for nothing else. Both kinds may act together; RATIO=0 '// &
+                   'ends one.'
+    spec%example = '*DAMPING, RATIO=0.05, F1=2., F2=10.'//new_line('a')// &
+                   '*DAMPING, MODAL, RATIO=0.05, MODES=20'
     spec%most_lines = 0
     allocate (spec%parameters, source=[ &
               field('RATIO', kind_real, 'part of critical damping', is_required=.true., &
                     lowest=0.0_rk, highest=1.0_rk, excludes_highest=.true.), &
-              field('F1', kind_real, 'lower frequency', 'Hz', is_required=.true., &
+              field('F1', kind_real, 'lower frequency of Rayleigh damping', 'Hz', &
                     lowest=0.0_rk, excludes_lowest=.true.), &
-              field('F2', kind_real, 'upper frequency', 'Hz', is_required=.true., &
+              field('F2', kind_real, 'upper frequency of Rayleigh damping', 'Hz', &
                     lowest=0.0_rk, excludes_lowest=.true.), &
-              base_of_damping()])
+              base_of_damping(), &
+              field('MODAL', kind_flag, 'the ratio is that of modes'), &
+              field('MODES', kind_integer, 'number of damped modes', lowest=1.0_rk), &
+              field('HIGHEST', kind_real, 'in place of MODES: modes up to this frequency', 'Hz', &
+                    lowest=0.0_rk, excludes_lowest=.true.)])
   end subroutine describe_step_damping
 
   subroutine read_step_damping(this, model, faults)
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    model%now%damping%ratio = this%real('RATIO')
-    model%now%damping%f1 = this%real('F1')
-    model%now%damping%f2 = this%real('F2')
-    model%now%damping%is_current = this%word('BASE') == 'CURRENT'
-    if (model%now%damping%f2 > model%now%damping%f1) return
+    if (this%has('MODAL')) then
+      call read_modal_damping(this, model%now%damping, faults)
+    else
+      call read_rayleigh_damping(this, model%now%damping, faults)
+    end if
+  end subroutine read_step_damping
+
+  !> The ratio at two frequencies.
+  subroutine read_rayleigh_damping(this, damping, faults)
+    type(card), intent(in) :: this
+    type(step_damping), intent(inout) :: damping
+    type(diagnostic_list), intent(inout) :: faults
+    call refuse_parameters(this, [character(7) :: 'MODES', 'HIGHEST'], 'with MODAL only', faults)
+    if (.not. (this%has('F1') .and. this%has('F2'))) then
+      call this%fault(faults, 'parameter '//trim(merge('F2', 'F1', this%has('F1')))// &
+                      ' is missing', 'F1 and F2 [Hz] of Rayleigh damping, or MODAL')
+      return
+    end if
+    damping%ratio = this%real('RATIO')
+    damping%f1 = this%real('F1')
+    damping%f2 = this%real('F2')
+    damping%is_current = this%word('BASE') == 'CURRENT'
+    if (damping%f2 > damping%f1) return
     call this%fault_parameter(faults, 'F2', "found '"//this%text('F2')//"'", &
                               'a frequency above F1 [Hz]')
-  end subroutine read_step_damping
+  end subroutine read_rayleigh_damping
+
+  !> The ratio of modes.
+  subroutine read_modal_damping(this, damping, faults)
+    type(card), intent(in) :: this
+    type(step_damping), intent(inout) :: damping
+    type(diagnostic_list), intent(inout) :: faults
+    call refuse_parameters(this, [character(4) :: 'F1', 'F2', 'BASE'], 'without MODAL only', faults)
+    damping%modal_ratio = this%real('RATIO')
+    damping%num_modes = 0
+    damping%highest = 0.0_rk
+    if (this%has('MODES')) damping%num_modes = this%integer('MODES')
+    if (this%has('HIGHEST')) damping%highest = this%real('HIGHEST')
+    if (this%has('MODES') .neqv. this%has('HIGHEST')) return
+    if (.not. damping%modal_ratio > 0.0_rk .and. .not. this%has('MODES')) return
+    call this%fault(faults, 'MODAL has '//trim(merge('both MODES and HIGHEST     ', &
+                                                     'neither MODES nor HIGHEST  ', &
+                                                     this%has('MODES'))), &
+                    'MODES=number of modes, or HIGHEST=frequency [Hz]')
+  end subroutine read_modal_damping
+
+  !> Errors for parameters of the other kind of damping.
+  subroutine refuse_parameters(this, names, where, faults)
+    type(card), intent(in) :: this
+    character(*), intent(in) :: names(:), where
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i
+    do i = 1, size(names)
+      if (.not. this%has(trim(names(i)))) cycle
+      call this%fault_parameter(faults, trim(names(i)), trim(names(i))//' has no meaning here', &
+                                trim(names(i))//' '//where)
+    end do
+  end subroutine refuse_parameters
 end module keywords_controls

@@ -80,6 +80,9 @@ module step_plan
     real(rk) :: ratio = 0.0_rk !< of Rayleigh damping; 0 for none
     real(rk) :: f1 = 0.0_rk, f2 = 0.0_rk !< where the ratio holds [Hz]
     logical :: is_current = .false. !< BASE=CURRENT: by the damaged stiffness
+    real(rk) :: modal_ratio = 0.0_rk !< of modal damping; 0 for none
+    integer :: num_modes = 0 !< with modal damping; 0: all up to `highest`
+    real(rk) :: highest = 0.0_rk !< [Hz]
   end type step_damping
 
   type :: step

@@ -110,7 +110,11 @@ contains
       end if
     end do
     do i = 1, size(model%steps)
-      if (model%steps(i)%damping%ratio > 0.0_rk) call put_effect(model%steps(i)%name, 'damping')
+      associate (damping => model%steps(i)%damping)
+        if (max(damping%ratio, damping%modal_ratio) > 0.0_rk) then
+          call put_effect(model%steps(i)%name, 'damping')
+        end if
+      end associate
     end do
     call json%close_array()
 

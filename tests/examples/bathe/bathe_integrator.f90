@@ -24,7 +24,7 @@ module bathe_integrator
   use joint_forces, only: gather_jumps
   use joint_water, only: update_uplift
   use equilibrium, only: balance_outcome
-  use step_equilibrium, only: add_moving_supports, prepare_equilibrium
+  use step_equilibrium, only: add_moving_supports, prepare_equilibrium, set_modal_damping
   use step_system, only: dam_system
   use step_loads, only: external_force, prescribed_values, step_time
   use dynamic_step, only: largest_force, open_dynamic_step
@@ -84,6 +84,7 @@ contains
     end associate
     call self%solids%matrix%start_elastic(dt)
     call results%costs%start('iterate', 'structure', 'solver')
+    call set_modal_damping(self%system, self%c, self%solids%solver)
     call prepare_equilibrium(model, self%system, self%solids%values, 1.0_rk, self%solids%solver, &
                              error)
     call results%costs%stop()

@@ -1,0 +1,85 @@
+!> Modal damping: the modes of the undamaged model with closed joints have the ratio zeta each
+!> (theory.md, (5.3)):
+!>
+!>   C = sum 2 zeta w_i (M phi_i) (M phi_i)^T
+!>
+!> The supports of the step hold the modes; the force acts on the free unknowns alone.
+module modal_damping
+  use eigen_modes, only: num_massive, solve_modes
+  use equilibrium_linear, only: linear_equilibrium
+  use errors, only: error_type, raise
+  use global_vectors, only: multiply
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use run_ledger, only: ledger
+  use step_equilibrium, only: factorise_closed
+  use step_plan, only: step, step_damping
+  use step_system, only: dam_system
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: build_modal_damping
+
+  real(rk), parameter :: two_pi = 2.0_rk*acos(-1.0_rk)
+  integer, parameter :: first_guess = 10 !< modes to begin with where a highest frequency is given
+
+contains
+
+  !> Finds the modes and the columns sqrt(2 zeta w_i) M phi_i of the system.
+  subroutine build_modal_damping(model, plan, system, costs, error)
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(dam_system), intent(inout) :: system
+    type(ledger), intent(in) :: costs
+    type(error_type), allocatable, intent(out) :: error
+    type(linear_equilibrium) :: balance
+    real(rk), allocatable :: closed(:), lambda(:), phi(:, :)
+    real(rk), dimension(system%matrix%num_total) :: mode, inertia
+    integer :: k
+    if (.not. plan%damping%modal_ratio > 0.0_rk) return
+    call factorise_closed(model, system, costs, closed, balance, error)
+    if (allocated(error)) return
+    call costs%start('solve', 'modes', 'solver')
+    call choose_modes(plan%damping, system, closed, balance, lambda, phi, error)
+    call costs%stop()
+    if (allocated(error)) return
+    deallocate (system%modal)
+    allocate (system%modal(system%matrix%num_free, size(lambda)))
+    mode = 0.0_rk
+    do k = 1, size(lambda)
+      mode(:system%matrix%num_free) = phi(:, k)
+      call multiply(system%matrix, system%mass, mode, inertia)
+      system%modal(:, k) = sqrt(2.0_rk*plan%damping%modal_ratio*sqrt(lambda(k))) &
+                           *inertia(:system%matrix%num_free)
+    end do
+  end subroutine build_modal_damping
+
+  !> As many modes as requested, or all up to the highest frequency.
+  subroutine choose_modes(damping, system, closed, balance, lambda, phi, error)
+    type(step_damping), intent(in) :: damping
+    type(dam_system), intent(in) :: system
+    real(rk), intent(in) :: closed(:) !< values of K with closed joints
+    type(linear_equilibrium), intent(inout) :: balance !< holds its factor
+    real(rk), allocatable, intent(out) :: lambda(:), phi(:, :)
+    type(error_type), allocatable, intent(out) :: error
+    integer :: num_modes, most, num_below
+    num_modes = damping%num_modes
+    most = num_massive(system%matrix, system%mass)
+    if (num_modes == 0) num_modes = min(first_guess, most)
+    do
+      call solve_modes(system%matrix, closed, system%mass, balance%factor, num_modes, lambda, phi, &
+                       error)
+      if (allocated(error) .or. damping%num_modes > 0) return
+      num_below = count(sqrt(lambda) <= two_pi*damping%highest)
+      if (num_below < num_modes .or. num_modes == most) exit
+      num_modes = min(2*num_modes, most)
+    end do
+    if (num_below == 0) then
+      call raise(error, '*DAMPING, MODAL: no mode up to HIGHEST='//as_text(damping%highest)// &
+                 ' Hz; the lowest has '//as_text(sqrt(lambda(1))/two_pi)//' Hz')
+      return
+    end if
+    lambda = lambda(:num_below)
+    phi = phi(:, :num_below)
+  end subroutine choose_modes
+end module modal_damping
