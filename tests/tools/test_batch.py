@@ -130,7 +130,13 @@ def test_interruption_ends_the_children_and_goes_on_later(place):
         deck(place, "c", "ok 3"),
     ]
     command = [sys.executable, str(BATCH), *decks, "--program", "keyway", "--json", "table.json"]
-    child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    # A shell lets its background jobs ignore SIGINT, and children inherit that.
+    child = subprocess.Popen(
+        command,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
     for _ in range(200):
         if len(calls(place)) == 2:
             break
