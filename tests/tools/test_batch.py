@@ -131,12 +131,8 @@ def test_interruption_ends_the_children_and_goes_on_later(place):
     ]
     command = [sys.executable, str(BATCH), *decks, "--program", "keyway", "--json", "table.json"]
     # A shell lets its background jobs ignore SIGINT, and children inherit that.
-    child = subprocess.Popen(
-        command,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
-    )
+    heard = ["env", "--default-signal=INT", *command]
+    child = subprocess.Popen(heard, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     for _ in range(200):
         if len(calls(place)) == 2:
             break
