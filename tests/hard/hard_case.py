@@ -123,3 +123,9 @@ def off(found, exact, scale: float | None = None) -> float:
     """The largest difference over the largest exact value."""
     wrong = np.abs(np.asarray(found) - np.asarray(exact)).max()
     return float(wrong / (scale or np.abs(exact).max()))
+
+
+def over_limits(energy: float, cuts: int, iterations: int = 0) -> float:
+    """At most 1 where energy is right to 1e-6, no increment was cut, and none took more than 25
+    iterations."""
+    return max(energy / 1e-6, iterations / 25, 1.0 + cuts if cuts else 0.0)
