@@ -1,6 +1,7 @@
 set(sources
   iteration/condensation.f90
   iteration/contact_augmentation.f90
+  iteration/contact_sweeps.f90
   iteration/equilibrium.f90
   iteration/equilibrium_catalogue.f90
   iteration/equilibrium_linear.f90

@@ -20,7 +20,7 @@ module solid_iteration
   use inelastic_forces, only: block_answer, open_answers, update_points, recall_points, &
                               sum_excess, find_failure
   use guest_forces, only: has_histories, recall_guests, update_guests
-  use joint_forces, only: gather_jumps
+  use joint_forces, only: gather_jumps, gather_tractions
   use equilibrium, only: equilibrium_solver, balance_outcome
   use increment_balance, only: increment_task
   use step_system, only: dam_system
@@ -173,8 +173,7 @@ contains
     task%tolerance = self%tolerance
     self%solver%controls%residual_tolerance = task%share*self%tolerance
     if (task%is_refined) then
-      task%balance%starts_closed = .false.
-      call gather_jumps(system%operator, after%joints, task%balance%guess)
+      call guess_from(system, after, task)
     end if
     if (.not. self%has_inelastic()) then
       call self%solver%solve_balance(task%balance, model%joints, before%joints, after%joints, &
@@ -195,6 +194,17 @@ contains
       if (outcome%size_ratio < 1.0_rk) return
     end do
   end subroutine solve_increment
+
+  !> Joints start from their last iterate.
+  subroutine guess_from(system, after, task)
+    type(dam_system), intent(in) :: system
+    type(state), intent(in) :: after
+    type(increment_task), intent(inout) :: task
+    task%balance%starts_closed = .false.
+    call gather_jumps(system%operator, after%joints, task%balance%guess)
+    task%balance%guess_traction = task%balance%guess
+    call gather_tractions(system%operator, after%joints, task%balance%guess_traction)
+  end subroutine guess_from
 
   !> Iterates until residual and correction are within the tolerances.
   subroutine iterate_on_forces(self, model, system, task, before, after, outcome, error)
@@ -265,8 +275,7 @@ contains
       last_x = task%x
       task%balance%rhs = now%rhs + self%weight*now%guess
       if (outcome%iterations > 0) then
-        task%balance%starts_closed = .false.
-        call gather_jumps(system%operator, after%joints, task%balance%guess)
+        call guess_from(system, after, task)
       end if
       call self%solver%solve_balance(task%balance, model%joints, before%joints, after%joints, &
                                      task%x, inner, error)

@@ -10,7 +10,7 @@ module condensation
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, reference_stiffness, gather_jumps, gather_tractions
   use joint_iteration, only: start_iteration, excess_traction, closed_tangent
-  use joint_compliance, only: find_compliance, find_friction_scale
+  use joint_compliance, only: find_compliance, find_contact_scale
   use matrix_condition, only: estimate_condition
   use solver_low_rank, only: add_low_rank
   use blas_threads, only: use_many_threads, use_one_thread
@@ -34,7 +34,7 @@ module condensation
 
 contains
 
-  !> Factors K_0 and computes the compliance G and the friction scale r.
+  !> Factors K_0 and computes the compliances G, C and the scale r of the contact.
   subroutine prepare_matrix(self, matrix, values, weight, joints, operator, error)
     class(condensed_equilibrium), intent(inout) :: self
     type(pattern), intent(in) :: matrix
@@ -77,8 +77,8 @@ contains
       return
     end if
     call use_many_threads(levels)
-    call find_friction_scale(self%condensed%compliance, operator, self%condensed%k_ref, weight, &
-                             self%condensed%friction_scale)
+    call find_contact_scale(self%condensed%compliance, operator, self%condensed%k_ref, weight, &
+                            self%condensed%scale, self%condensed%open_compliance)
     call use_one_thread(levels)
     call self%costs%stop()
   end subroutine prepare_matrix
@@ -101,6 +101,8 @@ contains
     nearer = balance
     nearer%starts_closed = .false.
     call gather_jumps(self%operator, new, nearer%guess)
+    nearer%guess_traction = nearer%guess
+    call gather_tractions(self%operator, new, nearer%guess_traction)
     iterations = outcome%iterations
     call self%solve_from(nearer, joints, old, new, x, outcome, error)
     outcome%iterations = outcome%iterations + iterations
@@ -140,8 +142,7 @@ contains
     real(rk), dimension(3, self%operator%num_points) :: first_excess, excess
     real(rk), allocatable :: half(:)
     associate (k_ref => self%condensed%k_ref, operator => self%operator)
-      call start_iteration(balance, joints, operator, k_ref, self%condensed%friction_scale, &
-                           old, field, new)
+      call start_iteration(balance, joints, operator, k_ref, self%condensed%scale, old, field, new)
       first_excess = excess_traction(k_ref, field%jump, balance%offset, field%iterate)
       call self%begin_solve(balance%rhs, first_excess, half, x, error)
       if (allocated(error)) return

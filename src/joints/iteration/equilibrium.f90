@@ -22,6 +22,8 @@ module equilibrium
     real(rk), allocatable :: rhs(:) !< (free unknowns) [N]
     real(rk), allocatable :: offset(:, :) !< (3, points) jumps at x = 0 [m]
     real(rk), allocatable :: guess(:, :) !< (3, points) jumps near the solution [m]
+    !> (3, points) tractions near the solution; not allocated: those of the last increment [Pa]
+    real(rk), allocatable :: guess_traction(:, :)
     logical :: starts_closed = .false. !< all joints closed and sticking in the first iterate
     real(rk) :: reference_force = 0.0_rk !< largest force of the bulk so far [N]
   end type force_balance
@@ -30,6 +32,7 @@ module equilibrium
   type :: balance_outcome
     logical :: has_converged = .false.
     integer :: iterations = 0
+    integer :: sweeps = 0 !< of Gauss-Seidel where Newton's iteration did not converge
     integer :: augmentations = 0 !< of the contact; each starts a pass of iterations
     integer :: first_pass = 0 !< iterations before the first augmentation, 0 for none
     integer :: pass_start = 0 !< iterations before the present pass

@@ -1,5 +1,5 @@
-!> Compliance of the structure at the points of its joints, G = B K_0^-1 B^T, and the friction
-!> scale r that follows from G.
+!> Compliance of the structure at the points of its joints, G = B K_0^-1 B^T, and the scale r of the
+!> augmented contact that follows from G.
 module joint_compliance
   use kinds, only: rk
   use errors, only: error_type
@@ -9,11 +9,18 @@ module joint_compliance
   use dense_factor, only: lu_factor, factorise_dense, solve_factored
   implicit none
   private
-  public :: find_compliance, find_friction_scale
+  public :: contact_scale, find_compliance, find_contact_scale
+
+  !> r of the augmented form per area, at most the stiffness of the joint (theory.md, 2.3).
+  type :: contact_scale
+    !> (2, points) of a point alone, normal and along the joint: the stiffness that the structure
+    !> and the joint's own spring show at this point [Pa/m]
+    real(rk), allocatable :: own(:, :)
+    real(rk), allocatable :: shared(:) !< (points) of all points that slide together [Pa/m]
+  end type contact_scale
 
   integer, parameter :: block_size = 48 !< right-hand sides solved at once
-  !> r over the stiffness of the structure for common sliding (theory.md, 2.3). From 1 on, the
-  !> iteration of a block that reverses its sliding oscillates.
+  !> r over the stiffness of the structure for common sliding (different_meshes.md, 13.5).
   real(rk), parameter :: scale_factor = 0.8_rk
   !> Fraction of k_ref that stays in G when k_ref is removed, so that a block held by joints alone
   !> has a stiffness.
@@ -73,21 +80,22 @@ contains
     end do
   end subroutine apply_rows
 
-  !> r of the augmented friction per area: a fraction of the tangential stiffness of the structure
-  !> when all points slide together, and when one slides alone; at most k_t of the joint.
-  !> Without joints the structure has the compliance G (I - W k_ref G)^-1, W = weight*area.
-  subroutine find_friction_scale(compliance, operator, k_ref, weight, friction_scale)
+  !> r of the augmented form, and the compliance C of the structure with open joints. C is
+  !> (I - G W k_ref)^-1 G, W = weight*area; a part of k_ref stays so that C exists for blocks that
+  !> only joints hold.
+  subroutine find_contact_scale(compliance, operator, k_ref, weight, scale, open_compliance)
     real(rk), intent(in) :: compliance(:, :) !< G with the closed joints [m/N]
     type(jump_operator), intent(in) :: operator
     real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
     real(rk), intent(in) :: weight !< of the joint forces
-    real(rk), allocatable, intent(out) :: friction_scale(:, :) !< (2, points) all, one [Pa/m]
+    type(contact_scale), intent(out) :: scale
+    real(rk), allocatable, intent(out) :: open_compliance(:, :) !< C (rows, rows) [m/N]
     type(lu_factor) :: factor
-    real(rk), allocatable :: matrix(:, :), alone(:, :)
-    real(rk) :: joint_stiffness, flexibility, share
+    real(rk), allocatable :: matrix(:, :)
+    real(rk) :: joint_stiffness, flexibility
     integer :: m, p, i, j, row, slip(2), other_slip(2)
     m = size(compliance, 1)
-    allocate (matrix(m, m), friction_scale(2, operator%num_points))
+    allocate (matrix(m, m), scale%shared(operator%num_points), scale%own(2, operator%num_points))
     do p = 1, operator%num_points
       do i = 1, num_axes
         row = row_of(p, i)
@@ -96,29 +104,40 @@ contains
         matrix(row, row) = 1.0_rk + matrix(row, row)
       end do
     end do
-    alone = transpose(compliance)
-    matrix = transpose(matrix)
+    open_compliance = compliance
     call factorise_dense(matrix, factor)
-    call solve_factored(factor, alone)
+    call solve_factored(factor, open_compliance)
     do p = 1, operator%num_points
       slip = row_of(p, [2, 3])
+      row = row_of(p, 1)
       flexibility = 0.0_rk
       do j = 1, operator%num_points
         other_slip = row_of(j, [2, 3])
-        share = weight*operator%area(j)*(abs(alone(other_slip(1), slip(1))) &
-                                         + abs(alone(other_slip(2), slip(2))))
-        flexibility = flexibility + share
-        if (j == p) friction_scale(2, p) = scale_for(share, minval(k_ref(2:3, p)))
+        flexibility = flexibility &
+                      + weight*operator%area(j)*(abs(open_compliance(other_slip(1), slip(1))) &
+                                                 + abs(open_compliance(other_slip(2), slip(2))))
       end do
-      friction_scale(1, p) = scale_for(flexibility, minval(k_ref(2:3, p)))
+      scale%shared(p) = common_scale(flexibility, minval(k_ref(2:3, p)))
+      associate (share => weight*operator%area(p))
+        scale%own(1, p) = 1.0_rk/(share*open_compliance(row, row) + 1.0_rk/k_ref(1, p))
+        scale%own(2, p) = 1.0_rk/(share*largest_of(open_compliance(slip, slip)) &
+                                  + 1.0_rk/minval(k_ref(2:3, p)))
+      end associate
     end do
-  end subroutine find_friction_scale
+  end subroutine find_contact_scale
 
-  !> r for a compliance in two directions.
-  pure real(rk) function scale_for(flexibility, most) result(friction_scale)
+  !> r of all points together from a compliance in two directions.
+  pure real(rk) function common_scale(flexibility, most)
     real(rk), intent(in) :: flexibility !< [m/Pa]
     real(rk), intent(in) :: most !< [Pa/m]
-    friction_scale = most
-    if (flexibility*most > 2.0_rk*scale_factor) friction_scale = 2.0_rk*scale_factor/flexibility
-  end function scale_for
+    common_scale = most
+    if (flexibility*most > 2.0_rk*scale_factor) common_scale = 2.0_rk*scale_factor/flexibility
+  end function common_scale
+
+  !> Largest eigenvalue of a symmetric matrix.
+  pure real(rk) function largest_of(block)
+    real(rk), intent(in) :: block(2, 2)
+    largest_of = 0.5_rk*(block(1, 1) + block(2, 2)) &
+                 + hypot(0.5_rk*(block(1, 1) - block(2, 2)), 0.5_rk*(block(1, 2) + block(2, 1)))
+  end function largest_of
 end module joint_compliance

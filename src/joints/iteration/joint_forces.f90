@@ -1,10 +1,11 @@
 !> The laws of all joints at once: tractions and tangents of all points of the operator.
 module joint_forces
   use kinds, only: rk
-  use joint_law, only: joint_state, state_open
+  use joint_law, only: joint_state
   use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use contact_augmentation, only: contact_multiplier
+  use joint_compliance, only: contact_scale
   implicit none
   private
   public :: joint_field, start_joints, reference_stiffness
@@ -15,22 +16,17 @@ module joint_forces
     real(rk), allocatable :: gap(:) !< (points) at the start, with the shift of the contact [m]
     type(contact_multiplier) :: contact
     real(rk), allocatable :: jump(:, :) !< (3, points) where the laws were evaluated [m]
-    real(rk), allocatable :: multiplier(:, :) !< (2, points) friction of the last iterate [Pa]
-    real(rk), allocatable :: friction_scale(:) !< (points) r of the augmented form [Pa/m]
-    real(rk), allocatable :: own_friction_scale(:) !< (points) r of a point that slides alone [Pa/m]
-    real(rk), allocatable :: shared_friction_scale(:) !< (points) r of all points together [Pa/m]
+    real(rk), allocatable :: multiplier(:, :) !< (3, points) of the last iterate [Pa]
+    type(contact_scale) :: scale !< r of the augmented form
     real(rk), allocatable :: traction(:, :) !< (3, points) of the laws [Pa]
     real(rk), allocatable :: iterate(:, :) !< (3, points) of the augmented form [Pa]
     real(rk), allocatable :: tangent(:, :, :) !< (3, 3, points) [Pa/m]
-    logical, allocatable :: is_open(:) !< (points) as the laws report it
+    logical, allocatable :: is_open(:) !< (points) in the last linearisation: no stiffness
     logical, allocatable :: was_open(:) !< (points) at the previous linearisation
     integer, allocatable :: num_openings(:) !< (points) transitions to open in this increment
     real(rk), allocatable :: response(:, :) !< (3, points) jumps of the linearised equilibrium [m]
     real(rk), allocatable :: start_jump(:, :) !< (3, points) of the last converged state [m]
     real(rk), allocatable :: start_spring(:, :) !< (3, points) traction there over k_ref [m]
-    real(rk), allocatable :: step(:, :) !< (3, points) of the jumps in the last iteration [m]
-    real(rk), allocatable :: multiplier_step(:, :) !< (2, points) [Pa]
-    real(rk) :: last_residual = huge(1.0_rk)
     real(rk) :: start_force = 0.0_rk !< 2-norm of area*traction in the last converged state [N]
     real(rk) :: bulk_force = 0.0_rk !< reference force of the bulk [N]
   end type joint_field
@@ -64,7 +60,7 @@ contains
     end do
   end subroutine reference_stiffness
 
-  !> Evaluates all laws at `field%jump` with `field%multiplier` and `field%friction_scale`.
+  !> Evaluates all laws at `field%jump` with `field%multiplier` and `field%scale`.
   subroutine evaluate_joints(joints, operator, old, field, new)
     type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
@@ -77,12 +73,12 @@ contains
       last = operator%first_point(j + 1) - 1
       associate (jump => field%jump(:, first:last), multiplier => field%multiplier(:, first:last))
         new(j)%num_openings = field%num_openings(first:last)
-        call joints(j)%law%linearise(jump, old(j), multiplier, field%friction_scale(first:last), &
+        call joints(j)%law%linearise(jump, old(j), multiplier, field%scale%own(:, first:last), &
                                      new(j), field%iterate(:, first:last), &
                                      field%tangent(:, :, first:last))
       end associate
-      field%is_open(first:last) = new(j)%status == state_open
     end do
+    field%is_open = .not. any(any(abs(field%tangent) > 0.0_rk, 1), 1)
     call gather_tractions(operator, new, field%traction)
   end subroutine evaluate_joints
 

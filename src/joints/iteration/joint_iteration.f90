@@ -4,35 +4,29 @@ module joint_iteration
   use kinds, only: rk
   use global_vectors, only: norm, distance, total
   use joint_law, only: joint_state
-  use joint_opening, only: opening_of
   use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, evaluate_joints, gather_tractions, gather_jumps, gather_gaps
+  use joint_compliance, only: contact_scale
   use contact_augmentation, only: start_multiplier, measure_contact, update_multiplier
   use equilibrium, only: force_balance, balance_outcome
   implicit none
   private
-  public :: start_iteration, take_step, linearise_next, excess_traction, closed_tangent
+  public :: start_iteration, linearise, take_step, excess_traction, closed_tangent, is_cycling
   public :: measure_residual, measure_correction, augment_contact
 
   !> Stiffness of open and sliding points in the iteration matrix, relative to k_ref. It limits the
   !> motion of a block that has no contact in one iterate. The residual does not contain it.
   real(rk), parameter :: stiffness_floor = 1.0e-10_rk
-  !> From this iteration on r is raised where the friction traction and its multiplier differ in
-  !> direction, up to the r of a point that slides alone. The r of common sliding changes the
-  !> direction at a single point too slowly.
-  integer, parameter :: patience_with_direction = 4
-  real(rk), parameter :: same_friction = 0.1_rk !< smaller differences are the same direction
-  real(rk), parameter :: scale_growth = 10.0_rk
-  !> From this iteration on the friction limit uses the pressure of the last iterate, unless the
-  !> residual is below `near_solution`. A block on its edge can generate its own contact pressure by
-  !> sliding; the coupled iteration then has no solution.
-  integer, parameter :: patience_with_friction = 8
-  real(rk), parameter :: near_solution = 1.0e-2_rk
-  !> From this iteration on the laws are linearised at half the step where the residual has not
-  !> decreased by `sufficient_decrease`. This ends cycles between two states of some points.
-  integer, parameter :: patience = 8
-  real(rk), parameter :: sufficient_decrease = 0.5_rk
+  !> Largest force that this stiffness may carry at the jumps found, over the reference force of the
+  !> bulk. Beyond it a block has left its supports, and round-off in the compliance holds it.
+  real(rk), parameter :: most_kept = 0.05_rk
+  !> r of the first iteration over that of a point alone (theory.md, 2.3): points that open or slide
+  !> together show less stiffness than one alone.
+  real(rk), parameter :: first_share = 0.3_rk
+  !> A cycle repeats its residuals to this fraction of them; longest cycle that is looked for.
+  real(rk), parameter :: same_residual = 0.02_rk
+  integer, parameter :: longest_cycle = 6
   !> Floor of the joint forces in the residual, as a fraction of the reference force of the bulk.
   real(rk), parameter :: smallest_share = 1.0e-6_rk
   !> Most passes of the augmented Lagrangian in an increment. About 5 are needed where the structure
@@ -47,25 +41,23 @@ module joint_iteration
 contains
 
   !> Linearises the laws at the guess, or takes all joints as closed and sticking.
-  subroutine start_iteration(balance, joints, operator, k_ref, friction_scale, old, field, new)
+  subroutine start_iteration(balance, joints, operator, k_ref, scale, old, field, new)
     type(force_balance), intent(in) :: balance
     type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     real(rk), intent(in) :: k_ref(:, :) !< (3, points) stiffness of the closed joint [Pa/m]
-    real(rk), intent(in) :: friction_scale(:, :) !< (2, points) all slide, one slides
+    type(contact_scale), intent(in) :: scale
     type(joint_state), intent(in) :: old(:)
     type(joint_field), intent(out) :: field
     type(joint_state), intent(inout) :: new(:)
-    logical :: is_moved
     integer :: n
     n = operator%num_points
     allocate (field%traction(3, n), field%iterate(3, n), field%tangent(3, 3, n))
     allocate (field%start_jump(3, n))
     allocate (field%num_openings(n), source=0)
     allocate (field%is_open(n), source=.false.)
-    field%friction_scale = friction_scale(1, :)
-    field%own_friction_scale = friction_scale(2, :)
-    field%shared_friction_scale = field%friction_scale
+    field%scale = scale
+    field%scale%own = first_share*scale%own
     field%bulk_force = balance%reference_force
     field%jump = balance%guess
     field%response = balance%guess
@@ -75,14 +67,13 @@ contains
     call start_multiplier(joints, old, new, field%contact)
     call gather_gaps(operator, new, field%gap)
     field%start_force = norm(spread(operator%area, 1, 3)*field%traction)
-    field%multiplier = field%traction(2:3, :)
+    field%multiplier = field%traction
+    if (allocated(balance%guess_traction)) field%multiplier = balance%guess_traction
     field%tangent = closed_tangent(k_ref)
     if (.not. balance%starts_closed) then
-      ! Points without pressure count as open: where they penetrate now, they come from there.
-      field%is_open = field%traction(1, :) >= 0.0_rk
+      ! A point that is open in the guess has not opened in this increment.
+      field%is_open = .true.
       call linearise(joints, operator, old, k_ref, field, new)
-      call approach_contact(k_ref, field, is_moved)
-      if (is_moved) call linearise(joints, operator, old, k_ref, field, new)
       return
     end if
     field%iterate = k_ref*field%jump
@@ -119,53 +110,26 @@ contains
     real(rk), intent(in) :: linear(:, :) !< (3, points) tractions of the solution [Pa]
     type(joint_field), intent(inout) :: field
     type(joint_state), intent(inout) :: new(:)
-    field%step = correction
-    field%multiplier_step = linear(2:3, :) - field%multiplier
     field%response = field%jump + correction
     field%jump = field%response
-    field%multiplier = linear(2:3, :)
+    field%multiplier = linear
     call linearise(joints, operator, old, k_ref, field, new)
   end subroutine take_step
 
-  !> Chooses the jumps of the next linearisation, which may differ from those of the last solution.
-  subroutine linearise_next(joints, operator, old, k_ref, outcome, field, new)
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: old(:)
-    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
-    type(balance_outcome), intent(in) :: outcome
-    type(joint_field), intent(inout) :: field
-    type(joint_state), intent(inout) :: new(:)
-    logical :: is_halfway, is_nearer
-    integer :: iterations
-    iterations = outcome%iterations - outcome%pass_start
-    if (iterations >= patience_with_direction) call raise_friction_scale(field)
-    is_halfway = iterations >= patience .and. &
-                 outcome%residual > sufficient_decrease*field%last_residual
-    if (is_halfway) then
-      field%jump = field%response - 0.5_rk*field%step
-      field%multiplier = field%multiplier - 0.5_rk*field%multiplier_step
-    end if
-    call approach_contact(k_ref, field, is_nearer)
-    if (is_halfway .or. is_nearer) call linearise(joints, operator, old, k_ref, field, new)
-    if (iterations >= patience_with_friction .and. outcome%residual > near_solution) then
-      field%tangent(2:3, 1, :) = 0.0_rk
-    end if
-    field%last_residual = outcome%residual
-  end subroutine linearise_next
-
-  !> Raises r where the friction of the law differs from the multiplier (theory.md, 2.3).
-  pure subroutine raise_friction_scale(field)
-    type(joint_field), intent(inout) :: field
-    integer :: p
-    do p = 1, size(field%friction_scale)
-      associate (own => field%traction(2:3, p), last => field%multiplier(:, p))
-        if (norm2(own - last) <= same_friction*max(norm2(own), norm2(last))) cycle
+  !> Whether the residuals of the last iterations repeat those before them, with any period. The
+  !> iteration then takes the same states again and does not converge.
+  pure logical function is_cycling(residual)
+    real(rk), intent(in) :: residual(:) !< of the iterations so far
+    integer :: period, n
+    n = size(residual)
+    is_cycling = .false.
+    do period = 1, min(longest_cycle, n/3)
+      associate (last => residual(n - 2*period + 1:n), &
+                 before => residual(n - 3*period + 1:n - period))
+        is_cycling = is_cycling .or. all(abs(last - before) <= same_residual*last)
       end associate
-      field%friction_scale(p) = min(scale_growth*field%friction_scale(p), &
-                                    field%own_friction_scale(p))
     end do
-  end subroutine raise_friction_scale
+  end function is_cycling
 
   !> Augments the contact where points penetrate more than their law allows. The laws are then
   !> linearised at the equilibrium found, and the iteration continues.
@@ -188,31 +152,11 @@ contains
     outcome%augmentations = outcome%augmentations + 1
     if (outcome%augmentations == 1) outcome%first_pass = outcome%iterations
     outcome%pass_start = outcome%iterations
-    field%last_residual = huge(1.0_rk)
-    call update_multiplier(joints, operator, field%shared_friction_scale/k_ref(1, :), &
+    call update_multiplier(joints, operator, field%scale%shared/k_ref(1, :), &
                            field%contact, new)
     call gather_gaps(operator, new, field%gap)
     call linearise(joints, operator, old, k_ref, field, new)
   end subroutine augment_contact
-
-  !> Reduces the penetration of points that were open in the last linearisation. Without the
-  !> stiffness of the joint they penetrate far too deep, and the large pressure would make them
-  !> stick. The reduced penetration gives a pressure of r times the depth (the normal part of the
-  !> augmented form).
-  pure subroutine approach_contact(k_ref, field, is_nearer)
-    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
-    type(joint_field), intent(inout) :: field
-    logical, intent(out) :: is_nearer !< the laws must be evaluated again
-    real(rk) :: depth
-    integer :: p
-    is_nearer = .false.
-    do p = 1, size(field%gap)
-      depth = -opening_of(field%jump(1, p), field%gap(p))
-      if (.not. field%was_open(p) .or. depth <= 0.0_rk) cycle
-      field%jump(1, p) = -field%gap(p) - depth*min(1.0_rk, field%friction_scale(p)/k_ref(1, p))
-      is_nearer = .true.
-    end do
-  end subroutine approach_contact
 
   !> Tangents of closed, sticking joints.
   pure function closed_tangent(k_ref) result(tangent)
@@ -238,13 +182,14 @@ contains
   end function excess_traction
 
   !> Residual: forces of the laws minus linearised forces, over the norm of the joint forces.
-  subroutine measure_residual(operator, field, linear, outcome)
+  subroutine measure_residual(operator, k_ref, field, linear, outcome)
     type(jump_operator), intent(in) :: operator
+    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
     type(joint_field), intent(in) :: field !< at the new jumps
     real(rk), intent(in) :: linear(:, :) !< (3, points) tractions of the linearised solution [Pa]
     type(balance_outcome), intent(inout) :: outcome
     real(rk), dimension(operator%num_points) :: unbalance, square
-    real(rk) :: force
+    real(rk) :: force, kept
     integer :: p
     do p = 1, operator%num_points
       unbalance(p) = operator%area(p)*norm2(field%traction(:, p) - linear(:, p))
@@ -252,7 +197,9 @@ contains
     end do
     force = max(sqrt(total(square)), field%start_force, smallest_share*field%bulk_force, &
                 tiny(1.0_rk))
-    outcome%residual = norm(unbalance)/force
+    kept = norm(stiffness_floor*spread(operator%area, 1, 3)*k_ref*field%jump)
+    if (kept <= most_kept*field%bulk_force) kept = 0.0_rk
+    outcome%residual = max(norm(unbalance), kept)/force
     outcome%worst_point = maxloc(unbalance, 1)
   end subroutine measure_residual
 

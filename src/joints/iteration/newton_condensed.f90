@@ -12,8 +12,10 @@ module newton_condensed
   use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, linear_tractions
-  use joint_iteration, only: measure_residual, measure_correction, take_step, &
-                             linearise_next, augment_contact
+  use contact_sweeps, only: gather_points, swept_points, sweep_contacts
+  use joint_compliance, only: contact_scale
+  use joint_iteration, only: measure_residual, measure_correction, take_step, linearise, &
+                             is_cycling, augment_contact
   use dense_factor, only: lu_factor, factorise_dense, solve_factored
   use equilibrium, only: balance_outcome
   use step_plan, only: step_controls
@@ -25,7 +27,8 @@ module newton_condensed
     real(rk) :: weight = 1.0_rk !< of the joint forces in the balance
     real(rk), allocatable :: compliance(:, :) !< G (rows, rows) [m/N]
     real(rk), allocatable :: k_ref(:, :) !< (3, points) k_ref [Pa/m]
-    real(rk), allocatable :: friction_scale(:, :) !< (2, points) r of the augmented friction [Pa/m]
+    real(rk), allocatable :: open_compliance(:, :) !< C (rows, rows) with open joints [m/N]
+    type(contact_scale) :: scale !< r of the augmented contact
   end type condensed_joints
 
   !> A tangent that differs from k_ref on some rows.
@@ -35,12 +38,21 @@ module newton_condensed
     type(lu_factor) :: factor !< of I - D G on these rows
   end type changed_tangent
 
+  !> Sweeps before the second iteration, and most sweeps before one. On the saved problems
+  !> (docs/studies/joint_problems.md) 10 to 80 sweeps find the states.
+  integer, parameter :: first_sweeps = 10, most_sweeps = 160
+
+  !> Most iterations over those of *CONTROLS; beyond those the least residual is not older than
+  !> `gaining` iterations.
+  integer, parameter :: most_attempts = 2, gaining = 5
+
   real(rk), parameter :: roundoff = 4.0_rk*epsilon(1.0_rk)
 
 contains
 
-  !> Iterates until residual and correction are within the tolerances. On return `field%jump` and
-  !> `field%iterate` hold the jumps and tractions of the solution, `new` the histories there.
+  !> Newton's iteration; where it does not converge, sweeps from the start of the increment and
+  !> Newton's iteration again, each time with twice as many sweeps as before. On return `field%jump`
+  !> and `field%iterate` hold the jumps and tractions of the solution, `new` the histories there.
   subroutine iterate_on_jumps(self, controls, joints, operator, old, field, new, outcome)
     type(condensed_joints), intent(in) :: self
     type(step_controls), intent(in) :: controls
@@ -50,16 +62,75 @@ contains
     type(joint_field), intent(inout) :: field !< linearised; its response is for k_ref
     type(joint_state), intent(inout) :: new(:)
     type(balance_outcome), intent(out) :: outcome
+    type(swept_points) :: points
+    real(rk), dimension(3, operator%num_points) :: closed_jump, start_excess, force
+    integer :: num_sweeps
+    closed_jump = field%response
+    start_excess = self%k_ref*field%jump - field%iterate
+    force = field%multiplier
+    if (all_closed(self, field)) force = self%k_ref*closed_jump
+    num_sweeps = first_sweeps
+    do
+      call iterate_newton(self, controls, joints, operator, old, field, new, outcome)
+      if (outcome%has_converged .or. outcome%gives_up .or. num_sweeps > most_sweeps) return
+      if (num_sweeps == first_sweeps) then
+        closed_jump = closed_jump - jumps_of(self, operator%area, start_excess)
+        force = self%weight*spread(operator%area, 1, 3)*force
+      end if
+      field%scale = self%scale
+      call gather_points(joints, operator, self%k_ref, self%weight, old, new, points)
+      call sweep_contacts(self%open_compliance, points, closed_jump, num_sweeps, force, field)
+      field%is_open = .true. ! what the sweeps open does not count as an opening of the iteration
+      call linearise(joints, operator, old, self%k_ref, field, new)
+      field%response = closed_jump + jumps_of(self, operator%area, &
+                                              self%k_ref*field%jump - field%iterate)
+      outcome%pass_start = outcome%iterations
+      outcome%sweeps = outcome%sweeps + num_sweeps
+      num_sweeps = 2*num_sweeps
+    end do
+  end subroutine iterate_on_jumps
+
+  !> Whether the iteration starts with closed, sticking joints.
+  pure logical function all_closed(self, field)
+    type(condensed_joints), intent(in) :: self
+    type(joint_field), intent(in) :: field
+    all_closed = .not. any(abs(field%iterate - self%k_ref*field%jump) > 0.0_rk)
+  end function all_closed
+
+  !> Jumps that tractions cause with closed joints.
+  function jumps_of(self, area, traction) result(jump)
+    type(condensed_joints), intent(in) :: self
+    real(rk), intent(in) :: area(:) !< (points) [m2]
+    real(rk), intent(in) :: traction(:, :) !< (3, points) [Pa]
+    real(rk) :: jump(3, size(area)) !< [m]
+    real(rk) :: force(size(traction))
+    force = reshape(self%weight*spread(area, 1, 3)*traction, [size(traction)])
+    jump = reshape(matmul(self%compliance, force), shape(jump))
+  end function jumps_of
+
+  !> Iterates until residual and correction are within the tolerances, or in a cycle.
+  subroutine iterate_newton(self, controls, joints, operator, old, field, new, outcome)
+    type(condensed_joints), intent(in) :: self
+    type(step_controls), intent(in) :: controls
+    type(dam_joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    type(joint_field), intent(inout) :: field !< linearised; its response is for k_ref
+    type(joint_state), intent(inout) :: new(:)
+    type(balance_outcome), intent(inout) :: outcome
     type(changed_tangent) :: tangent
     real(rk), dimension(3, operator%num_points) :: correction, linear
-    do while (outcome%iterations - outcome%pass_start < controls%max_iterations)
+    real(rk) :: residual(most_attempts*controls%max_iterations)
+    integer :: iteration, least
+    least = 1
+    do while (goes_on(outcome, controls%max_iterations, least))
       outcome%iterations = outcome%iterations + 1
       call factorise_change(self, operator%area, field%tangent, tangent)
       if (tangent%factor%is_singular) return ! a smaller increment may avoid it
       call solve_correction(self, tangent, field%response - field%jump, correction)
       call linear_tractions(field, correction, linear)
       call take_step(joints, operator, old, self%k_ref, correction, linear, field, new)
-      call measure_residual(operator, field, linear, outcome)
+      call measure_residual(operator, self%k_ref, field, linear, outcome)
       if (outcome%residual <= controls%residual_tolerance) then
         call solve_correction(self, tangent, excess_jump(field%traction), correction)
         call measure_correction(field, self%k_ref, correction, &
@@ -69,9 +140,13 @@ contains
         call augment_contact(joints, operator, old, self%k_ref, field, new, outcome)
         if (outcome%has_converged .or. outcome%gives_up) exit
       end if
-      call linearise_next(joints, operator, old, self%k_ref, outcome, field, new)
-      field%response = field%response &
-                       + excess_jump(field%iterate - self%k_ref*(field%jump - field%response))
+      iteration = outcome%iterations - outcome%pass_start
+      if (iteration > 0) then
+        residual(iteration) = outcome%residual
+        least = minloc(residual(:iteration), 1)
+        if (is_cycling(residual(:iteration))) return
+      end if
+      field%response = field%response + excess_jump(field%iterate)
     end do
     field%iterate = linear
   contains
@@ -92,7 +167,19 @@ contains
       end do
       answer = reshape(flat, shape(answer))
     end function excess_jump
-  end subroutine iterate_on_jumps
+  end subroutine iterate_newton
+
+  !> Whether Newton's iteration goes on: up to the number of *CONTROLS, and beyond it while the
+  !> residual decreases.
+  pure logical function goes_on(outcome, most, least)
+    type(balance_outcome), intent(in) :: outcome
+    integer, intent(in) :: most !< ITERATIONS
+    integer, intent(in) :: least !< iteration with the least residual
+    integer :: iteration
+    iteration = outcome%iterations - outcome%pass_start
+    goes_on = iteration < most .or. (iteration < most_attempts*most .and. &
+                                     iteration - least < gaining)
+  end function goes_on
 
   !> Selects the rows whose tangent differs from k_ref and factors I - D G on them.
   subroutine factorise_change(self, area, tangent, changed)

@@ -9,9 +9,9 @@ module newton_full
   use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, reference_stiffness, linear_tractions
-  use joint_iteration, only: start_iteration, take_step, linearise_next, closed_tangent, &
+  use joint_iteration, only: start_iteration, take_step, closed_tangent, &
                              measure_residual, measure_correction, augment_contact
-  use joint_compliance, only: find_compliance, find_friction_scale
+  use joint_compliance, only: contact_scale, find_compliance, find_contact_scale
   use linear_solver, only: equation_solver
   use matrix_condition, only: estimate_condition
   use solver_low_rank, only: add_low_rank
@@ -27,7 +27,7 @@ module newton_full
     class(equation_solver), allocatable :: unsymmetric_factor
     real(rk), allocatable :: values(:) !< K_eff
     real(rk), allocatable :: k_ref(:, :) !< (3, points) k_ref [Pa/m]
-    real(rk), allocatable :: friction_scale(:, :) !< (2, points) r of the augmented friction [Pa/m]
+    type(contact_scale) :: scale !< r of the augmented contact
     logical :: is_unsymmetric = .false. !< of the last tangent
   contains
     procedure :: prepare_matrix, solve_balance
@@ -46,7 +46,7 @@ contains
     type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: compliance(:, :), closed(:)
+    real(rk), allocatable :: compliance(:, :), open_compliance(:, :), closed(:)
     self%operator = operator
     self%weight = weight
     self%matrix = matrix
@@ -66,7 +66,7 @@ contains
     call self%costs%start('condense', 'joints', 'joint')
     call find_compliance(self%factor, operator, matrix%num_free, compliance, error)
     if (.not. allocated(error)) then
-      call find_friction_scale(compliance, operator, self%k_ref, weight, self%friction_scale)
+      call find_contact_scale(compliance, operator, self%k_ref, weight, self%scale, open_compliance)
     end if
     call self%costs%stop()
   end subroutine prepare_matrix
@@ -84,8 +84,7 @@ contains
     type(joint_field) :: field
     real(rk), dimension(3, self%operator%num_points) :: correction, linear, answer
     real(rk) :: unused(size(x))
-    call start_iteration(balance, joints, self%operator, self%k_ref, self%friction_scale, old, &
-                         field, new)
+    call start_iteration(balance, joints, self%operator, self%k_ref, self%scale, old, field, new)
     do while (outcome%iterations - outcome%pass_start < self%controls%max_iterations)
       outcome%iterations = outcome%iterations + 1
       call self%factorise_tangent(self%operator, field%tangent, error)
@@ -100,7 +99,7 @@ contains
       correction = balance%offset + answer - field%jump
       call linear_tractions(field, correction, linear)
       call take_step(joints, self%operator, old, self%k_ref, correction, linear, field, new)
-      call measure_residual(self%operator, field, linear, outcome)
+      call measure_residual(self%operator, self%k_ref, field, linear, outcome)
       if (outcome%residual <= self%controls%residual_tolerance) then
         call self%back_substitute(0.0_rk*balance%rhs, linear - field%traction, self%operator, &
                                   unused, answer, error)
@@ -112,7 +111,6 @@ contains
         call augment_contact(joints, self%operator, old, self%k_ref, field, new, outcome)
         if (outcome%has_converged .or. outcome%gives_up) return
       end if
-      call linearise_next(joints, self%operator, old, self%k_ref, outcome, field, new)
     end do
   end subroutine solve_balance
 

@@ -5,10 +5,12 @@
 !> tangential traction sticks elastically with k_t up to mu p + c and slips there. While the joint
 !> is open its slip follows the motion, so that traction starts from zero when it closes again.
 !>
-!> Friction in Newton's iteration: the status is decided on z = lambda + r (v_t - s - lambda/k_t),
-!> lambda the tangential traction of the last iterate. Where |z| > mu p + c, one Newton step on
-!> lambda - (mu p + c) z/|z| = 0 gives the next traction. At a solution this is the return map and
-!> its consistent tangent. The return map alone may cycle in the iteration; this form does not.
+!> Contact in Newton's iteration (theory.md, 2.3): the status is decided on the traction lambda of
+!> the last iterate and on the slip and opening that the springs leave,
+!> z = lambda + r (v - s - lambda/k). Where |z_t| > mu p + c, one Newton step on
+!> lambda_t - (mu p + c) z_t/|z_t| = 0 gives the next traction. At a solution this is the law and
+!> its consistent tangent. The law alone cycles in the iteration where k exceeds the stiffness of
+!> the structure.
 module joint_contraction
   use contraction_keyword, only: describe_contraction
   use deck_card, only: card
@@ -151,19 +153,19 @@ contains
     type(joint_state), intent(in) :: old
     type(joint_state), intent(inout) :: new
     real(rk), intent(out) :: tangent(:, :, :)
-    real(rk) :: iterate(3, size(jump, 2)), scale(size(jump, 2))
-    scale = self%tangent_stiffness
-    call self%linearise(jump, old, old%traction(2:3, :), scale, new, iterate, tangent)
-    call self%linearise(jump, old, new%traction(2:3, :), scale, new, iterate, tangent)
+    real(rk) :: iterate(3, size(jump, 2)), scale(2, size(jump, 2)), multiplier(3, size(jump, 2))
+    scale = spread([self%normal_stiffness, self%tangent_stiffness], 2, size(jump, 2))
+    call self%linearise(jump, old, old%traction, scale, new, iterate, tangent)
+    multiplier = new%traction
+    call self%linearise(jump, old, multiplier, scale, new, iterate, tangent)
   end subroutine update
 
-  !> The law at all points of a joint, friction in its augmented form.
+  !> The law at all points of a joint, contact and friction in their augmented form.
   pure subroutine linearise(self, jump, old, multiplier, scale, new, iterate, tangent)
     class(contraction_law), intent(in) :: self
     real(rk), intent(in) :: jump(:, :)
     type(joint_state), intent(in) :: old
-    real(rk), intent(in) :: multiplier(:, :)
-    real(rk), intent(in) :: scale(:)
+    real(rk), intent(in) :: multiplier(:, :), scale(:, :)
     type(joint_state), intent(inout) :: new
     real(rk), intent(out) :: iterate(:, :)
     real(rk), intent(out) :: tangent(:, :, :)
@@ -182,11 +184,13 @@ contains
       if (.not. (before%is_broken .or. has_failed) .and. &
           jump(1, p)*self%normal_stiffness <= self%strength) then
         call stay_bonded(self, after, iterate(:, p), tangent(:, :, p))
-      else if (jump(1, p) + after%gap > 0.0_rk) then
-        call open_point(self, before, after, iterate(:, p), tangent(:, :, p))
       else
-        call close_point(self, before, after)
-        call augment(self, before%slip, after, multiplier(:, p), scale(p), iterate(:, p), &
+        if (jump(1, p) + after%gap > 0.0_rk) then
+          call open_point(self, before, after)
+        else
+          call close_point(self, before, after)
+        end if
+        call augment(self, before%slip, after, multiplier(:, p), scale(:, p), iterate(:, p), &
                      tangent(:, :, p))
       end if
       new%jump(:, p) = after%jump
@@ -218,11 +222,10 @@ contains
 
   !> The open joint carries nothing. A bonded point loses the energy stored at failure as work of
   !> fracture. A closed point loses the energy of its tangential spring by friction.
-  pure subroutine open_point(law, before, point, iterate, tangent)
+  pure subroutine open_point(law, before, point)
     type(contraction_law), intent(in) :: law
     type(point_state), intent(in) :: before
     type(point_state), intent(inout) :: point
-    real(rk), intent(out) :: iterate(3), tangent(3, 3)
     real(rk) :: k(3), share, step(3), opening, limit, rise
     call law%reference_stiffness(k)
     step = point%jump - before%jump
@@ -242,8 +245,6 @@ contains
     point%slip = point%jump(2:3)
     point%is_broken = .true.
     point%status = state_open
-    iterate = 0.0_rk
-    tangent = 0.0_rk
   end subroutine open_point
 
   !> Traction of the closed joint: pressure, and the return map of friction.
@@ -280,21 +281,31 @@ contains
     end if
   end subroutine close_point
 
-  !> Traction and tangent for the next iterate of the closed joint.
+  !> Traction and tangent for the next iterate of the broken joint. The status follows from the
+  !> multiplier; the limit of friction is that of the multiplier (Jean & Moreau), its change that of
+  !> the pressure.
   pure subroutine augment(law, slip, point, multiplier, scale, iterate, tangent)
     type(contraction_law), intent(in) :: law
     real(rk), intent(in) :: slip(2) !< converged
     type(point_state), intent(in) :: point
-    real(rk), intent(in) :: multiplier(2), scale
+    real(rk), intent(in) :: multiplier(3), scale(2)
     real(rk), intent(out) :: iterate(3), tangent(3, 3)
-    real(rk) :: k, z(2), size_of_z, limit, e(2), rest(2), rho, softening
+    real(rk) :: k_n, k, opening, trial, z(2), size_of_z, limit, e(2), rest(2), rho, softening
+    k_n = law%normal_stiffness
     k = law%tangent_stiffness
-    limit = slip_limit(law, point%jump(1) + point%gap, point%cohesion)
-    z = multiplier + scale*(point%jump(2:3) - slip - multiplier/k)
-    size_of_z = norm2(z)
-    iterate(1) = point%traction(1)
+    iterate = 0.0_rk
     tangent = 0.0_rk
-    tangent(1, 1) = law%normal_stiffness
+    opening = point%jump(1) + point%gap
+    trial = multiplier(1)*(1.0_rk - scale(1)/k_n) + scale(1)*opening
+    if (trial > 0.0_rk) return ! open
+    ! A point that closes has no multiplier yet; without a limit the direction of its slip would be
+    ! round-off where symmetry prevents any slip.
+    if (multiplier(1) < 0.0_rk) trial = multiplier(1)
+    iterate(1) = k_n*opening
+    tangent(1, 1) = k_n
+    limit = point%cohesion - law%friction*trial
+    z = multiplier(2:3)*(1.0_rk - scale(2)/k) + scale(2)*(point%jump(2:3) - slip)
+    size_of_z = norm2(z)
     if (size_of_z <= limit .and. (law%friction > 0.0_rk .or. point%cohesion > 0.0_rk)) then
       iterate(2:3) = k*(point%jump(2:3) - slip)
       tangent(2, 2) = k
@@ -303,18 +314,18 @@ contains
     end if
     e = z/max(size_of_z, tiny(limit))
     rho = limit/max(size_of_z, tiny(limit))
-    softening = 1.0_rk/(1.0_rk - rho*(1.0_rk - scale/k))
-    rest = multiplier - dot_product(e, multiplier)*e
-    iterate(2:3) = limit*e + (1.0_rk - softening)*rest
-    tangent(2:3, 1) = -law%friction*law%normal_stiffness*e
-    tangent(2, 2:3) = softening*rho*scale*([1.0_rk, 0.0_rk] - e(1)*e)
-    tangent(3, 2:3) = softening*rho*scale*([0.0_rk, 1.0_rk] - e(2)*e)
+    softening = 1.0_rk/(1.0_rk - rho*(1.0_rk - scale(2)/k))
+    rest = multiplier(2:3) - dot_product(e, multiplier(2:3))*e
+    iterate(2:3) = slip_limit(law, opening, point%cohesion)*e + (1.0_rk - softening)*rest
+    tangent(2:3, 1) = -law%friction*k_n*e
+    tangent(2, 2:3) = softening*rho*scale(2)*([1.0_rk, 0.0_rk] - e(1)*e)
+    tangent(3, 2:3) = softening*rho*scale(2)*([0.0_rk, 1.0_rk] - e(2)*e)
   end subroutine augment
 
   !> Largest tangential traction of the closed joint: mu p + c [Pa].
   pure real(rk) function slip_limit(law, opening, cohesion)
     type(contraction_law), intent(in) :: law
-    real(rk), intent(in) :: opening !< <= 0 [m]
+    real(rk), intent(in) :: opening !< <= 0 in contact [m]
     real(rk), intent(in) :: cohesion !< c [Pa]
     slip_limit = cohesion - law%friction*law%normal_stiffness*opening
   end function slip_limit

@@ -119,15 +119,15 @@ contains
 
   !> Traction and tangent for the next iterate: the traction of Newton's iteration follows iterate +
   !> tangent*(correction of the jump), while `new` contains the law's own traction, which decides
-  !> convergence. Default: both are those of `update`. Coulomb friction needs another form
-  !> (theory.md, 2.3): `multiplier` is the tangential traction of the last iterate, `scale` the r of
-  !> the augmented form.
+  !> convergence. Default: both are those of `update`. Contact with Coulomb friction needs another
+  !> form (theory.md, 2.3): `multiplier` is the traction of the last iterate, `scale` the r of the
+  !> augmented form.
   pure subroutine linearise_by_update(self, jump, old, multiplier, scale, new, iterate, tangent)
     class(traction_law), intent(in) :: self
     real(rk), intent(in) :: jump(:, :) !< (3, points) trial [m]
     type(joint_state), intent(in) :: old !< converged history
-    real(rk), intent(in) :: multiplier(:, :) !< (2, points) [Pa]
-    real(rk), intent(in) :: scale(:) !< (points) [Pa/m]
+    real(rk), intent(in) :: multiplier(:, :) !< (3, points) [Pa]
+    real(rk), intent(in) :: scale(:, :) !< (2, points) normal, along the joint [Pa/m]
     type(joint_state), intent(inout) :: new !< history at the trial jump, see `update`
     real(rk), intent(out) :: iterate(:, :) !< (3, points) [Pa]
     real(rk), intent(out) :: tangent(:, :, :) !< (3, 3, points) [Pa/m], may be unsymmetric

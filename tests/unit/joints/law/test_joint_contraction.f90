@@ -23,6 +23,7 @@ program test_joint_contraction
   call friction_work_is_that_of_the_path(log)
   call iteration_ends_at_the_return_map(log)
   call tangent_is_the_derivative(log)
+  call multiplier_decides_the_contact(log)
   call defaults_follow_the_solid(log)
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
@@ -42,10 +43,10 @@ contains
     real(rk), intent(in) :: jump(3)
     type(joint_state), intent(inout) :: state
     type(joint_state) :: new
-    real(rk) :: iterate(3, 1), tangent(3, 3, 1), place(3, 1)
+    real(rk) :: tangent(3, 3, 1), place(3, 1)
     new = state
     place(:, 1) = jump
-    call law%linearise(place, state, state%traction(2:3, :), [kt], new, iterate, tangent)
+    call law%update(place, state, new, tangent)
     state = new
   end subroutine go
 
@@ -225,7 +226,7 @@ contains
     type(test_log), intent(inout) :: log
     type(contraction_law) :: law
     type(joint_state) :: old, new, moved
-    real(rk) :: jump(3, 1), iterate(3, 1), tangent(3, 3, 1), multiplier(2, 1), scale(1)
+    real(rk) :: jump(3, 1), iterate(3, 1), tangent(3, 3, 1), multiplier(3, 1), scale(2, 1)
     real(rk) :: shifted(3, 1), dummy(3, 3, 1), column(3), unused(3, 1)
     real(rk), parameter :: h = 1.0e-12_rk
     integer :: i
@@ -235,11 +236,11 @@ contains
     jump(:, 1) = [-1.3e-6_rk, 4.0e-6_rk, -3.0e-6_rk]
     new = old
     moved = old
-    scale = 0.05_rk*kt
-    multiplier = old%traction(2:3, :)
+    scale(:, 1) = 0.05_rk*[kn, kt]
+    multiplier = old%traction
     do i = 1, 60
       call law%linearise(jump, old, multiplier, scale, new, iterate, tangent)
-      multiplier = iterate(2:3, :)
+      multiplier = iterate
     end do
     call check_close(log, norm2(iterate - new%traction), 0.0_rk, 1.0e-6_rk, 'fixed point')
     call law%update(jump, old, moved, dummy)
@@ -258,49 +259,74 @@ contains
   end subroutine iteration_ends_at_the_return_map
 
   !> Away from the solution: iterate and tangent solve the linearised equation
-  !> F + dF/dlambda (iterate + tangent dv - lambda) + dF/dv dv = 0, F = lambda - limit z/|z|.
+  !> F + dF/dlambda (iterate + tangent dv - lambda) + dF/dv dv = 0.
   subroutine tangent_is_the_derivative(log)
     type(test_log), intent(inout) :: log
     type(contraction_law) :: law
     type(joint_state) :: old, new
-    real(rk) :: jump(3, 1), iterate(3, 1), tangent(3, 3, 1), multiplier(2, 1), scale(1)
-    real(rk) :: f_of_multiplier(2, 2), f_of_jump(2, 3), f(2), residual(2), step(3), up(3)
+    real(rk) :: jump(3, 1), iterate(3, 1), tangent(3, 3, 1), multiplier(3, 1), scale(2, 1)
+    real(rk) :: f_of_multiplier(3, 3), f_of_jump(3, 3), f(3), residual(3), step(3), up(3)
     real(rk), parameter :: h = 1.0_rk
     integer :: i
     law = joint_of(0.0_rk, 0.6_rk, 0.1e6_rk, 0.0_rk)
     call law%start_state([0.0_rk], old)
     new = old
     jump(:, 1) = [-1.3e-6_rk, 12.0e-6_rk, -9.0e-6_rk]
-    multiplier(:, 1) = [-0.2e6_rk, 0.4e6_rk]
-    scale = 0.3_rk*kt
+    multiplier(:, 1) = [-0.9e6_rk, -0.2e6_rk, 0.4e6_rk]
+    scale(:, 1) = [0.2_rk*kn, 0.3_rk*kt]
     call law%linearise(jump, old, multiplier, scale, new, iterate, tangent)
-    f = equation(jump(:, 1), multiplier(:, 1), scale(1))
-    do i = 1, 2
-      up(:2) = 0.0_rk
-      up(i) = h
-      f_of_multiplier(:, i) = (equation(jump(:, 1), multiplier(:, 1) + up(:2), scale(1)) &
-                               - equation(jump(:, 1), multiplier(:, 1) - up(:2), scale(1)))/(2*h)
-    end do
+    f = equation(jump(:, 1), multiplier(:, 1), scale(:, 1))
     do i = 1, 3
       up = 0.0_rk
+      up(i) = h
+      f_of_multiplier(:, i) = (equation(jump(:, 1), multiplier(:, 1) + up, scale(:, 1)) &
+                               - equation(jump(:, 1), multiplier(:, 1) - up, scale(:, 1)))/(2*h)
       up(i) = h/kn
-      f_of_jump(:, i) = (equation(jump(:, 1) + up, multiplier(:, 1), scale(1)) &
-                         - equation(jump(:, 1) - up, multiplier(:, 1), scale(1)))/(2*up(i))
+      f_of_jump(:, i) = (equation(jump(:, 1) + up, multiplier(:, 1), scale(:, 1)) &
+                         - equation(jump(:, 1) - up, multiplier(:, 1), scale(:, 1)))/(2*up(i))
     end do
     step = [2.0e-7_rk, -1.0e-7_rk, 3.0e-7_rk]
-    residual = f + matmul(f_of_multiplier, iterate(2:3, 1) + matmul(tangent(2:3, :, 1), step) &
+    residual = f + matmul(f_of_multiplier, iterate(:, 1) + matmul(tangent(:, :, 1), step) &
                           - multiplier(:, 1)) + matmul(f_of_jump, step)
     call check_close(log, norm2(residual), 0.0_rk, 1.0e-6_rk*norm2(f), 'one Newton step')
   end subroutine tangent_is_the_derivative
 
-  !> lambda - limit z/|z| of the law above, without slip before.
+  !> lambda - min(0, z_n) and lambda - limit z/|z| of the law above, without slip before.
   function equation(jump, multiplier, scale) result(f)
-    real(rk), intent(in) :: jump(3), multiplier(2), scale
-    real(rk) :: f(2)
+    real(rk), intent(in) :: jump(3), multiplier(3), scale(2)
+    real(rk) :: f(3)
     real(rk) :: z(2)
-    z = multiplier + scale*(jump(2:3) - multiplier/kt)
-    f = multiplier - (0.1e6_rk - 0.6_rk*kn*jump(1))*z/norm2(z)
+    f(1) = multiplier(1) - min(0.0_rk, multiplier(1) + scale(1)*(jump(1) - multiplier(1)/kn))
+    z = multiplier(2:3) + scale(2)*(jump(2:3) - multiplier(2:3)/kt)
+    f(2:3) = multiplier(2:3) - (0.1e6_rk - 0.6_rk*multiplier(1))*z/norm2(z)
   end function equation
+
+  !> The status follows the traction of the last iterate: a pressed point stays closed while its
+  !> opening is below p/r, an open one closes at any penetration.
+  subroutine multiplier_decides_the_contact(log)
+    type(test_log), intent(inout) :: log
+    type(contraction_law) :: law
+    type(joint_state) :: old, new
+    real(rk) :: jump(3, 1), iterate(3, 1), tangent(3, 3, 1), multiplier(3, 1), scale(2, 1)
+    law = joint_of(0.0_rk, 0.6_rk, 0.0_rk, 0.0_rk)
+    call law%start_state([0.0_rk], old)
+    new = old
+    jump = 0.0_rk
+    scale(:, 1) = 0.01_rk*[kn, kt]
+    multiplier(:, 1) = [-1.0e6_rk, 0.0_rk, 0.0_rk]
+    jump(1, 1) = 0.9_rk*0.99e6_rk/scale(1, 1) ! opens where r v + 0.99 lambda > 0
+    call law%linearise(jump, old, multiplier, scale, new, iterate, tangent)
+    call check(log, new%status(1) == state_open, 'the law itself is open')
+    call check_close(log, tangent(1, 1, 1), kn, 0.0_rk, 'closed for the next iterate')
+    call check_close(log, iterate(1, 1), kn*jump(1, 1), 0.0_rk, 'no pressure at no opening')
+    jump(1, 1) = 1.1_rk*0.99e6_rk/scale(1, 1)
+    call law%linearise(jump, old, multiplier, scale, new, iterate, tangent)
+    call check_close(log, maxval(abs(tangent)) + maxval(abs(iterate)), 0.0_rk, 0.0_rk, 'opens')
+    multiplier = 0.0_rk
+    jump(1, 1) = -1.0e-9_rk
+    call law%linearise(jump, old, multiplier, scale, new, iterate, tangent)
+    call check_close(log, tangent(1, 1, 1), kn, 0.0_rk, 'closes')
+  end subroutine multiplier_decides_the_contact
 
   !> paper_notes.md, 3: 22 GPa over 2 cm.
   subroutine defaults_follow_the_solid(log)

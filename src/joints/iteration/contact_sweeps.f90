@@ -1,0 +1,125 @@
+!> Nonlinear block Gauss-Seidel over the points of joints (Jean 1999; Acary, Bremond & Huber 2018):
+!> finds which points are closed and which slide where Newton's iteration cycles.
+!>
+!> With open joints the structure has the compliance C, with the joints' own springs
+!> W = C + 1/(weight*area*k_ref). The part of the jumps that the springs leave, openings and slips,
+!> is d = W (f_closed - f), with f the forces of the points, f_closed those of closed joints. A
+!> sweep visits all points and gives each the force for which its d agrees with contact and friction
+!> while the other forces stay.
+module contact_sweeps
+  use joint_forces, only: joint_field
+  use joint_law, only: joint_state, state_bonded
+  use joint_operator, only: jump_operator
+  use joint_points, only: dam_joint
+  use joint_rows, only: num_axes, row_of
+  use kinds, only: rk
+  implicit none
+  private
+  public :: swept_points, gather_points, sweep_contacts
+
+  !> What the sweeps need of all points of all joints, in one row.
+  type :: swept_points
+    real(rk), allocatable :: share(:) !< weight*area [m2]
+    real(rk), allocatable :: spring(:, :) !< (3, points) compliance of the joint's springs [m/N]
+    real(rk), allocatable :: friction(:) !< mu
+    real(rk), allocatable :: cohesion(:) !< c [Pa]
+    real(rk), allocatable :: slip(:, :) !< (2, points) converged [m]
+    logical, allocatable :: is_bonded(:)
+  end type swept_points
+
+contains
+
+  !> Limits of friction by the laws; bonded points are those of the last evaluation.
+  subroutine gather_points(joints, operator, k_ref, weight, old, new, points)
+    type(dam_joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
+    real(rk), intent(in) :: weight !< of the joint forces
+    type(joint_state), intent(in) :: old(:) !< converged histories
+    type(joint_state), intent(in) :: new(:) !< of the last evaluation
+    type(swept_points), intent(out) :: points
+    real(rk) :: strength
+    integer :: j, first, last
+    points%share = weight*operator%area
+    points%spring = 1.0_rk/(spread(points%share, 1, 3)*k_ref)
+    associate (n => operator%num_points)
+      allocate (points%friction(n), points%cohesion(n), points%slip(2, n), points%is_bonded(n))
+    end associate
+    do j = 1, size(joints)
+      first = operator%first_point(j)
+      last = operator%first_point(j + 1) - 1
+      if (last < first) cycle
+      call joints(j)%law%limits(points%friction(first), points%cohesion(first), strength)
+      points%friction(first:last) = points%friction(first)
+      points%cohesion(first:last) = points%cohesion(first)
+      points%slip(:, first:last) = old(j)%slip
+      points%is_bonded(first:last) = new(j)%status == state_bonded
+    end do
+  end subroutine gather_points
+
+  !> Sweeps forwards and backwards in turn. On return `field%jump` and `field%multiplier` hold the
+  !> jumps and tractions found.
+  subroutine sweep_contacts(compliance, points, closed_jump, num_sweeps, force, field)
+    real(rk), intent(in) :: compliance(:, :) !< C (rows, rows) [m/N]
+    type(swept_points), intent(in) :: points
+    real(rk), intent(in) :: closed_jump(:, :) !< (3, points) with closed, sticking joints [m]
+    integer, intent(in) :: num_sweeps
+    real(rk), intent(inout) :: force(:, :) !< (3, points) f [N]
+    type(joint_field), intent(inout) :: field
+    real(rk) :: missing(3, size(force, 2)), d(size(compliance, 1)), change(3)
+    integer :: sweep, visit, p, row
+    missing = closed_jump/points%spring - force
+    d = matmul(compliance, reshape(missing, [size(missing)])) &
+        + reshape(points%spring*missing, [size(missing)])
+    do sweep = 1, num_sweeps
+      do visit = 1, size(points%share)
+        p = visit
+        if (mod(sweep, 2) == 0) p = size(points%share) + 1 - visit
+        row = row_of(p, 1)
+        associate (own => d(row:row + num_axes - 1), &
+                   block => compliance(row:row + num_axes - 1, row:row + num_axes - 1))
+          change = local_force(block, own, force(:, p), p, points, field) - force(:, p)
+          if (.not. any(abs(change) > 0.0_rk)) cycle
+          force(:, p) = force(:, p) + change
+          own = own - points%spring(:, p)*change
+        end associate
+        d = d - change(1)*compliance(:, row) - change(2)*compliance(:, row + 1) &
+            - change(3)*compliance(:, row + 2)
+      end do
+    end do
+    field%multiplier = force/spread(points%share, 1, 3)
+    field%jump = reshape(d, shape(force)) + points%spring*force
+  end subroutine sweep_contacts
+
+  !> Force of one point: bonded, d = 0; else the projection of the pressure, then of the friction,
+  !> by one step each.
+  pure function local_force(block, d, force, p, points, field) result(answer)
+    real(rk), intent(in) :: block(3, 3) !< C [m/N]
+    real(rk), intent(in) :: d(3) !< [m]
+    real(rk), intent(in) :: force(3) !< [N]
+    integer, intent(in) :: p !< the point
+    type(swept_points), intent(in) :: points
+    type(joint_field), intent(in) :: field
+    real(rk) :: answer(3)
+    real(rk) :: rest(3), limit, trial(2)
+    integer :: i
+    answer = force
+    if (points%is_bonded(p)) then
+      rest = d
+      do i = 1, 3
+        answer(i) = force(i) + rest(i)/(block(i, i) + points%spring(i, p))
+        rest = rest - block(:, i)*(answer(i) - force(i))
+      end do
+      return
+    end if
+    answer(1) = force(1) + (d(1) + field%gap(p))/(block(1, 1) + points%spring(1, p))
+    if (answer(1) >= 0.0_rk) then
+      answer = 0.0_rk
+      return
+    end if
+    trial = d(2:3) + block(2:3, 1)*(force(1) - answer(1)) - points%slip(:, p)
+    trial = force(2:3) + points%share(p)*field%scale%own(2, p)*trial
+    limit = points%share(p)*points%cohesion(p) - points%friction(p)*answer(1)
+    answer(2:3) = trial*min(1.0_rk, limit/max(norm2(trial), tiny(limit)))
+  end function local_force
+end module contact_sweeps
