@@ -27,6 +27,15 @@ def test_elastic_is_elastic(keyway):
     assert energy["strain"] == pytest.approx(builtin.json["steps"][0]["energy"]["strain"], rel=1e-9)
 
 
+def test_a_umat_does_not_damp_by_its_damage(keyway):
+    """BASE=CURRENT has no effect in a UMAT: the run says so."""
+    deck = (FOLDER / "elastic.inp").read_text().split("*STEP")[0]
+    damping = "*DAMPING, RATIO=0.05, F1=2., F2=10., BASE=CURRENT\n"
+    deck += f"*STEP\n*DYNAMIC\n0.01, 0.02\n{damping}*END STEP\n"
+    run = keyway(deck, "--umat", str(FOLDER / "elastic.for"))
+    assert "BASE=CURRENT has no effect in this material" in run.stderr
+
+
 def test_j2_at_a_point_follows_the_table(keyway):
     run = keyway(
         FOLDER / "plastic_j2.inp", "--umat", str(FOLDER / "plastic_j2.f90"), "--material",

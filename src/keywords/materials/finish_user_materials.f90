@@ -48,6 +48,24 @@ contains
                     '*USER MATERIAL in a *MATERIAL')
   end subroutine check_library
 
+  !> Warns of damping by the damaged stiffness, which a UMAT does not report.
+  subroutine warn_of_damping(self, model, faults)
+    class(user_material), intent(in) :: self
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    logical :: is_current
+    associate (own => model%problem%materials(self%material))
+      is_current = own%damps_current .and. own%beta > 0.0_rk
+    end associate
+    if (size(model%problem%steps) > 0) then
+      is_current = is_current .or. any(model%problem%steps%damping%is_current)
+    end if
+    if (.not. is_current) return
+    call model%cards(self%spot%card)%warn( &
+      faults, '*DAMPING, BASE=CURRENT has no effect in this material: a UMAT does not report '// &
+      'its damage; its initial stiffness damps', 'BASE=INITIAL')
+  end subroutine warn_of_damping
+
   !> Makes the law with the stiffness that the UMAT returns at the start.
   subroutine complete(self, model, faults)
     class(user_material), intent(inout) :: self
@@ -59,6 +77,7 @@ contains
     type(error_type), allocatable :: error
     call check_cards(self, model, faults)
     if (faults%has_errors()) return
+    call warn_of_damping(self, model, faults)
     call make_user_law(model%problem%umat, self%constants, law)
     call first_point(model, self%material, points)
     time%tangent = consistent_tangent

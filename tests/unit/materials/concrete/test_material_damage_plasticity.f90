@@ -133,7 +133,7 @@ contains
   end subroutine rows_of_table_one
 
   !> Slopes in unloading, in compression after cracking and in tension after crushing (Eqs. 15-16):
-  !> differences of two elastic states, exact. With RECOVERY=ENERGY the last one is exact for w_t = 0.
+  !> differences of two elastic states, exact. With RECOVERY=ENERGY the last is exact for w_t = 0.
   subroutine recovery(w_t, w_c, closing)
     real(rk), intent(in) :: w_t, w_c
     character(*), intent(in) :: closing !< RECOVERY
