@@ -74,13 +74,12 @@ for value in (0.4, 0.6, 0.8):
 add_crossing(0.6, (1, 10))
 
 
-def add_shaken_crossing(friction: float, waits_for: str = "") -> None:
+def add_shaken_crossing(friction: float) -> None:
     @CROSSINGS.case(
         f"X crossing, shaken, friction {friction}",
         "four blocks without strength round an edge, meshes 2:3, shaken by 0.5 g up and along",
         "error of the energy balance over 1e-6; 1 + cut-backs, if any",
         1.0,
-        waits_for=waits_for,
     )
     def judge(keyway):
         blocks, pairs, names = four_blocks((2, 3))
@@ -99,7 +98,7 @@ def add_shaken_crossing(friction: float, waits_for: str = "") -> None:
 
 
 add_shaken_crossing(0.4)
-add_shaken_crossing(0.8, JOINT_ITERATION)
+add_shaken_crossing(0.8)
 
 
 @CROSSINGS.case(
@@ -153,7 +152,7 @@ def add_arch(name: str, count: int, meshes: tuple[int, int], thick: float, **mor
 
 
 add_arch("arch", 12, (2, 4), 1.5)
-add_arch("thin arch", 12, (4, 8), 1.3, waits_for=JOINT_ITERATION)
+add_arch("thin arch", 12, (4, 8), 1.3)
 add_arch("arch in fine meshes", 10, (8, 8), 2.0, full=True)
 
 
@@ -218,8 +217,8 @@ def add_monoliths(facets: int, friction: float, size: float, waits_for: str = ""
         return over_limits(unbalance(run), cuts), [run]
 
 
-add_monoliths(6, 0.7, 0.3, JOINT_ITERATION)
-add_monoliths(15, 1.5, 0.8, JOINT_ITERATION)
+add_monoliths(6, 0.7, 0.3)
+add_monoliths(15, 1.5, 0.8)
 add_monoliths(3, 0.7, 0.3, JOINT_ITERATION)
 
 
@@ -228,7 +227,6 @@ add_monoliths(3, 0.7, 0.3, JOINT_ITERATION)
     "three monoliths 30 m high on joints, a lift joint at 14 m, meshes 2:3, no strength, water",
     "cut-backs until static balance",
     0,
-    waits_for=JOINT_ITERATION,
 )
 def lift_joint(keyway):
     blocks = Blocks()

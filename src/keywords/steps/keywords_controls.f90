@@ -29,8 +29,10 @@ contains
                     '1e-6', lowest=0.0_rk, highest=1.0_rk, excludes_lowest=.true.), &
               field('INCREMENT', kind_real, 'last correction over the increment', '', '1e-6', &
                     lowest=0.0_rk, highest=1.0_rk, excludes_lowest=.true.), &
-              field('ITERATIONS', kind_integer, 'most iterations before the increment is cut; '// &
-                    'five times as many with a constant matrix of the solids (TANGENT)', &
+              field('ITERATIONS', kind_integer, 'most iterations of an attempt before the '// &
+                    'increment is cut; five times as many with a constant matrix of the '// &
+                    'solids (TANGENT); those on joints go on while they gain, and start '// &
+                    'again after sweeps over the points', &
                     default='15', lowest=1.0_rk, highest=1.0e4_rk), &
               field('JOINT SOLVER', kind_choice, 'iterate on the joints alone (condensed) or '// &
                     'on everything (full Newton)', default='AUTO', &
