@@ -47,7 +47,7 @@ contains
       field%scale%own(1, i) = 1.0_rk/(share*w(j - 2, j - 2))
       field%scale%own(2, i) = 1.0_rk/(share*(w(j, j) + w(j - 1, j)))
     end do
-    ! Closed joints: the first point is pulled, the second pressed, the third pushed along the joint.
+    ! Closed joints: one point is pulled, one pressed, one pushed along the joint.
     closed = reshape([1.0e-4_rk, 2.0e-5_rk, 0.0_rk, -1.0e-4_rk, 1.0e-5_rk, 2.0e-5_rk, &
                       -1.0e-4_rk, 1.5e-4_rk, -1.0e-4_rk], [3, n])
     force = 0.0_rk
