@@ -126,5 +126,6 @@ contains
     call gather_jumps(system%operator, before%joints, balance%guess)
     call gather_tractions(system%operator, before%joints, traction)
     balance%starts_closed = .not. any(abs(traction) > 0.0_rk)
+    balance%is_static = .true.
   end subroutine set_jumps
 end module static_increment

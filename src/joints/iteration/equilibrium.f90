@@ -26,6 +26,7 @@ module equilibrium
     real(rk), allocatable :: guess_traction(:, :)
     logical :: starts_closed = .false. !< all joints closed and sticking in the first iterate
     real(rk) :: reference_force = 0.0_rk !< largest force of the bulk so far [N]
+    logical :: is_static = .false. !< no inertia holds a block that has left its supports
   end type force_balance
 
   !> Outcome of the iteration.

@@ -29,6 +29,7 @@ module joint_forces
     real(rk), allocatable :: start_spring(:, :) !< (3, points) traction there over k_ref [m]
     real(rk) :: start_force = 0.0_rk !< 2-norm of area*traction in the last converged state [N]
     real(rk) :: bulk_force = 0.0_rk !< reference force of the bulk [N]
+    logical :: is_static = .false. !< no inertia in the equilibrium
   end type joint_field
 
 contains

@@ -19,7 +19,8 @@ module joint_iteration
   !> motion of a block that has no contact in one iterate. The residual does not contain it.
   real(rk), parameter :: stiffness_floor = 1.0e-10_rk
   !> Largest force that this stiffness may carry at the jumps found, over the reference force of the
-  !> bulk. Beyond it a block has left its supports, and round-off in the compliance holds it.
+  !> bulk. Beyond it a block has left its supports, and this stiffness holds it. It then carries the
+  !> load, so that a force far above the load is none of this kind: joints opened by supports.
   real(rk), parameter :: most_kept = 0.05_rk
   !> r of the first iteration over that of a point alone (theory.md, 2.3): points that open or slide
   !> together show less stiffness than one alone.
@@ -59,6 +60,7 @@ contains
     field%scale = scale
     field%scale%own = first_share*scale%own
     field%bulk_force = balance%reference_force
+    field%is_static = balance%is_static
     field%jump = balance%guess
     field%response = balance%guess
     call gather_tractions(operator, old, field%traction)
@@ -197,8 +199,9 @@ contains
     end do
     force = max(sqrt(total(square)), field%start_force, smallest_share*field%bulk_force, &
                 tiny(1.0_rk))
-    kept = norm(stiffness_floor*spread(operator%area, 1, 3)*k_ref*field%jump)
-    if (kept <= most_kept*field%bulk_force) kept = 0.0_rk
+    kept = 0.0_rk
+    if (field%is_static) kept = norm(stiffness_floor*spread(operator%area, 1, 3)*k_ref*field%jump)
+    if (kept <= most_kept*field%bulk_force .or. most_kept*kept > field%bulk_force) kept = 0.0_rk
     outcome%residual = max(norm(unbalance), kept)/force
     outcome%worst_point = maxloc(unbalance, 1)
   end subroutine measure_residual
