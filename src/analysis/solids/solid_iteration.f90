@@ -200,10 +200,12 @@ contains
     type(dam_system), intent(in) :: system
     type(state), intent(in) :: after
     type(increment_task), intent(inout) :: task
+    real(rk), dimension(3, system%operator%num_points) :: jump, traction
     task%balance%starts_closed = .false.
-    call gather_jumps(system%operator, after%joints, task%balance%guess)
-    task%balance%guess_traction = task%balance%guess
-    call gather_tractions(system%operator, after%joints, task%balance%guess_traction)
+    call gather_jumps(system%operator, after%joints, jump)
+    call gather_tractions(system%operator, after%joints, traction)
+    task%balance%guess = jump
+    task%balance%guess_traction = traction
   end subroutine guess_from
 
   !> Iterates until residual and correction are within the tolerances.
