@@ -332,6 +332,7 @@ contains
     type(umat_arguments) :: now
     type(guarded_state), target :: variables
     character(:), allocatable :: fault
+    logical :: has_moved
     integer :: p, n
     state%internal = 0.0_rk
     state%is_elastic = .false.
@@ -347,7 +348,8 @@ contains
       else
         fault = variables%fault()
       end if
-      if (len(fault) == 0 .and. keyway_umat_restore_folder() /= 0) then
+      has_moved = keyway_umat_restore_folder() /= 0
+      if (len(fault) == 0 .and. has_moved) then
         fault = 'the routine changes the working folder'
       end if
       if (len(fault) > 0) then

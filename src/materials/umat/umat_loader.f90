@@ -119,7 +119,7 @@ contains
     library%umat = keyway_umat_find(library%handle, 'umat_'//c_null_char)
     library%sdvini = keyway_umat_find(library%handle, 'sdvini_'//c_null_char)
     library%uexternaldb = keyway_umat_find(library%handle, 'uexternaldb_'//c_null_char)
-    if (has_routine('umatht_') .or. has_routine('hetval_')) then
+    if (any([has_routine('umatht_'), has_routine('hetval_')])) then
       call raise(error, 'keyway: the library has UMATHT or HETVAL; analyses coupled with '// &
                  'temperature are not supported', deck_is_wrong)
     else if (.not. c_associated(library%umat)) then
