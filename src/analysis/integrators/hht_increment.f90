@@ -14,7 +14,6 @@ submodule(hht_integrator) hht_increment
   use global_vectors, only: length
   use dynamic_step, only: largest_force
   use joint_forces, only: gather_jumps
-  use equilibrium, only: force_balance
   use increment_balance, only: increment_task
   use step_equilibrium, only: add_moving_supports
   implicit none
@@ -75,7 +74,8 @@ contains
       call sum_known_forces(system, scheme, old, new%external, rhs)
       task%balance%rhs = rhs(:n)
       call add_moving_supports(system, self%solids%values, moved, task%balance%rhs)
-      call set_jumps(system, scheme, before, task%start, task%balance)
+      call task%balance%set_jumps(system%operator, task%start, before%joints)
+      task%balance%guess = task%balance%guess + scheme%dt*old%jump_rate
       task%balance%reference_force = largest_force(old, n, scheme%joint_weight, scheme%dt)
       allocate (task%x(system%matrix%num_total))
       if (self%solids%has_inelastic()) then
@@ -111,21 +111,6 @@ contains
       end if
     end associate
   end subroutine sum_known_forces
-
-  !> Jumps at x = 0 with the supports in place, and a first guess: jumps extrapolated from the last
-  !> increment.
-  subroutine set_jumps(system, scheme, before, q, balance)
-    type(dam_system), intent(in) :: system
-    type(hht), intent(in) :: scheme
-    type(state), intent(in) :: before
-    real(rk), intent(in) :: q(:) !< at the start, supports at the end of the increment
-    type(force_balance), intent(inout) :: balance
-    allocate (balance%offset(3, system%operator%num_points), &
-              balance%guess(3, system%operator%num_points))
-    call system%operator%jumps(q, balance%offset)
-    call gather_jumps(system%operator, before%joints, balance%guess)
-    balance%guess = balance%guess + scheme%dt*before%motion%jump_rate
-  end subroutine set_jumps
 
   !> Motion and forces at the end.
   subroutine correct(system, scheme, solids, task, before, after)

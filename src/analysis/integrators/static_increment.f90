@@ -9,10 +9,12 @@ module static_increment
   use errors, only: error_type
   use global_vectors, only: multiply, norm
   use problem_definition, only: problem
-  use joint_forces, only: gather_jumps, gather_tractions
+  use joint_law, only: joint_state
+  use joint_operator, only: jump_operator
+  use joint_forces, only: gather_tractions
   use analysis_state, only: state
   use state_transfer, only: sum_contact
-  use equilibrium, only: force_balance, balance_outcome
+  use equilibrium, only: balance_outcome
   use step_equilibrium, only: add_moving_supports
   use step_system, only: dam_system
   use step_loads, only: step_time, external_force, prescribed_values
@@ -78,7 +80,9 @@ contains
       task%balance%rhs = new%external(:n) - old%elastic(:n)
       call add_moving_supports(system, system%stiffness, moved, task%balance%rhs)
       task%balance%reference_force = norm(task%balance%rhs)
-      call set_jumps(system, before, new%q, task%balance)
+      call task%balance%set_jumps(system%operator, new%q, before%joints)
+      task%balance%starts_closed = .not. has_traction(system%operator, before%joints)
+      task%balance%is_static = .true.
       task%start = new%q
       task%counts_reactions = .true.
       if (solids%has_inelastic()) task%reference_force = known_force(system%diagonal, before, after)
@@ -111,21 +115,12 @@ contains
     end associate
   end function known_force
 
-  !> Jumps before the free unknowns move, and the first guess: the converged jumps. Without any
-  !> traction so far the iteration starts with closed joints.
-  subroutine set_jumps(system, before, q, balance)
-    type(dam_system), intent(in) :: system
-    type(state), intent(in) :: before
-    real(rk), intent(in) :: q(:) !< supports at the end of the increment
-    type(force_balance), intent(inout) :: balance
-    real(rk), allocatable :: traction(:, :)
-    associate (n => system%operator%num_points)
-      allocate (balance%offset(3, n), balance%guess(3, n), traction(3, n))
-    end associate
-    call system%operator%jumps(q, balance%offset)
-    call gather_jumps(system%operator, before%joints, balance%guess)
-    call gather_tractions(system%operator, before%joints, traction)
-    balance%starts_closed = .not. any(abs(traction) > 0.0_rk)
-    balance%is_static = .true.
-  end subroutine set_jumps
+  !> Whether any point of a joint has a traction.
+  logical function has_traction(operator, joints)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: joints(:)
+    real(rk) :: traction(3, operator%num_points)
+    call gather_tractions(operator, joints, traction)
+    has_traction = any(abs(traction) > 0.0_rk)
+  end function has_traction
 end module static_increment

@@ -20,7 +20,6 @@ module solid_iteration
   use inelastic_forces, only: block_answer, open_answers, update_points, recall_points, &
                               sum_excess, find_failure
   use guest_forces, only: has_histories, recall_guests, update_guests
-  use joint_forces, only: gather_jumps, gather_tractions
   use equilibrium, only: equilibrium_solver, balance_outcome
   use increment_balance, only: increment_task
   use step_system, only: dam_system
@@ -172,9 +171,7 @@ contains
     integer :: i
     task%tolerance = self%tolerance
     self%solver%controls%residual_tolerance = task%share*self%tolerance
-    if (task%is_refined) then
-      call guess_from(system, after, task)
-    end if
+    if (task%is_refined) call task%balance%start_from(system%operator, after%joints)
     if (.not. self%has_inelastic()) then
       call self%solver%solve_balance(task%balance, model%joints, before%joints, after%joints, &
                                      task%x, outcome, error)
@@ -194,19 +191,6 @@ contains
       if (outcome%size_ratio < 1.0_rk) return
     end do
   end subroutine solve_increment
-
-  !> Joints start from their last iterate.
-  subroutine guess_from(system, after, task)
-    type(dam_system), intent(in) :: system
-    type(state), intent(in) :: after
-    type(increment_task), intent(inout) :: task
-    real(rk), dimension(3, system%operator%num_points) :: jump, traction
-    task%balance%starts_closed = .false.
-    call gather_jumps(system%operator, after%joints, jump)
-    call gather_tractions(system%operator, after%joints, traction)
-    task%balance%guess = jump
-    task%balance%guess_traction = traction
-  end subroutine guess_from
 
   !> Iterates until residual and correction are within the tolerances.
   subroutine iterate_on_forces(self, model, system, task, before, after, outcome, error)
@@ -276,9 +260,7 @@ contains
     associate (task => now%task)
       last_x = task%x
       task%balance%rhs = now%rhs + self%weight*now%guess
-      if (outcome%iterations > 0) then
-        call guess_from(system, after, task)
-      end if
+      if (outcome%iterations > 0) call task%balance%start_from(system%operator, after%joints)
       call self%solver%solve_balance(task%balance, model%joints, before%joints, after%joints, &
                                      task%x, inner, error)
       outcome%iterations = max(outcome%iterations + 1, inner%own_iterations())

@@ -99,10 +99,7 @@ contains
     if (allocated(error) .or. .not. outcome%has_converged) return
     if (.not. self%has_drifted(balance, new, x)) return
     nearer = balance
-    nearer%starts_closed = .false.
-    call gather_jumps(self%operator, new, nearer%guess)
-    nearer%guess_traction = nearer%guess
-    call gather_tractions(self%operator, new, nearer%guess_traction)
+    call nearer%start_from(self%operator, new)
     iterations = outcome%iterations
     call self%solve_from(nearer, joints, old, new, x, outcome, error)
     outcome%iterations = outcome%iterations + iterations

@@ -10,6 +10,7 @@ module equilibrium
   use joint_law, only: joint_state
   use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
+  use joint_forces, only: gather_jumps, gather_tractions
   use linear_solver, only: equation_solver
   use run_ledger, only: ledger
   use step_plan, only: step_controls
@@ -27,6 +28,8 @@ module equilibrium
     logical :: starts_closed = .false. !< all joints closed and sticking in the first iterate
     real(rk) :: reference_force = 0.0_rk !< largest force of the bulk so far [N]
     logical :: is_static = .false. !< no inertia holds a block that has left its supports
+  contains
+    procedure :: set_jumps, start_from
   end type force_balance
 
   !> Outcome of the iteration.
@@ -98,6 +101,28 @@ module equilibrium
   end interface
 
 contains
+
+  !> Jumps at x = 0, and the first guess: the converged jumps.
+  subroutine set_jumps(self, operator, q, old)
+    class(force_balance), intent(inout) :: self
+    type(jump_operator), intent(in) :: operator
+    real(rk), intent(in) :: q(:) !< (all unknowns) at x = 0, supports in place [m]
+    type(joint_state), intent(in) :: old(:) !< converged histories
+    allocate (self%offset(3, operator%num_points), self%guess(3, operator%num_points))
+    call operator%jumps(q, self%offset)
+    call gather_jumps(operator, old, self%guess)
+  end subroutine set_jumps
+
+  !> Starts the iteration from the last iterate of the joints.
+  subroutine start_from(self, operator, new)
+    class(force_balance), intent(inout) :: self !< with a guess
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: new(:) !< histories of the iterate
+    self%starts_closed = .false.
+    call gather_jumps(operator, new, self%guess)
+    self%guess_traction = self%guess ! for the shape
+    call gather_tractions(operator, new, self%guess_traction)
+  end subroutine start_from
 
   !> Iterations of the first pass, for the control of the increment size.
   pure integer function own_iterations(self) result(iterations)

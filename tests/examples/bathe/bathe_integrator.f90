@@ -21,7 +21,6 @@ module bathe_integrator
   use analysis_state, only: motion, state
   use state_transfer, only: sum_contact
   use increment_listener, only: listener
-  use joint_forces, only: gather_jumps
   use joint_water, only: update_uplift
   use equilibrium, only: balance_outcome
   use step_equilibrium, only: add_moving_supports, prepare_equilibrium, set_modal_damping
@@ -204,8 +203,7 @@ contains
     type(state), intent(inout) :: after !< predicted
     real(rk), intent(out) :: moved(:) !< (num_total) x of the supports [m]
     type(increment_task), intent(out) :: task
-    associate (system => self%system, new => after%motion, n => self%system%matrix%num_free, &
-               num_points => self%system%operator%num_points)
+    associate (system => self%system, new => after%motion, n => self%system%matrix%num_free)
       call external_force(system%groups, model%amplitudes, when, new%external)
       moved = new%q
       call prescribed_values(system%supports, model%amplitudes, when, moved)
@@ -222,9 +220,7 @@ contains
         task%velocity = new%v + self%c*moved
         task%velocity_of_x = self%c
       end if
-      allocate (task%balance%offset(3, num_points), task%balance%guess(3, num_points))
-      call system%operator%jumps(task%start, task%balance%offset)
-      call gather_jumps(system%operator, before%joints, task%balance%guess)
+      call task%balance%set_jumps(system%operator, task%start, before%joints)
       allocate (task%x(system%matrix%num_total))
     end associate
   end subroutine pose_task
