@@ -106,4 +106,4 @@ def test_missing_memory_is_reported(program_path, tmp_path):
     command = f"ulimit -v 1500000; exec '{program_path}' large.inp"
     run = subprocess.run(["sh", "-c", command], capture_output=True, text=True, cwd=tmp_path)
     assert run.returncode == 3
-    assert "the dense matrices of 3721 points of joints take 4 GB" in run.stderr
+    assert "the dense matrices of 3721 points of joints take 3 GB" in run.stderr

@@ -20,15 +20,14 @@ module step_equilibrium
   public :: make_equilibrium, prepare_equilibrium, factorise_closed, set_modal_damping
   public :: add_moving_supports
 
-  !> Most joint points for the dense compliance, which takes about 2.6 GB (four matrices of
+  !> Most joint points for the dense compliances, which take about 2 GB (three matrices of
   !> 8*(3*points)^2 bytes). With more points full Newton factors in each iteration; it needs the
-  !> compliance only to compute r and does not keep it.
+  !> compliances only to compute r and does not keep them.
   integer, parameter :: most_condensed_points = 3000
 
-  !> Dense matrices of 8*(3*points)^2 bytes at a time: the compliances with closed and with open
-  !> joints, and two to compute r. The
-  !> Schur block is extra, where jumps are unknowns.
-  integer, parameter :: num_dense = 4
+  !> Dense matrices of 8*(3*points)^2 bytes at a time: the compliances with closed and open joints
+  !> and the matrix between them. The Schur block is extra, where jumps are unknowns.
+  integer, parameter :: num_dense = 3
 
 contains
 
