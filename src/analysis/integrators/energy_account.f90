@@ -29,10 +29,12 @@ contains
     real(rk), intent(in) :: diagonal(:) !< (num_total) of K [N/m]
     type(state), intent(inout) :: now
     logical, intent(in) :: is_first !< step of the analysis
+    type(stored_work) :: guests
     real(rk) :: kinetic_before
+    call sum_work(model, now, guests)
     associate (energy => now%energy)
       kinetic_before = energy%kinetic
-      call set_stored(model, diagonal, now)
+      call set_stored(guests, diagonal, now)
       if (is_first) then
         energy%initial = energy%kinetic + energy%strain + energy%friction + energy%fracture
       else ! kinetic energy is lost where velocities are set to zero
@@ -49,16 +51,18 @@ contains
     type(dam_system), intent(in) :: system
     type(state), intent(in) :: before
     type(state), intent(inout) :: after
+    type(stored_work) :: guests
     real(rk), allocatable :: du(:)
+    call sum_work(model, after, guests)
     associate (old => before%motion, new => after%motion, n => system%matrix%num_free)
       du = new%q - old%q
       call add_external(du, n, old, new, after%energy)
       after%energy%numerical = after%energy%numerical + work(du, old%contact, new%contact) &
                                + work(du(:n), old%balanced, new%balanced) &
                                + inelastic_work(du, old, new) &
-                               - change_of_stores(model, before, after)
+                               - change_of_stores(model, before, guests)
     end associate
-    call set_stored(model, system%diagonal, after)
+    call set_stored(guests, system%diagonal, after)
   end subroutine add_static_work
 
   !> Adds the work of a dynamic increment, or of a part of it.
@@ -69,8 +73,10 @@ contains
     type(state), intent(inout) :: after
     !> Change of the kinetic energy beyond du . M a_mean, from the formulas of the scheme [J]
     real(rk), intent(in) :: excess
+    type(stored_work) :: guests
     real(rk), allocatable :: du(:)
     real(rk) :: taken, lost
+    call sum_work(model, after, guests)
     associate (old => before%motion, new => after%motion, n => system%matrix%num_free)
       du = new%q - old%q
       call add_external(du, n, old, new, after%energy)
@@ -83,10 +89,10 @@ contains
               - work(du(:n), old%balanced(:n), new%balanced(:n)) &
               + work(du(n + 1:), old%contact(n + 1:), new%contact(n + 1:)) &
               + inelastic_work(du(n + 1:), old, new, n) &
-              - change_of_stores(model, before, after) - excess + lost
+              - change_of_stores(model, before, guests) - excess + lost
     end associate
     after%energy%numerical = after%energy%numerical + taken
-    call set_stored(model, system%diagonal, after)
+    call set_stored(guests, system%diagonal, after)
   end subroutine add_dynamic_work
 
   !> Work of the loads and of moving supports.
@@ -120,22 +126,20 @@ contains
   end function inelastic_work
 
   !> Change of stored and dissipated energy of guests with a history, beyond 1/2 q K q.
-  real(rk) function change_of_stores(model, before, after) result(change)
+  real(rk) function change_of_stores(model, before, new) result(change)
     type(problem), intent(in) :: model
-    type(state), intent(in) :: before, after
-    type(stored_work) :: old, new
+    type(state), intent(in) :: before
+    type(stored_work), intent(in) :: new !< after the increment
+    type(stored_work) :: old
     call sum_work(model, before, old)
-    call sum_work(model, after, new)
     change = new%stored - old%stored + new%friction - old%friction + new%fracture - old%fracture
   end function change_of_stores
 
   !> Energies of the state.
-  subroutine set_stored(model, diagonal, now)
-    type(problem), intent(in) :: model
+  subroutine set_stored(guests, diagonal, now)
+    type(stored_work), intent(in) :: guests !< of the histories of `now`
     real(rk), intent(in) :: diagonal(:) !< (num_total) of K [N/m]
     type(state), intent(inout) :: now
-    type(stored_work) :: guests
-    call sum_work(model, now, guests)
     associate (own => now%motion, energy => now%energy)
       energy%kinetic = 0.0_rk
       if (allocated(own%momentum)) energy%kinetic = 0.5_rk*dot(own%v, own%momentum)

@@ -4,60 +4,47 @@ module guest_histories
   use guest_type, only: guest
   use problem_definition, only: problem
   use analysis_state, only: state
-  use write_text, only: as_text
   implicit none
   private
-  public :: history_reference, list_histories, list_owners, start_histories, sum_work
+  public :: history_reference, list_histories, start_histories, sum_work
 
-  !> A history, its name in an archive, and the guest that it belongs to.
+  !> A history, and the guest that it belongs to.
   type :: history_reference
     class(history), pointer :: own => null()
-    class(guest), pointer :: owner => null() !< null without `list_owners`
-    character(:), allocatable :: key
+    class(guest), pointer :: owner => null() !< null where the list is made without the model
+    character(6) :: kind = '' !< 'joint', 'points' or 'guest'
+    integer :: number = 0 !< among those of its kind
   end type history_reference
 
 contains
 
-  !> The histories that there are. The list points into `now`.
-  subroutine list_histories(now, list)
+  !> The histories that there are, with their owners where the model is given. The list points into
+  !> `now` and `model`.
+  subroutine list_histories(now, list, model)
     type(state), intent(in), target :: now
     type(history_reference), allocatable, intent(out) :: list(:)
-    integer :: i, n, num_joints, num_blocks
-    num_joints = size(now%joints)
-    num_blocks = size(now%points)
-    allocate (list(num_joints + num_blocks + size(now%guests)))
-    do i = 1, num_joints
+    type(problem), intent(in), target, optional :: model
+    integer :: i, n
+    allocate (list(size(now%joints) + size(now%points) + size(now%guests)))
+    do i = 1, size(now%joints)
       list(i)%own => now%joints(i)
-      list(i)%key = 'joint_'//as_text(i)
+      if (present(model)) list(i)%owner => model%joints(i)
     end do
-    do i = 1, num_blocks
-      list(num_joints + i)%own => now%points(i)
-      list(num_joints + i)%key = 'points_'//as_text(i)
+    n = size(now%joints)
+    do i = 1, size(now%points)
+      list(n + i)%own => now%points(i)
+      if (present(model)) list(n + i)%owner => model%inelastic(i)
     end do
+    n = n + size(now%points)
     do i = 1, size(now%guests)
-      n = num_joints + num_blocks + i
-      list(n)%own => now%guests(i)%item
-      list(n)%key = 'guest_'//as_text(i)
+      list(n + i)%own => now%guests(i)%item
+      if (present(model)) list(n + i)%owner => model%guests(i)%item
     end do
+    list%kind = [spread('joint ', 1, size(now%joints)), spread('points', 1, size(now%points)), &
+                 spread('guest ', 1, size(now%guests))]
+    list%number = [(i, i=1, size(now%joints)), (i, i=1, size(now%points)), &
+                   (i, i=1, size(now%guests))]
   end subroutine list_histories
-
-  !> Adds the owners to a list of histories.
-  subroutine list_owners(model, list)
-    type(problem), intent(in), target :: model
-    type(history_reference), intent(inout) :: list(:)
-    integer :: i, n, num_joints
-    num_joints = size(model%joints)
-    n = size(list) - size(model%guests)
-    do i = 1, num_joints
-      list(i)%owner => model%joints(i)
-    end do
-    do i = num_joints + 1, n
-      list(i)%owner => model%inelastic(i - num_joints)
-    end do
-    do i = 1, size(model%guests)
-      list(n + i)%owner => model%guests(i)%item
-    end do
-  end subroutine list_owners
 
   !> The histories of guests at the start of an analysis.
   subroutine start_histories(model, histories)
@@ -77,8 +64,7 @@ contains
     type(stored_work), intent(out) :: total
     type(history_reference), allocatable :: list(:)
     integer :: i
-    call list_histories(now, list)
-    call list_owners(model, list)
+    call list_histories(now, list, model)
     do i = 1, size(list)
       if (associated(list(i)%own)) call list(i)%owner%add_work(list(i)%own, total)
     end do

@@ -6,6 +6,7 @@ module state_archive
   use guest_histories, only: history_reference, list_histories
   use step_control, only: increment_control
   use analysis_state, only: state, increment_status, energy_balance, last_matrix, motion
+  use write_text, only: as_text
   implicit none
   private
   public :: save_state, load_state, save_energy, load_energy
@@ -71,7 +72,7 @@ contains
     call list_histories(now, list)
     do i = 1, size(list)
       if (.not. associated(list(i)%own)) cycle
-      call file%open_group(list(i)%key)
+      call file%open_group(key_of(list(i)))
       call list(i)%own%save(file)
       call file%close_group()
     end do
@@ -89,11 +90,18 @@ contains
     call list_histories(now, list)
     do i = 1, size(list)
       if (.not. associated(list(i)%own)) cycle
-      call file%open_group(list(i)%key)
+      call file%open_group(key_of(list(i)))
       call list(i)%own%load(file)
       call file%close_group()
     end do
   end subroutine load_histories
+
+  !> Name of the group of a history: 'joint_1', 'points_3', 'guest_2'.
+  function key_of(item) result(key)
+    type(history_reference), intent(in) :: item
+    character(:), allocatable :: key
+    key = trim(item%kind)//'_'//as_text(item%number)
+  end function key_of
 
   !> Reads the fields at nodes. A step without inertia has no velocities and accelerations.
   subroutine load_fields(now, file)
