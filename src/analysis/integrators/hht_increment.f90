@@ -33,15 +33,12 @@ contains
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
     type(increment_task) :: task
-    integer :: iterations
     associate (system => self%system, scheme => self%scheme, solids => self%solids, &
                n => self%system%matrix%num_free, old => before%motion, new => after%motion)
       call pose_task(self, model, when, before, after, task)
-      iterations = 0
       do
         call solids%solve_increment(model, system, task, before, after, outcome, error)
         if (allocated(error) .or. .not. outcome%has_converged) return
-        iterations = iterations + outcome%iterations
         call correct(system, scheme, solids, task, before, after)
         ! With reactions: displaced supports may be the only load of the dam.
         after%largest_force = max(task%balance%reference_force, length(new%internal), &
@@ -51,7 +48,6 @@ contains
         call task%check_balance(new%balanced(:n) - new%inertia(:n), after%largest_force, outcome)
         if (.not. task%is_refined) exit
       end do
-      outcome%iterations = iterations
     end associate
   end subroutine take_increment
 

@@ -40,14 +40,11 @@ contains
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
     type(increment_task) :: task
-    integer :: iterations
     call pose_task(model, system, solids, when, before, after, task)
-    iterations = 0
     associate (new => after%motion, n => system%matrix%num_free)
       do
         call solids%solve_increment(model, system, task, before, after, outcome, error)
         if (allocated(error) .or. .not. outcome%has_converged) return
-        iterations = iterations + outcome%iterations
         new%q = task%start + task%x
         call multiply(system%matrix, system%stiffness, new%q, new%elastic)
         call solids%set_internal(new)
@@ -58,7 +55,6 @@ contains
                                 after%largest_force, outcome)
         if (.not. task%is_refined) exit
       end do
-      outcome%iterations = iterations
     end associate
   end subroutine take_static_increment
 

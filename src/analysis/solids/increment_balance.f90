@@ -22,6 +22,7 @@ module increment_balance
     real(rk) :: tolerance = 0.0_rk !< of the residual of all forces
     real(rk) :: share = 1.0_rk !< tolerance of joints and of solids, over `tolerance`
     real(rk) :: residual = huge(1.0_rk) !< of the last pass
+    integer :: iterations = 0 !< of all passes
     logical :: is_refined = .false. !< `x` is a solution to be refined
   contains
     procedure :: check_balance
@@ -35,13 +36,16 @@ module increment_balance
 contains
 
   !> Measures the residual of all forces, those of the laws included, over the reference force. It
-  !> decides convergence, and whether another pass follows (`is_refined`).
+  !> decides convergence, and whether another pass follows (`is_refined`). The outcome counts the
+  !> iterations of all passes.
   subroutine check_balance(self, unbalance, reference, outcome)
     class(increment_task), intent(inout) :: self
     real(rk), intent(in) :: unbalance(:) !< (free unknowns) [N]
     real(rk), intent(in) :: reference !< [N]
     type(balance_outcome), intent(inout) :: outcome
     real(rk) :: last
+    self%iterations = self%iterations + outcome%iterations
+    outcome%iterations = self%iterations
     last = self%residual
     self%residual = norm(unbalance)/max(reference, tiny(1.0_rk))
     outcome%residual = self%residual

@@ -179,30 +179,33 @@ contains
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
     type(increment_task) :: task
-    real(rk) :: moved(self%system%matrix%num_total)
+    real(rk) :: acceleration(self%system%matrix%num_total)
     logical :: has_changed
     call results%costs%start('iterate', 'structure', 'solver')
     call results%costs%start('update', 'uplift', 'load')
     call update_uplift(model, self%system%operator, before%joints, self%system%groups, has_changed)
     call results%costs%stop()
     call self%solids%open_increment(before, when%increment)
-    call pose_task(self, model, when, before, after, moved, task)
-    call self%solids%solve_increment(model, self%system, task, before, after, outcome, error)
-    if (.not. allocated(error) .and. outcome%has_converged) then
-      call correct(self, task, task%x + moved, when%increment, after, outcome)
-    end if
+    call pose_task(self, model, when, before, after, acceleration, task)
+    do
+      call self%solids%solve_increment(model, self%system, task, before, after, outcome, error)
+      if (allocated(error) .or. .not. outcome%has_converged) exit
+      call correct(self, task, acceleration, when%increment, after, outcome)
+      if (.not. task%is_refined) exit
+    end do
     call results%costs%stop('iterate structure')
   end subroutine solve_part
 
   !> The problem of a part: loads and supports at its end.
-  subroutine pose_task(self, model, when, before, after, moved, task)
+  subroutine pose_task(self, model, when, before, after, acceleration, task)
     class(bathe_method), intent(in) :: self
     type(problem), intent(in) :: model
     type(step_time), intent(in) :: when !< the end of the part
     type(state), intent(in) :: before
     type(state), intent(inout) :: after !< predicted
-    real(rk), intent(out) :: moved(:) !< (num_total) x of the supports [m]
+    real(rk), intent(out) :: acceleration(:) !< (num_total) at x = 0, supports in place [m/s2]
     type(increment_task), intent(out) :: task
+    real(rk) :: moved(size(acceleration)) ! x of the supports
     associate (system => self%system, new => after%motion, n => self%system%matrix%num_free)
       call external_force(system%groups, model%amplitudes, when, new%external)
       moved = new%q
@@ -213,12 +216,13 @@ contains
                          - before%motion%elastic(:n)
       call add_moving_supports(system, self%solids%values, moved, task%balance%rhs)
       task%start = new%q + moved
+      task%velocity = new%v + self%c*moved
+      task%velocity_of_x = self%c
+      acceleration = new%a + self%c**2*moved
       task%balance%reference_force = largest_force(before%motion, n, 1.0_rk, when%increment)
       if (self%solids%has_inelastic()) then
         task%reference_force = max(task%balance%reference_force, before%largest_force, &
                                    length(new%external(:n)))
-        task%velocity = new%v + self%c*moved
-        task%velocity_of_x = self%c
       end if
       call task%balance%set_jumps(system%operator, task%start, before%joints)
       allocate (task%x(system%matrix%num_total))
@@ -226,17 +230,17 @@ contains
   end subroutine pose_task
 
   !> Motion and forces at the end of a part, and their residual.
-  subroutine correct(self, task, x, dt, after, outcome)
+  subroutine correct(self, task, acceleration, dt, after, outcome)
     class(bathe_method), intent(in) :: self
     type(increment_task), intent(inout) :: task
-    real(rk), intent(in) :: x(:) !< (num_total) [m]
+    real(rk), intent(in) :: acceleration(:) !< (num_total) at x = 0 [m/s2]
     real(rk), intent(in) :: dt !< length of the part [s]
     type(state), intent(inout) :: after
     type(balance_outcome), intent(inout) :: outcome
     associate (system => self%system, new => after%motion, n => self%system%matrix%num_free)
-      new%q = new%q + x
-      new%v = new%v + self%c*x
-      new%a = new%a + self%c**2*x
+      new%q = task%start + task%x
+      new%v = task%velocity + self%c*task%x
+      new%a = acceleration + self%c**2*task%x
       call find_rate_forces(system, new)
       call multiply(system%matrix, system%stiffness, new%q, new%elastic)
       call self%solids%set_internal(new)
