@@ -115,13 +115,15 @@ contains
 
   !> Starts the iteration from the last iterate of the joints.
   subroutine start_from(self, operator, new)
-    class(force_balance), intent(inout) :: self !< with a guess
+    class(force_balance), intent(inout) :: self
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: new(:) !< histories of the iterate
+    real(rk), dimension(3, operator%num_points) :: jump, traction
+    call gather_jumps(operator, new, jump)
+    call gather_tractions(operator, new, traction)
     self%starts_closed = .false.
-    call gather_jumps(operator, new, self%guess)
-    self%guess_traction = self%guess ! for the shape
-    call gather_tractions(operator, new, self%guess_traction)
+    self%guess = jump
+    self%guess_traction = traction
   end subroutine start_from
 
   !> Iterations of the first pass, for the control of the increment size.
