@@ -11,7 +11,7 @@ module card_check
   use write_text, only: as_text
   implicit none
   private
-  public :: check_card, match_card
+  public :: check_card, match_card, longest_name
 
   integer, parameter :: longest_name = 80 !< letters of a name, as in Abaqus
 

@@ -3,11 +3,10 @@ module check_names
   use diagnostics, only: diagnostic_list
   use file_system, only: link_name
   use model_draft, only: draft
+  use named_things, only: joint_names, set_names, surface_names
   implicit none
   private
   public :: verify_names
-
-  integer, parameter :: name_length = 80 !< of names, card_check
 
 contains
 
@@ -15,31 +14,10 @@ contains
   subroutine verify_names(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    character(name_length), allocatable :: names(:)
-    integer :: i
-    allocate (names(model%node_sets%num_sets))
-    do i = 1, size(names)
-      names(i) = model%node_sets%sets(i)%name
-    end do
-    call compare(names, 'NSET', model, faults)
-    deallocate (names)
-    allocate (names(model%element_sets%num_sets))
-    do i = 1, size(names)
-      names(i) = model%element_sets%sets(i)%name
-    end do
-    call compare(names, 'ELSET', model, faults)
-    deallocate (names)
-    allocate (names(size(model%problem%surfaces)))
-    do i = 1, size(names)
-      names(i) = model%problem%surfaces(i)%name
-    end do
-    call compare(names, 'NAME', model, faults)
-    deallocate (names)
-    allocate (names(size(model%joints)))
-    do i = 1, size(names)
-      names(i) = model%joints(i)%name
-    end do
-    call compare(names, 'NAME', model, faults)
+    call compare(set_names(model%node_sets), 'NSET', model, faults)
+    call compare(set_names(model%element_sets), 'ELSET', model, faults)
+    call compare(surface_names(model), 'NAME', model, faults)
+    call compare(joint_names(model), 'NAME', model, faults)
   end subroutine verify_names
 
   !> Reports names with a '/' that are another name without it.

@@ -1,6 +1,7 @@
 !> References of a card by id or name: nodes, elements, surfaces, amplitudes. A fault is reported
 !> at the place of the reference.
 module named_things
+  use card_check, only: longest_name
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use id_map, only: position_table
@@ -11,9 +12,7 @@ module named_things
   private
   public :: nodes_at, elements_at, elements_of_set, nodes_of_set
   public :: find_surface_name, find_surface_at, find_amplitude
-  public :: set_names, surface_names, longest_name
-
-  integer, parameter :: longest_name = 80 !< letters of a name in the search for similar names
+  public :: joint_names, set_names, surface_names, longest_name
 
 contains
 
@@ -147,7 +146,7 @@ contains
                        nearest_word(this%word_at(line, at), surface_names(model)))
   end subroutine find_surface_at
 
-  !> Names of surfaces, to find the nearest among them.
+  !> Names of surfaces.
   pure function surface_names(model) result(names)
     type(draft), intent(in) :: model
     character(longest_name) :: names(size(model%problem%surfaces))
@@ -178,7 +177,17 @@ contains
     end if
   end subroutine find_amplitude
 
-  !> Names of sets, to find the nearest among them.
+  !> Names of joints.
+  pure function joint_names(model) result(names)
+    type(draft), intent(in) :: model
+    character(longest_name) :: names(size(model%joints))
+    integer :: i
+    do i = 1, size(names)
+      names(i) = model%joints(i)%name
+    end do
+  end function joint_names
+
+  !> Names of sets.
   pure function set_names(sets) result(names)
     type(set_list), intent(in) :: sets
     character(longest_name) :: names(sets%num_sets)

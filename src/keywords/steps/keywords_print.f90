@@ -7,7 +7,7 @@ module keywords_print
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_word
   use kinds, only: rk
   use model_draft, only: draft
-  use named_things, only: elements_of_set, longest_name, nodes_of_set
+  use named_things, only: elements_of_set, joint_names, nodes_of_set
   use nearest_words, only: nearest_word
   use print_kinds, only: file_pattern, kinds_of_prints, prints_of_elements, prints_of_joints, &
                          prints_of_nodes
@@ -146,18 +146,17 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(print_request) :: new
-    character(longest_name) :: known(size(model%joints))
     integer :: i
     new%kind = prints_of_joints
     new%name = this%word('JOINT')
     allocate (new%members(0), new%near_nodes(0), new%fields(0))
-    do i = 1, size(known)
-      known(i) = model%joints(i)%name
+    do i = 1, size(model%joints)
       if (model%joints(i)%name == new%name) new%members = [i]
     end do
     if (size(new%members) == 0) then
       call this%fault_parameter(faults, 'JOINT', "there is no joint '"//this%text('JOINT')// &
-                                "' so far", 'the name of a *JOINT', nearest_word(new%name, known))
+                                "' so far", 'the name of a *JOINT', &
+                                nearest_word(new%name, joint_names(model)))
     end if
     if (this%has('NSET')) call nodes_of_set(this, 'NSET', model, faults, new%near_nodes)
     call add_request(this, new, model)
