@@ -2,6 +2,7 @@
 module card_digests
   use deck_card, only: card
   use deck_file, only: path_beside
+  use deck_scan, only: steps_of_cards
   use diagnostics, only: place
   use file_identity, only: add_path, file_path
   use sha256, only: digest_of_file, digest_of_text
@@ -24,22 +25,14 @@ contains
   subroutine digests_of_cards(cards, digests)
     type(card), intent(in) :: cards(:) !< of the deck, in its order
     type(card_digest), allocatable, intent(out) :: digests(:)
-    integer :: i, last_step
-    logical :: is_in_step
+    integer :: i
     allocate (digests(size(cards)))
-    last_step = 0
-    is_in_step = .false.
+    digests%step = steps_of_cards(cards)
     do i = 1, size(cards)
-      if (cards(i)%keyword == 'STEP' .and. .not. is_in_step) then
-        is_in_step = .true.
-        last_step = last_step + 1
-      end if
       digests(i)%keyword = cards(i)%keyword
       digests(i)%name = name_of(cards(i))
       digests(i)%place = cards(i)%file_and_line(0)
-      digests(i)%step = merge(last_step, 0, is_in_step)
       digests(i)%digest = digest_of(cards(i))
-      if (cards(i)%keyword == 'END STEP') is_in_step = .false.
     end do
   end subroutine digests_of_cards
 

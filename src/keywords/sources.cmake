@@ -4,7 +4,6 @@ set(sources
   checks/check_names.f90
   checks/check_steps.f90
   checks/check_unused.f90
-  checks/deck_scan.f90
   deck_echo.f90
   draft/keyword_handler.f90
   draft/model_draft.f90

@@ -150,6 +150,24 @@ def test_later_steps_may_change(stopped, umat, program_path, tmp_path_factory):
     assert differences(straight, folder) == ["job.h5:sets/nodes/CREST"]
 
 
+def test_later_steps_may_change_in_any_spelling(umat, program_path, tmp_path):
+    """Blanks and capitals of *STEP and *END STEP do not count."""
+
+    def write(name: str, last: str) -> Path:
+        path = tmp_path / name / "job.inp"
+        path.parent.mkdir()
+        path.write_text(deck(last=last).replace("*END STEP", "*EndStep").replace("*STEP", "* step"))
+        return path
+
+    out = tmp_path / "out"
+    arguments = ["-q", "-o", out, "-j", "1", "--umat", umat]
+    process = start(program_path, *arguments, write("old", LAST.format(force=100)))
+    kill_at(process, out / "job_energy.csv", 40, signal.SIGTERM, 0.0)
+    assert process.wait() == 1
+    done = call([program_path, *arguments, "--continue", write("new", LAST.format(force=300))])
+    assert done.returncode == 0, done.stderr
+
+
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [

@@ -32,7 +32,7 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer :: step(size(model%cards))
-    step = steps_of_cards(model)
+    step = steps_of_cards(model%cards)
     call warn_of_weights(model, step, faults)
     call warn_of_records(model, step, faults)
     call warn_of_levels(model, faults)

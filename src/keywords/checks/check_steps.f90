@@ -22,7 +22,7 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer :: step(size(model%cards))
-    step = steps_of_cards(model)
+    step = steps_of_cards(model%cards)
     call warn_of_names(model, step, faults)
     call warn_of_loads_on_modes(model, step, faults)
     call warn_of_reservoirs(model, step, faults)

@@ -1,6 +1,7 @@
 !> *STEP, *END STEP and the procedures *STATIC, *DYNAMIC, *FREQUENCY.
 module keywords_step
   use deck_card, only: card
+  use deck_scan, only: is_keyword
   use diagnostics, only: diagnostic_list, place
   use finish_step, only: close_step, open_step
   use integrator_catalogue, only: list_procedures, list_schemes, procedure_named
@@ -82,8 +83,7 @@ contains
     integer :: i
     if (model%now%procedure%has_inertia .or. model%now%procedure%name == '') return
     do i = model%step_origin%card, model%current
-      if (.not. allocated(model%cards(i)%spec%name)) cycle
-      if (model%cards(i)%spec%name /= 'BASE MOTION') cycle
+      if (.not. is_keyword(model%cards(i), 'BASE MOTION')) cycle
       call model%cards(i)%fault(faults, 'has no effect in a step *'// &
                                 trim(model%now%procedure%name), 'a step *DYNAMIC')
     end do

@@ -1,7 +1,6 @@
-!> Which keyword and which step a card belongs to, for checks over the whole deck.
+!> Which keyword and which step a card belongs to. The cards must have been checked.
 module deck_scan
   use deck_card, only: card
-  use model_draft, only: draft
   implicit none
   private
   public :: is_keyword, steps_of_cards
@@ -17,18 +16,18 @@ contains
   end function is_keyword
 
   !> The step of each card: 0 before the first step and between steps.
-  pure function steps_of_cards(model) result(step)
-    type(draft), intent(in) :: model
-    integer :: step(size(model%cards))
+  pure function steps_of_cards(cards) result(step)
+    type(card), intent(in) :: cards(:) !< of the deck, in its order
+    integer :: step(size(cards))
     integer :: i, number
     logical :: is_open
     number = 0
     is_open = .false.
     do i = 1, size(step)
-      if (is_keyword(model%cards(i), 'STEP')) number = number + 1
-      if (is_keyword(model%cards(i), 'STEP')) is_open = .true.
+      if (is_keyword(cards(i), 'STEP')) number = number + 1
+      if (is_keyword(cards(i), 'STEP')) is_open = .true.
       step(i) = merge(number, 0, is_open)
-      if (is_keyword(model%cards(i), 'END STEP')) is_open = .false.
+      if (is_keyword(cards(i), 'END STEP')) is_open = .false.
     end do
   end function steps_of_cards
 end module deck_scan
