@@ -1,11 +1,10 @@
 !> Warns of what a step holds without effect or twice; refuses a base that moves an unheld model.
 module check_steps
-  use card_reader, only: field_reader
-  use deck_card, only: card
   use deck_scan, only: is_keyword, steps_of_cards
   use diagnostics, only: diagnostic_list
   use guest_list, only: supports_of_step
   use load_base_motion, only: base_motion
+  use keywords_output, only: fields_of_envelope
   use model_draft, only: draft
   use step_plan, only: field_name_length
   use write_text, only: as_text
@@ -104,7 +103,7 @@ contains
       if (step(i) /= opened) seen = [character(longest_key) ::]
       opened = step(i)
       if (.not. is_keyword(model%cards(i), 'ENVELOPE')) cycle
-      call list_envelope(model%cards(i), own)
+      own = fields_of_envelope(model%cards(i))//model%cards(i)%word('POSITION')
       do k = 1, size(own)
         if (.not. any(seen == own(k))) cycle
         word = own(k) (:field_name_length)
@@ -115,24 +114,6 @@ contains
       seen = [character(longest_key) :: seen, own]
     end do
   end subroutine warn_of_envelopes
-
-  !> Fields of a card, each followed by its position.
-  subroutine list_envelope(this, keys)
-    type(card), intent(in) :: this
-    character(longest_key), allocatable, intent(out) :: keys(:)
-    type(field_reader) :: reader
-    character(field_name_length) :: word
-    character(:), allocatable :: position
-    allocate (keys(0))
-    position = this%word('POSITION')
-    do while (reader%advance(this))
-      word = this%word_at(reader%line, reader%field)
-      if (word /= '') keys = [character(longest_key) :: keys, word//position]
-    end do
-    if (size(keys) > 0) return
-    keys = [character(longest_key) :: 'S1      '//position, 'S3      '//position, &
-            'OPENING '//position]
-  end subroutine list_envelope
 
   !> A static step finds its displacements from its loads; only histories of joints and inelastic
   !> solids and prescribed displacements start from the initial ones.

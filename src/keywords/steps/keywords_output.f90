@@ -14,7 +14,7 @@ module keywords_output
   private
   public :: describe_node_file, describe_el_file, describe_output, describe_node_output
   public :: describe_element_output, describe_envelope, describe_preprint
-  public :: read_fields, read_output, read_envelope
+  public :: read_fields, read_output, read_envelope, fields_of_envelope
 
   character, parameter :: nl = new_line('a')
   character(*), parameter :: series = ' The fields go to the VTK series (job.pvd) and to '// &
@@ -163,19 +163,24 @@ contains
     end do
   end subroutine take_points
 
+  !> Fields that *ENVELOPE names, or those of a card that names none.
+  pure function fields_of_envelope(this) result(fields)
+    type(card), intent(in) :: this
+    character(field_name_length), allocatable :: fields(:)
+    fields = fields_of(this, '')
+    if (fields(1) /= '') return
+    fields = [character(field_name_length) :: 'S1', 'S3']
+    if (this%word('POSITION') /= 'POINTS') fields = [fields, 'OPENING ']
+  end function fields_of_envelope
+
   subroutine read_envelope(this, model, faults)
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     character(field_name_length), allocatable :: fields(:)
-    fields = fields_of(this, '')
+    fields = fields_of_envelope(this)
     call warn_of_repeats(this, faults)
-    if (this%word('POSITION') == 'POINTS') then
-      if (fields(1) == '') fields = [character(field_name_length) :: 'S1', 'S3']
-      call take_points(this, fields, faults)
-    else if (fields(1) == '') then
-      fields = [character(field_name_length) :: 'S1', 'S3', 'OPENING']
-    end if
+    if (this%word('POSITION') == 'POINTS') call take_points(this, fields, faults)
     model%now%envelope = [character(field_name_length) :: model%now%envelope, fields]
   end subroutine read_envelope
 
