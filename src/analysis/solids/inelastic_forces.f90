@@ -19,7 +19,7 @@ module inelastic_forces
   implicit none
   private
   public :: block_answer, open_answers, update_points, recall_points, sum_excess, find_failure
-  public :: has_many_elements
+  public :: add_elements, has_many_elements
 
   !> Fewer elements than this are faster on one thread.
   integer, parameter :: few_elements = 32
@@ -186,17 +186,28 @@ contains
     real(rk), intent(in) :: of_guests(:, :) !< (3, nodes) [N]
     real(rk), intent(out) :: excess(:) !< (num_total) [N]
     real(rk), allocatable :: nodal(:, :)
-    integer :: i, e
+    integer :: i
     nodal = of_guests
     do i = 1, size(answers)
-      do e = 1, size(answers(i)%has_excess)
-        if (.not. answers(i)%has_excess(e)) cycle
-        call add_vectors(answers(i)%force(:, e), &
-                         model%mesh%nodes(:, model%inelastic(i)%elements(e)), nodal)
-      end do
+      call add_elements(model, i, answers(i)%force, answers(i)%has_excess, nodal)
     end do
     call numbers%reduce(nodal, excess)
   end subroutine sum_excess
+
+  !> Adds forces of the elements of a block at their nodes.
+  pure subroutine add_elements(model, block, force, has_force, nodal)
+    type(problem), intent(in) :: model
+    integer, intent(in) :: block
+    real(rk), intent(in) :: force(:, :) !< (24, elements) [N]
+    logical, intent(in) :: has_force(:) !< (elements) the others are left out
+    real(rk), intent(inout) :: nodal(:, :) !< (3, nodes) [N]
+    integer :: e
+    associate (elements => model%inelastic(block)%elements)
+      do e = 1, size(elements)
+        if (has_force(e)) call add_vectors(force(:, e), model%mesh%nodes(:, elements(e)), nodal)
+      end do
+    end associate
+  end subroutine add_elements
 
   !> Smallest increment that a law requests, and the reason with element and point.
   subroutine find_failure(model, answers, size_ratio, why)

@@ -12,10 +12,10 @@ module lost_damping
   use element_matrices, only: strains_at_points
   use increment_balance, only: increment_task
   use inelastic_blocks, only: inelastic_block
-  use inelastic_forces, only: block_answer, has_many_elements
+  use inelastic_forces, only: add_elements, block_answer, has_many_elements
   use kinds, only: rk
   use material_points, only: point_state
-  use node_dofs, only: add_vectors, gather_vectors
+  use node_dofs, only: gather_vectors
   use problem_definition, only: problem
   use shape_hex8, only: hex8_dofs
   use step_plan, only: step
@@ -60,7 +60,7 @@ contains
     type(block_answer), intent(inout) :: answers(:) !< (blocks)
     real(rk), intent(inout) :: excess(:) !< (num_total) [N]
     real(rk) :: v(3, numbers%num_nodes), force(3, numbers%num_nodes)
-    integer :: i, e
+    integer :: i
     if (.not. allocated(self%beta)) return
     call numbers%expand(task%velocity + task%velocity_of_x*task%x, v)
     !$omp parallel do schedule(dynamic) default(none) shared(self, model, task, v, old, answers) &
@@ -73,10 +73,7 @@ contains
     force = 0.0_rk
     do i = 1, size(answers)
       if (.not. allocated(answers(i)%lost)) cycle
-      do e = 1, size(answers(i)%lost, 2)
-        call add_vectors(answers(i)%lost(:, e), &
-                         model%mesh%nodes(:, model%inelastic(i)%elements(e)), force)
-      end do
+      call add_elements(model, i, answers(i)%lost, answers(i)%has_excess, force)
     end do
     self%force = excess ! for its size
     call numbers%reduce(force, self%force)
