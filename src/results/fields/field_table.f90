@@ -9,9 +9,9 @@ module field_table
                            has_reactions
   use solid_fields, only: stress_on_nodes, stress_of_solids, stress_of_block, strain_on_nodes, &
                           strain_of_solids, strain_of_block, principals_on_nodes, &
-                          principals_of_solids, largest_on_nodes, smallest_on_nodes, law_width, &
-                          law_on_nodes, law_of_solids, law_of_block, largest_near_nodes, &
-                          smallest_near_nodes, largest_of_block, smallest_of_block, width_in_blocks
+                          principals_of_solids, extreme_on_nodes, extreme_near_nodes, &
+                          extreme_of_block, width_in_blocks, law_width, law_on_nodes, &
+                          law_of_solids, law_of_block
   use joint_fields, only: has_joints, opening_on_nodes, opening_of_joint, slip_of_joint, &
                           traction_of_joint, state_of_joint, used_slip_of_joint, water_of_joint
   use json_writer, only: lower
@@ -90,12 +90,12 @@ contains
     call enter(rows, last, result_field( &
                name='S1', meaning='largest tension', endings=scalar, unit='Pa', place=at_nodes, &
                remark='Largest principal stress of the mean tensor at a node.', &
-               provider=by_recovery, requests='ENVELOPE', on_nodes=largest_on_nodes))
+               provider=by_recovery, requests='ENVELOPE', on_nodes=extreme_on_nodes))
     call enter(rows, last, result_field( &
                name='S3', meaning='largest compression', endings=scalar, unit='Pa', &
                place=at_nodes, wants_smallest=.true., &
                remark='Smallest principal stress of the mean tensor at a node.', &
-               provider=by_recovery, requests='ENVELOPE', on_nodes=smallest_on_nodes))
+               provider=by_recovery, requests='ENVELOPE', on_nodes=extreme_on_nodes))
     call list_stresses_of_laws(rows, last)
   end subroutine list_stresses
 
@@ -110,14 +110,14 @@ contains
                'law gives it: concrete does not exceed f_t in uniaxial tension. S1 at nodes '// &
                'extrapolates and may. On nodes the mean of the nearest points.', &
                provider=by_law, requests='ENVELOPE', count=width_in_blocks, &
-               on_nodes=largest_near_nodes, of_block=largest_of_block))
+               on_nodes=extreme_near_nodes, of_block=extreme_of_block))
     call enter(rows, last, result_field( &
                name='S3'//ending_of_points, meaning='largest compression at integration points', &
                endings=scalar, unit='Pa', place=at_points, wants_smallest=.true., &
                remark='Smallest principal stress at the points of materials with a law, as the '// &
                'law gives it. On nodes the mean of the nearest points.', &
                provider=by_law, requests='ENVELOPE', count=width_in_blocks, &
-               on_nodes=smallest_near_nodes, of_block=smallest_of_block))
+               on_nodes=extreme_near_nodes, of_block=extreme_of_block))
   end subroutine list_stresses_of_laws
 
   !> Fields of joints.

@@ -11,8 +11,8 @@ module solid_fields
   private
   public :: stress_on_nodes, stress_of_solids, stress_of_block
   public :: strain_on_nodes, strain_of_solids, strain_of_block
-  public :: principals_on_nodes, principals_of_solids, largest_on_nodes, smallest_on_nodes
-  public :: largest_near_nodes, smallest_near_nodes, largest_of_block, smallest_of_block
+  public :: principals_on_nodes, principals_of_solids
+  public :: extreme_on_nodes, extreme_near_nodes, extreme_of_block
   public :: width_in_blocks, law_width, law_on_nodes, law_of_solids, law_of_block
 
 contains
@@ -112,27 +112,24 @@ contains
     end do
   end subroutine principals_of_solids
 
-  !> S1 on nodes.
-  subroutine largest_on_nodes(self, model, now, stresses, values)
+  !> S1 or S3 on nodes.
+  subroutine extreme_on_nodes(self, model, now, stresses, values)
     class(result_field), intent(in) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(recovered_fields), intent(inout) :: stresses
     real(rk), allocatable, intent(out) :: values(:, :) !< (1, nodes) [Pa]
+    integer :: i
     call stresses%need_principals(model, now)
-    values = stresses%node_principal(1:1, :)
-  end subroutine largest_on_nodes
+    i = number_of_extreme(self)
+    values = stresses%node_principal(i:i, :)
+  end subroutine extreme_on_nodes
 
-  !> S3 on nodes.
-  subroutine smallest_on_nodes(self, model, now, stresses, values)
+  !> Number of the principal stress: 1 is the largest, 3 the smallest.
+  pure integer function number_of_extreme(self) result(number)
     class(result_field), intent(in) :: self
-    type(problem), intent(in) :: model
-    type(state), intent(in) :: now
-    type(recovered_fields), intent(inout) :: stresses
-    real(rk), allocatable, intent(out) :: values(:, :) !< (1, nodes) [Pa]
-    call stresses%need_principals(model, now)
-    values = stresses%node_principal(3:3, :)
-  end subroutine smallest_on_nodes
+    number = merge(3, 1, self%wants_smallest)
+  end function number_of_extreme
 
   !> 1 where a material has a law with states at its points, else 0.
   integer function width_in_blocks(self, model)
@@ -143,47 +140,28 @@ contains
     if (size(model%inelastic) > 0) width_in_blocks = self%num_endings()
   end function width_in_blocks
 
-  !> S1_POINT on nodes.
-  subroutine largest_near_nodes(self, model, now, stresses, values)
+  !> S1_POINT or S3_POINT on nodes.
+  subroutine extreme_near_nodes(self, model, now, stresses, values)
     class(result_field), intent(in) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(recovered_fields), intent(inout) :: stresses
     real(rk), allocatable, intent(out) :: values(:, :) !< (1, nodes) [Pa]
-    call stresses%points_on_nodes(model, now, 1, values)
-  end subroutine largest_near_nodes
+    call stresses%points_on_nodes(model, now, number_of_extreme(self), values)
+  end subroutine extreme_near_nodes
 
-  !> S3_POINT on nodes.
-  subroutine smallest_near_nodes(self, model, now, stresses, values)
-    class(result_field), intent(in) :: self
-    type(problem), intent(in) :: model
-    type(state), intent(in) :: now
-    type(recovered_fields), intent(inout) :: stresses
-    real(rk), allocatable, intent(out) :: values(:, :) !< (1, nodes) [Pa]
-    call stresses%points_on_nodes(model, now, 3, values)
-  end subroutine smallest_near_nodes
-
-  !> S1_POINT of a block.
-  subroutine largest_of_block(self, model, now, block, values)
+  !> S1_POINT or S3_POINT of a block.
+  subroutine extreme_of_block(self, model, now, block, values)
     class(result_field), intent(in) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
     integer, intent(in) :: block
     real(rk), allocatable, intent(out) :: values(:, :) !< (1, points) [Pa]
+    integer :: i
     values = principals(now%points(block)%stress)
-    values = values(1:1, :)
-  end subroutine largest_of_block
-
-  !> S3_POINT of a block.
-  subroutine smallest_of_block(self, model, now, block, values)
-    class(result_field), intent(in) :: self
-    type(problem), intent(in) :: model
-    type(state), intent(in) :: now
-    integer, intent(in) :: block
-    real(rk), allocatable, intent(out) :: values(:, :) !< (1, points) [Pa]
-    values = principals(now%points(block)%stress)
-    values = values(3:3, :)
-  end subroutine smallest_of_block
+    i = number_of_extreme(self)
+    values = values(i:i, :)
+  end subroutine extreme_of_block
 
   !> Components of a field of laws.
   integer function law_width(self, model)
