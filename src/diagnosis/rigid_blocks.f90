@@ -12,7 +12,7 @@ module rigid_blocks
   use small_matrix, only: cross_product
   implicit none
   private
-  public :: block_set, find_blocks, add_node_motion, jump_rows, add_supports
+  public :: block_set, find_blocks, jump_rows, add_supports
 
   type :: block_set
     integer :: num_blocks = 0

@@ -4,7 +4,7 @@ module vtk_order
   implicit none
   private
   public :: tensor_in_vtk_order, tensor_names_in_vtk_order, cell_of_solid
-  public :: cell_hexahedron, cell_wedge, cell_of_polygon
+  public :: cell_of_polygon
 
   integer, parameter :: cell_triangle = 5, cell_polygon = 7, cell_quad = 9
   integer, parameter :: cell_hexahedron = 12, cell_wedge = 13

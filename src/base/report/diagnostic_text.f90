@@ -9,7 +9,7 @@ module diagnostic_text
   use write_text, only: as_text
   implicit none
   private
-  public :: text_of_errors, text_of_warnings, text_of_diagnostic, headline
+  public :: text_of_errors, text_of_warnings, headline
 
   integer, parameter :: widest_line = 100 !< letters of a deck line that are shown
   integer, parameter :: margin = 30 !< letters shown before the word when a line is cut

@@ -11,7 +11,7 @@ module named_things
   implicit none
   private
   public :: nodes_at, elements_at, elements_of_set, nodes_of_set
-  public :: find_surface_name, find_surface_at, find_amplitude
+  public :: find_surface_name, find_surface_at, find_amplitude, find_material
   public :: joint_names, set_names, surface_names, longest_name
 
 contains
@@ -176,6 +176,25 @@ contains
                                 nearest_word(this%word('AMPLITUDE'), known))
     end if
   end subroutine find_amplitude
+
+  !> Position of the material that MATERIAL names; 0 after a fault.
+  subroutine find_material(this, model, faults, found)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, intent(out) :: found
+    character(longest_name) :: known(size(model%problem%materials))
+    integer :: i
+    found = 0
+    do i = 1, size(known)
+      known(i) = model%problem%materials(i)%name
+      if (model%problem%materials(i)%name == this%word('MATERIAL')) found = i
+    end do
+    if (found > 0) return
+    call this%fault_parameter(faults, 'MATERIAL', "there is no material '"// &
+                              this%text('MATERIAL')//"'", 'the name of a *MATERIAL', &
+                              nearest_word(this%word('MATERIAL'), known))
+  end subroutine find_material
 
   !> Names of joints.
   pure function joint_names(model) result(names)

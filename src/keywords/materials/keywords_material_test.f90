@@ -8,8 +8,7 @@ module keywords_material_test
   use material_test_legs, only: read_legs
   use material_tests, only: material_test
   use model_draft, only: draft
-  use named_things, only: longest_name
-  use nearest_words, only: nearest_word
+  use named_things, only: find_material
   implicit none
   private
   public :: describe_material_test, read_material_test
@@ -111,7 +110,7 @@ contains
                                 "' is defined twice", 'a name that is used once', &
                                 first=model%cards(model%test_origin(i)%card)%place())
     end do
-    call find_material(this, model, faults, new%material)
+    call choose_material(this, model, faults, new%material)
     call check_parameters(this, faults)
     call read_legs(this, faults, new%legs)
     model%problem%tests = [model%problem%tests, new]
@@ -121,33 +120,22 @@ contains
   end subroutine read_material_test
 
   !> The material that the card names, or the only material of the deck.
-  subroutine find_material(this, model, faults, found)
+  subroutine choose_material(this, model, faults, found)
     type(card), intent(in) :: this
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer, intent(out) :: found !< 0 after a fault
-    character(longest_name) :: known(size(model%problem%materials))
-    integer :: i
     found = 0
-    if (.not. this%has('MATERIAL')) then
-      if (size(known) == 1) then
-        found = 1
-      else if (size(known) == 0) then
-        call this%fault(faults, 'the deck has no material', '*MATERIAL and its properties')
-      else
-        call this%fault(faults, 'the deck has several materials', 'MATERIAL=<name of one>')
-      end if
-      return
+    if (this%has('MATERIAL')) then
+      call find_material(this, model, faults, found)
+    else if (size(model%problem%materials) == 1) then
+      found = 1
+    else if (size(model%problem%materials) == 0) then
+      call this%fault(faults, 'the deck has no material', '*MATERIAL and its properties')
+    else
+      call this%fault(faults, 'the deck has several materials', 'MATERIAL=<name of one>')
     end if
-    do i = 1, size(known)
-      known(i) = model%problem%materials(i)%name
-      if (model%problem%materials(i)%name == this%word('MATERIAL')) found = i
-    end do
-    if (found > 0) return
-    call this%fault_parameter(faults, 'MATERIAL', "there is no material '"// &
-                              this%text('MATERIAL')//"'", 'the name of a *MATERIAL', &
-                              nearest_word(this%word('MATERIAL'), known))
-  end subroutine find_material
+  end subroutine choose_material
 
   !> Reports parameters that belong to another kind of test.
   subroutine check_parameters(this, faults)

@@ -6,8 +6,7 @@ module keywords_section
   use element_catalogue, only: is_solid
   use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_word
   use model_draft, only: draft, section_request
-  use named_things, only: elements_of_set, longest_name
-  use nearest_words, only: nearest_word
+  use named_things, only: elements_of_set, find_material
   use write_text, only: as_text
   implicit none
   private
@@ -50,25 +49,6 @@ contains
     model%sections = [model%sections, new]
     call give_material(this, new%elements, num_material, model, faults)
   end subroutine read_solid_section
-
-  !> Position of the material; an unknown name is a fault.
-  subroutine find_material(this, model, faults, found)
-    type(card), intent(in) :: this
-    type(draft), intent(in) :: model
-    type(diagnostic_list), intent(inout) :: faults
-    integer, intent(out) :: found
-    character(longest_name) :: known(size(model%problem%materials))
-    integer :: i
-    found = 0
-    do i = 1, size(known)
-      known(i) = model%problem%materials(i)%name
-      if (model%problem%materials(i)%name == this%word('MATERIAL')) found = i
-    end do
-    if (found > 0) return
-    call this%fault_parameter(faults, 'MATERIAL', "there is no material '"// &
-                              this%text('MATERIAL')//"'", 'the name of a *MATERIAL', &
-                              nearest_word(this%word('MATERIAL'), known))
-  end subroutine find_material
 
   !> Checks that all sections give the same MASS.
   subroutine choose_mass(this, model, faults)

@@ -8,7 +8,7 @@ module damage_increment
   use tensor6, only: principal_axes, principal_values, second_invariant, trace
   implicit none
   private
-  public :: plastic_state, increment_result, integrate_increment, elastic_stress, yield_tolerance
+  public :: plastic_state, increment_result, integrate_increment, elastic_stress
 
   integer, parameter :: max_parts = 64
   real(rk), parameter :: yield_tolerance = 1.0e-11_rk !< of F over the strength in compression

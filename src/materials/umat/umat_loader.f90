@@ -16,7 +16,7 @@ module umat_loader
   implicit none
   private
   public :: user_library, umat_request, open_library, keep_library
-  public :: at_start, at_increment_start, at_increment_end, at_end, at_restart
+  public :: at_increment_start, at_increment_end, at_end
 
   !> When UEXTERNALDB is called: its argument LOP.
   integer, parameter :: at_start = 0, at_increment_start = 1, at_increment_end = 2, at_end = 3

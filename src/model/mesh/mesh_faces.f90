@@ -9,7 +9,7 @@ module mesh_faces
   use small_matrix, only: cross_product
   implicit none
   private
-  public :: face_corner, face_nodes, face_vector, face_centre, count_corners
+  public :: face_nodes, face_vector, face_centre, count_corners
   public :: face_table, open_table, insert_face, find_face
   public :: find_exterior, mark_covered
 
