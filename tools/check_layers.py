@@ -43,6 +43,7 @@ ROOMS = (
     "interfaces/couplings",
     "loads",
     "assembly",
+    "joints/compliance",
     "joints/iteration",
     "analysis/state",
     "analysis/system",

@@ -1,16 +1,21 @@
 set(sources
+  compliance/block_compliance.f90
+  compliance/contact_scaling.f90
+  compliance/joint_compliance.f90
+  compliance/joint_operator.f90
+  compliance/joint_stiffness.f90
+  compliance/jump_block.f90
+  compliance/point_groups.f90
+  compliance/tangent_equations.f90
+  compliance/tangent_factors.f90
   iteration/condensation.f90
   iteration/contact_augmentation.f90
   iteration/contact_sweeps.f90
   iteration/equilibrium.f90
   iteration/equilibrium_catalogue.f90
   iteration/equilibrium_linear.f90
-  iteration/joint_compliance.f90
   iteration/joint_forces.f90
   iteration/joint_iteration.f90
-  iteration/joint_operator.f90
-  iteration/joint_stiffness.f90
-  iteration/jump_block.f90
   iteration/newton_condensed.f90
   iteration/newton_full.f90
   law/contraction_keyword.f90

@@ -4,7 +4,7 @@ module dense_factor
   implicit none
   private
   public :: lu_factor, factorise_dense, solve_factored, solve_lower, solve_lower_transposed
-  public :: gram
+  public :: invert_from_lower
 
   !> P A = L U.
   type :: lu_factor
@@ -32,40 +32,38 @@ module dense_factor
       integer, intent(out) :: info
     end subroutine dgetrs
 
-    subroutine dtrsm(side, uplo, trans, diag, m, n, alpha, a, lda, b, ldb)
+    subroutine dtrsv(uplo, trans, diag, n, a, lda, x, incx)
       import :: rk
       implicit none
-      character, intent(in) :: side, uplo, trans, diag
-      integer, intent(in) :: m, n, lda, ldb
-      real(rk), intent(in) :: alpha, a(lda, m)
-      real(rk), intent(inout) :: b(ldb, n)
-    end subroutine dtrsm
+      character, intent(in) :: uplo, trans, diag
+      integer, intent(in) :: n, lda, incx
+      real(rk), intent(in) :: a(lda, n)
+      real(rk), intent(inout) :: x(n)
+    end subroutine dtrsv
 
-    subroutine dsyrk(uplo, trans, n, k, alpha, a, lda, beta, c, ldc)
+    subroutine dpotri(uplo, n, a, lda, info)
       import :: rk
       implicit none
-      character, intent(in) :: uplo, trans
-      integer, intent(in) :: n, k, lda, ldc
-      real(rk), intent(in) :: alpha, beta, a(lda, n)
-      real(rk), intent(inout) :: c(ldc, n)
-    end subroutine dsyrk
+      character, intent(in) :: uplo
+      integer, intent(in) :: n, lda
+      real(rk), intent(inout) :: a(lda, n)
+      integer, intent(out) :: info
+    end subroutine dpotri
   end interface
 
 contains
 
-  !> Z^T Z, both triangles.
-  subroutine gram(z, product)
-    real(rk), intent(in), contiguous :: z(:, :)
-    real(rk), intent(out), contiguous :: product(:, :) !< (columns, columns)
-    integer :: n, j
-    n = size(z, 2)
+  !> Replaces L by the inverse of L L^T, both triangles.
+  subroutine invert_from_lower(a)
+    real(rk), intent(inout), contiguous :: a(:, :) !< only the lower triangle of L is read
+    integer :: n, j, info
+    n = size(a, 1)
     if (n == 0) return
-    product = 0.0_rk
-    call dsyrk('L', 'T', n, size(z, 1), 1.0_rk, z, size(z, 1), 0.0_rk, product, n)
+    call dpotri('L', n, a, n, info)
     do j = 2, n
-      product(:j - 1, j) = product(j, :j - 1)
+      a(:j - 1, j) = a(j, :j - 1)
     end do
-  end subroutine gram
+  end subroutine invert_from_lower
 
   !> Factors a square matrix; the matrix is moved into the factor.
   subroutine factorise_dense(matrix, factor)
@@ -93,18 +91,14 @@ contains
   !> Replaces `b` by L^-1 b.
   subroutine solve_lower(lower, b)
     real(rk), intent(in), contiguous :: lower(:, :) !< only its lower triangle is read
-    real(rk), intent(inout), contiguous :: b(:, :) !< (rows, right-hand sides)
-    integer :: n
-    n = size(lower, 1)
-    if (n > 0) call dtrsm('L', 'L', 'N', 'N', n, size(b, 2), 1.0_rk, lower, n, b, n)
+    real(rk), intent(inout), contiguous :: b(:)
+    if (size(b) > 0) call dtrsv('L', 'N', 'N', size(b), lower, size(b), b, 1)
   end subroutine solve_lower
 
   !> Replaces `b` by L^-T b.
   subroutine solve_lower_transposed(lower, b)
     real(rk), intent(in), contiguous :: lower(:, :) !< only its lower triangle is read
-    real(rk), intent(inout), contiguous :: b(:, :) !< (rows, right-hand sides)
-    integer :: n
-    n = size(lower, 1)
-    if (n > 0) call dtrsm('L', 'L', 'T', 'N', n, size(b, 2), 1.0_rk, lower, n, b, n)
+    real(rk), intent(inout), contiguous :: b(:)
+    if (size(b) > 0) call dtrsv('L', 'T', 'N', size(b), lower, size(b), b, 1)
   end subroutine solve_lower_transposed
 end module dense_factor

@@ -7,15 +7,19 @@ module condensation
   use global_vectors, only: norm
   use joint_law, only: joint_state
   use joint_points, only: dam_joint
-  use joint_operator, only: jump_operator
+  use joint_operator, only: jump_operator, joint_springs
   use joint_forces, only: joint_field, reference_stiffness, gather_jumps, gather_tractions
   use joint_iteration, only: start_iteration, excess_traction, closed_tangent
-  use joint_compliance, only: find_compliance, find_contact_scale
+  use block_compliance, only: take_blocks
+  use contact_scaling, only: find_contact_scale
+  use joint_compliance, only: find_compliance
+  use point_groups, only: group_list, group_points
   use matrix_condition, only: estimate_condition
   use solver_low_rank, only: add_low_rank
   use blas_threads, only: use_many_threads, use_one_thread
   use jump_block, only: jump_schur_block, extract_schur_block, schur_compliance
-  use newton_condensed, only: condensed_joints, iterate_on_jumps
+  use newton_condensed, only: condensed_joints, iterate_on_jumps, linearise_again
+  use tangent_equations, only: joint_tangent
   use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
   implicit none
   private
@@ -24,13 +28,19 @@ module condensation
   type, extends(equilibrium_solver) :: condensed_equilibrium
     type(condensed_joints) :: condensed
     type(jump_schur_block) :: jumps !< saves one of the two solves of an increment
+    integer, private :: num_held = 0 !< prescribed unknowns
   contains
     procedure :: prepare_matrix, solve_balance
-    procedure, private :: solve_from, has_drifted, begin_solve, end_solve
+    procedure, private :: condense, solve_from, has_drifted, begin_solve, end_solve, jump_drift
+    procedure, private :: find_drift
   end type condensed_equilibrium
 
   !> Admissible drift of the jumps, as a fraction of the residual tolerance.
   real(rk), parameter :: allowed_drift = 0.1_rk
+  !> Coupling of the blocks of G that are kept.
+  real(rk), parameter :: smallest_coupling = 1.0e-4_rk
+  !> Most corrections for the blocks of G that are left out.
+  integer, parameter :: most_passes = 12
 
 contains
 
@@ -46,6 +56,7 @@ contains
     real(rk), allocatable :: closed(:)
     integer :: levels
     self%operator = operator
+    self%num_held = matrix%num_total - matrix%num_free
     self%weight = weight
     self%condensed%weight = weight
     call reference_stiffness(joints, operator, self%condensed%k_ref)
@@ -65,23 +76,42 @@ contains
     end if
     call self%costs%start('condense', 'joints', 'joint')
     call extract_schur_block(self%factor, operator, matrix%num_free, matrix%num_last, self%jumps)
-    if (self%jumps%is_there) then
-      call use_many_threads(levels)
-      call schur_compliance(self%jumps, operator, self%condensed%compliance)
-      call use_one_thread(levels)
-    else
-      call find_compliance(self%factor, operator, matrix%num_free, self%condensed%compliance, error)
-    end if
-    if (allocated(error)) then
-      call self%costs%stop()
-      return
-    end if
-    call use_many_threads(levels)
-    call find_contact_scale(self%condensed%compliance, operator, self%condensed%k_ref, weight, &
-                            self%condensed%scale, self%condensed%open_compliance)
-    call use_one_thread(levels)
+    call self%condense(matrix%num_free, joints, error)
     call self%costs%stop()
   end subroutine prepare_matrix
+
+  !> Computes G, C and r. Without the Schur block no block of G is left out.
+  subroutine condense(self, num_free, joints, error)
+    class(condensed_equilibrium), intent(inout) :: self
+    integer, intent(in) :: num_free
+    type(dam_joint), intent(in) :: joints(:)
+    type(error_type), allocatable, intent(out) :: error
+    type(group_list) :: groups
+    type(joint_tangent) :: no_tangent
+    real(rk), allocatable :: dense(:, :)
+    real(rk) :: x(3, self%operator%num_points)
+    integer :: j, levels
+    associate (operator => self%operator, condensed => self%condensed)
+      if (self%jumps%is_there) then
+        call use_many_threads(levels)
+        call schur_compliance(self%jumps, operator, dense)
+        call use_one_thread(levels)
+      else
+        call find_compliance(self%factor, operator, num_free, dense, error)
+        if (allocated(error)) return
+      end if
+      do j = 1, size(joints)
+        x(:, operator%first_point(j):operator%first_point(j + 1) - 1) = joints(j)%x
+      end do
+      call group_points(operator%first_point, x, groups)
+      call take_blocks(dense, joint_springs(operator, condensed%k_ref, self%weight), groups, &
+                       merge(smallest_coupling, 0.0_rk, self%jumps%is_there), condensed%blocks)
+      deallocate (dense)
+      call find_contact_scale(condensed%blocks, operator, condensed%k_ref, self%weight, &
+                              condensed%scale, condensed%opened)
+      condensed%tangent = no_tangent
+    end associate
+  end subroutine condense
 
   !> Solves the equilibrium; solves again from the jumps found if they have drifted.
   subroutine solve_balance(self, balance, joints, old, new, x, outcome, error)
@@ -112,20 +142,30 @@ contains
     type(force_balance), intent(in) :: balance
     type(joint_state), intent(in) :: new(:)
     real(rk), intent(in) :: x(:)
-    real(rk), dimension(3, self%operator%num_points) :: jump, drift, traction
-    real(rk) :: force
+    real(rk), dimension(3, self%operator%num_points) :: jump, drift
     call self%operator%jumps(x, drift)
     call gather_jumps(self%operator, new, jump)
-    call gather_tractions(self%operator, new, traction)
-    drift = self%condensed%k_ref*(drift + balance%offset - jump)
-    associate (area => spread(self%operator%area, 1, 3))
-      force = max(norm(area*traction), balance%reference_force)
-      has_drifted = norm(area*drift) > allowed_drift*self%controls%residual_tolerance*force
-    end associate
+    has_drifted = self%jump_drift(balance, new, drift + balance%offset - jump) &
+                  > allowed_drift*self%controls%residual_tolerance
   end function has_drifted
 
-  !> Newton's method on the jumps between forward and backward substitution. Without the Schur block
-  !> it takes two full solves: one for the guess, one for the change.
+  !> Force of a drift of the jumps on closed joints, over the joint forces.
+  real(rk) function jump_drift(self, balance, new, drift)
+    class(condensed_equilibrium), intent(in) :: self
+    type(force_balance), intent(in) :: balance
+    type(joint_state), intent(in) :: new(:)
+    real(rk), intent(in) :: drift(:, :) !< (3, points) [m]
+    real(rk) :: traction(3, self%operator%num_points)
+    call gather_tractions(self%operator, new, traction)
+    associate (area => spread(self%operator%area, 1, 3))
+      jump_drift = norm(area*self%condensed%k_ref*drift) &
+                   /max(norm(area*traction), balance%reference_force, tiny(1.0_rk))
+    end associate
+  end function jump_drift
+
+  !> Newton's method on the jumps between forward and backward substitution, again while the
+  !> blocks of G that are left out move the jumps. Without the Schur block it takes two full solves:
+  !> one for the guess, one for the change.
   subroutine solve_from(self, balance, joints, old, new, x, outcome, error)
     class(condensed_equilibrium), intent(inout) :: self
     type(force_balance), intent(in) :: balance
@@ -136,24 +176,57 @@ contains
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
     type(joint_field) :: field
-    real(rk), dimension(3, self%operator%num_points) :: first_excess, excess
+    real(rk), dimension(3, self%operator%num_points) :: excess, last_excess
     real(rk), allocatable :: half(:)
+    integer :: pass, iterations
+    iterations = 0
     associate (k_ref => self%condensed%k_ref, operator => self%operator)
       call start_iteration(balance, joints, operator, k_ref, self%condensed%scale, old, field, new)
-      first_excess = excess_traction(k_ref, field%jump, balance%offset, field%iterate)
-      call self%begin_solve(balance%rhs, first_excess, half, x, error)
+      last_excess = excess_traction(k_ref, field%jump, balance%offset, field%iterate)
+      call self%begin_solve(balance%rhs, last_excess, half, x, error)
       if (allocated(error)) return
       call operator%jumps(x, field%response)
       field%response = field%response + balance%offset
-      call self%costs%start('iterate', 'joints', 'joint')
-      call iterate_on_jumps(self%condensed, self%controls, joints, operator, old, field, new, &
-                            outcome)
-      call self%costs%stop()
-      if (.not. outcome%has_converged) return
-      excess = excess_traction(k_ref, field%jump, balance%offset, field%iterate)
+      do pass = 1, most_passes
+        call self%costs%start('iterate', 'joints', 'joint')
+        call iterate_on_jumps(self%condensed, self%controls, joints, operator, old, field, new, &
+                              outcome)
+        call self%costs%stop()
+        iterations = iterations + outcome%iterations
+        outcome%iterations = iterations
+        if (.not. outcome%has_converged) return
+        excess = excess_traction(k_ref, field%jump, balance%offset, field%iterate)
+        if (self%condensed%blocks%is_complete) exit
+        call self%find_drift(balance, new, excess - last_excess, half, field)
+        last_excess = excess
+        if (field%drift <= allowed_drift*self%controls%residual_tolerance) exit
+        call linearise_again(self%condensed, joints, operator, old, field, new)
+      end do
     end associate
-    call self%end_solve(excess - first_excess, half, x, error)
+    outcome%has_converged = pass <= most_passes
+    call self%end_solve(excess - last_excess, half, x, error)
   end subroutine solve_from
+
+  !> Jumps from the Schur block after a pass, and how far they are from those of the blocks of G.
+  subroutine find_drift(self, balance, new, change, half, field)
+    class(condensed_equilibrium), intent(inout) :: self
+    type(force_balance), intent(in) :: balance
+    type(joint_state), intent(in) :: new(:)
+    real(rk), intent(in) :: change(:, :) !< (3, points) of the excess traction [Pa]
+    real(rk), intent(inout) :: half(:) !< (free unknowns) after forward substitution
+    type(joint_field), intent(inout) :: field
+    real(rk) :: x(size(balance%rhs) + self%num_held)
+    call self%costs%start('correct', 'joints', 'joint')
+    x = 0.0_rk
+    call self%operator%add_forces(self%weight*change, x)
+    call self%jumps%add_jump_forces(x, half)
+    x = 0.0_rk
+    call self%jumps%store_jumps(half, x)
+    call self%operator%jumps(x, field%response)
+    field%response = field%response + balance%offset
+    field%drift = self%jump_drift(balance, new, field%response - field%jump)
+    call self%costs%stop()
+  end subroutine find_drift
 
   !> Response to the guess: forward substitution and jumps, or all unknowns.
   subroutine begin_solve(self, rhs, excess, half, x, error)

@@ -5,8 +5,10 @@
 !> W = C + 1/(weight*area*k_ref). The part of the jumps that the springs leave, openings and slips,
 !> is d = W (f_closed - f), with f the forces of the points, f_closed those of closed joints. A
 !> sweep visits all points and gives each the force for which its d agrees with contact and friction
-!> while the other forces stay.
+!> while the other forces of its group stay, and the d of other groups.
 module contact_sweeps
+  use block_compliance, only: compliance_blocks, add_product
+  use contact_scaling, only: open_group
   use joint_forces, only: joint_field
   use joint_law, only: joint_state, state_bonded
   use joint_operator, only: jump_operator
@@ -59,37 +61,89 @@ contains
 
   !> Sweeps forwards and backwards in turn. On return `field%jump` and `field%multiplier` hold the
   !> jumps and tractions found.
-  subroutine sweep_contacts(compliance, points, closed_jump, num_sweeps, force, field)
-    real(rk), intent(in) :: compliance(:, :) !< C (rows, rows) [m/N]
+  subroutine sweep_contacts(blocks, opened, points, closed_jump, num_sweeps, force, field)
+    type(compliance_blocks), intent(in) :: blocks !< G
+    type(open_group), intent(in) :: opened(:) !< (groups) C
     type(swept_points), intent(in) :: points
     real(rk), intent(in) :: closed_jump(:, :) !< (3, points) with closed, sticking joints [m]
     integer, intent(in) :: num_sweeps
     real(rk), intent(inout) :: force(:, :) !< (3, points) f [N]
     type(joint_field), intent(inout) :: field
-    real(rk) :: missing(3, size(force, 2)), d(size(compliance, 1)), change(3)
-    integer :: sweep, visit, p, row
-    missing = closed_jump/points%spring - force
-    d = matmul(compliance, reshape(missing, [size(missing)])) &
-        + reshape(points%spring*missing, [size(missing)])
+    real(rk) :: d(3, size(force, 2))
+    integer :: sweep, visit, g
+    d = 0.0_rk
     do sweep = 1, num_sweeps
-      do visit = 1, size(points%share)
-        p = visit
-        if (mod(sweep, 2) == 0) p = size(points%share) + 1 - visit
-        row = row_of(p, 1)
-        associate (own => d(row:row + num_axes - 1), &
-                   block => compliance(row:row + num_axes - 1, row:row + num_axes - 1))
-          change = local_force(block, own, force(:, p), p, points, field) - force(:, p)
-          if (.not. any(abs(change) > 0.0_rk)) cycle
-          force(:, p) = force(:, p) + change
-          own = own - points%spring(:, p)*change
-        end associate
-        d = d - change(1)*compliance(:, row) - change(2)*compliance(:, row + 1) &
-            - change(3)*compliance(:, row + 2)
+      do visit = 1, size(opened)
+        g = visit
+        if (mod(sweep, 2) == 0) g = size(opened) + 1 - visit
+        if (size(opened) > 1 .or. sweep == 1) then
+          call find_rest(blocks, opened(g), g, points, closed_jump, force, d)
+        end if
+        call sweep_group(opened(g)%compliance, blocks%groups%members(g), points, &
+                         mod(sweep, 2) == 1, force, d, field)
       end do
     end do
     field%multiplier = force/spread(points%share, 1, 3)
-    field%jump = reshape(d, shape(force)) + points%spring*force
+    field%jump = d + points%spring*force
   end subroutine sweep_contacts
+
+  !> d of a group from its forces and the d of other groups. Other joints carry the forces of closed
+  !> ones less d/spring.
+  subroutine find_rest(blocks, opened, group, points, closed_jump, force, d)
+    type(compliance_blocks), intent(in) :: blocks
+    type(open_group), intent(in) :: opened
+    integer, intent(in) :: group
+    type(swept_points), intent(in) :: points
+    real(rk), intent(in) :: closed_jump(:, :) !< (3, points) [m]
+    real(rk), intent(in) :: force(:, :) !< (3, points) [N]
+    real(rk), intent(inout) :: d(:, :) !< (3, points) [m]
+    real(rk) :: missing(size(opened%compliance, 1)), answer(size(missing)), spring(size(missing))
+    integer :: b
+    associate (groups => blocks%groups, point => blocks%groups%members(group))
+      spring = reshape(points%spring(:, point), shape(spring))
+      answer = reshape(closed_jump(:, point), shape(answer))
+      do b = blocks%first_block(group), blocks%first_block(group + 1) - 1
+        if (blocks%block(b)%source == group) cycle
+        associate (other => groups%members(blocks%block(b)%source))
+          call add_product(blocks%block(b)%values, &
+                           reshape(d(:, other)/points%spring(:, other), [3*size(other)]), answer)
+        end associate
+      end do
+      missing = answer/spring - reshape(force(:, point), shape(missing))
+      answer = spring*missing
+      call add_product(opened%compliance, missing, answer)
+      d(:, point) = reshape(answer, [3, size(point)])
+    end associate
+  end subroutine find_rest
+
+  !> Visits the points of a group.
+  subroutine sweep_group(compliance, point, points, is_forward, force, d, field)
+    real(rk), intent(in) :: compliance(:, :) !< C (rows, rows) of the group [m/N]
+    integer, intent(in) :: point(:) !< of the group
+    type(swept_points), intent(in) :: points
+    logical, intent(in) :: is_forward
+    real(rk), intent(inout) :: force(:, :) !< (3, points) [N]
+    real(rk), intent(inout) :: d(:, :) !< (3, points) [m]
+    type(joint_field), intent(in) :: field
+    real(rk) :: rest(size(compliance, 1)), change(3)
+    integer :: visit, k, p, row
+    rest = reshape(d(:, point), shape(rest))
+    do visit = 1, size(point)
+      k = merge(visit, size(point) + 1 - visit, is_forward)
+      p = point(k)
+      row = row_of(k, 1)
+      associate (own => rest(row:row + num_axes - 1), &
+                 block => compliance(row:row + num_axes - 1, row:row + num_axes - 1))
+        change = local_force(block, own, force(:, p), p, points, field) - force(:, p)
+        if (.not. any(abs(change) > 0.0_rk)) cycle
+        force(:, p) = force(:, p) + change
+        own = own - points%spring(:, p)*change
+      end associate
+      rest = rest - change(1)*compliance(:, row) - change(2)*compliance(:, row + 1) &
+             - change(3)*compliance(:, row + 2)
+    end do
+    d(:, point) = reshape(rest, [3, size(point)])
+  end subroutine sweep_group
 
   !> Force of one point: bonded, d = 0; else the projection of the pressure, then of the friction,
   !> by one step each.

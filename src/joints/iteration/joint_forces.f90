@@ -5,7 +5,7 @@ module joint_forces
   use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use contact_augmentation, only: contact_multiplier
-  use joint_compliance, only: contact_scale
+  use contact_scaling, only: contact_scale
   implicit none
   private
   public :: joint_field, start_joints, reference_stiffness
@@ -25,6 +25,8 @@ module joint_forces
     logical, allocatable :: was_open(:) !< (points) at the previous linearisation
     integer, allocatable :: num_openings(:) !< (points) transitions to open in this increment
     real(rk), allocatable :: response(:, :) !< (3, points) jumps of the linearised equilibrium [m]
+    !> Force of the jumps that blocks of G cause which are left out, over the joint forces
+    real(rk) :: drift = 0.0_rk
     real(rk), allocatable :: start_jump(:, :) !< (3, points) of the last converged state [m]
     real(rk), allocatable :: start_spring(:, :) !< (3, points) traction there over k_ref [m]
     real(rk) :: start_force = 0.0_rk !< 2-norm of area*traction in the last converged state [N]

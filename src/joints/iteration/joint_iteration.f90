@@ -7,13 +7,13 @@ module joint_iteration
   use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, evaluate_joints, gather_tractions, gather_jumps, gather_gaps
-  use joint_compliance, only: contact_scale
+  use contact_scaling, only: contact_scale
   use contact_augmentation, only: start_multiplier, measure_contact, update_multiplier
   use equilibrium, only: force_balance, balance_outcome
   implicit none
   private
   public :: start_iteration, linearise, take_step, excess_traction, closed_tangent, is_cycling
-  public :: measure_residual, measure_correction, augment_contact
+  public :: measure_residual, measure_correction, augment_contact, smallest_force
 
   !> Stiffness of open and sliding points in the iteration matrix, relative to k_ref. It limits the
   !> motion of a block that has no contact in one iterate. The residual does not contain it.
@@ -197,14 +197,19 @@ contains
       unbalance(p) = operator%area(p)*norm2(field%traction(:, p) - linear(:, p))
       square(p) = sum((operator%area(p)*field%traction(:, p))**2)
     end do
-    force = max(sqrt(total(square)), field%start_force, smallest_share*field%bulk_force, &
-                tiny(1.0_rk))
+    force = max(sqrt(total(square)), smallest_force(field))
     kept = 0.0_rk
     if (field%is_static) kept = norm(stiffness_floor*spread(operator%area, 1, 3)*k_ref*field%jump)
     if (kept <= most_kept*field%bulk_force .or. most_kept*kept > field%bulk_force) kept = 0.0_rk
     outcome%residual = max(norm(unbalance), kept)/force
     outcome%worst_point = maxloc(unbalance, 1)
   end subroutine measure_residual
+
+  !> Least force that residuals are divided by.
+  pure real(rk) function smallest_force(field)
+    type(joint_field), intent(in) :: field
+    smallest_force = max(field%start_force, smallest_share*field%bulk_force, tiny(1.0_rk)) ! [N]
+  end function smallest_force
 
   !> Remaining correction of the jumps over their increment; decides convergence. Where contact
   !> prevents jumps, the increment of traction/k_ref is the measure. A residual of round-off always

@@ -7,11 +7,14 @@ module newton_full
   use matrix_pattern, only: pattern, full_pattern, spread_values
   use joint_law, only: joint_state
   use joint_points, only: dam_joint
-  use joint_operator, only: jump_operator
+  use joint_operator, only: jump_operator, joint_springs
   use joint_forces, only: joint_field, reference_stiffness, linear_tractions
   use joint_iteration, only: start_iteration, take_step, closed_tangent, &
                              measure_residual, measure_correction, augment_contact
-  use joint_compliance, only: contact_scale, find_compliance, find_contact_scale
+  use block_compliance, only: compliance_blocks, take_blocks
+  use contact_scaling, only: contact_scale, find_contact_scale, open_group
+  use joint_compliance, only: find_compliance
+  use point_groups, only: group_list, single_group
   use linear_solver, only: equation_solver
   use matrix_condition, only: estimate_condition
   use solver_low_rank, only: add_low_rank
@@ -46,7 +49,10 @@ contains
     type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: compliance(:, :), open_compliance(:, :), closed(:)
+    type(compliance_blocks) :: blocks
+    type(open_group), allocatable :: opened(:)
+    type(group_list) :: all_points
+    real(rk), allocatable :: compliance(:, :), closed(:)
     self%operator = operator
     self%weight = weight
     self%matrix = matrix
@@ -66,7 +72,10 @@ contains
     call self%costs%start('condense', 'joints', 'joint')
     call find_compliance(self%factor, operator, matrix%num_free, compliance, error)
     if (.not. allocated(error)) then
-      call find_contact_scale(compliance, operator, self%k_ref, weight, self%scale, open_compliance)
+      call single_group(operator%num_points, all_points)
+      call take_blocks(compliance, joint_springs(operator, self%k_ref, weight), all_points, &
+                       0.0_rk, blocks)
+      call find_contact_scale(blocks, operator, self%k_ref, weight, self%scale, opened)
     end if
     call self%costs%stop()
   end subroutine prepare_matrix

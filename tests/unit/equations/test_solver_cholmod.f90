@@ -52,8 +52,8 @@ contains
     type(pattern) :: matrix
     type(cholmod_solver) :: solver
     type(error_type), allocatable :: error
-    real(rk), allocatable :: values(:), whole(:, :), half(:), lower(:, :), end_of_half(:, :)
-    real(rk) :: later(num_jumps, 1)
+    real(rk), allocatable :: values(:), whole(:, :), half(:), lower(:, :), end_of_half(:)
+    real(rk) :: later(num_jumps)
     integer, allocatable :: unknown(:)
     integer :: j
     logical :: is_there
@@ -65,20 +65,20 @@ contains
     call solver%take_schur_block(num_jumps, lower, unknown, is_there)
     call check(log, is_there .and. minval(unknown) == matrix%num_free - num_jumps + 1, 'the end')
     half = [(cos(real(j, rk)), j=1, matrix%num_free)]
-    later(:, 1) = [(sin(2.0_rk*j), j=1, num_jumps)]
+    later = [(sin(2.0_rk*j), j=1, num_jumps)]
     whole = reshape(half, [matrix%num_free, 1])
     call solver%solve(whole, error)
     call solver%forward_substitute(half, error)
-    end_of_half = reshape(half(matrix%num_free - num_jumps + 1:), [num_jumps, 1])
+    end_of_half = half(matrix%num_free - num_jumps + 1:)
     call solve_lower_transposed(lower, end_of_half)
-    call check_close(log, maxval(abs(end_of_half(:, 1) - whole(unknown, 1))), 0.0_rk, 1.0e-12_rk, &
+    call check_close(log, maxval(abs(end_of_half - whole(unknown, 1))), 0.0_rk, 1.0e-12_rk, &
                      'jumps by half a solve')
     whole = 0.0_rk
     whole(:, 1) = [(cos(real(j, rk)), j=1, matrix%num_free)]
-    whole(unknown, 1) = whole(unknown, 1) + later(:, 1)
+    whole(unknown, 1) = whole(unknown, 1) + later
     call solver%solve(whole, error)
     call solve_lower(lower, later)
-    half(matrix%num_free - num_jumps + 1:) = half(matrix%num_free - num_jumps + 1:) + later(:, 1)
+    half(matrix%num_free - num_jumps + 1:) = half(matrix%num_free - num_jumps + 1:) + later
     call solver%backward_substitute(half, error)
     call check_close(log, maxval(abs(half - whole(:, 1))), 0.0_rk, 1.0e-12_rk, 'two halves')
   end subroutine halves

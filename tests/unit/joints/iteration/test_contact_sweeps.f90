@@ -1,9 +1,12 @@
 !> Sweeps of Gauss-Seidel over points in contact: the forces of three coupled points, one of which
 !> opens, one sticks and one slides, agree with contact, friction and the compliance.
 program test_contact_sweeps
+  use block_compliance, only: compliance_blocks
+  use contact_scaling, only: open_group
   use contact_sweeps, only: swept_points, sweep_contacts
   use joint_forces, only: joint_field
   use kinds, only: rk
+  use point_groups, only: single_group
   use testing, only: check, check_close, test_log
   implicit none
 
@@ -23,6 +26,8 @@ contains
     type(test_log), intent(inout) :: log
     type(swept_points) :: points
     type(joint_field) :: field
+    type(compliance_blocks) :: blocks
+    type(open_group) :: opened(1)
     real(rk) :: c(3*n, 3*n), w(3*n, 3*n), closed(3, n), force(3, n), d(3, n), missing(3, n)
     integer :: i, j
     do i = 1, 3*n
@@ -51,7 +56,10 @@ contains
     closed = reshape([1.0e-4_rk, 2.0e-5_rk, 0.0_rk, -1.0e-4_rk, 1.0e-5_rk, 2.0e-5_rk, &
                       -1.0e-4_rk, 1.5e-4_rk, -1.0e-4_rk], [3, n])
     force = 0.0_rk
-    call sweep_contacts(c, points, closed, 400, force, field)
+    call single_group(n, blocks%groups)
+    blocks%first_block = [1, 1] ! no other groups
+    opened(1)%compliance = c
+    call sweep_contacts(blocks, opened, points, closed, 400, force, field)
     missing = share*k*closed - force
     d = reshape(matmul(w, reshape(missing, [3*n])), [3, n])
     associate (force_size => maxval(abs(force)), d_size => maxval(abs(d)))

@@ -1,10 +1,12 @@
 !> The scale r of points that move together and alone, and the compliance with open joints, for a
 !> structure with a given compliance.
-program test_joint_compliance
+program test_contact_scaling
   use dense_factor, only: factorise_dense, lu_factor, solve_factored
-  use joint_compliance, only: contact_scale, find_contact_scale
-  use joint_operator, only: jump_operator
+  use block_compliance, only: compliance_blocks, take_blocks
+  use contact_scaling, only: contact_scale, find_contact_scale, open_group
+  use joint_operator, only: joint_springs, jump_operator
   use kinds, only: rk
+  use point_groups, only: group_list, single_group
   use testing, only: check, check_close, test_log
   implicit none
 
@@ -12,7 +14,7 @@ program test_joint_compliance
   real(rk), parameter :: area = 2.0_rk, weight = 1.25_rk
   type(test_log) :: log
 
-  log%suite = 'joint_compliance'
+  log%suite = 'contact_scaling'
   call scales_follow_the_structure(log)
   call scale_is_never_above_the_joint(log)
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
@@ -72,6 +74,9 @@ contains
     real(rk), allocatable, intent(out) :: open_compliance(:, :)
     type(jump_operator) :: operator
     type(lu_factor) :: factor
+    type(group_list) :: groups
+    type(compliance_blocks) :: blocks
+    type(open_group), allocatable :: opened(:)
     real(rk), allocatable :: matrix(:, :)
     real(rk) :: closed(6, 6), reference(3, 2)
     integer :: i
@@ -85,6 +90,9 @@ contains
     closed = structure()
     call factorise_dense(matrix, factor)
     call solve_factored(factor, closed)
-    call find_contact_scale(closed, operator, reference, weight, scale, open_compliance)
+    call single_group(2, groups)
+    call take_blocks(closed, joint_springs(operator, reference, weight), groups, 0.0_rk, blocks)
+    call find_contact_scale(blocks, operator, reference, weight, scale, opened)
+    open_compliance = opened(1)%compliance
   end subroutine find_scales
-end program test_joint_compliance
+end program test_contact_scaling

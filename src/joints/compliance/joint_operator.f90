@@ -10,7 +10,7 @@ module joint_operator
   use joint_stiffness, only: add_joint_stiffness
   implicit none
   private
-  public :: jump_operator, build_jump_operator
+  public :: jump_operator, build_jump_operator, joint_springs
 
   !> B by rows, points of all joints one after the other.
   type :: jump_operator
@@ -124,6 +124,15 @@ contains
       next = next + 1
     end subroutine add_term
   end subroutine add_rows
+
+  !> Compliance of the joints' own springs, 1/(weight*area*k_ref).
+  pure function joint_springs(operator, k_ref, weight) result(spring)
+    type(jump_operator), intent(in) :: operator
+    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
+    real(rk), intent(in) :: weight !< of the joint forces
+    real(rk) :: spring(num_rows(operator%num_points)) !< (rows) [m/N]
+    spring = reshape(1.0_rk/(weight*spread(operator%area, 1, num_axes)*k_ref), shape(spring))
+  end function joint_springs
 
   !> v = B q.
   pure subroutine jumps(self, q, v)

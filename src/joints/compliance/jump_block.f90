@@ -7,7 +7,7 @@ module jump_block
   use joint_rows, only: num_rows
   use linear_solver, only: equation_solver
   use joint_operator, only: jump_operator
-  use dense_factor, only: gram, solve_lower, solve_lower_transposed
+  use dense_factor, only: invert_from_lower, solve_lower, solve_lower_transposed
   implicit none
   private
   public :: jump_schur_block, extract_schur_block, schur_compliance
@@ -34,36 +34,54 @@ contains
     call factor%take_schur_block(num_last, jumps%lower, jumps%unknown, jumps%is_there)
   end subroutine extract_schur_block
 
-  !> G = B S^-1 B^T = Z^T Z with Z = E^-1 B^T.
+  !> G = B S^-1 B^T.
   subroutine schur_compliance(jumps, operator, compliance)
     type(jump_schur_block), intent(in) :: jumps
     type(jump_operator), intent(in) :: operator
     real(rk), allocatable, intent(out) :: compliance(:, :) !< (rows, rows) [m/N]
-    real(rk), allocatable :: z(:, :)
+    real(rk), allocatable :: inverse(:, :)
+    real(rk) :: column(size(jumps%unknown))
     integer :: place(jumps%num_free), i, k, row
+    inverse = jumps%lower
+    call invert_from_lower(inverse)
     place = 0
     place(jumps%unknown) = [(i, i=1, size(jumps%unknown))]
-    allocate (z(size(jumps%unknown), num_rows(operator%num_points)), source=0.0_rk)
-    do row = 1, size(z, 2)
+    allocate (compliance(num_rows(operator%num_points), num_rows(operator%num_points)))
+    do row = 1, size(compliance, 2)
+      column = 0.0_rk
       do k = operator%row_start(row), operator%row_start(row + 1) - 1
         if (operator%unknown(k) > jumps%num_free) cycle
-        z(place(operator%unknown(k)), row) = operator%coefficient(k)
+        column = column + operator%coefficient(k)*inverse(:, place(operator%unknown(k)))
+      end do
+      call apply_rows(operator, place, column, compliance(:, row))
+    end do
+  end subroutine schur_compliance
+
+  !> B times a column over the last unknowns.
+  pure subroutine apply_rows(operator, place, column, product)
+    type(jump_operator), intent(in) :: operator
+    integer, intent(in) :: place(:) !< (free unknowns) in the column
+    real(rk), intent(in) :: column(:)
+    real(rk), intent(out) :: product(:) !< (rows)
+    integer :: row, k
+    do row = 1, size(product)
+      product(row) = 0.0_rk
+      do k = operator%row_start(row), operator%row_start(row + 1) - 1
+        if (operator%unknown(k) > size(place)) cycle
+        product(row) = product(row) + operator%coefficient(k)*column(place(operator%unknown(k)))
       end do
     end do
-    call solve_lower(jumps%lower, z)
-    allocate (compliance(size(z, 2), size(z, 2)))
-    call gram(z, compliance)
-  end subroutine schur_compliance
+  end subroutine apply_rows
 
   !> Stores the jumps that follow from a forward substitution.
   subroutine store_jumps(self, half, x)
     class(jump_schur_block), intent(in) :: self
     real(rk), intent(in) :: half(:) !< (free unknowns) after forward substitution
     real(rk), intent(inout) :: x(:) !< (all unknowns)
-    real(rk) :: d(size(self%unknown), 1)
-    d(:, 1) = half(size(half) - size(d, 1) + 1:)
+    real(rk) :: d(size(self%unknown))
+    d = half(size(half) - size(d) + 1:)
     call solve_lower_transposed(self%lower, d)
-    x(self%unknown) = d(:, 1)
+    x(self%unknown) = d
   end subroutine store_jumps
 
   !> Adds forces on the jumps to a forward substitution.
@@ -71,11 +89,11 @@ contains
     class(jump_schur_block), intent(in) :: self
     real(rk), intent(in) :: force(:) !< (all unknowns) [N]
     real(rk), intent(inout) :: half(:) !< (free unknowns) after forward substitution
-    real(rk) :: f(size(self%unknown), 1)
-    f(:, 1) = force(self%unknown)
+    real(rk) :: f(size(self%unknown))
+    f = force(self%unknown)
     call solve_lower(self%lower, f)
-    associate (last => half(size(half) - size(f, 1) + 1:))
-      last = last + f(:, 1)
+    associate (last => half(size(half) - size(f) + 1:))
+      last = last + f
     end associate
   end subroutine add_jump_forces
 end module jump_block

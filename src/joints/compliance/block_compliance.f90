@@ -1,0 +1,201 @@
+!> The compliance G = B K_0^-1 B^T of the structure at the points of its joints, in blocks between
+!> groups of points (theory.md, 8). Blocks that are too small to matter are left out.
+!>
+!> Vectors have the rows of all points, in the order of the points.
+module block_compliance
+  use joint_rows, only: num_axes
+  use kinds, only: rk, long
+  use point_groups, only: group_list
+  implicit none
+  private
+  public :: compliance_blocks, dense_block, take_blocks, add_product
+
+  !> Jumps of one group by forces on another.
+  type :: dense_block
+    integer :: source = 0 !< the group with the forces
+    real(rk) :: coupling = 0.0_rk !< size, relative to the own blocks of both groups
+    real(rk), allocatable :: values(:, :) !< [m/N]
+  end type dense_block
+
+  type :: compliance_blocks
+    type(group_list) :: groups
+    integer, allocatable :: first_block(:) !< (groups + 1) blocks of a group with jumps
+    integer, allocatable :: own(:) !< (groups) the block of a group with itself
+    type(dense_block), allocatable :: block(:)
+    logical :: is_complete = .true. !< no block is left out
+  contains
+    procedure :: product, diagonal_block, num_entries
+  end type compliance_blocks
+
+  !> From this share of columns with forces on, a product with the whole block is quicker.
+  real(rk), parameter :: most_columns = 0.6_rk
+
+  interface
+    subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
+      import :: rk
+      implicit none
+      character, intent(in) :: trans
+      integer, intent(in) :: m, n, lda, incx, incy
+      real(rk), intent(in) :: alpha, a(lda, n), x(n), beta
+      real(rk), intent(inout) :: y(m)
+    end subroutine dgemv
+  end interface
+
+contains
+
+  !> Takes the blocks that matter from a dense compliance. A block is compared with what the
+  !> structure adds to the springs in the own blocks, spring - G: where springs are stiff, G is
+  !> nearly theirs alone.
+  subroutine take_blocks(dense, spring, groups, smallest, blocks)
+    real(rk), intent(in) :: dense(:, :) !< G (rows, rows) [m/N]
+    real(rk), intent(in) :: spring(:) !< (rows) compliance of the joints' own springs [m/N]
+    type(group_list), intent(in) :: groups
+    real(rk), intent(in) :: smallest !< coupling of a block that is kept
+    type(compliance_blocks), intent(out) :: blocks
+    real(rk) :: coupling(groups%num_groups, groups%num_groups)
+    integer :: j, k, b
+    call measure_couplings(dense, spring, groups, coupling)
+    blocks%groups = groups
+    allocate (blocks%first_block(groups%num_groups + 1), blocks%own(groups%num_groups))
+    allocate (blocks%block(count(coupling >= smallest)))
+    blocks%is_complete = size(blocks%block) == groups%num_groups**2
+    b = 0
+    do j = 1, groups%num_groups
+      blocks%first_block(j) = b + 1
+      do k = 1, groups%num_groups
+        if (coupling(j, k) < smallest) cycle
+        b = b + 1
+        if (j == k) blocks%own(j) = b
+        blocks%block(b)%source = k
+        blocks%block(b)%coupling = coupling(j, k)
+        blocks%block(b)%values = dense(rows_of(groups, j), rows_of(groups, k))
+      end do
+    end do
+    blocks%first_block(groups%num_groups + 1) = b + 1
+  end subroutine take_blocks
+
+  !> Couplings between groups; 1 for a group with itself.
+  subroutine measure_couplings(dense, spring, groups, coupling)
+    real(rk), intent(in) :: dense(:, :) !< G (rows, rows) [m/N]
+    real(rk), intent(in) :: spring(:) !< (rows) [m/N]
+    type(group_list), intent(in) :: groups
+    real(rk), intent(out) :: coupling(:, :) !< (groups, groups)
+    real(rk) :: own(groups%num_groups)
+    integer :: j, k
+    do j = 1, groups%num_groups
+      own(j) = own_size(dense(rows_of(groups, j), rows_of(groups, j)), spring(rows_of(groups, j)))
+      coupling(j, j) = 1.0_rk
+      do k = 1, j - 1
+        coupling(j, k) = norm2(dense(rows_of(groups, j), rows_of(groups, k))) &
+                         /max(sqrt(own(j))*sqrt(own(k)), tiny(1.0_rk))
+        coupling(k, j) = coupling(j, k)
+      end do
+    end do
+  end subroutine measure_couplings
+
+  !> Norm of spring - G.
+  pure real(rk) function own_size(block, spring)
+    real(rk), intent(in) :: block(:, :), spring(:) ! [m/N]
+    real(rk) :: rest(size(spring), size(spring))
+    integer :: i
+    rest = block
+    do i = 1, size(spring)
+      rest(i, i) = rest(i, i) - spring(i)
+    end do
+    own_size = norm2(rest)
+  end function own_size
+
+  !> Rows of a group.
+  pure function rows_of(groups, group) result(rows)
+    type(group_list), intent(in) :: groups
+    integer, intent(in) :: group
+    integer :: rows(groups%first_row(group + 1) - groups%first_row(group))
+    rows = groups%row(groups%first_row(group):groups%first_row(group + 1) - 1)
+  end function rows_of
+
+  !> y = G x. The sums have a fixed order, whatever the number of threads.
+  subroutine product(self, x, y)
+    class(compliance_blocks), intent(in) :: self
+    real(rk), intent(in) :: x(:) !< (rows) [N]
+    real(rk), intent(out) :: y(:) !< (rows) [m]
+    real(rk) :: sorted_x(size(x)), sorted_y(size(y))
+    integer :: j
+    sorted_x = x(self%groups%row)
+    !$omp parallel do schedule(dynamic) default(none) shared(self, sorted_x, sorted_y) &
+    !$omp if (self%groups%num_groups > 1)
+    do j = 1, self%groups%num_groups
+      call move_group(self, j, sorted_x, sorted_y)
+    end do
+    !$omp end parallel do
+    y(self%groups%row) = sorted_y
+  end subroutine product
+
+  !> Rows of G x of one group; x and y group by group.
+  subroutine move_group(self, group, x, y)
+    class(compliance_blocks), intent(in) :: self
+    integer, intent(in) :: group
+    real(rk), intent(in) :: x(:) !< (rows) [N]
+    real(rk), intent(inout) :: y(:) !< (rows) [m]
+    integer :: b
+    associate (first => self%groups%first_row)
+      associate (own => y(first(group):first(group + 1) - 1))
+        own = 0.0_rk
+        do b = self%first_block(group), self%first_block(group + 1) - 1
+          associate (k => self%block(b)%source)
+            call add_product(self%block(b)%values, x(first(k):first(k + 1) - 1), own)
+          end associate
+        end do
+      end associate
+    end associate
+  end subroutine move_group
+
+  !> y = y + A x with the columns whose x is not zero: most points of a joint are often closed.
+  subroutine add_product(a, x, y)
+    real(rk), intent(in), contiguous :: a(:, :)
+    real(rk), intent(in), contiguous :: x(:)
+    real(rk), intent(inout), contiguous :: y(:)
+    integer :: column(size(x)), num_columns, c, last
+    num_columns = 0
+    do c = 1, size(x)
+      if (.not. abs(x(c)) > 0.0_rk) cycle
+      num_columns = num_columns + 1
+      column(num_columns) = c
+    end do
+    if (num_columns == 0) return
+    if (num_columns > most_columns*size(x)) then
+      call dgemv('N', size(a, 1), size(a, 2), 1.0_rk, a, size(a, 1), x, 1, 1.0_rk, y, 1)
+      return
+    end if
+    last = num_columns - mod(num_columns, 4)
+    do c = 1, last, 4
+      associate (k => column(c:c + 3))
+        y = y + (x(k(1))*a(:, k(1)) + x(k(2))*a(:, k(2))) &
+            + (x(k(3))*a(:, k(3)) + x(k(4))*a(:, k(4)))
+      end associate
+    end do
+    do c = last + 1, num_columns
+      y = y + x(column(c))*a(:, column(c))
+    end do
+  end subroutine add_product
+
+  !> The 3x3 blocks of G of all points.
+  pure function diagonal_block(self, point, group) result(block)
+    class(compliance_blocks), intent(in) :: self
+    integer, intent(in) :: point !< of the group
+    integer, intent(in) :: group
+    real(rk) :: block(num_axes, num_axes) !< [m/N]
+    integer :: row
+    row = num_axes*(point - 1)
+    block = self%block(self%own(group))%values(row + 1:row + num_axes, row + 1:row + num_axes)
+  end function diagonal_block
+
+  !> Entries of all blocks.
+  pure integer(long) function num_entries(self)
+    class(compliance_blocks), intent(in) :: self
+    integer :: b
+    num_entries = 0
+    do b = 1, size(self%block)
+      num_entries = num_entries + size(self%block(b)%values, kind=long)
+    end do
+  end function num_entries
+end module block_compliance
