@@ -25,6 +25,7 @@ ROOMS = (
     "base/report",
     "equations",
     "equations/low_rank",
+    "equations/supernodes",
     "deck",
     "model/mesh",
     "model/constraints",

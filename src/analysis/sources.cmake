@@ -14,11 +14,13 @@ set(sources
   integrators/start_acceleration.f90
   integrators/static_increment.f90
   integrators/static_integrator.f90
+  solids/active_unknowns.f90
   solids/guest_forces.f90
   solids/increment_balance.f90
   solids/inelastic_forces.f90
   solids/inelastic_stiffness.f90
   solids/lost_damping.f90
+  solids/solid_iterate.f90
   solids/solid_iteration.f90
   solids/solid_tangent.f90
   solids/tangent_choice.f90

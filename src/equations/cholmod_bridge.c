@@ -1,5 +1,6 @@
 /* The few calls of CHOLMOD that solver_cholmod needs, behind plain arguments, so that Fortran does
  * not have to know the structures, which differ from version to version. */
+#include "supernodes/supernodal_solve.h"
 #include <cholmod.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -9,6 +10,8 @@ struct keyway_cholmod {
   cholmod_common common;
   cholmod_factor *factor;
   cholmod_dense *x, *y, *e; /* workspace of the solves */
+  char *is_upper;           /* (supernodes) the part of the active unknowns; NULL: not chosen */
+  double *work;             /* as long as the longest column of a supernode */
 };
 
 /* The lower triangle of a matrix: 0-based columns of `used` entries each, with room behind them. */
@@ -56,6 +59,8 @@ void keyway_cholmod_finish(void *handle)
   cholmod_free_dense(&c->e, &c->common);
   cholmod_free_factor(&c->factor, &c->common);
   cholmod_finish(&c->common);
+  free(c->is_upper);
+  free(c->work);
   free(c);
 }
 
@@ -89,6 +94,10 @@ int keyway_cholmod_analyse(void *handle, int n, const int *start, const int *use
   struct keyway_cholmod *c = handle;
   cholmod_sparse a = view(n, start, used, row, NULL);
   cholmod_free_factor(&c->factor, &c->common);
+  free(c->is_upper);
+  free(c->work);
+  c->is_upper = NULL;
+  c->work = NULL;
   c->common.method[0].ordering = order ? CHOLMOD_GIVEN : CHOLMOD_METIS;
   if (order && m > 0) {
     int status = postorder(c, &a, m, order);
@@ -186,41 +195,48 @@ int keyway_cholmod_end(void *handle, int n, int m, double *block, int *unknown)
   return 0;
 }
 
-/* One half of a solve, L or L^T, in the order of elimination; the answer is in c->x. */
-static int solve_half(struct keyway_cholmod *c, int system, int n, double *y)
+static struct keyway_supernodes supernodes_of(const struct keyway_cholmod *c)
 {
-  cholmod_dense rhs;
-  memset(&rhs, 0, sizeof rhs);
-  rhs.nrow = rhs.d = rhs.nzmax = (size_t)n;
-  rhs.ncol = 1;
-  rhs.x = y;
-  rhs.xtype = CHOLMOD_REAL;
-  rhs.dtype = CHOLMOD_DOUBLE;
-  if (!cholmod_solve2(system, c->factor, &rhs, NULL, &c->x, NULL, &c->y, &c->e, &c->common))
-    return c->common.status ? c->common.status : -1;
-  return 0;
+  const cholmod_factor *l = c->factor;
+  struct keyway_supernodes view = {(int)l->nsuper, l->super, l->pi, l->px, l->s, l->x};
+  return view;
 }
 
-/* y = L^-1 P b, in the order of elimination. Returns 0 for success. */
-int keyway_cholmod_eliminate(void *handle, int n, const double *b, double *y)
+/* Chooses the active unknowns, 0-based. Returns the share of their part in the factor; negative
+ * without memory, or where the factor has no supernodes. */
+double keyway_cholmod_choose(void *handle, int n, int count, const int *unknown)
 {
   struct keyway_cholmod *c = handle;
-  const int *perm = c->factor->Perm;
-  int status;
-  for (int i = 0; i < n; i++) y[i] = b[perm[i]];
-  status = solve_half(c, CHOLMOD_L, n, y);
-  if (status == 0) memcpy(y, c->x->x, (size_t)n * sizeof *y);
-  return status;
+  const cholmod_factor *l = c->factor;
+  struct keyway_supernodes nodes;
+  double share = -1.0;
+  int *place = malloc((size_t)n * sizeof *place), *column = malloc((size_t)count * sizeof *column);
+  free(c->is_upper);
+  c->is_upper = malloc(l->nsuper + 1);
+  if (place && column && c->is_upper && l->is_super) {
+    const int *perm = l->Perm;
+    for (int k = 0; k < n; k++) place[perm[k]] = k;
+    for (int k = 0; k < count; k++) column[k] = place[unknown[k]];
+    nodes = supernodes_of(c);
+    share = keyway_mark_upper(&nodes, count, column, c->is_upper);
+  }
+  free(place);
+  free(column);
+  return share;
 }
 
-/* x = P^T L^-T y. Returns 0 for success. */
-int keyway_cholmod_substitute(void *handle, int n, double *y, double *x)
+/* y = L^-1 y, or y = L^-T y, on a part of the supernodes, in the order of elimination. Returns 0
+ * for success. */
+int keyway_cholmod_substitute(void *handle, int part, int is_forward, int n, double *y)
 {
   struct keyway_cholmod *c = handle;
-  const int *perm = c->factor->Perm;
-  int status = solve_half(c, CHOLMOD_Lt, n, y);
-  if (status != 0) return status;
-  for (int i = 0; i < n; i++) x[perm[i]] = ((const double *)c->x->x)[i];
+  struct keyway_supernodes nodes = supernodes_of(c);
+  if (!c->work) c->work = malloc((c->factor->maxesize + 1) * sizeof *c->work);
+  if (!c->work || (part != KEYWAY_WHOLE && !c->is_upper) || n != (int)c->factor->n) return 1;
+  if (is_forward)
+    keyway_substitute_forward(&nodes, part, c->is_upper, y, c->work);
+  else
+    keyway_substitute_backward(&nodes, part, c->is_upper, y, c->work);
   return 0;
 }
 

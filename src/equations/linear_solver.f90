@@ -5,10 +5,12 @@ module linear_solver
   use matrix_pattern, only: pattern
   implicit none
   private
-  public :: equation_solver
+  public :: equation_solver, whole_factor, lower_part, upper_part
 
   type, abstract :: equation_solver
     integer :: failed_unknown = 0 !< unknown whose pivot failed, 0 for none
+    !> (free unknowns) order of elimination; not allocated: no forward and backward substitution
+    integer, allocatable :: order(:)
   contains
     procedure(analyse), deferred :: analyse
     procedure(factorise), deferred :: factorise
@@ -16,7 +18,13 @@ module linear_solver
     procedure :: take_schur_block
     procedure :: forward_substitute => refuse_half_solve
     procedure :: backward_substitute => refuse_half_solve
+    procedure :: choose_active => activate_all
+    procedure :: substitute => refuse_part
   end type equation_solver
+
+  !> Parts of a factor. The upper part holds the columns of the active unknowns and all columns that
+  !> depend on them; the lower part is the rest.
+  integer, parameter :: whole_factor = 0, lower_part = 1, upper_part = 2
 
   abstract interface
     !> Orders the unknowns and plans the factor; once per pattern.
@@ -71,4 +79,23 @@ contains
     type(error_type), allocatable, intent(out) :: error
     call raise(error, 'this solver has no separate forward and backward substitution')
   end subroutine refuse_half_solve
+
+  !> Chooses the active unknowns, for solvers whose factor has parts. `share` is that of the upper
+  !> part in the entries of the factor, 1 without parts. Call it after `analyse`.
+  subroutine activate_all(self, unknown, share)
+    class(equation_solver), intent(inout) :: self
+    integer, intent(in) :: unknown(:)
+    real(rk), intent(out) :: share
+    share = 1.0_rk
+  end subroutine activate_all
+
+  !> y = L^-1 y or y = L^-T y with a part of the factor, in the order of elimination.
+  subroutine refuse_part(self, part, is_forward, y, error)
+    class(equation_solver), intent(inout) :: self
+    integer, intent(in) :: part !< whole_factor, lower_part or upper_part
+    logical, intent(in) :: is_forward
+    real(rk), intent(inout) :: y(:) !< (free unknowns)
+    type(error_type), allocatable, intent(out) :: error
+    call raise(error, 'this solver has no separate forward and backward substitution')
+  end subroutine refuse_part
 end module linear_solver

@@ -5,7 +5,7 @@ module solver_cholmod
   use kinds, only: rk
   use errors, only: error_type, raise, system_failed
   use matrix_pattern, only: pattern
-  use linear_solver, only: equation_solver
+  use linear_solver, only: equation_solver, whole_factor
   use nested_dissection, only: dissect
   use blas_threads, only: use_many_threads, use_one_thread
   implicit none
@@ -23,8 +23,9 @@ module solver_cholmod
     integer, private :: num_free = 0
     integer(c_int), allocatable, private :: start(:), row(:) !< pattern, 0-based
   contains
-    procedure :: analyse, factorise, solve, statistics, elimination_order
+    procedure :: analyse, factorise, solve, statistics
     procedure :: take_schur_block, forward_substitute, backward_substitute
+    procedure :: choose_active, substitute
     final :: release
   end type cholmod_solver
 
@@ -83,23 +84,21 @@ module solver_cholmod
       integer(c_int) :: status
     end function keyway_cholmod_end
 
-    function keyway_cholmod_eliminate(handle, n, b, y) result(status) bind(c)
+    function keyway_cholmod_choose(handle, n, count, unknown) result(share) bind(c)
       import :: c_ptr, c_int, c_double
       implicit none
       type(c_ptr), value :: handle
-      integer(c_int), value :: n
-      real(c_double), intent(in) :: b(n)
-      real(c_double), intent(out) :: y(n)
-      integer(c_int) :: status
-    end function keyway_cholmod_eliminate
+      integer(c_int), value :: n, count
+      integer(c_int), intent(in) :: unknown(count)
+      real(c_double) :: share
+    end function keyway_cholmod_choose
 
-    function keyway_cholmod_substitute(handle, n, y, x) result(status) bind(c)
+    function keyway_cholmod_substitute(handle, part, is_forward, n, y) result(status) bind(c)
       import :: c_ptr, c_int, c_double
       implicit none
       type(c_ptr), value :: handle
-      integer(c_int), value :: n
-      real(c_double), intent(in) :: y(n)
-      real(c_double), intent(out) :: x(n)
+      integer(c_int), value :: part, is_forward, n
+      real(c_double), intent(inout) :: y(n)
       integer(c_int) :: status
     end function keyway_cholmod_substitute
 
@@ -146,8 +145,14 @@ contains
       status = keyway_cholmod_analyse(self%handle, self%num_free, self%start, matrix%free_entries, &
                                       self%row, matrix%num_last, c_loc(order))
     end if
-    if (status /= 0) call raise(error, 'no memory to plan the factor of the stiffness', &
-                                system_failed)
+    if (status /= 0) then
+      call raise(error, 'no memory to plan the factor of the stiffness', system_failed)
+      return
+    end if
+    if (allocated(self%order)) deallocate (self%order)
+    allocate (self%order(self%num_free))
+    call keyway_cholmod_order(self%handle, self%num_free, self%order)
+    self%order = self%order + 1
   end subroutine analyse
 
   !> Columns and rows of the free part, counted from 0 as CHOLMOD does.
@@ -221,16 +226,22 @@ contains
     unknown(:) = unknown + 1
   end subroutine take_schur_block
 
+  !> Chooses the active unknowns; `share` is that of their part of the factor.
+  subroutine choose_active(self, unknown, share)
+    class(cholmod_solver), intent(inout) :: self
+    integer, intent(in) :: unknown(:)
+    real(rk), intent(out) :: share
+    share = keyway_cholmod_choose(self%handle, self%num_free, size(unknown), unknown - 1)
+    if (share < 0.0_rk) share = 1.0_rk
+  end subroutine choose_active
+
   !> Replaces b by L^-1 P b, in the order of elimination.
   subroutine forward_substitute(self, b, error)
     class(cholmod_solver), intent(inout) :: self
     real(rk), intent(inout) :: b(:)
     type(error_type), allocatable, intent(out) :: error
-    real(rk) :: y(size(b))
-    if (keyway_cholmod_eliminate(self%handle, self%num_free, b, y) /= 0) then
-      call raise(error, 'no memory to solve the equations', system_failed)
-    end if
-    b = y
+    b = b(self%order)
+    call self%substitute(whole_factor, .true., b, error)
   end subroutine forward_substitute
 
   !> Replaces y by P^T L^-T y, in the order of the unknowns.
@@ -238,12 +249,22 @@ contains
     class(cholmod_solver), intent(inout) :: self
     real(rk), intent(inout) :: b(:)
     type(error_type), allocatable, intent(out) :: error
-    real(rk) :: x(size(b))
-    if (keyway_cholmod_substitute(self%handle, self%num_free, b, x) /= 0) then
+    call self%substitute(whole_factor, .false., b, error)
+    b(self%order) = b
+  end subroutine backward_substitute
+
+  !> y = L^-1 y or L^-T y on a part of the factor, in the order of elimination.
+  subroutine substitute(self, part, is_forward, y, error)
+    class(cholmod_solver), intent(inout) :: self
+    integer, intent(in) :: part
+    logical, intent(in) :: is_forward
+    real(rk), intent(inout) :: y(:)
+    type(error_type), allocatable, intent(out) :: error
+    if (self%num_free == 0) return
+    if (keyway_cholmod_substitute(self%handle, part, merge(1, 0, is_forward), size(y), y) /= 0) then
       call raise(error, 'no memory to solve the equations', system_failed)
     end if
-    b = x
-  end subroutine backward_substitute
+  end subroutine substitute
 
   !> Size and memory of the factor.
   subroutine statistics(self, entries, bytes, peak_bytes)
@@ -256,15 +277,6 @@ contains
     if (c_associated(self%handle)) call keyway_cholmod_statistics(self%handle, entries, bytes, &
                                                                   peak_bytes)
   end subroutine statistics
-
-  !> The order in which the unknowns are eliminated.
-  subroutine elimination_order(self, order)
-    class(cholmod_solver), intent(in) :: self
-    integer, allocatable, intent(out) :: order(:) !< (num_free)
-    allocate (order(self%num_free))
-    call keyway_cholmod_order(self%handle, self%num_free, order)
-    order(:) = order + 1
-  end subroutine elimination_order
 
   !> Frees the memory of CHOLMOD.
   subroutine release(self)

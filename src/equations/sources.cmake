@@ -14,4 +14,6 @@ set(sources
   solver_catalogue.f90
   solver_cholmod.f90
   solver_umfpack.f90
+  supernodes/active_solve.f90
+  supernodes/supernodal_solve.c
 )

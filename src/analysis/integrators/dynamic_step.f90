@@ -11,6 +11,8 @@ module dynamic_step
   use modal_damping, only: build_modal_damping
   use joint_water, only: update_uplift
   use step_equilibrium, only: make_equilibrium
+  use active_unknowns, only: find_active
+  use guest_forces, only: has_histories
   use step_system, only: dam_system, build_structure, build_inertia, build_damping, &
                          build_loads
   use step_loads, only: step_time, external_force, prescribed_values
@@ -64,7 +66,10 @@ contains
     call results%costs%start('analyse', 'structure', 'solver')
     call make_equilibrium(plan, system, all(solids%choices%is_symmetric()), solids%solver, error)
     call results%costs%stop()
-    if (.not. allocated(error)) solids%solver%costs = results%costs
+    if (allocated(error)) return
+    solids%solver%costs = results%costs
+    if (.not. solids%has_inelastic() .or. has_histories(now%guests)) return
+    call solids%solver%repeated%open(solids%solver%factor, find_active(model, system%numbers))
   end subroutine open_dynamic_step
 
   !> Forces at the start of the step and the acceleration that balances them. Supports that follow

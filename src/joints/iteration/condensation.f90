@@ -54,7 +54,6 @@ contains
     type(jump_operator), intent(in) :: operator
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: closed(:)
-    integer :: levels
     self%operator = operator
     self%num_held = matrix%num_total - matrix%num_free
     self%weight = weight
@@ -129,6 +128,7 @@ contains
     if (allocated(error) .or. .not. outcome%has_converged) return
     if (.not. self%has_drifted(balance, new, x)) return
     nearer = balance
+    nearer%is_repeated = .true.
     call nearer%start_from(self%operator, new)
     iterations = outcome%iterations
     call self%solve_from(nearer, joints, old, new, x, outcome, error)
@@ -183,7 +183,7 @@ contains
     associate (k_ref => self%condensed%k_ref, operator => self%operator)
       call start_iteration(balance, joints, operator, k_ref, self%condensed%scale, old, field, new)
       last_excess = excess_traction(k_ref, field%jump, balance%offset, field%iterate)
-      call self%begin_solve(balance%rhs, last_excess, half, x, error)
+      call self%begin_solve(balance, last_excess, half, x, error)
       if (allocated(error)) return
       call operator%jumps(x, field%response)
       field%response = field%response + balance%offset
@@ -204,7 +204,7 @@ contains
       end do
     end associate
     outcome%has_converged = pass <= most_passes
-    call self%end_solve(excess - last_excess, half, x, error)
+    call self%end_solve(balance%is_partial, excess - last_excess, half, x, error)
   end subroutine solve_from
 
   !> Jumps from the Schur block after a pass, and how far they are from those of the blocks of G.
@@ -229,30 +229,36 @@ contains
   end subroutine find_drift
 
   !> Response to the guess: forward substitution and jumps, or all unknowns.
-  subroutine begin_solve(self, rhs, excess, half, x, error)
+  subroutine begin_solve(self, balance, excess, half, x, error)
     class(condensed_equilibrium), intent(inout) :: self
-    real(rk), intent(in) :: rhs(:) !< (free unknowns)
+    type(force_balance), intent(in) :: balance
     real(rk), intent(in) :: excess(:, :) !< (3, points) [Pa]
     real(rk), allocatable, intent(out) :: half(:) !< (free unknowns) after forward substitution
     real(rk), intent(out) :: x(:) !< (all unknowns)
     type(error_type), allocatable, intent(out) :: error
     if (.not. self%jumps%is_there) then
-      call respond(self, rhs, excess, self%operator, x, error)
+      call respond(self, balance%rhs, excess, self%operator, x, error)
       return
     end if
     x = 0.0_rk
     call self%operator%add_forces(self%weight*excess, x)
-    half = rhs + x(:size(rhs))
+    half = balance%rhs + x(:size(balance%rhs))
     call self%costs%start('solve forward', 'structure', 'solver')
-    call self%factor%forward_substitute(half, error)
+    if (self%repeated%is_there(self%factor)) then
+      if (.not. balance%is_repeated) call self%repeated%start(self%factor, half, error)
+      call self%repeated%forward(self%factor, half, error)
+    else
+      call self%factor%forward_substitute(half, error)
+    end if
     x = 0.0_rk
     call self%jumps%store_jumps(half, x)
     call self%costs%stop()
   end subroutine begin_solve
 
   !> All unknowns, with the change of the joint forces since the guess.
-  subroutine end_solve(self, change, half, x, error)
+  subroutine end_solve(self, is_partial, change, half, x, error)
     class(condensed_equilibrium), intent(inout) :: self
+    logical, intent(in) :: is_partial !< active unknowns alone
     real(rk), intent(in) :: change(:, :) !< (3, points) of the excess traction [Pa]
     real(rk), allocatable, intent(inout) :: half(:)
     real(rk), intent(inout) :: x(:) !< (all unknowns)
@@ -263,9 +269,13 @@ contains
       call self%operator%add_forces(self%weight*change, correction)
       call self%costs%start('solve backward', 'structure', 'solver')
       call self%jumps%add_jump_forces(correction, half)
-      call self%factor%backward_substitute(half, error)
       x = 0.0_rk
-      x(:size(half)) = half
+      if (self%repeated%is_there(self%factor)) then
+        call self%repeated%backward(self%factor, half, is_partial, x(:size(half)), error)
+      else
+        call self%factor%backward_substitute(half, error)
+        x(:size(half)) = half
+      end if
       call self%costs%stop()
     else if (any(abs(change) > 0.0_rk)) then
       no_load = 0.0_rk

@@ -11,6 +11,7 @@ module equilibrium
   use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use joint_forces, only: gather_jumps, gather_tractions
+  use active_solve, only: repeated_solve
   use linear_solver, only: equation_solver
   use run_ledger, only: ledger
   use step_plan, only: step_controls
@@ -27,6 +28,9 @@ module equilibrium
     real(rk), allocatable :: guess_traction(:, :)
     logical :: starts_closed = .false. !< all joints closed and sticking in the first iterate
     real(rk) :: reference_force = 0.0_rk !< largest force of the bulk so far [N]
+    !> The right-hand side differs from the last one in active unknowns alone
+    logical :: is_repeated = .false.
+    logical :: is_partial = .false. !< the solution is needed at active unknowns alone
     logical :: is_static = .false. !< no inertia holds a block that has left its supports
   contains
     procedure :: set_jumps, start_from
@@ -56,6 +60,7 @@ module equilibrium
 
   type, abstract :: equilibrium_solver
     class(equation_solver), allocatable :: factor !< of the symmetric, positive definite matrix
+    type(repeated_solve) :: repeated !< solves between two full ones
     type(step_controls) :: controls
     !> (free unknowns, rank) U: the matrix is K_eff + U U^T; not allocated for K_eff alone
     real(rk), allocatable :: low_rank(:, :)
@@ -68,6 +73,7 @@ module equilibrium
   contains
     procedure(prepare_matrix), deferred :: prepare_matrix
     procedure(solve_balance), deferred :: solve_balance
+    procedure :: complete_solution
   end type equilibrium_solver
 
   abstract interface
@@ -132,4 +138,15 @@ contains
     iterations = self%iterations
     if (self%first_pass > 0) iterations = self%first_pass
   end function own_iterations
+
+  !> Completes a solution at active unknowns alone.
+  subroutine complete_solution(self, x, error)
+    class(equilibrium_solver), intent(inout) :: self
+    real(rk), intent(inout) :: x(:) !< (all unknowns)
+    type(error_type), allocatable, intent(out) :: error
+    if (.not. self%repeated%is_there(self%factor)) return
+    call self%costs%start('solve backward', 'structure', 'solver')
+    call self%repeated%complete(self%factor, x(:size(self%factor%order)), error)
+    call self%costs%stop()
+  end subroutine complete_solution
 end module equilibrium

@@ -66,14 +66,19 @@ contains
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: b(:, :)
     b = reshape(balance%rhs, [size(balance%rhs), 1])
+    x = 0.0_rk
     call self%costs%start('solve', 'structure', 'solver')
     if (self%is_unsymmetric) then
       call self%unsymmetric_factor%solve(b, error)
+    else if (self%repeated%is_there(self%factor)) then
+      if (.not. balance%is_repeated) call self%repeated%start(self%factor, balance%rhs, error)
+      call self%repeated%forward(self%factor, b(:, 1), error)
+      call self%repeated%backward(self%factor, b(:, 1), balance%is_partial, x(:size(b, 1)), error)
+      b(:, 1) = x(:size(b, 1))
     else
       call self%factor%solve(b, error)
     end if
     call self%costs%stop()
-    x = 0.0_rk
     x(:size(b, 1)) = b(:, 1)
     if (size(joints) > 0) new = old
     outcome%has_converged = .true.

@@ -1,0 +1,97 @@
+/* Forward and backward substitution with the supernodes of a factor L L^T, all of them or a part.
+ *
+ * The solution of L L^T x = b for the columns of the upper part needs the upper part alone, once
+ * the lower part has been eliminated from b: the upper part holds, with a column, all columns that
+ * follow it in the elimination tree (Liu, SIAM J. Matrix Anal. Appl. 11, 1990, 134-172). */
+#include "supernodal_solve.h"
+#include <stdlib.h>
+#include <string.h>
+
+void dtrsv_(const char *uplo, const char *trans, const char *diag, const int *n, const double *a,
+            const int *lda, double *x, const int *incx);
+void dgemv_(const char *trans, const int *m, const int *n, const double *alpha, const double *a,
+            const int *lda, const double *x, const int *incx, const double *beta, double *y,
+            const int *incy);
+
+static const int one_step = 1;
+static const double one = 1.0, zero = 0.0, minus_one = -1.0;
+
+double keyway_mark_upper(const struct keyway_supernodes *l, int count, const int *column,
+                         char *is_upper)
+{
+  int n = l->column[l->num_supernodes], s = 0;
+  double upper = 0.0;
+  int *owner = malloc((size_t)n * sizeof *owner); /* supernode of each column */
+  memset(is_upper, 0, (size_t)l->num_supernodes);
+  if (!owner) return -1.0;
+  for (int k = 0; k < n; k++) {
+    while (l->column[s + 1] <= k) s++;
+    owner[k] = s;
+  }
+  for (int k = 0; k < count; k++) is_upper[owner[column[k]]] = 1;
+  for (s = 0; s < l->num_supernodes; s++) {
+    int width = l->column[s + 1] - l->column[s], length = l->row_start[s + 1] - l->row_start[s];
+    if (!is_upper[s]) continue;
+    upper += (double)width * length;
+    if (length > width) is_upper[owner[l->row[l->row_start[s] + width]]] = 1;
+  }
+  free(owner);
+  return upper / (double)l->value_start[l->num_supernodes];
+}
+
+static int is_in_part(int s, enum keyway_part part, const char *is_upper)
+{
+  return part == KEYWAY_WHOLE || is_upper[s] == (part == KEYWAY_UPPER);
+}
+
+static void forward_one(const struct keyway_supernodes *l, int s, double *y, double *work)
+{
+  int first = l->column[s], width = l->column[s + 1] - first;
+  int length = l->row_start[s + 1] - l->row_start[s], rest = length - width;
+  const int *row = l->row + l->row_start[s] + width;
+  const double *value = l->value + l->value_start[s];
+  if (width == 1) {
+    double x = y[first] /= value[0];
+    for (int i = 0; i < rest; i++) y[row[i]] -= value[1 + i] * x;
+    return;
+  }
+  dtrsv_("L", "N", "N", &width, value, &length, y + first, &one_step);
+  if (rest == 0) return;
+  dgemv_("N", &rest, &width, &one, value + width, &length, y + first, &one_step, &zero, work,
+         &one_step);
+  for (int i = 0; i < rest; i++) y[row[i]] -= work[i];
+}
+
+static void backward_one(const struct keyway_supernodes *l, int s, double *y, double *work)
+{
+  int first = l->column[s], width = l->column[s + 1] - first;
+  int length = l->row_start[s + 1] - l->row_start[s], rest = length - width;
+  const int *row = l->row + l->row_start[s] + width;
+  const double *value = l->value + l->value_start[s];
+  if (width == 1) {
+    double x = y[first];
+    for (int i = 0; i < rest; i++) x -= value[1 + i] * y[row[i]];
+    y[first] = x / value[0];
+    return;
+  }
+  if (rest > 0) {
+    for (int i = 0; i < rest; i++) work[i] = y[row[i]];
+    dgemv_("T", &rest, &width, &minus_one, value + width, &length, work, &one_step, &one,
+           y + first, &one_step);
+  }
+  dtrsv_("L", "T", "N", &width, value, &length, y + first, &one_step);
+}
+
+void keyway_substitute_forward(const struct keyway_supernodes *l, enum keyway_part part,
+                               const char *is_upper, double *y, double *work)
+{
+  for (int s = 0; s < l->num_supernodes; s++)
+    if (is_in_part(s, part, is_upper)) forward_one(l, s, y, work);
+}
+
+void keyway_substitute_backward(const struct keyway_supernodes *l, enum keyway_part part,
+                                const char *is_upper, double *y, double *work)
+{
+  for (int s = l->num_supernodes - 1; s >= 0; s--)
+    if (is_in_part(s, part, is_upper)) backward_one(l, s, y, work);
+}

@@ -1,0 +1,32 @@
+/* A factor L L^T in supernodes: dense blocks of columns with the same rows. */
+#ifndef KEYWAY_SUPERNODAL_SOLVE_H
+#define KEYWAY_SUPERNODAL_SOLVE_H
+
+struct keyway_supernodes {
+  int num_supernodes;
+  const int *column;      /* (num_supernodes + 1) first column of each */
+  const int *row_start;   /* (num_supernodes + 1) into row */
+  const int *value_start; /* (num_supernodes + 1) into value */
+  const int *row;         /* rows of each, its own columns first */
+  const double *value;    /* dense blocks by columns; the upper triangle is not used */
+};
+
+/* Parts of a factor. The upper part holds the supernodes of chosen unknowns and all that are
+ * eliminated after and depend on them; the lower part is the rest. */
+enum keyway_part { KEYWAY_WHOLE = 0, KEYWAY_LOWER = 1, KEYWAY_UPPER = 2 };
+
+/* is_upper (num_supernodes): marks the upper part of the chosen columns. Returns its share of the
+ * values of the factor. */
+double keyway_mark_upper(const struct keyway_supernodes *l, int count, const int *column,
+                         char *is_upper);
+
+/* y = L^-1 y on the supernodes of a part; work has room for the longest column. is_upper may be
+ * NULL for the whole factor. */
+void keyway_substitute_forward(const struct keyway_supernodes *l, enum keyway_part part,
+                               const char *is_upper, double *y, double *work);
+
+/* y = L^-T y on the supernodes of a part. */
+void keyway_substitute_backward(const struct keyway_supernodes *l, enum keyway_part part,
+                                const char *is_upper, double *y, double *work);
+
+#endif
