@@ -4,6 +4,7 @@ module check_deck
   use cli, only: command_line
   use diagnostic_text, only: text_of_errors, text_of_warnings
   use diagnostics, only: diagnostic_list
+  use file_system, only: base_name
   use errors, only: deck_is_wrong, error_type, raise
   use model_summary, only: summary_of, summary_of_tests
   use problem_definition, only: problem
@@ -26,6 +27,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(user_library), pointer :: umat
     character(:), allocatable :: note
+    integer :: i
     call load_user_routines(given, umat, error)
     if (allocated(error)) return
     call read_problem(given%deck, model, faults, echo, given%is_material, umat)
@@ -34,6 +36,11 @@ contains
     end if
     if (associated(umat) .and. (given%is_check .or. faults%has_errors())) call umat%close(note)
     if (faults%has_errors()) call raise(error, text_of_errors(faults), deck_is_wrong)
+    if (allocated(error)) return
+    do i = 1, size(model%steps)
+      model%steps(i)%controls%most_unsaved = given%most_unsaved
+      model%steps(i)%controls%stem_of_problems = given%folder//'/'//base_name(given%deck)
+    end do
   end subroutine load_deck
 
   !> Prints the deck with its defaults and a summary of the model.

@@ -27,6 +27,7 @@ module cli
     character(:), allocatable :: field !< argument of --fields, '' for all
     type(umat_request) :: umat !< --umat and the options that go with it
     integer :: num_threads = 0 !< 0: as many as the system has
+    integer :: most_unsaved = huge(1) !< iterations on joints; --save-joint-problems
     logical :: is_check = .false. !< read and verify only
     logical :: is_material = .false. !< run the tests of materials, not the analysis
     logical :: is_quiet = .false.
@@ -38,7 +39,8 @@ module cli
 
   character(*), parameter :: options = '-o | -j | -q | --check | --keywords | --fields | '// &
                              '--version | --help | -h | --continue | --umat | --umat-flags | '// &
-                             '--umat-library | --umat-threadsafe | --umat-check | --material'
+                             '--umat-library | --umat-threadsafe | --umat-check | --material | '// &
+                             '--save-joint-problems'
 
 contains
 
@@ -57,6 +59,8 @@ contains
            '  --umat-library LIB keep the library; without a deck only build it'//nl// &
            '  --umat-threadsafe  several threads may call the UMAT at once'//nl// &
            '  --umat-check       compare DDSDDE of the UMAT with differences of STRESS'//nl// &
+           '  --save-joint-problems N  save increments with more than N iterations on '// &
+           'joints, one HDF5 file each'//nl// &
            '  --keywords [NAME]  the reference of all keywords, or of one'//nl// &
            '  --fields [NAME]    the fields of results: components, place, unit, meaning'//nl// &
            '  -q                 print errors only'//nl// &
@@ -106,13 +110,14 @@ contains
     word = argument(i)
     i = i + 1
     select case (word)
-    case ('-o', '-j', '--umat', '--umat-flags', '--umat-library')
+    case ('-o', '-j', '--umat', '--umat-flags', '--umat-library', '--save-joint-problems')
       if (i > command_argument_count()) then
         call raise(error, 'keyway: '//word//' needs a value'//nl//usage(), deck_is_wrong)
         return
       end if
       if (word == '-o') given%folder = argument(i)
       if (word == '-j') call read_threads(argument(i), given, error)
+      if (word == '--save-joint-problems') call read_iterations(argument(i), given, error)
       if (word == '--umat-flags') given%umat%flags = given%umat%flags//' '//argument(i)
       if (word == '--umat-library') given%umat%target = argument(i)
       if (word == '--umat') call read_umat_files(i, given)
@@ -199,6 +204,18 @@ contains
     call raise(error, "keyway: found '-j "//word//"'; expected a number of threads from 1 to "// &
                as_text(most_threads), deck_is_wrong)
   end subroutine read_threads
+
+  !> Reads the value of --save-joint-problems.
+  subroutine read_iterations(word, given, error)
+    character(*), intent(in) :: word
+    type(command_line), intent(inout) :: given
+    type(error_type), allocatable, intent(out) :: error
+    logical :: is_integer
+    call parse_integer(word, given%most_unsaved, is_integer)
+    if (is_integer .and. given%most_unsaved >= 0) return
+    call raise(error, "keyway: found '--save-joint-problems "//word//"'; expected the most "// &
+               'iterations of an increment that is not saved, 0 or more', deck_is_wrong)
+  end subroutine read_iterations
 
   subroutine read_deck_name(word, given, error)
     character(*), intent(in) :: word

@@ -23,7 +23,7 @@ module free_blocks
   use write_text, only: as_text
   implicit none
   private
-  public :: name_free_block
+  public :: name_free_block, exceeds_joints
 
   !> Most entries in the rows of the joints; larger models are not checked.
   integer, parameter :: most_entries = 20000000
@@ -54,18 +54,13 @@ contains
     type(joint_state), intent(in) :: last(:) !< at the end of the iteration
     type(step_time), intent(in) :: when !< of the increment that failed
     type(error_type), allocatable, intent(inout) :: error
-    type(error_type), allocatable :: failure
     type(block_task) :: task
     type(step_time) :: checked
     character(:), allocatable :: text
     logical :: is_known
-    if (.not. allocated(error) .or. size(model%joints) == 0) return
-    call find_blocks(model, task%blocks)
-    if (task%blocks%num_blocks > most_blocks) return
-    if (6*task%blocks%num_blocks*num_rows(system%operator%num_points) > most_entries) return
-    call open_task(model, plan, states, task, failure)
-    if (allocated(failure)) return ! the error is reported without the blocks
-    if (size(task%rows, 1) == 0) return
+    if (.not. allocated(error)) return
+    call open_task(model, plan, system, states, task, is_known)
+    if (.not. is_known) return
     checked = when
     call find_driven_block(model, system, task, checked, text, is_known)
     if (.not. is_known) return
@@ -86,8 +81,45 @@ contains
     error%message = error%message//text
   end subroutine name_free_block
 
+  !> Whether the loads of a time exceed what the joints can carry, however stiff the blocks are:
+  !> then no equilibrium exists. False where that is not certain.
+  logical function exceeds_joints(model, plan, system, states, when)
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(dam_system), intent(in) :: system
+    type(joint_state), intent(in) :: states(:) !< of the last equilibrium
+    type(step_time), intent(in) :: when
+    type(block_task) :: task
+    character(:), allocatable :: text
+    logical :: is_known
+    exceeds_joints = .false.
+    call open_task(model, plan, system, states, task, is_known)
+    if (.not. is_known) return
+    call find_driven_block(model, system, task, when, text, is_known)
+    exceeds_joints = is_known .and. text /= ''
+  end function exceeds_joints
+
+  !> The blocks and joints of a step, unless there are too many or no block can move.
+  subroutine open_task(model, plan, system, states, task, is_known)
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(dam_system), intent(in) :: system
+    type(joint_state), intent(in) :: states(:)
+    type(block_task), intent(out) :: task
+    logical, intent(out) :: is_known
+    type(error_type), allocatable :: failure
+    is_known = .false.
+    if (size(model%joints) == 0) return
+    call find_blocks(model, task%blocks)
+    if (task%blocks%num_blocks > most_blocks) return
+    if (6*task%blocks%num_blocks*num_rows(system%operator%num_points) > most_entries) return
+    call find_limits(model, plan, states, task, failure)
+    if (allocated(failure)) return ! the error is reported without the blocks
+    is_known = size(task%rows, 1) > 0
+  end subroutine open_task
+
   !> Motions that are possible with the supports, and the limits of the joints.
-  subroutine open_task(model, plan, states, task, error)
+  subroutine find_limits(model, plan, states, task, error)
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan
     type(joint_state), intent(in) :: states(:)
@@ -124,7 +156,7 @@ contains
         end do
       end do
     end do
-  end subroutine open_task
+  end subroutine find_limits
 
   !> The block that moves under the loads of a time, and its motion; '' where the joints hold all.
   subroutine find_driven_block(model, system, task, when, text, is_known)

@@ -16,8 +16,11 @@ set(sources
   iteration/equilibrium_linear.f90
   iteration/joint_forces.f90
   iteration/joint_iteration.f90
+  iteration/joint_policy.f90
+  iteration/joint_problem.f90
   iteration/newton_condensed.f90
   iteration/newton_full.f90
+  iteration/tresca_friction.f90
   law/contraction_keyword.f90
   law/joint_history.f90
   law/joint_catalogue.f90

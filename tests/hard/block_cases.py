@@ -27,13 +27,12 @@ def chatter(keyway, stiffness: float):
     return keyway(block.deck(static(weight()) + dynamic(shake, 0.0025, 0.8)))
 
 
-def add_chatter(exponent: int, waits_for: str = "") -> None:
+def add_chatter(exponent: int) -> None:
     @BLOCKS.case(
         f"chatter, k_n 1e{exponent}",
         "a block that lifts off and lands at every point of its bed, undamped",
         "error of the energy balance; energy that the time stepping has supplied by the end",
         1e-6,
-        waits_for=waits_for,
     )
     def judge(keyway):
         run = chatter(keyway, 10.0**exponent)
@@ -43,7 +42,7 @@ def add_chatter(exponent: int, waits_for: str = "") -> None:
 for k in (8, 10, 12):
     add_chatter(k)
 # With kernels for HASWELL one landing ends in a cycle of Newton's iteration.
-add_chatter(14, "the iteration of frictional joints")
+add_chatter(14)
 
 
 @BLOCKS.case(

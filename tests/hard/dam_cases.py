@@ -167,5 +167,6 @@ def large_cracking(keyway):
         "*JOINT LAW, NAME=CONTRACTION",
         "*JOINT LAW, NAME=CONTRACTION, UPLIFT=LAKE, PROFILE=OPEN",
     )
-    run = large_dam(keyway, 5, ((elastic, law), water))
+    cuts = ("*DYNAMIC, DIRECT,", "*DYNAMIC,")
+    run = large_dam(keyway, 5, ((elastic, law), water, cuts))
     return unbalance(run), [run]

@@ -25,6 +25,7 @@ module integrator_type
     procedure(open_step), deferred :: open_step
     procedure :: start_increment => no_preparation
     procedure(advance), deferred :: advance
+    procedure :: is_hopeless => is_never_hopeless
     procedure :: explain_failure => no_explanation
     procedure :: close_step => no_end
   end type integrator
@@ -69,6 +70,16 @@ contains
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
   end subroutine no_preparation
+
+  !> Whether an increment has no equilibrium for certain.
+  logical function is_never_hopeless(self, model, plan, when, before)
+    class(integrator), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(step_time), intent(in) :: when !< its end
+    type(state), intent(in) :: before !< last equilibrium
+    is_never_hopeless = .false.
+  end function is_never_hopeless
 
   !> Adds a cause to the message of an increment that cannot be made smaller.
   subroutine no_explanation(self, model, plan, when, before, after, error)

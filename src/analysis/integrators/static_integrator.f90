@@ -6,7 +6,7 @@ module static_integrator
   use errors, only: error_type
   use problem_definition, only: problem
   use step_plan, only: step
-  use free_blocks, only: name_free_block
+  use free_blocks, only: exceeds_joints, name_free_block
   use joint_law, only: joint_state
   use joint_water, only: update_uplift
   use analysis_state, only: state
@@ -28,6 +28,7 @@ module static_integrator
   contains
     procedure :: open_step
     procedure :: advance
+    procedure :: is_hopeless
     procedure :: explain_failure
   end type static_method
 
@@ -143,6 +144,16 @@ contains
       call self%solids%solver%costs%stop()
     end subroutine update_water
   end subroutine match_uplift
+
+  !> Whether the loads exceed what the joints can carry.
+  logical function is_hopeless(self, model, plan, when, before)
+    class(static_method), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(step_time), intent(in) :: when
+    type(state), intent(in) :: before
+    is_hopeless = exceeds_joints(model, plan, self%system, before%joints, when)
+  end function is_hopeless
 
   !> Names the block whose motion the joints do not restrain.
   subroutine explain_failure(self, model, plan, when, before, after, error)

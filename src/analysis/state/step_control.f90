@@ -27,7 +27,7 @@ module step_control
     logical :: is_direct = .false.
     integer :: easy_so_far = 0, cuts_in_a_row = 0, cutbacks = 0
   contains
-    procedure :: next_size, accept, cut
+    procedure :: next_size, accept, cut, least_size
   end type increment_control
 
 contains
@@ -74,6 +74,12 @@ contains
     end if
     self%easy_so_far = 0
   end subroutine accept
+
+  !> The smallest increment that halving can still reach.
+  pure real(rk) function least_size(self) result(size)
+    class(increment_control), intent(in) :: self
+    size = max(self%smallest, self%size*cut_factor**(most_cuts_in_a_row - self%cuts_in_a_row))
+  end function least_size
 
   !> An increment has not converged: halves its size, or reduces it further if a material requests
   !> that, or gives up.

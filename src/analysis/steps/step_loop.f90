@@ -208,7 +208,7 @@ contains
     call close_increment(model, plan, next%when, next%outcome, now, results, error)
   end subroutine accept
 
-  !> Cuts the increment, or ends the run.
+  !> Cuts the increment, or ends the run, at once where even the smallest increment is hopeless.
   subroutine cut(model, plan, method, now, next, error)
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan
@@ -216,8 +216,14 @@ contains
     type(state), intent(inout) :: now
     type(attempt), intent(in) :: next
     type(error_type), allocatable, intent(out) :: error
+    type(step_time) :: least
     logical :: gives_up
     call now%control%cut(next%when%increment, next%outcome%size_ratio, gives_up)
+    if (.not. gives_up .and. now%control%cuts_in_a_row == 1) then
+      least = next%when
+      call least%set_end(now%step_time, now%control%least_size())
+      gives_up = method%is_hopeless(model, plan, least, now)
+    end if
     if (.not. gives_up) return
     call report_failure(model, method%system, next%outcome, now, error)
     if (allocated(next%outcome%failure)) return

@@ -24,7 +24,7 @@ module block_compliance
     type(dense_block), allocatable :: block(:)
     logical :: is_complete = .true. !< no block is left out
   contains
-    procedure :: product, diagonal_block, num_entries
+    procedure :: product, diagonal_block, num_entries, as_dense
   end type compliance_blocks
 
   !> From this share of columns with forces on, a product with the whole block is quicker.
@@ -188,6 +188,20 @@ contains
     row = num_axes*(point - 1)
     block = self%block(self%own(group))%values(row + 1:row + num_axes, row + 1:row + num_axes)
   end function diagonal_block
+
+  !> G with zeros for the blocks that are left out.
+  pure function as_dense(self) result(dense)
+    class(compliance_blocks), intent(in) :: self
+    real(rk), allocatable :: dense(:, :) !< (rows, rows) [m/N]
+    integer :: j, b
+    allocate (dense(size(self%groups%row), size(self%groups%row)), source=0.0_rk)
+    do j = 1, self%groups%num_groups
+      do b = self%first_block(j), self%first_block(j + 1) - 1
+        dense(rows_of(self%groups, j), rows_of(self%groups, self%block(b)%source)) = &
+          self%block(b)%values
+      end do
+    end do
+  end function as_dense
 
   !> Entries of all blocks.
   pure integer(long) function num_entries(self)

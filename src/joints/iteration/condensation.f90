@@ -18,7 +18,8 @@ module condensation
   use solver_low_rank, only: add_low_rank
   use blas_threads, only: use_many_threads, use_one_thread
   use jump_block, only: jump_schur_block, extract_schur_block, schur_compliance
-  use newton_condensed, only: condensed_joints, iterate_on_jumps, linearise_again
+  use joint_problem, only: saved_operator, saved_problem, save_problem, free_path
+  use newton_condensed, only: condensed_joints, closed_response, iterate_on_jumps, linearise_again
   use tangent_equations, only: joint_tangent
   use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
   implicit none
@@ -175,7 +176,7 @@ contains
     real(rk), intent(out) :: x(:)
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
-    type(joint_field) :: field
+    type(joint_field) :: field, start
     real(rk), dimension(3, self%operator%num_points) :: excess, last_excess
     real(rk), allocatable :: half(:)
     integer :: pass, iterations
@@ -189,9 +190,14 @@ contains
       field%response = field%response + balance%offset
       do pass = 1, most_passes
         call self%costs%start('iterate', 'joints', 'joint')
+        if (self%controls%most_unsaved < huge(1)) start = field
         call iterate_on_jumps(self%condensed, self%controls, joints, operator, old, field, new, &
                               outcome)
         call self%costs%stop()
+        if (outcome%iterations > self%controls%most_unsaved) then
+          call save_increment(self, balance, joints, old, start, error)
+          if (allocated(error)) return
+        end if
         iterations = iterations + outcome%iterations
         outcome%iterations = iterations
         if (.not. outcome%has_converged) return
@@ -206,6 +212,29 @@ contains
     outcome%has_converged = pass <= most_passes
     call self%end_solve(balance%is_partial, excess - last_excess, half, x, error)
   end subroutine solve_from
+
+  !> Saves an increment as a problem of its own (--save-joint-problems).
+  subroutine save_increment(self, balance, joints, old, start, error)
+    class(condensed_equilibrium), intent(in) :: self
+    type(force_balance), intent(in) :: balance
+    type(dam_joint), intent(in) :: joints(:)
+    type(joint_state), intent(in) :: old(:)
+    type(joint_field), intent(in) :: start !< of the iteration
+    type(error_type), allocatable, intent(out) :: error
+    type(saved_operator) :: common
+    type(saved_problem) :: problem
+    character(:), allocatable :: path
+    path = free_path(self%controls%stem_of_problems)
+    if (len(path) == 0) return
+    common%weight = self%weight
+    common%compliance = self%condensed%blocks%as_dense()
+    common%operator = self%operator
+    problem = saved_problem(self%controls, joints, old, balance, &
+                            closed_response(self%condensed, self%operator%area, start))
+    problem%balance%guess = start%jump
+    problem%balance%guess_traction = start%multiplier
+    call save_problem(path, common, problem, error)
+  end subroutine save_increment
 
   !> Jumps from the Schur block after a pass, and how far they are from those of the blocks of G.
   subroutine find_drift(self, balance, new, change, half, field)

@@ -125,15 +125,16 @@ contains
     real(rk), intent(inout) :: force(:, :) !< (3, points) [N]
     real(rk), intent(inout) :: d(:, :) !< (3, points) [m]
     type(joint_field), intent(in) :: field
-    real(rk) :: rest(size(compliance, 1)), change(3)
+    real(rk) :: rest(size(compliance, 1)), change(3), block(num_axes, num_axes)
     integer :: visit, k, p, row
     rest = reshape(d(:, point), shape(rest))
     do visit = 1, size(point)
       k = merge(visit, size(point) + 1 - visit, is_forward)
       p = point(k)
       row = row_of(k, 1)
-      associate (own => rest(row:row + num_axes - 1), &
-                 block => compliance(row:row + num_axes - 1, row:row + num_axes - 1))
+      ! A copy: gfortran 12 passes a section named by `associate` as if it were contiguous.
+      block = compliance(row:row + num_axes - 1, row:row + num_axes - 1)
+      associate (own => rest(row:row + num_axes - 1))
         change = local_force(block, own, force(:, p), p, points, field) - force(:, p)
         if (.not. any(abs(change) > 0.0_rk)) cycle
         force(:, p) = force(:, p) + change

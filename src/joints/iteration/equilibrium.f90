@@ -41,11 +41,16 @@ module equilibrium
     logical :: has_converged = .false.
     integer :: iterations = 0
     integer :: sweeps = 0 !< of Gauss-Seidel where Newton's iteration did not converge
+    integer :: passes = 0 !< with given limits of friction where the sweeps did not suffice
     integer :: augmentations = 0 !< of the contact; each starts a pass of iterations
     integer :: first_pass = 0 !< iterations before the first augmentation, 0 for none
     integer :: pass_start = 0 !< iterations before the present pass
     real(rk) :: penetration = 0.0_rk !< largest of points in contact, over the admissible one
     logical :: gives_up = .false. !< the penetration does not decrease
+    real(rk) :: unbalance = 0.0_rk !< norm of the residual forces of the joints over that force
+    !> The least stiffness alone holds a block that the loads drive: in the last iterate; the
+    !> iteration moves the block further and further, always by the same
+    logical :: is_driven = .false., is_loose = .false.
     logical :: has_held_switches = .false. !< of laws with discontinuous stress (theory.md, 12)
     real(rk) :: residual = 0.0_rk !< norm of the residual forces over the reference force
     real(rk) :: correction = 0.0_rk !< Newton correction for the residual, over the increment

@@ -8,8 +8,17 @@ module joint_forces
   use contact_scaling, only: contact_scale
   implicit none
   private
-  public :: joint_field, start_joints, reference_stiffness
+  public :: joint_field, tresca_limits, start_joints, reference_stiffness
   public :: evaluate_joints, gather_tractions, gather_jumps, gather_gaps, linear_tractions
+
+  !> Friction with given limits in place of that of the laws.
+  type :: tresca_limits
+    real(rk), allocatable :: bound(:) !< (points) limit; not allocated: the laws decide [Pa]
+    real(rk), allocatable :: friction(:) !< (points) mu
+    real(rk), allocatable :: cohesion(:) !< (points) c [Pa]
+    real(rk), allocatable :: slip(:, :) !< (2, points) converged [m]
+    logical, allocatable :: is_bonded(:) !< (points)
+  end type tresca_limits
 
   !> Jumps, tractions and tangents of all points of all joints in one row.
   type :: joint_field
@@ -32,6 +41,7 @@ module joint_forces
     real(rk) :: start_force = 0.0_rk !< 2-norm of area*traction in the last converged state [N]
     real(rk) :: bulk_force = 0.0_rk !< reference force of the bulk [N]
     logical :: is_static = .false. !< no inertia in the equilibrium
+    type(tresca_limits) :: tresca
   end type joint_field
 
 contains

@@ -10,10 +10,19 @@ module joint_iteration
   use contact_scaling, only: contact_scale
   use contact_augmentation, only: start_multiplier, measure_contact, update_multiplier
   use equilibrium, only: force_balance, balance_outcome
+  use tresca_friction, only: evaluate_tresca
   implicit none
   private
-  public :: start_iteration, linearise, take_step, excess_traction, closed_tangent, is_cycling
-  public :: measure_residual, measure_correction, augment_contact, smallest_force
+  public :: iteration_history, start_iteration, linearise, take_step, excess_traction
+  public :: closed_tangent, measure_residual, measure_correction, goes_on, close_iteration
+  public :: smallest_force
+
+  !> Residuals of one run of Newton's iteration.
+  type :: iteration_history
+    real(rk), allocatable :: unbalance(:) !< of its iterations
+    integer :: least = 1 !< iteration with the least of them
+    logical :: has_ended = .false. !< it has converged, cycles or gives up
+  end type iteration_history
 
   !> Stiffness of open and sliding points in the iteration matrix, relative to k_ref. It limits the
   !> motion of a block that has no contact in one iterate. The residual does not contain it.
@@ -35,6 +44,10 @@ module joint_iteration
   integer, parameter :: most_augmentations = 25
   !> Floor of the increment of the jumps, as a fraction of the jumps.
   real(rk), parameter :: smallest_increment = 1.0e-3_rk
+
+  !> Most iterations over those of *CONTROLS; beyond those the least residual is not older than
+  !> `gaining` iterations.
+  integer, parameter :: most_attempts = 2, gaining = 5
 
   !> A residual below this is round-off: sums of some hundred products in double precision.
   real(rk), parameter :: smallest_residual = 1.0e-13_rk
@@ -90,9 +103,13 @@ contains
     type(joint_field), intent(inout) :: field
     type(joint_state), intent(inout) :: new(:)
     integer :: p, i
-    field%was_open = field%is_open
-    call evaluate_joints(joints, operator, old, field, new)
-    where (field%is_open .and. .not. field%was_open) field%num_openings = field%num_openings + 1
+    if (allocated(field%tresca%bound)) then
+      call evaluate_tresca(k_ref, field)
+    else
+      field%was_open = field%is_open
+      call evaluate_joints(joints, operator, old, field, new)
+      where (field%is_open .and. .not. field%was_open) field%num_openings = field%num_openings + 1
+    end if
     do p = 1, operator%num_points
       do i = 1, 3
         if (field%tangent(i, i, p) < k_ref(i, p)) then
@@ -133,6 +150,44 @@ contains
     end do
   end function is_cycling
 
+  !> Whether Newton's iteration goes on: up to the number of *CONTROLS, and beyond it while the
+  !> residual decreases.
+  pure logical function goes_on(history, outcome, most)
+    type(iteration_history), intent(in) :: history
+    type(balance_outcome), intent(in) :: outcome
+    integer, intent(in) :: most !< ITERATIONS
+    integer :: iteration
+    iteration = outcome%iterations - outcome%pass_start
+    goes_on = .not. history%has_ended .and. &
+              (iteration < most .or. (iteration < most_attempts*most .and. &
+                                      iteration - history%least < gaining))
+  end function goes_on
+
+  !> Ends an iteration: augments the contact of joints in equilibrium, and looks for cycles.
+  subroutine close_iteration(joints, operator, old, k_ref, field, new, outcome, history)
+    type(dam_joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
+    type(joint_field), intent(inout) :: field
+    type(joint_state), intent(inout) :: new(:)
+    type(balance_outcome), intent(inout) :: outcome
+    type(iteration_history), intent(inout) :: history
+    integer :: iteration
+    if (outcome%has_converged) then
+      call augment_contact(joints, operator, old, k_ref, field, new, outcome)
+      history%has_ended = outcome%has_converged .or. outcome%gives_up
+      if (history%has_ended) return
+    end if
+    iteration = outcome%iterations - outcome%pass_start
+    if (iteration == 0) history%unbalance = [real(rk) ::]
+    if (iteration == 0) return
+    history%unbalance = [history%unbalance, outcome%unbalance]
+    history%least = minloc(history%unbalance, 1)
+    history%has_ended = is_cycling(history%unbalance)
+    outcome%is_loose = history%has_ended .and. outcome%is_driven
+  end subroutine close_iteration
+
   !> Augments the contact where points penetrate more than their law allows. The laws are then
   !> linearised at the equilibrium found, and the iteration continues.
   subroutine augment_contact(joints, operator, old, k_ref, field, new, outcome)
@@ -144,7 +199,7 @@ contains
     type(joint_state), intent(inout) :: new(:)
     type(balance_outcome), intent(inout) :: outcome
     integer :: worst_point
-    if (.not. field%contact%is_there) return
+    if (.not. field%contact%is_there .or. allocated(field%tresca%bound)) return
     call measure_contact(joints, operator, new, field%contact, outcome%penetration, worst_point)
     if (outcome%penetration <= 1.0_rk) return
     outcome%has_converged = .false.
@@ -202,6 +257,9 @@ contains
     if (field%is_static) kept = norm(stiffness_floor*spread(operator%area, 1, 3)*k_ref*field%jump)
     if (kept <= most_kept*field%bulk_force .or. most_kept*kept > field%bulk_force) kept = 0.0_rk
     outcome%residual = max(norm(unbalance), kept)/force
+    outcome%unbalance = norm(unbalance)/force
+    outcome%is_loose = .false.
+    outcome%is_driven = kept > 0.0_rk
     outcome%worst_point = maxloc(unbalance, 1)
   end subroutine measure_residual
 

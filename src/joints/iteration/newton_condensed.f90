@@ -8,38 +8,29 @@
 !> equilibrium of the structure is exact in every iterate.
 module newton_condensed
   use kinds, only: rk
-  use block_compliance, only: compliance_blocks
-  use contact_scaling, only: contact_scale, open_group
   use tangent_equations, only: joint_tangent
   use joint_law, only: joint_state
   use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, linear_tractions
-  use contact_sweeps, only: gather_points, swept_points, sweep_contacts
-  use joint_iteration, only: measure_residual, measure_correction, take_step, linearise, &
-                             is_cycling, augment_contact, smallest_force
+  use joint_iteration, only: iteration_history, measure_residual, measure_correction, take_step, &
+                             linearise, goes_on, close_iteration, smallest_force
+  use joint_policy, only: joint_process, iterate_joints, jumps_of, share_of
   use equilibrium, only: balance_outcome
   use step_plan, only: step_controls
   implicit none
   private
-  public :: condensed_joints, iterate_on_jumps, linearise_again
+  public :: condensed_joints, iterate_on_jumps, start_policy, linearise_again
+  public :: closed_response, open_response
 
-  type :: condensed_joints
-    real(rk) :: weight = 1.0_rk !< of the joint forces in the balance
-    type(compliance_blocks) :: blocks !< G
-    real(rk), allocatable :: k_ref(:, :) !< (3, points) k_ref [Pa/m]
-    type(open_group), allocatable :: opened(:) !< (groups) C with open joints
-    type(contact_scale) :: scale !< r of the augmented contact
+  type, extends(joint_process) :: condensed_joints
     type(joint_tangent) :: tangent !< of the last iteration
+    !> (3, points) response [m] and excess traction [Pa] when the iteration starts
+    real(rk), allocatable :: start_response(:, :), start_excess(:, :)
+  contains
+    procedure :: run_newton
+    procedure :: find_response, find_closed
   end type condensed_joints
-
-  !> Sweeps before the second iteration, and most sweeps before one. On the saved problems
-  !> (docs/studies/joint_problems.md) 10 to 80 sweeps find the states.
-  integer, parameter :: first_sweeps = 10, most_sweeps = 160
-
-  !> Most iterations over those of *CONTROLS; beyond those the least residual is not older than
-  !> `gaining` iterations.
-  integer, parameter :: most_attempts = 2, gaining = 5
 
   !> Newton's linear equations are solved to this share of their right-hand side, or of the
   !> admissible residual.
@@ -51,11 +42,10 @@ module newton_condensed
 
 contains
 
-  !> Newton's iteration; where it does not converge, sweeps from the start of the increment and
-  !> Newton's iteration again, each time with twice as many sweeps as before. On return `field%jump`
-  !> and `field%iterate` hold the jumps and tractions of the solution, `new` the histories there.
+  !> Iterates on the jumps by the policy of all solvers. On return `field%jump` and `field%iterate`
+  !> hold the jumps and tractions of the solution, `new` the histories there.
   subroutine iterate_on_jumps(self, controls, joints, operator, old, field, new, outcome)
-    type(condensed_joints), intent(inout) :: self
+    class(condensed_joints), intent(inout) :: self
     type(step_controls), intent(in) :: controls
     type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
@@ -63,33 +53,55 @@ contains
     type(joint_field), intent(inout) :: field !< linearised; its response is for k_ref
     type(joint_state), intent(inout) :: new(:)
     type(balance_outcome), intent(out) :: outcome
-    type(swept_points) :: points
-    real(rk), dimension(3, operator%num_points) :: closed_jump, start_excess, force
-    integer :: num_sweeps
-    closed_jump = field%response
-    start_excess = self%k_ref*field%jump - field%iterate
-    force = field%multiplier
-    if (all_closed(self, field)) force = self%k_ref*closed_jump
-    num_sweeps = first_sweeps
-    do
-      call iterate_newton(self, controls, joints, operator, old, field, new, outcome)
-      if (outcome%has_converged .or. outcome%gives_up .or. num_sweeps > most_sweeps) return
-      if (num_sweeps == first_sweeps) then
-        closed_jump = closed_jump - jumps_of(self, operator%area, start_excess)
-        force = self%weight*spread(operator%area, 1, 3)*force
-      end if
-      field%scale = self%scale
-      call gather_points(joints, operator, self%k_ref, self%weight, old, new, points)
-      call sweep_contacts(self%blocks, self%opened, points, closed_jump, num_sweeps, force, field)
-      field%is_open = .true. ! what the sweeps open does not count as an opening of the iteration
-      call linearise(joints, operator, old, self%k_ref, field, new)
-      field%response = closed_jump + jumps_of(self, operator%area, &
-                                              self%k_ref*field%jump - field%iterate)
-      outcome%pass_start = outcome%iterations
-      outcome%sweeps = outcome%sweeps + num_sweeps
-      num_sweeps = 2*num_sweeps
-    end do
+    call start_policy(self, operator, field)
+    call iterate_joints(self, controls, joints, operator, old, field, new, outcome)
   end subroutine iterate_on_jumps
+
+  !> Stores the start of the iteration.
+  subroutine start_policy(self, operator, field)
+    class(condensed_joints), intent(inout) :: self
+    type(jump_operator), intent(in) :: operator
+    type(joint_field), intent(in) :: field !< linearised; its response is for k_ref
+    self%start_response = field%response
+    self%start_excess = self%k_ref*field%jump - field%iterate
+    self%force = share_of(self%weight, operator)*field%multiplier
+  end subroutine start_policy
+
+  !> Jumps with closed joints; where the iteration starts closed, their forces.
+  subroutine find_closed(self, operator)
+    class(condensed_joints), intent(inout) :: self
+    type(jump_operator), intent(in) :: operator
+    self%closed_jump = self%start_response - jumps_of(self, operator%area, self%start_excess)
+    if (any(abs(self%start_excess) > 0.0_rk)) return
+    self%force = share_of(self%weight, operator)*self%k_ref*self%closed_jump
+  end subroutine find_closed
+
+  !> The response to the linearised joints of a field with new jumps.
+  subroutine find_response(self, operator, field)
+    class(condensed_joints), intent(in) :: self
+    type(jump_operator), intent(in) :: operator
+    type(joint_field), intent(inout) :: field
+    field%response = open_response(self, operator%area, self%closed_jump, field)
+  end subroutine find_response
+
+  !> Jumps with closed, sticking joints, from the response to the linearised joints.
+  function closed_response(self, area, field) result(jump)
+    class(condensed_joints), intent(in) :: self
+    real(rk), intent(in) :: area(:) !< (points) [m2]
+    type(joint_field), intent(in) :: field
+    real(rk) :: jump(3, size(area)) !< [m]
+    jump = field%response - jumps_of(self, area, self%k_ref*field%jump - field%iterate)
+  end function closed_response
+
+  !> Response to the linearised joints, from the jumps with closed, sticking joints.
+  function open_response(self, area, closed_jump, field) result(jump)
+    class(condensed_joints), intent(in) :: self
+    real(rk), intent(in) :: area(:) !< (points) [m2]
+    real(rk), intent(in) :: closed_jump(:, :) !< (3, points) [m]
+    type(joint_field), intent(in) :: field
+    real(rk) :: jump(3, size(area)) !< [m]
+    jump = closed_jump + jumps_of(self, area, self%k_ref*field%jump - field%iterate)
+  end function open_response
 
   !> Linearises the joints at the end of an iteration. The response on entry is that to the forces
   !> at the end.
@@ -106,28 +118,9 @@ contains
                      + jumps_of(self, operator%area, field%multiplier - field%iterate)
   end subroutine linearise_again
 
-  !> Whether the iteration starts with closed, sticking joints.
-  pure logical function all_closed(self, field)
-    type(condensed_joints), intent(in) :: self
-    type(joint_field), intent(in) :: field
-    all_closed = .not. any(abs(field%iterate - self%k_ref*field%jump) > 0.0_rk)
-  end function all_closed
-
-  !> Jumps that tractions cause with closed joints.
-  function jumps_of(self, area, traction) result(jump)
-    type(condensed_joints), intent(in) :: self
-    real(rk), intent(in) :: area(:) !< (points) [m2]
-    real(rk), intent(in) :: traction(:, :) !< (3, points) [Pa]
-    real(rk) :: jump(3, size(area)) !< [m]
-    real(rk) :: force(size(traction)), answer(size(traction))
-    force = reshape(self%weight*spread(area, 1, 3)*traction, [size(traction)])
-    call self%blocks%product(force, answer)
-    jump = reshape(answer, shape(jump))
-  end function jumps_of
-
   !> Iterates until residual and correction are within the tolerances, or in a cycle.
-  subroutine iterate_newton(self, controls, joints, operator, old, field, new, outcome)
-    type(condensed_joints), intent(inout) :: self
+  subroutine run_newton(self, controls, joints, operator, old, field, new, outcome)
+    class(condensed_joints), intent(inout) :: self
     type(step_controls), intent(in) :: controls
     type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
@@ -135,12 +128,10 @@ contains
     type(joint_field), intent(inout) :: field !< linearised; its response is for k_ref
     type(joint_state), intent(inout) :: new(:)
     type(balance_outcome), intent(inout) :: outcome
+    type(iteration_history) :: history
     real(rk), dimension(3, operator%num_points) :: correction, linear, rest
-    real(rk) :: residual(most_attempts*controls%max_iterations)
-    integer :: iteration, least
-    least = 1
-    iteration = 0
-    do while (goes_on(outcome, controls%max_iterations, least))
+    allocate (history%unbalance(0))
+    do while (goes_on(history, outcome, controls%max_iterations))
       outcome%iterations = outcome%iterations + 1
       call self%tangent%set_tangent(self%blocks, self%k_ref, self%weight*operator%area, &
                                     field%tangent)
@@ -157,17 +148,8 @@ contains
         call measure_correction(field, self%k_ref, correction, &
                                 controls%increment_tolerance, outcome)
       end if
-      if (outcome%has_converged) then
-        call augment_contact(joints, operator, old, self%k_ref, field, new, outcome)
-        if (outcome%has_converged .or. outcome%gives_up) exit
-      end if
-      iteration = outcome%iterations - outcome%pass_start
-      if (iteration > 0) then
-        residual(iteration) = outcome%residual
-        least = minloc(residual(:iteration), 1)
-        if (is_cycling(residual(:iteration))) return
-      end if
-      field%response = field%response + excess_jump(field%iterate)
+      call close_iteration(joints, operator, old, self%k_ref, field, new, outcome, history)
+      if (.not. history%has_ended) field%response = field%response + excess_jump(field%iterate)
     end do
     field%iterate = linear
   contains
@@ -175,7 +157,7 @@ contains
     !> its tolerance, the correction is not, and needs more digits.
     real(rk) function negligible_force()
       negligible_force = 0.0_rk ! [N]
-      if (iteration > 0 .and. outcome%residual <= controls%residual_tolerance) return
+      if (size(history%unbalance) > 0 .and. outcome%residual <= controls%residual_tolerance) return
       negligible_force = admissible_share*controls%residual_tolerance*smallest_force(field)
     end function negligible_force
 
@@ -188,23 +170,11 @@ contains
       where (abs(answer) <= roundoff*(abs(linear) + abs(traction))) answer = 0.0_rk
       answer = jumps_of(self, operator%area, answer)
     end function excess_jump
-  end subroutine iterate_newton
-
-  !> Whether Newton's iteration goes on: up to the number of *CONTROLS, and beyond it while the
-  !> residual decreases.
-  pure logical function goes_on(outcome, most, least)
-    type(balance_outcome), intent(in) :: outcome
-    integer, intent(in) :: most !< ITERATIONS
-    integer, intent(in) :: least !< iteration with the least residual
-    integer :: iteration
-    iteration = outcome%iterations - outcome%pass_start
-    goes_on = iteration < most .or. (iteration < most_attempts*most .and. &
-                                     iteration - least < gaining)
-  end function goes_on
+  end subroutine run_newton
 
   !> The correction d of the jumps, and D d - z.
   subroutine solve_correction(self, response, tolerance, smallest, correction, rest)
-    type(condensed_joints), intent(in) :: self
+    class(condensed_joints), intent(in) :: self
     real(rk), intent(in) :: response(:, :) !< (3, points) r [m]
     real(rk), intent(in) :: tolerance, smallest !< of the residual, relative and absolute [N]
     real(rk), intent(out) :: correction(:, :) !< (3, points) d [m]

@@ -9,10 +9,11 @@ module newton_full
   use joint_points, only: dam_joint
   use joint_operator, only: jump_operator, joint_springs
   use joint_forces, only: joint_field, reference_stiffness, linear_tractions
-  use joint_iteration, only: start_iteration, take_step, closed_tangent, &
-                             measure_residual, measure_correction, augment_contact
-  use block_compliance, only: compliance_blocks, take_blocks
-  use contact_scaling, only: contact_scale, find_contact_scale, open_group
+  use joint_iteration, only: iteration_history, start_iteration, take_step, closed_tangent, &
+                             measure_residual, measure_correction, goes_on, close_iteration
+  use joint_policy, only: joint_process, iterate_joints, jumps_of, share_of
+  use block_compliance, only: take_blocks
+  use contact_scaling, only: find_contact_scale
   use joint_compliance, only: find_compliance
   use point_groups, only: group_list, single_group
   use linear_solver, only: equation_solver
@@ -20,17 +21,27 @@ module newton_full
   use solver_low_rank, only: add_low_rank
   use solver_catalogue, only: make_solver, unsymmetric_solver
   use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
+  use step_plan, only: step_controls
   implicit none
   private
   public :: full_equilibrium
+
+  !> Newton's iteration on all unknowns, for the policy of the iteration.
+  type, extends(joint_process) :: full_process
+    class(full_equilibrium), pointer :: solver => null() !< during an increment
+    type(force_balance) :: balance
+    real(rk), allocatable :: x(:) !< (all unknowns) of the last iterate
+  contains
+    procedure :: run_newton
+    procedure :: find_response, find_closed
+  end type full_process
 
   type, extends(equilibrium_solver) :: full_equilibrium
     type(pattern) :: matrix !< of K_eff: lower triangle, or both
     type(pattern) :: full_matrix !< both triangles, built when first needed
     class(equation_solver), allocatable :: unsymmetric_factor
     real(rk), allocatable :: values(:) !< K_eff
-    real(rk), allocatable :: k_ref(:, :) !< (3, points) k_ref [Pa/m]
-    type(contact_scale) :: scale !< r of the augmented contact
+    type(full_process) :: process
     logical :: is_unsymmetric = .false. !< of the last tangent
   contains
     procedure :: prepare_matrix, solve_balance
@@ -49,21 +60,20 @@ contains
     type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
     type(error_type), allocatable, intent(out) :: error
-    type(compliance_blocks) :: blocks
-    type(open_group), allocatable :: opened(:)
     type(group_list) :: all_points
     real(rk), allocatable :: compliance(:, :), closed(:)
     self%operator = operator
     self%weight = weight
+    self%process%weight = weight
     self%matrix = matrix
     self%values = values
     if (.not. matrix%is_symmetric) return
-    call reference_stiffness(joints, operator, self%k_ref)
-    call self%factorise_tangent(operator, closed_tangent(self%k_ref), error)
+    call reference_stiffness(joints, operator, self%process%k_ref)
+    call self%factorise_tangent(operator, closed_tangent(self%process%k_ref), error)
     if (allocated(error)) return
     if (.not. self%condition > 0.0_rk) then
       allocate (closed, source=values)
-      call operator%add_stiffness(weight*closed_tangent(self%k_ref), matrix, closed)
+      call operator%add_stiffness(weight*closed_tangent(self%process%k_ref), matrix, closed)
       call self%costs%start('solve', 'condition number', 'solver')
       call estimate_condition(matrix, closed, self%factor, self%condition, error)
       call self%costs%stop()
@@ -73,9 +83,11 @@ contains
     call find_compliance(self%factor, operator, matrix%num_free, compliance, error)
     if (.not. allocated(error)) then
       call single_group(operator%num_points, all_points)
-      call take_blocks(compliance, joint_springs(operator, self%k_ref, weight), all_points, &
-                       0.0_rk, blocks)
-      call find_contact_scale(blocks, operator, self%k_ref, weight, self%scale, opened)
+      call take_blocks(compliance, joint_springs(operator, self%process%k_ref, weight), &
+                       all_points, 0.0_rk, self%process%blocks)
+      deallocate (compliance)
+      call find_contact_scale(self%process%blocks, operator, self%process%k_ref, weight, &
+                              self%process%scale, self%process%opened)
     end if
     call self%costs%stop()
   end subroutine prepare_matrix
@@ -90,39 +102,104 @@ contains
     real(rk), intent(out) :: x(:)
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
-    type(joint_field) :: field
-    real(rk), dimension(3, self%operator%num_points) :: correction, linear, answer
-    real(rk) :: unused(size(x))
-    call start_iteration(balance, joints, self%operator, self%k_ref, self%scale, old, field, new)
-    do while (outcome%iterations - outcome%pass_start < self%controls%max_iterations)
-      outcome%iterations = outcome%iterations + 1
-      call self%factorise_tangent(self%operator, field%tangent, error)
-      if (allocated(error)) then
-        ! A smaller increment may avoid a singular tangent.
-        if (error%exit_code == analysis_failed) deallocate (error)
-        return
-      end if
-      call linear_tractions(field, balance%offset - field%jump, linear)
-      call self%back_substitute(balance%rhs, -linear, self%operator, x, answer, error)
-      if (allocated(error)) return
-      correction = balance%offset + answer - field%jump
-      call linear_tractions(field, correction, linear)
-      call take_step(joints, self%operator, old, self%k_ref, correction, linear, field, new)
-      call measure_residual(self%operator, self%k_ref, field, linear, outcome)
-      if (outcome%residual <= self%controls%residual_tolerance) then
-        call self%back_substitute(0.0_rk*balance%rhs, linear - field%traction, self%operator, &
-                                  unused, answer, error)
-        if (allocated(error)) return
-        call measure_correction(field, self%k_ref, answer, &
-                                self%controls%increment_tolerance, outcome)
-      end if
-      if (outcome%has_converged) then
-        call augment_contact(joints, self%operator, old, self%k_ref, field, new, outcome)
-        if (outcome%has_converged .or. outcome%gives_up) return
-      end if
-    end do
+    self%process%balance = balance
+    self%process%x = 0.0_rk*x
+    if (allocated(self%process%closed_jump)) deallocate (self%process%closed_jump)
+    call iterate_on_all(self, joints, old, new, outcome)
+    x = self%process%x
+    call move_alloc(self%process%failure, error)
   end subroutine solve_balance
 
+  !> Iterates by the policy of all solvers.
+  subroutine iterate_on_all(self, joints, old, new, outcome)
+    class(full_equilibrium), intent(inout), target :: self
+    type(dam_joint), intent(in) :: joints(:)
+    type(joint_state), intent(in) :: old(:)
+    type(joint_state), intent(inout) :: new(:)
+    type(balance_outcome), intent(inout) :: outcome
+    type(joint_field) :: field
+    associate (own => self%process)
+      own%solver => self
+      call start_iteration(own%balance, joints, self%operator, own%k_ref, own%scale, old, field, &
+                           new)
+      call iterate_joints(own, self%controls, joints, self%operator, old, field, new, outcome)
+      nullify (own%solver)
+    end associate
+  end subroutine iterate_on_all
+
+  !> Iterates until residual and correction are within the tolerances, or in a cycle.
+  subroutine run_newton(self, controls, joints, operator, old, field, new, outcome)
+    class(full_process), intent(inout) :: self
+    type(step_controls), intent(in) :: controls
+    type(dam_joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    type(joint_field), intent(inout) :: field
+    type(joint_state), intent(inout) :: new(:)
+    type(balance_outcome), intent(inout) :: outcome
+    real(rk), dimension(3, operator%num_points) :: correction, linear, answer
+    type(iteration_history) :: history
+    real(rk) :: unused(size(self%x))
+    allocate (history%unbalance(0))
+    associate (solver => self%solver, balance => self%balance)
+      do while (goes_on(history, outcome, controls%max_iterations))
+        outcome%iterations = outcome%iterations + 1
+        call solver%factorise_tangent(operator, field%tangent, self%failure)
+        if (allocated(self%failure)) then
+          ! A smaller increment may avoid a singular tangent.
+          if (self%failure%exit_code == analysis_failed) deallocate (self%failure)
+          return
+        end if
+        call linear_tractions(field, balance%offset - field%jump, linear)
+        call solver%back_substitute(balance%rhs, -linear, operator, self%x, answer, self%failure)
+        if (allocated(self%failure)) return
+        correction = balance%offset + answer - field%jump
+        call linear_tractions(field, correction, linear)
+        if (.not. allocated(self%closed_jump)) then
+          call store_closed(self, operator, field, balance%offset + answer, linear)
+        end if
+        call take_step(joints, operator, old, self%k_ref, correction, linear, field, new)
+        call measure_residual(operator, self%k_ref, field, linear, outcome)
+        if (outcome%residual <= controls%residual_tolerance) then
+          call solver%back_substitute(0.0_rk*balance%rhs, linear - field%traction, operator, &
+                                      unused, answer, self%failure)
+          if (allocated(self%failure)) return
+          call measure_correction(field, self%k_ref, answer, controls%increment_tolerance, outcome)
+        end if
+        call close_iteration(joints, operator, old, self%k_ref, field, new, outcome, history)
+      end do
+    end associate
+    field%iterate = linear
+  end subroutine run_newton
+
+  !> Stores jumps with closed joints, from the first equilibrium of the structure.
+  subroutine store_closed(self, operator, field, jump, linear)
+    class(full_process), intent(inout) :: self
+    type(jump_operator), intent(in) :: operator
+    type(joint_field), intent(in) :: field !< before the first step
+    real(rk), intent(in) :: jump(:, :) !< (3, points) [m]
+    real(rk), intent(in) :: linear(:, :) !< (3, points) tractions with these jumps [Pa]
+    associate (share => share_of(self%weight, operator))
+      self%closed_jump = jump - jumps_of(self, operator%area, self%k_ref*jump - linear)
+      self%force = share*field%multiplier
+      if (self%balance%starts_closed) self%force = share*linear
+    end associate
+  end subroutine store_closed
+
+  !> Nothing: the first iteration has stored them.
+  subroutine find_closed(self, operator)
+    class(full_process), intent(inout) :: self
+    type(jump_operator), intent(in) :: operator
+    if (.not. allocated(self%closed_jump)) allocate (self%closed_jump(3, operator%num_points))
+  end subroutine find_closed
+
+  !> Nothing: each iteration solves for all unknowns.
+  subroutine find_response(self, operator, field)
+    class(full_process), intent(in) :: self
+    type(jump_operator), intent(in) :: operator
+    type(joint_field), intent(inout) :: field
+    if (size(self%x) > 0 .and. operator%num_points > 0) field%response = field%jump
+  end subroutine find_response
   !> Factors K_eff + weight*B^T area*tangent B.
   subroutine factorise_tangent(self, operator, tangent, error)
     class(full_equilibrium), intent(inout) :: self

@@ -55,6 +55,9 @@ module step_plan
     character(16) :: joint_forces = 'IMPLICIT'
     !> Of inelastic solids: 'CONSISTENT', 'SECANT', 'ELASTIC' or 'AUTO'.
     character(16) :: tangent = 'AUTO'
+    !> --save-joint-problems: an increment with more iterations on joints is saved
+    integer :: most_unsaved = huge(1)
+    character(:), allocatable :: stem_of_problems !< start of the names of these files
   end type step_controls
 
   type :: initial_value

@@ -1,5 +1,5 @@
-!> Sweeps of Gauss-Seidel over points in contact: the forces of three coupled points, one of which
-!> opens, one sticks and one slides, agree with contact, friction and the compliance.
+!> Sweeps of Gauss-Seidel over points in contact: the forces of four coupled points, one of which
+!> opens, one sticks, one slides and one is bonded, agree with contact, friction and the compliance.
 program test_contact_sweeps
   use block_compliance, only: compliance_blocks
   use contact_scaling, only: open_group
@@ -10,7 +10,7 @@ program test_contact_sweeps
   use testing, only: check, check_close, test_log
   implicit none
 
-  integer, parameter :: n = 3
+  integer, parameter :: n = 4
   real(rk), parameter :: k = 1.0e10_rk ! of the joint, all directions [Pa/m]
   real(rk), parameter :: friction = 0.5_rk, share = 2.0_rk ! weight*area [m2]
   type(test_log) :: log
@@ -43,7 +43,7 @@ contains
     allocate (points%spring(3, n), source=1.0_rk/(share*k))
     points%friction = spread(friction, 1, n)
     points%cohesion = spread(0.0_rk, 1, n)
-    points%is_bonded = spread(.false., 1, n)
+    points%is_bonded = [.false., .false., .false., .true.]
     allocate (points%slip(2, n), source=0.0_rk)
     field%gap = spread(0.0_rk, 1, n)
     allocate (field%scale%own(2, n))
@@ -54,7 +54,8 @@ contains
     end do
     ! Closed joints: one point is pulled, one pressed, one pushed along the joint.
     closed = reshape([1.0e-4_rk, 2.0e-5_rk, 0.0_rk, -1.0e-4_rk, 1.0e-5_rk, 2.0e-5_rk, &
-                      -1.0e-4_rk, 1.5e-4_rk, -1.0e-4_rk], [3, n])
+                      -1.0e-4_rk, 1.5e-4_rk, -1.0e-4_rk, 8.0e-5_rk, 5.0e-5_rk, -4.0e-5_rk], &
+                     [3, n])
     force = 0.0_rk
     call single_group(n, blocks%groups)
     blocks%first_block = [1, 1] ! no other groups
@@ -71,6 +72,8 @@ contains
       call check_close(log, maxval(abs(d(:, 2))), 0.0_rk, 1.0e-9_rk*d_size, 'sticks')
       call check(log, force(1, 2) < 0.0_rk .and. &
                  norm2(force(2:3, 2)) < -friction*force(1, 2), 'within the cone')
+      call check_close(log, maxval(abs(d(:, 4))), 0.0_rk, 1.0e-9_rk*d_size, 'bonded')
+      call check(log, force(1, 4) > 0.0_rk, 'bonded in tension')
       call check_close(log, d(1, 3), 0.0_rk, 1.0e-9_rk*d_size, 'closed')
       call check_close(log, norm2(force(2:3, 3)), -friction*force(1, 3), 1.0e-9_rk*force_size, &
                        'slides: on the cone')

@@ -1,0 +1,266 @@
+!> The policy of the iteration on joints, one for all solvers (theory.md, 8).
+!>
+!> 1. Newton's iteration from the guess.
+!> 2. Where that does not converge: sweeps of Gauss-Seidel over the points, and Newton's iteration
+!>    from what they find; each time with twice as many sweeps as before.
+!> 3. Where that does not converge: the fixed point of Tresca. A pass keeps the limits of friction;
+!>    its equilibrium is that of a convex problem, and gives the limits of the next pass. Newton's
+!>    iteration with the laws follows when the limits hardly change.
+!> 4. Where that does not converge: more sweeps.
+!>
+!> In a static increment it ends as soon as Newton's iteration drives a block away without end, from
+!> the guess and from what the sweeps find.
+module joint_policy
+  use kinds, only: rk
+  use block_compliance, only: compliance_blocks
+  use contact_scaling, only: contact_scale, open_group
+  use anderson_mixing, only: mixer
+  use errors, only: error_type
+  use global_vectors, only: norm
+  use contact_sweeps, only: gather_points, sweep_contacts, swept_points
+  use equilibrium, only: balance_outcome
+  use joint_forces, only: joint_field
+  use joint_iteration, only: linearise
+  use joint_law, only: joint_state
+  use joint_operator, only: jump_operator
+  use joint_points, only: dam_joint
+  use step_plan, only: step_controls
+  use tresca_friction, only: update_bound
+  implicit none
+  private
+  public :: joint_process, iterate_joints, run_sweeps, run_passes, jumps_of, share_of
+
+  !> What the policy needs of a solver.
+  type, abstract :: joint_process
+    real(rk) :: weight = 1.0_rk !< of the joint forces in the balance
+    real(rk), allocatable :: k_ref(:, :) !< (3, points) k_ref [Pa/m]
+    type(contact_scale) :: scale !< r of the augmented contact
+    type(compliance_blocks) :: blocks !< G with closed joints
+    type(open_group), allocatable :: opened(:) !< (groups) C with open joints
+    real(rk), allocatable :: closed_jump(:, :) !< (3, points) with closed, sticking joints [m]
+    real(rk), allocatable :: force(:, :) !< (3, points) of the last iterate, then of sweeps [N]
+    integer, allocatable :: num_sweeps(:) !< before each of Newton's iterations
+    type(error_type), allocatable :: failure !< of the linear solver
+  contains
+    procedure(run_newton), deferred :: run_newton
+    procedure(find_response), deferred :: find_response
+    procedure(find_closed), deferred :: find_closed
+  end type joint_process
+
+  abstract interface
+    !> Newton's iteration from the linearised field, until it converges or shall end.
+    subroutine run_newton(self, controls, joints, operator, old, field, new, outcome)
+      import :: joint_process, step_controls, dam_joint, jump_operator, joint_state, joint_field, &
+        balance_outcome
+      implicit none
+      class(joint_process), intent(inout) :: self
+      type(step_controls), intent(in) :: controls
+      type(dam_joint), intent(in) :: joints(:)
+      type(jump_operator), intent(in) :: operator
+      type(joint_state), intent(in) :: old(:)
+      type(joint_field), intent(inout) :: field
+      type(joint_state), intent(inout) :: new(:)
+      type(balance_outcome), intent(inout) :: outcome
+    end subroutine run_newton
+
+    !> The response to the linearised joints of a field with new jumps.
+    subroutine find_response(self, operator, field)
+      import :: joint_process, jump_operator, joint_field
+      implicit none
+      class(joint_process), intent(in) :: self
+      type(jump_operator), intent(in) :: operator
+      type(joint_field), intent(inout) :: field
+    end subroutine find_response
+
+    !> `closed_jump`, where it is not known yet.
+    subroutine find_closed(self, operator)
+      import :: joint_process, jump_operator
+      implicit none
+      class(joint_process), intent(inout) :: self
+      type(jump_operator), intent(in) :: operator
+    end subroutine find_closed
+  end interface
+
+  !> Sweeps before each of Newton's iterations; on the saved problems
+  !> (docs/studies/joint_problems.md) 40 sweeps at first need the least work. The last follow where
+  !> the passes do not converge.
+  integer, parameter :: first_sweeps(3) = [40, 80, 160], last_sweeps(3) = [320, 640, 1280]
+
+  !> Most passes of Tresca's fixed point, and the changes of the limits of friction, over the
+  !> limits, at which Newton's iteration with the laws is tried.
+  integer, parameter :: most_passes = 30
+  real(rk), parameter :: small_changes(3) = [1.0e-1_rk, 1.0e-3_rk, 1.0e-6_rk]
+
+contains
+
+  !> Iterates until the joints are in equilibrium, or every way has failed. On return `field%jump`
+  !> and `field%iterate` hold the jumps and tractions of the solution, `new` the histories there.
+  subroutine iterate_joints(process, controls, joints, operator, old, field, new, outcome)
+    class(joint_process), intent(inout) :: process
+    type(step_controls), intent(in) :: controls
+    type(dam_joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    type(joint_field), intent(inout) :: field !< linearised
+    type(joint_state), intent(inout) :: new(:)
+    type(balance_outcome), intent(inout) :: outcome
+    call process%run_newton(controls, joints, operator, old, field, new, outcome)
+    if (is_done(process, outcome)) return
+    call process%find_closed(operator)
+    field%scale = process%scale
+    process%num_sweeps = first_sweeps
+    call try_sweeps(process, controls, joints, operator, old, field, new, outcome)
+    if (is_done(process, outcome) .or. outcome%is_loose) return
+    call run_passes(process, controls, joints, operator, old, field, new, outcome)
+    if (is_done(process, outcome)) return
+    process%num_sweeps = last_sweeps
+    call try_sweeps(process, controls, joints, operator, old, field, new, outcome)
+  end subroutine iterate_joints
+
+  !> Sweeps and Newton's iteration in turn, until it converges or drives a block away twice.
+  subroutine try_sweeps(process, controls, joints, operator, old, field, new, outcome)
+    class(joint_process), intent(inout) :: process
+    type(step_controls), intent(in) :: controls
+    type(dam_joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    type(joint_field), intent(inout) :: field
+    type(joint_state), intent(inout) :: new(:)
+    type(balance_outcome), intent(inout) :: outcome
+    logical :: was_loose
+    integer :: k
+    if (.not. allocated(process%opened)) return
+    do k = 1, size(process%num_sweeps)
+      was_loose = outcome%is_loose
+      call run_sweeps(process, joints, operator, old, process%num_sweeps(k), field, new, outcome)
+      call process%run_newton(controls, joints, operator, old, field, new, outcome)
+      if (is_done(process, outcome) .or. (was_loose .and. outcome%is_loose)) return
+      outcome%is_loose = outcome%is_loose .and. k < size(process%num_sweeps)
+    end do
+  end subroutine try_sweeps
+
+  !> Whether nothing is left to do.
+  pure logical function is_done(process, outcome)
+    class(joint_process), intent(in) :: process
+    type(balance_outcome), intent(in) :: outcome
+    is_done = outcome%has_converged .or. outcome%gives_up .or. allocated(process%failure)
+  end function is_done
+
+  !> Jumps that tractions cause with closed joints.
+  function jumps_of(process, area, traction) result(jump)
+    class(joint_process), intent(in) :: process
+    real(rk), intent(in) :: area(:) !< (points) [m2]
+    real(rk), intent(in) :: traction(:, :) !< (3, points) [Pa]
+    real(rk) :: jump(3, size(area)) !< [m]
+    real(rk) :: force(size(traction)), answer(size(traction))
+    force = reshape(process%weight*spread(area, 1, 3)*traction, [size(traction)])
+    call process%blocks%product(force, answer)
+    jump = reshape(answer, shape(jump))
+  end function jumps_of
+
+  !> weight*area of all points, as a table.
+  pure function share_of(weight, operator) result(share)
+    real(rk), intent(in) :: weight
+    type(jump_operator), intent(in) :: operator
+    real(rk) :: share(3, operator%num_points) !< [m2]
+    share = spread(weight*operator%area, 1, 3)
+  end function share_of
+
+  !> Sweeps over the points from the last forces, and linearises the laws at what they find.
+  subroutine run_sweeps(process, joints, operator, old, num_sweeps, field, new, outcome)
+    class(joint_process), intent(inout) :: process
+    type(dam_joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    integer, intent(in) :: num_sweeps
+    type(joint_field), intent(inout) :: field
+    type(joint_state), intent(inout) :: new(:)
+    type(balance_outcome), intent(inout) :: outcome
+    type(swept_points) :: points
+    call gather_points(joints, operator, process%k_ref, process%weight, old, new, points)
+    call sweep_contacts(process%blocks, process%opened, points, process%closed_jump, num_sweeps, &
+                        process%force, field)
+    call linearise_anew(process, joints, operator, old, field, new, outcome)
+    outcome%sweeps = outcome%sweeps + num_sweeps
+  end subroutine run_sweeps
+
+  !> Passes with given limits of friction; Newton's iteration with the laws when the limits change
+  !> little.
+  subroutine run_passes(process, controls, joints, operator, old, field, new, outcome)
+    class(joint_process), intent(inout) :: process
+    type(step_controls), intent(in) :: controls
+    type(dam_joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    type(joint_field), intent(inout) :: field
+    type(joint_state), intent(inout) :: new(:)
+    type(balance_outcome), intent(inout) :: outcome
+    type(joint_field) :: last
+    type(mixer) :: mixing
+    real(rk) :: bound(operator%num_points), change
+    integer :: pass, next
+    call start_passes(process, joints, operator, old, field, new, outcome)
+    next = 1
+    do pass = 1, most_passes
+      bound = field%tresca%bound
+      call linearise_anew(process, joints, operator, old, field, new, outcome)
+      call process%run_newton(controls, joints, operator, old, field, new, outcome)
+      outcome%passes = outcome%passes + 1
+      if (allocated(process%failure)) return
+      call update_bound(field)
+      change = norm(field%tresca%bound - bound)/max(norm(bound), tiny(1.0_rk))
+      field%tresca%bound = field%tresca%bound - bound
+      call mixing%advance(field%tresca%bound, bound)
+      field%tresca%bound = max(bound, 0.0_rk)
+      if (.not. outcome%has_converged .or. change > small_changes(next)) cycle
+      last = field
+      deallocate (field%tresca%bound)
+      call linearise_anew(process, joints, operator, old, field, new, outcome)
+      call process%run_newton(controls, joints, operator, old, field, new, outcome)
+      next = next + 1
+      if (is_done(process, outcome) .or. next > size(small_changes)) return
+      field = last
+    end do
+    outcome%has_converged = .false.
+  end subroutine run_passes
+
+  !> Limits of friction of the first pass: those of the last sweeps, else of the last increment.
+  subroutine start_passes(process, joints, operator, old, field, new, outcome)
+    class(joint_process), intent(inout) :: process
+    type(dam_joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    type(joint_field), intent(inout) :: field
+    type(joint_state), intent(inout) :: new(:)
+    type(balance_outcome), intent(inout) :: outcome
+    type(swept_points) :: points
+    if (allocated(process%opened)) then
+      call run_sweeps(process, joints, operator, old, 1, field, new, outcome)
+    else
+      field%multiplier = process%k_ref*field%start_spring
+      field%jump = field%start_jump
+    end if
+    call gather_points(joints, operator, process%k_ref, process%weight, old, new, points)
+    field%tresca%friction = points%friction
+    field%tresca%cohesion = points%cohesion
+    field%tresca%slip = points%slip
+    field%tresca%is_bonded = points%is_bonded
+    call update_bound(field)
+  end subroutine start_passes
+
+  !> Linearises at the jumps and tractions of a field that another iteration has found.
+  subroutine linearise_anew(process, joints, operator, old, field, new, outcome)
+    class(joint_process), intent(inout) :: process
+    type(dam_joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    type(joint_field), intent(inout) :: field
+    type(joint_state), intent(inout) :: new(:)
+    type(balance_outcome), intent(inout) :: outcome
+    field%is_open = .true. ! what others open does not count as an opening of the iteration
+    call linearise(joints, operator, old, process%k_ref, field, new)
+    call process%find_response(operator, field)
+    outcome%has_converged = .false.
+    outcome%pass_start = outcome%iterations
+  end subroutine linearise_anew
+end module joint_policy

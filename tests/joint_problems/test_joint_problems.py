@@ -1,0 +1,25 @@
+"""The policy of the iteration solves all saved joint problems, or shows that none can be solved."""
+
+import pytest
+from solved import SAVED, solve, unpack
+
+FILES = sorted(SAVED.glob("*.h5.xz"))
+
+
+@pytest.fixture
+def solver(program_path):
+    path = program_path.parent / "tests/joint_problems/solve_joint_problems"
+    assert path.exists(), f"{path} is not built"
+    return path
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda path: path.name.split(".")[0])
+def test_policy_solves_all_or_finds_no_equilibrium(solver, tmp_path, file):
+    for found in solve(solver, "policy", unpack(tmp_path, [file])):
+        assert found.converged != found.is_loose
+        # The residual of the tolerance of *CONTROLS, measured with the laws alone.
+        assert found.is_loose or found.residual <= 2e-6
+
+
+def test_there_are_a_few_hundred_problems():
+    assert len(FILES) >= 20
