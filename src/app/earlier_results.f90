@@ -2,7 +2,7 @@
 !> reads it must not take the earlier results for those of the new deck.
 module earlier_results
   use cli, only: command_line
-  use earlier_files, only: mark_earlier_summary
+  use earlier_files, only: mark_summary
   use errors, only: error_type
   use file_identity, only: is_same_file
   use file_system, only: base_name
@@ -35,8 +35,8 @@ contains
     end if
     call lock%take(stem//'.lock', error)
     if (allocated(error)) return
-    call mark_earlier_summary(stem//'.json', 'the deck has errors; these results are of an '// &
-                              'earlier deck, whose sha256 stands below')
+    call mark_summary(stem//'.json', 'the deck has errors; these results are of an earlier '// &
+                      'deck, whose sha256 stands below')
     call lock%give_back()
   end subroutine mark_earlier_results
 end module earlier_results

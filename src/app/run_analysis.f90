@@ -1,12 +1,13 @@
 !> One analysis: opens the results, runs the steps, and closes the results even after a failure.
 module run_analysis
   use kinds, only: rk
-  use errors, only: analysis_failed, error_type, raise, system_failed
+  use errors, only: error_type, raise_unwritten
   use diagnostics, only: diagnostic_list
-  use earlier_files, only: mark_earlier_summary
+  use disk_advice, only: explain_failed_write
+  use earlier_files, only: mark_summary
   use file_system, only: make_folder
   use run_lock, only: job_lock
-  use stop_signals, only: catch_signals, has_met_file_limit
+  use stop_signals, only: catch_signals
   use ledger_text, only: text_of_ledger
   use run_ledger, only: ledger
   use timer, only: peak_memory, wall_clock
@@ -42,6 +43,7 @@ contains
     if (.not. allocated(error)) call make_folder(given%folder, error)
     if (.not. allocated(error)) call lock%take(results%stem//'.lock', error)
     if (allocated(error)) then
+      call explain_failed_write(error, results%stem, given%is_continued)
       call close_user_routines(model)
       return
     end if
@@ -65,11 +67,8 @@ contains
     call open_run(model, given, echo, earlier, costs, results, now, error)
     if (allocated(error)) then
       call close_user_routines(model)
-      call name_limit(error)
-      if (.not. given%is_continued) then
-        call mark_earlier_summary(results%stem//'.json', 'a later run could not open its '// &
-                                  'results; some files of this run are removed')
-      end if
+      call explain_failed_write(error, results%stem, given%is_continued)
+      call mark_unopened(results%stem, given%is_continued)
       return
     end if
     if (.not. allocated(now)) then
@@ -82,7 +81,7 @@ contains
     if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
     call costs%stop_all()
     if (allocated(error)) then
-      call name_limit(error)
+      call explain_failed_write(error, results%stem, .true.)
       call results%log%note(error%message)
       call results%finish(model, now, 'stopped', error%message, failure)
       call results%log%note(text_of_ledger(costs))
@@ -93,12 +92,28 @@ contains
       call results%log%say(text_of_ledger(costs))
     end if
     call results%log%close()
-    if (allocated(failure)) call name_limit(failure)
-    if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
-    if (allocated(error) .or. .not. results%log%has_failed) return
-    call raise(error, "cannot write the log in '"//given%folder//"' (disk full?)", system_failed)
-    call name_limit(error)
+    if (allocated(error)) return
+    if (results%log%has_failed .and. .not. allocated(failure)) then
+      call raise_unwritten(failure, results%stem//'.log')
+    end if
+    if (.not. allocated(failure)) return
+    call move_alloc(failure, error)
+    call explain_failed_write(error, results%stem, .true.)
+    call mark_summary(results%stem//'.json', error%message)
   end subroutine run_alone
+
+  !> The summary of an earlier run in the folder, when a run could not open its results.
+  subroutine mark_unopened(stem, is_continued)
+    character(*), intent(in) :: stem !< folder and name of the job
+    logical, intent(in) :: is_continued
+    if (is_continued) then
+      call mark_summary(stem//'.json', 'the run was killed, and keyway --continue could not '// &
+                        'go on with it', only_running=.true.)
+    else
+      call mark_summary(stem//'.json', 'a later run could not open its results; some files of '// &
+                        'this run are removed')
+    end if
+  end subroutine mark_unopened
 
   !> Opens log and results, of a new run or of one that goes on.
   subroutine open_run(model, given, echo, earlier, costs, results, now, error)
@@ -136,14 +151,4 @@ contains
                          model%steps(now%step)%name//"', time "//as_text(now%total_time))
     call results%go_on(model, error)
   end subroutine open_run
-
-  !> A write that failed at the limit of file sizes: the user has set the limit, the system has not
-  !> failed.
-  subroutine name_limit(error)
-    type(error_type), allocatable, intent(inout) :: error
-    if (error%exit_code /= system_failed) return
-    if (.not. has_met_file_limit()) return
-    error%exit_code = analysis_failed
-    error%message = 'stopped by the limit of file sizes (ulimit -f): '//error%message
-  end subroutine name_limit
 end module run_analysis

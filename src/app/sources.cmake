@@ -1,6 +1,7 @@
 set(sources
   check_deck.f90
   cli.f90
+  disk_advice.f90
   earlier_results.f90
   main.f90
   model_summary.f90

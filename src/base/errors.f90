@@ -5,7 +5,7 @@
 module errors
   implicit none
   private
-  public :: error_type, raise
+  public :: error_type, raise, raise_unwritten
   public :: analysis_failed, deck_is_wrong, system_failed
 
   integer, parameter :: analysis_failed = 1 !< exit code: the analysis stopped, results are kept
@@ -15,6 +15,7 @@ module errors
   type :: error_type
     integer :: exit_code = analysis_failed !< what the program returns to the shell
     character(:), allocatable :: message !< one or more lines
+    logical :: is_of_disk = .false. !< a file of the results could not be written
   end type error_type
 
 contains
@@ -28,4 +29,17 @@ contains
     error%message = message
     if (present(exit_code)) error%exit_code = exit_code
   end subroutine raise
+
+  !> Makes the error of a file that could not be written.
+  pure subroutine raise_unwritten(error, path, reason)
+    type(error_type), allocatable, intent(out) :: error
+    character(*), intent(in) :: path
+    character(*), intent(in), optional :: reason !< of the system
+    if (present(reason)) then
+      call raise(error, "cannot write '"//path//"': "//reason, system_failed)
+    else
+      call raise(error, "cannot write '"//path//"' (disk full?)", system_failed)
+    end if
+    error%is_of_disk = .true.
+  end subroutine raise_unwritten
 end module errors

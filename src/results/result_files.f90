@@ -4,7 +4,7 @@
 !> solvers; `finish` (also after a failure).
 module result_files
   use kinds, only: rk
-  use errors, only: deck_is_wrong, error_type, raise
+  use errors, only: error_type, raise, raise_unwritten
   use diagnostics, only: diagnostic_list
   use timer, only: wall_clock
   use write_text, only: as_text
@@ -16,9 +16,10 @@ module result_files
   use result_writer, only: is_due, starts_analysis
   use writer_catalogue, only: writer_item, list_writers
   use summary_json, only: write_summary
+  use input_files, only: inputs_of, refuse_inputs
   use sha256, only: digest_of_file
-  use earlier_files, only: remove_earlier_files
-  use file_identity, only: add_path, file_path, is_same_file
+  use earlier_files, only: mark_summary, remove_earlier_files
+  use file_identity, only: add_path, file_path
   use file_system, only: base_name
   use stop_signals, only: is_asked_to_stop, name_of_signal
   use checkpoint_files, only: list_checkpoint_files, remove_checkpoints, restore_results, &
@@ -47,10 +48,12 @@ module result_files
     procedure :: load
     procedure :: go_on
     procedure :: increment_done
+    procedure :: increment_dropped
     procedure :: modes_found
     procedure :: finish
     procedure, private :: start_step
     procedure, private :: keep_or_stop
+    procedure, private :: keep
     procedure, private :: write_increment
     procedure, private :: write_last
     procedure, private :: write_envelopes
@@ -169,6 +172,8 @@ contains
     if (now%increment > 0 .or. starts_analysis(now)) call self%log%progress(line_of(now))
     call self%print_warnings()
     call self%costs%stop()
+    if (self%log%has_failed) call raise_unwritten(error, self%stem//'.log')
+    if (allocated(error)) return
     if (wall_clock() - self%summarised_at > seconds_between_summaries) then
       call self%summarise(model, error)
     end if
@@ -187,17 +192,47 @@ contains
     is_stop = is_asked_to_stop()
     if (now%is_last_of_step .and. now%step == size(model%steps)) is_stop = .false.
     if (is_stop .or. is_due(now, model%steps(now%step)%checkpoint_frequency)) then
-      call self%costs%start('write', 'checkpoint', 'output')
-      call save_checkpoint(self%stem, self%num_checkpoints + 1, model, now, self%record, &
-                           self%summary, self%writers, error)
-      self%num_checkpoints = self%num_checkpoints + 1
-      call self%costs%stop()
+      call self%keep(model, now, error)
     end if
     if (allocated(error) .or. .not. is_stop) return
     call raise(error, 'stopped by '//name_of_signal()//' after increment '// &
                as_text(now%increment)//" of step '"//model%steps(now%step)%name//"', time "// &
                as_text(now%total_time)//'; keyway --continue goes on from here')
   end subroutine keep_or_stop
+
+  !> Writes a checkpoint.
+  subroutine keep(self, model, now, error)
+    class(result_folder), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    type(error_type), allocatable, intent(out) :: error
+    call self%costs%start('write', 'checkpoint', 'output')
+    call save_checkpoint(self%stem, self%num_checkpoints + 1, model, now, self%record, &
+                         self%summary, self%writers, error)
+    self%num_checkpoints = self%num_checkpoints + 1
+    call self%costs%stop()
+  end subroutine keep
+
+  !> A signal has ended the increment after `now`: writes the checkpoint, and ends the run.
+  subroutine increment_dropped(self, model, now, error)
+    class(result_folder), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now !< as it was accepted
+    type(error_type), allocatable, intent(out) :: error
+    character(:), allocatable :: place
+    place = " of step '"//model%steps(now%step)%name//"'"
+    if (now%increment == 0) then
+      call raise(error, 'stopped by '//name_of_signal()//' in the first increment'//place// &
+                 ', which is dropped; keyway --continue goes on from the last checkpoint, if '// &
+                 'there is one')
+      return
+    end if
+    call self%keep(model, now, error)
+    if (allocated(error)) return
+    call raise(error, 'stopped by '//name_of_signal()//' after increment '// &
+               as_text(now%increment)//place//', time '//as_text(now%total_time)// &
+               '; the next increment is dropped; keyway --continue goes on from here')
+  end subroutine increment_dropped
 
   !> Calls every writer, each with its line in the ledger.
   subroutine write_increment(self, model, now, error)
@@ -288,7 +323,8 @@ contains
     end do
   end subroutine write_envelopes
 
-  !> Completes all files that can be written at the end of a run; returns the first failure.
+  !> Completes all files that can be written at the end of a run; returns the first failure. After a
+  !> failure the summary says that the run has stopped, whatever the status was.
   subroutine finish(self, model, now, status, message, error)
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -316,40 +352,13 @@ contains
     call self%print_warnings()
     call self%summarise(model, failure)
     call keep_first(error, failure)
+    if (.not. allocated(error)) return
+    if (message == '') then
+      call mark_summary(self%stem//'.json', error%message)
+    else
+      call mark_summary(self%stem//'.json', message)
+    end if
   end subroutine finish
-
-  !> A file that is read must not be one that the run writes.
-  subroutine refuse_inputs(model, paths, error)
-    type(problem), intent(in) :: model
-    type(file_path), intent(in) :: paths(:) !< that will be written
-    type(error_type), allocatable, intent(out) :: error
-    type(file_path), allocatable :: inputs(:)
-    integer :: i, p
-    inputs = inputs_of(model)
-    do i = 1, size(inputs)
-      do p = 1, size(paths)
-        if (.not. is_same_file(inputs(i)%path, paths(p)%path)) cycle
-        call raise(error, "keyway: the run would write over '"//inputs(i)%path// &
-                   "', which it reads, as '"//paths(p)%path// &
-                   "'; rename the file, or give another folder with -o", deck_is_wrong)
-        return
-      end do
-    end do
-  end subroutine refuse_inputs
-
-  !> All files that the run reads.
-  function inputs_of(model) result(inputs)
-    type(problem), intent(in) :: model
-    type(file_path), allocatable :: inputs(:)
-    integer :: i
-    allocate (inputs(0))
-    if (allocated(model%inputs)) inputs = model%inputs
-    call add_path(inputs, model%deck_file)
-    if (.not. associated(model%umat)) return
-    do i = 1, size(model%umat%files)
-      call add_path(inputs, model%umat%files(i)%path)
-    end do
-  end function inputs_of
 
   !> Keeps the first of two failures.
   subroutine keep_first(error, failure)

@@ -20,7 +20,7 @@ module solid_iteration
   use inelastic_forces, only: block_answer, open_answers, update_points, recall_points, &
                               sum_excess, find_failure
   use guest_forces, only: has_histories, recall_guests, update_guests
-  use equilibrium, only: equilibrium_solver, balance_outcome
+  use equilibrium, only: equilibrium_solver, balance_outcome, is_dropped
   use increment_balance, only: increment_task
   use step_system, only: dam_system
   use anderson_mixing, only: mixer
@@ -164,7 +164,7 @@ contains
       self%time%holds_switches = self%chosen%holds_switches
       call self%iterate_on_forces(model, system, task, before, after, outcome, error)
       outcome%has_held_switches = self%chosen%holds_switches
-      if (allocated(error) .or. outcome%has_converged) return
+      if (allocated(error) .or. outcome%has_converged .or. is_dropped(self%solver%controls)) return
       if (.not. self%matrix%is_elastic) then
         call self%matrix%factorise_elastic(model, system, self%values, self%solver, error)
         if (allocated(error)) return
@@ -191,6 +191,7 @@ contains
     allocate (outcome%history(0))
     call self%start_iteration(model, system, before, after, now)
     do while (outcome%iterations < most_iterations)
+      if (is_dropped(self%solver%controls)) exit
       call self%solve_iterate(model, system, now, before, after, outcome, error)
       if (allocated(error) .or. now%is_lost) return
       call self%measure_iterate(system, before, now, outcome)

@@ -1,10 +1,11 @@
 !> The interface through which the solvers report increments to the results layer.
 module increment_listener
-  use errors, only: error_type
+  use errors, only: error_type, raise
   use logging, only: run_log
   use run_ledger, only: ledger
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
+  use stop_signals, only: name_of_signal
   implicit none
   private
   public :: listener
@@ -15,6 +16,7 @@ module increment_listener
     type(ledger) :: costs !< records nothing until it is opened
   contains
     procedure(increment_done), deferred :: increment_done
+    procedure :: increment_dropped
     procedure(modes_found), deferred :: modes_found
   end type listener
 
@@ -40,4 +42,15 @@ module increment_listener
       type(error_type), allocatable, intent(out) :: error
     end subroutine modes_found
   end interface
+
+contains
+
+  !> A signal has ended the increment after `now`; the error ends the run.
+  subroutine increment_dropped(self, model, now, error)
+    class(listener), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now !< as it was accepted
+    type(error_type), allocatable, intent(out) :: error
+    call raise(error, 'stopped by '//name_of_signal())
+  end subroutine increment_dropped
 end module increment_listener

@@ -7,9 +7,9 @@ module step_loop
   use step_plan, only: step
   use analysis_state, only: last_matrix, state
   use state_transfer, only: store_motion
-  use step_control, only: start_control
+  use step_control, only: increment_control, start_control
   use increment_listener, only: listener
-  use equilibrium, only: balance_outcome
+  use equilibrium, only: balance_outcome, is_dropped
   use step_loads, only: step_time
   use joint_water, only: record_uplift
   use integrator_type, only: integrator
@@ -25,6 +25,7 @@ module step_loop
     type(state), allocatable :: trial
     type(step_time) :: when !< its end
     type(balance_outcome) :: outcome
+    type(increment_control) :: control !< before the first cut of the increment
   end type attempt
 
 contains
@@ -156,11 +157,15 @@ contains
                           duration=plan%duration)
     if (now%increment == 0) call start_control(plan, plan%procedure%has_inertia, now%control)
     next%trial = now
+    next%control = now%control
     do while (now%step_time < plan%duration)
       call try_increment(model, plan, method, now, next, results, error)
       if (allocated(error)) return
       if (next%outcome%has_converged) then
         call accept(model, plan, method, now, next, results, error)
+      else if (is_dropped(method%solids%solver%controls)) then
+        now%control = next%control
+        call results%increment_dropped(model, now, error)
       else
         call cut(model, plan, method, now, next, error)
       end if
@@ -185,9 +190,20 @@ contains
     call method%start_increment(model, plan, size, results, error)
     if (allocated(error)) return
     call method%solids%open_increment(now, size)
+    method%solids%solver%controls%may_be_dropped = may_be_dropped(model, now)
     next%trial%increment_status = now%increment_status
     call method%advance(model, next%when, now, next%trial, results, next%outcome, error)
   end subroutine try_increment
+
+  !> Whether a continued run can go on without the increment after `now`. The start of a step is no
+  !> checkpoint: then there must be one at the end of the step before, or nothing to lose.
+  pure logical function may_be_dropped(model, now)
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    may_be_dropped = now%increment > 0 .or. now%step == 1
+    if (may_be_dropped) return
+    may_be_dropped = model%steps(now%step - 1)%checkpoint_frequency > 0
+  end function may_be_dropped
 
   !> The trial becomes the converged state.
   subroutine accept(model, plan, method, now, next, results, error)
@@ -205,6 +221,7 @@ contains
       call trial%control%accept(method%solids%effort(next%outcome%own_iterations()))
     end associate
     call swap(now, next%trial)
+    next%control = now%control
     call close_increment(model, plan, next%when, next%outcome, now, results, error)
   end subroutine accept
 

@@ -3,7 +3,7 @@
 !> The storage keeps its first failure. Later calls do nothing, and `report` returns the failure.
 module archive_storage
   use kinds, only: rk
-  use errors, only: error_type, raise, system_failed
+  use errors, only: error_type, raise, raise_unwritten, system_failed
   use write_text, only: as_text
   implicit none
   private
@@ -23,7 +23,7 @@ module archive_storage
     procedure(read_integers), deferred :: read_integers
     procedure(read_text), deferred :: read_text
     procedure(place_of), deferred :: place_of
-    procedure :: fail
+    procedure :: fail, fail_to_write
     procedure :: has_failed
     procedure :: report
     procedure :: measure
@@ -138,6 +138,13 @@ contains
     character(*), intent(in) :: message
     if (.not. allocated(self%failure)) call raise(self%failure, message, system_failed)
   end subroutine fail
+
+  !> Stores the failure of a write, if it is the first one.
+  pure subroutine fail_to_write(self, path)
+    class(storage), intent(inout) :: self
+    character(*), intent(in) :: path
+    if (.not. allocated(self%failure)) call raise_unwritten(self%failure, path)
+  end subroutine fail_to_write
 
   !> Whether a call has failed since the last report.
   pure logical function has_failed(self)

@@ -1,6 +1,6 @@
 !> A CSV file that grows by whole lines: neither a killed run nor a full disk leaves half a line.
 module csv_files
-  use errors, only: deck_is_wrong, error_type, raise, system_failed
+  use errors, only: deck_is_wrong, error_type, raise, raise_unwritten, system_failed
   use kinds, only: long, rk
   use archive_type, only: archive
   use text_buffers, only: text_buffer
@@ -37,7 +37,7 @@ contains
     self%path = path
     call self%file%create(path, is_good)
     if (.not. is_good) then
-      call raise(error, "cannot write '"//path//"'", system_failed)
+      call raise_unwritten(error, path, self%file%reason)
       return
     end if
     call self%lines%add(header//new_line('a'))
@@ -124,7 +124,7 @@ contains
     call self%file%put(self%lines%room(:self%lines%length), is_good)
     call self%lines%clear()
     if (is_good) return
-    call raise(error, "cannot write '"//self%path//"' (disk full?)", system_failed)
+    call raise_unwritten(error, self%path, self%file%reason)
   end subroutine save_lines
 
   !> Closes the file.
@@ -133,6 +133,6 @@ contains
     type(error_type), allocatable, intent(out) :: error
     logical :: is_good
     call self%file%close(is_good)
-    if (.not. is_good) call raise(error, "cannot close '"//self%path//"'", system_failed)
+    if (.not. is_good) call raise_unwritten(error, self%path, self%file%reason)
   end subroutine close_csv
 end module csv_files

@@ -4,10 +4,11 @@ module earlier_files
   use file_identity, only: file_path, is_same_file
   use file_system, only: file_name
   use errors, only: error_type
-  use whole_files, only: remove_file, write_whole_file
+  use json_writer, only: quoted
+  use whole_files, only: remove_file, write_over, write_whole_file
   implicit none
   private
-  public :: remove_earlier_files, remove_series, mark_earlier_summary
+  public :: remove_earlier_files, remove_series, mark_summary
 
 contains
 
@@ -33,13 +34,15 @@ contains
     close (unit)
   end subroutine remove_earlier_files
 
-  !> Gives the summary of the earlier run the status "stopped" and a message; removes the summary
-  !> where it cannot be written.
-  subroutine mark_earlier_summary(path, message)
+  !> Gives a summary the status "stopped" and a message. On a full disk the summary is written
+  !> in its place, where it has room for the message; else it is removed.
+  subroutine mark_summary(path, message, only_running)
     character(*), intent(in) :: path
-    character(*), intent(in) :: message !< without quotes and backslashes
+    character(*), intent(in) :: message
+    logical, intent(in), optional :: only_running !< a summary with another status stays
     character(:), allocatable :: text
     type(error_type), allocatable :: error
+    logical :: is_good
     integer :: unit, num_bytes, status
     open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
           action='read', iostat=status)
@@ -49,10 +52,16 @@ contains
     read (unit, iostat=status) text
     close (unit)
     if (status /= 0) return
+    if (present(only_running)) then
+      if (only_running .and. index(text, '"status": "running"') == 0) return
+    end if
+    text = text(:verify(text, ' '//new_line('a'), back=.true.))//new_line('a')
     call replace_line('"status": ', '"stopped",')
-    call replace_line('"message": ', '"'//message//'",')
+    call replace_line('"message": ', quoted(message)//',')
     call write_whole_file(path, text, error)
-    if (allocated(error)) call remove_file(path)
+    if (.not. allocated(error)) return
+    call write_over(path, text, is_good)
+    if (.not. is_good) call remove_file(path)
 
   contains
 
@@ -66,7 +75,7 @@ contains
       if (length < 0) return
       text = text(:first - 1)//value//text(first + length:)
     end subroutine replace_line
-  end subroutine mark_earlier_summary
+  end subroutine mark_summary
 
   !> Removes PREFIX0001.vtu, PREFIX0002.vtu and so on, from a number on.
   subroutine remove_series(prefix, first)

@@ -26,14 +26,19 @@ contains
   subroutine make_folder(path, error)
     character(*), intent(in) :: path
     type(error_type), allocatable, intent(out) :: error
+    character(300) :: reason
     integer :: i, unit, status
     do i = 2, len(path)
       if (path(i:i) == '/') status = c_mkdir(path(:i - 1)//c_null_char, int(mode_of_folders, c_int))
     end do
     status = c_mkdir(path//c_null_char, int(mode_of_folders, c_int))
-    open (newunit=unit, file=path//'/.keyway_probe', status='replace', iostat=status)
+    open (newunit=unit, file=path//'/.keyway_probe', status='replace', iostat=status, &
+          iomsg=reason)
     if (status == 0) close (unit, status='delete')
-    if (status /= 0) call raise(error, "cannot write in the folder '"//path//"'", system_failed)
+    if (status == 0) return
+    call raise(error, "cannot write in the folder '"//path//"'"// &
+               trim(reason(max(1, index(reason, ': ', back=.true.)):)), system_failed)
+    error%is_of_disk = .true.
   end subroutine make_folder
 
   !> The name with all but letters, digits, '_', '-' and '.' turned to '_', for names of files.

@@ -17,7 +17,7 @@ module hdf5_archive
   use errors, only: error_type
   use archive_type, only: archive
   use hdf5_files, only: start_hdf5, text_type
-  use whole_files, only: move_file
+  use whole_files, only: move_file, remove_file
   implicit none
   private
   public :: hdf5_store
@@ -119,6 +119,7 @@ contains
       call move_file(self%path//'.part', self%path, is_moved)
       if (.not. is_moved) call self%check_write(-1)
     end if
+    if (self%is_written .and. self%has_failed()) call remove_file(self%path//'.part')
     call self%report(error)
   end subroutine close_store
 
@@ -315,7 +316,7 @@ contains
   subroutine check_write(self, status)
     class(hdf5_store), intent(inout) :: self
     integer, intent(in) :: status
-    if (status < 0) call self%fail("cannot write '"//self%path//"' (disk full?)")
+    if (status < 0) call self%fail_to_write(self%path)
   end subroutine check_write
 
   !> A new dataset with checksums.

@@ -15,7 +15,7 @@ module hdf5_files
   use hdf5, only: h5tset_size_f, h5tset_strpad_f, h5tclose_f, h5t_str_nullpad_f
   use hdf5, only: h5t_native_double, h5t_native_integer, h5t_c_s1
   use kinds, only: rk
-  use undo_journal, only: start_journal, undo_access
+  use undo_journal, only: mark_flushed, start_journal, undo_access
   implicit none
   private
   public :: hdf5_file, start_hdf5, text_type
@@ -300,13 +300,18 @@ contains
     call self%close_dataset(dataset, all_rows)
   end subroutine extend_table
 
-  !> Writes everything to the disk: the file stays readable if the run is killed afterwards.
+  !> Writes everything to the disk: the file stays readable if the run is killed afterwards, and a
+  !> write that fails later (disk full) leaves the file as it is now.
   subroutine flush_file(self)
     class(hdf5_file), intent(inout) :: self
     integer :: status
+    logical :: is_good
     if (self%has_failed) return
     call h5fflush_f(self%id, h5f_scope_global_f, status)
     call self%note(status)
+    if (self%has_failed) return
+    call mark_flushed(self%id, is_good)
+    self%has_failed = .not. is_good
   end subroutine flush_file
 
   !> Closes the file, unless something failed.

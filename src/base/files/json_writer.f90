@@ -5,7 +5,7 @@ module json_writer
   use text_buffers, only: text_buffer
   implicit none
   private
-  public :: json_text, lower
+  public :: json_text, lower, quoted
 
   !> Keys are given inside objects; inside arrays the key is left out (use `item_...`).
   type :: json_text
@@ -195,6 +195,15 @@ contains
       if (width == 0) exit
     end do
   end function utf8_width
+
+  !> A text as a string of JSON, with its quotes.
+  function quoted(text) result(string)
+    character(*), intent(in) :: text
+    character(:), allocatable :: string
+    type(json_text) :: json
+    call json%add_quoted(text)
+    string = json%buffer%contents()
+  end function quoted
 
   !> In lower case.
   pure function lower(text) result(small)

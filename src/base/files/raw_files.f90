@@ -5,11 +5,12 @@ module raw_files
   use kinds, only: long
   implicit none
   private
-  public :: raw_file
+  public :: raw_file, last_reason
 
   type :: raw_file
     integer(c_int) :: descriptor = -1 !< -1 while it is not open
     integer(long) :: num_bytes = 0 !< of all good writes
+    character(:), allocatable :: reason !< of the last failure, as the system calls it
   contains
     procedure :: create
     procedure :: open_again
@@ -50,6 +51,14 @@ module raw_files
       integer(c_size_t) :: num_taken
     end function c_write
 
+    !> The reason of the last failed call (system_calls.c).
+    subroutine c_reason(text, room) bind(c, name='keyway_reason')
+      import :: c_char, c_size_t
+      implicit none
+      integer(c_size_t), intent(in), value :: room
+      character(kind=c_char), intent(inout) :: text(room)
+    end subroutine c_reason
+
     !> POSIX ftruncate.
     function c_ftruncate(descriptor, num_bytes) result(status) bind(c, name='ftruncate')
       import :: c_int, c_long
@@ -78,6 +87,7 @@ contains
     character(*), intent(in) :: path
     logical, intent(out) :: is_good
     self%descriptor = c_creat(path//c_null_char, mode_of_files)
+    self%reason = last_reason()
     self%num_bytes = 0
     is_good = self%descriptor >= 0
   end subroutine create
@@ -112,6 +122,7 @@ contains
       num_done = num_done + num_taken
     end do
     is_good = num_done == len(bytes, c_size_t)
+    if (.not. is_good) self%reason = last_reason()
     if (is_good) then
       self%num_bytes = self%num_bytes + num_done
     else if (c_ftruncate(self%descriptor, int(self%num_bytes, c_long)) /= 0) then
@@ -119,12 +130,35 @@ contains
     end if
   end subroutine put_raw
 
+  !> The reason of the last failed call, as the system calls it.
+  function last_reason() result(reason)
+    character(:), allocatable :: reason
+    integer, parameter :: longest = 100
+    character(kind=c_char) :: letters(longest)
+    integer :: i
+    letters = c_null_char
+    call c_reason(letters, int(longest, c_size_t))
+    reason = ''
+    do i = 1, first_null(letters) - 1
+      reason = reason//letters(i)
+    end do
+  end function last_reason
+
+  !> Position of the first null character.
+  pure integer function first_null(letters) result(place)
+    character(kind=c_char), intent(in) :: letters(:)
+    do place = 1, size(letters)
+      if (letters(place) == c_null_char) return
+    end do
+  end function first_null
+
   !> Closes the file.
   subroutine close_file(self, is_good)
     class(raw_file), intent(inout) :: self
     logical, intent(out) :: is_good
     is_good = .true.
     if (self%descriptor >= 0) is_good = c_close(self%descriptor) == 0
+    if (.not. is_good) self%reason = last_reason()
     self%descriptor = -1
   end subroutine close_file
 end module raw_files

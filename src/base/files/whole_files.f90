@@ -1,11 +1,11 @@
 !> Files that are never visible half written: they are written as PATH.part and then renamed.
 module whole_files
-  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
-  use errors, only: error_type, raise, system_failed
-  use raw_files, only: raw_file
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char, c_size_t
+  use errors, only: error_type, raise_unwritten
+  use raw_files, only: last_reason, raw_file
   implicit none
   private
-  public :: whole_file, write_whole_file, move_file, remove_file
+  public :: whole_file, write_whole_file, write_over, move_file, remove_file
 
   type :: whole_file
     private
@@ -27,6 +27,16 @@ module whole_files
       character(kind=c_char), intent(in) :: from(*), to(*)
       integer(c_int) :: status
     end function c_rename
+
+    !> Overwrites a file that is long enough; 0 for success (system_calls.c).
+    function c_write_over(path, text, length) result(status) bind(c, name='keyway_write_over')
+      import :: c_char, c_int, c_size_t
+      implicit none
+      ! allow(assumed-size)
+      character(kind=c_char), intent(in) :: path(*), text(*)
+      integer(c_size_t), intent(in), value :: length
+      integer(c_int) :: status
+    end function c_write_over
 
     !> POSIX unlink.
     function c_unlink(path) result(status) bind(c, name='unlink')
@@ -61,15 +71,18 @@ contains
     type(error_type), allocatable, intent(out) :: error
     logical :: is_closed
     logical :: is_moved
+    character(:), allocatable :: reason
     integer(c_int) :: status
     call self%file%close(is_closed)
     self%is_good = self%is_good .and. is_closed
     if (self%is_good) then
       call move_file(self%path//'.part', self%path, is_moved)
       if (is_moved) return
+      self%file%reason = last_reason()
     end if
+    reason = self%file%reason
     status = c_unlink(self%path//'.part'//c_null_char)
-    call raise(error, "cannot write '"//self%path//"' (disk full?)", system_failed)
+    call raise_unwritten(error, self%path, reason)
   end subroutine complete
 
   !> Renames a file in one operation; an existing file is replaced.
@@ -95,4 +108,12 @@ contains
     call file%put(text)
     call file%complete(error)
   end subroutine write_whole_file
+
+  !> Writes a text over a file that is as long or longer; blanks fill the rest. This needs no new
+  !> room on the disk.
+  subroutine write_over(path, text, is_good)
+    character(*), intent(in) :: path, text
+    logical, intent(out) :: is_good
+    is_good = c_write_over(path//c_null_char, text, len(text, c_size_t)) == 0
+  end subroutine write_over
 end module whole_files

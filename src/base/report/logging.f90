@@ -5,7 +5,7 @@
 module logging
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: error_unit
-  use errors, only: error_type, raise, system_failed
+  use errors, only: error_type, raise_unwritten
   use kinds, only: long
   use raw_files, only: raw_file
   implicit none
@@ -62,7 +62,7 @@ contains
     end if
     if (.not. is_good) call self%file%create(path, is_good)
     if (is_good) return
-    call raise(error, "cannot write the log '"//path//"'", system_failed)
+    call raise_unwritten(error, path, self%file%reason)
   end subroutine open_log
 
   !> Writes a line to the file and to stderr.

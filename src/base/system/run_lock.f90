@@ -4,13 +4,14 @@
 !> lives. A file without a lock was left by a process that was killed.
 module run_lock
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char, c_size_t
-  use errors, only: error_type, raise, system_failed
+  use errors, only: error_type, raise, raise_unwritten, system_failed
   implicit none
   private
   public :: job_lock
 
   integer, parameter :: longest_holder = 300
-  integer(c_int), parameter :: held = -2, of_other_host = -3 !< answers of `c_take_lock`
+  !> Answers of `c_take_lock`.
+  integer(c_int), parameter :: held = -2, of_other_host = -3, is_full = -4
 
   type :: job_lock
     private
@@ -67,6 +68,8 @@ contains
     case (of_other_host)
       call raise(error, "keyway: '"//path//"': "//who//' runs this job in this folder, or was '// &
                  'killed there; remove the file when that process has ended', system_failed)
+    case (is_full)
+      call raise_unwritten(error, path)
     case default
       call raise(error, "keyway: cannot take the lock '"//path//"': the folder cannot be "// &
                  'written, or the file is not a lock of Keyway', system_failed)

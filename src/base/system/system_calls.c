@@ -137,7 +137,7 @@ static int is_of_this_host(const char *holder, const char *host) {
 }
 
 /* Takes the lock file PATH. Returns its descriptor, or -1: it cannot be made, -2: another process has
- * it, -3: it was left by a process of another host. `holder`: who has it or has left it, "" for none. */
+ * it, -3: it was left by a process of another host, -4: the disk is full. `holder`: who has it or has left it, "" for none. */
 int keyway_take_lock(const char *path, char *holder, size_t room) {
   char host[256] = "", text[300];
   struct stat opened, named;
@@ -169,8 +169,9 @@ int keyway_take_lock(const char *path, char *holder, size_t room) {
   }
   length = snprintf(text, sizeof text, "%ld %s\n", (long)getpid(), host);
   if (ftruncate(file, 0) != 0 || pwrite(file, text, (size_t)length, 0) != length) {
+    unlink(path);
     close(file);
-    return -1;
+    return -4;
   }
   return file;
 }
@@ -190,6 +191,32 @@ int keyway_open_again(const char *path, long length) {
   if (fstat(file, &found) == 0 && found.st_size >= length && ftruncate(file, length) == 0) return file;
   close(file);
   return -2;
+}
+
+/* The reason of the last failed call. */
+void keyway_reason(char *text, size_t room) { snprintf(text, room, "%s", strerror(errno)); }
+
+/* Writes a text over a file that is as long or longer; blanks fill the rest. 0: it is done. */
+int keyway_write_over(const char *path, const char *text, size_t length) {
+  struct stat found;
+  size_t done = 0;
+  int file = open(path, O_WRONLY | O_CLOEXEC);
+  if (file < 0) return -1;
+  if (fstat(file, &found) != 0 || !S_ISREG(found.st_mode) || found.st_size < (off_t)length) {
+    close(file);
+    return -1;
+  }
+  while (done < (size_t)found.st_size) {
+    char blanks[512];
+    size_t wanted = done < length ? length - done : (size_t)found.st_size - done;
+    ssize_t taken;
+    memset(blanks, ' ', sizeof blanks);
+    if (done >= length && wanted > sizeof blanks) wanted = sizeof blanks;
+    taken = pwrite(file, done < length ? text + done : blanks, wanted, (off_t)done);
+    if (taken <= 0) break;
+    done += (size_t)taken;
+  }
+  return close(file) == 0 && done == (size_t)found.st_size ? 0 : -1;
 }
 
 /* Whether two paths name one file. */

@@ -6,7 +6,12 @@
  * write into the page. keyway_undo_restore writes these pages back and cuts the file to its length.
  *
  * A journal begins with `header`; records follow: address, length, bytes. A record is complete before
- * the file changes, so a last record that is cut off belongs to a page that is still as it was. */
+ * the file changes, so a last record that is cut off belongs to a page that is still as it was.
+ *
+ * A write can fail in the middle of these structures: the disk is full. The driver therefore holds
+ * the pages that were replaced since the last flush in memory as well. After a failure it writes
+ * them back, which needs no new room on the disk, cuts the file to its length at that flush, and
+ * refuses all further writes. The file is then readable and holds what was written before. */
 #define _POSIX_C_SOURCE 200809L
 #define _FILE_OFFSET_BITS 64
 #include <fcntl.h>
@@ -30,13 +35,27 @@ typedef struct {
   uint64_t length; /* of the file at that moment */
 } header;
 
+/* Pages that change after a moment, when the file had the length `length`. */
+typedef struct {
+  haddr_t length;
+  unsigned char *has_page; /* one for each page below that length; NULL: no page is of interest */
+} page_set;
+
+typedef struct {
+  uint64_t place[2]; /* address and size */
+  unsigned char bytes[page_size];
+} page_copy;
+
 typedef struct {
   H5FD_t base; /* first, as HDF5 requires */
   int descriptor;
   haddr_t end_of_address, end_of_file;
-  int journal;     /* -1: none */
-  haddr_t guarded; /* length of the file when the journal was started */
-  unsigned char *is_kept; /* one for each page */
+  int journal; /* -1: none */
+  page_set kept; /* in the journal */
+  page_set held; /* in `copies`, since the last flush */
+  page_copy *copies;
+  size_t num_copies, room_for_copies;
+  int is_broken; /* a write has failed: the file stays as it was at the last flush */
   dev_t device;
   ino_t inode;
 } undo_file;
@@ -68,29 +87,85 @@ static int get_all(int descriptor, void *bytes, size_t size, off_t place) {
   return 0;
 }
 
-/* Copies the pages of [first, end) to the journal, those below `guarded` and not copied yet. */
-static int keep_pages(undo_file *self, haddr_t first, haddr_t end) {
-  unsigned char room[2 * sizeof(uint64_t) + page_size];
-  if (self->journal < 0) return 0;
-  if (end > self->guarded) end = self->guarded;
+static int start_pages(page_set *self, haddr_t length) {
+  free(self->has_page);
+  self->length = length;
+  self->has_page = calloc(length / page_size + 1, 1);
+  return self->has_page ? 0 : -1;
+}
+
+static void end_pages(page_set *self) {
+  free(self->has_page);
+  self->has_page = NULL;
+}
+
+/* Reads a page that a set does not have yet. 1: it is read, 0: the set has it, -1: a failure. */
+static int read_page(const undo_file *self, const page_set *pages, haddr_t page, page_copy *copy) {
+  if (pages->has_page[page]) return 0;
+  copy->place[0] = page * page_size;
+  copy->place[1] = page_size;
+  if (copy->place[0] + page_size > pages->length) copy->place[1] = pages->length - copy->place[0];
+  return get_all(self->descriptor, copy->bytes, copy->place[1], (off_t)copy->place[0]) < 0 ? -1 : 1;
+}
+
+/* Adds a page to the journal; a record that is cut off is removed again. */
+static int keep_page(undo_file *self, const page_copy *copy) {
+  off_t tail = lseek(self->journal, 0, SEEK_END);
+  if (tail < 0) return -1;
+  if (put_all(self->journal, copy, sizeof copy->place + copy->place[1], tail) == 0) return 0;
+  if (ftruncate(self->journal, tail) != 0) end_pages(&self->kept);
+  return -1;
+}
+
+static int hold_page(undo_file *self, const page_copy *copy) {
+  if (self->num_copies == self->room_for_copies) {
+    size_t room = 2 * self->room_for_copies + 16;
+    page_copy *copies = realloc(self->copies, room * sizeof *copies);
+    if (!copies) return -1;
+    self->copies = copies;
+    self->room_for_copies = room;
+  }
+  self->copies[self->num_copies++] = *copy;
+  return 0;
+}
+
+/* Copies the pages of [first, end) to where they belong, those of a set that it does not have yet. */
+static int copy_pages(undo_file *self, page_set *pages, haddr_t first, haddr_t end,
+                      int (*store)(undo_file *, const page_copy *)) {
+  page_copy copy;
+  if (!pages->has_page) return 0;
+  if (end > pages->length) end = pages->length;
   for (haddr_t page = first / page_size; page * page_size < end; page++) {
-    uint64_t place[2] = {page * page_size, page_size};
-    if (self->is_kept[page]) continue;
-    if (place[0] + place[1] > self->guarded) place[1] = self->guarded - place[0];
-    memcpy(room, place, sizeof place);
-    if (get_all(self->descriptor, room + sizeof place, place[1], (off_t)place[0]) < 0) return -1;
-    off_t tail = lseek(self->journal, 0, SEEK_END);
-    if (tail < 0 || put_all(self->journal, room, sizeof place + place[1], tail) < 0) return -1;
-    self->is_kept[page] = 1;
+    int status = read_page(self, pages, page, &copy);
+    if (status < 0 || (status > 0 && store(self, &copy) < 0)) return -1;
+    pages->has_page[page] = 1;
   }
   return 0;
 }
 
+/* Before [first, end) changes: its pages go to memory and to the journal. */
+static int save_pages(undo_file *self, haddr_t first, haddr_t end) {
+  if (copy_pages(self, &self->held, first, end, hold_page) < 0) return -1;
+  return self->journal < 0 ? 0 : copy_pages(self, &self->kept, first, end, keep_page);
+}
+
+/* After a failed write: the file becomes what it was at the last flush, and stays so. */
+static int give_up(undo_file *self) {
+  self->is_broken = 1;
+  if (!self->held.has_page) return -1;
+  for (size_t i = 0; i < self->num_copies; i++)
+    if (put_all(self->descriptor, self->copies[i].bytes, self->copies[i].place[1],
+                (off_t)self->copies[i].place[0]) < 0)
+      return -1;
+  if (ftruncate(self->descriptor, (off_t)self->held.length) != 0) return -1;
+  self->end_of_file = self->held.length;
+  return -1;
+}
+
 static void end_journal(undo_file *self) {
   if (self->journal >= 0) close(self->journal);
-  free(self->is_kept);
+  end_pages(&self->kept);
   self->journal = -1;
-  self->is_kept = NULL;
 }
 
 static H5FD_t *open_file(const char *name, unsigned flags, hid_t fapl, haddr_t most) {
@@ -120,6 +195,8 @@ static herr_t close_file(H5FD_t *file) {
   undo_file *self = (undo_file *)file;
   int status = close(self->descriptor);
   end_journal(self);
+  end_pages(&self->held);
+  free(self->copies);
   free(self);
   return status == 0 ? 0 : -1;
 }
@@ -173,8 +250,9 @@ static herr_t write_bytes(H5FD_t *file, H5FD_mem_t kind, hid_t plan, haddr_t add
   undo_file *self = (undo_file *)file;
   (void)kind;
   (void)plan;
-  if (keep_pages(self, address, address + size) < 0) return -1;
-  if (put_all(self->descriptor, bytes, size, (off_t)address) < 0) return -1;
+  if (self->is_broken) return -1;
+  if (save_pages(self, address, address + size) < 0) return give_up(self);
+  if (put_all(self->descriptor, bytes, size, (off_t)address) < 0) return give_up(self);
   if (address + size > self->end_of_file) self->end_of_file = address + size;
   return 0;
 }
@@ -184,9 +262,10 @@ static herr_t set_length(H5FD_t *file, hid_t plan, hbool_t is_closing) {
   undo_file *self = (undo_file *)file;
   (void)plan;
   (void)is_closing;
+  if (self->is_broken) return -1;
   if (self->end_of_address == self->end_of_file) return 0;
-  if (keep_pages(self, self->end_of_address, self->end_of_file) < 0) return -1;
-  if (ftruncate(self->descriptor, (off_t)self->end_of_address) != 0) return -1;
+  if (save_pages(self, self->end_of_address, self->end_of_file) < 0) return give_up(self);
+  if (ftruncate(self->descriptor, (off_t)self->end_of_address) != 0) return give_up(self);
   self->end_of_file = self->end_of_address;
   return 0;
 }
@@ -234,25 +313,37 @@ int64_t keyway_undo_access(void) {
   return H5Pset_driver(access, driver, NULL) < 0 ? -1 : access;
 }
 
+/* The driver's own record of an open file; NULL without it. */
+static undo_file *record_of(int64_t file) {
+  void *handle = NULL;
+  if (H5Fget_vfd_handle((hid_t)file, H5P_DEFAULT, &handle) < 0) return NULL;
+  return handle;
+}
+
+/* The file was flushed: after a failed write it becomes what it is now. 0: done. */
+int keyway_undo_mark(int64_t file) {
+  undo_file *self = record_of(file);
+  if (!self) return -1;
+  self->num_copies = 0;
+  return start_pages(&self->held, self->end_of_file);
+}
+
 /* Starts the journal of a checkpoint: the present file is what a restore gives. 0: it is started. */
 int keyway_undo_start(int64_t file, const char *path, int number) {
-  void *handle = NULL;
-  undo_file *self;
+  undo_file *self = record_of(file);
   header top;
-  if (H5Fget_vfd_handle((hid_t)file, H5P_DEFAULT, &handle) < 0 || !handle) return -1;
-  self = handle;
+  if (!self) return -1;
   end_journal(self);
   self->journal = open(path, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (self->journal < 0) return -1;
   memcpy(top.magic, magic, sizeof magic);
   top.number = (uint64_t)number;
-  top.length = self->guarded = self->end_of_file;
-  self->is_kept = calloc(self->guarded / page_size + 1, 1);
-  if (!self->is_kept || put_all(self->journal, &top, sizeof top, 0) < 0) {
-    end_journal(self);
-    return -1;
-  }
-  return 0;
+  top.length = self->end_of_file;
+  if (self->journal >= 0 && start_pages(&self->kept, self->end_of_file) == 0 &&
+      put_all(self->journal, &top, sizeof top, 0) == 0)
+    return 0;
+  end_journal(self);
+  self->is_broken = 1; /* what is written from now on could not be undone */
+  return -1;
 }
 
 /* Number of the checkpoint that a journal belongs to; -1 without a valid journal. */

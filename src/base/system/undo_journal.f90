@@ -5,7 +5,7 @@ module undo_journal
   use hdf5, only: hid_t
   implicit none
   private
-  public :: undo_access, start_journal, number_of_journal, restore_file
+  public :: undo_access, mark_flushed, start_journal, number_of_journal, restore_file
 
   interface
     !> A list of file access properties with the driver; below 0 after a failure.
@@ -14,6 +14,14 @@ module undo_journal
       implicit none
       integer(c_int64_t) :: access
     end function c_access
+
+    !> 0 for success.
+    function c_mark(file) result(status) bind(c, name='keyway_undo_mark')
+      import :: c_int, c_int64_t
+      implicit none
+      integer(c_int64_t), intent(in), value :: file
+      integer(c_int) :: status
+    end function c_mark
 
     !> 0 for success.
     function c_start(file, path, number) result(status) bind(c, name='keyway_undo_start')
@@ -51,6 +59,14 @@ contains
   integer(hid_t) function undo_access()
     undo_access = int(c_access(), hid_t)
   end function undo_access
+
+  !> A file that is open with `undo_access` was flushed: a write that fails later sets it back to
+  !> its present state.
+  subroutine mark_flushed(file, is_good)
+    integer(hid_t), intent(in) :: file
+    logical, intent(out) :: is_good
+    is_good = c_mark(int(file, c_int64_t)) == 0
+  end subroutine mark_flushed
 
   !> Starts the journal of a checkpoint of a file that is open with `undo_access` and flushed.
   subroutine start_journal(file, path, number, is_good)

@@ -15,9 +15,10 @@ module equilibrium
   use linear_solver, only: equation_solver
   use run_ledger, only: ledger
   use step_plan, only: step_controls
+  use stop_signals, only: is_asked_to_stop
   implicit none
   private
-  public :: equilibrium_solver, force_balance, balance_outcome
+  public :: equilibrium_solver, force_balance, balance_outcome, is_dropped
 
   !> Right-hand side and starting values.
   type :: force_balance
@@ -136,6 +137,13 @@ contains
     self%guess = jump
     self%guess_traction = traction
   end subroutine start_from
+
+  !> Whether a signal ends the iteration of an increment, which is then dropped.
+  logical function is_dropped(controls)
+    type(step_controls), intent(in) :: controls
+    is_dropped = controls%may_be_dropped
+    if (is_dropped) is_dropped = is_asked_to_stop()
+  end function is_dropped
 
   !> Iterations of the first pass, for the control of the increment size.
   pure integer function own_iterations(self) result(iterations)

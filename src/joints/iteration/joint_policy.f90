@@ -18,7 +18,7 @@ module joint_policy
   use errors, only: error_type
   use global_vectors, only: norm
   use contact_sweeps, only: gather_points, sweep_contacts, swept_points
-  use equilibrium, only: balance_outcome
+  use equilibrium, only: balance_outcome, is_dropped
   use joint_forces, only: joint_field
   use joint_iteration, only: linearise
   use joint_law, only: joint_state
@@ -105,14 +105,14 @@ contains
     type(joint_state), intent(inout) :: new(:)
     type(balance_outcome), intent(inout) :: outcome
     call process%run_newton(controls, joints, operator, old, field, new, outcome)
-    if (is_done(process, outcome)) return
+    if (is_done(process, controls, outcome)) return
     call process%find_closed(operator)
     field%scale = process%scale
     process%num_sweeps = first_sweeps
     call try_sweeps(process, controls, joints, operator, old, field, new, outcome)
-    if (is_done(process, outcome) .or. outcome%is_loose) return
+    if (is_done(process, controls, outcome) .or. outcome%is_loose) return
     call run_passes(process, controls, joints, operator, old, field, new, outcome)
-    if (is_done(process, outcome)) return
+    if (is_done(process, controls, outcome)) return
     process%num_sweeps = last_sweeps
     call try_sweeps(process, controls, joints, operator, old, field, new, outcome)
   end subroutine iterate_joints
@@ -134,16 +134,18 @@ contains
       was_loose = outcome%is_loose
       call run_sweeps(process, joints, operator, old, process%num_sweeps(k), field, new, outcome)
       call process%run_newton(controls, joints, operator, old, field, new, outcome)
-      if (is_done(process, outcome) .or. (was_loose .and. outcome%is_loose)) return
+      if (is_done(process, controls, outcome) .or. (was_loose .and. outcome%is_loose)) return
       outcome%is_loose = outcome%is_loose .and. k < size(process%num_sweeps)
     end do
   end subroutine try_sweeps
 
   !> Whether nothing is left to do.
-  pure logical function is_done(process, outcome)
+  logical function is_done(process, controls, outcome)
     class(joint_process), intent(in) :: process
+    type(step_controls), intent(in) :: controls
     type(balance_outcome), intent(in) :: outcome
     is_done = outcome%has_converged .or. outcome%gives_up .or. allocated(process%failure)
+    if (.not. is_done) is_done = is_dropped(controls)
   end function is_done
 
   !> Jumps that tractions cause with closed joints.
@@ -218,7 +220,7 @@ contains
       call linearise_anew(process, joints, operator, old, field, new, outcome)
       call process%run_newton(controls, joints, operator, old, field, new, outcome)
       next = next + 1
-      if (is_done(process, outcome) .or. next > size(small_changes)) return
+      if (is_done(process, controls, outcome) .or. next > size(small_changes)) return
       field = last
     end do
     outcome%has_converged = .false.

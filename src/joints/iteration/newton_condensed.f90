@@ -16,7 +16,7 @@ module newton_condensed
   use joint_iteration, only: iteration_history, measure_residual, measure_correction, take_step, &
                              linearise, goes_on, close_iteration, smallest_force
   use joint_policy, only: joint_process, iterate_joints, jumps_of, share_of
-  use equilibrium, only: balance_outcome
+  use equilibrium, only: balance_outcome, is_dropped
   use step_plan, only: step_controls
   implicit none
   private
@@ -132,6 +132,7 @@ contains
     real(rk), dimension(3, operator%num_points) :: correction, linear, rest
     allocate (history%unbalance(0))
     do while (goes_on(history, outcome, controls%max_iterations))
+      if (is_dropped(controls)) return
       outcome%iterations = outcome%iterations + 1
       call self%tangent%set_tangent(self%blocks, self%k_ref, self%weight*operator%area, &
                                     field%tangent)

@@ -20,7 +20,7 @@ module newton_full
   use matrix_condition, only: estimate_condition
   use solver_low_rank, only: add_low_rank
   use solver_catalogue, only: make_solver, unsymmetric_solver
-  use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
+  use equilibrium, only: equilibrium_solver, force_balance, balance_outcome, is_dropped
   use step_plan, only: step_controls
   implicit none
   private
@@ -143,6 +143,7 @@ contains
     allocate (history%unbalance(0))
     associate (solver => self%solver, balance => self%balance)
       do while (goes_on(history, outcome, controls%max_iterations))
+        if (is_dropped(controls)) return
         outcome%iterations = outcome%iterations + 1
         call solver%factorise_tangent(operator, field%tangent, self%failure)
         if (allocated(self%failure)) then

@@ -58,6 +58,7 @@ module step_plan
     !> --save-joint-problems: an increment with more iterations on joints is saved
     integer :: most_unsaved = huge(1)
     character(:), allocatable :: stem_of_problems !< start of the names of these files
+    logical :: may_be_dropped = .false. !< of an increment: a signal ends its iteration
   end type step_controls
 
   type :: initial_value

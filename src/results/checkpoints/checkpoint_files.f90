@@ -5,14 +5,15 @@
 !> the file is written under another name, the last checkpoint becomes the old one, the file takes
 !> its name, the journal of the last checkpoint becomes the old one, the new journal starts.
 module checkpoint_files
-  use errors, only: error_type, raise, system_failed
+  use errors, only: error_type, raise, raise_unwritten, system_failed
   use file_identity, only: add_path, file_path
   use undo_journal, only: number_of_journal, restore_file
   use whole_files, only: move_file, remove_file
   implicit none
   private
   public :: checkpoint_path, new_checkpoint_path, journal_path, keep_checkpoint, keep_journal, &
-            return_to_old, restore_results, remove_checkpoints, list_checkpoint_files
+            return_to_old, restore_results, has_checkpoint, remove_checkpoints, &
+            list_checkpoint_files
 
 contains
 
@@ -48,8 +49,7 @@ contains
     logical :: is_moved
     call move_file(checkpoint_path(stem, .false.), checkpoint_path(stem, .true.), is_moved)
     call move_file(new_checkpoint_path(stem), checkpoint_path(stem, .false.), is_moved)
-    if (.not. is_moved) call raise(error, "cannot write '"//checkpoint_path(stem, .false.)//"'", &
-                                   system_failed)
+    if (.not. is_moved) call raise_unwritten(error, checkpoint_path(stem, .false.))
   end subroutine keep_checkpoint
 
   !> The journal of the last checkpoint becomes the old one.
@@ -86,6 +86,15 @@ contains
       return
     end do
   end subroutine restore_results
+
+  !> Whether a run can go on from a checkpoint.
+  logical function has_checkpoint(stem)
+    character(*), intent(in) :: stem
+    logical :: is_there(2)
+    inquire (file=checkpoint_path(stem, .false.), exist=is_there(1))
+    inquire (file=checkpoint_path(stem, .true.), exist=is_there(2))
+    has_checkpoint = any(is_there)
+  end function has_checkpoint
 
   !> Removes the checkpoints of an earlier run.
   subroutine remove_checkpoints(stem)

@@ -16,14 +16,18 @@ module summary_json
   use joint_json, only: put_joints, put_interfaces, put_extremes
   use damage_json, only: put_damage
   use umat_json, only: put_umat
-  use whole_files, only: write_whole_file
+  use whole_files, only: write_over, write_whole_file
   implicit none
   private
   public :: write_summary
 
+  !> Blanks at the end of the summary of a run that goes on: room for its last summary on a disk
+  !> that is full by then.
+  integer, parameter :: reserve = 8192
+
 contains
 
-  !> Writes the file anew.
+  !> Writes the file anew; on a full disk in its place, if it has the room.
   subroutine write_summary(path, model, summary, record, costs, error)
     character(*), intent(in) :: path
     type(problem), intent(in) :: model
@@ -32,6 +36,8 @@ contains
     type(ledger), intent(in) :: costs
     type(error_type), allocatable, intent(out) :: error
     type(json_text) :: json
+    character(:), allocatable :: text
+    logical :: is_good
     call json%open_object()
     call put_program(json)
     call json%put_text(trim(summary%status), 'status')
@@ -53,7 +59,12 @@ contains
     call put_costs(json, costs)
     call put_files(json, record)
     call json%close_object()
-    call write_whole_file(path, json%contents(), error)
+    text = json%contents()
+    if (summary%status == 'running') text = text//repeat(' ', reserve)//new_line('a')
+    call write_whole_file(path, text, error)
+    if (.not. allocated(error)) return
+    call write_over(path, json%contents(), is_good)
+    if (is_good) deallocate (error)
   end subroutine write_summary
 
   !> The program and its source version.

@@ -1,7 +1,7 @@
 !> job.h5: the model, requested fields, histories, modes and envelopes (layout: docs/results.md).
 module write_hdf5
   use kinds, only: rk
-  use errors, only: error_type, raise, system_failed
+  use errors, only: error_type, raise, raise_unwritten, system_failed
   use run_ledger, only: ledger
   use timer, only: wall_clock
   use build_info, only: program_version
@@ -24,6 +24,7 @@ module write_hdf5
   use hdf5_fields, only: put_field, put_joints
   use hdf5_points, only: write_points, add_points
   use file_system, only: link_name, file_name
+  use whole_files, only: remove_file
   implicit none
   private
   public :: hdf5_results
@@ -94,6 +95,7 @@ contains
       end do
     end associate
     call self%flush_rows(error)
+    if (allocated(error)) call remove_file(self%path) ! it holds nothing that can be read
   end subroutine open_hdf5
 
   !> Goes on with the file, which a journal has set back to the checkpoint.
@@ -160,8 +162,7 @@ contains
     integer, intent(in) :: number !< of the checkpoint
     type(error_type), allocatable, intent(out) :: error
     call self%file%start_undo(journal, number)
-    if (self%file%has_failed) call raise(error, "cannot write '"//journal//"' (disk full?)", &
-                                         system_failed)
+    if (self%file%has_failed) call raise_unwritten(error, journal)
   end subroutine start_undo
 
   !> Writes the histories of every increment, and the fields requested now.
@@ -323,8 +324,7 @@ contains
     end do
     call self%file%flush()
     self%flushed_at = wall_clock()
-    if (self%file%has_failed) call raise(error, "cannot write '"//self%path//"' (disk full?)", &
-                                         system_failed)
+    if (self%file%has_failed) call raise_unwritten(error, self%path)
   end subroutine flush_rows
 
   !> '/steps/0001'

@@ -1,0 +1,89 @@
+"""A signal in an increment of long iterations: the increment is dropped, and done again later."""
+
+from __future__ import annotations
+
+import json
+import re
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+from restart_case import deck, differences, kill_at, start
+
+UMAT = Path(__file__).resolve().parents[2] / "input" / "umat" / "plastic_j2.f90"
+SLOW_PART = """  implicit none
+  interface
+    integer(4) function usleep(microseconds) bind(c, name='usleep')
+      integer(4), value :: microseconds
+    end function usleep
+  end interface
+  integer(4) :: status_of_sleep
+  logical :: is_slow
+"""
+SLEEP = """  inquire (file='slow', exist=is_slow)
+  if (is_slow) status_of_sleep = usleep(100000)
+"""
+
+
+@pytest.fixture(scope="module")
+def slow_umat(program_path: Path, tmp_path_factory) -> Path:
+    """The UMAT of the deck; where a file 'slow' is in the folder of the run, a call takes 0.1 s."""
+    folder = tmp_path_factory.mktemp("umat")
+    text = UMAT.read_text()
+    first = text.index("  implicit none\n")
+    place = re.compile(r"^  [a-z]\w* = ", re.MULTILINE).search(text, first).start()
+    text = text[:first] + SLOW_PART + text[first + len("  implicit none\n") : place] + SLEEP + text[place:]
+    (folder / "slow_j2.f90").write_text(text)
+    library = folder / "j2.so"
+    subprocess.run(
+        [program_path, "--umat", folder / "slow_j2.f90", "--umat-library", library], check=True
+    )
+    return library
+
+
+@pytest.mark.parametrize("controls", ["", "*CONTROLS, TANGENT=CONSISTENT\n"], ids=["auto", "tangent"])
+def test_a_long_increment_is_dropped(program_path, slow_umat, tmp_path, controls):
+    path, out, whole = tmp_path / "job.inp", tmp_path / "out", tmp_path / "whole"
+    path.write_text(deck(controls=controls))
+    arguments = ["-q", "-j", "1", "--umat", slow_umat]
+    subprocess.run([program_path, *arguments, "-o", whole, path], check=True, cwd=tmp_path)
+    table = out / "job_energy.csv"
+    num_dropped = 0
+    more: list[str] = []
+    for row in (5, 30, 60, 90):
+        process = start(program_path, *arguments, *more, "-o", out, path, cwd=tmp_path)
+        kill_at(process, table, row, 0, 0.0)
+        (tmp_path / "slow").touch()
+        time.sleep(0.5)  # an iteration has begun
+        process.send_signal(signal.SIGTERM)
+        _, text = process.communicate(timeout=60)
+        (tmp_path / "slow").unlink()
+        assert process.returncode == 1, text
+        summary = json.loads((out / "job.json").read_text())
+        assert summary["status"] == "stopped"
+        assert "stopped by SIGTERM" in summary["message"]
+        num_dropped += "the next increment is dropped" in summary["message"]
+        more = ["--continue"]
+    assert num_dropped >= 2
+    subprocess.run([program_path, *arguments, "--continue", "-o", out, path], check=True, cwd=tmp_path)
+    assert differences(whole, out) == []
+
+
+def test_a_signal_in_the_first_increment(program_path, slow_umat, tmp_path):
+    """The increment is dropped or finished; without one that is finished there is no checkpoint."""
+    path, out = tmp_path / "job.inp", tmp_path / "out"
+    path.write_text(deck())
+    (tmp_path / "slow").touch()
+    process = start(program_path, "-q", "-j", "1", "--umat", slow_umat, "-o", out, path, cwd=tmp_path)
+    while not (out / "job.json").exists():
+        assert process.poll() is None
+        time.sleep(0.01)
+    process.send_signal(signal.SIGTERM)
+    _, text = process.communicate(timeout=60)
+    assert process.returncode == 1, text
+    message = json.loads((out / "job.json").read_text())["message"]
+    first = "stopped by SIGTERM in the first increment of step 'WEIGHT', which is dropped"
+    assert (first in message) == (not list(out.glob("*.ckpt.h5")))
+    assert first in message or "stopped by SIGTERM after increment 1 of step 'WEIGHT'" in message
