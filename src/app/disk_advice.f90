@@ -16,8 +16,11 @@ contains
     character(*), intent(in) :: stem !< folder and name of the job
     logical, intent(in) :: is_open !< checkpoints in the folder are of this run
     character(:), allocatable :: remedy
+    if (.not. allocated(error)) return
     if (.not. error%is_of_disk) return
-    remedy = 'make room on the disk'
+    remedy = 'remove the cause'
+    if (index(error%message, 'disk full?') > 0 .or. index(error%message, 'No space') > 0 &
+        .or. index(error%message, 'quota') > 0) remedy = 'make room on the disk'
     if (index(error%message, 'Permission denied') > 0) remedy = 'allow writing'
     if (index(error%message, 'Read-only') > 0) remedy = 'allow writing'
     if (has_met_file_limit()) then

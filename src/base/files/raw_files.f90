@@ -20,15 +20,15 @@ module raw_files
   end type raw_file
 
   interface
-    !> POSIX creat: makes an empty file or empties an old one.
-    function c_creat(path, mode) result(descriptor) bind(c, name='creat')
+    !> Makes an empty file or empties an old one (system_calls.c).
+    function c_create(path, mode) result(descriptor) bind(c, name='keyway_create')
       import :: c_char, c_int
       implicit none
       ! allow(assumed-size)
       character(kind=c_char), intent(in) :: path(*)
       integer(c_int), intent(in), value :: mode
       integer(c_int) :: descriptor
-    end function c_creat
+    end function c_create
 
     !> Opens a file for appending and cuts it off (system_calls.c).
     function c_open_again(path, num_bytes) result(descriptor) bind(c, name='keyway_open_again')
@@ -86,7 +86,7 @@ contains
     class(raw_file), intent(inout) :: self
     character(*), intent(in) :: path
     logical, intent(out) :: is_good
-    self%descriptor = c_creat(path//c_null_char, mode_of_files)
+    self%descriptor = c_create(path//c_null_char, mode_of_files)
     self%reason = last_reason()
     self%num_bytes = 0
     is_good = self%descriptor >= 0

@@ -182,6 +182,11 @@ void keyway_give_lock(int file, const char *path) {
   close(file);
 }
 
+/* Makes an empty file or empties an old one. A pipe that nobody reads is a failure, no endless wait. */
+int keyway_create(const char *path, int mode) {
+  return open(path, O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, mode);
+}
+
 /* Opens a file for appending after its first LENGTH bytes; what follows them is cut off. -1: the file
  * cannot be opened, -2: it is shorter. */
 int keyway_open_again(const char *path, long length) {

@@ -204,7 +204,7 @@ contains
     class(user_library), intent(in) :: self
     character(:), allocatable, intent(out) :: note !< '' for none
     integer(c_int) :: num_warnings, num_errors
-    integer :: num_bytes
+    integer :: num_bytes, status
     logical :: is_open
     note = ''
     inquire (unit=message_unit, opened=is_open, size=num_bytes)
@@ -214,7 +214,9 @@ contains
     if (num_bytes > 0) then
       close (message_unit)
     else
-      close (message_unit, status='delete')
+      ! Another run of the job may have removed the file already.
+      close (message_unit, status='delete', iostat=status)
+      if (status /= 0) close (message_unit)
     end if
     call keyway_umat_counts(num_warnings, num_errors)
     if (num_warnings + num_errors == 0) return

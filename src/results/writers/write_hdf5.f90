@@ -95,7 +95,8 @@ contains
       end do
     end associate
     call self%flush_rows(error)
-    if (allocated(error)) call remove_file(self%path) ! it holds nothing that can be read
+    ! A file that was made and not flushed holds nothing that can be read.
+    if (allocated(error) .and. self%file%id > 0) call remove_file(self%path)
   end subroutine open_hdf5
 
   !> Goes on with the file, which a journal has set back to the checkpoint.
