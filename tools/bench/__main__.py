@@ -1,6 +1,6 @@
 """Measures the time of runs relative to the equation solver, and the time for given accuracy.
 
-usage: .venv/bin/python tools/bench [run] [accuracy] [--sizes 48000 145000] [--json FILE]
+usage: .venv/bin/python tools/bench [run] [accuracy] [peers] [--sizes 48000 145000] [--json FILE]
 
 run (default): ratios of times taken in one process, which hardly depend on the machine:
   static    the whole program, from deck to results, over analyse + factor + solve
@@ -12,12 +12,17 @@ and the exit code is 1.
 accuracy: a small arch dam with finer meshes, every element, and smaller increments: time of the
 run against the errors of displacement, stress and frequency, as in docs/accuracy.md; --picture
 FILE draws them.
+
+peers: the same dam in Keyway, CalculiX (Debian's calculix-ccx) and OpenSees (pip's openseespy, in
+a Python named by --opensees-python): weight, a linear history, a history with two joints. Time,
+memory and displacements side by side, as in docs/performance.md. The first of --sizes is used.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import shutil
 import sys
 import tempfile
 from dataclasses import asdict
@@ -29,6 +34,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 from cost_of_accuracy import draw, measure_accuracy, tables  # noqa: E402
 from cost_of_run import Figure, measure_all  # noqa: E402
 from measured_run import Program  # noqa: E402
+from peers.comparison_of_peers import PeerOptions, compare_peers  # noqa: E402
 
 
 def parse(arguments: list[str]) -> argparse.Namespace:
@@ -36,17 +42,18 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         prog="bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     add = parser.add_argument
-    add("what", nargs="*", metavar="run|accuracy", help="what to measure (run)")
+    add("what", nargs="*", metavar="run|accuracy|peers", help="what to measure (run)")
     add("--sizes", type=int, nargs="+", default=[48_000, 145_000], help="unknowns of the models")
     add("--increments", type=int, default=60, help="dynamic increments (60)")
     add("--threads", type=int, default=2, help="of the program (2)")
     add("--program", type=Path, default=ROOT / "build/release/keyway", help="the program")
     add("--json", type=Path, metavar="FILE", help="write the figures as JSON too")
+    add("--opensees-python", metavar="PYTHON", help="a Python that has openseespy")
     add("--picture", type=Path, metavar="FILE", help="draw time against accuracy")
     options = parser.parse_args(arguments)
     options.what = options.what or ["run"]
-    if set(options.what) - {"run", "accuracy"}:
-        parser.error("expected 'run' or 'accuracy'")
+    if set(options.what) - {"run", "accuracy", "peers"}:
+        parser.error("expected 'run', 'accuracy' or 'peers'")
     return options
 
 
@@ -58,6 +65,17 @@ def table(figures: list[Figure]) -> str:
         mark = "" if f.is_kept else " PAST THE LIMIT"
         lines.append(f"| {f.scene} | {f.what} | {f.value:.4g} | {limit} | {f.detail}{mark} |")
     return "\n".join(lines)
+
+
+def peer_options(options: argparse.Namespace) -> PeerOptions:
+    """The programs that are there."""
+    return PeerOptions(
+        keyway=options.program.resolve(),
+        calculix=shutil.which("ccx"),
+        opensees_python=options.opensees_python,
+        threads=options.threads,
+        unknowns=options.sizes[0],
+    )
 
 
 def main(arguments: list[str]) -> int:
@@ -72,6 +90,8 @@ def main(arguments: list[str]) -> int:
         if "accuracy" in options.what:
             rows = measure_accuracy(Program(program.path, 1), folder)
             print(tables(rows))
+        if "peers" in options.what:
+            print(compare_peers(peer_options(options), folder))
     if options.picture and rows:
         draw(rows, options.picture)
     if options.json:

@@ -1,0 +1,1 @@
+"""The same dam in Keyway, CalculiX and OpenSees."""
