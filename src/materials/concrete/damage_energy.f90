@@ -102,14 +102,18 @@ contains
 
   !> Energy that the weight of recovery creates on a straight path of effective stress at constant
   !> damage: the integral of -W_0 dd(r), because a part of the stiffness comes and goes under load.
+  !> It is zero where r is 1, or 0, at both ends: such stresses are a convex set.
   pure real(rk) function created_work(model, from, to, damage) result(work)
     type(concrete_model), intent(in) :: model
     real(rk), intent(in) :: from(6), to(6) !< [Pa]
     real(rk), intent(in) :: damage(2) !< d_t, d_c
     type(damage_gradient) :: d(2)
-    real(rk) :: stress(6), energy(2)
+    real(rk) :: stress(6), energy(2), ends(2)
     integer :: i
     work = 0.0_rk
+    if (.not. any(abs(to - from) > 0.0_rk)) return
+    ends = [weight_of(model, from), weight_of(model, to)]
+    if (all(ends >= 1.0_rk) .or. all(ends <= 0.0_rk)) return
     do i = 0, num_parts
       stress = from + (to - from)*i/num_parts
       energy(2) = undamaged_energy(model, stress)
