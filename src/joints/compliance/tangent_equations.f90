@@ -17,6 +17,9 @@ module tangent_equations
     real(rk), allocatable :: change(:, :, :) !< (3, 3, points) D [N/m]
     type(group_factor), allocatable :: group(:) !< kept factors
     logical :: is_singular = .false.
+    !> No factor has been used since the increment began. The first ones depend on its start alone,
+    !> so that a run that is continued takes the same ones.
+    logical :: is_first = .true.
   contains
     procedure :: set_tangent, solve
     procedure, private :: precondition, iterate
@@ -52,7 +55,8 @@ contains
       self%change(:, :, p) = share(p)*self%change(:, :, p)
     end do
     if (.not. allocated(self%group)) allocate (self%group(blocks%groups%num_groups))
-    kept = merge(kept_share, 0.0_rk, size(self%group) > 1)
+    kept = merge(kept_share, 0.0_rk, size(self%group) > 1 .and. .not. self%is_first)
+    self%is_first = .false.
     !$omp parallel do schedule(dynamic) default(none) if (size(self%group) > 1) &
     !$omp shared(self, blocks, kept)
     do g = 1, size(self%group)

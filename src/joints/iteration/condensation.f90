@@ -36,6 +36,10 @@ module condensation
     procedure, private :: find_drift
   end type condensed_equilibrium
 
+  !> One thread inverts the Schur block of so few points in some milliseconds. Threads of LAPACK
+  !> would change the last digits of its entries.
+  integer, parameter :: few_points = 200
+
   !> Admissible drift of the jumps, as a fraction of the residual tolerance.
   real(rk), parameter :: allowed_drift = 0.1_rk
   !> Coupling of the blocks of G that are kept.
@@ -93,9 +97,9 @@ contains
     integer :: j, levels
     associate (operator => self%operator, condensed => self%condensed)
       if (self%jumps%is_there) then
-        call use_many_threads(levels)
+        if (operator%num_points > few_points) call use_many_threads(levels)
         call schur_compliance(self%jumps, operator, dense)
-        call use_one_thread(levels)
+        if (operator%num_points > few_points) call use_one_thread(levels)
       else
         call find_compliance(self%factor, operator, num_free, dense, error)
         if (allocated(error)) return

@@ -62,6 +62,7 @@ contains
     class(condensed_joints), intent(inout) :: self
     type(jump_operator), intent(in) :: operator
     type(joint_field), intent(in) :: field !< linearised; its response is for k_ref
+    self%tangent%is_first = .true.
     self%start_response = field%response
     self%start_excess = self%k_ref*field%jump - field%iterate
     self%force = share_of(self%weight, operator)*field%multiplier
