@@ -1,7 +1,8 @@
 """Smallest increments, and what the message names where an increment has no equilibrium."""
 
 import pytest
-from joint_decks import Block, dynamic, static, weight
+from concrete_decks import Bar, paper_concrete, pull
+from joint_decks import Block, static, weight
 
 PULL = "*CLOAD\nTOP, 3, 1e9\n"  # [N] on each node: the block is lifted off its bed
 
@@ -35,10 +36,11 @@ def test_message_names_direct(keyway):
 
 
 def test_message_names_iterations(keyway):
-    """One iteration is too few to open a bed that is closed at the start."""
-    controls = "*CONTROLS, ITERATIONS=1\n"
-    message = message_of(keyway, dynamic(controls + PULL, 0.1, 1.0))
-    assert "DIRECT" in message
+    """One iteration with the tangent is too few for concrete that cracks."""
+    controls = "*CONTROLS, ITERATIONS=1, TANGENT=CONSISTENT\n"
+    deck = Bar(paper_concrete()).deck(pull([1e-3], dt=0.5, controls=controls))
+    message = keyway(deck, code=1).json["message"]
+    assert "leave DIRECT out" in message
     assert "or allow more than ITERATIONS=1 (*CONTROLS)" in message
 
 

@@ -28,22 +28,24 @@ contains
     allocate (list(size(now%joints) + size(now%points) + size(now%guests)))
     do i = 1, size(now%joints)
       list(i)%own => now%joints(i)
+      list(i)%kind = 'joint'
+      list(i)%number = i
       if (present(model)) list(i)%owner => model%joints(i)
     end do
     n = size(now%joints)
     do i = 1, size(now%points)
       list(n + i)%own => now%points(i)
+      list(n + i)%kind = 'points'
+      list(n + i)%number = i
       if (present(model)) list(n + i)%owner => model%inelastic(i)
     end do
     n = n + size(now%points)
     do i = 1, size(now%guests)
       list(n + i)%own => now%guests(i)%item
+      list(n + i)%kind = 'guest'
+      list(n + i)%number = i
       if (present(model)) list(n + i)%owner => model%guests(i)%item
     end do
-    list%kind = [spread('joint ', 1, size(now%joints)), spread('points', 1, size(now%points)), &
-                 spread('guest ', 1, size(now%guests))]
-    list%number = [(i, i=1, size(now%joints)), (i, i=1, size(now%points)), &
-                   (i, i=1, size(now%guests))]
   end subroutine list_histories
 
   !> The histories of guests at the start of an analysis.
