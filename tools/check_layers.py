@@ -23,6 +23,7 @@ ROOMS = (
     "base/system",
     "base/files",
     "base/report",
+    "equations/elimination",
     "equations",
     "equations/low_rank",
     "equations/supernodes",

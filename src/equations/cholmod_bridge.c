@@ -1,5 +1,6 @@
 /* The few calls of CHOLMOD that solver_cholmod needs, behind plain arguments, so that Fortran does
  * not have to know the structures, which differ from version to version. */
+#include "supernodes/selected_inverse.h"
 #include "supernodes/supernodal_solve.h"
 #include <cholmod.h>
 #include <stdint.h>
@@ -12,6 +13,11 @@ struct keyway_cholmod {
   cholmod_dense *x, *y, *e; /* workspace of the solves */
   char *is_upper;           /* (supernodes) the part of the active unknowns; NULL: not chosen */
   double *work;             /* as long as the longest column of a supernode */
+  /* The top of the factor: supernodes with chosen unknowns, and all their ancestors. */
+  char *is_top;
+  int *super_of, *place_of;
+  long *top_start; /* of each supernode in the inverse, -1 below the top */
+  double *inverse, *top_work;
 };
 
 /* The lower triangle of a matrix: 0-based columns of `used` entries each, with room behind them. */
@@ -50,10 +56,25 @@ void *keyway_cholmod_start(void)
   return c;
 }
 
+static void free_top(struct keyway_cholmod *c)
+{
+  free(c->is_top);
+  free(c->super_of);
+  free(c->place_of);
+  free(c->top_start);
+  free(c->inverse);
+  free(c->top_work);
+  c->is_top = NULL;
+  c->super_of = c->place_of = NULL;
+  c->top_start = NULL;
+  c->inverse = c->top_work = NULL;
+}
+
 void keyway_cholmod_finish(void *handle)
 {
   struct keyway_cholmod *c = handle;
   if (!c) return;
+  free_top(c);
   cholmod_free_dense(&c->x, &c->common);
   cholmod_free_dense(&c->y, &c->common);
   cholmod_free_dense(&c->e, &c->common);
@@ -93,6 +114,7 @@ int keyway_cholmod_analyse(void *handle, int n, const int *start, const int *use
 {
   struct keyway_cholmod *c = handle;
   cholmod_sparse a = view(n, start, used, row, NULL);
+  free_top(c);
   cholmod_free_factor(&c->factor, &c->common);
   free(c->is_upper);
   free(c->work);
@@ -238,6 +260,110 @@ int keyway_cholmod_substitute(void *handle, int part, int is_forward, int n, dou
   else
     keyway_substitute_backward(&nodes, part, c->is_upper, y, c->work);
   return 0;
+}
+
+/* Chooses the top of a planned factor by `count` unknowns, 0-based. `entries` are those of its L.
+ * Returns 0 for success. */
+int keyway_cholmod_choose_top(void *handle, int n, int count, const int *unknown, double *entries)
+{
+  struct keyway_cholmod *c = handle;
+  const int *perm = c->factor->Perm;
+  struct keyway_supernodes l;
+  int *wanted;
+  long used = 0;
+  free_top(c);
+  if (!c->factor->is_super) return 1;
+  l = supernodes_of(c);
+  wanted = malloc(((size_t)count + 1) * sizeof *wanted);
+  c->is_top = malloc((size_t)l.num_supernodes + 1);
+  c->super_of = malloc((size_t)n * sizeof(int));
+  c->place_of = malloc((size_t)n * sizeof(int));
+  c->top_start = malloc((size_t)l.num_supernodes * sizeof(long));
+  c->top_work = malloc((size_t)n * sizeof(double));
+  if (!wanted || !c->is_top || !c->super_of || !c->place_of || !c->top_start || !c->top_work) {
+    free(wanted);
+    free_top(c);
+    return -2;
+  }
+  for (int i = 0; i < n; i++) c->place_of[perm[i]] = i;
+  for (int i = 0; i < count; i++) wanted[i] = c->place_of[unknown[i]];
+  if (keyway_mark_upper(&l, count, wanted, c->is_top) < 0.0) {
+    free(wanted);
+    free_top(c);
+    return -2;
+  }
+  free(wanted);
+  for (int s = 0; s < l.num_supernodes; s++) {
+    int width = l.column[s + 1] - l.column[s];
+    for (int j = l.column[s]; j < l.column[s + 1]; j++) c->super_of[j] = s;
+    c->top_start[s] = c->is_top[s] ? used : -1;
+    if (c->is_top[s]) used += (long)(l.row_start[s + 1] - l.row_start[s]) * width;
+  }
+  *entries = (double)used;
+  return 0;
+}
+
+/* Adds L^-1 P b to y for a vector b that is zero but at unknowns of the top. */
+void keyway_cholmod_add_to_top(void *handle, int n, const double *b, double *y)
+{
+  struct keyway_cholmod *c = handle;
+  struct keyway_supernodes l = supernodes_of(c);
+  double *z = calloc((size_t)n, sizeof *z);
+  if (!z) return;
+  for (int i = 0; i < n; i++) z[c->place_of[i]] = b[i];
+  keyway_substitute_forward(&l, KEYWAY_UPPER, c->is_top, z, c->top_work);
+  for (int i = 0; i < n; i++) y[i] += z[i];
+  free(z);
+}
+
+/* The unknowns of the top in P^T L^-T y; other entries of x stay. */
+void keyway_cholmod_solve_top(void *handle, int n, const double *y, double *x)
+{
+  struct keyway_cholmod *c = handle;
+  struct keyway_supernodes l = supernodes_of(c);
+  const int *perm = c->factor->Perm;
+  double *z = malloc((size_t)n * sizeof *z);
+  if (!z) return;
+  memcpy(z, y, (size_t)n * sizeof *z);
+  keyway_substitute_backward(&l, KEYWAY_UPPER, c->is_top, z, c->top_work);
+  for (int j = 0; j < n; j++)
+    if (c->is_top[c->super_of[j]]) x[perm[j]] = z[j];
+  free(z);
+}
+
+/* Inverts the top; `entries` as from choose_top. Returns 0 for success. */
+int keyway_cholmod_invert_top(void *handle, double entries)
+{
+  struct keyway_cholmod *c = handle;
+  struct keyway_supernodes l = supernodes_of(c);
+  c->inverse = malloc((size_t)entries * sizeof(double));
+  if (!c->inverse) return -2;
+  return keyway_invert(&l, c->super_of, c->top_start, c->inverse);
+}
+
+/* Entries of the inverse of the matrix for pairs of unknowns of the top, 0-based. Returns how many
+ * are not known and set to zero, negative without memory. */
+int keyway_cholmod_inverse(void *handle, int rows, const int *row, int columns, const int *column,
+                           double *block)
+{
+  struct keyway_cholmod *c = handle;
+  struct keyway_supernodes l = supernodes_of(c);
+  int *place = malloc(((size_t)rows + (size_t)columns) * sizeof *place), answer;
+  if (!place) return -1;
+  for (int i = 0; i < rows; i++) place[i] = c->place_of[row[i]];
+  for (int i = 0; i < columns; i++) place[rows + i] = c->place_of[column[i]];
+  answer = keyway_inverse_entries(&l, c->super_of, c->top_start, c->inverse, rows, place, columns,
+                                  place + rows, block);
+  free(place);
+  return answer;
+}
+
+/* Frees the inverse of the top. */
+void keyway_cholmod_forget_inverse(void *handle)
+{
+  struct keyway_cholmod *c = handle;
+  free(c->inverse);
+  c->inverse = NULL;
 }
 
 /* Entries of the factor as planned, bytes held now and at the peak. */

@@ -2,6 +2,7 @@
 module linear_solver
   use kinds, only: rk
   use errors, only: error_type, raise
+  use factor_top, only: top_of_factor
   use matrix_pattern, only: pattern
   implicit none
   private
@@ -15,7 +16,7 @@ module linear_solver
     procedure(analyse), deferred :: analyse
     procedure(factorise), deferred :: factorise
     procedure(solve), deferred :: solve
-    procedure :: take_schur_block
+    procedure :: take_schur_block, take_top
     procedure :: forward_substitute => refuse_half_solve
     procedure :: backward_substitute => refuse_half_solve
     procedure :: choose_active => activate_all
@@ -71,6 +72,14 @@ contains
     allocate (block(0, 0), unknown(0))
     is_there = .false.
   end subroutine take_schur_block
+
+  !> The top of a factor L L^T with some unknowns. Not every solver has it.
+  subroutine take_top(self, unknown, top)
+    class(equation_solver), intent(in) :: self
+    integer, intent(in) :: unknown(:) !< that the top must hold
+    type(top_of_factor), intent(out) :: top
+    top%is_there = size(unknown) < 0
+  end subroutine take_top
 
   !> Half of a solve, for solvers without forward and backward substitution.
   subroutine refuse_half_solve(self, b, error)

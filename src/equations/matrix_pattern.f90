@@ -13,6 +13,11 @@ module matrix_pattern
     integer :: num_free = 0 !< free unknowns come first
     integer :: num_total = 0 !< free and prescribed
     integer :: num_last = 0 !< last of the free ones, also last in a factor
+    !> (num_free) group of unknowns that are eliminated together, 0 for none; not allocated: the
+    !> last unknowns are a group at the end
+    integer, allocatable :: group(:)
+    !> Pairs of unknowns: a jump, and a displacement that it adds to; allocated with `group`
+    integer, allocatable :: jump(:), joined(:)
     logical :: is_symmetric = .true. !< lower triangle only
     integer, allocatable :: column_start(:) !< (num_total + 1), 1-based
     integer, allocatable :: row(:) !< ascending in each column (symmetric: the diagonal first)

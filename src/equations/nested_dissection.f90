@@ -2,27 +2,15 @@
 !>
 !> Consecutive unknowns that are coupled with the same others (those of one node) are one vertex,
 !> weighted by their number. The last unknowns are the jumps and the dofs at points without jumps.
-!> The end of the factor is the factor of the Schur complement onto these unknowns.
+!> The end of the factor is the factor of the Schur complement onto these unknowns. Where they are
+!> many, they are separators in groups instead.
 module nested_dissection
-  use, intrinsic :: iso_c_binding, only: c_int
   use errors, only: error_type, raise, system_failed
+  use group_dissection, only: dissect_graph, dissect_groups, vertex_graph
   use matrix_pattern, only: pattern
   implicit none
   private
   public :: dissect
-
-  interface
-    function keyway_nested_dissection(n, start, neighbour, weight, order) result(status) bind(c)
-      import :: c_int
-      implicit none
-      integer(c_int), value :: n
-      integer(c_int), intent(in) :: start(n + 1), neighbour(start(n + 1)), weight(n)
-      integer(c_int), intent(out) :: order(n)
-      integer(c_int) :: status
-    end function keyway_nested_dissection
-  end interface
-
-  integer, parameter :: small = 30 !< graphs of fewer vertices keep their order
 
 contains
 
@@ -31,25 +19,29 @@ contains
     type(pattern), intent(in) :: matrix
     integer, allocatable, intent(out) :: order(:) !< (num_free)
     type(error_type), allocatable, intent(out) :: error
-    integer, allocatable :: first(:), start(:), neighbour(:), vertex_order(:)
-    integer :: v, j, k, num_plain, num_vertices, status
-    num_plain = matrix%num_free - matrix%num_last
+    type(vertex_graph) :: graph
+    integer, allocatable :: first(:), vertex_order(:)
+    integer :: v, j, k, num_plain, status
+    num_plain = matrix%num_free
+    if (.not. allocated(matrix%group)) num_plain = num_plain - matrix%num_last
     call find_vertices(matrix, num_plain, first)
-    num_vertices = size(first) - 1
-    allocate (vertex_order(num_vertices), source=[(v - 1, v=1, num_vertices)])
-    if (num_vertices > small) then
-      call build_graph(matrix, first, start, neighbour)
-      status = keyway_nested_dissection(num_vertices, start, neighbour, &
-                                        first(2:) - first(:num_vertices), vertex_order)
-      if (status /= 0) then
-        call raise(error, 'METIS could not order the unknowns', system_failed)
-        return
-      end if
+    call build_graph(matrix, first, graph%start, graph%neighbour)
+    graph%weight = first(2:) - first(:size(first) - 1)
+    allocate (vertex_order(size(graph%weight)))
+    if (allocated(matrix%group)) then
+      graph%group = matrix%group(first(:size(graph%weight)))
+      call dissect_groups(graph, vertex_order, status)
+    else
+      call dissect_graph(graph, vertex_order, status)
+    end if
+    if (status /= 0) then
+      call raise(error, 'METIS could not order the unknowns', system_failed)
+      return
     end if
     allocate (order(matrix%num_free))
     k = 0
-    do v = 1, num_vertices
-      do j = first(vertex_order(v) + 1), first(vertex_order(v) + 2) - 1
+    do v = 1, size(vertex_order)
+      do j = first(vertex_order(v)), first(vertex_order(v) + 1) - 1
         k = k + 1
         order(k) = j
       end do
@@ -85,6 +77,7 @@ contains
     before = matrix%column_start(j - 1)
     length = matrix%free_entries(j)
     are_alike = matrix%free_entries(j - 1) == length + 1
+    if (are_alike .and. allocated(matrix%group)) are_alike = matrix%group(j) == matrix%group(j - 1)
     if (are_alike) then
       are_alike = all(matrix%row(before + 1:before + length) == matrix%row(here:here + length - 1))
     end if

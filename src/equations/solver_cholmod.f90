@@ -4,9 +4,11 @@ module solver_cholmod
   use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_int, c_loc, c_null_ptr, c_ptr
   use kinds, only: rk
   use errors, only: error_type, raise, system_failed
+  use factor_top, only: choose_top, top_of_factor
   use matrix_pattern, only: pattern
   use linear_solver, only: equation_solver, whole_factor
   use nested_dissection, only: dissect
+  use wider_pattern, only: widen_pattern
   use blas_threads, only: use_many_threads, use_one_thread
   implicit none
   private
@@ -24,7 +26,7 @@ module solver_cholmod
     integer(c_int), allocatable, private :: start(:), row(:) !< pattern, 0-based
   contains
     procedure :: analyse, factorise, solve, statistics
-    procedure :: take_schur_block, forward_substitute, backward_substitute
+    procedure :: take_schur_block, take_top, forward_substitute, backward_substitute
     procedure :: choose_active, substitute
     final :: release
   end type cholmod_solver
@@ -142,8 +144,13 @@ contains
       call dissect(matrix, order, error)
       if (allocated(error)) return
       order(:) = order - 1
-      status = keyway_cholmod_analyse(self%handle, self%num_free, self%start, matrix%free_entries, &
-                                      self%row, matrix%num_last, c_loc(order))
+      if (allocated(matrix%group)) then
+        status = analyse_in_groups(self, matrix, order)
+      else
+        status = keyway_cholmod_analyse(self%handle, self%num_free, self%start, &
+                                        matrix%free_entries, self%row, matrix%num_last, &
+                                        c_loc(order))
+      end if
     end if
     if (status /= 0) then
       call raise(error, 'no memory to plan the factor of the stiffness', system_failed)
@@ -154,6 +161,22 @@ contains
     call keyway_cholmod_order(self%handle, self%num_free, self%order)
     self%order = self%order + 1
   end subroutine analyse
+
+  !> Plans the factor of a pattern in which jumps have the couplings of both sides of their joints.
+  integer function analyse_in_groups(self, matrix, order) result(status)
+    class(cholmod_solver), intent(inout) :: self
+    type(pattern), intent(in) :: matrix
+    integer(c_int), intent(inout), target :: order(:) !< of elimination, 0-based
+    integer(c_int), allocatable :: start(:), used(:), row(:)
+    associate (n => self%num_free)
+      call widen_pattern(matrix%column_start(:n + 1), matrix%free_entries(:n), matrix%row, &
+                         matrix%joined, matrix%jump, start, row)
+    end associate
+    used = start(2:) - start(:self%num_free)
+    start = start - 1
+    row = row - 1
+    status = keyway_cholmod_analyse(self%handle, self%num_free, start, used, row, 0, c_loc(order))
+  end function analyse_in_groups
 
   !> Columns and rows of the free part, counted from 0 as CHOLMOD does.
   pure subroutine shift_pattern(matrix, start, row)
@@ -234,6 +257,14 @@ contains
     share = keyway_cholmod_choose(self%handle, self%num_free, size(unknown), unknown - 1)
     if (share < 0.0_rk) share = 1.0_rk
   end subroutine choose_active
+
+  !> The top of the factor with some unknowns.
+  subroutine take_top(self, unknown, top)
+    class(cholmod_solver), intent(in) :: self
+    integer, intent(in) :: unknown(:)
+    type(top_of_factor), intent(out) :: top
+    call choose_top(self%handle, self%num_free, unknown, top)
+  end subroutine take_top
 
   !> Replaces b by L^-1 P b, in the order of elimination.
   subroutine forward_substitute(self, b, error)

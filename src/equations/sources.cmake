@@ -4,6 +4,9 @@ set(sources
   blas_bridge.c
   blas_threads.f90
   cholmod_bridge.c
+  elimination/factor_top.f90
+  elimination/group_dissection.f90
+  elimination/wider_pattern.f90
   global_vectors.f90
   linear_solver.f90
   low_rank/solver_low_rank.f90
@@ -15,5 +18,6 @@ set(sources
   solver_cholmod.f90
   solver_umfpack.f90
   supernodes/active_solve.f90
+  supernodes/selected_inverse.c
   supernodes/supernodal_solve.c
 )

@@ -4,8 +4,10 @@ set(sources
   compliance/joint_compliance.f90
   compliance/joint_operator.f90
   compliance/joint_stiffness.f90
+  compliance/joint_separators.f90
   compliance/jump_block.f90
   compliance/point_groups.f90
+  compliance/selected_compliance.f90
   compliance/tangent_equations.f90
   compliance/tangent_factors.f90
   iteration/condensation.f90

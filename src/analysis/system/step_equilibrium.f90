@@ -20,13 +20,9 @@ module step_equilibrium
   public :: make_equilibrium, prepare_equilibrium, factorise_closed, set_modal_damping
   public :: add_moving_supports
 
-  !> Most joint points for the dense compliances, which take about 2 GB (three matrices of
-  !> 8*(3*points)^2 bytes). With more points full Newton factors in each iteration; it needs the
-  !> compliances only to compute r and does not keep them.
-  integer, parameter :: most_condensed_points = 3000
-
-  !> Dense matrices of 8*(3*points)^2 bytes at a time: the compliances with closed and open joints
-  !> and the matrix between them. The Schur block is extra, where jumps are unknowns.
+  !> Dense matrices of 8*(3*points)^2 bytes at a time where joints are not separators in groups: the
+  !> compliances with closed and open joints and the matrix between them. The Schur block is extra,
+  !> where jumps are unknowns.
   integer, parameter :: num_dense = 3
 
 contains
@@ -41,10 +37,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     character(len(plan%controls%joint_solver)) :: name
     name = plan%controls%joint_solver
-    if (name == 'AUTO') then
-      name = condensed_solver
-      if (system%operator%num_points > most_condensed_points) name = full_solver
-    end if
+    if (name == 'AUTO') name = condensed_solver
     if (.not. is_symmetric) name = full_solver
     if (system%operator%num_points == 0) then
       allocate (linear_equilibrium :: balance)
@@ -52,7 +45,8 @@ contains
       call make_joint_solver(trim(name), balance)
     end if
     balance%controls = plan%controls
-    if (system%matrix%is_symmetric) call check_memory(system%operator%num_points, error)
+    if (.not. allocated(system%matrix%group) .or. name /= condensed_solver &
+        .or. size(system%modal, 2) > 0) call check_memory(system%operator%num_points, error)
     if (allocated(error)) return
     call make_solver(symmetric_solver, balance%factor, error)
     if (allocated(error)) return
@@ -74,8 +68,8 @@ contains
       deallocate (room)
     else
       call raise(error, 'not enough memory: the dense matrices of '//as_text(num_points)// &
-                 ' points of joints take '//as_text(max(1, nint(8.0e-9_rk*most)))//' GB, with '// &
-                 'either JOINT SOLVER; use a coarser mesh at the joints, or take the coarser '// &
+                 ' points of joints take '//as_text(max(1, nint(8.0e-9_rk*most)))//' GB; use '// &
+                 'a coarser mesh at the joints, or take the coarser '// &
                  'surface as slave', system_failed)
     end if
   end subroutine check_memory

@@ -15,6 +15,7 @@ module step_system
   use guest_list, only: add_guest_matrices, any_has_matrix, guests_of_step
   use guest_type, only: guest_reference, damping_matrix, mass_matrix, stiffness_matrix
   use joint_operator, only: jump_operator, build_jump_operator
+  use joint_separators, only: find_separators
   use step_loads, only: load_group, support, gather_loads, gather_supports
   use run_ledger, only: ledger
   implicit none
@@ -83,6 +84,8 @@ contains
     call list_cells(model%mesh, guests, cells)
     call build_pattern(system%numbers, cells, system%matrix)
     call build_jump_operator(system%numbers, model%joints, system%operator)
+    call find_separators(system%numbers, system%operator, system%matrix%group, &
+                         system%matrix%jump, system%matrix%joined)
     call assemble_stiffness(model, system%numbers, system%matrix, system%stiffness, error)
     if (allocated(error)) return
     call add_guest_matrices(guests, stiffness_matrix, model, system%numbers, system%matrix, &

@@ -3,28 +3,24 @@
 !>
 !> Vectors have the rows of all points, in the order of the points.
 module block_compliance
-  use joint_rows, only: num_axes
   use kinds, only: rk, long
   use point_groups, only: group_list
   implicit none
   private
-  public :: compliance_blocks, dense_block, take_blocks, add_product
+  public :: compliance_blocks, take_blocks, add_product, own_size
 
   !> Jumps of one group by forces on another.
   type :: dense_block
-    integer :: source = 0 !< the group with the forces
     real(rk) :: coupling = 0.0_rk !< size, relative to the own blocks of both groups
-    real(rk), allocatable :: values(:, :) !< [m/N]
+    real(rk), allocatable :: values(:, :) !< [m/N]; not allocated where the block is left out
   end type dense_block
 
   type :: compliance_blocks
     type(group_list) :: groups
-    integer, allocatable :: first_block(:) !< (groups + 1) blocks of a group with jumps
-    integer, allocatable :: own(:) !< (groups) the block of a group with itself
-    type(dense_block), allocatable :: block(:)
+    type(dense_block), allocatable :: block(:, :) !< (groups with jumps, groups with forces)
     logical :: is_complete = .true. !< no block is left out
   contains
-    procedure :: product, diagonal_block, num_entries, as_dense
+    procedure :: start, put, product, num_entries, as_dense
   end type compliance_blocks
 
   !> From this share of columns with forces on, a product with the whole block is quicker.
@@ -43,6 +39,29 @@ module block_compliance
 
 contains
 
+  !> Starts without blocks.
+  subroutine start(self, groups)
+    class(compliance_blocks), intent(inout) :: self
+    type(group_list), intent(in) :: groups
+    self%groups = groups
+    self%is_complete = .false.
+    if (allocated(self%block)) deallocate (self%block)
+    allocate (self%block(groups%num_groups, groups%num_groups))
+  end subroutine start
+
+  !> Puts a block and its transpose.
+  subroutine put(self, j, k, coupling, values)
+    class(compliance_blocks), intent(inout) :: self
+    integer, intent(in) :: j, k !< groups
+    real(rk), intent(in) :: coupling
+    real(rk), intent(in) :: values(:, :) !< [m/N]
+    self%block(j, k)%coupling = coupling
+    self%block(j, k)%values = values
+    if (j == k) return
+    self%block(k, j)%coupling = coupling
+    self%block(k, j)%values = transpose(values)
+  end subroutine put
+
   !> Takes the blocks that matter from a dense compliance. A block is compared with what the
   !> structure adds to the springs in the own blocks, spring - G: where springs are stiff, G is
   !> nearly theirs alone.
@@ -52,46 +71,26 @@ contains
     type(group_list), intent(in) :: groups
     real(rk), intent(in) :: smallest !< coupling of a block that is kept
     type(compliance_blocks), intent(out) :: blocks
-    real(rk) :: coupling(groups%num_groups, groups%num_groups)
-    integer :: j, k, b
-    call measure_couplings(dense, spring, groups, coupling)
-    blocks%groups = groups
-    allocate (blocks%first_block(groups%num_groups + 1), blocks%own(groups%num_groups))
-    allocate (blocks%block(count(coupling >= smallest)))
-    blocks%is_complete = size(blocks%block) == groups%num_groups**2
-    b = 0
-    do j = 1, groups%num_groups
-      blocks%first_block(j) = b + 1
-      do k = 1, groups%num_groups
-        if (coupling(j, k) < smallest) cycle
-        b = b + 1
-        if (j == k) blocks%own(j) = b
-        blocks%block(b)%source = k
-        blocks%block(b)%coupling = coupling(j, k)
-        blocks%block(b)%values = dense(rows_of(groups, j), rows_of(groups, k))
-      end do
-    end do
-    blocks%first_block(groups%num_groups + 1) = b + 1
-  end subroutine take_blocks
-
-  !> Couplings between groups; 1 for a group with itself.
-  subroutine measure_couplings(dense, spring, groups, coupling)
-    real(rk), intent(in) :: dense(:, :) !< G (rows, rows) [m/N]
-    real(rk), intent(in) :: spring(:) !< (rows) [m/N]
-    type(group_list), intent(in) :: groups
-    real(rk), intent(out) :: coupling(:, :) !< (groups, groups)
-    real(rk) :: own(groups%num_groups)
+    real(rk) :: own(groups%num_groups), coupling
     integer :: j, k
+    call blocks%start(groups)
+    blocks%is_complete = .true.
     do j = 1, groups%num_groups
-      own(j) = own_size(dense(rows_of(groups, j), rows_of(groups, j)), spring(rows_of(groups, j)))
-      coupling(j, j) = 1.0_rk
-      do k = 1, j - 1
-        coupling(j, k) = norm2(dense(rows_of(groups, j), rows_of(groups, k))) &
-                         /max(sqrt(own(j))*sqrt(own(k)), tiny(1.0_rk))
-        coupling(k, j) = coupling(j, k)
-      end do
+      associate (rows => rows_of(groups, j))
+        own(j) = own_size(dense(rows, rows), spring(rows))
+        call blocks%put(j, j, 1.0_rk, dense(rows, rows))
+        do k = 1, j - 1
+          coupling = norm2(dense(rows, rows_of(groups, k))) &
+                     /max(sqrt(own(j))*sqrt(own(k)), tiny(1.0_rk))
+          if (coupling >= smallest) then
+            call blocks%put(j, k, coupling, dense(rows, rows_of(groups, k)))
+          else
+            blocks%is_complete = .false.
+          end if
+        end do
+      end associate
     end do
-  end subroutine measure_couplings
+  end subroutine take_blocks
 
   !> Norm of spring - G.
   pure real(rk) function own_size(block, spring)
@@ -136,14 +135,13 @@ contains
     integer, intent(in) :: group
     real(rk), intent(in) :: x(:) !< (rows) [N]
     real(rk), intent(inout) :: y(:) !< (rows) [m]
-    integer :: b
+    integer :: k
     associate (first => self%groups%first_row)
       associate (own => y(first(group):first(group + 1) - 1))
         own = 0.0_rk
-        do b = self%first_block(group), self%first_block(group + 1) - 1
-          associate (k => self%block(b)%source)
-            call add_product(self%block(b)%values, x(first(k):first(k + 1) - 1), own)
-          end associate
+        do k = 1, self%groups%num_groups
+          if (.not. allocated(self%block(group, k)%values)) cycle
+          call add_product(self%block(group, k)%values, x(first(k):first(k + 1) - 1), own)
         end do
       end associate
     end associate
@@ -178,27 +176,16 @@ contains
     end do
   end subroutine add_product
 
-  !> The 3x3 blocks of G of all points.
-  pure function diagonal_block(self, point, group) result(block)
-    class(compliance_blocks), intent(in) :: self
-    integer, intent(in) :: point !< of the group
-    integer, intent(in) :: group
-    real(rk) :: block(num_axes, num_axes) !< [m/N]
-    integer :: row
-    row = num_axes*(point - 1)
-    block = self%block(self%own(group))%values(row + 1:row + num_axes, row + 1:row + num_axes)
-  end function diagonal_block
-
   !> G with zeros for the blocks that are left out.
   pure function as_dense(self) result(dense)
     class(compliance_blocks), intent(in) :: self
     real(rk), allocatable :: dense(:, :) !< (rows, rows) [m/N]
-    integer :: j, b
+    integer :: j, k
     allocate (dense(size(self%groups%row), size(self%groups%row)), source=0.0_rk)
-    do j = 1, self%groups%num_groups
-      do b = self%first_block(j), self%first_block(j + 1) - 1
-        dense(rows_of(self%groups, j), rows_of(self%groups, self%block(b)%source)) = &
-          self%block(b)%values
+    do k = 1, self%groups%num_groups
+      do j = 1, self%groups%num_groups
+        if (.not. allocated(self%block(j, k)%values)) cycle
+        dense(rows_of(self%groups, j), rows_of(self%groups, k)) = self%block(j, k)%values
       end do
     end do
   end function as_dense
@@ -206,10 +193,13 @@ contains
   !> Entries of all blocks.
   pure integer(long) function num_entries(self)
     class(compliance_blocks), intent(in) :: self
-    integer :: b
+    integer :: j, k
     num_entries = 0
-    do b = 1, size(self%block)
-      num_entries = num_entries + size(self%block(b)%values, kind=long)
+    do k = 1, size(self%block, 2)
+      do j = 1, size(self%block, 1)
+        if (.not. allocated(self%block(j, k)%values)) cycle
+        num_entries = num_entries + size(self%block(j, k)%values, kind=long)
+      end do
     end do
   end function num_entries
 end module block_compliance

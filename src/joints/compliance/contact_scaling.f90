@@ -88,7 +88,7 @@ contains
     real(rk) :: flexibility, with_others
     integer :: k, p, j, row, slip(2), other_slip(2)
     associate (point => blocks%groups%members(group))
-      call open_joints(blocks%block(blocks%own(group))%values, share(point), k_ref(:, point), &
+      call open_joints(blocks%block(group, group)%values, share(point), k_ref(:, point), &
                        opened%compliance)
       with_others = 1.0_rk + outer_coupling(blocks, group)
       do k = 1, size(point)
@@ -114,11 +114,7 @@ contains
   pure real(rk) function outer_coupling(blocks, group)
     type(compliance_blocks), intent(in) :: blocks
     integer, intent(in) :: group
-    integer :: b
-    outer_coupling = -1.0_rk
-    do b = blocks%first_block(group), blocks%first_block(group + 1) - 1
-      outer_coupling = outer_coupling + blocks%block(b)%coupling
-    end do
+    outer_coupling = sum(blocks%block(:, group)%coupling) - 1.0_rk
   end function outer_coupling
 
   !> r of all points together from a compliance in two directions.

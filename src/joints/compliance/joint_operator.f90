@@ -17,6 +17,7 @@ module joint_operator
     integer :: num_points = 0
     integer, allocatable :: first_point(:) !< (joints + 1)
     real(rk), allocatable :: area(:) !< (points) [m2]
+    real(rk), allocatable :: x(:, :) !< (3, points) [m]
     integer, allocatable :: row_start(:) !< (rows + 1) rows as in `joint_rows`
     integer, allocatable :: unknown(:) !< columns of B
     real(rk), allocatable :: coefficient(:) !< values of B
@@ -42,6 +43,7 @@ contains
     operator%num_points = operator%first_point(size(joints) + 1) - 1
     last_row = num_rows(operator%num_points)
     allocate (operator%area(operator%num_points), operator%row_start(last_row + 1))
+    allocate (operator%x(3, operator%num_points))
     allocate (operator%unknown(9*operator%num_points), operator%coefficient(9*operator%num_points))
     allocate (place(numbers%num_total), source=0)
     operator%row_start = 1
@@ -51,6 +53,7 @@ contains
         if (joints(j)%is_nodal) pair = pair + 1
         point = operator%first_point(j) + p - 1
         operator%area(point) = joints(j)%area(p)
+        operator%x(:, point) = joints(j)%x(:, p)
         call add_rows(joints(j), p, merge(pair, 0, joints(j)%is_nodal), numbers, point, place, &
                       operator)
       end do

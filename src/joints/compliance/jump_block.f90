@@ -3,7 +3,9 @@
 !> S = E E^T. The compliance then needs no solves, and Newton's method on the jumps runs between
 !> forward and backward substitution.
 module jump_block
+  use factor_top, only: top_of_factor
   use kinds, only: rk
+  use matrix_pattern, only: pattern
   use joint_rows, only: num_rows
   use linear_solver, only: equation_solver
   use joint_operator, only: jump_operator
@@ -15,6 +17,7 @@ module jump_block
   type :: jump_schur_block
     logical :: is_there = .false.
     integer :: num_free = 0
+    type(top_of_factor) :: top !< in the place of E
     real(rk), allocatable :: lower(:, :) !< E (last unknowns, last unknowns)
     integer, allocatable :: unknown(:) !< (last unknowns) of each row of E
   contains
@@ -23,15 +26,21 @@ module jump_block
 
 contains
 
-  !> Extracts E where all unknowns of the joints are eliminated last.
-  subroutine extract_schur_block(factor, operator, num_free, num_last, jumps)
+  !> Takes the top of the factor where the unknowns of joints are separators, else extracts E where
+  !> all of them are eliminated last.
+  subroutine extract_schur_block(factor, operator, matrix, jumps)
     class(equation_solver), intent(in) :: factor !< of K_0
     type(jump_operator), intent(in) :: operator
-    integer, intent(in) :: num_free, num_last
+    type(pattern), intent(in) :: matrix
     type(jump_schur_block), intent(out) :: jumps
-    jumps%num_free = num_free
-    if (any(operator%unknown <= num_free - num_last)) return
-    call factor%take_schur_block(num_last, jumps%lower, jumps%unknown, jumps%is_there)
+    jumps%num_free = matrix%num_free
+    if (allocated(matrix%group)) then
+      call factor%take_top(pack(operator%unknown, operator%unknown <= matrix%num_free), jumps%top)
+      jumps%is_there = jumps%top%is_there
+      return
+    end if
+    if (any(operator%unknown <= matrix%num_free - matrix%num_last)) return
+    call factor%take_schur_block(matrix%num_last, jumps%lower, jumps%unknown, jumps%is_there)
   end subroutine extract_schur_block
 
   !> G = B S^-1 B^T.
@@ -78,7 +87,12 @@ contains
     class(jump_schur_block), intent(in) :: self
     real(rk), intent(in) :: half(:) !< (free unknowns) after forward substitution
     real(rk), intent(inout) :: x(:) !< (all unknowns)
-    real(rk) :: d(size(self%unknown))
+    real(rk), allocatable :: d(:)
+    if (self%top%is_there) then
+      call self%top%solve_for_top(half, x(:self%num_free))
+      return
+    end if
+    allocate (d(size(self%unknown)))
     d = half(size(half) - size(d) + 1:)
     call solve_lower_transposed(self%lower, d)
     x(self%unknown) = d
@@ -89,7 +103,11 @@ contains
     class(jump_schur_block), intent(in) :: self
     real(rk), intent(in) :: force(:) !< (all unknowns) [N]
     real(rk), intent(inout) :: half(:) !< (free unknowns) after forward substitution
-    real(rk) :: f(size(self%unknown))
+    real(rk), allocatable :: f(:)
+    if (self%top%is_there) then
+      call self%top%add_forces(force(:self%num_free), half)
+      return
+    end if
     f = force(self%unknown)
     call solve_lower(self%lower, f)
     associate (last => half(size(half) - size(f) + 1:))

@@ -35,7 +35,7 @@ contains
     end if
     self%row = row
     self%change = change
-    call factorise(blocks%block(blocks%own(group))%values, row, change, self%factor)
+    call factorise(blocks%block(group, group)%values, row, change, self%factor)
     self%is_there = .not. self%factor%is_singular
   end subroutine update_factor
 

@@ -14,6 +14,7 @@ module condensation
   use contact_scaling, only: find_contact_scale
   use joint_compliance, only: find_compliance
   use point_groups, only: group_list, group_points
+  use selected_compliance, only: select_compliance
   use matrix_condition, only: estimate_condition
   use solver_low_rank, only: add_low_rank
   use blas_threads, only: use_many_threads, use_one_thread
@@ -46,6 +47,8 @@ module condensation
   real(rk), parameter :: smallest_coupling = 1.0e-4_rk
   !> Most corrections for the blocks of G that are left out.
   integer, parameter :: most_passes = 12
+  !> Most points for which all blocks of G are kept where a static step needs them.
+  integer, parameter :: most_completed = 3000
 
 contains
 
@@ -79,43 +82,78 @@ contains
       if (allocated(error)) return
     end if
     call self%costs%start('condense', 'joints', 'joint')
-    call extract_schur_block(self%factor, operator, matrix%num_free, matrix%num_last, self%jumps)
-    call self%condense(matrix%num_free, joints, error)
+    call extract_schur_block(self%factor, operator, matrix, self%jumps)
+    call self%condense(matrix%num_free, error)
     call self%costs%stop()
   end subroutine prepare_matrix
 
-  !> Computes G, C and r. Without the Schur block no block of G is left out.
-  subroutine condense(self, num_free, joints, error)
+  !> Computes G, C and r.
+  subroutine condense(self, num_free, error)
     class(condensed_equilibrium), intent(inout) :: self
     integer, intent(in) :: num_free
-    type(dam_joint), intent(in) :: joints(:)
     type(error_type), allocatable, intent(out) :: error
     type(group_list) :: groups
     type(joint_tangent) :: no_tangent
-    real(rk), allocatable :: dense(:, :)
-    real(rk) :: x(3, self%operator%num_points)
-    integer :: j, levels
+    real(rk), allocatable :: spring(:)
+    integer :: missing, levels
     associate (operator => self%operator, condensed => self%condensed)
-      if (self%jumps%is_there) then
-        if (operator%num_points > few_points) call use_many_threads(levels)
-        call schur_compliance(self%jumps, operator, dense)
-        if (operator%num_points > few_points) call use_one_thread(levels)
-      else
-        call find_compliance(self%factor, operator, num_free, dense, error)
+      call group_points(operator%first_point, operator%x, groups)
+      spring = joint_springs(operator, condensed%k_ref, self%weight)
+      missing = 1
+      if (self%jumps%top%is_there) then
+        call use_many_threads(levels)
+        call select_compliance(self%jumps%top, operator, spring, groups, smallest_coupling, &
+                               condensed%blocks, missing, error)
+        call use_one_thread(levels)
         if (allocated(error)) return
       end if
-      do j = 1, size(joints)
-        x(:, operator%first_point(j):operator%first_point(j + 1) - 1) = joints(j)%x
-      end do
-      call group_points(operator%first_point, x, groups)
-      call take_blocks(dense, joint_springs(operator, condensed%k_ref, self%weight), groups, &
-                       merge(smallest_coupling, 0.0_rk, self%jumps%is_there), condensed%blocks)
-      deallocate (dense)
+      if (missing > 0) then
+        call condense_densely(self, num_free, spring, groups, &
+                              merge(smallest_coupling, 0.0_rk, self%jumps%is_there), error)
+      end if
+      if (allocated(error)) return
       call find_contact_scale(condensed%blocks, operator, condensed%k_ref, self%weight, &
                               condensed%scale, condensed%opened)
       condensed%tangent = no_tangent
     end associate
   end subroutine condense
+
+  !> Computes all of G, and keeps the blocks that matter.
+  subroutine condense_densely(self, num_free, spring, groups, smallest, error)
+    class(condensed_equilibrium), intent(inout) :: self
+    integer, intent(in) :: num_free
+    real(rk), intent(in) :: spring(:) !< (rows) [m/N]
+    type(group_list), intent(in) :: groups
+    real(rk), intent(in) :: smallest !< coupling of a block that is kept
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: dense(:, :)
+    integer :: levels
+    if (self%jumps%is_there .and. .not. self%jumps%top%is_there) then
+      if (self%operator%num_points > few_points) call use_many_threads(levels)
+      call schur_compliance(self%jumps, self%operator, dense)
+      if (self%operator%num_points > few_points) call use_one_thread(levels)
+    else
+      call find_compliance(self%factor, self%operator, num_free, dense, error)
+      if (allocated(error)) return
+    end if
+    call take_blocks(dense, spring, groups, smallest, self%condensed%blocks)
+  end subroutine condense_densely
+
+  !> Computes the blocks of G that were left out: joints of a static step see each other further
+  !> than those in time.
+  subroutine complete_blocks(self, num_free, was_complete, error)
+    class(condensed_equilibrium), intent(inout) :: self
+    integer, intent(in) :: num_free
+    logical, intent(out) :: was_complete !< or is too large
+    type(error_type), allocatable, intent(out) :: error
+    type(group_list) :: groups
+    was_complete = self%condensed%blocks%is_complete &
+                   .or. self%operator%num_points > most_completed
+    if (was_complete) return
+    groups = self%condensed%blocks%groups
+    call condense_densely(self, num_free, joint_springs(self%operator, self%condensed%k_ref, &
+                                                        self%weight), groups, 0.0_rk, error)
+  end subroutine complete_blocks
 
   !> Solves the equilibrium; solves again from the jumps found if they have drifted.
   subroutine solve_balance(self, balance, joints, old, new, x, outcome, error)
@@ -129,7 +167,16 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(force_balance) :: nearer
     integer :: iterations
+    logical :: was_complete
     call self%solve_from(balance, joints, old, new, x, outcome, error)
+    if (allocated(error)) return
+    if (balance%is_static .and. .not. (outcome%has_converged .or. outcome%gives_up)) then
+      call complete_blocks(self, size(balance%rhs), was_complete, error)
+      if (allocated(error) .or. was_complete) return
+      iterations = outcome%iterations
+      call self%solve_from(balance, joints, old, new, x, outcome, error)
+      outcome%iterations = outcome%iterations + iterations
+    end if
     if (allocated(error) .or. .not. outcome%has_converged) return
     if (.not. self%has_drifted(balance, new, x)) return
     nearer = balance

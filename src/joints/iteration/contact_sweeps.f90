@@ -98,14 +98,14 @@ contains
     real(rk), intent(in) :: force(:, :) !< (3, points) [N]
     real(rk), intent(inout) :: d(:, :) !< (3, points) [m]
     real(rk) :: missing(size(opened%compliance, 1)), answer(size(missing)), spring(size(missing))
-    integer :: b
+    integer :: k
     associate (groups => blocks%groups, point => blocks%groups%members(group))
       spring = reshape(points%spring(:, point), shape(spring))
       answer = reshape(closed_jump(:, point), shape(answer))
-      do b = blocks%first_block(group), blocks%first_block(group + 1) - 1
-        if (blocks%block(b)%source == group) cycle
-        associate (other => groups%members(blocks%block(b)%source))
-          call add_product(blocks%block(b)%values, &
+      do k = 1, groups%num_groups
+        if (k == group .or. .not. allocated(blocks%block(group, k)%values)) cycle
+        associate (other => groups%members(k))
+          call add_product(blocks%block(group, k)%values, &
                            reshape(d(:, other)/points%spring(:, other), [3*size(other)]), answer)
         end associate
       end do

@@ -2,6 +2,7 @@
 program test_solver_cholmod
   use kinds, only: rk
   use errors, only: error_type
+  use factor_top, only: top_of_factor
   use testing, only: test_log, check, check_close
   use matrix_pattern, only: pattern, multiply, position_of
   use solver_cholmod, only: cholmod_solver
@@ -12,6 +13,7 @@ program test_solver_cholmod
   log%suite = 'solver_cholmod'
   call solutions()
   call halves()
+  call tops()
   call failures()
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
@@ -82,6 +84,69 @@ contains
     call solver%backward_substitute(half, error)
     call check_close(log, maxval(abs(half - whole(:, 1))), 0.0_rk, 1.0e-12_rk, 'two halves')
   end subroutine halves
+
+  !> Groups of unknowns as separators: the order, substitution with the top of the factor, entries
+  !> of the inverse; against whole solves.
+  subroutine tops()
+    type(pattern) :: matrix
+    type(cholmod_solver) :: solver
+    type(top_of_factor) :: top
+    type(error_type), allocatable :: error
+    real(rk), allocatable :: values(:), whole(:, :), half(:), x(:), force(:), block(:, :)
+    integer, allocatable :: group(:), one(:), two(:), place(:)
+    integer :: j, missing
+    logical :: has_failed
+    call make_box(matrix, values, 0)
+    ! Unknowns 3 k - 2 .. 3 k of node k; two planes of nodes across the box are groups.
+    group = [(merge(1, merge(2, 0, mod((j - 1)/3, 6) == 4), mod((j - 1)/3, 6) == 1), &
+              j=1, matrix%num_free)]
+    matrix%group = group
+    matrix%jump = [integer ::]
+    matrix%joined = [integer ::]
+    one = pack([(j, j=1, matrix%num_free)], group == 1)
+    two = pack([(j, j=1, matrix%num_free)], group == 2)
+    call solver%analyse(matrix, error)
+    call solver%factorise(matrix, values, error)
+    place = solver%order
+    place(solver%order) = [(j, j=1, matrix%num_free)]
+    call check(log, maxval(place(one)) - minval(place(one)) == size(one) - 1 .or. &
+               maxval(place(two)) - minval(place(two)) == size(two) - 1, 'a group stays together')
+    call solver%take_top([one, two], top)
+    call check(log, top%is_there, 'the top')
+    half = [(cos(real(j, rk)), j=1, matrix%num_free)]
+    whole = reshape(half, [matrix%num_free, 1])
+    allocate (force(matrix%num_free), x(matrix%num_free), source=0.0_rk)
+    force(two) = 1.0_rk
+    whole(:, 1) = whole(:, 1) + force
+    call solver%solve(whole, error)
+    call solver%forward_substitute(half, error)
+    call top%add_forces(force, half)
+    call top%solve_for_top(half, x)
+    call check_close(log, maxval(abs(x([one, two]) - whole([one, two], 1))), 0.0_rk, 1.0e-12_rk, &
+                     'unknowns of the top')
+    call solver%backward_substitute(half, error)
+    call check_close(log, maxval(abs(half - whole(:, 1))), 0.0_rk, 1.0e-12_rk, 'all unknowns')
+    call top%invert(has_failed)
+    call check(log,.not. has_failed, 'inverse')
+    deallocate (whole)
+    allocate (whole(matrix%num_free, size(two)), source=0.0_rk)
+    do j = 1, size(two)
+      whole(two(j), j) = 1.0_rk
+    end do
+    call solver%solve(whole, error)
+    allocate (block(size(two), size(two)))
+    call top%inverse_block(two, two, block, missing)
+    call check(log, missing == 0, 'all entries of a group')
+    call check_close(log, maxval(abs(block - whole(two, :)))/maxval(abs(block)), 0.0_rk, &
+                     1.0e-12_rk, 'entries of a group')
+    deallocate (block)
+    allocate (block(size(one), size(two)))
+    call top%inverse_block(one, two, block, missing)
+    call check(log, missing == 0, 'all entries between neighbours')
+    call check_close(log, maxval(abs(block - whole(one, :)))/maxval(abs(block)), 0.0_rk, &
+                     1.0e-12_rk, 'entries between neighbours')
+    call top%forget_inverse()
+  end subroutine tops
 
   !> The free part of K q.
   subroutine product_of_free(matrix, values, q, b)

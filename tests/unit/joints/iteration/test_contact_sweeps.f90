@@ -6,7 +6,7 @@ program test_contact_sweeps
   use contact_sweeps, only: swept_points, sweep_contacts
   use joint_forces, only: joint_field
   use kinds, only: rk
-  use point_groups, only: single_group
+  use point_groups, only: group_list, single_group
   use testing, only: check, check_close, test_log
   implicit none
 
@@ -27,6 +27,7 @@ contains
     type(swept_points) :: points
     type(joint_field) :: field
     type(compliance_blocks) :: blocks
+    type(group_list) :: groups
     type(open_group) :: opened(1)
     real(rk) :: c(3*n, 3*n), w(3*n, 3*n), closed(3, n), force(3, n), d(3, n), missing(3, n)
     integer :: i, j
@@ -44,9 +45,8 @@ contains
     points%friction = spread(friction, 1, n)
     points%cohesion = spread(0.0_rk, 1, n)
     points%is_bonded = [.false., .false., .false., .true.]
-    allocate (points%slip(2, n), source=0.0_rk)
     field%gap = spread(0.0_rk, 1, n)
-    allocate (field%scale%own(2, n))
+    allocate (points%slip(2, n), field%scale%own(2, n), source=0.0_rk)
     do i = 1, n
       j = 3*i
       field%scale%own(1, i) = 1.0_rk/(share*w(j - 2, j - 2))
@@ -57,8 +57,8 @@ contains
                       -1.0e-4_rk, 1.5e-4_rk, -1.0e-4_rk, 8.0e-5_rk, 5.0e-5_rk, -4.0e-5_rk], &
                      [3, n])
     force = 0.0_rk
-    call single_group(n, blocks%groups)
-    blocks%first_block = [1, 1] ! no other groups
+    call single_group(n, groups)
+    call blocks%start(groups)
     opened(1)%compliance = c
     call sweep_contacts(blocks, opened, points, closed, 400, force, field)
     missing = share*k*closed - force

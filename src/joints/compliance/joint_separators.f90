@@ -1,0 +1,73 @@
+!> Which unknowns separate the parts of the structure at joints: the jumps and the displacements
+!> that they add to, group by group. Each group is one separator in the order of elimination.
+module joint_separators
+  use dof_numbering, only: numbering
+  use joint_operator, only: jump_operator
+  use kinds, only: rk
+  use point_groups, only: group_list, group_points
+  implicit none
+  private
+  public :: find_separators
+
+  !> Up to so many unknowns of joints stay together at the end of the factor.
+  integer, parameter :: most_at_the_end = 4500
+
+contains
+
+  !> Group of each free unknown, 0 for none; not allocated where joints have few unknowns.
+  subroutine find_separators(numbers, operator, group, jump, joined)
+    type(numbering), intent(in) :: numbers
+    type(jump_operator), intent(in) :: operator
+    integer, allocatable, intent(out) :: group(:) !< (num_free)
+    integer, allocatable, intent(out) :: jump(:), joined(:) !< pairs: a jump adds to a displacement
+    type(group_list) :: groups
+    integer :: g, r, k
+    if (count(operator%unknown <= numbers%num_free) <= most_at_the_end) return
+    call group_points(operator%first_point, operator%x, groups)
+    allocate (group(numbers%num_free), source=0)
+    do g = 1, groups%num_groups
+      do r = groups%first_row(g), groups%first_row(g + 1) - 1
+        do k = operator%row_start(groups%row(r)), operator%row_start(groups%row(r) + 1) - 1
+          if (operator%unknown(k) > numbers%num_free) cycle
+          if (group(operator%unknown(k)) == 0) group(operator%unknown(k)) = g
+        end do
+      end do
+    end do
+    call add_joined(numbers, group, jump, joined)
+  end subroutine find_separators
+
+  !> Adds the displacements that jumps add to.
+  pure subroutine add_joined(numbers, group, jump, joined)
+    type(numbering), intent(in) :: numbers
+    integer, intent(inout) :: group(:) !< (num_free)
+    integer, allocatable, intent(out) :: jump(:), joined(:) !< (pairs)
+    integer, allocatable :: jumps(:), others(:)
+    integer :: dof, k, first_jump, used
+    first_jump = numbers%num_free - numbers%num_jumps + 1
+    allocate (jump(0), joined(0))
+    used = 0
+    do dof = 1, size(numbers%row_start) - 1
+      associate (unknown => numbers%unknown(numbers%row_start(dof):numbers%row_start(dof + 1) - 1))
+        jumps = pack(unknown, unknown >= first_jump .and. unknown <= numbers%num_free)
+        if (size(jumps) == 0) cycle
+        others = pack(unknown, unknown < first_jump)
+      end associate
+      where (group(others) == 0) group(others) = group(jumps(1))
+      do k = 1, size(jumps)
+        call append(spread(jumps(k), 1, size(others)), used, jump)
+        call append(others, used, joined)
+        used = used + size(others)
+      end do
+    end do
+    jump = jump(:used)
+    joined = joined(:used)
+  end subroutine add_joined
+
+  !> Adds items behind the used ones of a list with room.
+  pure subroutine append(items, used, list)
+    integer, intent(in) :: items(:), used
+    integer, allocatable, intent(inout) :: list(:)
+    if (used + size(items) > size(list)) list = [list, spread(0, 1, size(list) + size(items))]
+    list(used + 1:used + size(items)) = items
+  end subroutine append
+end module joint_separators
