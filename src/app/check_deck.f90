@@ -10,6 +10,7 @@ module check_deck
   use problem_definition, only: problem
   use process_limits, only: print_text
   use read_deck, only: read_problem
+  use run_lock, only: job_lock
   use umat_loader, only: user_library
   use user_routines, only: load_user_routines
   implicit none
@@ -19,8 +20,9 @@ module check_deck
 contains
 
   !> Reads and verifies the deck; faults become an error, warnings go to stderr.
-  subroutine load_deck(given, model, faults, echo, error)
+  subroutine load_deck(given, lock, model, faults, echo, error)
     type(command_line), intent(in) :: given
+    type(job_lock), intent(inout) :: lock !< taken where there is a UMAT
     type(problem), allocatable, intent(out) :: model
     type(diagnostic_list), intent(out) :: faults !< warnings, for the summary of the run
     character(:), allocatable, intent(out) :: echo !< the deck with its defaults
@@ -28,7 +30,7 @@ contains
     type(user_library), pointer :: umat
     character(:), allocatable :: note
     integer :: i
-    call load_user_routines(given, umat, error)
+    call load_user_routines(given, lock, umat, error)
     if (allocated(error)) return
     call read_problem(given%deck, model, faults, echo, given%is_material, umat)
     if (faults%num_warnings > 0 .and. .not. given%is_quiet) then

@@ -14,6 +14,7 @@ program keyway
   use process_limits, only: end_trial, prepare_process, try_memory
   use run_analysis, only: run_problem
   use run_ledger, only: ledger
+  use run_lock, only: job_lock
   use run_material, only: run_tests
   use timer, only: wall_clock
   use umat_loader, only: keep_library
@@ -32,6 +33,7 @@ program keyway
   type(error_type), allocatable :: error
   type(problem), allocatable :: model
   type(diagnostic_list) :: remarks
+  type(job_lock) :: lock
   character(:), allocatable :: echo
   type(ledger) :: costs
   integer(c_int) :: num_threads
@@ -60,18 +62,19 @@ program keyway
   call end_trial()
   call costs%stop()
   call costs%start('read', 'deck', 'deck')
-  call load_deck(options, model, remarks, echo, error)
+  call load_deck(options, lock, model, remarks, echo, error)
   call costs%stop()
-  if (allocated(error)) call mark_earlier_results(options, model)
+  if (allocated(error)) call mark_earlier_results(options, model, lock, error)
   call end_on(error)
   if (options%is_check) then
     call report_model(options, model, echo, error)
   else if (options%is_material) then
     call run_tests(model, options, echo, started_at, error)
   else
-    call run_problem(model, options, remarks, echo, costs, started_at, error)
+    call run_problem(model, options, remarks, echo, costs, started_at, lock, error)
   end if
   call end_on(error)
+  call lock%give_back()
 
 contains
 
@@ -79,6 +82,7 @@ contains
   subroutine end_on(error)
     type(error_type), allocatable, intent(in) :: error
     if (.not. allocated(error)) return
+    call lock%give_back()
     if (len(error%message) > 0) write (error_unit, '(a)') error%message
     flush (output_unit)
     flush (error_unit)

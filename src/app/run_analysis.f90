@@ -27,16 +27,16 @@ module run_analysis
 contains
 
   !> Runs a problem with the options of the command line. After an error the results are readable.
-  subroutine run_problem(model, given, remarks, echo, costs, started_at, error)
+  subroutine run_problem(model, given, remarks, echo, costs, started_at, lock, error)
     type(problem), intent(in) :: model
     type(command_line), intent(in) :: given
     type(diagnostic_list), intent(in) :: remarks !< warnings of the deck
     character(*), intent(in) :: echo !< the deck with its defaults, for the log
     type(ledger), intent(in) :: costs !< open since the start of the program
     real(rk), intent(in) :: started_at !< wall clock [s]
+    type(job_lock), intent(inout) :: lock !< taken already where there is a UMAT
     type(error_type), allocatable, intent(out) :: error
     type(result_folder) :: results
-    type(job_lock) :: lock
     results%costs = costs
     call share_costs(model, costs)
     call results%prepare(model, given%folder, remarks, error)
@@ -49,7 +49,6 @@ contains
     end if
     call run_alone(model, given, echo, costs, started_at, lock%earlier, results, error)
     call catch_signals('')
-    call lock%give_back()
   end subroutine run_problem
 
   !> Opens the results, runs the steps and closes the results.

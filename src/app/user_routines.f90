@@ -15,12 +15,14 @@ module user_routines
 
 contains
 
-  !> Builds and loads the UMAT that --umat names; null without --umat.
-  subroutine load_user_routines(given, umat, error)
+  !> Builds and loads the UMAT that --umat names; null without --umat. The lock of the run is taken
+  !> before the first file is touched and stays taken: of several runs that start at the same time
+  !> one goes on.
+  subroutine load_user_routines(given, lock, umat, error)
     type(command_line), intent(in) :: given
+    type(job_lock), intent(inout) :: lock
     type(user_library), pointer, intent(out) :: umat !< lives as long as the program
     type(error_type), allocatable, intent(out) :: error
-    type(job_lock) :: lock
     nullify (umat)
     if (size(given%umat%files) == 0) return
     call make_folder(given%folder, error)
@@ -30,7 +32,6 @@ contains
     call lock%take(given%folder//'/'//base_name(given%deck)//'.lock', error)
     call explain_failed_write(error, given%folder, .false.)
     if (allocated(error)) return
-    call lock%give_back()
     allocate (umat)
     call open_library(given%umat, base_name(given%deck), given%folder, umat, error)
   end subroutine load_user_routines

@@ -19,10 +19,12 @@
 
 enum { system_failed = 3 };
 static const size_t blas_bytes = 144u << 20; /* OpenBLAS takes 128 MB for a thread; and its stack */
+static const size_t reserve_bytes = 16u << 20;
 static const long long spare_bytes = 256ll << 20; /* above what is free: memory that is never used */
 
 static void (*escape)(const char *); /* leaves a call of a user routine, if one runs */
 static char part[256] = "the program";
+static void *reserve; /* NULL: none is held */
 
 /* The part of the program that is at work, for the message on missing memory. */
 void keyway_note_part(const char *name) { snprintf(part, sizeof part, "%s", name); }
@@ -44,12 +46,32 @@ static _Noreturn void end_program(void)
   exit(system_failed);
 }
 
+/* Holds some addresses back while user routines run: one that takes all memory would else leave none
+ * for writing the results and for the stack. They are never touched, and cost no memory. */
+void keyway_hold_reserve(void)
+{
+  void *room;
+  if (reserve) return;
+  room = mmap(NULL, reserve_bytes, PROT_READ | PROT_WRITE,
+              MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (room != MAP_FAILED) reserve = room;
+}
+
+/* Gives the reserve free, when a user routine lacks memory or crashes. */
+void keyway_free_reserve(void)
+{
+  void *room = reserve;
+  reserve = NULL;
+  if (room) munmap(room, reserve_bytes);
+}
+
 /* The function is called when memory is missing, before the program ends. */
 void keyway_on_missing_memory(void (*function)(const char *)) { escape = function; }
 
 static _Noreturn void end_without_memory(const char *what)
 {
   static int is_reported;
+  keyway_free_reserve();
   if (escape) escape(what);
   if (!is_reported++) fprintf(stderr, "keyway: not enough memory in part '%s': %s\n", part, what);
   end_program();

@@ -30,6 +30,7 @@ MEMORY = 2 * 2**30  # bytes: a run of the bar needs less, and the UMAT reaches i
         (9, "the routine has crashed: Error allocating 1048576 bytes"),
         (10, "GETPROPERTYTABLE is not provided"),
         (11, "the routine has crashed: Segmentation fault"),
+        (12, "the routine has crashed: Error allocating 1048576 bytes"),
     ],
 )
 def test_run_stops_and_says_why(keyway, monkeypatch, manner, word) -> None:

@@ -27,15 +27,19 @@ contains
     character(*), intent(in) :: path
     type(error_type), allocatable, intent(out) :: error
     character(300) :: reason
-    integer :: i, unit, status
+    integer :: i, unit, status, status_of_removal
     do i = 2, len(path)
       if (path(i:i) == '/') status = c_mkdir(path(:i - 1)//c_null_char, int(mode_of_folders, c_int))
     end do
     status = c_mkdir(path//c_null_char, int(mode_of_folders, c_int))
     open (newunit=unit, file=path//'/.keyway_probe', status='replace', iostat=status, &
           iomsg=reason)
-    if (status == 0) close (unit, status='delete')
-    if (status == 0) return
+    if (status == 0) then
+      ! Another run that starts in the folder may have removed the file already.
+      close (unit, status='delete', iostat=status_of_removal)
+      if (status_of_removal /= 0) close (unit)
+      return
+    end if
     call raise(error, "cannot write in the folder '"//path//"'"// &
                trim(reason(max(1, index(reason, ': ', back=.true.)):)), system_failed)
     error%is_of_disk = .true.

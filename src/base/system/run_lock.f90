@@ -47,13 +47,14 @@ module run_lock
 
 contains
 
-  !> Takes the lock, or says who has it.
+  !> Takes the lock, or says who has it. A lock that this run has taken already stays taken.
   subroutine take(self, path, error)
     class(job_lock), intent(inout) :: self
     character(*), intent(in) :: path !< of the lock file, in a folder that exists
     type(error_type), allocatable, intent(out) :: error
     character(kind=c_char) :: holder(longest_holder)
     character(:), allocatable :: who
+    if (self%descriptor >= 0) return
     holder = c_null_char
     self%path = path
     self%descriptor = c_take_lock(path//c_null_char, holder, size(holder, kind=c_size_t))

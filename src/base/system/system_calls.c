@@ -12,6 +12,7 @@
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 enum { longest_path = 4096, read_at_most = 4096, num_fatal = 7 };
@@ -123,6 +124,18 @@ static void read_holder(int file, char *holder, size_t room) {
   holder[strcspn(holder, "\n")] = '\0';
 }
 
+/* The same of a lock that another process has, which may have taken it a moment ago and not have
+ * written its name yet: at most a second. */
+static void await_holder(int file, char *holder, size_t room) {
+  static const struct timespec moment = {0, 1000000};
+  int i;
+  for (i = 0; i < 1000; i++) {
+    read_holder(file, holder, room);
+    if (holder[0]) return;
+    nanosleep(&moment, NULL);
+  }
+}
+
 /* Whether a file is empty or holds "123 host": another file of this name is not written over. */
 static int is_lock(const char *holder) {
   size_t digits = strspn(holder, "0123456789");
@@ -148,7 +161,7 @@ int keyway_take_lock(const char *path, char *holder, size_t room) {
     file = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0644);
     if (file < 0) return -1;
     if (flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-      read_holder(file, holder, room);
+      await_holder(file, holder, room);
       close(file);
       return -2;
     }

@@ -16,6 +16,8 @@ static struct stat start_folder;
 static int start_descriptor = -1;
 
 void keyway_on_missing_memory(void (*escape)(const char *)); /* base/process_limits.c */
+void keyway_hold_reserve(void);
+void keyway_free_reserve(void);
 void keyway_umat_escape(const char *what); /* umat_bridge.c */
 
 /* Leaves the call of the UMAT; outside of a call the former handler is next. */
@@ -25,6 +27,7 @@ static void leave_call(int number)
   sigemptyset(&own);
   sigaddset(&own, number);
   pthread_sigmask(SIG_UNBLOCK, &own, NULL);
+  keyway_free_reserve();
   keyway_umat_escape(strsignal(number));
   for (int i = 0; i < num_signals; i++)
     if (crashes[i] == number) sigaction(number, &before[i], NULL);
@@ -44,6 +47,7 @@ void keyway_umat_catch_crashes(void)
   sigemptyset(&now.sa_mask);
   for (int i = 0; i < num_signals; i++) sigaction(crashes[i], &now, &before[i]);
   keyway_on_missing_memory(keyway_umat_escape);
+  keyway_hold_reserve();
 }
 
 /* A stack for the handler, one for each thread: a routine may have used up that of the thread. */

@@ -214,7 +214,7 @@ contains
     if (num_bytes > 0) then
       close (message_unit)
     else
-      ! Another run of the job may have removed the file already.
+      ! Somebody may have removed the file already.
       close (message_unit, status='delete', iostat=status)
       if (status /= 0) close (message_unit)
     end if

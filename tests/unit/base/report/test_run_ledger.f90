@@ -174,7 +174,8 @@ contains
     character(:), allocatable :: text
     character(1), parameter :: end_of_line = new_line('a')
     integer :: i, num_rows
-    call costs%open(wall_clock() - 3.0_rk)
+    ! On a busy machine each part may wait for its processor: 30 000 s are far above that.
+    call costs%open(wall_clock() - 30000.0_rk)
     do i = 1, 20
       call costs%start('write', 'FILE '//as_text(i), 'output')
       if (i == 7) call wait_for(5.0e-3_rk)
@@ -185,7 +186,7 @@ contains
     call check(log, num_rows == 14, 'rows: '//as_text(num_rows))
     call check(log, index(text, 'other work') < index(text, 'write FILE 7'//end_of_line), 'sorted')
     call check(log, index(text, '  8  other') > 0, 'the rest: '//text)
-    call check(log, index(text, '  99.') > 0, 'share of the longest part')
+    call check(log, index(text, ' 100.0% ') > 0, 'share of the longest part')
   end subroutine table
 
   !> Spends some time.
