@@ -73,7 +73,7 @@ contains
     type(position_table), intent(in) :: self
     integer, intent(in) :: id
     integer(long) :: mixed
-    mixed = iand(int(id, long), 4294967295_long)*spread
+    mixed = iand(int(id, long), 2147483647_long)*spread ! without the sign: no overflow
     seat = int(ibits(mixed, 32 - self%bits, self%bits)) + 1
     do while (self%position(seat) /= 0)
       if (self%id(seat) == id) return
