@@ -1,6 +1,7 @@
 """Measures the time of runs relative to the equation solver, and the time for given accuracy.
 
-usage: .venv/bin/python tools/bench [run] [accuracy] [peers] [--sizes 48000 145000] [--json FILE]
+usage: .venv/bin/python tools/bench [run] [accuracy] [joints] [peers] [--sizes 48000 145000]
+           [--json FILE]
 
 run (default): ratios of times taken in one process, which hardly depend on the machine:
   static    the whole program, from deck to results, over analyse + factor + solve
@@ -12,6 +13,9 @@ and the exit code is 1.
 accuracy: a small arch dam with finer meshes, every element, and smaller increments: time of the
 run against the errors of displacement, stress and frequency, as in docs/accuracy.md; --picture
 FILE draws them.
+
+joints: dams of --joints joints in a strong motion: an increment in solves, the set-up of the joints
+in factorisations.
 
 peers: the same dam in Keyway, CalculiX (Debian's calculix-ccx) and OpenSees (pip's openseespy, in
 a Python named by --opensees-python): weight, a linear history, a history with two joints. Time,
@@ -32,6 +36,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
 
 from cost_of_accuracy import draw, measure_accuracy, tables  # noqa: E402
+from cost_of_joints import DAMS, measure_joints  # noqa: E402
 from cost_of_run import Figure, measure_all  # noqa: E402
 from measured_run import Program  # noqa: E402
 from peers.comparison_of_peers import PeerOptions, compare_peers  # noqa: E402
@@ -42,9 +47,10 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         prog="bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     add = parser.add_argument
-    add("what", nargs="*", metavar="run|accuracy|peers", help="what to measure (run)")
+    add("what", nargs="*", metavar="run|accuracy|joints|peers", help="what to measure (run)")
     add("--sizes", type=int, nargs="+", default=[48_000, 145_000], help="unknowns of the models")
     add("--increments", type=int, default=60, help="dynamic increments (60)")
+    add("--joints", type=int, nargs="+", default=[2, 12], choices=DAMS, help="of the dams (2 12)")
     add("--threads", type=int, default=2, help="of the program (2)")
     add("--program", type=Path, default=ROOT / "build/release/keyway", help="the program")
     add("--json", type=Path, metavar="FILE", help="write the figures as JSON too")
@@ -52,8 +58,8 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("--picture", type=Path, metavar="FILE", help="draw time against accuracy")
     options = parser.parse_args(arguments)
     options.what = options.what or ["run"]
-    if set(options.what) - {"run", "accuracy", "peers"}:
-        parser.error("expected 'run', 'accuracy' or 'peers'")
+    if set(options.what) - {"run", "accuracy", "joints", "peers"}:
+        parser.error("expected 'run', 'accuracy', 'joints' or 'peers'")
     return options
 
 
@@ -90,6 +96,9 @@ def main(arguments: list[str]) -> int:
         if "accuracy" in options.what:
             rows = measure_accuracy(Program(program.path, 1), folder)
             print(tables(rows))
+        if "joints" in options.what:
+            duration = 0.01 * options.increments  # of 0.01 s each
+            print(measure_joints(program, folder, options.joints, duration))
         if "peers" in options.what:
             print(compare_peers(peer_options(options), folder))
     if options.picture and rows:

@@ -1,0 +1,55 @@
+"""Ratios of the joint iteration to the equation solver: dams with joints in a strong motion."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+from measured_run import Program, Run
+
+TOOLS = Path(__file__).resolve().parent.parent
+SHAPE = ["--height", "200", "--crest-arc", "500", "--refine", "2"]
+MESH = ["--arc", "44", "--levels", "16", "--bottom", "12", "--thick", "4"]
+FINE = ["--arc", "104", "--levels", "40", "--bottom", "24", "--thick", "10", "--refine", "1"]
+DAMS = {2: MESH, 12: MESH, 25: FINE}  # joints: options of the mesh
+PEAK = "0.35"  # of the motion [g]
+
+
+def write_dam(folder: Path, joints: int, duration: float) -> Path:
+    """The deck of a dam and its motion of three components."""
+    deck, motion = folder / f"joints_{joints}.inp", folder / "motion"
+    make = [sys.executable, str(TOOLS / "make_motion.py"), "-o", str(motion), "--pga", PEAK]
+    run_quietly([*make, "--duration", "4", "--no-pictures"])
+    records = [f"{motion}_{axis}.txt" for axis in "xyz"]
+    make = [sys.executable, str(TOOLS / "make_dam.py"), "-o", str(deck), *SHAPE, *DAMS[joints]]
+    run_quietly([*make, "--joints", str(joints), "--duration", str(duration), "--motion", *records])
+    return deck
+
+
+def run_quietly(command: list[str]) -> None:
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+
+
+def seconds(run: Run, pattern: str) -> float:
+    return run.cost(pattern)[0]
+
+
+def measure_joints(program: Program, folder: Path, joints: list[int], duration: float) -> str:
+    """A table in Markdown, with one row for each dam."""
+    lines = [
+        "| joints | points | unknowns | increment, in solves | joint iteration, in solves "
+        "| set-up of joints, in factorisations |",
+        "|---|---|---|---|---|---|",
+    ]
+    for number in joints:
+        run = program.run(write_dam(folder, number, duration))
+        points = sum(joint["points"] for joint in run.results.find("joints").values())
+        solve = seconds(run, "solve (forward|backward) structure")
+        iteration = seconds(run, r"(iterate|correct) JOINT\d+")
+        set_up = seconds(run, r"condense JOINT\d+") / seconds(run, "factor structure")
+        lines.append(
+            f"| {number} | {points} | {run.unknowns} | {1.0 + iteration / solve:.2f} "
+            f"| {iteration / solve:.2f} | {set_up:.2f} |"
+        )
+    return "\n".join(lines)
