@@ -36,8 +36,8 @@ def options(request, library: Path, tmp_path: Path) -> list:
 
 
 def test_one_goes_on(program_path, options, tmp_path):
-    for number in range(NUM_ROUNDS):
-        out = tmp_path / f"out{number}"
+    for round_number in range(NUM_ROUNDS):
+        out = tmp_path / f"out{round_number}"
         runs = [start(program_path, "-o", out, *options) for _ in range(NUM_RUNS)]
         winner = await_one(runs)
         for run in runs:
@@ -53,10 +53,12 @@ def test_one_goes_on(program_path, options, tmp_path):
         winner.send_signal(signal.SIGTERM)
         assert winner.wait(60) == 1
         assert "stopped by SIGTERM" in json.loads((out / "job.json").read_text())["message"]
-        rows = [
-            line.split(",")[1] for line in (out / "job_energy.csv").read_text().splitlines()[1:]
-        ]
-        assert rows == [str(i) for i in range(int(rows[0]), int(rows[0]) + len(rows))]
+        lines = (out / "job_energy.csv").read_text().splitlines()[1:]
+        rows = [tuple(map(int, line.split(",")[:2])) for line in lines]  # step, increment
+        assert rows == sorted(set(rows)), "each increment has one row"
+        for step in {step for step, _ in rows}:
+            of_step = [increment for number, increment in rows if number == step]
+            assert of_step == list(range(of_step[0], of_step[0] + len(of_step)))
         assert not (out / "job.lock").exists()
 
 
