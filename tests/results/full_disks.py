@@ -1,4 +1,4 @@
-"""A disk that fills while a run writes, made with full_disk.c; and the table of docs/reliability.md."""
+"""A disk that fills while a run writes (full_disk.c), and the table of docs/reliability.md."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def unreadable(out: Path) -> list[str]:
                 reader.set_active_time_point(len(reader.time_values) - 1)
                 reader.read()
             assert path.suffix not in (".part", ".lock")
-        except Exception:  # noqa: BLE001 (whatever a reader raises, the file is not readable)
+        except Exception:  # whatever a reader raises, the file is not readable
             bad.append(str(path.relative_to(out)))
     return bad
 
@@ -116,7 +116,8 @@ def main(program: Path, folder: Path) -> None:
     subprocess.run([program, "--umat", UMAT, "--umat-library", umat], check=True)
     options = ["-q", "-j", "1", "--umat", umat]
     subprocess.run([program, *options, "-o", folder / "whole", path], check=True)
-    print("| the disk fills with | exit | job.json | not readable | then --continue |\n|---|---|---|---|---|")
+    print("| the disk fills with | exit | job.json | not readable | then --continue |")
+    print("|---|---|---|---|---|")
     for number, (name, disk) in enumerate(DISKS.items()):
         out = folder / f"full_{number}"
         done = run_on(disk, library, out, [program, *options, "-o", out, path])

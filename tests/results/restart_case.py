@@ -1,8 +1,8 @@
 """A small deck with everything that has a state, and what two runs must agree in.
 
 A column on a shaken base: a brick of concrete that cracks; a joint of JOINT8; an elastic brick; a
-joint on surfaces of different meshes; four bricks; a tie between different meshes; a brick of a UMAT
-that yields. A static step with weight, a step with modes, two dynamic steps.
+joint on surfaces of different meshes; four bricks; a tie between different meshes; a brick of a
+UMAT that yields. A static step with weight, a step with modes, two dynamic steps.
 """
 
 from __future__ import annotations
@@ -135,7 +135,7 @@ def deck(*, frequency: int = 4, controls: str = "", last: str | None = None) -> 
 
 
 def start(program: Path, *arguments: str | Path, **options) -> subprocess.Popen:
-    """Starts the program with the signals as a shell sets them, whatever pytest was started with."""
+    """Starts the program with the signals as a shell sets them, whatever those of pytest are."""
 
     def usual_signals() -> None:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGXFSZ):
@@ -146,7 +146,7 @@ def start(program: Path, *arguments: str | Path, **options) -> subprocess.Popen:
         stderr=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
         text=True,
-        preexec_fn=usual_signals,
+        preexec_fn=usual_signals,  # noqa: PLW1509 (the tests have one thread)
         **options,
     )
 
@@ -178,7 +178,9 @@ def continue_killed(
         _, text = process.communicate()
         assert process.returncode in (0, -signal.SIGKILL), text
         num_killed += process.returncode != 0
-        more = ["--continue"] if list(out.glob("*.ckpt.h5")) or list(out.glob("*.ckpt_old.h5")) else []
+        more = (
+            ["--continue"] if list(out.glob("*.ckpt.h5")) or list(out.glob("*.ckpt_old.h5")) else []
+        )
     process = start(program, "-q", "-o", out, *options, *more, deck_file)
     _, text = process.communicate()
     assert process.returncode == 0, text
@@ -220,7 +222,9 @@ def differences(one: Path, other: Path) -> list[str]:
     for name in sorted(names(one) & names(other)):
         if name.endswith(".h5"):
             a, b = contents(one / name), contents(other / name)
-            found += [f"{name}:{key}" for key in sorted(a.keys() | b.keys()) if a.get(key) != b.get(key)]
+            found += [
+                f"{name}:{key}" for key in sorted(a.keys() | b.keys()) if a.get(key) != b.get(key)
+            ]
         elif (one / name).read_bytes() != (other / name).read_bytes():
             found.append(name)
     return found
@@ -231,7 +235,8 @@ def main(program: Path, folder: Path, num_runs: int) -> None:
     umat = Path(__file__).resolve().parents[2] / "input" / "umat" / "plastic_j2.f90"
     library, path = folder / "j2.so", folder / "job.inp"
     subprocess.run([program, "--umat", umat, "--umat-library", library], check=True)
-    print("| threads | tangent | runs | kills | continued, bit by bit the same |\n|---|---|---|---|---|")
+    print("| threads | tangent | runs | kills | continued, bit by bit the same |")
+    print("|---|---|---|---|---|")
     for threads in (1, 2):
         for tangent in ("AUTO", "CONSISTENT"):
             path.write_text(deck(controls=f"*CONTROLS, TANGENT={tangent}\n"))

@@ -34,7 +34,13 @@ def slow_umat(program_path: Path, tmp_path_factory) -> Path:
     text = UMAT.read_text()
     first = text.index("  implicit none\n")
     place = re.compile(r"^  [a-z]\w* = ", re.MULTILINE).search(text, first).start()
-    text = text[:first] + SLOW_PART + text[first + len("  implicit none\n") : place] + SLEEP + text[place:]
+    text = (
+        text[:first]
+        + SLOW_PART
+        + text[first + len("  implicit none\n") : place]
+        + SLEEP
+        + text[place:]
+    )
     (folder / "slow_j2.f90").write_text(text)
     library = folder / "j2.so"
     subprocess.run(
@@ -43,7 +49,9 @@ def slow_umat(program_path: Path, tmp_path_factory) -> Path:
     return library
 
 
-@pytest.mark.parametrize("controls", ["", "*CONTROLS, TANGENT=CONSISTENT\n"], ids=["auto", "tangent"])
+@pytest.mark.parametrize(
+    "controls", ["", "*CONTROLS, TANGENT=CONSISTENT\n"], ids=["auto", "tangent"]
+)
 def test_a_long_increment_is_dropped(program_path, slow_umat, tmp_path, controls):
     path, out, whole = tmp_path / "job.inp", tmp_path / "out", tmp_path / "whole"
     path.write_text(deck(controls=controls))
@@ -67,7 +75,9 @@ def test_a_long_increment_is_dropped(program_path, slow_umat, tmp_path, controls
         num_dropped += "the next increment is dropped" in summary["message"]
         more = ["--continue"]
     assert num_dropped >= 2
-    subprocess.run([program_path, *arguments, "--continue", "-o", out, path], check=True, cwd=tmp_path)
+    subprocess.run(
+        [program_path, *arguments, "--continue", "-o", out, path], check=True, cwd=tmp_path
+    )
     assert differences(whole, out) == []
 
 
@@ -76,7 +86,9 @@ def test_a_signal_in_the_first_increment(program_path, slow_umat, tmp_path):
     path, out = tmp_path / "job.inp", tmp_path / "out"
     path.write_text(deck())
     (tmp_path / "slow").touch()
-    process = start(program_path, "-q", "-j", "1", "--umat", slow_umat, "-o", out, path, cwd=tmp_path)
+    process = start(
+        program_path, "-q", "-j", "1", "--umat", slow_umat, "-o", out, path, cwd=tmp_path
+    )
     while not (out / "job.json").exists():
         assert process.poll() is None
         time.sleep(0.01)

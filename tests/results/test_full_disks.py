@@ -1,4 +1,4 @@
-"""A disk that fills while a run writes: nothing is lost, nothing says "running", the run goes on later.
+"""A disk that fills while a run writes: nothing is lost, and the run goes on later.
 
 The disk is that of full_disk.c, so the tests need no rights and no file system of their own.
 """
@@ -71,7 +71,9 @@ def test_full_disk(command, library, case, whole, tmp_path, name):
         assert not list(out.glob("*.ckpt*"))
         return
     assert "keyway --continue goes on from the last checkpoint" in done.stderr
-    again = subprocess.run([*command, "-o", out, "--continue", case], capture_output=True, text=True)
+    again = subprocess.run(
+        [*command, "-o", out, "--continue", case], capture_output=True, text=True
+    )
     assert again.returncode == 0, again.stderr
     assert differences(whole, out) == []
 

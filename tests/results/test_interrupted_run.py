@@ -80,7 +80,15 @@ def block_deck(n: int) -> str:
                 lines.append(", ".join(map(str, ids)))
     lines += ["*MATERIAL, NAME=M", "*DENSITY", "2400", "*ELASTIC", "20e9, 0.2"]
     lines += ["*SOLID SECTION, ELSET=E, MATERIAL=M", "*NSET, NSET=B, GENERATE", f"1, {m * m}"]
-    lines += ["*BOUNDARY", "B, 1, 3", "*STEP", "*STATIC", "1., 1.", "*DLOAD", "E, GRAV, 9.81, 0, 0, -1"]
+    lines += [
+        "*BOUNDARY",
+        "B, 1, 3",
+        "*STEP",
+        "*STATIC",
+        "1., 1.",
+        "*DLOAD",
+        "E, GRAV, 9.81, 0, 0, -1",
+    ]
     return "\n".join([*lines, "*NODE FILE", "U", "*END STEP", ""])
 
 
@@ -94,7 +102,10 @@ def test_the_limit_of_file_sizes_stops_the_run(program_path, long_deck, tmp_path
         signal.signal(signal.SIGXFSZ, signal.SIG_DFL)
 
     done = subprocess.run(
-        [program_path, "-q", "-o", out, long_deck], stderr=subprocess.PIPE, text=True, preexec_fn=limit
+        [program_path, "-q", "-o", out, long_deck],
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=limit,
     )
     assert done.returncode == 1
     assert "stopped by the limit of file sizes (ulimit -f)" in done.stderr
@@ -114,7 +125,11 @@ def test_results_that_cannot_be_opened(program_path, tmp_path):
         signal.signal(signal.SIGXFSZ, signal.SIG_DFL)
 
     done = subprocess.run(
-        [program_path, "-q", path], stderr=subprocess.PIPE, text=True, cwd=tmp_path, preexec_fn=limit
+        [program_path, "-q", path],
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=tmp_path,
+        preexec_fn=limit,
     )
     assert done.returncode == 1
     assert "stopped by the limit of file sizes" in done.stderr
@@ -156,9 +171,7 @@ def test_a_second_run_in_the_folder_is_refused(program_path, long_deck, tmp_path
     out = tmp_path / "out"
     first = start(program_path, "-q", "-o", out, long_deck)
     kill_at(first, out / "job_energy.csv", 20, 0, 0.0)
-    second = subprocess.run(
-        [program_path, "-o", out, long_deck], stderr=subprocess.PIPE, text=True
-    )
+    second = subprocess.run([program_path, "-o", out, long_deck], stderr=subprocess.PIPE, text=True)
     assert second.returncode == 3
     assert f"process {first.pid} on host " in second.stderr
     bad = tmp_path / "bad"

@@ -162,7 +162,7 @@ def test_kills_in_checkpoints(program_path, umat, tmp_path, threads, kills):
         num_in_checkpoints += bool(list(out.glob("job.ckpt_new.h5*")))
         is_saved = list(out.glob("*.ckpt.h5")) or list(out.glob("*.ckpt_old.h5"))
         more = ["--continue"] if is_saved else []
-    print(f"{kills} kills, {num_in_checkpoints} of them in a checkpoint")
+    print(f"{kills} kills, {num_in_checkpoints} of them in a checkpoint")  # noqa: T201
     assert num_in_checkpoints > 0
     subprocess.run([program_path, *arguments, *more, "-o", out, path], check=True)
     assert differences(whole, out) == []

@@ -1,4 +1,4 @@
-"""Folders and files that must not be written: exit 3 with the reason, before the analysis starts."""
+"""Folders and files that must not be written: exit 3 with the reason, before the analysis."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ NOBODY = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"]
 
 @pytest.fixture
 def folder(program_path) -> Iterator[Path]:
-    """A folder with a deck that another user can enter: modes do not stop root, who runs as nobody."""
+    """A folder that another user can enter: modes do not stop root, who runs as nobody."""
     path = Path(tempfile.mkdtemp(prefix="keyway_read_only_"))
     path.chmod(0o777)
     (path / "job.inp").write_text(DECK.format(increments=100, duration=0.1, frequency=5))

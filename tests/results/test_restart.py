@@ -1,4 +1,4 @@
-"""A run that is killed and continued leaves the files of the run that was not (docs/reliability.md)."""
+"""A run that is killed and continued leaves the files of the run that was not."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def test_the_case_has_what_it_is_for(whole: Path):
         assert abs(points["SDV"][:][steel]).max() > 1e-6  # the UMAT yields
 
 
-# Row 5 is in the first static step, row 10 its end; the steps with modes and the dynamic one follow.
+# Row 5 is in the first static step, row 10 its end; modes and the dynamic step follow.
 @pytest.mark.parametrize("row", [5, 10])
 def test_killed_in_and_after_a_static_step(program_path, case, options, whole, tmp_path, row):
     assert check_kills(program_path, case, options, whole, tmp_path, [(row, 0.002)]) == 1
@@ -191,7 +191,10 @@ def test_changed_deck_is_refused(stopped, tmp_path_factory, old, new, says):
         assert done.returncode == 0, done.stderr
         return
     assert done.returncode == 2
-    assert "--continue: the checkpoint does not belong to this run: the deck has changed" in done.stderr
+    assert (
+        "--continue: the checkpoint does not belong to this run: the deck has changed"
+        in done.stderr
+    )
     assert says in done.stderr
     assert {p.name: p.read_bytes() for p in out.iterdir() if p.is_file()} == before
 

@@ -1,4 +1,4 @@
-"""Runs of one job that start in one folder at the same time: one goes on, the others are refused."""
+"""Runs of one job that start together in one folder: one goes on, the others are refused."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 !> The lock of a run, job.lock: one process at a time writes the results of a job.
 !>
 !> The file names the process and its host, and the kernel holds a lock on it as long as the process
-!> lives. A file without a lock was left by a process that was killed.
+!> lives. A file without a lock was left by a process that was killed: every other end of the program
+!> removes it (system_calls.c), also one by missing memory or by a second Ctrl-C.
 module run_lock
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char, c_size_t
   use errors, only: error_type, raise, raise_unwritten, system_failed
@@ -16,7 +17,6 @@ module run_lock
   type :: job_lock
     private
     integer(c_int) :: descriptor = -1 !< -1 while it is not taken
-    character(:), allocatable :: path
     character(:), allocatable, public :: earlier !< process that left the lock behind, '' for none
   contains
     procedure :: take
@@ -36,12 +36,7 @@ module run_lock
     end function c_take_lock
 
     !> Removes the file and gives the lock back.
-    subroutine c_give_lock(descriptor, path) bind(c, name='keyway_give_lock')
-      import :: c_char, c_int
-      implicit none
-      integer(c_int), intent(in), value :: descriptor
-      ! allow(assumed-size)
-      character(kind=c_char), intent(in) :: path(*)
+    subroutine c_give_lock() bind(c, name='keyway_give_lock')
     end subroutine c_give_lock
   end interface
 
@@ -56,7 +51,6 @@ contains
     character(:), allocatable :: who
     if (self%descriptor >= 0) return
     holder = c_null_char
-    self%path = path
     self%descriptor = c_take_lock(path//c_null_char, holder, size(holder, kind=c_size_t))
     self%earlier = text_of(holder)
     if (self%descriptor >= 0) return
@@ -80,7 +74,7 @@ contains
   !> Gives the lock back and removes its file.
   subroutine give_back(self)
     class(job_lock), intent(inout) :: self
-    if (self%descriptor >= 0) call c_give_lock(self%descriptor, self%path//c_null_char)
+    if (self%descriptor >= 0) call c_give_lock()
     self%descriptor = -1
   end subroutine give_back
 

@@ -2,8 +2,7 @@
  *
  * A signal may arrive at any moment; its handler may only set flags and use system calls. The flags
  * below are therefore the one state of the program that no caller owns. */
-#define _DEFAULT_SOURCE
-#define _POSIX_C_SOURCE 200809L
+#define _GNU_SOURCE
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -15,12 +14,20 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { longest_path = 4096, read_at_most = 4096, num_fatal = 7 };
+enum { longest_path = 4096, name_room = 256, read_at_most = 4096, num_fatal = 7 };
 
 static volatile sig_atomic_t first_signal, has_met_limit;
 static char summary_path[longest_path]; /* of job.json; empty: nothing to mark */
 static const int fatal[num_fatal] = {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGQUIT, SIGSYS};
 static struct sigaction before[num_fatal];
+
+/* The lock of this run. The folder is held open: it may move, and a UMAT may change the folder of the
+ * process. */
+static struct {
+  int file, folder; /* descriptors; -1 while it is not taken */
+  pid_t owner;
+  char name[name_room]; /* in the folder */
+} lock = {-1, -1, 0, ""};
 
 /* Turns the status "running" of job.json into "stopped", in place; signal handlers may call it. */
 static void mark_summary(void) {
@@ -40,6 +47,19 @@ static void mark_summary(void) {
   close(file);
 }
 
+/* Removes the lock file, unless another file has taken its name, and gives the lock back. Signal
+ * handlers may call it, and processes that a UMAT has forked. */
+static void drop_lock(void) {
+  struct stat opened, named;
+  if (lock.file < 0 || lock.owner != getpid()) return;
+  if (fstatat(lock.folder, lock.name, &named, 0) == 0 && fstat(lock.file, &opened) == 0 &&
+      named.st_ino == opened.st_ino && named.st_dev == opened.st_dev)
+    unlinkat(lock.folder, lock.name, 0);
+  close(lock.file);
+  close(lock.folder);
+  lock.file = lock.folder = -1;
+}
+
 /* Ends the process by a signal, as if the program had no handler. */
 static void end_by(int signal_number) {
   sigset_t only;
@@ -57,6 +77,7 @@ static void ask_to_stop(int signal_number) {
     return;
   }
   mark_summary();
+  drop_lock();
   end_by(signal_number);
 }
 
@@ -149,6 +170,20 @@ static int is_of_this_host(const char *holder, const char *host) {
   return !blank || strcmp(blank + 1, host) == 0;
 }
 
+/* The end of the program gives the lock back, wherever it ends: a lock that stays was left by a
+ * process that was killed. */
+static void keep_lock(int file, const char *path) {
+  static int is_registered;
+  char folder[longest_path] = ".";
+  const char *slash = strrchr(path, '/');
+  if (slash) snprintf(folder, sizeof folder, "%.*s", (int)(slash - path + 1), path);
+  snprintf(lock.name, sizeof lock.name, "%s", slash ? slash + 1 : path);
+  lock.folder = open(folder, O_PATH | O_DIRECTORY | O_CLOEXEC);
+  lock.owner = getpid();
+  lock.file = file;
+  if (!is_registered++) atexit(drop_lock);
+}
+
 /* Takes the lock file PATH. Returns its descriptor, or -1: it cannot be made, -2: another process has
  * it, -3: it was left by a process of another host, -4: the disk is full. `holder`: who has it or has left it, "" for none. */
 int keyway_take_lock(const char *path, char *holder, size_t room) {
@@ -186,14 +221,12 @@ int keyway_take_lock(const char *path, char *holder, size_t room) {
     close(file);
     return -4;
   }
+  keep_lock(file, path);
   return file;
 }
 
 /* Gives the lock back and removes its file. */
-void keyway_give_lock(int file, const char *path) {
-  unlink(path);
-  close(file);
-}
+void keyway_give_lock(void) { drop_lock(); }
 
 /* Makes an empty file or empties an old one. A pipe that nobody reads is a failure, no endless wait. */
 int keyway_create(const char *path, int mode) {
