@@ -1,8 +1,8 @@
 !> The lock of a run, job.lock: one process at a time writes the results of a job.
 !>
 !> The file names the process and its host, and the kernel holds a lock on it as long as the process
-!> lives. A file without a lock was left by a process that was killed: every other end of the program
-!> removes it (system_calls.c), also one by missing memory or by a second Ctrl-C.
+!> lives. A file without a lock was left by a process that was killed: every other end of the
+!> program removes it (system_calls.c), also one by missing memory or by a second Ctrl-C.
 module run_lock
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char, c_size_t
   use errors, only: error_type, raise, raise_unwritten, system_failed
@@ -37,6 +37,7 @@ module run_lock
 
     !> Removes the file and gives the lock back.
     subroutine c_give_lock() bind(c, name='keyway_give_lock')
+      implicit none
     end subroutine c_give_lock
   end interface
 
