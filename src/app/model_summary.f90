@@ -1,6 +1,6 @@
 !> The summary of a model as text.
 module model_summary
-  use dam_mesh, only: named_set
+  use dam_mesh, only: fe_mesh, named_set
   use joint_points, only: dam_joint
   use kinds, only: rk
   use material_law, only: material
@@ -23,7 +23,7 @@ contains
   function summary_of(model) result(text)
     type(problem), intent(in) :: model
     character(:), allocatable :: text !< lines with new_line between them
-    text = 'Model'//nl//row('nodes', as_text(model%mesh%num_nodes))//nl// &
+    text = 'Model'//nl//row('nodes', nodes_of(model%mesh))//nl// &
            row('elements', as_text(model%mesh%num_elements)//types_of(model))//nl// &
            row('mass', trim(merge('lumped    ', 'consistent', model%has_lumped_mass)))
     text = text//titled('Node sets', sets_of('nodes', model%node_sets))// &
@@ -58,6 +58,21 @@ contains
     character(:), allocatable :: text
     text = '  '//name//repeat(' ', max(1, name_width - len(name)))//value
   end function row
+
+  !> The number of nodes, and of those that no element has.
+  pure function nodes_of(mesh) result(text)
+    type(fe_mesh), intent(in) :: mesh
+    character(:), allocatable :: text
+    logical :: has_element(0:mesh%num_nodes)
+    integer :: e, num_bare
+    has_element = .false.
+    do e = 1, mesh%num_elements
+      has_element(max(mesh%nodes(:, e), 0)) = .true.
+    end do
+    num_bare = count(.not. has_element(1:))
+    text = as_text(mesh%num_nodes)
+    if (num_bare > 0) text = text//', '//as_text(num_bare)//' of them without an element'
+  end function nodes_of
 
   !> Number of elements of each type.
   pure function types_of(model) result(text)

@@ -1,13 +1,18 @@
 !> Reads a deck into the problem, in passes over its cards; all faults are collected.
 module read_deck
   use card_check, only: check_card, match_card
+  use check_histories, only: warn_of_histories
+  use check_idle_steps, only: warn_of_idle_steps
   use check_loads, only: warn_of_loads
   use check_mesh, only: warn_of_mesh
   use card_digests, only: digests_of_cards, list_input_files
   use check_names, only: verify_names
+  use check_nodes, only: warn_of_nodes
+  use check_repeats, only: warn_of_repeats
   use check_requests, only: warn_of_missing_fields
   use check_steps, only: verify_steps
   use check_unused, only: warn_of_unused
+  use check_water, only: warn_of_water
   use deck_echo, only: echo_of_cards
   use deck_lexer, only: read_cards
   use diagnostics, only: diagnostic_list, place, severity_error
@@ -76,6 +81,11 @@ contains
     call warn_of_mesh(model, faults)
     call warn_of_unused(model, faults)
     call warn_of_loads(model, faults)
+    call warn_of_water(model, faults)
+    call warn_of_nodes(model, faults)
+    call warn_of_histories(model, faults)
+    call warn_of_idle_steps(model, faults)
+    call warn_of_repeats(model, faults)
     call list_inelastic_blocks(model%problem%mesh, model%problem%materials, model%problem%inelastic)
     call warn_of_missing_fields(model, faults)
   end subroutine complete_and_verify

@@ -1,9 +1,14 @@
 set(sources
+  checks/check_histories.f90
+  checks/check_idle_steps.f90
   checks/check_loads.f90
   checks/check_mesh.f90
   checks/check_names.f90
+  checks/check_nodes.f90
+  checks/check_repeats.f90
   checks/check_steps.f90
   checks/check_unused.f90
+  checks/check_water.f90
   deck_echo.f90
   draft/keyword_handler.f90
   draft/model_draft.f90

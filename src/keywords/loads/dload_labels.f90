@@ -10,6 +10,7 @@ module dload_labels
   use kinds, only: rk
   use load_gravity, only: gravity_load
   use load_pressure, only: face_of_word, faces_of_elements, pressure_load
+  use mesh_faces, only: face_nodes
   use model_draft, only: draft
   use write_text, only: as_text
   implicit none
@@ -176,10 +177,31 @@ contains
                          'z_ref below z_top, '//this%text_at(line, 4)//' m')
       return
     end if
+    call warn_of_dry_faces(this, line, elements, top, model, faults)
     call put_push(this, line, elements, &
                   pressure_load(is_hydrostatic=.true., top=top, reference=reference), &
                   history, model, faults)
   end subroutine put_water
+
+  !> The hydrostatic pressure is zero at its top and above.
+  subroutine warn_of_dry_faces(this, line, elements, top, model, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line, elements(:)
+    real(rk), intent(in) :: top !< height of pressure zero [m]
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i, face
+    face = face_of_word(this%word_at(line, 2))
+    associate (mesh => model%problem%mesh)
+      if (size(elements) == 0) return
+      if (.not. all(is_solid(mesh%element_type(elements)))) return ! reported
+      do i = 1, size(elements)
+        if (minval(mesh%x(3, face_nodes(mesh, elements(i), face))) < top) return
+      end do
+    end associate
+    call this%warn_at(faults, line, 4, 'the load has no effect: no face has a point below '// &
+                      'z_top, '//this%text_at(line, 4)//' m')
+  end subroutine warn_of_dry_faces
 
   !> Adds a pressure on the face that the label names.
   subroutine put_push(this, line, elements, variation, history, model, faults)

@@ -44,6 +44,11 @@ contains
     call find_material(this, model, faults, num_material)
     call elements_of_set(this, 'ELSET', model, faults, new%elements)
     call choose_mass(this, model, faults)
+    if (this%num_lines > 0) then
+      if (.not. this%is_empty_at(1, 1)) then
+        call this%warn_at(faults, 1, 1, 'the thickness has no effect on solids')
+      end if
+    end if
     new%material = this%word('MATERIAL')
     new%spot = model%here(0)
     model%sections = [model%sections, new]

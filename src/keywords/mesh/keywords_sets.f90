@@ -144,6 +144,9 @@ contains
       members = members(:i - 1)
       return
     end do
+    if (id == range(2)) return
+    call this%warn_at(faults, line, 2, 'the range ends at '//kind//' '//as_text(id)// &
+                      ': steps of '//as_text(range(3))//' do not meet '//as_text(range(2)))
   end subroutine generate
 
   subroutine describe_surface(spec)

@@ -1,0 +1,156 @@
+!> Warns of histories that do not act as they stand: over before the step, zero, too fine for its
+!> increments, in units of acceleration on loads.
+module check_histories
+  use amplitudes, only: amplitude, amplitude_at
+  use deck_card, only: card
+  use deck_scan, only: is_keyword, steps_of_cards
+  use diagnostics, only: diagnostic_list
+  use kinds, only: rk
+  use model_draft, only: draft
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: warn_of_histories
+
+  real(rk), parameter :: round_off = 1.0e-9_rk
+  real(rk), parameter :: seen_share = 0.9_rk !< of the peak: less is a warning
+  integer, parameter :: most_samples = 10000000
+
+contains
+
+  !> The deck must have no errors.
+  subroutine warn_of_histories(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: step(size(model%cards))
+    integer :: i, a
+    step = steps_of_cards(model%cards)
+    do i = 1, size(step)
+      if (.not. model%cards(i)%has('AMPLITUDE')) cycle
+      if (is_keyword(model%cards(i), 'BOUNDARY')) then
+        if (all_are_zero(model%cards(i))) then
+          call model%cards(i)%warn(faults, 'AMPLITUDE has no effect: all displacements are zero')
+          cycle
+        end if
+      end if
+      if (step(i) == 0) cycle
+      if (model%problem%steps(step(i))%procedure%finds_modes) cycle
+      a = amplitude_of(model%cards(i), model)
+      if (a == 0) cycle
+      call warn_of_span(model%cards(i), model, step(i), model%problem%amplitudes(a), faults)
+      if (is_keyword(model%cards(i), 'BASE MOTION')) then
+        call warn_of_increments(model%cards(i), model, step(i), model%problem%amplitudes(a), faults)
+      else
+        call warn_of_unit(model%cards(i), model, a, faults)
+      end if
+    end do
+  end subroutine warn_of_histories
+
+  !> Position of the amplitude that a card names, 0 for none.
+  pure integer function amplitude_of(this, model) result(found)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    do found = size(model%problem%amplitudes), 1, -1
+      if (model%problem%amplitudes(found)%name == this%word('AMPLITUDE')) return
+    end do
+  end function amplitude_of
+
+  !> Whether a *BOUNDARY prescribes no displacement but zero.
+  pure logical function all_are_zero(this)
+    type(card), intent(in) :: this
+    integer :: line
+    all_are_zero = .true.
+    do line = 1, this%num_lines
+      if (this%is_empty_at(line, 4)) cycle
+      all_are_zero = all_are_zero .and. abs(this%real_at(line, 4)) <= 0.0_rk
+    end do
+  end function all_are_zero
+
+  !> A history that is constant over its step, because it is over before or begins after it.
+  subroutine warn_of_span(this, model, s, record, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    integer, intent(in) :: s !< step
+    type(amplitude), intent(in) :: record
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: clock
+    real(rk) :: span(2)
+    if (all(abs(record%value) <= 0.0_rk)) then
+      call this%warn(faults, "all values of amplitude '"//this%text('AMPLITUDE')//"' are zero")
+      return
+    end if
+    if (size(record%time) == 1) return
+    span = span_of_step(model, s, record)
+    clock = trim(merge('total time', 'step time ', record%uses_total_time))
+    associate (first => record%time(1), last => record%time(size(record%time)))
+      if (last <= span(1)*(1.0_rk + round_off)) then
+        call this%warn(faults, "amplitude '"//this%text('AMPLITUDE')//"' ends at "// &
+                       as_text(last)//' s, before the step begins at '//as_text(span(1))// &
+                       ' s ('//clock//'): its last value acts, '// &
+                       as_text(record%value(size(record%value))))
+      else if (first >= span(2)*(1.0_rk - round_off)) then
+        call this%warn(faults, "amplitude '"//this%text('AMPLITUDE')//"' begins at "// &
+                       as_text(first)//' s, after the step has ended at '//as_text(span(2))// &
+                       ' s ('//clock//'): its first value acts, '//as_text(record%value(1)))
+      end if
+    end associate
+  end subroutine warn_of_span
+
+  !> Start and end of a step on the clock of a history [s].
+  pure function span_of_step(model, s, record) result(span)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: s !< step
+    type(amplitude), intent(in) :: record
+    real(rk) :: span(2)
+    span = 0.0_rk
+    if (record%uses_total_time) then
+      span(1) = sum(model%problem%steps(:s - 1)%duration, &
+                    mask=.not. model%problem%steps(:s - 1)%procedure%finds_modes)
+    end if
+    span(2) = span(1) + model%problem%steps(s)%duration
+  end function span_of_step
+
+  !> A peak between the increments does not act.
+  subroutine warn_of_increments(this, model, s, record, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    integer, intent(in) :: s !< step
+    type(amplitude), intent(in) :: record
+    type(diagnostic_list), intent(inout) :: faults
+    real(rk) :: span(2), peak, seen, t
+    integer :: i, num
+    span = span_of_step(model, s, record)
+    peak = maxval(abs(record%value), mask=record%time >= span(1) .and. record%time <= span(2))
+    associate (dt => model%problem%steps(s)%first_increment)
+      if ((span(2) - span(1))/dt > real(most_samples, rk)) return
+      num = int((span(2) - span(1))/dt*(1.0_rk + round_off))
+      seen = 0.0_rk
+      do i = 0, num
+        t = span(1) + i*dt
+        seen = max(seen, abs(amplitude_at(record, t)))
+      end do
+      if (seen >= seen_share*peak) return
+      call this%warn(faults, 'increments of '//as_text(dt)//" s miss the peak of the record '"// &
+                     this%text('AMPLITUDE')//"': "//as_text(seen)//' at their ends, '// &
+                     as_text(peak)//' in the record', 'increments of a few points of the record')
+    end associate
+  end subroutine warn_of_increments
+
+  !> The values of a record of acceleration were turned into m/s2.
+  subroutine warn_of_unit(this, model, a, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    integer, intent(in) :: a !< amplitude
+    type(diagnostic_list), intent(inout) :: faults
+    logical :: has_unit
+    integer :: i
+    has_unit = abs(model%record_factor(a) - 1.0_rk) > 0.0_rk
+    do i = 1, size(model%cards)
+      if (.not. is_keyword(model%cards(i), 'AMPLITUDE')) cycle
+      if (model%cards(i)%word('NAME') /= this%word('AMPLITUDE')) cycle
+      has_unit = has_unit .or. model%cards(i)%has('UNIT')
+    end do
+    if (has_unit) call this%warn(faults, "amplitude '"//this%text('AMPLITUDE')//"' is a record "// &
+                                 'of acceleration: its values in m/s2 scale the load')
+  end subroutine warn_of_unit
+end module check_histories

@@ -1,0 +1,199 @@
+!> Warns of cards of a step that have no effect in this step nor in a later one.
+module check_idle_steps
+  use card_reader, only: field_reader
+  use deck_card, only: card
+  use deck_scan, only: is_keyword, steps_of_cards
+  use diagnostics, only: diagnostic_list
+  use kinds, only: rk
+  use model_draft, only: draft
+  use step_plan, only: step_procedure
+  implicit none
+  private
+  public :: warn_of_idle_steps
+
+  !> What is known of the model and of the steps from one step on.
+  type :: later_steps
+    logical :: any_moves !< a *STATIC or *DYNAMIC step is among them
+    logical :: any_inertia !< a *DYNAMIC step is among them
+    logical :: is_inelastic !< a material cracks or yields
+    logical :: has_joints
+    logical :: are_modes !< the step itself is a *FREQUENCY step
+  end type later_steps
+
+  character(*), parameter :: requests = ' NODE PRINT | EL PRINT | JOINT PRINT | NODE FILE | '// &
+                             'EL FILE | NODE OUTPUT | ELEMENT OUTPUT '
+  character(*), parameter :: no_dynamic = ': no *DYNAMIC step from here on'
+
+contains
+
+  !> The deck must have no errors.
+  subroutine warn_of_idle_steps(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(later_steps) :: now
+    integer :: step(size(model%cards))
+    integer :: i
+    step = steps_of_cards(model%cards)
+    do i = 1, size(step)
+      associate (this => model%cards(i))
+        if (is_keyword(this, 'DAMPING') .and. step(i) == 0) then
+          call warn_of_material_damping(this, model, faults)
+        end if
+        if (step(i) == 0 .or. .not. allocated(this%spec%name)) cycle
+        now = steps_from(model, step(i))
+        select case (this%spec%name)
+        case ('DAMPING')
+          call warn_of_damping(this, now, faults)
+        case ('CONTROLS')
+          call warn_of_controls(this, now, faults)
+        case ('STATIC', 'DYNAMIC')
+          call warn_of_limits(this, faults)
+        case ('BOUNDARY')
+          call warn_of_displacements(this, now, faults)
+        case ('OUTPUT')
+          call warn_of_empty_output(model, i, step, faults)
+        case ('ENVELOPE')
+          if (now%are_modes) then
+            call this%warn(faults, 'has no effect in a step *FREQUENCY, and is not kept for others')
+          end if
+        case default
+          call warn_of_requests(this, now, faults)
+        end select
+      end associate
+    end do
+  end subroutine warn_of_idle_steps
+
+  pure type(later_steps) function steps_from(model, number) result(now)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: number !< of the step
+    type(step_procedure) :: procedures(number:size(model%problem%steps))
+    procedures = model%problem%steps(number:)%procedure
+    now%any_moves = any(.not. procedures%finds_modes)
+    now%any_inertia = any(procedures%has_inertia)
+    now%are_modes = procedures(number)%finds_modes
+    now%is_inelastic = has_inelastic_law(model)
+    now%has_joints = size(model%joints) > 0
+  end function steps_from
+
+  pure logical function has_inelastic_law(model) result(is_inelastic)
+    type(draft), intent(in) :: model
+    integer :: i
+    is_inelastic = .false.
+    do i = 1, size(model%problem%materials)
+      is_inelastic = is_inelastic .or. model%problem%materials(i)%law%is_nonlinear
+    end do
+  end function has_inelastic_law
+
+  subroutine warn_of_material_damping(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    if (.not. (this%real('ALPHA') > 0.0_rk .or. this%real('BETA') > 0.0_rk)) then
+      call this%warn(faults, 'the keyword has no effect: ALPHA and BETA are zero')
+    else if (this%word('BASE') == 'CURRENT' .and. .not. has_inelastic_law(model)) then
+      call this%warn(faults, 'BASE=CURRENT has no effect: no material cracks or yields')
+    end if
+  end subroutine warn_of_material_damping
+
+  subroutine warn_of_damping(this, now, faults)
+    type(card), intent(in) :: this
+    type(later_steps), intent(in) :: now
+    type(diagnostic_list), intent(inout) :: faults
+    if (.not. this%real('RATIO') > 0.0_rk) return ! ends the damping of earlier steps
+    if (.not. now%any_inertia) then
+      call this%warn(faults, 'has no effect'//no_dynamic)
+    else if (this%word('BASE') == 'CURRENT' .and. .not. now%is_inelastic) then
+      call this%warn(faults, 'BASE=CURRENT has no effect: no material cracks or yields')
+    end if
+  end subroutine warn_of_damping
+
+  subroutine warn_of_controls(this, now, faults)
+    type(card), intent(in) :: this
+    type(later_steps), intent(in) :: now
+    type(diagnostic_list), intent(inout) :: faults
+    if (size(this%parameters) == 0) return ! reported
+    if (.not. now%any_moves) then
+      call this%warn(faults, 'has no effect: no *STATIC or *DYNAMIC step from here on')
+      return
+    end if
+    if (this%has('TANGENT') .and. .not. now%is_inelastic) then
+      call this%warn(faults, 'TANGENT has no effect: no material cracks or yields')
+    end if
+    if (this%has('JOINT SOLVER') .and. .not. now%has_joints) then
+      call this%warn(faults, 'JOINT SOLVER has no effect: the model has no joints')
+    end if
+    if (.not. this%has('JOINT FORCES')) return
+    if (.not. now%has_joints) then
+      call this%warn(faults, 'JOINT FORCES has no effect: the model has no joints')
+    else if (.not. now%any_inertia) then
+      call this%warn(faults, 'JOINT FORCES has no effect'//no_dynamic)
+    end if
+  end subroutine warn_of_controls
+
+  !> Increments of fixed size have no limits.
+  subroutine warn_of_limits(this, faults)
+    type(card), intent(in) :: this
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i
+    if (.not. this%has('DIRECT') .or. this%num_lines == 0) return
+    do i = 3, 4
+      if (this%is_empty_at(1, i)) cycle
+      call this%warn_at(faults, 1, i, 'the '//merge('smallest', 'largest ', i == 3)// &
+                        ' increment has no effect: with DIRECT increments have a fixed size')
+      return
+    end do
+  end subroutine warn_of_limits
+
+  !> Modes have supports, no displacements of them.
+  subroutine warn_of_displacements(this, now, faults)
+    type(card), intent(in) :: this
+    type(later_steps), intent(in) :: now
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: line
+    if (.not. now%are_modes) return
+    do line = 1, this%num_lines
+      if (this%is_empty_at(line, 4)) cycle
+      if (abs(this%real_at(line, 4)) <= 0.0_rk) cycle
+      call this%warn_at(faults, line, 4, 'the displacement has no effect in a step *FREQUENCY')
+      return
+    end do
+  end subroutine warn_of_displacements
+
+  !> *OUTPUT only gives its frequency to the requests that follow.
+  subroutine warn_of_empty_output(model, number, step, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: number !< of the card
+    integer, intent(in) :: step(:) !< of each card
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i
+    do i = number + 1, size(step)
+      if (step(i) /= step(number) .or. is_keyword(model%cards(i), 'OUTPUT')) exit
+      if (is_keyword(model%cards(i), 'NODE OUTPUT')) return
+      if (is_keyword(model%cards(i), 'ELEMENT OUTPUT')) return
+    end do
+    call model%cards(number)%warn(faults, 'has no effect: no *NODE OUTPUT or *ELEMENT OUTPUT '// &
+                                  'follows in the step')
+  end subroutine warn_of_empty_output
+
+  !> Requests that write nothing, and velocities and accelerations that are zero.
+  subroutine warn_of_requests(this, now, faults)
+    type(card), intent(in) :: this
+    type(later_steps), intent(in) :: now
+    type(diagnostic_list), intent(inout) :: faults
+    type(field_reader) :: reader
+    character(:), allocatable :: name
+    if (index(requests, ' '//this%spec%name//' ') == 0) return
+    if (.not. now%any_moves) then
+      call this%warn(faults, 'has no effect: a step *FREQUENCY writes its modes, and no '// &
+                     '*STATIC or *DYNAMIC step follows')
+      return
+    end if
+    if (now%any_inertia .or. index(this%spec%name, 'NODE') == 0) return
+    do while (reader%advance(this))
+      name = this%word_at(reader%line, reader%field)
+      if (name /= 'V' .and. name /= 'A') cycle
+      call this%warn(faults, 'there is no '//name//no_dynamic)
+      return
+    end do
+  end subroutine warn_of_requests
+end module check_idle_steps
