@@ -14,6 +14,7 @@
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/time.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -165,25 +166,33 @@ static _Noreturn void end_without_blas(int signal_number)
   end_without_memory("it takes 128 MB for each thread; fewer threads (-j) need less");
 }
 
+/* Sends SIGPROF after some seconds of processor time of the process; 0: none any more. A machine that
+ * is busy, or a program that watches this one, takes longer for the same work. */
+static void limit_processor_time(int seconds)
+{
+  struct itimerval limit = {{0, 0}, {seconds, 0}};
+  setitimer(ITIMER_PROF, &limit, NULL);
+}
+
 /* Tries the memory that OpenBLAS takes for its threads: without it OpenBLAS waits for ever. It also
  * counts as missing when OpenBLAS has not got it in time, before keyway_end_trial. */
 void keyway_try_memory(int threads)
 {
-  enum { most_seconds = 10 };
+  enum { most_seconds = 10 }; /* OpenBLAS takes some hundredths */
   size_t size = blas_bytes * (size_t)threads;
   void *room = mmap(NULL, size, PROT_READ | PROT_WRITE,
                     MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (room == MAP_FAILED) end_without_blas(0);
   munmap(room, size);
-  signal(SIGALRM, end_without_blas);
-  alarm(most_seconds);
+  signal(SIGPROF, end_without_blas);
+  limit_processor_time(most_seconds);
 }
 
 /* OpenBLAS has its memory. From now on the process is limited to what the machine has. */
 void keyway_end_trial(void)
 {
-  alarm(0);
-  signal(SIGALRM, SIG_DFL);
+  limit_processor_time(0);
+  signal(SIGPROF, SIG_IGN); /* one that is on its way */
   limit_memory();
 }
 

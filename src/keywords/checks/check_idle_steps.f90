@@ -9,7 +9,7 @@ module check_idle_steps
   use step_plan, only: step_procedure
   implicit none
   private
-  public :: warn_of_idle_steps
+  public :: warn_of_idle_steps, has_inelastic_law
 
   !> What is known of the model and of the steps from one step on.
   type :: later_steps
@@ -75,11 +75,13 @@ contains
     now%has_joints = size(model%joints) > 0
   end function steps_from
 
+  !> Whether a material cracks or yields. An unused material may have no law.
   pure logical function has_inelastic_law(model) result(is_inelastic)
     type(draft), intent(in) :: model
     integer :: i
     is_inelastic = .false.
     do i = 1, size(model%problem%materials)
+      if (.not. allocated(model%problem%materials(i)%law)) cycle
       is_inelastic = is_inelastic .or. model%problem%materials(i)%law%is_nonlinear
     end do
   end function has_inelastic_law

@@ -1,5 +1,6 @@
 !> Warns of what a step holds without effect or twice; refuses a base that moves an unheld model.
 module check_steps
+  use check_idle_steps, only: has_inelastic_law
   use deck_scan, only: is_keyword, steps_of_cards
   use diagnostics, only: diagnostic_list
   use guest_list, only: supports_of_step
@@ -124,9 +125,7 @@ contains
     integer :: i
     if (all(model%problem%initial_values%is_velocity)) return
     if (size(model%problem%joints) > 0) return
-    do i = 1, size(model%problem%materials)
-      if (model%problem%materials(i)%law%is_nonlinear) return
-    end do
+    if (has_inelastic_law(model)) return
     if (any_starts_a_support(model)) return
     why = 'no step moves the model'
     do i = 1, size(model%problem%steps)
