@@ -15,6 +15,7 @@ set(sources
   integrators/static_increment.f90
   integrators/static_integrator.f90
   solids/active_unknowns.f90
+  solids/conserving_stress.f90
   solids/guest_forces.f90
   solids/increment_balance.f90
   solids/inelastic_forces.f90

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from concrete_decks import paper_concrete
 from dam_trials import MOTION_DT, STRONG, Trial, deck_of, measure, trial_of
-from hard_case import Chapter, off, over_limits, unbalance
+from hard_case import Chapter, energies, fed, off, over_limits, unbalance
 from keyway_tools.arch_blocks import BlockOptions
 from keyway_tools.arch_dam import DamOptions, build_arch_dam
 from keyway_tools.arch_deck import DeckOptions, arch_dam_deck
@@ -47,6 +47,22 @@ CRITERION = (
 def strong_motion(keyway):
     run = shake(keyway, trial_of(1.0, 1e12, 0.01, UNDAMPED, is_coarse=True, duration=2.8), 1.5)
     return worst(run), [run]
+
+
+@DAMS.case(
+    "cracking dam, RECOVERY=ENERGY",
+    "Table 1, rock, no joints, no damping, 0.7 g, increments of 0.01 s with ALPHA=0",
+    "energy that nothing supplies, over the largest; error of the energy balance",
+    1e-6,
+)
+def cracking_dam(keyway):
+    law = paper_concrete(young=22e9, density=2400.0, recovery="ENERGY").cards("CONCRETE")
+    elastic = "*MATERIAL, NAME=CONCRETE\n*DENSITY\n2400.0\n*ELASTIC\n2.2e+10, 0.167\n"
+    scheme = ("*DYNAMIC, DIRECT, ALPHA=-0.05", "*DYNAMIC, ALPHA=0.")
+    trial = trial_of(1.0, 1e12, 0.01, UNDAMPED, is_coarse=True, duration=3.0, num_joints=0)
+    run = shake(keyway, replace(trial, edits=((elastic, law), scheme)), 0.7)
+    assert energies(run)["fracture"][-1] > 0.1 * energies(run)["kinetic"].max()
+    return max(fed(run), unbalance(run)), [run]
 
 
 def block_dam(num_joints: int) -> Trial:

@@ -108,8 +108,9 @@ contains
     integer, intent(inout) :: n
     allocate (own%q(4), own%v(4), own%a(4), own%external(4), own%elastic(4), own%internal(4), &
               own%contact(4), own%balanced(4), &
-              own%viscous(4), own%viscous_rate(4), own%lost_damping(4), own%momentum(4), &
-              own%inertia(4), own%carried(3, 4), own%jump_rate(3, 4))
+              own%viscous(4), own%viscous_rate(4), own%lost_damping(4), own%correction(4), &
+              own%carried_correction(4), own%momentum(4), own%inertia(4), own%carried(3, 4), &
+              own%jump_rate(3, 4))
     call fill(own%q, n)
     call fill(own%v, n)
     call fill(own%a, n)
@@ -121,6 +122,8 @@ contains
     call fill(own%viscous, n)
     call fill(own%viscous_rate, n)
     call fill(own%lost_damping, n)
+    call fill(own%correction, n)
+    call fill(own%carried_correction, n)
     call fill(own%momentum, n)
     call fill(own%inertia, n)
     call fill(own%carried, n)

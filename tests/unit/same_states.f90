@@ -138,6 +138,8 @@ contains
     call compare(log, what//'viscous', a%viscous, b%viscous)
     call compare(log, what//'viscous_rate', a%viscous_rate, b%viscous_rate)
     call compare(log, what//'lost_damping', a%lost_damping, b%lost_damping)
+    call compare(log, what//'correction', a%correction, b%correction)
+    call compare(log, what//'carried_correction', a%carried_correction, b%carried_correction)
     call compare(log, what//'momentum', a%momentum, b%momentum)
     call compare(log, what//'inertia', a%inertia, b%inertia)
     call compare(log, what//'carried', a%carried, b%carried)

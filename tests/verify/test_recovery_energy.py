@@ -2,7 +2,8 @@
 
 A bar of Table 1, undamped, one end of which is thrown at 2 m/s: it cracks at once, and its crack
 closes and opens with every wave. `numerical` of the balance falls where energy is created, by the
-law (no increment helps) or by the time stepping (of second order).
+law (no increment helps) or by the time stepping. With RECOVERY=ENERGY and ALPHA=0 neither does;
+the default ALPHA takes energy from waves that increments do not resolve, and gives a little back.
 """
 
 from __future__ import annotations
@@ -13,13 +14,16 @@ from concrete_decks import Bar, paper_concrete
 from harness import Run
 
 
-def thrown_bar(keyway, recovery: str, increment: float) -> Run:
+def thrown_bar(
+    keyway, recovery: str, increment: float, alpha: float = 0.0, tangent: str = "AUTO", **other
+) -> Run:
     """10 m long, ten elements."""
-    concrete = paper_concrete(density=2400.0, recovery=recovery)
+    concrete = paper_concrete(density=2400.0, recovery=recovery, **other)
     bar = Bar(weak=concrete, length=10.0, side=1.0, num_rest=9)
-    step = f"*STEP, INC=100000\n*DYNAMIC, ALPHA=0\n{increment!r}, 0.02\n*END STEP\n"
+    step = f"*STEP, INC=100000\n*CONTROLS, TANGENT={tangent}\n"
+    step += f"*DYNAMIC, ALPHA={alpha!r}\n{increment!r}, 0.02\n*END STEP\n"
     deck = bar.deck("*INITIAL CONDITIONS, TYPE=VELOCITY\nRIGHT, 1, 2.0\n" + step)
-    return keyway(deck, name=f"{recovery}_{increment}".replace(".", "_"))
+    return keyway(deck, name=f"{recovery}_{increment}_{alpha}_{tangent}".replace(".", "_"))
 
 
 def created(run: Run) -> tuple[float, float]:
@@ -30,13 +34,48 @@ def created(run: Run) -> tuple[float, float]:
     return largest / start, run.json["damage"]["created"] / start
 
 
-def test_no_energy_from_the_split(keyway):
-    """The law creates none; what the time stepping creates falls with the square of increments."""
-    coarse, fine = (thrown_bar(keyway, "ENERGY", size) for size in (4e-5, 1e-5))
-    assert created(coarse)[1] == created(fine)[1] == 0.0
-    assert created(fine)[0] < created(coarse)[0] / 8.0
-    assert created(fine)[0] < 1e-3
-    assert not [text for text in fine.json["warnings"] if "created" in text]
+@pytest.mark.parametrize("tangent", ["AUTO", "SECANT", "CONSISTENT"])
+@pytest.mark.parametrize("increment", [2e-4, 1e-4, 1e-5])
+def test_no_energy_from_the_split(keyway, increment, tangent):
+    """Neither the law nor the time stepping creates any, whatever the increment. The balance leaves
+    what the tolerance of forces does: 1e-6 of them, over the motion."""
+    run = thrown_bar(keyway, "ENERGY", increment, tangent=tangent)
+    assert created(run)[1] == 0.0
+    assert created(run)[0] < 1e-9
+    assert fed(run) < 1e-6
+    assert run.json["steps"][0]["cutbacks"] == 0
+    assert not run.json["warnings"]
+
+
+def fed(run: Run) -> float:
+    """Largest rise of kinetic and strain energy, over the energy of the throw: no load works."""
+    table = run.csv("energy")
+    energy = table["kinetic"] + table["strain"]
+    return np.max(energy - np.minimum.accumulate(energy)) / energy[0]
+
+
+def test_numerical_damping_feeds_less_than_in_an_elastic_bar(keyway):
+    """HHT's energy is not a monotone norm: with the default ALPHA a bar of elastic concrete feeds
+    1e-3 and more."""
+    cracking = fed(thrown_bar(keyway, "ENERGY", 1e-4, -0.05))
+    table = tuple((1e3 * stress, strain) for stress, strain in paper_concrete().tension)
+    strong = {"tension": table, "damage": (), "compression": ((3e10, 0.0),)}
+    elastic = fed(thrown_bar(keyway, "ENERGY", 1e-4, -0.05, **strong))
+    assert cracking < 0.2 * elastic
+
+
+def test_work_of_a_moved_support(keyway):
+    """The correction acts on supports that move too: their work is in the balance."""
+    concrete = paper_concrete(density=2400.0, recovery="ENERGY")
+    bar = Bar(weak=concrete, length=10.0, side=1.0, num_rest=9)
+    path = "*AMPLITUDE, NAME=A\n0, 0\n0.0025, 1\n0.0075, -0.5\n0.0125, 1.1\n0.0175, -0.5\n"
+    step = "*STEP, INC=100000\n*DYNAMIC, ALPHA=0\n1.25e-4, 0.0175\n"
+    step += "*BOUNDARY, AMPLITUDE=A\nRIGHT, 1, 1, 1e-3\n*END STEP\n"
+    run = keyway(bar.deck(path + step), name="moved")
+    table = run.csv("energy")
+    assert table["fracture"][-1] > 0.1 * table["external"].max()
+    assert np.abs(table["numerical"]).max() < 1e-9 * table["external"].max()
+    assert run.json["steps"][0]["energy"]["error"] < 1e-6
 
 
 @pytest.mark.parametrize("recovery", ["LEE-FENVES", "SIGN"])

@@ -75,7 +75,7 @@ contains
     real(rk), intent(in) :: excess
     type(stored_work) :: guests
     real(rk), allocatable :: du(:)
-    real(rk) :: taken, lost
+    real(rk) :: taken, lost, of_correction
     call sum_work(model, after, guests)
     associate (old => before%motion, new => after%motion, n => system%matrix%num_free)
       du = new%q - old%q
@@ -83,12 +83,17 @@ contains
       lost = 0.0_rk
       if (allocated(new%lost_damping)) lost = work(du, old%lost_damping, new%lost_damping)
       after%energy%damping = after%energy%damping + work(du, old%viscous, new%viscous) - lost
+      of_correction = 0.0_rk
+      if (allocated(new%correction)) then
+        of_correction = dot(du(n + 1:), new%correction(n + 1:))
+        after%energy%external = after%energy%external + of_correction
+      end if
       taken = work(du(:n), old%external(:n), new%external(:n)) &
               - work(du(:n), old%viscous(:n), new%viscous(:n)) &
               - work(du(:n), old%elastic(:n), new%elastic(:n)) &
               - work(du(:n), old%balanced(:n), new%balanced(:n)) &
               + work(du(n + 1:), old%contact(n + 1:), new%contact(n + 1:)) &
-              + inelastic_work(du(n + 1:), old, new, n) &
+              + inelastic_work(du(n + 1:), old, new, n) + of_correction &
               - change_of_stores(model, before, guests) - excess + lost
     end associate
     after%energy%numerical = after%energy%numerical + taken

@@ -100,6 +100,9 @@ contains
             + scheme%acceleration_of_x*(dt*before%momentum + half*before%inertia) &
             - bulk*(before%viscous + (1.0_rk - scheme%gamma)*dt*before%viscous_rate) &
             + bulk*scheme%velocity_of_x*(dt*before%viscous + half*before%viscous_rate)
+      if (allocated(before%carried_correction)) then
+        rhs = rhs + (1.0_rk - scheme%gamma)/scheme%gamma*before%carried_correction
+      end if
       if (scheme%carries_impulse) then
         call system%operator%add_forces(-scheme%old_joint_weight*before%carried, rhs)
       else
@@ -131,8 +134,23 @@ contains
       new%balanced = bulk*(new%external - new%viscous - new%internal) &
                      - scheme%alpha*(old%external - old%viscous - old%internal)
     end associate
+    call carry_correction(scheme, before%motion, after%motion)
     call add_joints(system, scheme, before, after)
   end subroutine correct
+
+  !> The force that corrects the work in the balance: with the implicit impulse of joints, (7.3).
+  subroutine carry_correction(scheme, old, new)
+    type(hht), intent(in) :: scheme
+    type(motion), intent(in) :: old
+    type(motion), intent(inout) :: new
+    if (.not. allocated(new%correction)) return
+    new%carried_correction = new%correction/scheme%gamma
+    if (allocated(old%carried_correction)) then
+      new%carried_correction = new%carried_correction &
+                               - (1.0_rk - scheme%gamma)/scheme%gamma*old%carried_correction
+    end if
+    new%balanced = new%balanced - new%carried_correction(:size(new%balanced))
+  end subroutine carry_correction
 
   !> The forces of the joints in the balance.
   subroutine add_joints(system, scheme, before, after)

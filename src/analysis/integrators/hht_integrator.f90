@@ -90,6 +90,7 @@ contains
     self%scheme = make_scheme(plan%alpha, dt, plan%controls%joint_forces)
     call effective_values(self%system, self%scheme, self%solids%values)
     self%solids%weight = 1.0_rk + plan%alpha
+    call self%solids%correction%open(model, 1.0_rk/(self%scheme%gamma*self%solids%weight))
     call self%solids%matrix%start_elastic(dt)
     call results%costs%start('iterate', 'structure', 'solver')
     call set_modal_damping(self%system, self%solids%weight*self%scheme%velocity_of_x, &

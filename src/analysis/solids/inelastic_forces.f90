@@ -30,6 +30,7 @@ module inelastic_forces
     real(rk), allocatable :: tangent(:, :, :) !< (6, 6, points) [Pa], or (6, 6, 0)
     logical, allocatable :: has_excess(:) !< (elements) with a point that is not elastic
     real(rk), allocatable :: lost(:, :) !< (24, elements) lost damping force [N], if any
+    real(rk), allocatable :: correction(:, :) !< (24, elements) of the work [N], if any
     type(update_report) :: report
   end type block_answer
 

@@ -24,6 +24,7 @@ module solid_iteration
   use increment_balance, only: increment_task
   use step_system, only: dam_system
   use anderson_mixing, only: mixer
+  use conserving_stress, only: work_correction
   use solid_iterate, only: iterate_state
   use solid_tangent, only: tangent_matrix
   use step_plan, only: step
@@ -46,6 +47,7 @@ module solid_iteration
     real(rk), allocatable :: guest_excess(:, :) !< (3, nodes) of guests with a history [N]
     real(rk), allocatable :: excess(:) !< (num_total) initial-stress force of the last iterate [N]
     type(damping_loss) :: loss !< its force is part of `excess`
+    type(work_correction) :: correction !< its weighted force is part of `excess` too
     type(mixer) :: mixer
   contains
     procedure :: open => open_solids
@@ -114,6 +116,10 @@ contains
     type(motion), intent(inout) :: moving
     moving%internal = moving%elastic
     if (allocated(self%excess)) moving%internal = moving%internal - self%excess
+    if (allocated(self%correction%force)) then
+      moving%correction = self%correction%force
+      moving%internal = moving%internal - self%correction%weight*self%correction%force
+    end if
     if (allocated(self%loss%force)) moving%lost_damping = self%loss%force
   end subroutine set_internal
 
@@ -288,6 +294,8 @@ contains
     call update_points(model, u, self%time, before%points, after%points, self%answers)
     call update_guests(model, u, self%time%size, before%guests, after%guests, self%guest_excess)
     call sum_excess(model, system%numbers, self%answers, self%guest_excess, self%excess)
+    call self%correction%add_force(model, system%numbers, self%time, before%points, after%points, &
+                                   self%answers, self%excess)
     call self%loss%add_force(model, system%numbers, task, before%points, self%answers, self%excess)
     call self%solver%costs%stop()
   end subroutine evaluate
@@ -332,7 +340,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     now%tries = now%tries + 1
     if (self%chosen%patience > 0 .and. .not. now%is_slow(self%chosen%patience)) then
-      if (now%tries == 1) now%base_force = now%force
+      if (now%is_due(self%chosen%patience)) now%base_force = now%force
       call self%mixer%advance(now%answer - now%guess, now%guess)
     else if (self%chosen%patience == 0 .and. now%has_grown()) then
       now%share = 0.5_rk*now%share

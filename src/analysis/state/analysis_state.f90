@@ -59,6 +59,9 @@ module analysis_state
     !> (num_total) damping force that cracks have lost, part of `internal` with opposite sign [N];
     !> allocated with *DAMPING, BASE=CURRENT only
     real(rk), allocatable :: lost_damping(:)
+    !> (num_total) force of the stress that corrects the work of the increment, and the same as the
+    !> end of the increment carries it [N]; of solids with a free energy in dynamic steps only
+    real(rk), allocatable :: correction(:), carried_correction(:)
     real(rk), allocatable :: momentum(:), inertia(:) !< M v [N s], M a [N]
     real(rk), allocatable :: carried(:, :) !< (3, points) t* of the implicit joint impulse [Pa]
     real(rk), allocatable :: jump_rate(:, :) !< (3, points) in the last increment [m/s]

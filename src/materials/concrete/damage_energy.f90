@@ -91,11 +91,7 @@ contains
       nominal(:, i) = nominal_stress(stresses(:, i), axes, split, left)
       energy = energy + 0.5_rk*split%energy
     end do
-    work(1) = 0.5_rk*dot_product(nominal(:, 1) + nominal(:, 2), path%flow)
-    if (work(1) < 0.0_rk) then
-      nominal(:, 2) = nominal_stress(stresses(:, 2), axes, split, new%value)
-      work(1) = dot_product(nominal(:, 2), path%flow)
-    end if
+    work(1) = max(0.5_rk*dot_product(nominal(:, 1) + nominal(:, 2), path%flow), 0.0_rk)
     work(2) = dot_product(energy, old%value - new%value)
     losses = -matmul(energy, new%by_damage)*path%growth
   end subroutine dissipated_by_split

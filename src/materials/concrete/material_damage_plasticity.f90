@@ -46,6 +46,7 @@ contains
     call make_concrete_model(constants, law%model)
     law%is_nonlinear = .true.
     law%has_switch = constants%recovery == 'SIGN'
+    law%has_free_energy = law%model%splits_energy
     law%num_state = num_state_of(constants%viscosity)
   end subroutine make_concrete_law
 

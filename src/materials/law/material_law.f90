@@ -11,6 +11,8 @@ module material_law
     integer :: num_state = 0 !< internal variables per point
     logical :: is_nonlinear = .false. !< false: stress = D strain, without history
     logical :: has_switch = .false. !< discontinuous stress: time_increment%holds_switches
+    !> The stress is the derivative of the stored energy, which grows by the work less dissipation
+    logical :: has_free_energy = .false.
     logical :: is_serial = .false. !< one call at a time (user subroutines with saved data)
     logical :: wants_gradient = .false. !< of the displacement, besides the strain
   contains
