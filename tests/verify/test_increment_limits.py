@@ -56,3 +56,10 @@ def test_message_names_the_finer_slave(keyway):
     assert ", whose slave has the finer mesh: make the coarser surface the slave" in message
     message = message_of(keyway, static(PULL), meshes=(3, 3), counts=(1, 1, 1))
     assert "finer mesh" not in message
+
+
+def test_many_increments_end_with_the_step(keyway):
+    """The sum of 20000 times 5e-5 s is 1 s less 1e-13 s: no increment of 1e-13 s follows."""
+    step = f"*STEP, INC=1000000\n*DYNAMIC\n5e-5, 1.\n{weight()}*END STEP\n"
+    run = keyway(Block((1.0, 1.0, 1.0)).deck(step))
+    assert run.json["steps"][0]["increments"] == 20000

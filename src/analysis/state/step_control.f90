@@ -4,7 +4,7 @@ module step_control
   use step_plan, only: step
   implicit none
   private
-  public :: increment_control, start_control
+  public :: increment_control, start_control, roundoff
 
   real(rk), parameter :: static_growth = 1.5_rk
   real(rk), parameter :: dynamic_growth = 2.0_rk !< doubling returns to earlier sizes
@@ -14,7 +14,8 @@ module step_control
   integer, parameter :: easy_increments = 2 !< in a row, before a static step grows
   integer, parameter :: easy_dynamic_increments = 10 !< in a row: a new size is factored anew
   integer, parameter :: most_cuts_in_a_row = 10
-  real(rk), parameter :: roundoff = 1.0e-9_rk !< of times, over the increment
+  !> Round-off of times, over the increment: a sum of n equal increments is off by up to n^2*1e-16.
+  real(rk), parameter :: roundoff = 1.0e-6_rk
 
   !> A new component gets a line in save and load of state_archive.
   type :: increment_control

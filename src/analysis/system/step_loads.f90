@@ -4,6 +4,7 @@
 module step_loads
   use kinds, only: rk
   use amplitudes, only: amplitude, amplitude_at
+  use step_control, only: roundoff
   use step_plan, only: step, step_load, step_fixity
   use problem_definition, only: problem
   use dof_numbering, only: numbering
@@ -53,7 +54,7 @@ contains
     real(rk), intent(in) :: increment !< [s]
     self%increment = increment
     self%now = from + increment
-    if (self%duration - self%now < 1.0e-9_rk*increment) self%now = self%duration
+    if (self%duration - self%now < roundoff*increment) self%now = self%duration
   end subroutine set_end
 
   !> Sums the patterns of the loads of a step and of the guests of every step, base motion included,
