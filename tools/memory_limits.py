@@ -32,7 +32,7 @@ class Outcome:
     """How a run has ended."""
 
     code: int
-    words: str  # last line of the messages
+    words: str  # line of the messages that names a part, else the last one
     fault: str  # what the folder must not hold, '' for nothing
 
     @property
@@ -67,7 +67,8 @@ def run_with(program: Path, deck: Path, options: list[str], megabytes: int) -> O
             return Outcome(-1, f"no end after {TIME_LIMIT} s", "")
         fault = fault_of(Path(folder), deck.stem)
     lines = done.stderr.strip().splitlines()
-    return Outcome(done.returncode, lines[-1] if lines else "", fault)
+    words = next(filter(NO_MEMORY.search, lines), lines[-1] if lines else "")
+    return Outcome(done.returncode, words, fault)
 
 
 def main(arguments: list[str]) -> int:

@@ -21,14 +21,14 @@
 enum { system_failed = 3 };
 static const size_t blas_bytes = 144u << 20; /* OpenBLAS takes 128 MB for a thread; and its stack */
 static const size_t reserve_bytes = 16u << 20;
+static const size_t least_bytes = 8u << 20; /* for what has no message of its own, such as HDF5 */
 static const long long spare_bytes = 256ll << 20; /* above what is free: memory that is never used */
+
+void keyway_watch_memory(void); /* system/system_calls.c */
 
 static void (*escape)(const char *); /* leaves a call of a user routine, if one runs */
 static char part[256] = "the program";
 static void *reserve; /* NULL: none is held */
-
-/* The part of the program that is at work, for the message on missing memory. */
-void keyway_note_part(const char *name) { snprintf(part, sizeof part, "%s", name); }
 
 static void end_at_once(int signal_number)
 {
@@ -37,12 +37,15 @@ static void end_at_once(int signal_number)
 }
 
 /* Ends the program. What is registered with atexit, such as the mark in the summary of a run, comes
- * first; OpenBLAS, which comes last, waits for ever for memory that is not there. */
+ * first; OpenBLAS, which comes last, crashes without memory, or waits for it for ever. */
 static _Noreturn void end_program(void)
 {
   static int is_ending;
   if (is_ending++) _exit(system_failed);
   signal(SIGALRM, end_at_once);
+  signal(SIGSEGV, end_at_once);
+  signal(SIGBUS, end_at_once);
+  signal(SIGABRT, end_at_once);
   alarm(1);
   exit(system_failed);
 }
@@ -68,6 +71,9 @@ void keyway_free_reserve(void)
 
 /* The function is called when memory is missing, before the program ends. */
 void keyway_on_missing_memory(void (*function)(const char *)) { escape = function; }
+
+/* Whether a UMAT is loaded: its crashes do not end the program. */
+int keyway_has_user_routines(void) { return escape != NULL; }
 
 static _Noreturn void end_without_memory(const char *what)
 {
@@ -103,6 +109,32 @@ _Noreturn void __wrap__gfortran_runtime_error(const char *format, ...)
   end_program();
 }
 
+/* Whether the next allocation may fail: libraries do not survive that everywhere. */
+int keyway_lacks_memory(void)
+{
+  void *room = mmap(NULL, least_bytes, PROT_READ | PROT_WRITE,
+                    MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (room == MAP_FAILED) return 1;
+  munmap(room, least_bytes);
+  return 0;
+}
+
+/* The message on a crash or an end that missing memory has caused; signal handlers may call it. */
+void keyway_tell_of_missing_memory(void)
+{
+  char text[400];
+  int length = snprintf(text, sizeof text, "keyway: not enough memory in part '%s'\n", part);
+  if (write(2, text, (size_t)length) != length) return;
+}
+
+/* The part of the program that is at work, for the message on missing memory. One that begins needs
+ * some memory to spare. */
+void keyway_note_part(const char *name, int is_beginning)
+{
+  snprintf(part, sizeof part, "%s", name);
+  if (is_beginning && keyway_lacks_memory()) end_without_memory("less than 8 MB are left");
+}
+
 /* A file that a program has not given becomes one that reads as empty and takes nothing: results
  * would else be opened under its number. */
 static void open_standard_files(void)
@@ -124,6 +156,22 @@ static long long number_in(const char *path, const char *word)
       value = -1;
   fclose(file);
   return value;
+}
+
+/* Peak memory of the process so far [kB], -1 if the system does not report it. It takes no memory. */
+long keyway_peak_memory(void)
+{
+  static const char wanted[] = "VmHWM:";
+  char text[4096];
+  const char *found;
+  ssize_t length;
+  int file = open("/proc/self/status", O_RDONLY | O_CLOEXEC);
+  if (file < 0) return -1;
+  length = read(file, text, sizeof text - 1);
+  close(file);
+  text[length > 0 ? length : 0] = '\0';
+  found = strstr(text, wanted);
+  return found ? strtol(found + sizeof wanted - 1, NULL, 10) : -1;
 }
 
 /* Bytes that a control group leaves; -1 without a limit. */
@@ -191,6 +239,7 @@ void keyway_try_memory(int threads)
 /* OpenBLAS has its memory. From now on the process is limited to what the machine has. */
 void keyway_end_trial(void)
 {
+  keyway_watch_memory();
   limit_processor_time(0);
   signal(SIGPROF, SIG_IGN); /* one that is on its way */
   limit_memory();

@@ -26,11 +26,12 @@ module process_limits
       implicit none
     end subroutine end_trial
 
-    subroutine keyway_note_part(name) bind(c)
-      import :: c_char
+    subroutine keyway_note_part(name, is_beginning) bind(c)
+      import :: c_char, c_int
       implicit none
       ! allow(assumed-size)
       character(kind=c_char), intent(in) :: name(*)
+      integer(c_int), value :: is_beginning
     end subroutine keyway_note_part
 
     function keyway_kind_of_file(path) result(kind) bind(c)
@@ -55,10 +56,12 @@ module process_limits
 
 contains
 
-  !> Names the part that is at work, for the message on missing memory.
-  subroutine note_part(name)
+  !> Names the part that is at work, for the message on missing memory. The program ends here if a
+  !> part begins without some memory to spare.
+  subroutine note_part(name, is_beginning)
     character(*), intent(in) :: name
-    call keyway_note_part(trim(name)//c_null_char)
+    logical, intent(in) :: is_beginning !< else an earlier part goes on
+    call keyway_note_part(trim(name)//c_null_char, merge(1_c_int, 0_c_int, is_beginning))
   end subroutine note_part
 
   !> Prints a text and a line feed on the standard output.

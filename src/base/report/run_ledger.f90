@@ -108,7 +108,7 @@ contains
       book%latest = part
       call book_time(book, book%parts(part)%num_calls < num_weighed_calls)
       call push(book, part)
-      call note_part(book%parts(part)%name())
+      call note_part(book%parts(part)%name(), .true.)
     end associate
   end subroutine start_part
 
@@ -224,7 +224,7 @@ contains
       end associate
       book%depth = book%depth - 1
     end do
-    if (book%depth > 0) call note_part(book%parts(book%running(book%depth))%name())
+    if (book%depth > 0) call note_part(book%parts(book%running(book%depth))%name(), .false.)
   end subroutine stop_down_to
 
   !> Adds a part to a list, or its shares to the parts of the members.

@@ -1,11 +1,21 @@
 !> Wall clock, and memory of the process.
 module timer
+  use, intrinsic :: iso_c_binding, only: c_long
   use kinds, only: long, rk
   implicit none
   private
   public :: wall_clock, peak_memory
 
   real(rk), parameter :: kilobytes_per_megabyte = 1024.0_rk
+
+  interface
+    !> In kB, -1 if the system does not report it (process_limits.c).
+    function c_peak_memory() result(kilobytes) bind(c, name='keyway_peak_memory')
+      import :: c_long
+      implicit none
+      integer(c_long) :: kilobytes
+    end function c_peak_memory
+  end interface
 
 contains
 
@@ -18,20 +28,6 @@ contains
 
   !> Peak memory of the process so far [MB]; 0 if the system does not report it.
   real(rk) function peak_memory() result(megabytes)
-    character(*), parameter :: wanted = 'VmHWM:'
-    character(256) :: line
-    integer :: unit, status
-    megabytes = 0.0_rk
-    open (newunit=unit, file='/proc/self/status', status='old', action='read', iostat=status)
-    if (status /= 0) return
-    do
-      read (unit, '(a)', iostat=status) line
-      if (status /= 0) exit
-      if (index(line, wanted) /= 1) cycle
-      read (line(len(wanted) + 1:), *, iostat=status) megabytes ! followed by 'kB'
-      if (status == 0) megabytes = megabytes/kilobytes_per_megabyte
-      exit
-    end do
-    close (unit)
+    megabytes = max(real(c_peak_memory(), rk), 0.0_rk)/kilobytes_per_megabyte
   end function peak_memory
 end module timer

@@ -14,6 +14,10 @@
 #include <time.h>
 #include <unistd.h>
 
+int keyway_lacks_memory(void); /* base/process_limits.c */
+void keyway_tell_of_missing_memory(void);
+int keyway_has_user_routines(void);
+
 enum { longest_path = 4096, name_room = 256, read_at_most = 4096, num_fatal = 7 };
 
 static volatile sig_atomic_t first_signal, has_met_limit;
@@ -29,22 +33,27 @@ static struct {
   char name[name_room]; /* in the folder */
 } lock = {-1, -1, 0, ""};
 
-/* Turns the status "running" of job.json into "stopped", in place; signal handlers may call it. */
-static void mark_summary(void) {
+enum { system_failed = 3 };
+
+/* Turns the status "running" of job.json into "stopped", in place; signal handlers may call it. Whether
+ * it has done so. */
+static int mark_summary(void) {
   static const char running[] = "\"status\": \"running\"", stopped[] = "\"status\": \"stopped\"";
   char text[read_at_most];
   ssize_t length, i;
   int file;
-  if (!summary_path[0]) return;
+  int is_marked = 0;
+  if (!summary_path[0]) return 0;
   file = open(summary_path, O_RDWR | O_CLOEXEC);
-  if (file < 0) return;
+  if (file < 0) return 0;
   length = pread(file, text, sizeof text, 0);
   for (i = 0; i + (ssize_t)sizeof running - 1 <= length; i++)
     if (memcmp(text + i, running, sizeof running - 1) == 0) {
-      if (pwrite(file, stopped, sizeof stopped - 1, i) < 0) break;
+      is_marked = pwrite(file, stopped, sizeof stopped - 1, i) > 0;
       break;
     }
   close(file);
+  return is_marked;
 }
 
 /* Removes the lock file, unless another file has taken its name, and gives the lock back. Signal
@@ -70,6 +79,49 @@ static void end_by(int signal_number) {
   raise(signal_number);
 }
 
+/* Ends a run that missing memory has crashed within a library, which has no message for that. */
+void keyway_end_if_memory_lacks(int lacks) {
+  if (!lacks) return;
+  keyway_tell_of_missing_memory();
+  drop_lock();
+  _exit(system_failed);
+}
+
+static struct sigaction before_run[num_fatal];
+static int is_run_open; /* job.json is watched */
+
+/* A crash before the results are open: by missing memory, or the former handler is next. */
+static void end_early_crash(int signal_number) {
+  int i;
+  keyway_end_if_memory_lacks(keyway_lacks_memory());
+  for (i = 0; i < num_fatal; i++)
+    if (fatal[i] == signal_number) sigaction(signal_number, &before_run[i], NULL);
+  raise(signal_number);
+}
+
+/* The end of the program before the results are open. The Fortran library ends it with code 1. */
+static void end_early(int code, void *ignored) {
+  (void)ignored;
+  if (!is_run_open && code == 1) keyway_end_if_memory_lacks(keyway_lacks_memory());
+}
+
+/* From now on a crash by missing memory is told as such: libraries have no message for that. */
+void keyway_watch_memory(void) {
+  struct sigaction now;
+  int i;
+  memset(&now, 0, sizeof now);
+  now.sa_handler = end_early_crash;
+  now.sa_flags = SA_ONSTACK;
+  sigemptyset(&now.sa_mask);
+  for (i = 0; i < num_fatal; i++) sigaction(fatal[i], &now, &before_run[i]);
+  on_exit(end_early, NULL);
+}
+
+/* The end of the program. A run that is still "running" was ended by a library. */
+static void mark_at_end(void) {
+  if (mark_summary()) keyway_end_if_memory_lacks(keyway_lacks_memory());
+}
+
 /* The first signal asks the run to stop after its increment, the second ends it at once. */
 static void ask_to_stop(int signal_number) {
   if (first_signal == 0) {
@@ -91,6 +143,7 @@ static void leave_mark(int signal_number) {
   int i;
   mark_summary();
   summary_path[0] = '\0';
+  if (!keyway_has_user_routines()) keyway_end_if_memory_lacks(keyway_lacks_memory());
   for (i = 0; i < num_fatal; i++)
     if (fatal[i] == signal_number) sigaction(signal_number, &before[i], NULL);
   raise(signal_number);
@@ -117,6 +170,7 @@ void keyway_catch_signals(const char *path) {
   if (strlen(path) < sizeof summary_path) strcpy(summary_path, path);
   if (is_caught || !path[0]) return;
   is_caught = 1;
+  is_run_open = 1;
   catch_one(SIGINT, ask_to_stop);
   catch_one(SIGTERM, ask_to_stop);
   catch_one(SIGHUP, ask_to_stop);
@@ -129,7 +183,7 @@ void keyway_catch_signals(const char *path) {
   now.sa_handler = leave_mark;
   now.sa_flags = SA_ONSTACK; /* that of umat_crash.c: a routine may have used up its own */
   for (i = 0; i < num_fatal; i++) sigaction(fatal[i], &now, &before[i]);
-  atexit(mark_summary);
+  atexit(mark_at_end);
 }
 
 /* The signal that asked to stop, 0 for none. */

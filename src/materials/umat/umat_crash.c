@@ -18,17 +18,21 @@ static int start_descriptor = -1;
 void keyway_on_missing_memory(void (*escape)(const char *)); /* base/process_limits.c */
 void keyway_hold_reserve(void);
 void keyway_free_reserve(void);
+int keyway_lacks_memory(void);
+void keyway_end_if_memory_lacks(int lacks); /* base/system/system_calls.c */
 void keyway_umat_escape(const char *what); /* umat_bridge.c */
 
 /* Leaves the call of the UMAT; outside of a call the former handler is next. */
 static void leave_call(int number)
 {
   sigset_t own;
+  int lacks = keyway_lacks_memory();
   sigemptyset(&own);
   sigaddset(&own, number);
   pthread_sigmask(SIG_UNBLOCK, &own, NULL);
   keyway_free_reserve();
   keyway_umat_escape(strsignal(number));
+  keyway_end_if_memory_lacks(lacks);
   for (int i = 0; i < num_signals; i++)
     if (crashes[i] == number) sigaction(number, &before[i], NULL);
   raise(number);
