@@ -340,7 +340,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     now%tries = now%tries + 1
     if (self%chosen%patience > 0 .and. .not. now%is_slow(self%chosen%patience)) then
-      if (now%is_due(self%chosen%patience)) now%base_force = now%force
+      if (now%tries == 1) now%base_force = now%force
       call self%mixer%advance(now%answer - now%guess, now%guess)
     else if (self%chosen%patience == 0 .and. now%has_grown()) then
       now%share = 0.5_rk*now%share
