@@ -51,6 +51,8 @@ ROOMS = (
     "analysis/system",
     "diagnosis",
     "analysis/solids",
+    "analysis/modes",
+    "analysis/reduced",
     "analysis/integrators",
     "analysis/steps",
     "results/quantities",

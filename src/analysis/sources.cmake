@@ -1,19 +1,26 @@
 set(sources
   integrators/dynamic_step.f90
-  integrators/eigen_modes.f90
-  integrators/energy_account.f90
   integrators/frequency_integrator.f90
   integrators/hht_increment.f90
   integrators/hht_integrator.f90
-  integrators/hht_scheme.f90
   integrators/initial_acceleration.f90
   integrators/integrator_catalogue.f90
   integrators/integrator_type.f90
   integrators/massless_acceleration.f90
-  integrators/modal_damping.f90
+  integrators/reduced_integrator.f90
   integrators/start_acceleration.f90
   integrators/static_increment.f90
   integrators/static_integrator.f90
+  modes/eigen_modes.f90
+  modes/modal_damping.f90
+  reduced/reduced_basis.f90
+  reduced/reduced_energy.f90
+  reduced/reduced_estimate.f90
+  reduced/reduced_fields.f90
+  reduced/reduced_increment.f90
+  reduced/reduced_ports.f90
+  reduced/reduced_scheme.f90
+  reduced/reduced_shapes.f90
   solids/active_unknowns.f90
   solids/conserving_stress.f90
   solids/guest_forces.f90
@@ -36,6 +43,8 @@ set(sources
   steps/step_loop.f90
   steps/step_report.f90
   steps/user_increments.f90
+  system/energy_account.f90
+  system/hht_scheme.f90
   system/joint_water.f90
   system/step_equilibrium.f90
   system/step_loads.f90

@@ -65,4 +65,5 @@ set(sources
   steps/record_units.f90
   verify_blocks.f90
   verify_model.f90
+  verify_reduced.f90
 )

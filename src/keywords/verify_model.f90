@@ -12,6 +12,7 @@ module verify_model
   use shape_hex8, only: corner_fault
   use sorted_lists, only: contains_position
   use verify_blocks, only: verify_free_blocks
+  use verify_reduced, only: verify_reduced_steps
   use write_text, only: as_text
   implicit none
   private
@@ -26,6 +27,7 @@ contains
     call verify_elements(model, faults)
     call verify_mass(model, faults)
     call verify_velocities(model, faults)
+    call verify_reduced_steps(model, faults)
     if (.not. faults%has_errors()) call verify_weight(model, faults)
     if (.not. faults%has_errors()) call verify_supports(model, faults)
     if (.not. faults%has_errors()) call verify_free_blocks(model, faults)

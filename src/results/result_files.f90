@@ -14,6 +14,7 @@ module result_files
   use run_records, only: run_record
   use run_summaries, only: run_summary
   use result_writer, only: is_due, starts_analysis
+  use requested_fields, only: needs_nodes
   use writer_catalogue, only: writer_item, list_writers
   use summary_json, only: write_summary
   use input_files, only: inputs_of, refuse_inputs
@@ -43,20 +44,12 @@ module result_files
     logical, private :: is_from_old = .false. !< the last checkpoint is damaged
     type(writer_item), allocatable, private :: writers(:)
   contains
-    procedure :: prepare
+    procedure :: prepare, load, go_on
     procedure :: open => open_results
-    procedure :: load
-    procedure :: go_on
-    procedure :: increment_done
-    procedure :: increment_dropped
-    procedure :: modes_found
+    procedure :: increment_done, increment_dropped, wants_motion, modes_found
     procedure :: finish
-    procedure, private :: start_step
-    procedure, private :: keep_or_stop
-    procedure, private :: keep
-    procedure, private :: write_increment
-    procedure, private :: write_last
-    procedure, private :: write_envelopes
+    procedure, private :: start_step, keep_or_stop, keep
+    procedure, private :: write_increment, write_last, write_envelopes
     procedure, private :: print_warnings
     procedure, private :: summarise
   end type result_folder
@@ -179,6 +172,13 @@ contains
     end if
     if (.not. allocated(error)) call self%keep_or_stop(model, now, error)
   end subroutine increment_done
+
+  logical function wants_motion(self, model, now)
+    class(result_folder), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    wants_motion = is_asked_to_stop() .or. needs_nodes(model, now, self%record)
+  end function wants_motion
 
   !> Writes a checkpoint where one is due, and ends the run where a signal asks to stop. The start
   !> of a step is no place to go on from.

@@ -65,6 +65,8 @@ TYPES = (
     of_state("increment_status", STATE, "status"),
     of_state("energy_balance", STATE, "energy"),
     of_state("motion", STATE, "motion"),
+    of_state("modal_motion", STATE, "modal"),
+    of_state("reduction_status", STATE, "reduction"),
     of_state("last_matrix", STATE, "matrix"),
     of_state("increment_control", "src/analysis/state/step_control.f90", "control"),
     of_state(

@@ -2,7 +2,8 @@
 !> tests/tools/test_archives.py finds a component that is missing here.
 module full_state
   use kinds, only: rk
-  use analysis_state, only: state, increment_status, energy_balance, last_matrix, motion
+  use analysis_state, only: state, increment_status, energy_balance, last_matrix, motion, &
+                            modal_motion, reduction_status
   use step_control, only: increment_control
   use joint_law, only: joint_state
   use material_points, only: point_state
@@ -66,6 +67,7 @@ contains
     call fill(status%largest_force, n)
     call fill_energy(status%energy, n)
     call fill_control(status%control, n)
+    call fill_reduction(status%reduction, n)
   end subroutine fill_status
 
   !> Energies.
@@ -128,7 +130,35 @@ contains
     call fill(own%inertia, n)
     call fill(own%carried, n)
     call fill(own%jump_rate, n)
+    call fill_modal(own%modal, n)
   end subroutine fill_motion
+
+  !> Motion of a reduced model.
+  subroutine fill_modal(own, n)
+    type(modal_motion), intent(inout) :: own
+    integer, intent(inout) :: n
+    allocate (own%start(4), own%start_traction(3, 4), own%start_factor(2), own%y(3), own%rate(3), &
+              own%acceleration(3), own%port(5), own%port_rate(5), own%port_acceleration(5))
+    call fill(own%start, n)
+    call fill(own%start_traction, n)
+    call fill(own%start_factor, n)
+    call fill(own%y, n)
+    call fill(own%rate, n)
+    call fill(own%acceleration, n)
+    call fill(own%port, n)
+    call fill(own%port_rate, n)
+    call fill(own%port_acceleration, n)
+  end subroutine fill_modal
+
+  !> What is known of a reduced model.
+  subroutine fill_reduction(reduction, n)
+    type(reduction_status), intent(inout) :: reduction
+    integer, intent(inout) :: n
+    call fill(reduction%num_shapes, n)
+    call fill(reduction%num_modes, n)
+    call fill(reduction%highest, n)
+    call fill(reduction%estimate, n)
+  end subroutine fill_reduction
 
   !> The last matrix.
   subroutine fill_matrix(matrix, n)

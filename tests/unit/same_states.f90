@@ -3,7 +3,8 @@
 module same_states
   use kinds, only: rk, long
   use step_control, only: increment_control
-  use analysis_state, only: state, increment_status, energy_balance, last_matrix, motion
+  use analysis_state, only: state, increment_status, energy_balance, last_matrix, motion, &
+                            modal_motion, reduction_status
   use guest_history, only: history_slot
   use joint_law, only: joint_state
   use material_points, only: point_state
@@ -84,6 +85,7 @@ contains
     call compare(log, what//'largest_force', a%largest_force, b%largest_force)
     call compare_energy(log, what//'energy%', a%energy, b%energy)
     call compare_control(log, what//'control%', a%control, b%control)
+    call compare_reduction(log, what//'reduction%', a%reduction, b%reduction)
   end subroutine compare_status
 
   !> Energies.
@@ -144,7 +146,35 @@ contains
     call compare(log, what//'inertia', a%inertia, b%inertia)
     call compare(log, what//'carried', a%carried, b%carried)
     call compare(log, what//'jump_rate', a%jump_rate, b%jump_rate)
+    call compare_modal(log, what//'modal%', a%modal, b%modal)
   end subroutine compare_motion
+
+  !> Motion of a reduced model.
+  subroutine compare_modal(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    type(modal_motion), intent(in) :: a, b
+    call compare(log, what//'start', a%start, b%start)
+    call compare(log, what//'start_traction', a%start_traction, b%start_traction)
+    call compare(log, what//'start_factor', a%start_factor, b%start_factor)
+    call compare(log, what//'y', a%y, b%y)
+    call compare(log, what//'rate', a%rate, b%rate)
+    call compare(log, what//'acceleration', a%acceleration, b%acceleration)
+    call compare(log, what//'port', a%port, b%port)
+    call compare(log, what//'port_rate', a%port_rate, b%port_rate)
+    call compare(log, what//'port_acceleration', a%port_acceleration, b%port_acceleration)
+  end subroutine compare_modal
+
+  !> What is known of a reduced model.
+  subroutine compare_reduction(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    type(reduction_status), intent(in) :: a, b
+    call compare(log, what//'num_shapes', a%num_shapes, b%num_shapes)
+    call compare(log, what//'num_modes', a%num_modes, b%num_modes)
+    call compare(log, what//'highest', a%highest, b%highest)
+    call compare(log, what//'estimate', a%estimate, b%estimate)
+  end subroutine compare_reduction
 
   !> The last matrix.
   subroutine compare_matrix(log, what, a, b)

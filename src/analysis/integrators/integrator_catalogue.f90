@@ -6,6 +6,7 @@ module integrator_catalogue
   use integrator_type, only: integrator
   use static_integrator, only: make_static
   use hht_integrator, only: make_hht
+  use reduced_integrator, only: make_reduced
   use frequency_integrator, only: make_frequency
   implicit none
   private
@@ -35,6 +36,8 @@ contains
            entry(step_procedure('STATIC', 'NEWTON'), make_static), &
            entry(step_procedure('DYNAMIC', 'HHT', has_inertia=.true., uses_alpha=.true.), &
                  make_hht), &
+           entry(step_procedure('DYNAMIC', 'REDUCED', has_inertia=.true., uses_alpha=.true.), &
+                 make_reduced), &
            entry(step_procedure('FREQUENCY', 'ARPACK', finds_modes=.true.), make_frequency)]
   end function all_integrators
 

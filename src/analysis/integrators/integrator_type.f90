@@ -10,6 +10,7 @@ module integrator_type
   use step_plan, only: step
   use analysis_state, only: state
   use increment_listener, only: listener
+  use state_transfer, only: store_motion
   use equilibrium, only: balance_outcome
   use step_loads, only: step_time
   use step_system, only: dam_system
@@ -25,6 +26,7 @@ module integrator_type
     procedure(open_step), deferred :: open_step
     procedure :: start_increment => no_preparation
     procedure(advance), deferred :: advance
+    procedure :: store_state => store_nodes
     procedure :: is_hopeless => is_never_hopeless
     procedure :: explain_failure => no_explanation
     procedure :: close_step => no_end
@@ -70,6 +72,17 @@ contains
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
   end subroutine no_preparation
+
+  !> Writes the motion of a converged increment to the nodes.
+  subroutine store_nodes(self, model, when, now, results, error)
+    class(integrator), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(step_time), intent(in) :: when !< the end of the increment
+    type(state), intent(inout) :: now !< with its counters
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    call store_motion(self%system%numbers, now)
+  end subroutine store_nodes
 
   !> Whether an increment has no equilibrium for certain.
   logical function is_never_hopeless(self, model, plan, when, before)

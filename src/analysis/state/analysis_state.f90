@@ -13,7 +13,8 @@ module analysis_state
   use step_control, only: increment_control
   implicit none
   private
-  public :: state, increment_status, last_matrix, motion, energy_balance, vibration_mode
+  public :: state, increment_status, last_matrix, motion, modal_motion, energy_balance
+  public :: reduction_status, vibration_mode
 
   !> Energies since the start of the analysis [J]. `error` is the imbalance over `largest`, the
   !> largest energy so far: the present energies of a dam at rest are no reference.
@@ -26,6 +27,14 @@ module analysis_state
     real(rk) :: initial = 0.0_rk !< kinetic and strain energy at the start of the analysis
     real(rk) :: error = 0.0_rk, largest = 0.0_rk
   end type energy_balance
+
+  !> The reduced model of the step, and its error.
+  type :: reduction_status
+    integer :: num_shapes = 0 !< that it was built from
+    integer :: num_modes = 0 !< 0: the step has no reduced model
+    real(rk) :: highest = 0.0_rk !< frequency [Hz]
+    real(rk) :: estimate = 0.0_rk !< error of the openings, over the largest
+  end type reduction_status
 
   !> Time of the analysis, course of the last increment and size of the next increment.
   type :: increment_status
@@ -44,7 +53,18 @@ module analysis_state
     real(rk) :: largest_force = 0.0_rk !< reference force of the last increment [N]
     type(energy_balance) :: energy
     type(increment_control) :: control
+    type(reduction_status) :: reduction
   end type increment_status
+
+  !> Motion of a reduced model since the start of its step (theory.md, 7.4).
+  type :: modal_motion
+    real(rk), allocatable :: start(:) !< (num_total) unknowns at the start of the step [m]
+    real(rk), allocatable :: start_traction(:, :) !< (3, points) of the joints there [Pa]
+    real(rk), allocatable :: start_factor(:) !< (load groups) there
+    real(rk), allocatable :: y(:), rate(:), acceleration(:) !< (modes) and their rates
+    !> (ports) forces on joints [N], then factors of loads, whose static response the rest has
+    real(rk), allocatable :: port(:), port_rate(:), port_acceleration(:)
+  end type modal_motion
 
   !> Motion and forces in the unknowns of a step. The integrator allocates what it needs.
   type :: motion
@@ -65,6 +85,7 @@ module analysis_state
     real(rk), allocatable :: momentum(:), inertia(:) !< M v [N s], M a [N]
     real(rk), allocatable :: carried(:, :) !< (3, points) t* of the implicit joint impulse [Pa]
     real(rk), allocatable :: jump_rate(:, :) !< (3, points) in the last increment [m/s]
+    type(modal_motion) :: modal !< of a reduced model
   end type motion
 
   !> The matrix that the last iteration has ended with. The next increment starts with it.

@@ -17,6 +17,7 @@ module increment_listener
   contains
     procedure(increment_done), deferred :: increment_done
     procedure :: increment_dropped
+    procedure :: wants_motion => always_wants_motion
     procedure(modes_found), deferred :: modes_found
   end type listener
 
@@ -44,6 +45,14 @@ module increment_listener
   end interface
 
 contains
+
+  !> Whether the results of an increment need the motion of the nodes. `now` has its counters.
+  logical function always_wants_motion(self, model, now) result(wants)
+    class(listener), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    wants = .true.
+  end function always_wants_motion
 
   !> A signal has ended the increment after `now`; the error ends the run.
   subroutine increment_dropped(self, model, now, error)

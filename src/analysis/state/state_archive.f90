@@ -5,11 +5,12 @@ module state_archive
   use archive_type, only: archive
   use guest_histories, only: history_reference, list_histories
   use step_control, only: increment_control
-  use analysis_state, only: state, increment_status, energy_balance, last_matrix, motion
+  use analysis_state, only: state, increment_status, energy_balance, last_matrix, motion, &
+                            modal_motion, reduction_status
   use write_text, only: as_text
   implicit none
   private
-  public :: save_state, load_state, save_energy, load_energy
+  public :: save_state, load_state, save_energy, load_energy, save_reduction, load_reduction
 
 contains
 
@@ -166,6 +167,9 @@ contains
     call file%open_group('control')
     call save_control(status%control, file)
     call file%close_group()
+    call file%open_group('reduction')
+    call save_reduction(status%reduction, file)
+    call file%close_group()
   end subroutine save_status
 
   !> Reads where the analysis is.
@@ -193,6 +197,9 @@ contains
     call file%close_group()
     call file%open_group('control')
     call load_control(status%control, file)
+    call file%close_group()
+    call file%open_group('reduction')
+    call load_reduction(status%reduction, file)
     call file%close_group()
   end subroutine load_status
 
@@ -229,6 +236,26 @@ contains
     call file%get('error', energy%error)
     call file%get('largest', energy%largest)
   end subroutine load_energy
+
+  !> Writes what is known of the reduced model.
+  subroutine save_reduction(reduction, file)
+    type(reduction_status), intent(in) :: reduction
+    class(archive), intent(inout) :: file
+    call file%put('num_shapes', reduction%num_shapes)
+    call file%put('num_modes', reduction%num_modes)
+    call file%put('highest', reduction%highest)
+    call file%put('estimate', reduction%estimate)
+  end subroutine save_reduction
+
+  !> Reads what is known of the reduced model.
+  subroutine load_reduction(reduction, file)
+    type(reduction_status), intent(inout) :: reduction
+    class(archive), intent(inout) :: file
+    call file%get('num_shapes', reduction%num_shapes)
+    call file%get('num_modes', reduction%num_modes)
+    call file%get('highest', reduction%highest)
+    call file%get('estimate', reduction%estimate)
+  end subroutine load_reduction
 
   !> Writes the size of increments.
   subroutine save_control(control, file)
@@ -285,6 +312,9 @@ contains
     call file%put('inertia', own%inertia)
     call file%put('carried', own%carried)
     call file%put('jump_rate', own%jump_rate)
+    call file%open_group('modal')
+    call save_modal(own%modal, file)
+    call file%close_group()
   end subroutine save_motion
 
   !> Reads the vectors of the integrator that are allocated.
@@ -313,5 +343,38 @@ contains
     call file%get('inertia', own%inertia, extent)
     call file%get('carried', own%carried)
     call file%get('jump_rate', own%jump_rate)
+    call file%open_group('modal')
+    call load_modal(own%modal, file)
+    call file%close_group()
   end subroutine load_motion
+
+  !> Writes the motion of a reduced model.
+  subroutine save_modal(own, file)
+    type(modal_motion), intent(in) :: own
+    class(archive), intent(inout) :: file
+    call file%put('start', own%start)
+    call file%put('start_traction', own%start_traction)
+    call file%put('start_factor', own%start_factor)
+    call file%put('y', own%y)
+    call file%put('rate', own%rate)
+    call file%put('acceleration', own%acceleration)
+    call file%put('port', own%port)
+    call file%put('port_rate', own%port_rate)
+    call file%put('port_acceleration', own%port_acceleration)
+  end subroutine save_modal
+
+  !> Reads the motion of a reduced model.
+  subroutine load_modal(own, file)
+    type(modal_motion), intent(inout) :: own
+    class(archive), intent(inout) :: file
+    call file%get('start', own%start)
+    call file%get('start_traction', own%start_traction)
+    call file%get('start_factor', own%start_factor)
+    call file%get('y', own%y)
+    call file%get('rate', own%rate)
+    call file%get('acceleration', own%acceleration)
+    call file%get('port', own%port)
+    call file%get('port_rate', own%port_rate)
+    call file%get('port_acceleration', own%port_acceleration)
+  end subroutine load_modal
 end module state_archive

@@ -5,8 +5,7 @@ module step_loop
   use errors, only: error_type, raise, system_failed
   use problem_definition, only: problem
   use step_plan, only: step
-  use analysis_state, only: last_matrix, state
-  use state_transfer, only: store_motion
+  use analysis_state, only: last_matrix, reduction_status, state
   use step_control, only: increment_control, start_control
   use increment_listener, only: listener
   use equilibrium, only: balance_outcome, is_dropped
@@ -14,7 +13,7 @@ module step_loop
   use joint_water, only: record_uplift
   use integrator_type, only: integrator
   use integrator_catalogue, only: make_integrator
-  use step_report, only: close_increment, report_failure
+  use step_report, only: close_increment, count_increment, report_failure
   use user_increments, only: begin_user_increment
   implicit none
   private
@@ -78,6 +77,7 @@ contains
     now%is_last_of_step = .false.
     now%step_start = now%total_time
     now%matrix = last_matrix()
+    now%reduction = reduction_status()
     associate (fixed => plan%fixities)
       now%support_start = [(now%u(fixed(k)%dof, fixed(k)%node), k=1, size(fixed))]
     end associate
@@ -209,20 +209,22 @@ contains
   subroutine accept(model, plan, method, now, next, results, error)
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan
-    class(integrator), intent(in) :: method
+    class(integrator), intent(inout) :: method
     type(state), allocatable, intent(inout) :: now
     type(attempt), intent(inout) :: next
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
     associate (trial => next%trial, groups => method%system%groups)
-      call store_motion(method%system%numbers, trial)
       call record_uplift(model, plan%loads, groups, next%when, trial%joints, results%costs)
       call method%solids%matrix%store(trial%matrix)
       call trial%control%accept(method%solids%effort(next%outcome%own_iterations()))
+      call count_increment(plan, next%when, next%outcome, trial)
+      call method%store_state(model, next%when, trial, results, error)
     end associate
+    if (allocated(error)) return
     call swap(now, next%trial)
     next%control = now%control
-    call close_increment(model, plan, next%when, next%outcome, now, results, error)
+    call close_increment(model, plan, now, results, error)
   end subroutine accept
 
   !> Cuts the increment, or ends the run, at once where even the smallest increment is hopeless.

@@ -15,19 +15,16 @@ module step_report
   use write_text, only: as_text
   implicit none
   private
-  public :: close_increment, report_failure
+  public :: close_increment, count_increment, report_failure
 
 contains
 
-  !> Counts a converged increment and reports it to the listener.
-  subroutine close_increment(model, plan, when, outcome, now, results, error)
-    type(problem), intent(in) :: model
+  !> Counts a converged increment.
+  subroutine count_increment(plan, when, outcome, now)
     type(step), intent(in) :: plan
     type(step_time), intent(in) :: when !< the end of the increment
     type(balance_outcome), intent(in) :: outcome
     type(state), intent(inout) :: now
-    class(listener), intent(inout) :: results
-    type(error_type), allocatable, intent(out) :: error
     now%increment = now%increment + 1
     now%iterations = outcome%iterations
     now%augmentations = outcome%augmentations
@@ -38,6 +35,15 @@ contains
     now%step_time = when%now
     now%total_time = when%start + when%now
     now%is_last_of_step = now%step_time >= plan%duration
+  end subroutine count_increment
+
+  !> Reports a converged increment to the listener.
+  subroutine close_increment(model, plan, now, results, error)
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(state), intent(in) :: now
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
     call results%increment_done(model, now, error)
     if (allocated(error)) return
     call end_user_increment(model, now, results, error)

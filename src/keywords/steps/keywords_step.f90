@@ -16,6 +16,7 @@ module keywords_step
   public :: read_step, read_end_step, read_static, read_dynamic, read_frequency
 
   character, parameter :: nl = new_line('a')
+  character(*), parameter :: reduced = 'REDUCED' !< scheme
 
 contains
 
@@ -163,7 +164,15 @@ contains
               field('SCHEME', kind_choice, 'method of time integration', &
                     default=first, choices=schemes), &
               field('ALPHA', kind_real, 'numerical damping of HHT', default='-0.05', &
-                    lowest=-1.0_rk/3.0_rk, highest=0.0_rk)])
+                    lowest=-1.0_rk/3.0_rk, highest=0.0_rk), &
+              field('REDUCED', kind_flag, 'HHT with a reduced model of linear elastic solids '// &
+                    'with joints, the same as SCHEME=REDUCED: modes, and the static response '// &
+                    'of the rest'), &
+              field('ACCURACY', kind_real, 'with REDUCED: error of the openings of joints '// &
+                    'that the modes may leave, over the largest opening', default='0.02', &
+                    lowest=0.0_rk, highest=0.5_rk, excludes_lowest=.true.), &
+              field('MODES', kind_integer, 'with REDUCED: number of modes, in place of as many '// &
+                    'as ACCURACY needs', lowest=1.0_rk)])
     allocate (spec%columns, source=[ &
               field('increment', kind_real, 'size of an increment', 's', is_required=.true.), &
               field('duration', kind_real, 'duration of the step', 's', is_required=.true.), &
@@ -180,6 +189,7 @@ contains
     call begin_procedure(this, 'DYNAMIC', model, faults)
     call choose_scheme(this, model, faults)
     model%now%alpha = this%real('ALPHA')
+    call read_reduction(this, model, faults)
     model%now%first_increment = this%real_at(1, 1)
     model%now%duration = this%real_at(1, 2)
     model%now%largest_increment = model%now%first_increment
@@ -193,12 +203,29 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(step_procedure) :: found
     found = procedure_named('DYNAMIC', this%word('SCHEME'))
+    if (this%has('REDUCED')) found = procedure_named('DYNAMIC', reduced)
     if (found%name == '') return
     model%now%procedure = found
     if (found%uses_alpha .or. .not. this%has('ALPHA')) return
     call this%fault_parameter(faults, 'ALPHA', 'has no effect with SCHEME='//trim(found%scheme), &
                               'ALPHA with SCHEME=HHT only')
   end subroutine choose_scheme
+
+  !> What the card says of a reduced model.
+  subroutine read_reduction(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    model%now%reduced%accuracy = this%real('ACCURACY')
+    if (this%has('MODES')) model%now%reduced%num_modes = this%integer('MODES')
+    if (model%now%procedure%scheme == reduced) return
+    if (this%has('ACCURACY')) then
+      call this%fault_parameter(faults, 'ACCURACY', 'has no effect', 'ACCURACY with REDUCED only')
+    end if
+    if (this%has('MODES')) then
+      call this%fault_parameter(faults, 'MODES', 'has no effect', 'MODES with REDUCED only')
+    end if
+  end subroutine read_reduction
 
   subroutine describe_frequency(spec)
     type(keyword), intent(out) :: spec

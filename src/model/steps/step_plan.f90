@@ -5,7 +5,7 @@ module step_plan
   implicit none
   private
   public :: step, step_load, step_fixity, print_request, field_request, step_controls
-  public :: step_damping, initial_value, step_procedure, field_name_length
+  public :: step_damping, step_reduction, initial_value, step_procedure, field_name_length
 
   integer, parameter :: field_name_length = 8 !< of names of fields that a deck may give
 
@@ -89,6 +89,12 @@ module step_plan
     real(rk) :: highest = 0.0_rk !< [Hz]
   end type step_damping
 
+  !> *DYNAMIC, REDUCED.
+  type :: step_reduction
+    real(rk) :: accuracy = 0.02_rk !< of the openings, over the largest
+    integer :: num_modes = 0 !< 0: as many as the accuracy needs
+  end type step_reduction
+
   type :: step
     character(:), allocatable :: name
     type(step_procedure) :: procedure
@@ -100,6 +106,7 @@ module step_plan
     real(rk) :: alpha = -0.05_rk !< of a scheme with `uses_alpha`
     integer :: num_modes = 0 !< *FREQUENCY
     type(step_damping) :: damping
+    type(step_reduction) :: reduced
     type(step_load), allocatable :: loads(:) !< all active loads, also those of earlier steps
     type(step_fixity), allocatable :: fixities(:) !< all supports, also those of earlier steps
     type(print_request), allocatable :: prints(:)

@@ -5,10 +5,11 @@ module requested_fields
   use field_table, only: find_field
   use field_type, only: at_joints, by_guest, by_law
   use run_records, only: run_record
+  use print_kinds, only: prints_of_joints
   use result_writer, only: is_due
   implicit none
   private
-  public :: list_due_fields, asks_for_joints, is_of_law
+  public :: list_due_fields, asks_for_joints, is_of_law, needs_nodes
 
 contains
 
@@ -45,6 +46,37 @@ contains
     fields = [fields, pack([(f, f=1, size(record%fields))], &
                            [(record%fields(f)%provider == by_guest, f=1, size(record%fields))])]
   end subroutine list_due_fields
+
+  !> Whether a checkpoint, an envelope or a request of nodes, elements or fields needs the motion of
+  !> the nodes now.
+  pure logical function needs_nodes(model, now, record)
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    type(run_record), intent(in) :: record
+    needs_nodes = now%is_last_of_step .or. record%has_envelope_of_nodes() &
+                  .or. is_due(now, model%steps(now%step)%checkpoint_frequency) &
+                  .or. writes_nodes(model, now)
+  end function needs_nodes
+
+  !> Whether a request of nodes, elements or fields is due.
+  pure logical function writes_nodes(model, now)
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    integer :: r
+    writes_nodes = .false.
+    associate (plan => model%steps(now%step))
+      if (allocated(plan%outputs)) then
+        do r = 1, size(plan%outputs)
+          writes_nodes = writes_nodes .or. is_due(now, plan%outputs(r)%frequency)
+        end do
+      end if
+      if (.not. allocated(plan%prints)) return
+      do r = 1, size(plan%prints)
+        if (plan%prints(r)%kind == prints_of_joints) cycle
+        writes_nodes = writes_nodes .or. is_due(now, plan%prints(r)%frequency)
+      end do
+    end associate
+  end function writes_nodes
 
   !> Can this field be written on nodes now?
   logical function is_written(model, now, record, f)

@@ -52,6 +52,7 @@ module run_records
     procedure :: note
     procedure :: warn_once
     procedure :: list_file
+    procedure :: has_envelope_of_nodes
     procedure, private :: check_law, check_time_stepping, check_crack_energy
     procedure, private :: update_envelope, note_nodes, note_points, note_joints
   end type run_record
@@ -269,6 +270,12 @@ contains
       end associate
     end do
   end subroutine note_points
+
+  !> Whether an envelope of the present step needs the motion of the nodes.
+  pure logical function has_envelope_of_nodes(self)
+    class(run_record), intent(in) :: self
+    has_envelope_of_nodes = any(self%fields(self%envelopes(self%active)%row)%place /= at_joints)
+  end function has_envelope_of_nodes
 
   !> Keeps a warning, each text once.
   subroutine warn_once(self, text)

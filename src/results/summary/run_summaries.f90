@@ -4,7 +4,7 @@ module run_summaries
   use diagnostics, only: diagnostic_list
   use node_dofs, only: num_directions
   use problem_definition, only: problem
-  use analysis_state, only: state, energy_balance, vibration_mode
+  use analysis_state, only: state, energy_balance, reduction_status, vibration_mode
   implicit none
   private
   public :: run_summary, step_summary
@@ -19,6 +19,7 @@ module run_summaries
     real(rk) :: joint_condition = 0.0_rk !< of the system with all joints closed
     real(rk) :: largest_residual = 0.0_rk, largest_error = 0.0_rk !< error of the energy balance
     type(energy_balance) :: energy !< at its end [J]
+    type(reduction_status) :: reduction
     type(vibration_mode), allocatable :: modes(:) !< without shapes
   end type step_summary
 
@@ -80,6 +81,7 @@ contains
       last%iterations = last%iterations + now%iterations
       last%cutbacks = now%cutbacks
       last%energy = now%energy
+      last%reduction = now%reduction
       last%most_iterations = max(last%most_iterations, now%iterations)
       last%augmentations = last%augmentations + now%augmentations
       last%most_augmentations = max(last%most_augmentations, now%augmentations)

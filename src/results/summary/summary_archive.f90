@@ -5,7 +5,7 @@ module summary_archive
   use errors, only: error_type
   use kinds, only: rk
   use run_summaries, only: run_summary, step_summary
-  use state_archive, only: save_energy, load_energy
+  use state_archive, only: load_energy, load_reduction, save_energy, save_reduction
   use write_text, only: as_text
   implicit none
   private
@@ -71,6 +71,9 @@ contains
     call file%open_group('energy')
     call save_energy(part%energy, file)
     call file%close_group()
+    call file%open_group('reduction')
+    call save_reduction(part%reduction, file)
+    call file%close_group()
     call file%put('num_modes', size(part%modes))
     do i = 1, size(part%modes)
       call file%put('hz_'//as_text(i), part%modes(i)%hz)
@@ -97,6 +100,9 @@ contains
     call file%get('largest_error', part%largest_error)
     call file%open_group('energy')
     call load_energy(part%energy, file)
+    call file%close_group()
+    call file%open_group('reduction')
+    call load_reduction(part%reduction, file)
     call file%close_group()
     call file%get('num_modes', num_modes)
     allocate (part%modes(num_modes))

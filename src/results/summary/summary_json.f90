@@ -258,9 +258,31 @@ contains
     call json%put_real(maxval([0.0_rk, summary%steps%largest_residual]), 'largest_residual')
     call json%put_real(maxval([0.0_rk, summary%steps%largest_error]), 'largest_energy_error')
     call json%put_integer(maxval([0, summary%steps%most_iterations]), 'most_iterations')
+    if (any(summary%steps%reduction%num_modes > 0)) call put_reductions(json, model, summary)
     if (size(model%joints) > 0) call put_contact(json, model, summary, record)
     call json%close_object()
   end subroutine put_accuracy
+
+  !> Reduced models: number of modes, highest frequency, error over the largest opening.
+  subroutine put_reductions(json, model, summary)
+    type(json_text), intent(inout) :: json
+    type(problem), intent(in) :: model
+    type(run_summary), intent(in) :: summary
+    integer :: i
+    call json%open_object('reduced')
+    do i = 1, size(summary%steps)
+      associate (part => summary%steps(i))
+        if (part%reduction%num_modes == 0) cycle
+        call json%open_object(model%steps(part%step)%name)
+        call json%put_integer(part%reduction%num_modes, 'modes')
+        call json%put_real(part%reduction%highest, 'highest_hz')
+        call json%put_real(part%reduction%estimate, 'estimated_error')
+        call json%put_real(model%steps(part%step)%reduced%accuracy, 'wanted')
+        call json%close_object()
+      end associate
+    end do
+    call json%close_object()
+  end subroutine put_reductions
 
   !> Penetration of the joints compared with their opening, and the condition number of the
   !> equations with all joints closed.

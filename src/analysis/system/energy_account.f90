@@ -14,7 +14,7 @@ module energy_account
   use step_system, only: dam_system
   implicit none
   private
-  public :: open_account, add_static_work, add_dynamic_work
+  public :: open_account, add_static_work, add_dynamic_work, find_error
 
   !> Floor of the largest energy, as a fraction of the sum of K_ii q_i^2: energies below it are
   !> round-off of the motion.

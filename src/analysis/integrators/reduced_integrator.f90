@@ -1,0 +1,344 @@
+!> Dynamic steps with a reduced model of the linear structure (theory.md, 7.4): modes of the open
+!> structure and the static response of the rest; the joints keep all their points.
+module reduced_integrator
+  use analysis_state, only: modal_motion, reduction_status, state
+  use energy_account, only: open_account
+  use equilibrium, only: balance_outcome
+  use errors, only: error_type, raise
+  use global_vectors, only: dot, multiply, norm
+  use guest_forces, only: has_histories
+  use hht_scheme, only: make_scheme
+  use increment_listener, only: listener
+  use integrator_type, only: integrator
+  use joint_forces, only: gather_tractions
+  use kinds, only: rk
+  use modal_damping, only: build_modal_damping
+  use problem_definition, only: problem
+  use reduced_basis, only: build_basis, reduced_model
+  use reduced_energy, only: add_reduced_work
+  use reduced_estimate, only: estimate_error
+  use reduced_fields, only: expand_motion
+  use reduced_increment, only: load_factors, modal_forces, take_reduced_increment
+  use reduced_scheme, only: reduced_matrices
+  use reduced_shapes, only: find_shapes
+  use state_transfer, only: start_motion, store_motion
+  use step_equilibrium, only: make_equilibrium
+  use step_loads, only: external_force, step_time
+  use step_plan, only: step
+  use step_system, only: dam_system, build_damping, build_inertia, build_loads, build_structure
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: make_reduced
+
+  type, extends(integrator) :: reduced_method
+    type(reduced_model) :: basis
+    type(reduced_matrices) :: matrices !< of the present increment size
+    real(rk), allocatable :: force_norm(:) !< (loads) [N]
+  contains
+    procedure :: open_step
+    procedure :: start_increment
+    procedure :: advance
+    procedure :: store_state
+  end type reduced_method
+
+  !> Shift of the stiffness, times the square of the increment: a period of 2000 increments.
+  real(rk), parameter :: shift_of_increment = 1.0e-5_rk
+
+  !> Forces that are not balanced at the start of a step, over the internal forces, below which they
+  !> are the remainder of an iteration.
+  real(rk), parameter :: balanced_share = 1.0e-4_rk
+
+  !> Most points of joints: their compliance is a dense matrix.
+  integer, parameter :: most_points = 1500
+  !> Modes of the first model, most modes, and growth from one model to the next.
+  integer, parameter :: first_guess = 120, most_modes = 800
+  real(rk), parameter :: least_growth = 1.3_rk, most_growth = 2.5_rk
+  !> The error falls at least as quickly as this power of the number of modes.
+  real(rk), parameter :: decay = 1.5_rk
+  real(rk), parameter :: two_pi = 2.0_rk*acos(-1.0_rk)
+
+contains
+
+  !> The method, before it has a step.
+  subroutine make_reduced(method)
+    class(integrator), allocatable, intent(out) :: method
+    allocate (reduced_method :: method)
+  end subroutine make_reduced
+
+  !> Builds the equations of the step, then the reduced model.
+  subroutine open_step(self, model, plan, now, results, error)
+    class(reduced_method), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(state), intent(inout) :: now
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    type(modal_motion) :: loaded
+    associate (system => self%system, costs => results%costs)
+      call build_structure(model, plan, system, costs, error)
+      if (.not. allocated(error)) call build_inertia(model, plan, system, costs, error)
+      if (.not. allocated(error)) call build_damping(model, plan, system, costs, error)
+      if (.not. allocated(error)) call build_modal_damping(model, plan, system, costs, error)
+      if (allocated(error)) return
+      call build_loads(model, plan, now%u, system, costs)
+      now%num_unknowns = system%matrix%num_free
+      if (now%increment > 0) loaded = now%motion%modal
+      call start_motion(system%numbers, model%joints, now, has_inertia=.true.)
+      now%motion%modal = loaded
+      call self%solids%open(model, system, plan, now)
+      call make_equilibrium(plan, system, .true., self%solids%solver, error)
+      if (allocated(error)) return
+      self%solids%solver%costs = costs
+    end associate
+    call refuse_size(self%system, now, error)
+    if (allocated(error)) return
+    call start_modal(self, model, plan, now)
+    call build_model(self, model, plan, now, results, error)
+    if (allocated(error) .or. now%increment > 0) return
+    call open_account(model, self%system%diagonal, now, now%total_time <= 0.0_rk)
+    call store_motion(self%system%numbers, now)
+    call results%increment_done(model, now, error)
+  end subroutine open_step
+
+  !> Error: what the reduced model cannot hold and the reader of the deck cannot know.
+  subroutine refuse_size(system, now, error)
+    type(dam_system), intent(in) :: system
+    type(state), intent(in) :: now
+    type(error_type), allocatable, intent(out) :: error
+    if (system%operator%num_points > most_points) then
+      call raise(error, '*DYNAMIC, REDUCED holds up to '//as_text(most_points)//' points of '// &
+                 'joints, and the model has '//as_text(system%operator%num_points)// &
+                 '; take *DYNAMIC without REDUCED')
+    else if (has_histories(now%guests)) then
+      call raise(error, '*DYNAMIC, REDUCED holds no forces with a history other than those of '// &
+                 'joints; take *DYNAMIC without REDUCED')
+    end if
+  end subroutine refuse_size
+
+  !> Where the step starts from, its loads and its forces that are not balanced. A continued run has
+  !> the start in its state.
+  subroutine start_modal(self, model, plan, now)
+    class(reduced_method), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(state), intent(inout) :: now
+    type(step_time) :: when
+    real(rk) :: contact(self%system%matrix%num_total)
+    integer :: k, n
+    when = step_time(is_dynamic=.true., start=now%step_start, duration=plan%duration)
+    n = size(self%system%groups)
+    associate (own => now%motion, modal => now%motion%modal, system => self%system)
+      if (.not. allocated(modal%start)) then
+        modal%start = own%q
+        allocate (modal%start_traction(3, system%operator%num_points))
+        call gather_tractions(system%operator, now%joints, modal%start_traction)
+        allocate (modal%start_factor(n), source=0.0_rk)
+        associate (factor => load_factors(system%groups, model%amplitudes, when, &
+                                          modal%start_factor))
+          modal%start_factor = factor(:n)
+        end associate
+      end if
+      call external_force(system%groups, model%amplitudes, when, own%external)
+      call multiply(system%matrix, system%stiffness, modal%start, own%elastic)
+      contact = 0.0_rk
+      call system%operator%add_forces(modal%start_traction, contact)
+      allocate (self%basis%force(system%matrix%num_total, n + 2))
+      do k = 1, n
+        self%basis%force(:, k) = system%groups(k)%force
+      end do
+      self%basis%force(:, n + 1) = own%external - own%elastic - contact
+      self%basis%force(:, n + 2) = own%elastic
+      self%force_norm = [(norm(self%basis%force(:, k)), k=1, n + 2)]
+      now%largest_force = max(norm(own%external), norm(own%elastic), norm(contact))
+      own%contact = contact
+    end associate
+  end subroutine start_modal
+
+  !> Builds the reduced model, with more and more modes until the estimate of its error meets the
+  !> accuracy. A continued run has as many as its state.
+  subroutine build_model(self, model, plan, now, results, error)
+    class(reduced_method), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(state), intent(inout) :: now
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: estimate
+    integer :: wanted
+    wanted = plan%reduced%num_modes
+    if (wanted == 0) wanted = first_guess
+    if (now%increment > 0) wanted = now%reduction%num_shapes
+    do
+      call build_basis_of(self, model, plan, wanted, results, error)
+      if (allocated(error) .or. now%increment > 0) return
+      call start_modes(self, now)
+      call results%costs%start('estimate', 'reduced model', 'solver')
+      call estimate_error(model, plan, self%system, self%basis, now, estimate)
+      call results%costs%stop()
+      now%reduction = reduction_status(wanted, self%basis%num_modes, &
+                                       sqrt(maxval(self%basis%lambda))/two_pi, estimate)
+      call say_model(now%reduction, plan%reduced%accuracy, results)
+      if (plan%reduced%num_modes > 0 .or. estimate <= plan%reduced%accuracy) exit
+      if (wanted >= most_modes .or. self%basis%num_modes < wanted) exit
+      wanted = min(most_modes, grown(wanted, estimate/plan%reduced%accuracy))
+    end do
+    if (estimate <= plan%reduced%accuracy) return
+    call results%log%say('warning: the reduced model does not reach the ACCURACY of the step: '// &
+                         'the estimate is '//as_text(estimate)//'; take *DYNAMIC without '// &
+                         'REDUCED, or more MODES')
+  end subroutine build_model
+
+  !> More modes, for an error that shall be smaller by a factor.
+  pure integer function grown(num_modes, factor)
+    integer, intent(in) :: num_modes
+    real(rk), intent(in) :: factor
+    grown = ceiling(num_modes*min(most_growth, max(least_growth, factor**(1.0_rk/decay))))
+  end function grown
+
+  !> Builds the model with a number of shapes.
+  subroutine build_basis_of(self, model, plan, wanted, results, error)
+    class(reduced_method), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    integer, intent(in) :: wanted
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    type(reduced_model) :: fresh
+    real(rk), allocatable :: values(:), shapes(:, :)
+    fresh%force = self%basis%force
+    fresh%shift = shift_of_increment/plan%first_increment**2
+    values = self%system%stiffness + fresh%shift*self%system%mass
+    call find_shapes(model, self%system, values, loads_of_shapes(self), wanted, &
+                     self%solids%solver, shapes, error)
+    if (allocated(error)) return
+    call results%costs%start('reduce', 'structure', 'solver')
+    call build_basis(self%system, values, shapes, self%solids%solver, fresh, error)
+    call results%costs%stop()
+    self%basis = fresh
+  end subroutine build_basis_of
+
+  !> Writes number of modes, highest frequency and estimate to the log.
+  subroutine say_model(reduction, accuracy, results)
+    type(reduction_status), intent(in) :: reduction
+    real(rk), intent(in) :: accuracy
+    class(listener), intent(inout) :: results
+    character(160) :: text
+    write (text, '(a,i0,a,f0.1,2(a,f0.2),a)') 'reduced model  modes ', reduction%num_modes, &
+      '  highest ', reduction%highest, ' Hz  estimated error ', 100.0_rk*reduction%estimate, &
+      ' % of the largest opening  wanted ', 100.0_rk*accuracy, ' %'
+    call results%log%say(trim(text))
+  end subroutine say_model
+
+  !> Forces that the shapes start with: loads that may change, forces that are not balanced at the
+  !> start, and one that no symmetry of the dam leaves out.
+  function loads_of_shapes(self) result(loads)
+    class(reduced_method), intent(in) :: self
+    real(rk), allocatable :: loads(:, :) !< (num_free, loads)
+    real(rk), dimension(self%system%matrix%num_total) :: any_motion, inertia
+    integer :: k, n, free
+    n = size(self%system%groups)
+    free = self%system%matrix%num_free
+    any_motion = [(1.0_rk + 0.5_rk*sin(1.7_rk*k) + 0.25_rk*cos(0.13_rk*k), &
+                   k=1, size(any_motion))]
+    call multiply(self%system%matrix, self%system%mass, any_motion, inertia)
+    allocate (loads(free, 0))
+    loads = reshape(inertia(:free), [free, 1])
+    do k = n + 1, 1, -1
+      if (k <= n) then
+        if (self%system%groups(k)%rule%amplitude == 0) cycle
+      else if (self%force_norm(k) <= balanced_share*self%force_norm(n + 2)) then
+        cycle
+      end if
+      loads = reshape([self%basis%force(:free, k), loads], [free, size(loads, 2) + 1])
+    end do
+  end function loads_of_shapes
+
+  !> The modes at the start of the step.
+  subroutine start_modes(self, now)
+    class(reduced_method), intent(in) :: self
+    type(state), intent(inout) :: now
+    integer :: k
+    associate (own => now%motion, modal => now%motion%modal, basis => self%basis, &
+               system => self%system, n => self%system%matrix%num_free)
+      call multiply(system%matrix, system%mass, own%v, own%momentum)
+      modal%y = [(0.0_rk, k=1, basis%num_modes)]
+      modal%rate = [(dot(own%momentum(:n), basis%mode(:, k)), k=1, basis%num_modes)]
+      modal%acceleration = modal_forces(basis, modal) &
+                           + basis%path(size(basis%path, 1) - 1, :) ! forces that are not balanced
+      modal%port = [(0.0_rk, k=1, size(basis%path, 1))]
+      modal%port_rate = modal%port
+      modal%port_acceleration = modal%port
+      own%carried = modal%start_traction
+      own%jump_rate = 0.0_rk*own%carried
+      own%v(:n) = matmul(basis%mode, modal%rate)
+      own%a(:n) = matmul(basis%mode, modal%acceleration)
+      call multiply(system%matrix, system%mass, own%v, own%momentum)
+      call multiply(system%matrix, system%mass, own%a, own%inertia)
+      call system%find_damping_force(own%v, own%viscous)
+    end associate
+  end subroutine start_modes
+
+  !> Forms the reduced matrices when the size of the increment has changed.
+  subroutine start_increment(self, model, plan, dt, results, error)
+    class(reduced_method), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    real(rk), intent(in) :: dt
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    if (abs(dt - self%matrices%scheme%dt) <= 1.0e-12_rk*dt) return
+    call self%solids%matrix%start_elastic(dt)
+    call results%costs%start('reduce', 'structure', 'solver')
+    call self%matrices%prepare(self%basis, &
+                               make_scheme(plan%alpha, dt, plan%controls%joint_forces), &
+                               model%joints, self%system%operator)
+    call results%costs%stop()
+  end subroutine start_increment
+
+  !> One increment.
+  subroutine advance(self, model, when, before, after, results, outcome, error)
+    class(reduced_method), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(step_time), intent(in) :: when
+    type(state), intent(in) :: before
+    type(state), intent(inout) :: after
+    class(listener), intent(inout) :: results
+    type(balance_outcome), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: factors(size(self%force_norm), 2)
+    type(step_time) :: start
+    start = when
+    start%now = when%now - when%increment
+    call results%costs%start('iterate', 'structure', 'solver')
+    associate (groups => self%system%groups, first => before%motion%modal%start_factor)
+      factors(:, 1) = load_factors(groups, model%amplitudes, start, first)
+      factors(:, 2) = load_factors(groups, model%amplitudes, when, first)
+    end associate
+    after%largest_force = max(before%largest_force, maxval(abs(factors(:, 2))*self%force_norm))
+    call take_reduced_increment(self%basis, self%matrices, model, &
+                                self%solids%solver%controls, factors, before, after, outcome)
+    call results%costs%stop()
+    if (.not. outcome%has_converged) return
+    call results%costs%start('recover', 'energy', 'solver')
+    call add_reduced_work(model, self%basis, self%system%operator, self%matrices%scheme, factors, &
+                          before, after)
+    call results%costs%stop()
+  end subroutine advance
+
+  !> The motion of the nodes, where results need it.
+  subroutine store_state(self, model, when, now, results, error)
+    class(reduced_method), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(step_time), intent(in) :: when
+    type(state), intent(inout) :: now
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    if (.not. results%wants_motion(model, now)) return
+    call results%costs%start('expand', 'structure', 'solver')
+    call expand_motion(self%basis, self%system, self%solids%solver, model%amplitudes, when, now, &
+                       error)
+    if (.not. allocated(error)) call store_motion(self%system%numbers, now)
+    call results%costs%stop()
+  end subroutine store_state
+end module reduced_integrator

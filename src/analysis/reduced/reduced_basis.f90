@@ -1,0 +1,308 @@
+!> The reduced model of the linear structure with open joints (theory.md, 7.4): some shapes with
+!> mass, and the static response to all loads and joint forces without mass.
+!>
+!>   u = u_0 + Phi y + R (sum of g_k f_k - B^T (area t))
+!>
+!> Loads f_k and joints are the ports P: only their rows of Phi and R are kept.
+module reduced_basis
+  use dense_factor, only: factorise_dense, lu_factor, solve_factored
+  use dense_products, only: times, transposed_times
+  use equilibrium, only: equilibrium_solver
+  use errors, only: error_type
+  use global_vectors, only: multiply
+  use joint_rows, only: num_rows
+  use kinds, only: rk
+  use matrix_pattern, only: pattern
+  use reduced_ports, only: find_port_compliance, forces_of, rows_of, solve_blocks
+  use step_system, only: dam_system
+  use symmetric_modes, only: find_modes
+  implicit none
+  private
+  public :: reduced_model, build_basis, keep_modes, residual_response
+
+  !> Port forces, and the sums of stiffness, mass and damping of their responses in the rest.
+  type :: rest_sample
+    real(rk), allocatable :: force(:, :) !< (ports, samples)
+    real(rk) :: stiffness = 0.0_rk, mass = 0.0_rk, damping = 0.0_rk
+  end type rest_sample
+
+  type :: reduced_model
+    integer :: num_modes = 0
+    real(rk) :: shift = 0.0_rk !< s of the factor of K + s M; it holds free blocks [1/s2]
+    real(rk), allocatable :: lambda(:) !< (modes) squared circular frequency [1/s2]
+    real(rk), allocatable :: mode(:, :) !< (num_free, modes) Phi
+    real(rk), allocatable :: path(:, :) !< (ports, modes) P Phi
+    real(rk), allocatable :: damping(:, :) !< (modes, modes) Phi^T C Phi [1/s]
+    real(rk), allocatable :: residual(:, :) !< (ports, ports) P R P^T
+    real(rk) :: residual_mass = 0.0_rk !< mass of the rest over its stiffness [s2]
+    real(rk) :: residual_damping = 0.0_rk !< damping of the rest over its stiffness [s]
+    real(rk), allocatable :: force(:, :) !< (num_total, loads) f_k [N]
+    real(rk), allocatable :: load_shape(:, :) !< (num_free, loads) R f_k [m]
+    type(rest_sample) :: sample
+    integer, allocatable :: probe(:) !< unknowns with the largest displacement of some modes
+  end type reduced_model
+
+  !> Keeps the stiffness of the ports definite where loads depend on each other.
+  real(rk), parameter :: least_stiffness = 1.0e-7_rk
+  integer, parameter :: num_probes = 30, num_samples = 8
+
+contains
+
+  !> Builds the model from shapes that are orthonormal with M. The solver holds the factor of
+  !> K + s M without joints.
+  subroutine build_basis(system, stiffness, shapes, solver, basis, error)
+    type(dam_system), intent(in) :: system
+    real(rk), intent(in) :: stiffness(:) !< values of K + s M
+    real(rk), allocatable, intent(inout) :: shapes(:, :) !< (num_free, shapes) not allocated after
+    class(equilibrium_solver), intent(inout) :: solver
+    type(reduced_model), intent(inout) :: basis !< with its forces
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: compliance(:, :), own(:, :), rotation(:, :)
+    integer :: k
+    basis%num_modes = size(shapes, 2)
+    call find_port_compliance(system, solver, basis%force, basis%load_shape, compliance, error)
+    if (allocated(error)) return
+    call make_static(system, stiffness, compliance, solver, basis, shapes, own, error)
+    if (allocated(error)) return
+    call find_modes(own, basis%lambda, rotation, error)
+    if (allocated(error)) return
+    basis%mode = times(shapes, rotation)
+    deallocate (shapes)
+    call spread_modes(system, basis)
+    call remove_modes(basis, compliance)
+    call move_alloc(compliance, basis%residual)
+    call sample_rest(system, solver, basis, error)
+    if (allocated(error)) return
+    basis%lambda = max(0.0_rk, basis%lambda - basis%shift)
+    call weigh_rest(basis)
+    basis%probe = [(maxloc(abs(basis%mode(:, k)), 1), k=1, min(num_probes, basis%num_modes))]
+  end subroutine build_basis
+
+  !> The same model with its lowest modes alone; the rest responds without mass. Shapes of the modes
+  !> are kept at the probes alone.
+  subroutine keep_modes(basis, num_modes, fewer)
+    type(reduced_model), intent(in) :: basis
+    integer, intent(in) :: num_modes
+    type(reduced_model), intent(out) :: fewer
+    real(rk), allocatable :: path(:, :), probe(:, :)
+    real(rk) :: scale
+    integer :: k, n
+    fewer%num_modes = num_modes
+    fewer%shift = basis%shift
+    fewer%lambda = basis%lambda(:num_modes)
+    fewer%path = basis%path(:, :num_modes)
+    fewer%damping = basis%damping(:num_modes, :num_modes)
+    fewer%force = basis%force
+    fewer%probe = [(k, k=1, size(basis%probe))]
+    fewer%mode = basis%mode(basis%probe, :num_modes)
+    fewer%sample = basis%sample
+    n = basis%num_modes - num_modes
+    allocate (path(size(basis%path, 1), n), probe(size(basis%probe), n))
+    do k = 1, n
+      scale = 1.0_rk/sqrt(basis%lambda(num_modes + k) + basis%shift)
+      path(:, k) = scale*basis%path(:, num_modes + k)
+      probe(:, k) = scale*basis%mode(basis%probe, num_modes + k)
+      associate (own => matmul(path(:, k), basis%sample%force), sample => fewer%sample)
+        sample%stiffness = sample%stiffness + sum(own**2)
+        sample%mass = sample%mass + sum((scale*own)**2)
+        sample%damping = sample%damping &
+                         + basis%damping(num_modes + k, num_modes + k)*sum((scale*own)**2)
+      end associate
+    end do
+    fewer%residual = basis%residual + times(path, transpose(path))
+    fewer%load_shape = basis%load_shape(basis%probe, :) &
+                       + times(probe, transpose(path(size(path, 1) - size(basis%force, 2) + 1:, :)))
+    call weigh_rest(fewer)
+  end subroutine keep_modes
+
+  !> Makes the shapes orthogonal, with K + s M, to the part of the static response of the ports that
+  !> is orthogonal to them with M: Psi - S (S^T K S)^-1 S^T K Psi, S = (I - Psi Psi^T M) K^-1 P^T.
+  !> `own` is their stiffness afterwards.
+  subroutine make_static(system, stiffness, compliance, solver, basis, shapes, own, error)
+    type(dam_system), intent(in) :: system
+    real(rk), intent(in) :: stiffness(:)
+    real(rk), intent(in) :: compliance(:, :) !< (ports, ports) [m/N]
+    class(equilibrium_solver), intent(inout) :: solver
+    type(reduced_model), intent(in) :: basis
+    real(rk), intent(inout) :: shapes(:, :) !< (num_free, modes) Psi
+    real(rk), allocatable, intent(out) :: own(:, :) !< (modes, modes)
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), dimension(size(compliance, 1), size(shapes, 2)) :: path, moved, coupling
+    real(rk), allocatable :: work(:, :), frequency(:), rotation(:, :)
+    integer :: k
+    call multiply_shapes(system%matrix, stiffness, shapes, work)
+    own = transposed_times(shapes, work)
+    call find_modes(0.5_rk*(own + transpose(own)), frequency, rotation, error)
+    if (allocated(error)) return
+    own = 0.0_rk
+    do k = 1, size(frequency)
+      own(k, k) = frequency(k)
+    end do
+    shapes = times(shapes, rotation)
+    call multiply_shapes(system%mass_pattern, system%mass_entries, shapes, work)
+    call solve_blocks(solver, work, error)
+    if (allocated(error)) return
+    do k = 1, size(shapes, 2)
+      path(:, k) = rows_of(system, basis%force, shapes(:, k))
+      moved(:, k) = rows_of(system, basis%force, work(:, k))
+    end do
+    coupling = path - matmul(moved, own)
+    call condense_ports(compliance, path, moved, own, coupling)
+    own = own - transposed_times(path - matmul(moved, own), coupling)
+    own = 0.5_rk*(own + transpose(own))
+    do k = 1, size(shapes, 2)
+      work(:, k) = forces_of(system, basis%force, coupling(:, k))
+    end do
+    call solve_blocks(solver, work, error)
+    if (allocated(error)) return
+    shapes = shapes + times(shapes, transposed_times(moved, coupling)) - work
+  end subroutine make_static
+
+  !> Replaces S^T K Psi by (S^T K S)^-1 S^T K Psi.
+  subroutine condense_ports(compliance, path, moved, own, coupling)
+    real(rk), intent(in) :: compliance(:, :) !< (ports, ports) P K^-1 P^T
+    real(rk), intent(in) :: path(:, :), moved(:, :) !< (ports, modes) P Psi, P K^-1 M Psi
+    real(rk), intent(in) :: own(:, :) !< (modes, modes) Psi^T K Psi
+    real(rk), intent(inout) :: coupling(:, :) !< (ports, modes)
+    type(lu_factor) :: factor
+    real(rk), allocatable :: matrix(:, :)
+    real(rk) :: scale(size(compliance, 1))
+    integer :: i
+    matrix = compliance - times(moved, transpose(path)) &
+             - times(path - times(moved, own), transpose(moved))
+    do i = 1, size(scale)
+      scale(i) = 0.0_rk
+      if (compliance(i, i) > 0.0_rk) scale(i) = 1.0_rk/sqrt(compliance(i, i))
+    end do
+    do i = 1, size(scale)
+      matrix(:, i) = scale*matrix(:, i)*scale(i)
+      matrix(i, i) = matrix(i, i) + least_stiffness
+    end do
+    coupling = spread(scale, 2, size(coupling, 2))*coupling
+    call factorise_dense(matrix, factor)
+    call solve_factored(factor, coupling)
+    coupling = spread(scale, 2, size(coupling, 2))*coupling
+  end subroutine condense_ports
+
+  !> A times each shape, over the free unknowns.
+  subroutine multiply_shapes(matrix, values, shapes, products)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: values(:) !< of A
+    real(rk), intent(in) :: shapes(:, :)
+    real(rk), allocatable, intent(out) :: products(:, :)
+    real(rk), dimension(matrix%num_total) :: x, y
+    integer :: k
+    allocate (products, mold=shapes)
+    x = 0.0_rk
+    do k = 1, size(shapes, 2)
+      x(:size(shapes, 1)) = shapes(:, k)
+      call multiply(matrix, values, x, y)
+      products(:, k) = y(:size(shapes, 1))
+    end do
+  end subroutine multiply_shapes
+
+  !> Ports and damping of the modes.
+  subroutine spread_modes(system, basis)
+    type(dam_system), intent(in) :: system
+    type(reduced_model), intent(inout) :: basis
+    real(rk), dimension(system%matrix%num_total) :: x, force
+    real(rk), allocatable :: viscous(:, :)
+    integer :: k
+    allocate (viscous, mold=basis%mode)
+    allocate (basis%path(num_rows(system%operator%num_points) + size(basis%force, 2), &
+                         basis%num_modes))
+    x = 0.0_rk
+    associate (free => system%matrix%num_free)
+      do k = 1, basis%num_modes
+        x(:free) = basis%mode(:, k)
+        basis%path(:, k) = rows_of(system, basis%force, x(:free))
+        call system%find_damping_force(x, force)
+        viscous(:, k) = force(:free)
+      end do
+    end associate
+    basis%damping = transposed_times(basis%mode, viscous)
+    basis%damping = 0.5_rk*(basis%damping + transpose(basis%damping))
+  end subroutine spread_modes
+
+  !> The part of the compliance and of the responses to loads that the modes leave out. The
+  !> frequencies contain the shift.
+  subroutine remove_modes(basis, compliance)
+    type(reduced_model), intent(inout) :: basis
+    real(rk), intent(inout) :: compliance(:, :) !< (ports, ports) [m/N]
+    real(rk) :: scaled(size(compliance, 1), basis%num_modes)
+    integer :: first
+    scaled = basis%path/spread(sqrt(basis%lambda), 1, size(scaled, 1))
+    compliance = compliance - times(scaled, transpose(scaled))
+    first = size(scaled, 1) - size(basis%force, 2) + 1
+    basis%load_shape = basis%load_shape &
+                       - matmul(basis%mode, transpose(basis%path(first:, :) &
+                                                      /spread(basis%lambda, 1, &
+                                                              size(basis%force, 2))))
+  end subroutine remove_modes
+
+  !> Responses of the rest to some forces on the joints.
+  subroutine sample_rest(system, solver, basis, error)
+    type(dam_system), intent(in) :: system
+    class(equilibrium_solver), intent(inout) :: solver
+    type(reduced_model), intent(inout) :: basis !< its frequencies contain the shift
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: rest(system%matrix%num_free, num_samples)
+    real(rk), dimension(system%matrix%num_total) :: x, product
+    integer :: i, k, n, free
+    n = num_rows(system%operator%num_points)
+    free = system%matrix%num_free
+    allocate (basis%sample%force(size(basis%residual, 1), num_samples), source=0.0_rk)
+    do k = 1, num_samples
+      do i = 1, n
+        basis%sample%force(i, k) = system%operator%area(1 + (i - 1)/3)*sin(1.7_rk*i*k + k)
+      end do
+      if (n == 0) basis%sample%force(1 + mod(k - 1, max(1, size(basis%force, 2) - 2)), k) = 1.0_rk
+      rest(:, k) = forces_of(system, basis%force, basis%sample%force(:, k))
+    end do
+    call solve_blocks(solver, rest, error)
+    if (allocated(error)) return
+    x = 0.0_rk
+    do k = 1, num_samples
+      associate (force => basis%sample%force(:, k), sample => basis%sample)
+        x(:free) = rest(:, k) - matmul(basis%mode, matmul(force, basis%path)/basis%lambda)
+        sample%stiffness = sample%stiffness + sum(force*matmul(basis%residual, force))
+        call multiply(system%mass_pattern, system%mass_entries, x, product)
+        sample%mass = sample%mass + sum(x*product)
+        call system%find_damping_force(x, product)
+        sample%damping = sample%damping + sum(x*product)
+      end associate
+    end do
+  end subroutine sample_rest
+
+  !> Mass and damping of the rest over its stiffness.
+  subroutine weigh_rest(basis)
+    type(reduced_model), intent(inout) :: basis
+    associate (sample => basis%sample)
+      basis%residual_mass = 0.0_rk
+      basis%residual_damping = 0.0_rk
+      if (.not. sample%stiffness > 0.0_rk) return
+      basis%residual_mass = sample%mass/sample%stiffness
+      basis%residual_damping = sample%damping/sample%stiffness
+    end associate
+  end subroutine weigh_rest
+
+  !> R P^T w, for each column of w.
+  subroutine residual_response(system, solver, basis, port, x, error)
+    type(dam_system), intent(in) :: system
+    class(equilibrium_solver), intent(inout) :: solver
+    type(reduced_model), intent(in) :: basis
+    real(rk), intent(in) :: port(:, :) !< (ports, columns)
+    real(rk), intent(out) :: x(:, :) !< (num_free, columns)
+    type(error_type), allocatable, intent(out) :: error
+    integer :: k
+    do k = 1, size(port, 2)
+      x(:, k) = forces_of(system, basis%force, port(:, k))
+    end do
+    call solve_blocks(solver, x, error)
+    if (allocated(error)) return
+    do k = 1, size(port, 2)
+      x(:, k) = x(:, k) - matmul(basis%mode, matmul(port(:, k), basis%path) &
+                                 /(basis%lambda + basis%shift))
+    end do
+  end subroutine residual_response
+end module reduced_basis
