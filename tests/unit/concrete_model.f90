@@ -4,7 +4,7 @@ module concrete_model
   use kinds, only: rk
   implicit none
   private
-  public :: table_one, lee_fenves, repeat_chance
+  public :: table_one, lee_fenves
 
 contains
 
@@ -64,12 +64,4 @@ contains
       damage(2, :) = strength(2, :)
     end subroutine tabulate
   end function lee_fenves
-
-  !> Lets random_number give the same numbers in every run.
-  subroutine repeat_chance(start)
-    integer, intent(in) :: start !< another start, other numbers
-    integer :: i, n
-    call random_seed(size=n)
-    call random_seed(put=[(start + 7919*i, i=1, n)])
-  end subroutine repeat_chance
 end module concrete_model

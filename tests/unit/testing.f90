@@ -3,7 +3,7 @@ module testing
   use kinds, only: rk
   implicit none
   private
-  public :: test_log, check, check_close, check_text
+  public :: test_log, check, check_close, check_text, repeat_chance
 
   type :: test_log
     character(:), allocatable :: suite
@@ -41,4 +41,12 @@ contains
     character(*), intent(in) :: found, expected, what
     call check(log, found == expected, what//": found '"//found//"', expected '"//expected//"'")
   end subroutine check_text
+
+  !> Lets random_number give the same numbers in every run (gfortran starts it anew in each run).
+  subroutine repeat_chance(start)
+    integer, intent(in) :: start !< another start, other numbers
+    integer :: i, n
+    call random_seed(size=n)
+    call random_seed(put=[(start + 7919*i, i=1, n)])
+  end subroutine repeat_chance
 end module testing

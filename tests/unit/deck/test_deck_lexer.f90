@@ -7,11 +7,12 @@ program test_deck_lexer
   use diagnostics, only: diagnostic_list, place
   use keyword_spec, only: field, keyword, kind_flag, kind_word
   use kinds, only: rk
-  use testing, only: check, check_close, check_text, test_log
+  use testing, only: check, check_close, check_text, repeat_chance, test_log
   implicit none
   character, parameter :: lf = achar(10), cr = achar(13), tab = achar(9)
   type(test_log) :: log
   log%suite = 'deck_lexer'
+  call repeat_chance(1)
   call plain_cards()
   call odd_spellings()
   call quoted_words()

@@ -2,10 +2,11 @@
 program test_small_matrix
   use kinds, only: rk
   use small_matrix, only: cross_product, determinant3, invert3, outer_product, solve_dense
-  use testing, only: check, check_close, test_log
+  use testing, only: check, check_close, repeat_chance, test_log
   implicit none
   type(test_log) :: log
   log%suite = 'small_matrix'
+  call repeat_chance(1)
   call three_by_three()
   call dense_systems()
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'

@@ -2,10 +2,11 @@
 program test_parse_text
   use kinds, only: rk
   use parse_text, only: parse_integer, parse_real, single_blanks, upper_case, without_blanks
-  use testing, only: check, check_text, test_log
+  use testing, only: check, check_text, repeat_chance, test_log
   implicit none
   type(test_log) :: log
   log%suite = 'parse_text'
+  call repeat_chance(1)
   call good_reals()
   call broken_reals()
   call rounding()

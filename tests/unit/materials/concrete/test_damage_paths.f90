@@ -3,11 +3,11 @@
 !> usage: test_damage_paths [PATHS] (20 000 unless given, shared between the concretes)
 program test_damage_paths
   use concrete_paths, only: path_counts, run_paths
-  use concrete_model, only: lee_fenves, repeat_chance, table_one
+  use concrete_model, only: lee_fenves, table_one
   use damage_constants, only: concrete_constants
   use damage_model, only: concrete_model, largest_safe_dilation, make_concrete_model
   use kinds, only: rk
-  use testing, only: check, test_log
+  use testing, only: check, repeat_chance, test_log
   implicit none
   integer, parameter :: num_concretes = 12
   real(rk), parameter :: degree = acos(-1.0_rk)/180.0_rk

@@ -1,13 +1,13 @@
 !> The elastic check of virgin concrete never accepts an inelastic point, accepts nearly all elastic
 !> points, and gives their stress and energy.
 program test_damage_screen
-  use concrete_model, only: repeat_chance, table_one
+  use concrete_model, only: table_one
   use damage_model, only: concrete_model, make_concrete_model, stiffness_of
   use damage_screen, only: screen_points
   use damage_yield, only: yield_at, yield_value
   use kinds, only: rk
   use tensor6, only: principal_values, trace, von_mises
-  use testing, only: check, check_close, test_log
+  use testing, only: check, check_close, repeat_chance, test_log
   implicit none
   integer, parameter :: num_points = 20000
   type(test_log) :: log

@@ -1,7 +1,7 @@
 !> RECOVERY=ENERGY: the split of a stress against the conditions that define its closest point, the
 !> stress as the derivative of the free energy, and the work of closed loops of strain.
 program test_damage_split
-  use concrete_model, only: repeat_chance, table_one
+  use concrete_model, only: table_one
   use damage_constants, only: concrete_constants
   use damage_increment, only: elastic_stress
   use damage_model, only: concrete_model, make_concrete_model
@@ -9,7 +9,7 @@ program test_damage_split
                           stiffness_left, stiffness_of_split
   use kinds, only: rk
   use tensor6, only: principal_axes
-  use testing, only: check, check_close, test_log
+  use testing, only: check, check_close, repeat_chance, test_log
   implicit none
   type(test_log) :: log
   type(concrete_constants) :: concrete

@@ -11,13 +11,14 @@ program test_law_fields
   use stress_fields, only: recovered_fields
   use arch_model, only: make_arch
   use hand_law, only: by_hand, set_elastic
-  use testing, only: test_log, check, check_close
+  use testing, only: check, check_close, repeat_chance, test_log
   implicit none
   character(8), parameter :: kinds_of_solids(4) = ['C3D8    ', 'C3D8B   ', 'C3D8I   ', 'C3D8R   ']
   type(test_log) :: log
   type(problem) :: model
   type(state) :: now
   log%suite = 'law_fields'
+  call repeat_chance(1)
   call make_model()
   call test_widths(log)
   call test_elastic_points(log)

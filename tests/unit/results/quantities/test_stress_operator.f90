@@ -8,7 +8,7 @@ program test_stress_operator
   use node_means, only: average_at_nodes
   use stress_operator, only: nodal_operator, make_nodal_operator, apply_operator
   use arch_model, only: make_arch
-  use testing, only: test_log, check_close
+  use testing, only: check_close, repeat_chance, test_log
   implicit none
   type(test_log) :: log
   type(problem) :: model
@@ -21,6 +21,7 @@ program test_stress_operator
   character(8), parameter :: kinds_of_solids(4) = ['C3D8    ', 'C3D8B   ', 'C3D8I   ', 'C3D8R   ']
   integer :: e
   log%suite = 'stress_operator'
+  call repeat_chance(1)
   call make_arch(2, 3, 4, 2, model, fixities)
   do e = 1, model%mesh%num_elements
     model%mesh%element_type(e) = kinds_of_solids(1 + mod(e, 4))
