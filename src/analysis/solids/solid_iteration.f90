@@ -25,7 +25,7 @@ module solid_iteration
   use step_system, only: dam_system
   use anderson_mixing, only: mixer
   use conserving_stress, only: work_correction
-  use solid_iterate, only: iterate_state
+  use solid_iterate, only: iterate_state, falls_too_slowly
   use solid_tangent, only: tangent_matrix
   use step_plan, only: step
   use tangent_choice, only: tangent, choose_tangents
@@ -39,6 +39,7 @@ module solid_iteration
     real(rk), allocatable :: values(:) !< of K_eff, without joints
     real(rk) :: weight = 1.0_rk !< of the forces of the solids
     real(rk) :: tolerance = 0.0_rk !< of the balance of all forces, over the reference force
+    logical :: stops_early = .false. !< an iteration that is too slow makes room for a smaller increment
     type(tangent), allocatable :: choices(:) !< tried one after the other
     type(tangent) :: chosen !< the present one
     type(time_increment) :: time
@@ -74,6 +75,7 @@ contains
     type(step), intent(in) :: plan
     type(state), intent(inout) :: now
     self%tolerance = plan%controls%residual_tolerance
+    self%stops_early = .not. plan%is_direct
     self%choices = choose_tangents(model, plan)
     self%chosen = self%choices(1)
     call multiply(system%matrix, system%stiffness, now%motion%q, now%motion%elastic)
@@ -202,6 +204,10 @@ contains
       if (allocated(error) .or. now%is_lost) return
       call self%measure_iterate(system, before, now, outcome)
       if (outcome%has_converged) exit
+      if (self%stops_early) then
+        if (falls_too_slowly(outcome%history, self%solver%controls%residual_tolerance, &
+                             most_iterations - outcome%iterations)) exit
+      end if
       call self%choose_guess(model, system, after, now, error)
       if (allocated(error) .or. now%is_lost) return
     end do
@@ -340,7 +346,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     now%tries = now%tries + 1
     if (self%chosen%patience > 0 .and. .not. now%is_slow(self%chosen%patience)) then
-      if (now%tries == 1) now%base_force = now%force
+      if (now%is_due(self%chosen%patience)) now%base_force = now%force
       call self%mixer%advance(now%answer - now%guess, now%guess)
     else if (self%chosen%patience == 0 .and. now%has_grown()) then
       now%share = 0.5_rk*now%share
