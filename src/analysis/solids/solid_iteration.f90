@@ -39,7 +39,7 @@ module solid_iteration
     real(rk), allocatable :: values(:) !< of K_eff, without joints
     real(rk) :: weight = 1.0_rk !< of the forces of the solids
     real(rk) :: tolerance = 0.0_rk !< of the balance of all forces, over the reference force
-    logical :: stops_early = .false. !< an iteration that is too slow makes room for a smaller increment
+    logical :: stops_early = .false. !< where an iteration is too slow
     type(tangent), allocatable :: choices(:) !< tried one after the other
     type(tangent) :: chosen !< the present one
     type(time_increment) :: time
