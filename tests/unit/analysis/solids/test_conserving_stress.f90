@@ -1,7 +1,7 @@
 !> The stress that makes the work of an increment equal to its energies: along random paths of
 !> concrete with RECOVERY=ENERGY, and its derivative against differences.
 program test_conserving_stress
-  use concrete_model, only: repeat_chance, table_one
+  use concrete_model, only: table_one
   use conserving_stress, only: correct_stress, point_work
   use damage_constants, only: concrete_constants
   use errors, only: error_type
@@ -10,7 +10,7 @@ program test_conserving_stress
   use material_law, only: start_points
   use material_points, only: consistent_tangent, point_set, point_state, time_increment, &
                              update_report
-  use testing, only: check, check_close, test_log
+  use testing, only: check, check_close, repeat_chance, test_log
   implicit none
   type(test_log) :: log
   type(concrete_law) :: law
