@@ -15,13 +15,13 @@ module solid_iterate
     real(rk), allocatable :: base(:) !< s' there [N]
     real(rk) :: share = 1.0_rk !< fraction of the Newton step
     real(rk) :: force = huge(1.0_rk), last_force = huge(1.0_rk) !< norms of w (s' - s) [N]
-    real(rk) :: base_force = huge(1.0_rk) !< the same there, or `patience` iterations before [N]
+    real(rk) :: base_force = huge(1.0_rk) !< the same at the last point of linearisation [N]
     integer :: tries = 0 !< iterations with the present matrix
     real(rk) :: moved = 0.0_rk !< norm of the last change of the displacements [m]
     logical :: is_lost = .false. !< the tangent is singular
     logical :: has_solved = .false. !< with the present matrix
   contains
-    procedure :: is_slow, is_due, has_grown
+    procedure :: is_slow, has_grown
   end type iterate_state
 
   integer, parameter :: window = 15 !< iterations that give the rate of convergence
@@ -33,12 +33,11 @@ module solid_iterate
 
 contains
 
-  !> Whether the matrix reduces the residual too slowly: measured every `patience` iterations.
+  !> Whether the matrix reduces the residual too slowly.
   pure logical function is_slow(self, patience)
     class(iterate_state), intent(in) :: self
     integer, intent(in) :: patience
-    is_slow = self%tries > patience .and. self%is_due(patience) .and. &
-              self%force > sufficient_decrease*self%base_force
+    is_slow = self%tries > patience .and. self%force > sufficient_decrease*self%base_force
   end function is_slow
 
   !> Whether the residual, if it goes on at the rate of the last iterations, is still above the
@@ -55,13 +54,6 @@ contains
       falls_too_slowly = last*reduction**(real(remaining, rk)/window) > tolerance
     end associate
   end function falls_too_slowly
-
-  !> Whether the residual is compared with that of `patience` iterations before.
-  pure logical function is_due(self, patience)
-    class(iterate_state), intent(in) :: self
-    integer, intent(in) :: patience
-    is_due = mod(self%tries - 1, patience) == 0
-  end function is_due
 
   !> Whether a Newton step has increased the residual and must be halved.
   pure logical function has_grown(self)

@@ -39,7 +39,7 @@ module solid_iteration
     real(rk), allocatable :: values(:) !< of K_eff, without joints
     real(rk) :: weight = 1.0_rk !< of the forces of the solids
     real(rk) :: tolerance = 0.0_rk !< of the balance of all forces, over the reference force
-    logical :: stops_early = .false. !< where an iteration is too slow
+    logical :: stops_early = .false. !< in dynamic steps, where the residual falls too slowly
     type(tangent), allocatable :: choices(:) !< tried one after the other
     type(tangent) :: chosen !< the present one
     type(time_increment) :: time
@@ -204,7 +204,7 @@ contains
       if (allocated(error) .or. now%is_lost) return
       call self%measure_iterate(system, before, now, outcome)
       if (outcome%has_converged) exit
-      if (self%stops_early) then
+      if (self%stops_early .and. allocated(task%velocity)) then
         if (falls_too_slowly(outcome%history, self%solver%controls%residual_tolerance, &
                              most_iterations - outcome%iterations)) exit
       end if
@@ -346,7 +346,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     now%tries = now%tries + 1
     if (self%chosen%patience > 0 .and. .not. now%is_slow(self%chosen%patience)) then
-      if (now%is_due(self%chosen%patience)) now%base_force = now%force
+      if (now%tries == 1) now%base_force = now%force
       call self%mixer%advance(now%answer - now%guess, now%guess)
     else if (self%chosen%patience == 0 .and. now%has_grown()) then
       now%share = 0.5_rk*now%share

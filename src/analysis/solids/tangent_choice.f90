@@ -18,7 +18,7 @@ module tangent_choice
   end type tangent
 
   type(tangent), parameter :: consistent = tangent(consistent_tangent, 0)
-  type(tangent), parameter :: secant = tangent(secant_tangent, 15)
+  type(tangent), parameter :: secant = tangent(secant_tangent, 6)
   type(tangent), parameter :: elastic = tangent(no_tangent, huge(1))
 
 contains

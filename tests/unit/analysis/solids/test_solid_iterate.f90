@@ -1,31 +1,16 @@
-!> When a matrix of the iteration on solids is renewed, and when the iteration ends early.
+!> When the iteration on solids ends early.
 program test_solid_iterate
   use kinds, only: rk
-  use solid_iterate, only: falls_too_slowly, iterate_state
+  use solid_iterate, only: falls_too_slowly
   use testing, only: check, test_log
   implicit none
   type(test_log) :: log
   log%suite = 'solid_iterate'
-  call renewed_matrices()
   call rates()
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
 
 contains
-
-  !> The matrix is judged by its last six iterations, whatever those before have gained.
-  subroutine renewed_matrices()
-    type(iterate_state) :: now
-    integer :: i, first
-    first = 0
-    do i = 1, 30
-      now%tries = i
-      now%force = max(10.0_rk**(-i), 1.0e-10_rk)
-      if (now%is_slow(6) .and. first == 0) first = i
-      if (now%is_due(6)) now%base_force = now%force
-    end do
-    call check(log, first == 19, 'slow in the first whole window after the residual stays')
-  end subroutine renewed_matrices
 
   !> Geometric sequences that end above or below the tolerance.
   subroutine rates()
