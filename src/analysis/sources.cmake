@@ -18,6 +18,7 @@ set(sources
   reduced/reduced_estimate.f90
   reduced/reduced_fields.f90
   reduced/reduced_increment.f90
+  reduced/reduced_nodes.f90
   reduced/reduced_ports.f90
   reduced/reduced_scheme.f90
   reduced/reduced_shapes.f90

@@ -1,7 +1,7 @@
 """Measures the time of runs relative to the equation solver, and the time for given accuracy.
 
-usage: .venv/bin/python tools/bench [run] [accuracy] [joints] [peers] [--sizes 48000 145000]
-           [--json FILE]
+usage: .venv/bin/python tools/bench [run] [accuracy] [joints] [reduced] [peers]
+           [--sizes 48000 145000] [--json FILE]
 
 run (default): ratios of times taken in one process, which hardly depend on the machine:
   static    the whole program, from deck to results, over analyse + factor + solve
@@ -16,6 +16,9 @@ FILE draws them.
 
 joints: dams of --joints joints in a strong motion: an increment in solves, the set-up of the joints
 in factorisations.
+
+reduced: a dam with the first of --joints joints, with the full and with the reduced model: time of
+an increment, error of the openings and its estimate.
 
 peers: the same dam in Keyway, CalculiX (Debian's calculix-ccx) and OpenSees (pip's openseespy, in
 a Python named by --opensees-python): weight, a linear history, a history with two joints. Time,
@@ -37,6 +40,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 
 from cost_of_accuracy import draw, measure_accuracy, tables  # noqa: E402
 from cost_of_joints import DAMS, measure_joints  # noqa: E402
+from cost_of_reduced import measure_reduced  # noqa: E402
 from cost_of_run import Figure, measure_all  # noqa: E402
 from measured_run import Program  # noqa: E402
 from peers.comparison_of_peers import PeerOptions, compare_peers  # noqa: E402
@@ -58,8 +62,8 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("--picture", type=Path, metavar="FILE", help="draw time against accuracy")
     options = parser.parse_args(arguments)
     options.what = options.what or ["run"]
-    if set(options.what) - {"run", "accuracy", "joints", "peers"}:
-        parser.error("expected 'run', 'accuracy', 'joints' or 'peers'")
+    if set(options.what) - {"run", "accuracy", "joints", "peers", "reduced"}:
+        parser.error("expected 'run', 'accuracy', 'joints', 'peers' or 'reduced'")
     return options
 
 
@@ -99,6 +103,9 @@ def main(arguments: list[str]) -> int:
         if "joints" in options.what:
             duration = 0.01 * options.increments  # of 0.01 s each
             print(measure_joints(program, folder, options.joints, duration))
+        if "reduced" in options.what:
+            duration = 0.01 * options.increments
+            print(measure_reduced(program, folder, options.joints[0], duration))
         if "peers" in options.what:
             print(compare_peers(peer_options(options), folder))
     if options.picture and rows:

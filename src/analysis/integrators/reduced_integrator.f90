@@ -19,6 +19,7 @@ module reduced_integrator
   use reduced_estimate, only: estimate_error
   use reduced_fields, only: expand_motion
   use reduced_increment, only: load_factors, modal_forces, take_reduced_increment
+  use reduced_nodes, only: find_followed, followed_nodes
   use reduced_scheme, only: reduced_matrices
   use reduced_shapes, only: find_shapes
   use state_transfer, only: start_motion, store_motion
@@ -34,6 +35,7 @@ module reduced_integrator
   type, extends(integrator) :: reduced_method
     type(reduced_model) :: basis
     type(reduced_matrices) :: matrices !< of the present increment size
+    type(followed_nodes) :: followed
     real(rk), allocatable :: force_norm(:) !< (loads) [N]
   contains
     procedure :: open_step
@@ -95,6 +97,9 @@ contains
     if (allocated(error)) return
     call start_modal(self, model, plan, now)
     call build_model(self, model, plan, now, results, error)
+    if (allocated(error)) return
+    call find_followed(plan, self%system, self%basis, now%motion%modal%start, self%solids%solver, &
+                       self%followed, error)
     if (allocated(error) .or. now%increment > 0) return
     call open_account(model, self%system%diagonal, now, now%total_time <= 0.0_rk)
     call store_motion(self%system%numbers, now)
@@ -334,6 +339,7 @@ contains
     type(state), intent(inout) :: now
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
+    call self%followed%store(now)
     if (.not. results%wants_motion(model, now)) return
     call results%costs%start('expand', 'structure', 'solver')
     call expand_motion(self%basis, self%system, self%solids%solver, model%amplitudes, when, now, &

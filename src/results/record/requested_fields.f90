@@ -6,6 +6,7 @@ module requested_fields
   use field_type, only: at_joints, by_guest, by_law
   use run_records, only: run_record
   use print_kinds, only: prints_of_joints
+  use reduced_nodes, only: is_followed
   use result_writer, only: is_due
   implicit none
   private
@@ -58,7 +59,7 @@ contains
                   .or. writes_nodes(model, now)
   end function needs_nodes
 
-  !> Whether a request of nodes, elements or fields is due.
+  !> Whether a request of nodes, elements or fields is due; a reduced model follows some nodes.
   pure logical function writes_nodes(model, now)
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
@@ -72,7 +73,7 @@ contains
       end if
       if (.not. allocated(plan%prints)) return
       do r = 1, size(plan%prints)
-        if (plan%prints(r)%kind == prints_of_joints) cycle
+        if (plan%prints(r)%kind == prints_of_joints .or. is_followed(plan%prints(r))) cycle
         writes_nodes = writes_nodes .or. is_due(now, plan%prints(r)%frequency)
       end do
     end associate
