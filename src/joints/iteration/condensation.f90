@@ -139,8 +139,8 @@ contains
     call take_blocks(dense, spring, groups, smallest, self%condensed%blocks)
   end subroutine condense_densely
 
-  !> Computes the blocks of G that were left out: joints of a static step see each other further
-  !> than those in time.
+  !> Computes the blocks of G that were left out: joints of a static step, and joints that carry a
+  !> whole block, see each other further than neighbours.
   subroutine complete_blocks(self, num_free, was_complete, error)
     class(condensed_equilibrium), intent(inout) :: self
     integer, intent(in) :: num_free
@@ -170,7 +170,7 @@ contains
     logical :: was_complete
     call self%solve_from(balance, joints, old, new, x, outcome, error)
     if (allocated(error)) return
-    if (balance%is_static .and. .not. (outcome%has_converged .or. outcome%gives_up)) then
+    if (.not. (outcome%has_converged .or. outcome%gives_up)) then
       call complete_blocks(self, size(balance%rhs), was_complete, error)
       if (allocated(error) .or. was_complete) return
       iterations = outcome%iterations
