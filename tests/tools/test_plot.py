@@ -10,6 +10,7 @@ import pytest
 from keyway_tools.arch_dam import DamOptions, build_arch_dam
 from keyway_tools.arch_shape import ArchShape
 from keyway_tools.box_mesh import box_mesh, stretched
+from keyway_tools.pictures_joints import JointView, range_of
 from keyway_tools.results import Results, find_jobs
 from synthetic_results import write_results
 
@@ -132,3 +133,16 @@ def test_material_file_that_is_no_curve_is_refused(tmp_path, capsys):
     (tmp_path / "job_node_TOP.csv").write_text("time,node,U1\n0,1,2\n1,1,2\n")
     assert plot.main(["material", str(tmp_path / "job_node_TOP.csv")]) == 2
     assert "no column work" in capsys.readouterr().err
+
+
+def test_upright_joints_share_one_range_of_heights():
+    """Each joint is drawn from its lowest to its highest corner, a short one beside a tall one."""
+    corners = np.array([[0.0, 0.0, 0.0], [0.0, 20.0, 0.0], [0.0, 20.0, 1.0], [0.0, 0.0, 1.0]])
+    tall, short = (JointView(corners * [1.0, 1.0, height]) for height in (200.0, 30.0))
+    flat = JointView(corners[:, [1, 1, 0]] * [1.0, 0.5, 1.0])
+    for order in ([tall, short, flat], [flat, short, tall]):
+        for view in (tall, short):
+            low, high = range_of(view, order)
+            assert low < 0.0
+            assert high > 200.0
+        assert range_of(flat, order)[1] < 20.0
