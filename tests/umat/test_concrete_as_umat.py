@@ -119,6 +119,18 @@ def test_is_the_law_of_the_program_in_a_structure(keyway, library):
         assert abs(steps[0]["energy"][name] - steps[1]["energy"][name]) <= 1e-8 * largest, name
 
 
+def test_other_files_are_not_overwritten(one_file, tmp_path):
+    """The file of an earlier call is replaced, the source of a user is not."""
+    command = [ROOT / "tools" / "make_umat"]
+    assert subprocess.run([*command, one_file], capture_output=True).returncode == 0
+    mine = tmp_path / "my_umat.f90"
+    mine.write_text("subroutine umat\nend subroutine\n")
+    run = subprocess.run([*command, mine], capture_output=True, text=True)
+    assert run.returncode == 2
+    assert "exists and was not written by make_umat" in run.stderr
+    assert mine.read_text() == "subroutine umat\nend subroutine\n"
+
+
 def test_constants_are_printed():
     """tools/make_umat --constants: what the tests above ran with."""
     deck = MATERIALS / "cyclic_uniaxial.inp"
