@@ -53,7 +53,7 @@ module run_records
     procedure :: warn_once
     procedure :: list_file
     procedure :: has_envelope_of_nodes
-    procedure, private :: check_law, check_time_stepping, check_crack_energy
+    procedure, private :: check_law, check_time_stepping, check_crack_energy, has_warned
     procedure, private :: update_envelope, note_nodes, note_points, note_joints
   end type run_record
 
@@ -149,6 +149,8 @@ contains
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
+    character(*), parameter :: added_energy = &
+                               'the time stepping has added more than a tenth of the energy'
     character(:), allocatable :: advice
     real(rk) :: taken
     taken = now%energy%numerical + self%damage%created
@@ -157,10 +159,24 @@ contains
     if (has_jumps(model)) return
     advice = 'smaller increments'
     if (model%steps(now%step)%procedure%uses_alpha) advice = advice//', or an ALPHA further below 0'
-    call self%warn_once('the time stepping has added more than a tenth of the energy '// &
-                        '("numerical" in the energy balance): do not trust this motion; try '// &
-                        advice)
+    if (abs(self%damage%created) > 0.0_rk) then
+      advice = advice//', or concrete with RECOVERY=ENERGY, whose increments keep their energy'
+    end if
+    if (self%has_warned(added_energy)) return
+    call self%warn_once(added_energy//' ("numerical" in the energy balance): do not trust this '// &
+                        'motion; try '//advice)
   end subroutine check_time_stepping
+
+  !> Whether a warning begins with these words.
+  pure logical function has_warned(self, words)
+    class(run_record), intent(in) :: self
+    character(*), intent(in) :: words
+    integer :: i
+    has_warned = .false.
+    do i = 1, size(self%warnings)
+      has_warned = has_warned .or. index(self%warnings(i)%text, words) == 1
+    end do
+  end function has_warned
 
   !> Does the stress of a cracked material jump?
   logical function has_jumps(model)
