@@ -167,6 +167,8 @@ class Fuzzer:
         self.keep: Path | None = None  # folder for bad mutants
         settings = {"OMP_WAIT_POLICY": "PASSIVE", "OMP_NUM_THREADS": "1"}
         self.environment = {**os.environ, **settings}
+        # Memory that is held until the end of the program is no error (tools/check_memory).
+        self.environment.setdefault("ASAN_OPTIONS", "detect_leaks=0")
         if kernels := kernels_of(self.program, decks[0], self.environment):
             self.environment["OPENBLAS_CORETYPE"] = kernels
 
