@@ -74,7 +74,7 @@ def test_the_folder_is_moved_and_the_run_goes_on_there(program_path, tmp_path):
 
 
 def test_a_deck_that_moves_takes_its_files_along(program_path, tmp_path):
-    """Files that a deck names are found beside the deck; one that is missing or other is told."""
+    """Files that a deck names are found beside the deck; a missing or different file is named."""
     home, new, out = tmp_path / "home", tmp_path / "new", tmp_path / "out"
     for folder in (home, new):
         folder.mkdir()

@@ -21,7 +21,7 @@ module dynamic_step
   use solid_iteration, only: solid_solver
   implicit none
   private
-  public :: open_dynamic_step, largest_force
+  public :: build_dynamic_step, open_dynamic_step, largest_force
 
   !> In free flight all forces are round-off: the residual is then measured against this fraction of
   !> the force that would stop the dam within the increment.
@@ -29,10 +29,8 @@ module dynamic_step
 
 contains
 
-  !> Builds the equations of a step, finds the acceleration that it starts with, opens the energy
-  !> balance, reports the start to the listener and prepares the solver. The integrator computes
-  !> K_eff later.
-  subroutine open_dynamic_step(model, plan, system, solids, now, results, error)
+  !> Builds the equations of a step, its motion and its solids.
+  subroutine build_dynamic_step(model, plan, system, solids, now, results, error)
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan
     type(dam_system), intent(inout) :: system
@@ -46,11 +44,26 @@ contains
       if (.not. allocated(error)) call build_damping(model, plan, system, costs, error)
       if (.not. allocated(error)) call build_modal_damping(model, plan, system, costs, error)
       if (allocated(error)) return
+      call build_loads(model, plan, now%u, system, costs)
     end associate
-    call build_loads(model, plan, now%u, system, results%costs)
     now%num_unknowns = system%matrix%num_free
     call start_motion(system%numbers, model%joints, now, has_inertia=.true.)
     call solids%open(model, system, plan, now)
+  end subroutine build_dynamic_step
+
+  !> Builds the equations of a step, finds the acceleration that it starts with, opens the energy
+  !> balance, reports the start to the listener and prepares the solver. The integrator computes
+  !> K_eff later.
+  subroutine open_dynamic_step(model, plan, system, solids, now, results, error)
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(dam_system), intent(inout) :: system
+    type(solid_solver), intent(inout) :: solids
+    type(state), intent(inout) :: now !< at the start of the step
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    call build_dynamic_step(model, plan, system, solids, now, results, error)
+    if (allocated(error)) return
     call results%costs%start('solve', 'initial acceleration', 'solver')
     call start_forces(system, solids, model, plan, now, error)
     call results%costs%stop()

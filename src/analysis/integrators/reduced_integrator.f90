@@ -2,6 +2,7 @@
 !> structure and the static response of the rest; the joints keep all their points.
 module reduced_integrator
   use analysis_state, only: modal_motion, reduction_status, state
+  use dynamic_step, only: build_dynamic_step
   use energy_account, only: open_account
   use equilibrium, only: balance_outcome
   use errors, only: error_type, raise
@@ -12,7 +13,6 @@ module reduced_integrator
   use integrator_type, only: integrator
   use joint_forces, only: gather_tractions
   use kinds, only: rk
-  use modal_damping, only: build_modal_damping
   use problem_definition, only: problem
   use reduced_basis, only: build_basis, reduced_model
   use reduced_energy, only: add_reduced_work
@@ -22,11 +22,11 @@ module reduced_integrator
   use reduced_nodes, only: find_followed, followed_nodes
   use reduced_scheme, only: reduced_matrices
   use reduced_shapes, only: find_shapes
-  use state_transfer, only: start_motion, store_motion
+  use state_transfer, only: store_motion
   use step_equilibrium, only: make_equilibrium
   use step_loads, only: external_force, step_time
   use step_plan, only: step
-  use step_system, only: dam_system, build_damping, build_inertia, build_loads, build_structure
+  use step_system, only: dam_system
   use write_text, only: as_text
   implicit none
   private
@@ -77,22 +77,13 @@ contains
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
     type(modal_motion) :: loaded
-    associate (system => self%system, costs => results%costs)
-      call build_structure(model, plan, system, costs, error)
-      if (.not. allocated(error)) call build_inertia(model, plan, system, costs, error)
-      if (.not. allocated(error)) call build_damping(model, plan, system, costs, error)
-      if (.not. allocated(error)) call build_modal_damping(model, plan, system, costs, error)
-      if (allocated(error)) return
-      call build_loads(model, plan, now%u, system, costs)
-      now%num_unknowns = system%matrix%num_free
-      if (now%increment > 0) loaded = now%motion%modal
-      call start_motion(system%numbers, model%joints, now, has_inertia=.true.)
-      now%motion%modal = loaded
-      call self%solids%open(model, system, plan, now)
-      call make_equilibrium(plan, system, .true., self%solids%solver, error)
-      if (allocated(error)) return
-      self%solids%solver%costs = costs
-    end associate
+    if (now%increment > 0) loaded = now%motion%modal
+    call build_dynamic_step(model, plan, self%system, self%solids, now, results, error)
+    if (allocated(error)) return
+    now%motion%modal = loaded
+    call make_equilibrium(plan, self%system, .true., self%solids%solver, error)
+    if (allocated(error)) return
+    self%solids%solver%costs = results%costs
     call refuse_size(self%system, now, error)
     if (allocated(error)) return
     call start_modal(self, model, plan, now)

@@ -5,7 +5,7 @@
 !> of the rest over its stiffness. The
 !> iteration on the joints needs G, the same with the closed joints: G = (I + C w area k_ref)^-1 C.
 module reduced_scheme
-  use block_compliance, only: take_blocks
+  use block_compliance, only: few_points, take_blocks
   use blas_threads, only: use_many_threads, use_one_thread
   use contact_scaling, only: find_contact_scale
   use dense_factor, only: factorise_dense, lu_factor, solve_factored
@@ -39,9 +39,6 @@ module reduced_scheme
   contains
     procedure :: prepare, solve_joints
   end type reduced_matrices
-
-  !> Threads of LAPACK change the last digits, and gain little with so few points.
-  integer, parameter :: few_points = 200
 
 contains
 

@@ -39,7 +39,7 @@ module solid_iteration
     real(rk), allocatable :: values(:) !< of K_eff, without joints
     real(rk) :: weight = 1.0_rk !< of the forces of the solids
     real(rk) :: tolerance = 0.0_rk !< of the balance of all forces, over the reference force
-    logical :: stops_early = .false. !< in dynamic steps, where the residual falls too slowly
+    logical :: stops_early = .false. !< where the residual falls too slowly
     type(tangent), allocatable :: choices(:) !< tried one after the other
     type(tangent) :: chosen !< the present one
     type(time_increment) :: time
@@ -75,7 +75,7 @@ contains
     type(step), intent(in) :: plan
     type(state), intent(inout) :: now
     self%tolerance = plan%controls%residual_tolerance
-    self%stops_early = .not. plan%is_direct
+    self%stops_early = plan%procedure%has_inertia .and. .not. plan%is_direct
     self%choices = choose_tangents(model, plan)
     self%chosen = self%choices(1)
     call multiply(system%matrix, system%stiffness, now%motion%q, now%motion%elastic)
@@ -204,7 +204,7 @@ contains
       if (allocated(error) .or. now%is_lost) return
       call self%measure_iterate(system, before, now, outcome)
       if (outcome%has_converged) exit
-      if (self%stops_early .and. allocated(task%velocity)) then
+      if (self%stops_early) then
         if (falls_too_slowly(outcome%history, self%solver%controls%residual_tolerance, &
                              most_iterations - outcome%iterations)) exit
       end if

@@ -105,7 +105,7 @@ static void end_early(int code, void *ignored) {
   if (!is_run_open && code == 1) keyway_end_if_memory_lacks(keyway_lacks_memory());
 }
 
-/* From now on a crash by missing memory is told as such: libraries have no message for that. */
+/* From now on a crash by missing memory has a message: libraries have none for that. */
 void keyway_watch_memory(void) {
   struct sigaction now;
   int i;

@@ -7,7 +7,11 @@ module block_compliance
   use point_groups, only: group_list
   implicit none
   private
-  public :: compliance_blocks, take_blocks, add_product, own_size
+  public :: compliance_blocks, few_points, take_blocks, add_product, own_size
+
+  !> One thread inverts the dense matrices of so few points in some milliseconds. Threads of LAPACK
+  !> would change the last digits of their entries.
+  integer, parameter :: few_points = 200
 
   !> Jumps of one group by forces on another.
   type :: dense_block

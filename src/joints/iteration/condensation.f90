@@ -10,7 +10,7 @@ module condensation
   use joint_operator, only: jump_operator, joint_springs
   use joint_forces, only: joint_field, reference_stiffness, gather_jumps, gather_tractions
   use joint_iteration, only: start_iteration, excess_traction, closed_tangent
-  use block_compliance, only: take_blocks
+  use block_compliance, only: few_points, take_blocks
   use contact_scaling, only: find_contact_scale
   use joint_compliance, only: find_compliance
   use point_groups, only: group_list, group_points
@@ -37,17 +37,13 @@ module condensation
     procedure, private :: find_drift
   end type condensed_equilibrium
 
-  !> One thread inverts the Schur block of so few points in some milliseconds. Threads of LAPACK
-  !> would change the last digits of its entries.
-  integer, parameter :: few_points = 200
-
   !> Admissible drift of the jumps, as a fraction of the residual tolerance.
   real(rk), parameter :: allowed_drift = 0.1_rk
   !> Coupling of the blocks of G that are kept.
   real(rk), parameter :: smallest_coupling = 1.0e-4_rk
   !> Most corrections for the blocks of G that are left out.
   integer, parameter :: most_passes = 12
-  !> Most points for which all blocks of G are kept where a static step needs them.
+  !> Most points for which all blocks of G are kept where an increment needs them.
   integer, parameter :: most_completed = 3000
 
 contains

@@ -2,11 +2,13 @@
 !> increments, in units of acceleration on loads.
 module check_histories
   use amplitudes, only: amplitude, amplitude_at
+  use check_idle_steps, only: first_displacement
   use deck_card, only: card
   use deck_scan, only: is_keyword, steps_of_cards
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
   use model_draft, only: draft
+  use named_things, only: find_amplitude
   use write_text, only: as_text
   implicit none
   private
@@ -28,14 +30,14 @@ contains
     do i = 1, size(step)
       if (.not. model%cards(i)%has('AMPLITUDE')) cycle
       if (is_keyword(model%cards(i), 'BOUNDARY')) then
-        if (all_are_zero(model%cards(i))) then
+        if (first_displacement(model%cards(i)) == 0) then
           call model%cards(i)%warn(faults, 'AMPLITUDE has no effect: all displacements are zero')
           cycle
         end if
       end if
       if (step(i) == 0) cycle
       if (model%problem%steps(step(i))%procedure%finds_modes) cycle
-      a = amplitude_of(model%cards(i), model)
+      call find_amplitude(model%cards(i), model, faults, a)
       if (a == 0) cycle
       call warn_of_span(model%cards(i), model, step(i), model%problem%amplitudes(a), faults)
       if (is_keyword(model%cards(i), 'BASE MOTION')) then
@@ -45,26 +47,6 @@ contains
       end if
     end do
   end subroutine warn_of_histories
-
-  !> Position of the amplitude that a card names, 0 for none.
-  pure integer function amplitude_of(this, model) result(found)
-    type(card), intent(in) :: this
-    type(draft), intent(in) :: model
-    do found = size(model%problem%amplitudes), 1, -1
-      if (model%problem%amplitudes(found)%name == this%word('AMPLITUDE')) return
-    end do
-  end function amplitude_of
-
-  !> Whether a *BOUNDARY prescribes no displacement but zero.
-  pure logical function all_are_zero(this)
-    type(card), intent(in) :: this
-    integer :: line
-    all_are_zero = .true.
-    do line = 1, this%num_lines
-      if (this%is_empty_at(line, 4)) cycle
-      all_are_zero = all_are_zero .and. abs(this%real_at(line, 4)) <= 0.0_rk
-    end do
-  end function all_are_zero
 
   !> A history that is constant over its step, because it is over before or begins after it.
   subroutine warn_of_span(this, model, s, record, faults)

@@ -9,7 +9,7 @@ module check_idle_steps
   use step_plan, only: step_procedure
   implicit none
   private
-  public :: warn_of_idle_steps, has_inelastic_law
+  public :: warn_of_idle_steps, has_inelastic_law, first_displacement
 
   !> What is known of the model and of the steps from one step on.
   type :: later_steps
@@ -153,13 +153,20 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     integer :: line
     if (.not. now%are_modes) return
+    line = first_displacement(this)
+    if (line == 0) return
+    call this%warn_at(faults, line, 4, 'the displacement has no effect in a step *FREQUENCY')
+  end subroutine warn_of_displacements
+
+  !> Line of the first displacement of a *BOUNDARY that is not zero; 0 for none.
+  pure integer function first_displacement(this) result(line)
+    type(card), intent(in) :: this
     do line = 1, this%num_lines
       if (this%is_empty_at(line, 4)) cycle
-      if (abs(this%real_at(line, 4)) <= 0.0_rk) cycle
-      call this%warn_at(faults, line, 4, 'the displacement has no effect in a step *FREQUENCY')
-      return
+      if (abs(this%real_at(line, 4)) > 0.0_rk) return
     end do
-  end subroutine warn_of_displacements
+    line = 0
+  end function first_displacement
 
   !> *OUTPUT only gives its frequency to the requests that follow.
   subroutine warn_of_empty_output(model, number, step, faults)
