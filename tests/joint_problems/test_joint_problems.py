@@ -1,6 +1,7 @@
 """The policy of the iteration solves all saved joint problems, or shows that none can be solved."""
 
 import pytest
+from limit_load import least_error
 from solved import SAVED, solve, unpack
 
 FILES = sorted(SAVED.glob("*.h5.xz"))
@@ -19,6 +20,19 @@ def test_policy_solves_all_or_finds_no_equilibrium(solver, tmp_path, file):
         assert found.converged != found.is_loose
         # The residual of the tolerance of *CONTROLS, measured with the laws alone.
         assert found.is_loose or found.residual <= 2e-6
+
+
+# Files with static problems of which some have no equilibrium.
+STATIC = [path for path in FILES if path.name.startswith(("arch", "crossing"))]
+
+
+@pytest.mark.parametrize("file", STATIC, ids=lambda path: path.name.split(".")[0])
+def test_no_equilibrium_exists_exactly_where_the_policy_finds_none(solver, tmp_path, file):
+    """The least error is 2e-4 or more of the load without an equilibrium, round-off with one."""
+    files = unpack(tmp_path, [file])
+    for found in solve(solver, "policy", files):
+        error = least_error(files[0], found.problem)
+        assert error > 1e-4 if found.is_loose else error < 1e-9
 
 
 def test_there_are_a_few_hundred_problems():
