@@ -1,14 +1,19 @@
 #!/usr/bin/env python3
-"""Draw the pictures of a run, without a display.
+"""Draw the pictures of runs, without a display.
 
-    tools/plot.py RESULTS [-o FOLDER] [--job NAME]
+    tools/plot.py RESULTS ... [-o FOLDER] [--job NAME] [--range WHAT] [--format png,svg,pdf]
+    tools/plot.py RESULTS --animate mp4
     tools/plot.py material CURVE.csv ... [--experiment POINTS.csv] [-o PICTURE.png]
 
-RESULTS is the folder that the run was given with -o. For each job in it: principal-stress,
-displacement and damage envelopes on the dam's faces, its damaged elements, openings over the
-joints and in time, the deformed shape, mode shapes, histories of nodes and energies, as far as the
-run has stored them. Units: SI in the deck, MPa and mm in the pictures. The names of the pictures
-are printed.
+RESULTS is the folder that a run was given with -o. For each job in it: principal-stress,
+displacement and damage envelopes on the dam's faces and on sections, its damaged elements,
+openings, slip and state over the joints, openings in time, the deformed shape, mode shapes,
+histories of nodes and energies, as far as the run has stored them. The pictures show MPa and mm;
+--units says what the deck has if it is not in m and Pa. The names of the pictures are printed.
+
+The colours of stresses end where 99 % of the nodes do if the extreme is far beyond (a corner), and
+the picture says so. --range full: to the extreme; --range S1=3: to 3 MPa; --range shared: one range
+for all RESULTS.
 
 `material` draws the curves of `keyway --material` (job_material_NAME.csv), several in one picture:
 stress against strain, damage, energies, beside measured points (strain, stress a line) if given.
@@ -19,49 +24,81 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from keyway_tools.colour_scale import FIELDS, Scales, parse_ranges
+from keyway_tools.picture_style import FORMATS, Sheet
 from keyway_tools.pictures_curves import (
     plot_damage_growth,
     plot_energy,
     plot_nodes,
     plot_openings,
 )
-from keyway_tools.pictures_joints import plot_joint_areas
+from keyway_tools.pictures_joints import plot_joint_areas, plot_joint_slips, plot_joint_states
 from keyway_tools.pictures_material import COMPONENTS, plot_material, read_curve
-from keyway_tools.results import Results, find_jobs, why_incomplete
+from keyway_tools.results import find_jobs, why_incomplete
+from keyway_tools.si_results import SiResults, Units
 
 
-def draw_job(results: Results, folder: Path) -> Iterator[Path | None]:
-    """Make the pictures of one job, one by one; None where there is nothing to draw."""
+def draw_job(results: SiResults, sheet: Sheet, scales: Scales) -> Iterator[list[Path]]:
+    """Make the pictures of one job, one by one; no file where there is nothing to draw."""
     # VTK takes a second to load: not for a wrong command line
-    from keyway_tools.pictures_damage import plot_damaged_elements, plot_mean_envelope
-    from keyway_tools.pictures_faces import FIELDS, Faces, plot_envelope, plot_face_openings
+    from keyway_tools.dam_views import Faces
+    from keyway_tools.pictures_damage import plot_damaged_elements
     from keyway_tools.pictures_shapes import plot_deformed, plot_modes
 
-    def path_of(name: str) -> Path:
-        return folder / f"{results.job}_{name}.png"
+    def on(name: str) -> Sheet:
+        return replace(sheet, path=sheet.path / f"{results.job}_{name}")
 
     faces = Faces(results)
     kept = [step for step in results.steps() if step.envelopes]
     if kept:
-        for name in kept[-1].means:
-            yield plot_mean_envelope(faces, kept[-1], name, path_of(f"envelope_{name.lower()}"))
-        drawn = {"OPENING", *kept[-1].means}
-        for name in (name for name in FIELDS if name in set(kept[-1].envelopes) - drawn):
-            if np.isfinite(kept[-1].envelopes[name][faces.nodes]).any():
-                yield plot_envelope(faces, kept[-1], name, path_of(f"envelope_{name.lower()}"))
-        if "OPENING" in kept[-1].envelopes:
-            yield plot_face_openings(faces, kept[-1], path_of("envelope_opening"))
-            yield plot_joint_areas(results, kept[-1], path_of("envelope_opening_joints"))
-    yield plot_damaged_elements(faces, path_of("damage"))
-    yield plot_deformed(faces, path_of("deformed"))
-    yield plot_modes(faces, path_of("modes"))
-    yield plot_openings(results, path_of("openings"))
-    yield plot_nodes(results, path_of("displacements"))
-    yield plot_energy(results, path_of("energy"))
-    yield plot_damage_growth(results, path_of("damage_growth"))
+        yield from _draw_envelopes(faces, kept[-1], on, scales)
+    yield plot_joint_slips(results, scales, on("slip_joints"))
+    yield plot_joint_states(results, on("state_joints"))
+    yield plot_damaged_elements(faces, scales, on("damage"))
+    yield plot_deformed(faces, scales, on("deformed"))
+    yield plot_modes(faces, on("modes"))
+    yield plot_openings(results, on("openings"))
+    yield plot_nodes(results, on("displacements"))
+    yield plot_energy(results, on("energy"))
+    yield plot_damage_growth(results, on("damage_growth"))
+
+
+def _draw_envelopes(faces, step, on, scales: Scales) -> Iterator[list[Path]]:
+    """The pictures of the envelopes of a step."""
+    from keyway_tools.pictures_damage import plot_mean_envelope
+    from keyway_tools.pictures_faces import plot_envelope, plot_face_openings
+    from keyway_tools.pictures_sections import plot_section
+
+    for name in step.means:
+        yield plot_mean_envelope(faces, step, name, scales, on(f"envelope_{name.lower()}"))
+    drawn = {"OPENING", *step.means}
+    for name in (name for name in FIELDS if name in set(step.envelopes) - drawn):
+        if np.isfinite(step.envelopes[name][faces.nodes]).any():
+            yield plot_envelope(faces, step, name, scales, on(f"envelope_{name.lower()}"))
+    for name in (name for name in ("S1", "S3") if name in step.envelopes):
+        yield plot_section(faces, step, name, scales, on(f"section_{name.lower()}"))
+    if "OPENING" in step.envelopes:
+        yield plot_face_openings(faces, step, scales, on("envelope_opening"))
+        yield plot_joint_areas(faces.results, step, scales, on("envelope_opening_joints"))
+
+
+def shared_scales(all_results: list[SiResults], scales: Scales) -> Scales:
+    """One range of each field for several runs: the largest of theirs."""
+    from keyway_tools.dam_views import Faces
+
+    ends = {}
+    for results in all_results:
+        nodes = Faces(results).nodes
+        for step in [step for step in results.steps() if step.envelopes][-1:]:
+            for name in step.envelopes:
+                end = scales.end(name, step.envelopes[name][nodes])
+                ends[name] = max(ends.get(name, 0.0), end)
+    found = {name: end for name, end in ends.items() if end > 0.0 and not FIELDS[name].top}
+    return replace(scales, given=found | scales.given)
 
 
 def draw_material(arguments: list[str]) -> int:
@@ -85,39 +122,82 @@ def draw_material(arguments: list[str]) -> int:
     return 0
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Draw every job of a folder."""
-    arguments = sys.argv[1:] if arguments is None else arguments
-    if arguments[:1] == ["material"]:
-        return draw_material(arguments[1:])
+def parse(arguments: list[str]) -> argparse.Namespace:
+    """The command line."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("results", type=Path, help="folder of a run's results")
+    parser.add_argument("results", type=Path, nargs="+", help="folders of runs' results")
     parser.add_argument("-o", "--output", type=Path, help="folder of the pictures (RESULTS)")
     parser.add_argument("--job", help="only this job")
+    what = "end of a scale: full, shared, FIELD=END; may be repeated"
+    parser.add_argument("--range", action="append", default=[], metavar="WHAT", help=what)
+    parser.add_argument("--format", default="png", help="png, svg, pdf, or several with commas")
+    parser.add_argument("--animate", choices=("mp4", "gif"), help="only a film of the dam")
+    parser.add_argument("--units", default="m,Pa", help="of the deck, as in mm,MPa (m,Pa)")
     chosen = parser.parse_args(arguments)
-    jobs = [chosen.job] if chosen.job else find_jobs(chosen.results)
-    missing = [job for job in jobs if not (chosen.results / f"{job}.h5").exists()]
-    if missing or not jobs:
-        what = f"{missing[0]}.h5" if missing else "job.h5"
-        print(f"plot: no {what} in {chosen.results}; give the folder of a run", file=sys.stderr)
-        return 2
-    folder = chosen.output or chosen.results
-    folder.mkdir(parents=True, exist_ok=True)
-    for job in jobs:
-        why = why_incomplete(chosen.results, job)
+    chosen.format = tuple(chosen.format.split(","))
+    if not set(chosen.format) <= set(FORMATS):
+        parser.error(f"--format: expected some of {', '.join(FORMATS)}")
+    try:
+        chosen.range, chosen.is_shared = parse_ranges(chosen.range)
+        chosen.units = Units.parse(chosen.units)
+    except ValueError as error:
+        parser.error(str(error))
+    if len(chosen.results) > 1 and chosen.output:
+        parser.error("-o takes the pictures of one folder of results")
+    return chosen
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Draw every job of the folders."""
+    arguments = sys.argv[1:] if arguments is None else arguments
+    if arguments[:1] == ["material"]:
+        return draw_material(arguments[1:])
+    chosen = parse(arguments)
+    found: list[SiResults] = []
+    for folder in chosen.results:
+        jobs = [chosen.job] if chosen.job else find_jobs(folder)
+        missing = [job for job in jobs if not (folder / f"{job}.h5").exists()]
+        if missing or not jobs:
+            what = f"{missing[0]}.h5" if missing else "job.h5"
+            print(f"plot: no {what} in {folder}; give the folder of a run", file=sys.stderr)
+            return 2
+        found += [SiResults(folder, job, chosen.units) for job in jobs]
+    scales = shared_scales(found, chosen.range) if chosen.is_shared else chosen.range
+    for results in found:
+        why = why_incomplete(results.folder, results.job)
         if why:
-            print(f"plot: {job} is incomplete: {why}", file=sys.stderr)
-        num_pictures = 0
-        for picture in draw_job(Results(chosen.results, job), folder):
-            if picture is not None:
-                print(picture, flush=True)
-                num_pictures += 1
-        if num_pictures == 0:
-            wanted = "*ENVELOPE, *NODE FILE, *NODE PRINT or *JOINT PRINT in the deck"
-            print(f"plot: {job} has nothing to draw; request it with {wanted}", file=sys.stderr)
+            print(f"plot: {results.job} is incomplete: {why}", file=sys.stderr)
+        folder = chosen.output or results.folder
+        folder.mkdir(parents=True, exist_ok=True)
+        print_pictures(results, Sheet(folder, chosen.format, results.note), scales, chosen.animate)
     return 0
+
+
+def print_pictures(results: SiResults, sheet: Sheet, scales: Scales, film: str | None) -> None:
+    """Make the pictures of a job, or its film, and print their names."""
+    num_pictures = 0
+    wanted = "*ENVELOPE, *NODE FILE, *NODE PRINT or *JOINT PRINT in the deck"
+    if film:
+        pictures = draw_film(results, sheet.path, scales, film)
+        wanted = "U of *NODE FILE at three times or more"
+    else:
+        pictures = draw_job(results, sheet, scales)
+    for files in pictures:
+        for picture in files:
+            print(picture, flush=True)
+            num_pictures += 1
+    if num_pictures == 0:
+        print(f"plot: {results.job} has nothing to draw; request it with {wanted}", file=sys.stderr)
+
+
+def draw_film(results: SiResults, folder: Path, scales: Scales, kind: str) -> Iterator[list[Path]]:
+    """The film of a job."""
+    from keyway_tools.animation import animate
+    from keyway_tools.dam_views import Faces
+
+    yield animate(Faces(results), scales, folder / f"{results.job}_motion.{kind}")
 
 
 if __name__ == "__main__":

@@ -19,14 +19,21 @@ DAMAGES = (
 )
 
 
-def write_results(folder: Path, mesh: BrickMesh, job: str = "job") -> None:
+SUMMARY = {
+    "program": {"name": "Keyway", "version": "0.1.0"},
+    "status": "finished",
+    "deck": {"file": "somewhere/made_up.inp", "sha256": "0" * 64},
+}
+
+
+def write_results(folder: Path, mesh: BrickMesh, job: str = "job", num_saved: int = 2) -> None:
     """job.json, job.h5 and CSV histories; fields grow with the height."""
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / f"{job}.json").write_text(json.dumps({"program": {"name": "keyway"}}))
+    (folder / f"{job}.json").write_text(json.dumps(SUMMARY))
     with h5py.File(folder / f"{job}.h5", "w") as file:
         _write_mesh(file, mesh)
         _write_points(file, mesh)
-        _write_steps(file, mesh)
+        _write_steps(file, mesh, num_saved)
         time = np.linspace(0.0, 1.0, 50)
         table = np.zeros((50, 12))
         table[:, 2] = time
@@ -57,6 +64,9 @@ def _write_mesh(file: h5py.File, mesh: BrickMesh) -> None:
         file[f"faces/{name}"] = flags
     for name, members in mesh.joint_sets.items():
         _write_cells(file.create_group(f"joints/{name}/cells"), mesh, members)
+        points = np.unique(mesh.joints[members][:, 4:])
+        file[f"joints/{name}/x"] = mesh.x[points]
+        file[f"joints/{name}/area"] = np.ones(len(points))
 
 
 def _write_cells(group: h5py.Group, mesh: BrickMesh, members: np.ndarray) -> None:
@@ -90,7 +100,7 @@ def _write_damage(saved: h5py.Group, mesh: BrickMesh) -> None:
     saved["points/DAMAGET"] = np.clip(z[cracked] / mesh.x[:, 2].max(), 0.0, 1.0)
 
 
-def _write_steps(file: h5py.File, mesh: BrickMesh) -> None:
+def _write_steps(file: h5py.File, mesh: BrickMesh, num_saved: int) -> None:
     z = mesh.x[:, 2]
     height = max(z.max(), 1e-9)
     envelopes = {
@@ -114,15 +124,22 @@ def _write_steps(file: h5py.File, mesh: BrickMesh) -> None:
         means = np.zeros(len(mesh.bricks) + len(mesh.joints))
         means[: len(mesh.bricks)] = envelopes[name][mesh.bricks].mean(axis=1)
         step[f"envelopes/{name}_MEAN_MAX"] = means
-    for number in (1, 2):
+    for number in range(1, num_saved + 1):
         saved = step.create_group(f"increments/{number:06d}")
         saved.attrs["time"] = 0.1 * number
         shift = np.zeros_like(mesh.x)
         shift[:, 1] = 0.02 * number * np.clip(z / height, 0.0, None) ** 2
         saved["U"] = shift
         _write_damage(saved, mesh)
+        for name, members in mesh.joint_sets.items():
+            height_of = z[np.unique(mesh.joints[members][:, 4:])] / height
+            saved[f"joints/{name}/slip"] = np.outer(0.01 * number * height_of, [1.0, 0.5])
+            saved[f"joints/{name}/state"] = np.where(
+                height_of > 0.8, 0, np.where(height_of > 0.5, 2, 1)
+            )
     modes = file.create_group("steps/0002")
     modes.attrs["name"], modes.attrs["procedure"] = "MODES", "FREQUENCY"
+    modes["modes/effective_mass"] = np.array([[0.0, 9.0e8, 1.0e6], [3.0e8, 0.0, 0.0]])
     modes["modes/hz"] = np.array([2.1, 3.4])
     modes["modes/shape"] = np.stack([shift, shift * np.sign(mesh.x[:, :1])])
 

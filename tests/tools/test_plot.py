@@ -3,15 +3,23 @@
 import contextlib
 import io
 
+import imageio_ffmpeg
 import matplotlib.image
 import numpy as np
+import PIL.Image
 import plot
 import pytest
 from keyway_tools.arch_dam import DamOptions, build_arch_dam
 from keyway_tools.arch_shape import ArchShape
 from keyway_tools.box_mesh import box_mesh, stretched
+from keyway_tools.colour_scale import Scales, parse_ranges
+from keyway_tools.dam_views import Faces
+from keyway_tools.picture_style import Sheet
+from keyway_tools.pictures_faces import plot_envelope
 from keyway_tools.pictures_joints import JointView, range_of
+from keyway_tools.pictures_shapes import masses_in_words
 from keyway_tools.results import Results, find_jobs
+from keyway_tools.si_results import SiResults, Units
 from synthetic_results import write_results
 
 KINDS = {
@@ -22,6 +30,10 @@ KINDS = {
     "envelope_damagec",
     "envelope_opening",
     "envelope_opening_joints",
+    "section_s1",
+    "section_s3",
+    "slip_joints",
+    "state_joints",
     "damage",
     "damage_growth",
     "deformed",
@@ -92,13 +104,108 @@ def test_body_without_water_or_joints(tmp_path, capsys):
     write_results(tmp_path, mesh, "column")
     assert plot.main([str(tmp_path), "-o", str(tmp_path / "pictures")]) == 0
     found = kinds_of(capsys.readouterr().out.split(), "column")
-    assert found == KINDS - {"envelope_opening", "envelope_opening_joints", "openings"}
+    assert found == {kind for kind in KINDS if "joints" not in kind and "section" not in kind} - {
+        "envelope_opening",
+        "openings",
+    }
 
 
 def test_folder_without_results_is_refused(tmp_path, capsys):
     assert plot.main([str(tmp_path)]) == 2
     assert "no job.h5" in capsys.readouterr().err
     assert find_jobs(tmp_path) == []
+
+
+def test_one_singular_corner_does_not_set_the_scale():
+    """A field of 1 MPa with one node of 50 MPa: bands to 1 MPa, and the picture says why."""
+    stress = np.linspace(0.0, 1.0e6, 1000)
+    stress[7] = 50.0e6
+    usual = Scales().limits("S1", stress)
+    assert usual.ends == (0.0, 1.0)
+    assert "99 %" in usual.remark
+    assert Scales(is_full=True).limits("S1", stress).ends == (0.0, 50.0)
+    assert Scales({"S1": 3.0}).limits("S1", stress).ends == (0.0, 3.0)
+    assert Scales().limits("S3", -stress).ends == (-1.0, 0.0)
+    assert Scales().limits("S1", stress[8:]).remark == ""
+    assert Scales().limits("DAMAGET", stress / 1e8).ends == (0.0, 1.0)
+
+
+def test_words_of_ranges():
+    scales, is_shared = parse_ranges(["shared", "S3=-4", "opening=20"])
+    assert is_shared
+    assert scales.given == {"S3": 4.0, "OPENING": 20.0}
+    for wrong in ("S9=3", "S1=x", "S1=0", "half"):
+        with pytest.raises(ValueError, match="expected"):
+            parse_ranges([wrong])
+
+
+def test_runs_share_a_range(dam_results, tmp_path):
+    small = tmp_path / "small"
+    mesh, _ = box_mesh((2, 2, 10), stretched((1.0, 1.0, 10.0)))
+    mesh.brick_sets["COLUMN"] = np.arange(len(mesh.bricks))
+    write_results(small, mesh)
+    both = [SiResults(small), SiResults(dam_results)]
+    scales = plot.shared_scales(both, Scales())
+    assert scales.given["S1"] == pytest.approx(3.0)
+    assert scales.given["OPENING"] == pytest.approx(5.0)
+    assert "DAMAGET" not in scales.given
+
+
+def test_marks_and_notes_name_extreme_place_deck_and_date(dam_results, tmp_path):
+    """What is written on a picture: taken from an SVG whose letters are text."""
+    results = SiResults(dam_results)
+    with matplotlib.rc_context({"svg.fonttype": "none"}):
+        sheet = Sheet(tmp_path / "s1", ("svg", "pdf"), results.note)
+        files = plot_envelope(Faces(results), results.steps()[0], "S1", Scales(), sheet)
+    assert [file.name for file in files] == ["s1.svg", "s1.pdf"]
+    text = files[0].read_text()
+    assert "made_up.inp" in text
+    assert results.date in text
+    assert "3 MPa" in text
+    assert f", {results.x[:, 2].max():.5g}) m" in text
+    assert files[1].read_bytes().startswith(b"%PDF")
+    assert masses_in_words(np.array([0.0, 9.0e8, 1.0e6])) == "y 900, z 1 kt"
+
+
+@pytest.mark.parametrize("kind", ["mp4", "gif"])
+def test_film_shows_every_saved_state(tmp_path, kind, capsys):
+    mesh, _ = box_mesh((1, 1, 4), stretched((1.0, 1.0, 4.0)))
+    mesh.brick_sets["COLUMN"] = np.arange(len(mesh.bricks))
+    write_results(tmp_path, mesh, "column", num_saved=4)
+    assert plot.main([str(tmp_path), "--animate", kind]) == 0
+    film = tmp_path / f"column_motion.{kind}"
+    assert capsys.readouterr().out.split() == [str(film)]
+    if kind == "gif":
+        with PIL.Image.open(film) as images:
+            assert images.n_frames == 4
+    else:
+        assert imageio_ffmpeg.count_frames_and_secs(str(film))[0] == 4
+
+
+def test_units_of_a_deck(tmp_path):
+    """Results in mm and MPa become m and Pa; the effective mass is in tonnes there."""
+    mesh, _ = box_mesh((1, 1, 4), stretched((1.0, 1.0, 4.0)))
+    mesh.brick_sets["COLUMN"] = np.arange(len(mesh.bricks))
+    write_results(tmp_path, mesh)
+    raw, si = SiResults(tmp_path), SiResults(tmp_path, units=Units.parse("mm,MPa"))
+    assert np.allclose(1e3 * si.x, raw.x)
+    assert np.allclose(si.steps()[0].envelopes["S1"], 1e6 * raw.steps()[0].envelopes["S1"])
+    energy = [one.history("energy")["external"][-1] for one in (raw, si)]
+    assert energy[1] == pytest.approx(1e-3 * energy[0])  # N mm
+    assert si.effective_mass()[0, 1] == pytest.approx(1e3 * raw.effective_mass()[0, 1])
+    assert plot.main([str(tmp_path), "--units", "mm,MPa", "-o", str(tmp_path / "p")]) == 0
+    with pytest.raises(SystemExit):
+        plot.main([str(tmp_path), "--units", "mm"])
+
+
+def test_perimetral_joint_is_drawn_in_plan():
+    """A V whose sides hide each other in elevation; an upright plane is drawn in elevation."""
+    v = np.array(
+        [[-50, 0, 50], [0, 0, 0], [50, 0, 50], [-50, 9, 50], [0, 9, 0], [50, 9, 50]], float
+    )
+    triangles = np.array([[0, 1, 3], [1, 4, 3], [1, 2, 4], [2, 5, 4]])
+    assert not JointView(v, triangles).is_upright
+    assert JointView(v[:, [1, 0, 2]] * [0.01, 1.0, 1.0], np.array([[0, 1, 2]])).is_upright
 
 
 CURVE = "leg,increment,time,E11,S11,E12,S12,DAMAGET,work,stored,fracture,crushing,iterations\n"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib
@@ -12,15 +13,16 @@ from cycler import cycler
 
 # Okabe and Ito's palette, in an order in which neighbours differ also in grey
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-GREY = "#666666"
+GREY = "#555555"
 
+# Letters that can be read on a slide: a picture 12 inches wide fills one.
 _STYLE = {
     "font.family": "DejaVu Sans",
-    "font.size": 10.0,
-    "axes.titlesize": 11.0,
+    "font.size": 13.0,
+    "axes.titlesize": 14.0,
     "axes.titleweight": "bold",
     "axes.titlelocation": "left",
-    "axes.labelsize": 10.0,
+    "axes.labelsize": 13.0,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.edgecolor": GREY,
@@ -31,12 +33,39 @@ _STYLE = {
     "grid.linewidth": 0.6,
     "xtick.color": GREY,
     "ytick.color": GREY,
-    "lines.linewidth": 1.2,
+    "lines.linewidth": 1.4,
     "legend.frameon": False,
-    "legend.fontsize": 9.0,
+    "legend.fontsize": 12.0,
     "figure.constrained_layout.use": True,
+    "figure.titlesize": 15.0,
+    "figure.titleweight": "bold",
     "savefig.dpi": 120,
+    "svg.hashsalt": "keyway",
 }
+FORMATS = ("png", "svg", "pdf")
+# No date of drawing in a file: the same data give the same bytes.
+_UNDATED = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Where a picture goes, its formats, and the line below it."""
+
+    path: Path
+    formats: tuple[str, ...] = ("png",)
+    note: str = ""
+
+    def save(self, figure) -> list[Path]:
+        """Write and close a figure; returns the files."""
+        if self.note:
+            strip = 0.3 / figure.get_figheight()  # 0.3 inches for the note
+            figure.get_layout_engine().set(rect=(0.0, strip, 1.0, 1.0 - strip))
+            figure.text(0.995, 0.008, self.note, ha="right", va="bottom", color=GREY, fontsize=11)
+        files = [self.path.with_name(f"{self.path.name}.{kind}") for kind in self.formats]
+        for file, kind in zip(files, self.formats, strict=True):
+            figure.savefig(file, metadata=_UNDATED[kind])
+        plt.close(figure)
+        return files
 
 
 def new_figure(
@@ -47,8 +76,23 @@ def new_figure(
     return plt.subplots(rows, columns, figsize=(width, row_height * rows + 0.6), **more)
 
 
+def headline(figure, text: str) -> None:
+    """The title of a figure, at its left border."""
+    figure.suptitle(text, x=0.01, ha="left")
+
+
+def hide_frame(axis) -> None:
+    """No frame or ticks; unlike set_axis_off, titles keep their room in the layout."""
+    axis.set_xticks([])
+    axis.set_yticks([])
+    axis.grid(False)
+    axis.patch.set_visible(False)
+    for spine in axis.spines.values():
+        spine.set_visible(False)
+
+
 def save_figure(figure, path: Path) -> Path:
-    """Write and close a figure; returns its path. Without date: same data give the same bytes."""
-    figure.savefig(path, metadata={"Software": None})
+    """Write and close a figure; returns its path."""
+    figure.savefig(path, metadata=_UNDATED[path.suffix.removeprefix(".")])
     plt.close(figure)
     return path

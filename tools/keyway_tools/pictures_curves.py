@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .picture_style import COLOURS, GREY, new_figure, save_figure
-from .results import Results
+from .picture_style import COLOURS, GREY, Sheet, new_figure
+from .si_results import SiResults
 
 MOST_CURVES = 6
 
@@ -17,18 +17,18 @@ def _curves_by(values: dict[str, np.ndarray], key: str) -> dict[int, np.ndarray]
     return {int(number): np.flatnonzero(values[key] == number) for number in np.unique(values[key])}
 
 
-def plot_openings(results: Results, path: Path) -> Path | None:
+def plot_openings(results: SiResults, sheet: Sheet) -> list[Path]:
     """Opening of the points of every *JOINT PRINT in time, one panel a joint."""
     names = [name for name in results.tables() if name.startswith("joint_")]
     tables = {name.removeprefix("joint_"): results.table(name) for name in names}
     tables = {name: table for name, table in tables.items() if len(table.get("time", ()))}
     if not tables:
-        return None
-    figure, axes = new_figure(len(tables), width=10.0, row_height=2.5, sharex=True, squeeze=False)
+        return []
+    figure, axes = new_figure(len(tables), width=12.0, row_height=2.9, sharex=True, squeeze=False)
     for axis, (name, table) in zip(axes[:, 0], tables.items(), strict=True):
         _opening_panel(axis, name, table)
     axes[-1, 0].set_xlabel("time [s]")
-    return save_figure(figure, path)
+    return sheet.save(figure)
 
 
 def _opening_panel(axis, name: str, table: dict[str, np.ndarray]) -> None:
@@ -47,7 +47,7 @@ def _opening_panel(axis, name: str, table: dict[str, np.ndarray]) -> None:
     axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 
-def plot_nodes(results: Results, path: Path) -> Path | None:
+def plot_nodes(results: SiResults, sheet: Sheet) -> list[Path]:
     """Displacements of every *NODE PRINT in time, one panel a direction."""
     curves = []
     nodes = [name for name in results.tables() if name.startswith("node_")]
@@ -58,8 +58,8 @@ def plot_nodes(results: Results, path: Path) -> Path | None:
         for node, rows in list(_curves_by(table, "node").items())[:MOST_CURVES]:
             curves.append((f"{title}, node {node}", table, rows))
     if not curves:
-        return None
-    figure, axes = new_figure(3, width=10.0, row_height=1.9, sharex=True)
+        return []
+    figure, axes = new_figure(3, width=12.0, row_height=2.2, sharex=True)
     for label, table, rows in curves[:MOST_CURVES]:
         for axis, direction in zip(axes, "123", strict=True):
             values = 1000.0 * table[f"U{direction}"][rows]
@@ -71,18 +71,18 @@ def plot_nodes(results: Results, path: Path) -> Path | None:
     axes[0].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     axes[-1].set_xlabel("time [s]")
     figure.align_ylabels()
-    return save_figure(figure, path)
+    return sheet.save(figure)
 
 
-def plot_energy(results: Results, path: Path) -> Path | None:
+def plot_energy(results: SiResults, sheet: Sheet) -> list[Path]:
     """Energies in time and the imbalance between them."""
     table = results.history("energy")
     if len(table.get("time", ())) < 3:
-        return None
+        return []
     largest = max(np.abs(table[name]).max() for name in ("external", "kinetic", "strain"))
     scale, unit = (1e-6, "MJ") if largest > 1e5 else (1e-3, "kJ") if largest > 1e2 else (1.0, "J")
     figure, axes = new_figure(
-        2, width=10.0, row_height=2.6, sharex=True, gridspec_kw={"height_ratios": (3, 1)}
+        2, width=12.0, row_height=2.9, sharex=True, gridspec_kw={"height_ratios": (3, 1)}
     )
     names = ("external", "strain", "kinetic", "damping", "friction", "fracture", "numerical")
     shown = [n for n in names if np.abs(table[n]).max() > 1e-6 * largest]
@@ -96,15 +96,15 @@ def plot_energy(results: Results, path: Path) -> Path | None:
     axes[1].set_xlabel("time [s]")
     axes[1].margins(x=0.0)
     figure.align_ylabels()
-    return save_figure(figure, path)
+    return sheet.save(figure)
 
 
-def plot_damage_growth(results: Results, path: Path) -> Path | None:
+def plot_damage_growth(results: SiResults, sheet: Sheet) -> list[Path]:
     """Damaged volumes, and the energy dissipated by cracks and crushing, in time."""
     table = results.history("damage")
     if len(table.get("time", ())) < 3 or table["inelastic_volume"].max() <= 0.0:
-        return None
-    figure, axes = new_figure(2, width=10.0, row_height=2.6, sharex=True)
+        return []
+    figure, axes = new_figure(2, width=12.0, row_height=2.9, sharex=True)
     axes[0].plot(table["time"], table["inelastic_volume"], color=GREY, label="beyond elasticity")
     for percent, colour in zip((10, 50, 90), COLOURS, strict=False):
         axes[0].plot(
@@ -120,4 +120,4 @@ def plot_damage_growth(results: Results, path: Path) -> Path | None:
         axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
         axis.margins(x=0.0)
     figure.align_ylabels()
-    return save_figure(figure, path)
+    return sheet.save(figure)

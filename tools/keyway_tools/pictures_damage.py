@@ -9,53 +9,64 @@ from pathlib import Path
 
 import numpy as np
 
-from .pictures_faces import FIELDS, Faces, compose, nice_limits
-from .render_dam import render, solid_grid
+from .colour_scale import FIELDS, Scales
+from .dam_views import Faces
+from .picture_style import Sheet
+from .pictures_faces import Drawing, Mark, compose, place_of
+from .render_dam import Paint, render_views, solid_grid
 from .results import Step
 
 VISIBLE = 0.05  # elements of less mean damage are not drawn
 
 
-def plot_mean_envelope(faces: Faces, step: Step, name: str, path: Path) -> Path:
+def plot_mean_envelope(
+    faces: Faces, step: Step, name: str, scales: Scales, sheet: Sheet
+) -> list[Path]:
     """The largest mean damage of the elements over a step, on every view."""
     field, results = FIELDS[name], faces.results
     damage = step.means[name]
-    limits = nice_limits(damage, field)
+    limits = scales.limits(name, damage)
     body = faces.grid()
     body.cell_data["value"] = damage[results.dam]
-    pictures = {
-        title: render(
-            body, view, None, (limits[0], limits[-1]), field.colours, faces.joint_lines(),
-            bands=len(limits) - 1,
-        )
-        for title, view in faces.views.items()
-    }  # fmt: skip
-    heading = f"{field.label} over step {step.name.title()}: {damage[results.dam].max():.3g}"
+    paint = Paint(None, limits.ends, field.colours, limits.bands)
+    pictures = render_views(faces.views, body, paint, faces.joint_lines())
+    heading = f"{field.label} over step {step.name.title()}\n"
+    heading += _worst_element(faces, damage)
     label = f"{field.label.lower()}, element mean"
-    return compose(pictures, limits, field.colours, label, heading, {}, path)
+    return compose(Drawing(pictures, limits, field.colours, label, heading), sheet)
 
 
-def plot_damaged_elements(faces: Faces, path: Path) -> Path | None:
+def _worst_element(faces: Faces, damage: np.ndarray) -> str:
+    """The most damaged element of the dam in words."""
+    results = faces.results
+    worst = results.dam[damage[results.dam].argmax()]
+    if damage[worst] <= 0.0:
+        return "no damage"
+    where = place_of(results.x[results.connectivity[worst]].mean(axis=0))
+    return f"extreme {damage[worst]:.3g} in element {results.element_id[worst]}, centre {where}"
+
+
+def plot_damaged_elements(faces: Faces, scales: Scales, sheet: Sheet) -> list[Path]:
     """Mean damage in tension of the damaged elements, at the last saved time."""
     results = faces.results
     found = results.damage("DAMAGET")
     if found is None:
-        return None
+        return []
     time, damage = found
     shown = np.flatnonzero(damage >= VISIBLE)
     shown = shown[np.isin(shown, results.solids)]
     if shown.size == 0:
-        return None
-    limits = nice_limits(damage, FIELDS["DAMAGET"])
+        return []
+    limits = scales.limits("DAMAGET", damage)
     colours = FIELDS["DAMAGET"].colours
     cells, wire = solid_grid(results.x, results.connectivity[shown]), faces.surface()
     cells.cell_data["value"] = damage[shown]
-    pictures = {
-        title: render(
-            cells, view, None, (limits[0], limits[-1]), colours, faces.joint_lines(), wire,
-            bands=len(limits) - 1,
-        )
-        for title, view in faces.views.items()
-    }  # fmt: skip
-    heading = f"Damaged elements at t = {time:.2f} s: {shown.size} above {VISIBLE:g}"
-    return compose(pictures, limits, colours, "damage in tension, element mean", heading, {}, path)
+    paint = Paint(None, limits.ends, colours, limits.bands)
+    pictures = render_views(faces.views, cells, paint, faces.joint_lines(), wire)
+    heading = f"Damaged elements at t = {time:.5g} s: {shown.size} above {VISIBLE:g}\n"
+    heading += _worst_element(faces, damage)
+    worst = results.connectivity[shown[damage[shown].argmax()]]
+    centre, text = results.x[worst].mean(axis=0), f"{damage[shown].max():.3g}"
+    marks = {title: Mark(view.project(centre), text) for title, view in faces.views.items()}
+    label = "damage in tension, element mean"
+    return compose(Drawing(pictures, limits, colours, label, heading, marks), sheet)

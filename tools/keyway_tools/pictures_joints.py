@@ -1,4 +1,4 @@
-"""Openings over the area of joints, on the polygons in job.h5."""
+"""Maps of joints on the polygons in job.h5: largest opening, slip and state at a time."""
 
 from __future__ import annotations
 
@@ -6,59 +6,51 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.collections import PolyCollection
-from matplotlib.ticker import MaxNLocator
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.patches import Patch
 from matplotlib.tri import Triangulation
+from scipy.spatial import cKDTree
 
+from .colour_scale import FIELDS, Scales
 from .joint_faces import JointFaces
-from .picture_style import new_figure, save_figure
-from .results import Results, Step
+from .picture_style import Sheet, headline, new_figure
+from .results import Step
+from .si_results import SiResults, saved_increments
 
-
-def plot_joint_areas(results: Results, step: Step, path: Path) -> Path | None:
-    """Largest opening over the area of every joint, in a view normal to the joint."""
-    joints = {name: results.joint_faces(name) for name in results.joint_names()}
-    joints = {name: joint for name, joint in joints.items() if joint is not None}
-    opening = np.nan_to_num(1000.0 * step.envelopes["OPENING"])
-    values = {name: joint.on_corners(opening) for name, joint in joints.items()}
-    top = max((openings.max() for openings in values.values()), default=0.0)
-    if top <= 0.0:
-        return None
-    views = {name: JointView(joint.on_corners(results.x)) for name, joint in joints.items()}
-    columns = min(3, len(joints))
-    rows = -(-len(joints) // columns)
-    figure, axes = new_figure(
-        rows, width=2.6 * columns + 1.6, row_height=4.6, columns=columns, squeeze=False
-    )
-    shade = None
-    for axis, (name, joint) in zip(axes.flat, joints.items(), strict=False):
-        shade = _joint_panel(axis, views[name], joint, values[name], top)
-        axis.set_ylim(range_of(views[name], list(views.values())))
-        axis.set_title(f"{name}: {values[name].max():.3g} mm")
-    for axis in axes.flat[len(joints) :]:
-        axis.set_axis_off()
-    bar = figure.colorbar(shade, ax=axes.ravel().tolist(), shrink=0.8, aspect=30)
-    bar.set_label("largest opening [mm]")
-    bar.outline.set_visible(False)
-    title = f"Joint openings over step {step.name.title()}"
-    figure.suptitle(title, x=0.01, ha="left", fontsize=12, fontweight="bold")
-    return save_figure(figure, path)
+STATES = {-1: "shared node", 0: "open", 1: "stick", 2: "slip", 3: "bonded"}
+SHOWN_IN_PLAN = 0.3  # of the area
+WIDEST = 13.0  # [inches]
+STATE_COLOURS = ("#FFFFFF", "#D55E00", "#C9DAE6", "#E69F00", "#0072B2")
 
 
 class JointView:
-    """Corners of a joint in its plane: along the joint and up; a horizontal joint in plan."""
+    """Corners of a joint in its plane: along the joint and up, or in plan.
 
-    def __init__(self, x: np.ndarray):
+    A joint is drawn in plan where that shows its area: a horizontal joint, and a perimetral one,
+    whose two sides would hide each other in an elevation.
+    """
+
+    def __init__(self, x: np.ndarray, triangles: np.ndarray | None = None):
         size = np.ptp(x, axis=0)
         self.is_upright = size[2] > 0.05 * size.max()
+        if triangles is not None and len(triangles):
+            self.is_upright = _part_in_plan(x, triangles) < SHOWN_IN_PLAN
         self.margin = 0.03 * size.max()
         if self.is_upright:
             across = np.linalg.svd(x[:, :2] - x[:, :2].mean(axis=0), full_matrices=False)[2][0]
             across = across if across[np.abs(across).argmax()] > 0.0 else -across
             along, self.up = x[:, :2] @ across, x[:, 2]
             self.along = along - along.min()
-            self.labels = ("along the joint [m]", "height z [m]")
+            self.labels = ("along [m]", "height z [m]")
         else:
             self.along, self.up, self.labels = x[:, 0], x[:, 1], ("x [m]", "y [m]")
+
+
+def _part_in_plan(x: np.ndarray, triangles: np.ndarray) -> float:
+    """The part of the area that is seen from above."""
+    a, b, c = (x[triangles[:, k]] for k in range(3))
+    normals = np.cross(b - a, c - a)
+    return float(np.abs(normals[:, 2]).sum() / max(np.linalg.norm(normals, axis=1).sum(), 1e-300))
 
 
 def range_of(view: JointView, views: list[JointView]) -> tuple[float, float]:
@@ -68,18 +60,178 @@ def range_of(view: JointView, views: list[JointView]) -> tuple[float, float]:
     return min(v.up.min() for v in same) - margin, max(v.up.max() for v in same) + margin
 
 
-def _joint_panel(axis, view: JointView, joint: JointFaces, values: np.ndarray, top: float):
-    """One joint in its plane."""
-    along, up = view.along, view.up
-    levels = MaxNLocator(nbins=10, steps=[1, 2, 2.5, 5, 10]).tick_values(0.0, top)
-    shade = axis.tricontourf(
-        Triangulation(along, up, joint.triangles), values, levels=levels, cmap="viridis_r"
-    )
-    rings = [np.stack([along[ring], up[ring]], axis=-1) for ring in joint.rings]
-    axis.add_collection(PolyCollection(rings, facecolors="none", edgecolors="#00000030", lw=0.6))
-    axis.set_aspect("equal")
-    axis.set_xlim(along.min() - view.margin, along.max() + view.margin)
-    axis.set_xlabel(view.labels[0])
-    axis.set_ylabel(view.labels[1])
-    axis.grid(False)
-    return shade
+def _never_below_zero(values: np.ndarray) -> np.ndarray:
+    """Round-off below zero would leave holes in a map whose colours begin at zero."""
+    return np.maximum(values, 0.0)
+
+
+class JointPage:
+    """A figure with one panel a joint, each joint in its plane."""
+
+    def __init__(self, results: SiResults, joints: dict[str, JointFaces]):
+        self.joints = joints
+        self.views = {
+            name: JointView(joint.on_corners(results.x), joint.triangles)
+            for name, joint in joints.items()
+        }
+        tallest = max(self._shape(name) for name in joints)
+        height = float(np.clip(3.5 * tallest, 2.4, 5.5))
+        width = float(np.clip(height / tallest + 0.8, 1.9, 9.0))
+        columns = max(1, min(len(joints), int(WIDEST / width)))
+        rows = -(-len(joints) // columns)
+        self.figure, axes = new_figure(
+            rows, width=max(width * columns + 1.8, 8.0), row_height=height + 1.5, columns=columns,
+            squeeze=False,
+        )  # fmt: skip
+        self.axes = dict(zip(joints, axes.flat, strict=False))
+        for axis in axes.flat[len(joints) :]:
+            axis.set_axis_off()
+
+    def _shape(self, name: str) -> float:
+        low, high = range_of(self.views[name], list(self.views.values()))
+        return (high - low) / max(np.ptp(self.views[name].along), 1e-12)
+
+    def frame(self, name: str, title: str) -> None:
+        """Title, labels and range of the panel of a joint."""
+        axis, view = self.axes[name], self.views[name]
+        axis.set_aspect("equal")
+        axis.set_xlim(view.along.min() - view.margin, view.along.max() + view.margin)
+        axis.set_ylim(range_of(view, list(self.views.values())))
+        axis.set_title(title, fontsize=12)
+        axis.set_xlabel(view.labels[0])
+        if axis is next(iter(self.axes.values())) or not view.is_upright:
+            axis.set_ylabel(view.labels[1])
+        axis.grid(False)
+
+    def rings(self, name: str) -> list[np.ndarray]:
+        """Polygons of a joint in its plane."""
+        view = self.views[name]
+        return [
+            np.stack([view.along[ring], view.up[ring]], axis=-1) for ring in self.joints[name].rings
+        ]
+
+    def fill(self, name: str, values: np.ndarray, borders: np.ndarray, colours: str):
+        """Values of the corners in bands of colour, and the largest one marked."""
+        axis, view = self.axes[name], self.views[name]
+        extend = "max" if values.max() > borders[-1] else "neither"
+        triangles = Triangulation(view.along, view.up, self.joints[name].triangles)
+        shade = axis.tricontourf(triangles, values, levels=borders, cmap=colours, extend=extend)
+        edges = {"facecolors": "none", "edgecolors": "#00000030", "lw": 0.6}
+        axis.add_collection(PolyCollection(self.rings(name), **edges))
+        if values.max() > 0.0:
+            most = values.argmax()
+            axis.plot(
+                view.along[most], view.up[most], "o", ms=11, mfc="none", mec="#0091B2", mew=2.0,
+                clip_on=False,
+            )  # fmt: skip
+        return shade
+
+    def bar(self, shade, label: str) -> None:
+        """One bar of colours for all joints."""
+        bar = self.figure.colorbar(shade, ax=list(self.axes.values()), shrink=0.8, aspect=30)
+        bar.set_label(label)
+        bar.outline.set_visible(False)
+
+
+def joints_with_faces(results: SiResults) -> dict[str, JointFaces]:
+    """The joints that can be drawn."""
+    joints = {name: results.joint_faces(name) for name in results.joint_names()}
+    return {name: joint for name, joint in joints.items() if joint is not None}
+
+
+def plot_joint_areas(results: SiResults, step: Step, scales: Scales, sheet: Sheet) -> list[Path]:
+    """Largest opening over the area of every joint, in a view normal to the joint."""
+    joints = joints_with_faces(results)
+    opening = np.nan_to_num(step.envelopes["OPENING"])
+    values = {
+        name: 1e3 * _never_below_zero(joint.on_corners(opening)) for name, joint in joints.items()
+    }
+    if max((openings.max() for openings in values.values()), default=0.0) <= 0.0:
+        return []
+    page = JointPage(results, joints)
+    borders = scales.limits("OPENING", opening).borders
+    for name in joints:
+        shade = page.fill(name, values[name], borders, FIELDS["OPENING"].colours)
+        page.frame(name, f"{name}\n{values[name].max():.3g} mm")
+    page.bar(shade, "largest opening [mm]")
+    headline(page.figure, f"Joint openings over step {step.name.title()}")
+    return sheet.save(page.figure)
+
+
+def _saved_joints(results: SiResults) -> list[tuple[object, float]]:
+    """Groups of increments that hold the state of joints, and their times."""
+    saved = saved_increments(results)
+    return [(group["joints"], time) for group, time in saved if "joints" in group]
+
+
+def plot_joint_slips(results: SiResults, scales: Scales, sheet: Sheet) -> list[Path]:
+    """Irrecoverable sliding of every joint at the last saved time."""
+    saved, joints = _saved_joints(results), joints_with_faces(results)
+    if not saved or not joints:
+        return []
+    group, time = saved[-1]
+    slips = {}
+    for name, joint in joints.items():
+        size = results.units.length * np.linalg.norm(group[name]["slip"][:], axis=1)
+        slips[name] = size[_point_of_corner(results, name, joint)]
+    everything = np.concatenate(list(slips.values()))
+    if everything.max() <= 0.0:
+        return []
+    page = JointPage(results, joints)
+    borders = scales.limits("SLIP", everything).borders
+    for name, values in slips.items():
+        shade = page.fill(name, 1e3 * values, borders, FIELDS["SLIP"].colours)
+        page.frame(name, f"{name}\n{1e3 * values.max():.3g} mm")
+    page.bar(shade, "irrecoverable sliding [mm]")
+    headline(page.figure, f"Slip of joints at t = {time:.5g} s")
+    return sheet.save(page.figure)
+
+
+def plot_joint_states(results: SiResults, sheet: Sheet) -> list[Path]:
+    """State of every joint at the saved time at which most of the joints' area is open."""
+    saved, joints = _saved_joints(results), joints_with_faces(results)
+    if not saved or not joints:
+        return []
+    areas = {name: results.file[f"joints/{name}/area"][:] for name in joints}
+    opened = [sum(a[g[n]["state"][:] == 0].sum() for n, a in areas.items()) for g, _ in saved]
+    group, time = saved[int(np.argmax(opened))]
+    page = JointPage(results, joints)
+    colours = ListedColormap(STATE_COLOURS)
+    norm = BoundaryNorm(np.arange(-1.5, 4.0), colours.N)
+    seen: set[int] = set()
+    for name, joint in joints.items():
+        state = group[name]["state"][:].astype(int)
+        state = state[_point_of_corner(results, name, joint)]
+        seen |= set(state.tolist())
+        _fill_by_corner(page, name, state, colours, norm)
+        share = areas[name][group[name]["state"][:] == 0].sum() / max(areas[name].sum(), 1e-300)
+        page.frame(name, f"{name}\n{100.0 * share:.3g} % open")
+    handles = [
+        Patch(fc=colours(norm(value)), ec="black", lw=0.5, label=text)
+        for value, text in STATES.items()
+        if value in seen
+    ]
+    page.figure.legend(handles=handles, loc="outside right center")
+    headline(page.figure, f"State of joints at t = {time:.5g} s, with most area open")
+    return sheet.save(page.figure)
+
+
+def _fill_by_corner(page: JointPage, name: str, state: np.ndarray, colours, norm) -> None:
+    """The part of each polygon that is next to a corner has the colour of that corner."""
+    parts, values = [], []
+    for ring, corners in zip(page.rings(name), page.joints[name].rings, strict=True):
+        centre, count = ring.mean(axis=0), len(ring)
+        for k in range(count):
+            before, after = 0.5 * (ring[k] + ring[k - 1]), 0.5 * (ring[k] + ring[(k + 1) % count])
+            parts.append(np.array([ring[k], after, centre, before]))
+            values.append(state[corners[k]])
+    look = {"cmap": colours, "norm": norm, "edgecolors": "face", "lw": 0.3}
+    page.axes[name].add_collection(PolyCollection(parts, array=np.array(values), **look))
+    outline = PolyCollection(page.rings(name), facecolors="none", edgecolors="#00000040", lw=0.5)
+    page.axes[name].add_collection(outline)
+
+
+def _point_of_corner(results: SiResults, name: str, joint: JointFaces) -> np.ndarray:
+    """The point of a joint that is next to each corner of its polygons."""
+    points = results.units.length * results.file[f"joints/{name}/x"][:]
+    return cKDTree(points).query(joint.on_corners(results.x))[1]

@@ -50,6 +50,16 @@ class View:
 
 
 @dataclass(frozen=True)
+class Paint:
+    """Values on the nodes of a body (None: of its cells, or none at all), and their colours."""
+
+    values: np.ndarray | None
+    ends: tuple[float, float]
+    colours: str
+    bands: int = 64
+
+
+@dataclass(frozen=True)
 class Picture:
     """A rendered image and where it lies in the projection [m]: left, right, bottom, top."""
 
@@ -70,11 +80,11 @@ def solid_grid(x: np.ndarray, connectivity: np.ndarray) -> pv.UnstructuredGrid:
     return pv.UnstructuredGrid(np.array(cells), np.array(kinds), np.array(x, dtype=float))
 
 
-def frame(x: np.ndarray, view: View) -> tuple[np.ndarray, float]:
+def frame(x: np.ndarray, view: View, margin: float = MARGIN) -> tuple[np.ndarray, float]:
     """Centre (3) and half height [m] of a picture that holds all points."""
     flat = view.project(x)
     low, high = flat.min(axis=0), flat.max(axis=0)
-    half = 0.5 * (high - low) * MARGIN
+    half = 0.5 * (high - low) * margin
     middle = 0.5 * (low + high)
     depth = 0.5 * np.ptp(x @ view.towards) + (x @ view.towards).min()
     centre = middle[0] * view.right + middle[1] * view.up + depth * view.towards
@@ -82,40 +92,33 @@ def frame(x: np.ndarray, view: View) -> tuple[np.ndarray, float]:
 
 
 def render(
-    grid: pv.UnstructuredGrid,
+    grid: pv.UnstructuredGrid | pv.PolyData,
     view: View,
-    values: np.ndarray | None,
-    limits: tuple[float, float],
-    colours: str,
+    paint: Paint,
     outline: pv.PolyData | None = None,
     wire: pv.PolyData | None = None,
-    bands: int = 64,
+    *,
+    fixed: float | None = None,
 ) -> Picture:
     """Image of a body, lines of `outline` on top.
 
-    Coloured by values on its nodes, or by 'value' on its cells where the grid has that.
+    Coloured by values on its nodes, or by 'value' on its cells where the grid has that. For films,
+    `fixed` is the margin around the wire alone, so that all images show the same place.
     """
     surface = grid.extract_surface(algorithm="dataset_surface")
     points = np.vstack([surface.points, wire.points]) if wire is not None else surface.points
-    centre, half_height = frame(np.asarray(points, dtype=float), view)
-    plotter = pv.Plotter(off_screen=True, window_size=PIXELS)
+    if fixed:
+        points = wire.points
+    centre, half_height = frame(np.asarray(points, dtype=float), view, fixed or MARGIN)
+    pixels = [number // 2 for number in PIXELS] if fixed else PIXELS
+    plotter = pv.Plotter(off_screen=True, window_size=pixels)
     plotter.set_background("white")
-    look = {"ambient": 0.72, "diffuse": 0.36, "specular": 0.0, "show_edges": True}
-    look |= {"edge_color": "black", "edge_opacity": 0.16, "line_width": 1.0}
-    if values is not None:
-        surface["value"] = values[surface["vtkOriginalPointIds"]]
-    if "value" not in surface.array_names:
-        plotter.add_mesh(surface, color="#D9D4CC", **look)
-    else:
-        plotter.add_mesh(
-            surface, scalars="value", cmap=colours, clim=limits, n_colors=bands,
-            show_scalar_bar=False, nan_color="#E6E6E6", **look,
-        )  # fmt: skip
+    _add_body(plotter, surface, paint)
     if wire is not None:
         edges = wire.extract_feature_edges(feature_angle=40.0)
         plotter.add_mesh(edges, color="#777777", line_width=1.5)
     if outline is not None:
-        _add_outline(plotter, outline, view, limits, colours, bands)
+        _add_outline(plotter, outline, view, paint)
     plotter.enable_parallel_projection()
     plotter.enable_anti_aliasing("ssaa")
     distance = 10.0 * float(np.ptp(points, axis=0).max())
@@ -132,12 +135,32 @@ def render(
         middle[1] - half_height,
         middle[1] + half_height,
     )
-    return _crop(Picture(image, extent))
+    return Picture(image, extent) if fixed else _crop(Picture(image, extent))
 
 
-def _add_outline(
-    plotter, outline: pv.PolyData, view: View, limits, colours: str, bands: int
-) -> None:
+def render_views(
+    views: dict[str, View], grid, paint: Paint, *more, **options
+) -> dict[str, Picture]:
+    """Images of a body from several sides, by the titles of the views."""
+    return {title: render(grid, view, paint, *more, **options) for title, view in views.items()}
+
+
+def _add_body(plotter, surface: pv.PolyData, paint: Paint) -> None:
+    """The skin of a body with its edges."""
+    look = {"ambient": 0.72, "diffuse": 0.36, "specular": 0.0, "show_edges": True}
+    look |= {"edge_color": "black", "edge_opacity": 0.16, "line_width": 1.0}
+    if paint.values is not None:
+        surface["value"] = paint.values[surface["vtkOriginalPointIds"]]
+    if "value" not in surface.array_names:
+        plotter.add_mesh(surface, color="#D9D4CC", **look)
+        return
+    plotter.add_mesh(
+        surface, scalars="value", cmap=paint.colours, clim=paint.ends, n_colors=paint.bands,
+        show_scalar_bar=False, nan_color="#E6E6E6", **look,
+    )  # fmt: skip
+
+
+def _add_outline(plotter, outline: pv.PolyData, view: View, paint: Paint) -> None:
     """Lines a little in front of the body: black, or thick and coloured by their 'value'."""
     body = float(np.ptp(outline.points, axis=0).max())
     lines = outline.translate(0.004 * body * view.towards)
@@ -147,18 +170,25 @@ def _add_outline(
     plotter.add_mesh(lines, color="black", line_width=20.0)
     front = lines.translate(0.002 * body * view.towards)
     plotter.add_mesh(
-        front, scalars="value", cmap=colours, clim=limits, n_colors=bands, line_width=16.0,
-        show_scalar_bar=False, lighting=False,
+        front, scalars="value", cmap=paint.colours, clim=paint.ends, n_colors=paint.bands,
+        line_width=16.0, show_scalar_bar=False, lighting=False,
     )  # fmt: skip
 
 
 def _crop(picture: Picture, border: int = 25) -> Picture:
-    """Cut the white margins above and below off."""
-    rows = np.flatnonzero((picture.image < 250).any(axis=(1, 2)))
-    if rows.size == 0:
+    """Cut the white margins off."""
+    is_drawn = (picture.image < 250).any(axis=2)
+    if not is_drawn.any():
         return picture
-    first, last = max(0, rows[0] - border), min(len(picture.image), rows[-1] + border)
-    left, right, bottom, top = picture.extent
-    pixel = (top - bottom) / len(picture.image)
-    image = picture.image[first:last]
-    return Picture(image, (left, right, top - last * pixel, top - first * pixel))
+    top, bottom = _span(is_drawn.any(axis=1), border)
+    left, right = _span(is_drawn.any(axis=0), border)
+    pixel = (picture.extent[3] - picture.extent[2]) / len(picture.image)
+    x, y = picture.extent[0], picture.extent[3]
+    extent = (x + left * pixel, x + right * pixel, y - bottom * pixel, y - top * pixel)
+    return Picture(picture.image[top:bottom, left:right], extent)
+
+
+def _span(is_drawn: np.ndarray, border: int) -> tuple[int, int]:
+    """Where the drawn part begins and ends, with a border."""
+    found = np.flatnonzero(is_drawn)
+    return max(0, int(found[0]) - border), min(len(is_drawn), int(found[-1]) + border)

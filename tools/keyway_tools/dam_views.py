@@ -1,0 +1,101 @@
+"""The dam's body, the directions from which it is drawn, and what each of them shows."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+import pyvista as pv
+
+from .render_dam import View, solid_grid
+from .si_results import SiResults
+
+TILT = 12.0  # [deg] from above
+
+
+class Faces:
+    """The dam's body and the views of it."""
+
+    def __init__(self, results: SiResults):
+        self.results = results
+        self.cells = results.connectivity[results.dam]
+        self.nodes = np.unique(self.cells)
+        self.views = _views(results, self.nodes)
+
+    def grid(self, shift: np.ndarray | None = None) -> pv.UnstructuredGrid:
+        """The body, displaced by `shift` on all nodes."""
+        x = self.results.x if shift is None else self.results.x + shift
+        return solid_grid(x, self.cells)
+
+    def surface(self) -> pv.PolyData:
+        """The skin of the body at rest."""
+        return self.grid().extract_surface(algorithm="dataset_surface")
+
+    @property
+    def size(self) -> float:
+        """The largest side of the body [m]."""
+        return float(np.ptp(self.results.x[self.nodes], axis=0).max())
+
+    @cached_property
+    def normals(self) -> np.ndarray:
+        """Outward unit normals of the skin on all nodes; zero inside."""
+        skin = self.surface().compute_normals(
+            cell_normals=False, split_vertices=False, consistent_normals=False
+        )
+        normals = np.zeros_like(self.results.x)
+        normals[skin.point_data["vtkOriginalPointIds"]] = skin.point_data["Normals"]
+        return normals
+
+    def shown_on(self, title: str) -> np.ndarray:
+        """The nodes whose side of the skin a view shows."""
+        facing = self.normals[self.nodes] @ self.views[title].towards
+        return self.nodes[facing > 0.05]
+
+    def with_above(self) -> dict[str, View]:
+        """The views and one from above; a slice is only seen from its side."""
+        views = dict(self.views)
+        if len(views) > 1:
+            views["From above"] = View.from_direction(views["Downstream face"].towards, 89.9)
+        return views
+
+    def joint_lines(
+        self, shift: np.ndarray | None = None, values: np.ndarray | None = None
+    ) -> pv.PolyData | None:
+        """Lines where the joints meet the faces; given values of all nodes become 'value'."""
+        x = self.results.x if shift is None else self.results.x + shift
+        parts = []
+        for name in self.results.joint_names():
+            joint = self.results.joint_faces(name)
+            if joint is None or len(joint.facets) == 0:
+                continue
+            nodes, place = np.unique(joint.facets, return_inverse=True)
+            place = place.reshape(joint.facets.shape)
+            faces = np.hstack([np.full((len(place), 1), 4), place])
+            part = pv.PolyData(x[nodes].astype(float), faces.ravel())
+            if values is not None:
+                part["value"] = values[nodes]
+            parts.append(part.extract_feature_edges(feature_edges=False))
+        return pv.merge(parts) if parts else None
+
+
+def _views(results: SiResults, nodes: np.ndarray) -> dict[str, View]:
+    """Views from upstream and downstream if the deck has a reservoir, else one view."""
+    x = results.x[nodes]
+    upstream, downstream = results.face_flags("upstream"), results.face_flags("downstream")
+    if not upstream.any():
+        return {"": _single_view(x)}
+    other = results.x[downstream] if downstream.any() else x
+    towards = results.x[upstream].mean(axis=0) - other.mean(axis=0)
+    view = View.from_direction(towards, TILT)
+    if np.ptp(x @ view.right) < 0.5 * np.ptp(x @ view.towards):  # a slice: its side shows more
+        return {"": View.from_direction(view.right, 0.0)}
+    return {"Upstream face": view, "Downstream face": View.from_direction(-towards, TILT)}
+
+
+def _single_view(x: np.ndarray) -> View:
+    """A slice in true view, another body from a corner and above."""
+    size = np.ptp(x, axis=0)
+    thin = int(size[:2].argmin())
+    if size[thin] < 0.25 * min(size[1 - thin], size[2]):
+        return View.from_direction(-np.eye(3)[thin], 0.0)
+    return View.from_direction(np.array([0.55, -1.0, 0.0]), 18.0)

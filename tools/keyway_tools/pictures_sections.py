@@ -1,0 +1,74 @@
+"""Upright sections through the dam at its extreme stresses, in true view."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pyvista as pv
+
+from .colour_scale import FIELDS, Scales
+from .dam_views import Faces
+from .picture_style import Sheet
+from .pictures_faces import Drawing, Mark, compose, place_of
+from .render_dam import Paint, View, render
+from .results import Step
+
+
+def plot_section(faces: Faces, step: Step, name: str, scales: Scales, sheet: Sheet) -> list[Path]:
+    """A stress on the section from face to face through its extreme."""
+    if len(faces.views) < 2:
+        return []  # a slice is drawn in true view already
+    shown = FIELDS[name]
+    values = step.envelopes[name]
+    known = faces.nodes[np.isfinite(values[faces.nodes])]
+    if known.size == 0:
+        return []
+    place = int(known[(shown.sign * values[known]).argmax()])
+    body = faces.grid()
+    body.point_data["value"] = np.nan_to_num(shown.scale * values)
+    view = _view_of_section(faces, place)
+    cut = _cut(body, view, faces.results.x[place], 1e-4 * faces.size)
+    if cut is None:
+        return []
+    limits = scales.limits(name, values[faces.nodes])
+    paint = Paint(cut.point_data["value"], limits.ends, shown.colours, limits.bands)
+    picture = render(cut, view, paint)
+    number = shown.with_unit(shown.scale * values[place])
+    heading = f"{shown.label}: section from face to face\nextreme {number} at "
+    heading += f"{place_of(faces.results.x[place])}, step {step.name.title()}"
+    marks = {"": Mark(view.project(faces.results.x[place]), number)}
+    label = f"{shown.label.lower()} [{shown.unit}]"
+    return compose(Drawing({"": picture}, limits, shown.colours, label, heading, marks), sheet)
+
+
+def _cut(body: pv.UnstructuredGrid, view: View, x: np.ndarray, aside: float) -> pv.PolyData | None:
+    """The body's section at x; a little beside, as a plane on faces of elements cuts nothing.
+
+    Blocks between joints are separate parts. What is further away than the dam is high is another
+    place of a curved dam.
+    """
+    found = []
+    for side in (aside, -aside):
+        cut = body.slice(normal=view.towards, origin=x + side * view.towards)
+        if cut.n_cells:
+            near = np.abs((cut.cell_centers().points - x) @ view.right) < np.ptp(body.points[:, 2])
+            if not near.any():
+                continue
+            cut = cut.extract_cells(near).extract_surface(algorithm="dataset_surface")
+            found.append((float(np.linalg.norm(cut.points - x, axis=1).min()), cut))
+    return min(found, key=lambda pair: pair[0])[1] if found else None
+
+
+def _view_of_section(faces: Faces, place: int) -> View:
+    """True view of the upright plane across the dam at a node, upstream on the left."""
+    results = faces.results
+    downstream = faces.views["Downstream face"].towards
+    near = np.flatnonzero(results.face_flags("upstream"))
+    far = np.linalg.norm(results.x[near] - results.x[place], axis=1)
+    normals = faces.normals[near[np.argsort(far)[:9]]]
+    across = -normals.sum(axis=0)
+    across[2] = 0.0
+    if np.linalg.norm(across) < 1e-9:
+        across = np.array([downstream[0], downstream[1], 0.0])
+    return View.from_direction(np.cross(across, [0.0, 0.0, 1.0]), 0.0)
