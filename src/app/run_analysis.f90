@@ -19,6 +19,7 @@ module run_analysis
   use shared_costs, only: share_costs
   use result_files, only: result_folder
   use cli, only: command_line
+  use run_closing, only: closing_lines
   use user_routines, only: close_user_routines, end_user_routines
   implicit none
   private
@@ -38,6 +39,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(result_folder) :: results
     results%costs = costs
+    call results%clock%open(started_at)
     call share_costs(model, costs)
     call results%prepare(model, given%folder, remarks, error)
     if (.not. allocated(error)) call make_folder(given%folder, error)
@@ -83,9 +85,11 @@ contains
       call explain_failed_write(error, results%stem, .true.)
       call results%log%note(error%message)
       call results%finish(model, now, 'stopped', error%message, failure)
+      call results%log%note(closing_lines(model, results%summary, results%record, costs))
       call results%log%note(text_of_ledger(costs))
     else
       call results%finish(model, now, 'finished', '', failure)
+      call results%log%say(closing_lines(model, results%summary, results%record, costs))
       call results%log%say('finished in '//as_text(wall_clock() - started_at)//' s, '// &
                            as_text(peak_memory())//' MB')
       call results%log%say(text_of_ledger(costs))

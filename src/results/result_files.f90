@@ -11,6 +11,7 @@ module result_files
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
   use increment_listener, only: listener
+  use run_progress, only: progress_clock
   use run_records, only: run_record
   use run_summaries, only: run_summary
   use result_writer, only: is_due, starts_analysis
@@ -38,6 +39,7 @@ module result_files
     character(:), allocatable :: stem !< folder and name of the job
     logical, private :: is_open = .false.
     logical, private :: has_unwritten_envelopes = .false.
+    type(progress_clock) :: clock
     real(rk), private :: summarised_at = 0.0_rk !< wall clock [s]
     integer, private :: num_warnings_printed = 0
     integer, private :: num_checkpoints = 0
@@ -152,6 +154,7 @@ contains
     type(state), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
     if (now%step /= self%record%step) call self%start_step(model, now%step)
+    call self%clock%note(model, now)
     call self%costs%start('recover', 'envelopes', 'output')
     call self%record%note(model, now)
     self%has_unwritten_envelopes = size(self%record%active) > 0
@@ -162,7 +165,9 @@ contains
     if (now%is_last_of_step) call self%write_envelopes(model, error)
     if (allocated(error)) return
     call self%costs%start('write', 'log', 'output')
-    if (now%increment > 0 .or. starts_analysis(now)) call self%log%progress(line_of(now))
+    if (now%increment > 0 .or. starts_analysis(now)) then
+      call self%clock%show(model, now, self%record, self%log)
+    end if
     call self%print_warnings()
     call self%costs%stop()
     if (self%log%has_failed) call raise_unwritten(error, self%stem//'.log')
@@ -386,15 +391,4 @@ contains
     call self%costs%stop()
     self%summarised_at = wall_clock()
   end subroutine summarise
-
-  !> One line about an increment: step, increment, time, iterations, residual, energy error.
-  function line_of(now) result(line)
-    type(state), intent(in) :: now
-    character(:), allocatable :: line
-    character(120) :: room
-    write (room, '(a,i0,a,i0,a,i0,a,es8.1,a,es8.1)') 'step ', now%step, '  increment ', &
-      now%increment, '  time '//as_text(now%total_time)//'  iterations ', now%iterations, &
-      '  residual ', now%residual, '  energy error ', now%energy%error
-    line = trim(room)
-  end function line_of
 end module result_files

@@ -28,9 +28,11 @@ set(sources
   record/result_writer.f90
   record/run_records.f90
   result_files.f90
+  summary/run_closing.f90
   summary/damage_json.f90
   summary/joint_json.f90
   summary/material_summary.f90
+  summary/run_progress.f90
   summary/run_summaries.f90
   summary/summary_archive.f90
   summary/summary_json.f90

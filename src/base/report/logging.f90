@@ -1,6 +1,6 @@
 !> The log of a run: job.log, and lines on stderr.
 !>
-!> On a terminal, progress overwrites one line; through a pipe, progress is plain lines. Quiet:
+!> On a terminal, progress overwrites one line; through a pipe, it is a line now and then. Quiet:
 !> stderr holds errors only.
 module logging
   use, intrinsic :: iso_c_binding, only: c_int
@@ -39,6 +39,14 @@ module logging
       integer(c_int), intent(in), value :: descriptor
       integer(c_int) :: answer
     end function isatty
+
+    !> Letters in a line of a terminal.
+    function terminal_width(descriptor) result(width) bind(C, name='keyway_terminal_width')
+      import :: c_int
+      implicit none
+      integer(c_int), intent(in), value :: descriptor
+      integer(c_int) :: width
+    end function terminal_width
   end interface
 
 contains
@@ -83,22 +91,35 @@ contains
     if (.not. is_good) self%has_failed = .true.
   end subroutine note
 
-  !> Writes a line on an increment; on a terminal it replaces the previous one.
+  !> Writes a line on the progress to stderr alone. On a terminal it replaces the previous one, and
+  !> loses the last of its parts between commas where it is too long.
   subroutine progress(self, line)
     class(run_log), intent(inout) :: self
     character(*), intent(in) :: line
-    integer :: num_over
-    call self%note(line)
+    integer :: length
     if (self%is_quiet) return
     if (.not. self%is_terminal) then
       call show(self, line)
       return
     end if
-    num_over = max(self%width_in_place - len(line), 0)
-    write (error_unit, '(3a)', advance='no') return, line, repeat(' ', num_over)
+    length = fitting_length(line, int(terminal_width(standard_error)) - 1)
+    write (error_unit, '(3a)', advance='no') return, line(:length), &
+      repeat(' ', max(self%width_in_place - length, 0))
     flush (error_unit)
-    self%width_in_place = len(line)
+    self%width_in_place = length
   end subroutine progress
+
+  !> Letters of the parts that fit into a width.
+  pure integer function fitting_length(line, width) result(length)
+    character(*), intent(in) :: line
+    integer, intent(in) :: width
+    length = len(line)
+    do while (length > width)
+      length = index(line(:length), ',', back=.true.) - 1
+      if (length < 1) exit
+    end do
+    if (length < 1) length = min(len(line), width)
+  end function fitting_length
 
   !> Writes an error to the file and to stderr, quiet or not.
   subroutine complain(self, line)

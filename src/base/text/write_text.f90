@@ -3,7 +3,7 @@ module write_text
   use kinds, only: long, rk
   implicit none
   private
-  public :: as_text
+  public :: as_text, as_short_text
 
   integer, parameter :: num_decimals = 5 !< behind the first significant digit
   integer, parameter :: lowest_plain = -3, highest_plain = 5 !< decades written without exponent
@@ -54,6 +54,19 @@ contains
       text = without_zeros(trim(adjustl(room)))
     end if
   end function real_as_text
+
+  !> A real with 4 significant digits.
+  pure function as_short_text(number) result(text)
+    real(rk), intent(in) :: number
+    character(:), allocatable :: text
+    character(16) :: room
+    real(rk) :: rounded
+    integer :: status
+    write (room, '(es11.3e3)') number
+    read (room, *, iostat=status) rounded
+    if (status /= 0) rounded = number
+    text = as_text(rounded)
+  end function as_short_text
 
   !> A decimal number without trailing zeros and without a trailing point.
   pure function without_zeros(number) result(text)

@@ -41,6 +41,7 @@ contains
     call file%open_group('damage')
     call save_damage_record(record%damage, file)
     call file%close_group()
+    call save_extremes('displacement', record%displacement, file)
     call file%put('num_envelopes', size(record%envelopes))
     do i = 1, size(record%envelopes)
       call file%open_group('envelope_'//as_text(i))
@@ -77,6 +78,7 @@ contains
     call file%open_group('damage')
     call load_damage_record(record%damage, file)
     call file%close_group()
+    call load_extremes('displacement', record%displacement, file)
     num_envelopes = 0
     call file%get('num_envelopes', num_envelopes)
     if (allocated(record%envelopes)) deallocate (record%envelopes)

@@ -6,7 +6,7 @@ module run_records
   use analysis_state, only: state
   use dam_faces, only: dam_skin, find_dam_faces
   use envelopes, only: envelope, open_envelope, note_envelope, note_means
-  use extremes, only: note_values
+  use extremes, only: extremes_by_face, note_values
   use joint_readings, only: joint_record, open_joint_record, note_joint
   use damage_readings, only: damage_record, open_damage_record, note_damage
   use law_fields, only: mean_of_elements
@@ -38,6 +38,7 @@ module run_records
     type(dam_skin) :: skin
     type(joint_record), allocatable :: joints(:)
     type(damage_record) :: damage
+    type(extremes_by_face) :: displacement !< length of the vector, relative to the base [m]
     type(envelope), allocatable :: envelopes(:) !< of all steps so far
     integer, allocatable :: active(:) !< envelopes of the present step
     type(text_item), allocatable :: warnings(:)
@@ -120,6 +121,8 @@ contains
                           'RECOVERY=SIGN prevented equilibrium in an increment; the stiffness '// &
                           'recovery was fixed at its value from the start of the increment')
     end if
+    call note_values(self%displacement, norm2(now%u, dim=1), model%mesh%x, self%skin%is_upstream, &
+                     self%skin%is_downstream, now%total_time, wants_smallest=.false.)
     do j = 1, size(model%joints)
       call note_joint(self%joints(j), model%joints(j), now%joints(j), now%total_time)
     end do

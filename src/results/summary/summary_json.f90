@@ -51,6 +51,7 @@ contains
     call put_interfaces(json, model)
     call put_remarks(json, summary, record)
     call put_steps(json, model, summary)
+    call put_extremes(json, 'displacement', record%displacement)
     call put_envelopes(json, record)
     call put_joints(json, model, record)
     call put_damage(json, record%damage)

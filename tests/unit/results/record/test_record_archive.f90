@@ -65,6 +65,7 @@ contains
         joint%largest_now = 10.0_rk*i + [5.0_rk, 6.0_rk, 7.0_rk]
       end associate
     end do
+    call fill_extremes(80.0_rk, record%displacement)
     associate (damage => record%damage)
       call fill_damage(50.1_rk, damage%tension)
       call fill_damage(60.1_rk, damage%compression)
@@ -121,6 +122,7 @@ contains
     call compare(log, 'most_taken', a%most_taken, b%most_taken)
     call compare(log, 'last_strain', a%last_strain, b%last_strain)
     call compare(log, 'last_fracture', a%last_fracture, b%last_fracture)
+    call compare_extremes(log, 'displacement', a%displacement, b%displacement)
     do i = 1, size(a%joints)
       call compare_extremes(log, 'opening', a%joints(i)%opening, b%joints(i)%opening)
       call compare_extremes(log, 'slip', a%joints(i)%slip, b%joints(i)%slip)

@@ -1,0 +1,222 @@
+!> The end of a run in some lines for people: largest values with place and time, joints, damage,
+!> accuracy, warnings, and what each effect has cost. The numbers are those of job.json.
+module run_closing
+  use damage_readings, only: damage_extreme, levels
+  use diagnostics, only: severity_ignored
+  use extremes, only: extreme
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use run_ledger, only: ledger, ledger_part
+  use run_records, only: run_record
+  use run_summaries, only: run_summary
+  use write_text, only: as_text, as_short_text
+  implicit none
+  private
+  public :: closing_lines
+
+  integer, parameter :: most_joints = 6, most_effects = 6, most_modes = 6 !< that are listed
+  character, parameter :: nl = new_line('a')
+
+contains
+
+  !> The lines, with new_line between them.
+  function closing_lines(model, summary, record, costs) result(text)
+    type(problem), intent(in) :: model
+    type(run_summary), intent(in) :: summary
+    type(run_record), intent(in) :: record
+    type(ledger), intent(in) :: costs
+    character(:), allocatable :: text
+    text = 'results in the units of the deck:'
+    if (record%displacement%at(1)%is_found) then
+      text = text//nl//'largest displacement '//described(record%displacement%at(1), model, summary)
+    end if
+    text = text//lines_of_modes(model, summary)//lines_of_envelopes(model, summary, record)// &
+           lines_of_joints(model, summary, record)//lines_of_damage(model, summary, record)// &
+           lines_of_accuracy(model, summary)//line_of_remarks(summary, record)//line_of_costs(costs)
+  end function closing_lines
+
+  !> Frequencies of each step that finds them.
+  function lines_of_modes(model, summary) result(text)
+    type(problem), intent(in) :: model
+    type(run_summary), intent(in) :: summary
+    character(:), allocatable :: text
+    integer :: i, k
+    text = ''
+    do i = 1, size(summary%steps)
+      associate (modes => summary%steps(i)%modes)
+        if (size(modes) == 0) cycle
+        text = text//nl//'frequencies of step '//model%steps(summary%steps(i)%step)%name//' [Hz]:'
+        do k = 1, min(size(modes), most_modes)
+          text = text//' '//as_short_text(modes(k)%hz)
+        end do
+        if (size(modes) > most_modes) text = text//' .. ('//as_text(size(modes))//' modes)'
+      end associate
+    end do
+  end function lines_of_modes
+
+  !> The extremes of *ENVELOPE, but those of displacements and joints, which have their own lines.
+  function lines_of_envelopes(model, summary, record) result(text)
+    type(problem), intent(in) :: model
+    type(run_summary), intent(in) :: summary
+    type(run_record), intent(in) :: record
+    character(:), allocatable :: text
+    integer :: i
+    text = ''
+    do i = 1, size(record%envelopes)
+      associate (item => record%envelopes(i))
+        if (item%name == 'OPENING' .or. item%name == 'U') cycle
+        if (.not. item%largest%at(1)%is_found) cycle
+        text = text//nl//trim(merge('smallest', 'largest ', item%wants_smallest))//' '// &
+               trim(item%name)//' '//described(item%largest%at(1), model, summary)
+      end associate
+    end do
+  end function lines_of_envelopes
+
+  !> Opening and slip of the joints that open most.
+  function lines_of_joints(model, summary, record) result(text)
+    type(problem), intent(in) :: model
+    type(run_summary), intent(in) :: summary
+    type(run_record), intent(in) :: record
+    character(:), allocatable :: text
+    logical :: is_left(size(record%joints))
+    integer :: i, j
+    text = ''
+    is_left = .true.
+    do i = 1, min(size(record%joints), most_joints)
+      j = maxloc(record%joints%opening%at(1)%value, dim=1, mask=is_left)
+      is_left(j) = .false.
+      text = text//nl//model%joints(j)%name//': '
+      associate (opening => record%joints(j)%opening%at(1), slip => record%joints(j)%slip%at(1))
+        if (opening%is_found .and. opening%value > 0.0_rk) then
+          text = text//'largest opening '//described(opening, model, summary)
+        else
+          text = text//'never open'
+        end if
+        if (slip%is_found) text = text//', largest slip '//as_short_text(slip%value)
+      end associate
+    end do
+    if (any(is_left)) text = text//nl//'the other '//as_text(count(is_left))//' joints open less'
+  end function lines_of_joints
+
+  !> Largest damage, damaged volume and dissipated energy.
+  function lines_of_damage(model, summary, record) result(text)
+    type(problem), intent(in) :: model
+    type(run_summary), intent(in) :: summary
+    type(run_record), intent(in) :: record
+    character(:), allocatable :: text
+    text = ''
+    if (.not. record%damage%is_present) return
+    text = line_of('tension', record%damage%tension)//line_of('compression', &
+                                                              record%damage%compression)
+    text = text//nl//'volume with damage in tension of '//as_text(levels(2))//' or more '// &
+           as_short_text(record%damage%volume(2))//'; dissipated by cracking '// &
+           as_short_text(record%damage%cracking)//', by crushing '// &
+           as_short_text(record%damage%crushing)
+  contains
+    !> One kind of damage.
+    function line_of(kind, largest) result(line)
+      character(*), intent(in) :: kind
+      type(damage_extreme), intent(in) :: largest
+      character(:), allocatable :: line
+      line = nl//'no damage in '//kind
+      if (.not. largest%at%is_found) return
+      line = nl//'largest damage in '//kind//' '//described(largest%at, model, summary)// &
+             ', element '//as_text(largest%element)
+    end function line_of
+  end function lines_of_damage
+
+  !> Iteration, energy balance, and the estimates of reduced models.
+  function lines_of_accuracy(model, summary) result(text)
+    type(problem), intent(in) :: model
+    type(run_summary), intent(in) :: summary
+    character(:), allocatable :: text
+    integer :: i
+    associate (steps => summary%steps)
+      text = nl//'error of the energy balance '// &
+             as_short_text(maxval([0.0_rk, steps%largest_error]))//', residual '// &
+             as_short_text(maxval([0.0_rk, steps%largest_residual]))//', at most '// &
+             as_text(maxval([0, steps%most_iterations]))//' iterations in an increment, '// &
+             as_text(sum([0, steps%cutbacks]))//' cut-backs'
+      do i = 1, size(steps)
+        if (steps(i)%reduction%num_modes == 0) cycle
+        text = text//nl//'reduced model of step '//model%steps(steps(i)%step)%name//': '// &
+               as_text(steps(i)%reduction%num_modes)//' modes, estimated error of openings '// &
+               as_short_text(100.0_rk*steps(i)%reduction%estimate)//' % of the largest'
+      end do
+    end associate
+  end function lines_of_accuracy
+
+  !> Numbers of warnings and ignored cards.
+  function line_of_remarks(summary, record) result(text)
+    type(run_summary), intent(in) :: summary
+    type(run_record), intent(in) :: record
+    character(:), allocatable :: text
+    integer :: num_warnings, num_ignored
+    num_ignored = 0
+    if (summary%remarks%num_warnings > 0) then
+      num_ignored = count(summary%remarks%warnings(:summary%remarks%num_warnings)%severity == &
+                          severity_ignored)
+    end if
+    num_warnings = summary%remarks%num_warnings - num_ignored + size(record%warnings)
+    text = nl//'warnings: '//as_text(num_warnings)//', ignored cards: '//as_text(num_ignored)
+    if (num_warnings + num_ignored == 0) text = nl//'no warnings'
+  end function line_of_remarks
+
+  !> The effects that have taken most of the time, with their shares.
+  function line_of_costs(costs) result(text)
+    type(ledger), intent(in) :: costs
+    character(:), allocatable :: text
+    type(ledger_part), allocatable :: parts(:)
+    real(rk), allocatable :: time(:)
+    real(rk) :: wall_time
+    integer :: i, first, largest
+    call costs%read_parts(parts, wall_time)
+    allocate (time(size(parts)), source=0.0_rk)
+    do i = 1, size(parts)
+      do first = 1, i
+        if (parts(first)%effect == parts(i)%effect) exit
+      end do
+      time(first) = time(first) + parts(i)%wall_time
+    end do
+    text = nl//'time:'
+    do i = 1, min(size(parts), most_effects)
+      largest = maxloc(time, dim=1)
+      if (time(largest) < 0.005_rk*wall_time) exit
+      if (i > 1) text = text//','
+      text = text//' '//parts(largest)%effect//' '// &
+             as_text(nint(100.0_rk*time(largest)/wall_time))//' %'
+      time(largest) = -1.0_rk
+    end do
+  end function line_of_costs
+
+  !> Value, place and time of an extreme.
+  function described(found, model, summary) result(text)
+    type(extreme), intent(in) :: found
+    type(problem), intent(in) :: model
+    type(run_summary), intent(in) :: summary
+    character(:), allocatable :: text
+    text = as_short_text(found%value)//' at ('//as_short_text(found%x(1))//', '// &
+           as_short_text(found%x(2))//', '//as_short_text(found%x(3))//'), time '// &
+           moment(found%time, model, summary)
+  end function described
+
+  !> A total time, and the time of its step where the run has several.
+  function moment(time, model, summary) result(text)
+    real(rk), intent(in) :: time !< total [s]
+    type(problem), intent(in) :: model
+    type(run_summary), intent(in) :: summary
+    character(:), allocatable :: text
+    real(rk) :: start
+    integer :: i
+    text = as_short_text(time)
+    start = 0.0_rk
+    do i = 1, size(summary%steps)
+      if (i > 1 .and. time > start .and. time <= start + 1.000001_rk*summary%steps(i)%time) then
+        text = text//' ('//model%steps(summary%steps(i)%step)%name//' '// &
+               as_short_text(time - start)//')'
+        return
+      end if
+      start = start + summary%steps(i)%time
+    end do
+  end function moment
+end module run_closing

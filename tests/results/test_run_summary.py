@@ -1,0 +1,111 @@
+"""What a run says while it goes on and at its end: progress, and the closing lines."""
+
+import json
+import os
+import pty
+import re
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+INPUT = Path(__file__).resolve().parents[2] / "input"
+
+
+@pytest.fixture(scope="module")
+def sliding(tmp_path_factory, program_path):
+    """A block that slides on its joint for some thousand increments; stderr of its run."""
+    folder = tmp_path_factory.mktemp("sliding")
+    deck = INPUT / "sliding_block.inp"
+    command = [program_path, "-j", "1", "-o", folder, deck]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=300)
+    return folder, done.stderr.splitlines()
+
+
+def results_of(folder):
+    return json.loads((folder / "sliding_block.json").read_text(encoding="utf-8"))
+
+
+def test_through_a_pipe_a_line_comes_every_few_per_cent(sliding):
+    folder, lines = sliding
+    steps = results_of(folder)["steps"]
+    log = (folder / "sliding_block.log").read_text(encoding="utf-8").splitlines()
+    assert sum(" increment " in line and "residual" in line for line in log) >= sum(
+        step["increments"] for step in steps
+    )
+    progress = [line for line in lines if "elapsed" in line]
+    assert len(progress) <= 21 + len(steps)
+    shares = [int(re.search(r"  (\d+) %", line)[1]) for line in progress]
+    assert shares[-1] == 100
+    assert max(np.diff([share for share in shares if share < 100])) <= 6
+    assert re.search(r", 0:\d\d remaining, largest opening ", progress[-1])
+
+
+def test_closing_lines_repeat_job_json(sliding):
+    folder, lines = sliding
+    results = results_of(folder)
+    found = results["displacement"]["anywhere"]
+    (line,) = (x for x in lines if x.startswith("largest displacement"))
+    value, place, time = re.match(
+        r"largest displacement (\S+) at \((.*)\), time (\S+)", line
+    ).groups()
+    # Four significant digits are printed.
+    assert float(value) == pytest.approx(found["value"], rel=6e-4)
+    assert [float(x) for x in place.split(",")] == pytest.approx(found["x"], rel=6e-4)
+    assert float(time) == pytest.approx(found["time"], rel=6e-4)
+    for name, joint in results["joints"].items():
+        (line,) = (x for x in lines if x.startswith(f"{name}: "))
+        slip = float(line.split("largest slip ")[1])
+        assert slip == pytest.approx(joint["slip"]["anywhere"]["value"], rel=6e-4)
+    (line,) = (x for x in lines if x.startswith("error of the energy balance"))
+    assert f"at most {results['accuracy']['most_iterations']} iterations" in line
+
+
+def test_times_of_later_steps_are_given_from_their_start_too(sliding):
+    folder, lines = sliding
+    first, second = results_of(folder)["steps"][:2]
+    time = results_of(folder)["displacement"]["anywhere"]["time"]
+    (line,) = (x for x in lines if x.startswith("largest displacement"))
+    name, own = re.search(r"\((\w+) (\S+)\)$", line).groups()
+    assert name == second["name"]
+    assert float(own) == pytest.approx(time - first["time"], rel=6e-4)
+
+
+def test_largest_displacement_is_that_of_the_envelope(sliding):
+    results = results_of(sliding[0])
+    assert results["displacement"] == results["envelopes"]["U"]
+
+
+def test_a_run_that_stops_has_the_closing_lines_in_its_log(keyway):
+    deck = (INPUT / "sliding_block.inp").read_text(encoding="utf-8")
+    motion = (INPUT / "sliding_block_base.txt").read_text(encoding="utf-8")
+    deck = deck.replace("INC=10000", "INC=50")
+    run = keyway(deck, files={"sliding_block_base.txt": motion}, name="short", code=1)
+    log = (run.folder / "short.log").read_text(encoding="utf-8")
+    assert "has not ended after 50 increments" in log
+    assert log.index("has not ended") < log.index("largest displacement")
+
+
+def test_progress_on_a_terminal_is_one_line_that_fits(program_path, tmp_path):
+    """The line is written over; it has whole parts and no more letters than the terminal."""
+    ours, theirs = pty.openpty()
+    command = [program_path, "-j", "1", "-o", tmp_path, INPUT / "sliding_block.inp"]
+    with subprocess.Popen(command, stdout=theirs, stderr=theirs, close_fds=True) as process:
+        os.close(theirs)
+        text = read_all(ours)
+        assert process.wait(timeout=300) == 0
+    lines = [line for line in text.replace("\n", "\r").split("\r") if "elapsed" in line]
+    assert len(lines) > 100
+    assert max(map(len, lines)) < 80
+    assert text.count("\n") < 60
+
+
+def read_all(descriptor: int) -> str:
+    parts = []
+    try:
+        while part := os.read(descriptor, 65536):
+            parts.append(part)
+    except OSError:  # the other end is closed
+        pass
+    return b"".join(parts).decode()

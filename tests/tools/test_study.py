@@ -1,0 +1,201 @@
+"""tools/accuracy: decks read and written again, refined meshes, errors, the ladder and effects."""
+
+import json
+import re
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from keyway_tools.results import Results
+from keyway_tools.study.deck_cards import Deck, read_deck
+from keyway_tools.study.effects import list_effects
+from keyway_tools.study.errors import observed_order, time_errors
+from keyway_tools.study.ladder import Outcome
+from keyway_tools.study.measured import measure
+from keyway_tools.study.mesh_sets import read_sets
+from keyway_tools.study.refined_mesh import RefinementError, refine
+from keyway_tools.study.rungs import Rung, as_it_is, base_deck, list_rungs, scaled
+
+ROOT = Path(__file__).resolve().parents[2]
+INPUT = ROOT / "input"
+
+
+def run_deck(program: Path, deck: Deck, folder: Path, name: str) -> Results:
+    path = folder / f"{name}.inp"
+    path.write_text(deck.text(), encoding="utf-8")
+    command = [program, "-q", "-j", "1", "-o", folder / name, path]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    return Results(folder / name, name)
+
+
+def test_reader_takes_continuations_quotes_and_includes(tmp_path):
+    (tmp_path / "in").mkdir()
+    (tmp_path / "in/mesh.inp").write_text("*node, nset = All\n1, 0., 0.\n** remark\n 2,1.,0.,0.\n")
+    text = '*Include, input="in/mesh.inp"\n*RESERVOIR, NAME=LAKE,\n  LEVEL=5., ADDED MASS=NONE\n'
+    (tmp_path / "a.inp").write_text(text + "*amplitude, name=A, input=x.txt\n*STATIC\n1., 1.\n")
+    deck = read_deck(tmp_path / "a.inp")
+    node, reservoir, amplitude, static = deck.cards
+    assert (node.keyword, node.value("NSET"), node.lines) == (
+        "NODE", "ALL", ["1, 0., 0.", "2,1.,0.,0."],
+    )  # fmt: skip
+    assert reservoir.parameters == {"NAME": "LAKE", "LEVEL": "5.", "ADDED MASS": "NONE"}
+    assert amplitude.parameters["INPUT"] == f'"{tmp_path / "x.txt"}"'
+    assert static.numbers(0) == [1.0, 1.0]
+    (tmp_path / "b.inp").write_text(deck.text())
+    assert read_deck(tmp_path / "b.inp") == deck
+
+
+@pytest.mark.parametrize("name", ["block_on_joint", "sliding_block", "xingbiling_different"])
+def test_decks_that_are_written_again_are_the_same(program_path, tmp_path, name):
+    """--check prints the same model for a deck and for its flat copy, but for places of files."""
+    found = next(INPUT.glob(f"**/{name}.inp"))
+    (tmp_path / f"{name}.inp").write_text(read_deck(found).text(), encoding="utf-8")
+    texts = [
+        subprocess.run([program_path, "--check", path], capture_output=True, text=True).stdout
+        for path in (found, tmp_path / f"{name}.inp")
+    ]
+    plain = [re.sub(r"INPUT=\S*/", "INPUT=", " ".join(text.split())) for text in texts]
+    assert plain[0]
+    assert plain[0] == plain[1]
+
+
+def test_refined_cantilever_tends_to_the_beam(program_path, tmp_path):
+    """Timoshenko's deflection is 0.134293 m (header of the deck); forces keep their sum."""
+    deck = base_deck(read_deck(INPUT / "cantilever.inp"))
+    errors = []
+    for name in ("coarse", "fine"):
+        found = measure(run_deck(program_path, deck, tmp_path, name))
+        errors.append(abs(found.values["displacement"] - 0.134293))
+        deck = refine(deck)
+    # The end of the clamped beam leaves 0.1 % at any mesh: half of the error of the coarse mesh.
+    assert errors[1] < 0.6 * errors[0]
+
+
+def test_refined_column_keeps_its_closed_form(program_path, tmp_path):
+    """Weight, supports and sets follow: the top sinks by rho g h^2 / (2 E) on both meshes."""
+    deck = base_deck(read_deck(INPUT / "gravity_column.inp"))
+    coarse = measure(run_deck(program_path, deck, tmp_path, "coarse"))
+    fine = measure(run_deck(program_path, refine(deck), tmp_path, "fine"))
+    assert fine.unknowns > 5 * coarse.unknowns
+    # Linear and quadratic sink alike at the nodes of the coarse mesh; the tolerance is round-off.
+    exact = coarse.values["displacement"]
+    assert fine.values["displacement"] == pytest.approx(exact, rel=1e-9)
+
+
+def test_refined_joints_and_surfaces_are_accepted(program_path, tmp_path):
+    for name in ("xingbiling_matching", "xingbiling_different"):
+        deck = refine(read_deck(next(INPUT.glob(f"**/{name}.inp"))))
+        (tmp_path / f"{name}.inp").write_text(deck.text(), encoding="utf-8")
+        done = subprocess.run([program_path, "--check", tmp_path / f"{name}.inp"],
+                              capture_output=True, text=True)  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        assert "warning" not in done.stderr
+
+
+def test_refined_block_slides_as_the_coarse_one(program_path, tmp_path):
+    """The block is rigid: its slip does not depend on the mesh of block and joint."""
+    deck = base_deck(read_deck(INPUT / "sliding_block.inp"))
+    slips = []
+    for name, variant in (("coarse", deck), ("fine", refine(deck))):
+        joints = run_deck(program_path, variant, tmp_path, name).summary["joints"]
+        slips.append(joints["BED"]["slip"]["anywhere"]["value"])
+    # E = 1e7 Pa leaves an elastic part of 1e-4 of the slip.
+    assert slips[1] == pytest.approx(slips[0], rel=2e-3)
+
+
+def test_supports_inside_are_not_invented():
+    """A new node is held only on the surface between held nodes, or on a joint."""
+    deck = read_deck(INPUT / "block_on_joint.inp")
+    old, new = read_sets(deck), read_sets(refine(deck))
+    base = {new.nodes[n] for n in new.node_sets["BASE_AND_NEW"]}
+    assert {old.nodes[n] for n in old.node_sets["BASE"]} < base
+    assert {x[2] for x in base} == {0.0}
+
+
+def test_elements_that_cannot_be_split_are_named(tmp_path):
+    (tmp_path / "a.inp").write_text("*NODE\n1,0.,0.,0.\n*ELEMENT, TYPE=SPRING1\n1, 1\n")
+    with pytest.raises(RefinementError, match="elements of type SPRING1"):
+        refine(read_deck(tmp_path / "a.inp"))
+
+
+def test_order_in_time_is_recognised():
+    values = np.array([1.0 + 0.3 * h**2 for h in (1.0, 0.5, 0.25)])
+    assert observed_order(values) == pytest.approx(2.0)
+    assert observed_order(np.array([1.0, 1.1, 1.05])) is None
+    sizes = (2.0, 1.0, 0.5, 0.25)
+    found = [
+        (Outcome(Rung("increment", str(h), 1.0, h, as_it_is), None), 1.0 + 0.3 * h**2)
+        for h in sizes
+    ]
+    limit, errors = time_errors(found)
+    assert limit == pytest.approx(1.0)
+    assert [errors[str(h)] for h in sizes] == pytest.approx([0.3 * h**2 for h in sizes])
+
+
+@pytest.fixture(scope="module")
+def slide(tmp_path_factory) -> Path:
+    """A short deck with a joint in motion."""
+    folder = tmp_path_factory.mktemp("slide")
+    text = (INPUT / "sliding_block.inp").read_text().replace("0.005, 6.", "0.01, 1.5")
+    (folder / "slide.inp").write_text(text)
+    motion = "sliding_block_base.txt"
+    (folder / motion).write_text((INPUT / motion).read_text())
+    return folder / "slide.inp"
+
+
+def call_tool(program: Path, deck: Path, *options: str) -> str:
+    command = [ROOT / "tools/accuracy", deck, "--program", program, "--threads", "1", *options]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=deck.parent, timeout=300)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_promised_accuracy_holds_against_a_finer_run(program_path, slide):
+    """The error of the ladder is not below that of a run that the tool does not use, and not ten
+    times above."""
+    program = program_path.resolve()
+    text = call_tool(program, slide, "--budget", "4m")
+    assert "largest displacement: your deck has an error of about" in text
+    page = (slide.parent / "slide_accuracy/accuracy.html").read_text()
+    assert "data:image/png" in page
+    assert "http" not in page
+    rows = (slide.parent / "slide_accuracy/accuracy.csv").read_text().splitlines()
+    head, base = rows[0].split(","), rows[1].split(",")
+    promised = float(base[head.index("error_displacement")])
+    finest = scaled(1.0 / 16.0)(refine(base_deck(read_deck(slide))))
+    found = measure(run_deck(program, finest, slide.parent, "finest")).values["displacement"]
+    true = abs(float(base[head.index("displacement")]) / found - 1.0)
+    assert true <= promised <= 10.0 * true
+    again = call_tool(program, slide, "--budget", "4m")
+    assert again.count("kept from an earlier call") == len(rows) - 1
+
+
+def test_a_small_budget_leaves_rungs_out_by_name(program_path, slide):
+    text = call_tool(program_path.resolve(), slide, "--budget", "0s", "-o", "nothing")
+    assert "increment x 2: would take about" in text
+    assert "the error of the mesh is not known" in text
+
+
+def test_effects_are_switched_off_in_turn(program_path, slide):
+    text = call_tool(program_path.resolve(), slide, "--effects")
+    names = [rung.name for rung in list_effects(base_deck(read_deck(slide)))]
+    assert names == [
+        "all effects", "without the motion along x", "without opening and sliding of the joints",
+        "without friction in the joints", "without weight",
+    ]  # fmt: skip
+    for name in names[1:]:
+        assert f"{name[0].upper()}{name[1:]} the displacement is" in text
+    assert "smaller" in text
+    assert json.loads(
+        (slide.parent / "slide_accuracy/runs/all_effects/results/study.json").read_text()
+    )
+
+
+def test_rungs_fit_the_deck():
+    """A static elastic deck has no increments, no tolerances, no joints to vary."""
+    axes = {rung.axis for rung in list_rungs(base_deck(read_deck(INPUT / "cantilever.inp")))}
+    assert axes == {"base", "mesh", "element"}
+    dam = base_deck(read_deck(INPUT / "xingbiling_matching/xingbiling_matching.inp"))
+    assert len(list_rungs(dam)) == 16

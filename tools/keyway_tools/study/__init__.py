@@ -1,0 +1,1 @@
+"""Studies of one deck: what accuracy costs, and what each effect changes."""

@@ -1,0 +1,152 @@
+"""A deck as a list of cards that can be changed and written again.
+
+The reader knows the grammar of decks (keyword lines, parameters, data lines, *INCLUDE), no meaning
+of keywords. Keyway itself checks the deck.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from copy import deepcopy
+from dataclasses import dataclass, field
+from pathlib import Path
+
+# Cards with files beside the deck: the file is named by this parameter.
+FILE_PARAMETER = "INPUT"
+LONGEST_LINE = 100
+
+
+@dataclass
+class Card:
+    """A keyword with its parameters and data lines."""
+
+    keyword: str  # in capitals, as "BASE MOTION"
+    parameters: dict[str, str | None] = field(default_factory=dict)  # names in capitals
+    lines: list[str] = field(default_factory=list)
+
+    def value(self, name: str) -> str:
+        """Value of a parameter in capitals; '' where there is none."""
+        return (self.parameters.get(name) or "").strip('"').upper()
+
+    def numbers(self, line: int) -> list[float]:
+        """Numbers of a data line; words and empty fields are left out."""
+        found = []
+        for item in self.lines[line].split(","):
+            try:
+                found.append(float(item.strip().lower().replace("d", "e")))
+            except ValueError:
+                continue
+        return found
+
+    def text(self) -> str:
+        """The card as lines of a deck."""
+        parts = [f"*{self.keyword}"]
+        parts += [name if value is None else f"{name}={value}" for name, value in
+                  self.parameters.items()]  # fmt: skip
+        rows, row = [], parts[0]
+        for part in parts[1:]:
+            if len(row) + len(part) + 3 > LONGEST_LINE:
+                rows.append(row + ",")
+                row = "   " + part
+            else:
+                row += f", {part}"
+        return "\n".join([*rows, row, *self.lines]) + "\n"
+
+
+@dataclass
+class Deck:
+    """The cards of a deck in their order."""
+
+    cards: list[Card]
+
+    def copy(self) -> Deck:
+        return deepcopy(self)
+
+    def of(self, *keywords: str) -> Iterator[Card]:
+        """All cards with one of these keywords."""
+        return (card for card in self.cards if card.keyword in keywords)
+
+    def has(self, keyword: str) -> bool:
+        return any(True for _ in self.of(keyword))
+
+    def without(self, unwanted: Iterable[Card]) -> None:
+        """Removes cards."""
+        gone = {id(card) for card in unwanted}
+        self.cards = [card for card in self.cards if id(card) not in gone]
+
+    def steps(self) -> list[list[Card]]:
+        """The cards of each step, from *STEP to the card before *END STEP."""
+        found: list[list[Card]] = []
+        is_inside = False
+        for card in self.cards:
+            if card.keyword == "STEP":
+                found.append([])
+                is_inside = True
+            if card.keyword == "END STEP":
+                is_inside = False
+            if is_inside:
+                found[-1].append(card)
+        return found
+
+    def insert_before_end(self, step: list[Card], card: Card) -> None:
+        """Adds a card at the end of a step."""
+        place = next(i for i, other in enumerate(self.cards) if other is step[-1])
+        self.cards.insert(place + 1, card)
+        step.append(card)
+
+    def text(self) -> str:
+        return "".join(card.text() for card in self.cards)
+
+
+def read_deck(path: Path) -> Deck:
+    """A deck with all its *INCLUDE files. Other files keep their place on the disk.
+
+    Raises OSError for a file that cannot be read.
+    """
+    return Deck(list(_read_cards(path.resolve())))
+
+
+def _read_cards(path: Path) -> Iterator[Card]:
+    for card in _cards_of_text(path.read_text(encoding="utf-8", errors="replace")):
+        name = card.parameters.get(FILE_PARAMETER)
+        if name is None:
+            yield card
+            continue
+        place = (path.parent / name.strip('"')).resolve()
+        if card.keyword == "INCLUDE":
+            yield from _read_cards(place)
+        else:
+            card.parameters[FILE_PARAMETER] = f'"{place}"'
+            yield card
+
+
+def _cards_of_text(text: str) -> Iterator[Card]:
+    card = None
+    is_open = False  # the keyword line goes on in the next line
+    for raw in text.splitlines():
+        line = raw.strip()
+        if not line or line.startswith("**"):
+            continue
+        if is_open and card:
+            is_open = _add_parameters(card, line)
+        elif line.startswith("*"):
+            if card:
+                yield card
+            head, _, rest = line[1:].partition(",")
+            card = Card(" ".join(head.upper().split()))
+            is_open = bool(rest or line.endswith(",")) and _add_parameters(card, rest)
+        elif card:
+            card.lines.append(line)
+    if card:
+        yield card
+
+
+def _add_parameters(card: Card, text: str) -> bool:
+    """Adds the parameters of a line; whether the next line goes on with them."""
+    for item in re.findall(r'(?:"[^"]*"|[^,])+', text):
+        name, equals, value = item.partition("=")
+        name = " ".join(name.upper().split())
+        if name:
+            card.parameters[name] = value.strip() if equals else None
+    return text.rstrip().endswith(",") or not text.strip()

@@ -1,0 +1,91 @@
+"""What a study compares: a few numbers of a run, each with its name in sentences."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+
+import numpy as np
+
+from keyway_tools.results import Results
+
+# Share of the dam's volume in which the stress is larger than the number that is compared: a
+# singular corner takes less.
+SHARE = 0.01
+QUANTITIES = ("displacement", "stress", "opening", "damage", "frequency")
+
+
+@dataclass
+class Measured:
+    """Numbers of one run."""
+
+    seconds: float  # of the run
+    memory: float  # [MB]
+    unknowns: int
+    increments: int
+    cutbacks: int
+    values: dict[str, float] = field(default_factory=dict)  # of QUANTITIES
+    peak: float = 0.0  # largest S1 anywhere
+    peak_place: list[float] = field(default_factory=list)
+
+    def as_dict(self) -> dict:
+        return asdict(self)
+
+
+def measure(results: Results) -> Measured:
+    """Reads the numbers of a finished run."""
+    summary = results.summary
+    steps = summary["steps"]
+    found = Measured(
+        summary["ledger"]["wall_s"],
+        summary["ledger"]["peak_memory_mb"],
+        summary["model"]["unknowns"],
+        sum(step["increments"] for step in steps),
+        sum(step["cutbacks"] for step in steps),
+    )
+    values = found.values
+    moved = (summary.get("displacement") or {}).get("anywhere")
+    if moved:
+        values["displacement"] = moved["value"]
+    peak = (summary["envelopes"].get("S1") or {}).get("anywhere")
+    if peak:
+        found.peak, found.peak_place = peak["value"], peak["x"]
+        values["stress"] = exceeded_stress(results)
+    openings = [
+        joint["opening"]["anywhere"]["value"] for joint in summary["joints"].values()
+        if "anywhere" in joint["opening"]
+    ]  # fmt: skip
+    if openings and max(openings) > 0.0:
+        values["opening"] = max(openings)
+    if "damage" in summary and summary["damage"]["dissipated"]["cracking"] > 0.0:
+        values["damage"] = summary["damage"]["dissipated"]["cracking"]
+    modes = [mode for step in steps for mode in step["frequencies"]]
+    if modes:
+        values["frequency"] = modes[0]["hz"]
+    return found
+
+
+def exceeded_stress(results: Results) -> float:
+    """The S1 that the extremes exceed in SHARE of the volume of the dam."""
+    stress = np.full(len(results.x), -np.inf)
+    for step in results.steps():
+        if "S1" in step.envelopes:
+            stress = np.fmax(stress, step.envelopes["S1"])
+    weights = node_volumes(results)
+    weights[~np.isfinite(stress)] = 0.0
+    order = np.argsort(-stress)
+    passed = np.cumsum(weights[order])
+    return float(stress[order[np.searchsorted(passed, SHARE * passed[-1])]])
+
+
+def node_volumes(results: Results) -> np.ndarray:
+    """An eighth of the volume of each brick of the dam at each of its nodes, (nodes)."""
+    corners = results.connectivity[results.dam]
+    x = results.x[corners]
+    # Determinants at the centre: exact for bricks with parallel faces, good enough for weights.
+    signs = np.array(
+        [[-1, 1, 1, -1, -1, 1, 1, -1], [-1, -1, 1, 1, -1, -1, 1, 1], [-1, -1, -1, -1, 1, 1, 1, 1]]
+    )
+    volumes = np.abs(np.linalg.det(np.einsum("ia,eaj->eij", signs, x) / 8.0)) * 8.0
+    total = np.zeros(len(results.x))
+    np.add.at(total, corners.ravel(), np.repeat(volumes / 8.0, 8))
+    return total

@@ -1,0 +1,79 @@
+"""Nodes, sets of nodes and sets of elements of a deck."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from .deck_cards import Card, Deck
+
+
+@dataclass
+class MeshSets:
+    """Coordinates by number; sets by name in capitals."""
+
+    nodes: dict[int, tuple[float, float, float]] = field(default_factory=dict)
+    node_sets: dict[str, set[int]] = field(default_factory=dict)
+    element_sets: dict[str, set[int]] = field(default_factory=dict)
+
+    def elements_of(self, label: str) -> set[int]:
+        """Elements of a number or the name of a set."""
+        return {int(label)} if label.isdigit() else self.element_sets[label.upper()]
+
+
+def read_sets(deck: Deck) -> MeshSets:
+    """All nodes and sets, in the order of the deck."""
+    sets = MeshSets()
+    for card in deck.cards:
+        if card.keyword == "NODE":
+            numbers = read_nodes(card, sets)
+            add(sets.node_sets, card.value("NSET"), numbers)
+        elif card.keyword == "ELEMENT":
+            add(sets.element_sets, card.value("ELSET"), [n for n, _ in element_rows(card)])
+        elif card.keyword in ("NSET", "ELSET"):
+            kept = sets.node_sets if card.keyword == "NSET" else sets.element_sets
+            add(kept, card.value(card.keyword), members(card, kept))
+    return sets
+
+
+def read_nodes(card: Card, sets: MeshSets) -> list[int]:
+    """Adds the nodes of a card; their numbers."""
+    numbers = []
+    for line in card.lines:
+        number, *rest = line.split(",")
+        x = [float(item) if item.strip() else 0.0 for item in rest[:3]]
+        x += [0.0] * (3 - len(x))
+        sets.nodes[int(number)] = (x[0], x[1], x[2])
+        numbers.append(int(number))
+    return numbers
+
+
+def element_rows(card: Card) -> Iterator[tuple[int, list[int]]]:
+    """Number and nodes of each element; a line that ends with a comma goes on in the next."""
+    row = ""
+    for line in card.lines:
+        row += line
+        if row.rstrip().endswith(","):
+            continue
+        number, *nodes = (int(item) for item in row.split(",") if item.strip())
+        yield number, nodes
+        row = ""
+
+
+def members(card: Card, sets: dict[str, set[int]]) -> set[int]:
+    """Numbers of a card of a set: numbers, ranges (GENERATE), names of other sets."""
+    found: set[int] = set()
+    for line in card.lines:
+        items = [item.strip() for item in line.split(",") if item.strip()]
+        if "GENERATE" in card.parameters:
+            first, last, *step = map(int, items)
+            found.update(range(first, last + 1, *step))
+            continue
+        for item in items:
+            found |= {int(item)} if item.isdigit() else sets[item.upper()]
+    return found
+
+
+def add(sets: dict[str, set[int]], name: str, numbers) -> None:
+    if name:
+        sets.setdefault(name, set()).update(numbers)
