@@ -155,8 +155,8 @@ contains
     type(error_type), allocatable, intent(out) :: error
     if (now%step /= self%record%step) call self%start_step(model, now%step)
     call self%clock%note(model, now)
-    call self%costs%start('recover', 'envelopes', 'output')
-    call self%record%note(model, now)
+    call self%costs%start('recover', 'extremes', 'output')
+    call self%record%note(model, now, self%costs)
     self%has_unwritten_envelopes = size(self%record%active) > 0
     call self%summary%note(now)
     call self%costs%stop()

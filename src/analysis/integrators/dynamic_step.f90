@@ -18,6 +18,7 @@ module dynamic_step
   use step_loads, only: step_time, external_force, prescribed_values
   use start_acceleration, only: find_start
   use energy_account, only: open_account
+  use run_ledger, only: ledger
   use solid_iteration, only: solid_solver
   implicit none
   private
@@ -65,7 +66,7 @@ contains
     call build_dynamic_step(model, plan, system, solids, now, results, error)
     if (allocated(error)) return
     call results%costs%start('solve', 'initial acceleration', 'solver')
-    call start_forces(system, solids, model, plan, now, error)
+    call start_forces(system, solids, model, plan, now, results%costs, error)
     call results%costs%stop()
     if (allocated(error)) return
     call results%costs%start('recover', 'energy', 'solver')
@@ -87,18 +88,19 @@ contains
 
   !> Forces at the start of the step and the acceleration that balances them. Supports that follow
   !> an amplitude start with its velocity.
-  subroutine start_forces(system, solids, model, plan, now, error)
+  subroutine start_forces(system, solids, model, plan, now, costs, error)
     type(dam_system), intent(inout) :: system
     type(solid_solver), intent(inout) :: solids
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan
     type(state), intent(inout) :: now
+    type(ledger), intent(in) :: costs
     type(error_type), allocatable, intent(out) :: error
     type(step_time) :: when
     logical :: has_changed
     when = step_time(is_dynamic=.true., start=now%total_time, duration=plan%duration)
     associate (own => now%motion)
-      call update_uplift(model, system%operator, now%joints, system%groups, has_changed)
+      call update_uplift(model, system%operator, now%joints, system%groups, costs, has_changed)
       call external_force(system%groups, model%amplitudes, when, own%external)
       call start_supports(model, system, when, 1.0e-3_rk*plan%first_increment, own%v)
       call solids%start_lost_damping(model, system, plan, now)

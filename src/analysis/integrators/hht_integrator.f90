@@ -121,9 +121,8 @@ contains
     type(error_type), allocatable, intent(out) :: error
     logical :: has_changed
     call results%costs%start('iterate', 'structure', 'solver')
-    call results%costs%start('update', 'uplift', 'load')
-    call update_uplift(model, self%system%operator, before%joints, self%system%groups, has_changed)
-    call results%costs%stop()
+    call update_uplift(model, self%system%operator, before%joints, self%system%groups, &
+                       results%costs, has_changed)
     call self%take_increment(model, when, before, after, outcome, error)
     call results%costs%stop('iterate structure')
     if (allocated(error) .or. .not. outcome%has_converged) return

@@ -85,7 +85,8 @@ contains
     type(state), intent(inout) :: now
     logical :: has_changed
     associate (own => now%motion)
-      call update_uplift(model, self%system%operator, now%joints, self%system%groups, has_changed)
+      call update_uplift(model, self%system%operator, now%joints, self%system%groups, &
+                         self%solids%solver%costs, has_changed)
       call external_force(self%system%groups, model%amplitudes, &
                           step_time(start=now%total_time, duration=plan%duration), own%external)
       call sum_contact(self%system%operator, now)
@@ -139,9 +140,8 @@ contains
     !> Water where the joints are open in these states.
     subroutine update_water(states)
       type(joint_state), intent(in) :: states(:)
-      call self%solids%solver%costs%start('update', 'uplift', 'load')
-      call update_uplift(model, self%system%operator, states, self%system%groups, has_changed)
-      call self%solids%solver%costs%stop()
+      call update_uplift(model, self%system%operator, states, self%system%groups, &
+                         self%solids%solver%costs, has_changed)
     end subroutine update_water
   end subroutine match_uplift
 

@@ -18,11 +18,12 @@ module joint_water
 contains
 
   !> Updates the uplift for the open points of joints.
-  subroutine update_uplift(model, operator, states, groups, has_changed)
+  subroutine update_uplift(model, operator, states, groups, costs, has_changed)
     type(problem), intent(in) :: model
     type(jump_operator), intent(in) :: operator
     type(joint_state), intent(in) :: states(:)
     type(load_group), intent(inout) :: groups(:)
+    type(ledger), intent(in) :: costs
     logical, intent(out) :: has_changed !< a force has
     real(rk), allocatable :: pressure(:)
     integer :: g
@@ -30,6 +31,7 @@ contains
     do g = 1, size(groups)
       if (groups(g)%uplift == 0) cycle
       associate (water => model%loads(groups(g)%uplift)%item)
+        call costs%start('update', water%name, water%kind)
         allocate (pressure(size(states(water%wet_joint)%status)))
         call water%joint_pressure(states(water%wet_joint)%status == state_open, pressure)
         if (.not. allocated(groups(g)%pressure)) groups(g)%pressure = 0.0_rk*pressure
@@ -38,6 +40,7 @@ contains
           groups(g)%force = 0.0_rk
           call push_faces(operator, water%wet_joint, pressure, groups(g)%force)
         end if
+        call costs%stop()
       end associate
       call move_alloc(pressure, groups(g)%pressure)
     end do

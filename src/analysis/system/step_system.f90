@@ -148,8 +148,8 @@ contains
     real(rk), intent(in) :: u(:, :) !< (3, nodes) at the start of the step [m]
     type(dam_system), intent(inout) :: system
     type(ledger), intent(in) :: costs
-    call costs%start('assemble', 'loads', 'load')
     call gather_loads(model, plan, system%numbers, system%matrix, system%mass, system%groups, costs)
+    call costs%start('assemble', 'supports', 'solver')
     call gather_supports(plan, system%numbers, u, system%supports)
     call costs%stop()
   end subroutine build_loads

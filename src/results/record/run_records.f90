@@ -3,6 +3,7 @@
 module run_records
   use kinds, only: rk
   use problem_definition, only: problem
+  use run_ledger, only: ledger
   use analysis_state, only: state
   use dam_faces, only: dam_skin, find_dam_faces
   use envelopes, only: envelope, open_envelope, note_envelope, note_means
@@ -102,10 +103,11 @@ contains
   end subroutine begin_step
 
   !> Records an increment: maxima of joints always, envelopes where the step requests them.
-  subroutine note(self, model, now)
+  subroutine note(self, model, now, costs)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
+    type(ledger), intent(in) :: costs
     integer :: j, i
     call self%stresses%invalidate()
     if (self%damage%is_present) then
@@ -126,9 +128,12 @@ contains
     do j = 1, size(model%joints)
       call note_joint(self%joints(j), model%joints(j), now%joints(j), now%total_time)
     end do
+    if (size(self%active) == 0) return
+    call costs%start('recover', 'envelopes', 'output')
     do i = 1, size(self%active)
       call self%update_envelope(model, now, self%envelopes(self%active(i)))
     end do
+    call costs%stop()
   end subroutine note
 
   !> Warns when the recovery of stiffness of concrete drives the motion: no increment cures this.

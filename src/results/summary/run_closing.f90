@@ -131,6 +131,8 @@ contains
     type(run_summary), intent(in) :: summary
     character(:), allocatable :: text
     integer :: i
+    text = ''
+    if (sum([0, summary%steps%increments]) == 0) return
     associate (steps => summary%steps)
       text = nl//'error of the energy balance '// &
              as_short_text(maxval([0.0_rk, steps%largest_error]))//', residual '// &

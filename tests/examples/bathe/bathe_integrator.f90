@@ -182,9 +182,8 @@ contains
     real(rk) :: acceleration(self%system%matrix%num_total)
     logical :: has_changed
     call results%costs%start('iterate', 'structure', 'solver')
-    call results%costs%start('update', 'uplift', 'load')
-    call update_uplift(model, self%system%operator, before%joints, self%system%groups, has_changed)
-    call results%costs%stop()
+    call update_uplift(model, self%system%operator, before%joints, self%system%groups, &
+                       results%costs, has_changed)
     call self%solids%open_increment(before, when%increment)
     call pose_task(self, model, when, before, after, acceleration, task)
     do

@@ -9,6 +9,7 @@ from html import escape
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from keyway_tools.picture_style import GREY, new_figure
 
@@ -113,6 +114,10 @@ def draw_one(axis, outcomes: list[Outcome], error: Error) -> None:
                       fontsize=8)  # fmt: skip
     axis.set(xscale="log", yscale="log", xlabel="seconds", ylabel="error [%]")
     axis.set_title(NAMES[error.quantity], fontsize=11)
+    for line in (axis.xaxis, axis.yaxis):
+        line.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        line.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        line.set_minor_formatter(NullFormatter())
     axis.margins(0.25)
 
 

@@ -168,14 +168,24 @@ def solver_rungs(deck: Deck) -> list[Rung]:
             Rung("solver", "JOINT SOLVER=FULL", 5.0, 1.0, controls({"JOINT SOLVER": "FULL"}))
         )
     is_elastic = not (deck.has("CONCRETE DAMAGED PLASTICITY") or deck.has("USER MATERIAL"))
-    if deck.has("DYNAMIC") and is_elastic and all(is_hht(card) for card in deck.of("DYNAMIC")):
+    if (
+        deck.has("DYNAMIC")
+        and deck.has("JOINT")
+        and is_elastic
+        and all(is_hht(card) for card in deck.of("DYNAMIC"))
+    ):
         found.append(Rung("solver", "REDUCED", 0.5, 1.0, reduced))
     return found
 
 
 def reduced(deck: Deck) -> Deck:
-    """Dynamic steps with the reduced model. It has envelopes of joints alone at its own cost."""
+    """Dynamic steps with the reduced model and envelopes of openings: stresses take solves."""
     new = deck.copy()
-    for card in new.of("DYNAMIC"):
-        card.parameters["REDUCED"] = None
+    for step in new.steps():
+        dynamic = [card for card in step if card.keyword == "DYNAMIC"]
+        for card in dynamic:
+            card.parameters["REDUCED"] = None
+        for card in step:
+            if dynamic and card.keyword == "ENVELOPE":
+                card.lines = ["OPENING"]
     return new
