@@ -10,6 +10,8 @@ module check_deck
   use problem_definition, only: problem
   use process_limits, only: print_text
   use read_deck, only: read_problem
+  use run_forecast, only: forecast_of
+  use run_ledger, only: ledger
   use run_lock, only: job_lock
   use umat_loader, only: user_library
   use user_routines, only: load_user_routines
@@ -46,17 +48,18 @@ contains
   end subroutine load_deck
 
   !> Prints the deck with its defaults and a summary of the model.
-  subroutine report_model(given, model, echo, error)
+  subroutine report_model(given, model, echo, costs, error)
     type(command_line), intent(in) :: given
     type(problem), intent(in) :: model
     character(*), intent(in) :: echo
+    type(ledger), intent(in) :: costs
     type(error_type), allocatable, intent(out) :: error
     character, parameter :: nl = new_line('a')
     character(:), allocatable :: summary
     if (given%is_material) then
       summary = summary_of_tests(model)
     else
-      summary = summary_of(model)
+      summary = summary_of(model)//nl//forecast_of(model, costs)
     end if
     call print_text('The deck with its defaults'//nl//echo//nl//nl//summary, error)
   end subroutine report_model

@@ -67,7 +67,7 @@ program keyway
   if (allocated(error)) call mark_earlier_results(options, model, lock, error)
   call end_on(error)
   if (options%is_check) then
-    call report_model(options, model, echo, error)
+    call report_model(options, model, echo, costs, error)
   else if (options%is_material) then
     call run_tests(model, options, echo, started_at, error)
   else

@@ -7,6 +7,7 @@ set(sources
   model_summary.f90
   motion_peaks.f90
   run_analysis.f90
+  run_forecast.f90
   run_material.f90
   shared_costs.f90
   user_routines.f90

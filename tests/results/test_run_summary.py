@@ -101,6 +101,18 @@ def test_progress_on_a_terminal_is_one_line_that_fits(program_path, tmp_path):
     assert text.count("\n") < 60
 
 
+@pytest.mark.parametrize("deck", ["cantilever", "block_on_joint", "petersson_beam"])
+def test_check_forecasts_the_memory_of_the_run(keyway, deck):
+    """Within a factor of 1.5. The time depends on what else the machine does: it is only there."""
+    path = INPUT / f"{deck}.inp"
+    text = keyway(path, "--check").stdout
+    cost = text.partition("Cost on this machine")[2]
+    assert re.search(r"time +about \S+ s\n", cost)
+    memory = float(re.search(r"memory +about (\S+) MB", cost)[1])
+    found = keyway(path).json["ledger"]["peak_memory_mb"]
+    assert 1.0 / 1.5 < found / memory < 1.5
+
+
 def read_all(descriptor: int) -> str:
     parts = []
     try:

@@ -56,6 +56,7 @@ def test_decks_that_are_written_again_are_the_same(program_path, tmp_path, name)
         subprocess.run([program_path, "--check", path], capture_output=True, text=True).stdout
         for path in (found, tmp_path / f"{name}.inp")
     ]
+    texts = [text.partition("Cost on this machine")[0] for text in texts]
     plain = [re.sub(r"INPUT=\S*/", "INPUT=", " ".join(text.split())) for text in texts]
     assert plain[0]
     assert plain[0] == plain[1]
