@@ -1,5 +1,5 @@
-!> What a run will take: time and memory, from counts of the model, the planned entries of the factor
-!> and the speed of this machine, measured for a moment.
+!> What a run will take: time and memory, from counts of the model, the planned entries of the
+!> factor and the speed of this machine, measured for a moment.
 !>
 !> The coefficients are those of runs on two cores of 2.2 GHz (`reference_rate`). Joints and cracks
 !> take the iterations of strong motions. Dense matrices of joints grow with their points squared.
