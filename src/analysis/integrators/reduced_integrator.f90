@@ -24,7 +24,7 @@ module reduced_integrator
   use reduced_shapes, only: find_shapes
   use state_transfer, only: store_motion
   use step_equilibrium, only: make_equilibrium
-  use step_loads, only: external_force, step_time
+  use step_loads, only: external_force, step_time, support
   use step_plan, only: step
   use step_system, only: dam_system
   use write_text, only: as_text
@@ -58,6 +58,7 @@ module reduced_integrator
   real(rk), parameter :: least_growth = 1.3_rk, most_growth = 2.5_rk
   !> The error falls at least as quickly as this power of the number of modes.
   real(rk), parameter :: decay = 1.5_rk
+  real(rk), parameter :: round_off = 1.0e-12_rk !< of a displacement
   real(rk), parameter :: two_pi = 2.0_rk*acos(-1.0_rk)
 
 contains
@@ -109,8 +110,19 @@ contains
     else if (has_histories(now%guests)) then
       call raise(error, '*DYNAMIC, REDUCED holds no forces with a history other than those of '// &
                  'joints; take *DYNAMIC without REDUCED')
+    else if (any(moves_at_once(system%supports))) then
+      call raise(error, '*DYNAMIC, REDUCED: a support of the step moves at its start, and a '// &
+                 'reduced model holds its supports; take *DYNAMIC without REDUCED, or move '// &
+                 'the support in a step before')
     end if
   end subroutine refuse_size
+
+  !> Whether a support has another displacement in the step than at its start.
+  elemental logical function moves_at_once(held)
+    type(support), intent(in) :: held
+    moves_at_once = abs(held%value - held%start_value) &
+                    > round_off*max(abs(held%value), abs(held%start_value))
+  end function moves_at_once
 
   !> Where the step starts from, its loads and its forces that are not balanced. A continued run has
   !> the start in its state.
@@ -145,7 +157,9 @@ contains
       end do
       self%basis%force(:, n + 1) = own%external - own%elastic - contact
       self%basis%force(:, n + 2) = own%elastic
+      self%basis%force(system%matrix%num_free + 1:, n + 1:) = 0.0_rk ! reactions of supports
       self%force_norm = [(norm(self%basis%force(:, k)), k=1, n + 2)]
+      self%basis%starts_balanced = self%force_norm(n + 1) <= balanced_share*self%force_norm(n + 2)
       now%largest_force = max(norm(own%external), norm(own%elastic), norm(contact))
       own%contact = contact
     end associate
@@ -203,6 +217,7 @@ contains
     type(reduced_model) :: fresh
     real(rk), allocatable :: values(:), shapes(:, :)
     fresh%force = self%basis%force
+    fresh%starts_balanced = self%basis%starts_balanced
     fresh%shift = shift_of_increment/plan%first_increment**2
     values = self%system%stiffness + fresh%shift*self%system%mass
     call find_shapes(model, self%system, values, loads_of_shapes(self), wanted, &
@@ -243,7 +258,7 @@ contains
     do k = n + 1, 1, -1
       if (k <= n) then
         if (self%system%groups(k)%rule%amplitude == 0) cycle
-      else if (self%force_norm(k) <= balanced_share*self%force_norm(n + 2)) then
+      else if (self%basis%starts_balanced) then
         cycle
       end if
       loads = reshape([self%basis%force(:free, k), loads], [free, size(loads, 2) + 1])

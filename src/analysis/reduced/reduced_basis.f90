@@ -37,6 +37,9 @@ module reduced_basis
     real(rk) :: residual_mass = 0.0_rk !< mass of the rest over its stiffness [s2]
     real(rk) :: residual_damping = 0.0_rk !< damping of the rest over its stiffness [s]
     real(rk), allocatable :: force(:, :) !< (num_total, loads) f_k [N]
+    !> The last load but one, forces that are not balanced at the start, is round-off or what an
+    !> iteration has left: its direction is accidental and must not shape the modes.
+    logical :: starts_balanced = .false.
     real(rk), allocatable :: load_shape(:, :) !< (num_free, loads) R f_k [m]
     type(rest_sample) :: sample
     integer, allocatable :: probe(:) !< unknowns with the largest displacement of some modes
@@ -147,7 +150,7 @@ contains
       moved(:, k) = rows_of(system, basis%force, work(:, k))
     end do
     coupling = path - matmul(moved, own)
-    call condense_ports(compliance, path, moved, own, coupling)
+    call condense_ports(compliance, path, moved, own, basis%starts_balanced, coupling)
     own = own - transposed_times(path - matmul(moved, own), coupling)
     own = 0.5_rk*(own + transpose(own))
     do k = 1, size(shapes, 2)
@@ -159,10 +162,11 @@ contains
   end subroutine make_static
 
   !> Replaces S^T K Psi by (S^T K S)^-1 S^T K Psi.
-  subroutine condense_ports(compliance, path, moved, own, coupling)
+  subroutine condense_ports(compliance, path, moved, own, starts_balanced, coupling)
     real(rk), intent(in) :: compliance(:, :) !< (ports, ports) P K^-1 P^T
     real(rk), intent(in) :: path(:, :), moved(:, :) !< (ports, modes) P Psi, P K^-1 M Psi
     real(rk), intent(in) :: own(:, :) !< (modes, modes) Psi^T K Psi
+    logical, intent(in) :: starts_balanced !< the last port but one takes no part
     real(rk), intent(inout) :: coupling(:, :) !< (ports, modes)
     type(lu_factor) :: factor
     real(rk), allocatable :: matrix(:, :)
@@ -174,6 +178,7 @@ contains
       scale(i) = 0.0_rk
       if (compliance(i, i) > 0.0_rk) scale(i) = 1.0_rk/sqrt(compliance(i, i))
     end do
+    if (starts_balanced) scale(size(scale) - 1) = 0.0_rk
     do i = 1, size(scale)
       matrix(:, i) = scale*matrix(:, i)*scale(i)
       matrix(i, i) = matrix(i, i) + least_stiffness

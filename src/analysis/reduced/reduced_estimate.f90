@@ -2,7 +2,7 @@
 !> (theory.md, 7.4).
 !>
 !> The model is run with half and with all of its modes. The error of the model is about the
-!> difference of their histories: 0.3 to 1.8 times as large in 21 models of seven dams.
+!> difference of their histories: 0.3 to 1.5 times as large in 21 models of seven dams.
 module reduced_estimate
   use analysis_state, only: state
   use equilibrium, only: balance_outcome
