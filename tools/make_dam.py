@@ -149,6 +149,13 @@ def add_deck_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--damping", type=float, nargs=3, default=DeckOptions.damping, metavar=("RATIO", "F1", "F2")
     )
+    group.add_argument(
+        "--picture-every",
+        type=int,
+        default=DeckOptions.picture_frequency,
+        metavar="N",
+        help="increments between two states of the fields (10)",
+    )
     group.add_argument("--modes", type=int, default=0, help="natural modes, in a separate step (0)")
 
 
@@ -240,6 +247,7 @@ def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
         increment=chosen.increment,
         damping=tuple(chosen.damping),
         num_modes=chosen.modes,
+        picture_frequency=chosen.picture_every,
     )
 
 

@@ -1,5 +1,7 @@
 """The small decks of input/ are what the tool writes, and their meshes are valid."""
 
+import shutil
+
 import make_input
 import pytest
 from keyway_tools.small_decks import SMALL_DECKS
@@ -30,3 +32,22 @@ def test_committed_dam_is_what_the_tools_describe():
         assert words in deck
     for name in ("README.md", "xingbiling_matching_mesh.inp", "motion_x.txt", "motion.json"):
         assert (folder / name).exists()
+
+
+def test_main_dam_is_what_the_tool_writes(keyway, tmp_path):
+    """The deck as it is kept; its mesh is made; the program takes both and starts well."""
+    kept = make_input.INPUT / "xingbiling"
+    folder = tmp_path / "xingbiling"
+    folder.mkdir()
+    for axis in "xyz":
+        shutil.copy(kept / f"motion_{axis}.txt", folder)
+    make_input.main([str(tmp_path), "--only", "main"])
+    deck = folder / "xingbiling.inp"
+    text = deck.read_text()
+    assert text == (kept / "xingbiling.inp").read_text()
+    short = text.replace("0.01, 20\n", "0.01, 0.02\n").replace("*FREQUENCY\n8\n", "*FREQUENCY\n1\n")
+    assert short != text
+    deck.write_text(short)
+    run = keyway(deck)
+    assert run.json["model"]["unknowns"] >= 40_000
+    assert [step["name"] for step in run.json["steps"]] == ["WEIGHT", "MODES", "EARTHQUAKE"]
