@@ -21,6 +21,7 @@ module linear_solver
     procedure :: backward_substitute => refuse_half_solve
     procedure :: choose_active => activate_all
     procedure :: substitute => refuse_part
+    procedure :: keep_single => keep_double
   end type equation_solver
 
   !> Parts of a factor. The upper part holds the columns of the active unknowns and all columns that
@@ -97,6 +98,15 @@ contains
     real(rk), intent(out) :: share
     share = 1.0_rk
   end subroutine activate_all
+
+  !> Keeps the factor in single precision until the next factorisation, but for its upper part with
+  !> some unknowns; solves are then exact to some 7 digits. Not every solver can.
+  subroutine keep_double(self, unknown, is_kept)
+    class(equation_solver), intent(inout) :: self
+    integer, intent(in) :: unknown(:) !< whose part stays in double precision
+    logical, intent(out) :: is_kept
+    is_kept = size(unknown) < 0
+  end subroutine keep_double
 
   !> y = L^-1 y or y = L^-T y with a part of the factor, in the order of elimination.
   subroutine refuse_part(self, part, is_forward, y, error)

@@ -27,7 +27,7 @@ module solver_cholmod
   contains
     procedure :: analyse, factorise, solve, statistics
     procedure :: take_schur_block, take_top, forward_substitute, backward_substitute
-    procedure :: choose_active, substitute
+    procedure :: choose_active, substitute, keep_single
     final :: release
   end type cholmod_solver
 
@@ -103,6 +103,15 @@ module solver_cholmod
       real(c_double), intent(inout) :: y(n)
       integer(c_int) :: status
     end function keyway_cholmod_substitute
+
+    function keyway_cholmod_round(handle, n, count, unknown) result(status) bind(c)
+      import :: c_ptr, c_int
+      implicit none
+      type(c_ptr), value :: handle
+      integer(c_int), value :: n, count
+      integer(c_int), intent(in) :: unknown(count)
+      integer(c_int) :: status
+    end function keyway_cholmod_round
 
     subroutine keyway_cholmod_statistics(handle, entries, bytes, peak) bind(c)
       import :: c_ptr, c_double
@@ -257,6 +266,16 @@ contains
     share = keyway_cholmod_choose(self%handle, self%num_free, size(unknown), unknown - 1)
     if (share < 0.0_rk) share = 1.0_rk
   end subroutine choose_active
+
+  !> Keeps the factor in single precision, but for the upper part with some unknowns.
+  subroutine keep_single(self, unknown, is_kept)
+    class(cholmod_solver), intent(inout) :: self
+    integer, intent(in) :: unknown(:)
+    logical, intent(out) :: is_kept
+    is_kept = self%num_free > 0
+    if (is_kept) is_kept = keyway_cholmod_round(self%handle, self%num_free, size(unknown), &
+                                                unknown - 1) == 0
+  end subroutine keep_single
 
   !> The top of the factor with some unknowns.
   subroutine take_top(self, unknown, top)

@@ -18,6 +18,10 @@ set(sources
   solver_cholmod.f90
   solver_umfpack.f90
   supernodes/active_solve.f90
+  supernodes/factor_top.c
+  supernodes/refined_solve.f90
   supernodes/selected_inverse.c
+  supernodes/single_columns.c
+  supernodes/single_factor.c
   supernodes/supernodal_solve.c
 )

@@ -11,6 +11,7 @@ set(sources
   compliance/tangent_equations.f90
   compliance/tangent_factors.f90
   iteration/condensation.f90
+  iteration/condensed_solve.f90
   iteration/contact_augmentation.f90
   iteration/contact_sweeps.f90
   iteration/equilibrium.f90

@@ -83,6 +83,8 @@ contains
     if (allocated(error)) return
     solids%solver%costs = results%costs
     if (.not. solids%has_inelastic() .or. has_histories(now%guests)) return
+    ! Refined solves are complete ones.
+    if (plan%controls%keeps_single) return
     call solids%solver%repeated%open(solids%solver%factor, find_active(model, system%numbers))
   end subroutine open_dynamic_step
 

@@ -39,6 +39,9 @@ contains
     name = plan%controls%joint_solver
     if (name == 'AUTO') name = condensed_solver
     if (.not. is_symmetric) name = full_solver
+    call check_precision(plan, is_symmetric, name == full_solver .and. &
+                         system%operator%num_points > 0, error)
+    if (allocated(error)) return
     if (system%operator%num_points == 0) then
       allocate (linear_equilibrium :: balance)
     else
@@ -52,6 +55,20 @@ contains
     if (allocated(error)) return
     call balance%factor%analyse(system%matrix, error)
   end subroutine make_equilibrium
+
+  !> Refuses a factor in single precision where it would not be used.
+  subroutine check_precision(plan, is_symmetric, is_full, error)
+    type(step), intent(in) :: plan
+    logical, intent(in) :: is_symmetric !< the tangent of the solids
+    logical, intent(in) :: is_full !< the tangent of joints is factored in each iteration
+    type(error_type), allocatable, intent(out) :: error
+    if (.not. plan%controls%keeps_single .or. (is_symmetric .and. .not. is_full)) return
+    call raise(error, "step '"//plan%name//"': *CONTROLS, PRECISION=SINGLE works with a factor "// &
+               'of a symmetric matrix that is kept for many solves; '// &
+               trim(merge('JOINT SOLVER=FULL factors in each iteration ', &
+                          'the tangent of the solids is not symmetric  ', is_full))// &
+               ': leave PRECISION=SINGLE out')
+  end subroutine check_precision
 
   !> Checks that the memory of the dense matrices of the joints is available, by allocating and
   !> freeing it.

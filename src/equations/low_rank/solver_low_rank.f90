@@ -21,7 +21,7 @@ module solver_low_rank
     real(rk), allocatable, private :: z(:, :) !< (free unknowns, rank) Z
     type(lu_factor), private :: small !< of I + U^T Z
   contains
-    procedure :: analyse, factorise, solve
+    procedure :: analyse, factorise, solve, keep_single
   end type low_rank_solver
 
 contains
@@ -87,6 +87,14 @@ contains
     call solve_factored(self%small, share)
     b = b - matmul(self%z, share)
   end subroutine solve
+
+  !> Keeps the factor of A in single precision.
+  subroutine keep_single(self, unknown, is_kept)
+    class(low_rank_solver), intent(inout) :: self
+    integer, intent(in) :: unknown(:)
+    logical, intent(out) :: is_kept
+    call self%sparse%keep_single(unknown, is_kept)
+  end subroutine keep_single
 
   !> U^T B.
   subroutine project(u, b, product)

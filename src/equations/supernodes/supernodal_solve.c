@@ -4,6 +4,7 @@
  * the lower part has been eliminated from b: the upper part holds, with a column, all columns that
  * follow it in the elimination tree (Liu, SIAM J. Matrix Anal. Appl. 11, 1990, 134-172). */
 #include "supernodal_solve.h"
+#include "single_columns.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -44,12 +45,45 @@ static int is_in_part(int s, enum keyway_part part, const char *is_upper)
   return part == KEYWAY_WHOLE || is_upper[s] == (part == KEYWAY_UPPER);
 }
 
+/* The values of a supernode in double precision, NULL where they are in single precision. */
+static const double *double_values(const struct keyway_supernodes *l, int s)
+{
+  if (!l->single) return l->value + l->value_start[s];
+  return l->part_start[s] < 0 ? l->value - l->part_start[s] - 1 : NULL;
+}
+
+static void forward_single(const struct keyway_supernodes *l, int s, double *y, double *work)
+{
+  int first = l->column[s], width = l->column[s + 1] - first;
+  int length = l->row_start[s + 1] - l->row_start[s];
+  const int *row = l->row + l->row_start[s];
+  memcpy(work, y + first, (size_t)width * sizeof *y);
+  memset(work + width, 0, (size_t)(length - width) * sizeof *y);
+  keyway_forward_columns(width, length, l->single + l->part_start[s], work);
+  memcpy(y + first, work, (size_t)width * sizeof *y);
+  for (int i = width; i < length; i++) y[row[i]] += work[i];
+}
+
+static void backward_single(const struct keyway_supernodes *l, int s, double *y, double *work)
+{
+  int first = l->column[s], width = l->column[s + 1] - first;
+  int length = l->row_start[s + 1] - l->row_start[s];
+  const int *row = l->row + l->row_start[s];
+  for (int i = 0; i < length; i++) work[i] = y[row[i]];
+  keyway_backward_columns(width, length, l->single + l->part_start[s], work);
+  memcpy(y + first, work, (size_t)width * sizeof *y);
+}
+
 static void forward_one(const struct keyway_supernodes *l, int s, double *y, double *work)
 {
   int first = l->column[s], width = l->column[s + 1] - first;
   int length = l->row_start[s + 1] - l->row_start[s], rest = length - width;
   const int *row = l->row + l->row_start[s] + width;
-  const double *value = l->value + l->value_start[s];
+  const double *value = double_values(l, s);
+  if (!value) {
+    forward_single(l, s, y, work);
+    return;
+  }
   if (width == 1) {
     double x = y[first] /= value[0];
     for (int i = 0; i < rest; i++) y[row[i]] -= value[1 + i] * x;
@@ -67,7 +101,11 @@ static void backward_one(const struct keyway_supernodes *l, int s, double *y, do
   int first = l->column[s], width = l->column[s + 1] - first;
   int length = l->row_start[s + 1] - l->row_start[s], rest = length - width;
   const int *row = l->row + l->row_start[s] + width;
-  const double *value = l->value + l->value_start[s];
+  const double *value = double_values(l, s);
+  if (!value) {
+    backward_single(l, s, y, work);
+    return;
+  }
   if (width == 1) {
     double x = y[first];
     for (int i = 0; i < rest; i++) x -= value[1 + i] * y[row[i]];

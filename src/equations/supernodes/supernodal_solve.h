@@ -9,6 +9,9 @@ struct keyway_supernodes {
   const int *value_start; /* (num_supernodes + 1) into value */
   const int *row;         /* rows of each, its own columns first */
   const double *value;    /* dense blocks by columns; the upper triangle is not used */
+  /* Where a part of the blocks is held in single precision; NULL: all blocks are in `value`. */
+  const float *single;
+  const long *part_start; /* of each block in `single`; -1 - p: at p in `value` */
 };
 
 /* Parts of a factor. The upper part holds the supernodes of chosen unknowns and all that are
@@ -20,7 +23,7 @@ enum keyway_part { KEYWAY_WHOLE = 0, KEYWAY_LOWER = 1, KEYWAY_UPPER = 2 };
 double keyway_mark_upper(const struct keyway_supernodes *l, int count, const int *column,
                          char *is_upper);
 
-/* y = L^-1 y on the supernodes of a part; work has room for the longest column. is_upper may be
+/* y = L^-1 y on the supernodes of a part; work has room for a column. is_upper may be
  * NULL for the whole factor. */
 void keyway_substitute_forward(const struct keyway_supernodes *l, enum keyway_part part,
                                const char *is_upper, double *y, double *work);

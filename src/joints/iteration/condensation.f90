@@ -4,7 +4,7 @@ module condensation
   use kinds, only: rk
   use errors, only: error_type
   use matrix_pattern, only: pattern
-  use global_vectors, only: norm
+  use global_vectors, only: distance, norm
   use joint_law, only: joint_state
   use joint_points, only: dam_joint
   use joint_operator, only: jump_operator, joint_springs
@@ -31,20 +31,41 @@ module condensation
     type(condensed_joints) :: condensed
     type(jump_schur_block) :: jumps !< saves one of the two solves of an increment
     integer, private :: num_held = 0 !< prescribed unknowns
+    !> (3, points) excess traction of the last solution [Pa]
+    real(rk), allocatable, private :: excess(:, :)
+    !> (free unknowns) with a factor in single precision: a vector near the solution, and K_0 times
+    !> it. The equations are solved for the rest. Zero with a factor in double precision.
+    real(rk), allocatable, private :: base(:), base_force(:)
+    !> Norm of the residual that solves may leave, for a factor in single precision [N]
+    real(rk), private :: admissible = 0.0_rk
   contains
     procedure :: prepare_matrix, solve_balance
-    procedure, private :: condense, solve_from, has_drifted, begin_solve, end_solve, jump_drift
-    procedure, private :: find_drift
+    procedure, private :: condense, solve_from, has_drifted, jump_drift, refine, find_base
   end type condensed_equilibrium
 
   !> Admissible drift of the jumps, as a fraction of the residual tolerance.
   real(rk), parameter :: allowed_drift = 0.1_rk
   !> Coupling of the blocks of G that are kept.
   real(rk), parameter :: smallest_coupling = 1.0e-4_rk
-  !> Most corrections for the blocks of G that are left out.
-  integer, parameter :: most_passes = 12
+  !> Most corrections of a solution with a factor in single precision.
+  integer, parameter :: most_refinements = 10
   !> Most points for which all blocks of G are kept where an increment needs them.
   integer, parameter :: most_completed = 3000
+
+  interface
+    !> One solve: forward substitution, the iteration on the jumps, backward substitution.
+    module subroutine solve_from(self, balance, joints, old, new, x, outcome, error)
+      implicit none
+      class(condensed_equilibrium), intent(inout) :: self
+      type(force_balance), intent(in) :: balance
+      type(dam_joint), intent(in) :: joints(:)
+      type(joint_state), intent(in) :: old(:)
+      type(joint_state), intent(inout) :: new(:)
+      real(rk), intent(out) :: x(:)
+      type(balance_outcome), intent(out) :: outcome
+      type(error_type), allocatable, intent(out) :: error
+    end subroutine solve_from
+  end interface
 
 contains
 
@@ -67,6 +88,7 @@ contains
     call operator%add_stiffness(weight*closed_tangent(self%condensed%k_ref), matrix, closed)
     call self%costs%start('factor', 'structure', 'solver')
     call add_low_rank(self%low_rank, self%factor)
+    call self%exact%forget()
     call self%factor%factorise(matrix, closed, error)
     self%num_factorisations = self%num_factorisations + 1
     call self%costs%stop()
@@ -81,6 +103,9 @@ contains
     call extract_schur_block(self%factor, operator, matrix, self%jumps)
     call self%condense(matrix%num_free, error)
     call self%costs%stop()
+    if (allocated(error)) return
+    call self%keep_single(matrix, closed, pack(operator%unknown, &
+                                               operator%unknown <= matrix%num_free))
   end subroutine prepare_matrix
 
   !> Computes G, C and r.
@@ -164,6 +189,8 @@ contains
     type(force_balance) :: nearer
     integer :: iterations
     logical :: was_complete
+    self%admissible = self%admissible_residual(balance)
+    if (allocated(self%base)) deallocate (self%base, self%base_force)
     call self%solve_from(balance, joints, old, new, x, outcome, error)
     if (allocated(error)) return
     if (.not. (outcome%has_converged .or. outcome%gives_up)) then
@@ -174,14 +201,65 @@ contains
       outcome%iterations = outcome%iterations + iterations
     end if
     if (allocated(error) .or. .not. outcome%has_converged) return
-    if (.not. self%has_drifted(balance, new, x)) return
-    nearer = balance
-    nearer%is_repeated = .true.
-    call nearer%start_from(self%operator, new)
-    iterations = outcome%iterations
-    call self%solve_from(nearer, joints, old, new, x, outcome, error)
-    outcome%iterations = outcome%iterations + iterations
+    if (self%exact%is_rounded()) then
+      call self%refine(balance, joints, old, new, x, outcome, error)
+    else if (self%has_drifted(balance, new, x)) then
+      nearer = balance
+      nearer%is_repeated = .true.
+      call nearer%start_from(self%operator, new)
+      iterations = outcome%iterations
+      call self%solve_from(nearer, joints, old, new, x, outcome, error)
+      outcome%iterations = outcome%iterations + iterations
+    end if
   end subroutine solve_balance
+
+  !> Solves again from a solution of a factor in single precision, until its residual is admissible
+  !> and its jumps are those of the laws.
+  subroutine refine(self, balance, joints, old, new, x, outcome, error)
+    class(condensed_equilibrium), intent(inout) :: self
+    type(force_balance), intent(in) :: balance
+    type(dam_joint), intent(in) :: joints(:)
+    type(joint_state), intent(in) :: old(:)
+    type(joint_state), intent(inout) :: new(:)
+    real(rk), intent(inout) :: x(:)
+    type(balance_outcome), intent(inout) :: outcome
+    type(error_type), allocatable, intent(out) :: error
+    type(force_balance) :: nearer
+    real(rk) :: residual, admissible
+    integer :: pass, iterations
+    logical :: is_near
+    nearer = balance
+    do pass = 1, most_refinements
+      call self%find_base(balance, x, residual)
+      is_near = .not. self%has_drifted(balance, new, x)
+      admissible = max(self%admissible, self%exact%smallest_residual(self%base))
+      if (is_near .and. residual <= admissible) exit
+      call nearer%start_from(self%operator, new)
+      iterations = outcome%iterations
+      call self%solve_from(nearer, joints, old, new, x, outcome, error)
+      outcome%iterations = outcome%iterations + iterations
+      if (allocated(error) .or. .not. outcome%has_converged) return
+    end do
+    outcome%has_converged = pass <= most_refinements
+    call self%exact%remember(self%base, self%base_force)
+  end subroutine refine
+
+  !> Takes the last solution as the base of the next one.
+  subroutine find_base(self, balance, x, residual)
+    class(condensed_equilibrium), intent(inout) :: self
+    type(force_balance), intent(in) :: balance
+    real(rk), intent(in) :: x(:) !< (all unknowns)
+    real(rk), intent(out) :: residual !< norm of that of the linear equations [N]
+    real(rk) :: force(size(x))
+    associate (n => size(balance%rhs))
+      force = 0.0_rk
+      call self%operator%add_forces(self%weight*self%excess, force)
+      self%base = x(:n)
+      if (.not. allocated(self%base_force)) allocate (self%base_force(n))
+      call self%exact%find_product(self%base, self%base_force)
+      residual = distance(balance%rhs + force(:n), self%base_force)
+    end associate
+  end subroutine find_base
 
   !> Whether the jumps of the solution differ from those at which the laws were evaluated. A block
   !> without contact in one iterate moves far, and the way back loses digits.
@@ -210,172 +288,4 @@ contains
                    /max(norm(area*traction), balance%reference_force, tiny(1.0_rk))
     end associate
   end function jump_drift
-
-  !> Newton's method on the jumps between forward and backward substitution, again while the
-  !> blocks of G that are left out move the jumps. Without the Schur block it takes two full solves:
-  !> one for the guess, one for the change.
-  subroutine solve_from(self, balance, joints, old, new, x, outcome, error)
-    class(condensed_equilibrium), intent(inout) :: self
-    type(force_balance), intent(in) :: balance
-    type(dam_joint), intent(in) :: joints(:)
-    type(joint_state), intent(in) :: old(:)
-    type(joint_state), intent(inout) :: new(:)
-    real(rk), intent(out) :: x(:)
-    type(balance_outcome), intent(out) :: outcome
-    type(error_type), allocatable, intent(out) :: error
-    type(joint_field) :: field, start
-    real(rk), dimension(3, self%operator%num_points) :: excess, last_excess
-    real(rk), allocatable :: half(:)
-    integer :: pass, iterations
-    iterations = 0
-    associate (k_ref => self%condensed%k_ref, operator => self%operator)
-      call start_iteration(balance, joints, operator, k_ref, self%condensed%scale, old, field, new)
-      last_excess = excess_traction(k_ref, field%jump, balance%offset, field%iterate)
-      call self%begin_solve(balance, last_excess, half, x, error)
-      if (allocated(error)) return
-      call operator%jumps(x, field%response)
-      field%response = field%response + balance%offset
-      do pass = 1, most_passes
-        call self%costs%start('iterate', 'joints', 'joint')
-        if (self%controls%most_unsaved < huge(1)) start = field
-        call iterate_on_jumps(self%condensed, self%controls, joints, operator, old, field, new, &
-                              outcome)
-        call self%costs%stop()
-        if (outcome%iterations > self%controls%most_unsaved) then
-          call save_increment(self, balance, joints, old, start, error)
-          if (allocated(error)) return
-        end if
-        iterations = iterations + outcome%iterations
-        outcome%iterations = iterations
-        if (.not. outcome%has_converged) return
-        excess = excess_traction(k_ref, field%jump, balance%offset, field%iterate)
-        if (self%condensed%blocks%is_complete) exit
-        call self%find_drift(balance, new, excess - last_excess, half, field)
-        last_excess = excess
-        if (field%drift <= allowed_drift*self%controls%residual_tolerance) exit
-        call linearise_again(self%condensed, joints, operator, old, field, new)
-      end do
-    end associate
-    outcome%has_converged = pass <= most_passes
-    call self%end_solve(balance%is_partial, excess - last_excess, half, x, error)
-  end subroutine solve_from
-
-  !> Saves an increment as a problem of its own (--save-joint-problems).
-  subroutine save_increment(self, balance, joints, old, start, error)
-    class(condensed_equilibrium), intent(in) :: self
-    type(force_balance), intent(in) :: balance
-    type(dam_joint), intent(in) :: joints(:)
-    type(joint_state), intent(in) :: old(:)
-    type(joint_field), intent(in) :: start !< of the iteration
-    type(error_type), allocatable, intent(out) :: error
-    type(saved_operator) :: common
-    type(saved_problem) :: problem
-    character(:), allocatable :: path
-    path = free_path(self%controls%stem_of_problems)
-    if (len(path) == 0) return
-    common%weight = self%weight
-    common%compliance = self%condensed%blocks%as_dense()
-    common%operator = self%operator
-    problem = saved_problem(self%controls, joints, old, balance, &
-                            closed_response(self%condensed, self%operator%area, start))
-    problem%balance%guess = start%jump
-    problem%balance%guess_traction = start%multiplier
-    call save_problem(path, common, problem, error)
-  end subroutine save_increment
-
-  !> Jumps from the Schur block after a pass, and how far they are from those of the blocks of G.
-  subroutine find_drift(self, balance, new, change, half, field)
-    class(condensed_equilibrium), intent(inout) :: self
-    type(force_balance), intent(in) :: balance
-    type(joint_state), intent(in) :: new(:)
-    real(rk), intent(in) :: change(:, :) !< (3, points) of the excess traction [Pa]
-    real(rk), intent(inout) :: half(:) !< (free unknowns) after forward substitution
-    type(joint_field), intent(inout) :: field
-    real(rk) :: x(size(balance%rhs) + self%num_held)
-    call self%costs%start('correct', 'joints', 'joint')
-    x = 0.0_rk
-    call self%operator%add_forces(self%weight*change, x)
-    call self%jumps%add_jump_forces(x, half)
-    x = 0.0_rk
-    call self%jumps%store_jumps(half, x)
-    call self%operator%jumps(x, field%response)
-    field%response = field%response + balance%offset
-    field%drift = self%jump_drift(balance, new, field%response - field%jump)
-    call self%costs%stop()
-  end subroutine find_drift
-
-  !> Response to the guess: forward substitution and jumps, or all unknowns.
-  subroutine begin_solve(self, balance, excess, half, x, error)
-    class(condensed_equilibrium), intent(inout) :: self
-    type(force_balance), intent(in) :: balance
-    real(rk), intent(in) :: excess(:, :) !< (3, points) [Pa]
-    real(rk), allocatable, intent(out) :: half(:) !< (free unknowns) after forward substitution
-    real(rk), intent(out) :: x(:) !< (all unknowns)
-    type(error_type), allocatable, intent(out) :: error
-    if (.not. self%jumps%is_there) then
-      call respond(self, balance%rhs, excess, self%operator, x, error)
-      return
-    end if
-    x = 0.0_rk
-    call self%operator%add_forces(self%weight*excess, x)
-    half = balance%rhs + x(:size(balance%rhs))
-    call self%costs%start('solve forward', 'structure', 'solver')
-    if (self%repeated%is_there(self%factor)) then
-      if (.not. balance%is_repeated) call self%repeated%start(self%factor, half, error)
-      call self%repeated%forward(self%factor, half, error)
-    else
-      call self%factor%forward_substitute(half, error)
-    end if
-    x = 0.0_rk
-    call self%jumps%store_jumps(half, x)
-    call self%costs%stop()
-  end subroutine begin_solve
-
-  !> All unknowns, with the change of the joint forces since the guess.
-  subroutine end_solve(self, is_partial, change, half, x, error)
-    class(condensed_equilibrium), intent(inout) :: self
-    logical, intent(in) :: is_partial !< active unknowns alone
-    real(rk), intent(in) :: change(:, :) !< (3, points) of the excess traction [Pa]
-    real(rk), allocatable, intent(inout) :: half(:)
-    real(rk), intent(inout) :: x(:) !< (all unknowns)
-    type(error_type), allocatable, intent(out) :: error
-    real(rk) :: correction(size(x)), no_load(self%jumps%num_free)
-    if (self%jumps%is_there) then
-      correction = 0.0_rk
-      call self%operator%add_forces(self%weight*change, correction)
-      call self%costs%start('solve backward', 'structure', 'solver')
-      call self%jumps%add_jump_forces(correction, half)
-      x = 0.0_rk
-      if (self%repeated%is_there(self%factor)) then
-        call self%repeated%backward(self%factor, half, is_partial, x(:size(half)), error)
-      else
-        call self%factor%backward_substitute(half, error)
-        x(:size(half)) = half
-      end if
-      call self%costs%stop()
-    else if (any(abs(change) > 0.0_rk)) then
-      no_load = 0.0_rk
-      call respond(self, no_load, change, self%operator, correction, error)
-      x = x + correction
-    end if
-  end subroutine end_solve
-
-  !> x = K_0^-1 (rhs + weight*B^T area*excess).
-  subroutine respond(self, rhs, excess, operator, x, error)
-    type(condensed_equilibrium), intent(inout) :: self
-    real(rk), intent(in) :: rhs(:) !< (free unknowns)
-    real(rk), intent(in) :: excess(:, :) !< (3, points) [Pa]
-    type(jump_operator), intent(in) :: operator
-    real(rk), intent(out) :: x(:) !< (all unknowns)
-    type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: b(:, :)
-    x = 0.0_rk
-    call operator%add_forces(self%weight*excess, x)
-    b = reshape(rhs + x(:size(rhs)), [size(rhs), 1])
-    call self%costs%start('solve', 'structure', 'solver')
-    call self%factor%solve(b, error)
-    call self%costs%stop()
-    x = 0.0_rk
-    x(:size(rhs)) = b(:, 1)
-  end subroutine respond
 end module condensation

@@ -6,6 +6,7 @@
 module equilibrium
   use kinds, only: rk
   use errors, only: error_type
+  use global_vectors, only: norm
   use matrix_pattern, only: pattern
   use joint_law, only: joint_state
   use joint_points, only: dam_joint
@@ -13,6 +14,7 @@ module equilibrium
   use joint_forces, only: gather_jumps, gather_tractions
   use active_solve, only: repeated_solve
   use linear_solver, only: equation_solver
+  use refined_solve, only: exact_matrix
   use run_ledger, only: ledger
   use step_plan, only: step_controls
   use stop_signals, only: is_asked_to_stop
@@ -67,6 +69,7 @@ module equilibrium
   type, abstract :: equilibrium_solver
     class(equation_solver), allocatable :: factor !< of the symmetric, positive definite matrix
     type(repeated_solve) :: repeated !< solves between two full ones
+    type(exact_matrix) :: exact !< where the factor is in single precision
     type(step_controls) :: controls
     !> (free unknowns, rank) U: the matrix is K_eff + U U^T; not allocated for K_eff alone
     real(rk), allocatable :: low_rank(:, :)
@@ -79,8 +82,11 @@ module equilibrium
   contains
     procedure(prepare_matrix), deferred :: prepare_matrix
     procedure(solve_balance), deferred :: solve_balance
-    procedure :: complete_solution
+    procedure :: complete_solution, keep_single, solve_with_factor, admissible_residual
   end type equilibrium_solver
+
+  !> Residual that a solve with a factor in single precision may leave, over the tolerance.
+  real(rk), parameter :: share_of_solve = 0.3_rk
 
   abstract interface
     !> Factors a new K_eff, after a change of the increment size.
@@ -151,6 +157,42 @@ contains
     iterations = self%iterations
     if (self%first_pass > 0) iterations = self%first_pass
   end function own_iterations
+
+  !> Keeps the factor in single precision where *CONTROLS asks for it, but for the part that holds
+  !> some unknowns.
+  subroutine keep_single(self, matrix, values, unknown)
+    class(equilibrium_solver), intent(inout) :: self
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: values(:) !< of the matrix that is factored
+    integer, intent(in) :: unknown(:)
+    if (.not. self%controls%keeps_single) return
+    call self%exact%round_factor(matrix, values, self%low_rank, unknown, self%factor)
+  end subroutine keep_single
+
+  !> Solves for `b`, in place, refined where the factor is in single precision.
+  subroutine solve_with_factor(self, admissible, b, error)
+    class(equilibrium_solver), intent(inout) :: self
+    real(rk), intent(in) :: admissible !< norm of the residual, for a factor in single precision [N]
+    real(rk), intent(inout) :: b(:, :) !< (free unknowns, right-hand sides)
+    type(error_type), allocatable, intent(out) :: error
+    integer :: k
+    if (.not. self%exact%is_rounded()) then
+      call self%factor%solve(b, error)
+      return
+    end if
+    do k = 1, size(b, 2)
+      call self%exact%solve(self%factor, admissible, b(:, k), error)
+      if (allocated(error)) return
+    end do
+  end subroutine solve_with_factor
+
+  !> Norm of the residual that a solve may leave.
+  real(rk) function admissible_residual(self, balance)
+    class(equilibrium_solver), intent(in) :: self
+    type(force_balance), intent(in) :: balance
+    admissible_residual = share_of_solve*self%controls%residual_tolerance &
+                          *max(balance%reference_force, norm(balance%rhs))
+  end function admissible_residual
 
   !> Completes a solution at active unknowns alone.
   subroutine complete_solution(self, x, error)

@@ -45,7 +45,9 @@ contains
     call self%costs%start('factor', 'structure', 'solver')
     if (.not. self%is_unsymmetric) then
       call add_low_rank(self%low_rank, self%factor)
+      call self%exact%forget()
       call self%factor%factorise(matrix, values, error)
+      if (.not. allocated(error)) call self%keep_single(matrix, values, [integer ::])
     else
       call add_low_rank(self%low_rank, self%unsymmetric_factor)
       call self%unsymmetric_factor%factorise(matrix, values, error)
@@ -76,7 +78,7 @@ contains
       call self%repeated%backward(self%factor, b(:, 1), balance%is_partial, x(:size(b, 1)), error)
       b(:, 1) = x(:size(b, 1))
     else
-      call self%factor%solve(b, error)
+      call self%solve_with_factor(self%admissible_residual(balance), b, error)
     end if
     call self%costs%stop()
     x(:size(b, 1)) = b(:, 1)

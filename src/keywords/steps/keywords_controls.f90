@@ -37,6 +37,10 @@ contains
               field('JOINT SOLVER', kind_choice, 'iterate on the joints alone (condensed) or '// &
                     'on everything (full Newton)', default='AUTO', &
                     choices=joint_solvers), &
+              field('PRECISION', kind_choice, 'of the factor of the matrix that is kept: with '// &
+                    'SINGLE it takes half the memory, and solves are refined in double '// &
+                    'precision until the residual is admissible; symmetric matrices only', &
+                    default='DOUBLE', choices='DOUBLE | SINGLE'), &
               field('JOINT FORCES', kind_choice, 'weight of joint forces in time: the impulse '// &
                     'of the end of the step, as the bulk, or end of the step', &
                     default='IMPLICIT', choices='IMPLICIT | HHT | END'), &
@@ -58,6 +62,7 @@ contains
       if (this%has('INCREMENT')) controls%increment_tolerance = this%real('INCREMENT')
       if (this%has('ITERATIONS')) controls%max_iterations = this%integer('ITERATIONS')
       if (this%has('JOINT SOLVER')) controls%joint_solver = this%word('JOINT SOLVER')
+      if (this%has('PRECISION')) controls%keeps_single = this%word('PRECISION') == 'SINGLE'
       if (this%has('JOINT FORCES')) controls%joint_forces = this%word('JOINT FORCES')
       if (this%has('TANGENT')) controls%tangent = this%word('TANGENT')
     end associate

@@ -49,6 +49,7 @@ module step_plan
     real(rk) :: residual_tolerance = 1.0e-6_rk !< residual over the reference force
     real(rk) :: increment_tolerance = 1.0e-6_rk !< last correction over the increment
     integer :: max_iterations = 15
+    logical :: keeps_single = .false. !< PRECISION=SINGLE: of the factor, outside of the joints
     character(16) :: joint_solver = 'AUTO' !< 'CONDENSED', 'FULL' or 'AUTO'
     !> Joint forces in time: 'IMPLICIT' (the impulse of a step is dt times the joint force at its
     !> end), 'HHT' (weighted like the bulk) or 'END'. Measured: docs/studies/joint_forces_in_time.

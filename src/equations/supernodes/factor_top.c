@@ -1,0 +1,124 @@
+/* The top of a factor of CHOLMOD: the supernodes with chosen unknowns and all their ancestors. */
+#include "cholmod_factor.h"
+#include "selected_inverse.h"
+#include <stdlib.h>
+#include <string.h>
+
+void keyway_free_top(struct keyway_cholmod *c)
+{
+  free(c->is_top);
+  free(c->super_of);
+  free(c->place_of);
+  free(c->top_start);
+  free(c->inverse);
+  free(c->top_work);
+  c->is_top = NULL;
+  c->super_of = c->place_of = NULL;
+  c->top_start = NULL;
+  c->inverse = c->top_work = NULL;
+}
+
+/* Chooses the top of a planned factor by `count` unknowns, 0-based. `entries` are those of its L.
+ * Returns 0 for success. */
+int keyway_cholmod_choose_top(void *handle, int n, int count, const int *unknown, double *entries)
+{
+  struct keyway_cholmod *c = handle;
+  const int *perm = c->factor->Perm;
+  struct keyway_supernodes l;
+  int *wanted;
+  long used = 0;
+  keyway_free_top(c);
+  if (!c->factor->is_super) return 1;
+  l = keyway_supernodes_of(c);
+  wanted = malloc(((size_t)count + 1) * sizeof *wanted);
+  c->is_top = malloc((size_t)l.num_supernodes + 1);
+  c->super_of = malloc((size_t)n * sizeof(int));
+  c->place_of = malloc((size_t)n * sizeof(int));
+  c->top_start = malloc((size_t)l.num_supernodes * sizeof(long));
+  c->top_work = malloc((size_t)n * sizeof(double));
+  if (!wanted || !c->is_top || !c->super_of || !c->place_of || !c->top_start || !c->top_work) {
+    free(wanted);
+    keyway_free_top(c);
+    return -2;
+  }
+  for (int i = 0; i < n; i++) c->place_of[perm[i]] = i;
+  for (int i = 0; i < count; i++) wanted[i] = c->place_of[unknown[i]];
+  if (keyway_mark_upper(&l, count, wanted, c->is_top) < 0.0) {
+    free(wanted);
+    keyway_free_top(c);
+    return -2;
+  }
+  free(wanted);
+  for (int s = 0; s < l.num_supernodes; s++) {
+    int width = l.column[s + 1] - l.column[s];
+    for (int j = l.column[s]; j < l.column[s + 1]; j++) c->super_of[j] = s;
+    c->top_start[s] = c->is_top[s] ? used : -1;
+    if (c->is_top[s]) used += (long)(l.row_start[s + 1] - l.row_start[s]) * width;
+  }
+  *entries = (double)used;
+  return 0;
+}
+
+/* Adds L^-1 P b to y for a vector b that is zero but at unknowns of the top. */
+void keyway_cholmod_add_to_top(void *handle, int n, const double *b, double *y)
+{
+  struct keyway_cholmod *c = handle;
+  struct keyway_supernodes l = keyway_supernodes_of(c);
+  double *z = calloc((size_t)n, sizeof *z);
+  if (!z) return;
+  for (int i = 0; i < n; i++) z[c->place_of[i]] = b[i];
+  keyway_substitute_forward(&l, KEYWAY_UPPER, c->is_top, z, c->top_work);
+  for (int i = 0; i < n; i++) y[i] += z[i];
+  free(z);
+}
+
+/* The unknowns of the top in P^T L^-T y; other entries of x stay. */
+void keyway_cholmod_solve_top(void *handle, int n, const double *y, double *x)
+{
+  struct keyway_cholmod *c = handle;
+  struct keyway_supernodes l = keyway_supernodes_of(c);
+  const int *perm = c->factor->Perm;
+  double *z = malloc((size_t)n * sizeof *z);
+  if (!z) return;
+  memcpy(z, y, (size_t)n * sizeof *z);
+  keyway_substitute_backward(&l, KEYWAY_UPPER, c->is_top, z, c->top_work);
+  for (int j = 0; j < n; j++)
+    if (c->is_top[c->super_of[j]]) x[perm[j]] = z[j];
+  free(z);
+}
+
+/* Inverts the top; `entries` as from choose_top. Returns 0 for success. */
+int keyway_cholmod_invert_top(void *handle, double entries)
+{
+  struct keyway_cholmod *c = handle;
+  struct keyway_supernodes l = keyway_supernodes_of(c);
+  if (c->single) return 1;
+  c->inverse = malloc((size_t)entries * sizeof(double));
+  if (!c->inverse) return -2;
+  return keyway_invert(&l, c->super_of, c->top_start, c->inverse);
+}
+
+/* Entries of the inverse of the matrix for pairs of unknowns of the top, 0-based. Returns how many
+ * are not known and set to zero, negative without memory. */
+int keyway_cholmod_inverse(void *handle, int rows, const int *row, int columns, const int *column,
+                           double *block)
+{
+  struct keyway_cholmod *c = handle;
+  struct keyway_supernodes l = keyway_supernodes_of(c);
+  int *place = malloc(((size_t)rows + (size_t)columns) * sizeof *place), answer;
+  if (!place) return -1;
+  for (int i = 0; i < rows; i++) place[i] = c->place_of[row[i]];
+  for (int i = 0; i < columns; i++) place[rows + i] = c->place_of[column[i]];
+  answer = keyway_inverse_entries(&l, c->super_of, c->top_start, c->inverse, rows, place, columns,
+                                  place + rows, block);
+  free(place);
+  return answer;
+}
+
+/* Frees the inverse of the top. */
+void keyway_cholmod_forget_inverse(void *handle)
+{
+  struct keyway_cholmod *c = handle;
+  free(c->inverse);
+  c->inverse = NULL;
+}

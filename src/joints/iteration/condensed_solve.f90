@@ -1,0 +1,194 @@
+!> One solve of the condensed equilibrium (theory.md, 8): Newton's method on the jumps between
+!> forward and backward substitution.
+submodule(condensation) condensed_solve
+  implicit none
+
+  !> Most corrections for the blocks of G that are left out.
+  integer, parameter :: most_passes = 12
+
+contains
+
+  !> Newton's method on the jumps between forward and backward substitution, again while the
+  !> blocks of G that are left out move the jumps. Without the Schur block it takes two full solves:
+  !> one for the guess, one for the change.
+  module subroutine solve_from(self, balance, joints, old, new, x, outcome, error)
+    class(condensed_equilibrium), intent(inout) :: self
+    type(force_balance), intent(in) :: balance
+    type(dam_joint), intent(in) :: joints(:)
+    type(joint_state), intent(in) :: old(:)
+    type(joint_state), intent(inout) :: new(:)
+    real(rk), intent(out) :: x(:)
+    type(balance_outcome), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: error
+    type(joint_field) :: field, start
+    real(rk), dimension(3, self%operator%num_points) :: excess, last_excess
+    real(rk), allocatable :: half(:)
+    integer :: pass, iterations
+    iterations = 0
+    associate (k_ref => self%condensed%k_ref, operator => self%operator)
+      call start_iteration(balance, joints, operator, k_ref, self%condensed%scale, old, field, new)
+      last_excess = excess_traction(k_ref, field%jump, balance%offset, field%iterate)
+      call begin_solve(self, balance, last_excess, half, x, error)
+      if (allocated(error)) return
+      call operator%jumps(x, field%response)
+      field%response = field%response + balance%offset
+      do pass = 1, most_passes
+        call self%costs%start('iterate', 'joints', 'joint')
+        if (self%controls%most_unsaved < huge(1)) start = field
+        call iterate_on_jumps(self%condensed, self%controls, joints, operator, old, field, new, &
+                              outcome)
+        call self%costs%stop()
+        if (outcome%iterations > self%controls%most_unsaved) then
+          call save_increment(self, balance, joints, old, start, error)
+          if (allocated(error)) return
+        end if
+        iterations = iterations + outcome%iterations
+        outcome%iterations = iterations
+        if (.not. outcome%has_converged) return
+        excess = excess_traction(k_ref, field%jump, balance%offset, field%iterate)
+        if (self%condensed%blocks%is_complete) exit
+        call find_drift(self, balance, new, excess - last_excess, half, field)
+        last_excess = excess
+        if (field%drift <= allowed_drift*self%controls%residual_tolerance) exit
+        call linearise_again(self%condensed, joints, operator, old, field, new)
+      end do
+    end associate
+    outcome%has_converged = pass <= most_passes
+    self%excess = excess
+    call end_solve(self, balance%is_partial, excess - last_excess, half, x, error)
+  end subroutine solve_from
+
+  !> Saves an increment as a problem of its own (--save-joint-problems).
+  subroutine save_increment(self, balance, joints, old, start, error)
+    class(condensed_equilibrium), intent(in) :: self
+    type(force_balance), intent(in) :: balance
+    type(dam_joint), intent(in) :: joints(:)
+    type(joint_state), intent(in) :: old(:)
+    type(joint_field), intent(in) :: start !< of the iteration
+    type(error_type), allocatable, intent(out) :: error
+    type(saved_operator) :: common
+    type(saved_problem) :: problem
+    character(:), allocatable :: path
+    path = free_path(self%controls%stem_of_problems)
+    if (len(path) == 0) return
+    common%weight = self%weight
+    common%compliance = self%condensed%blocks%as_dense()
+    common%operator = self%operator
+    problem = saved_problem(self%controls, joints, old, balance, &
+                            closed_response(self%condensed, self%operator%area, start))
+    problem%balance%guess = start%jump
+    problem%balance%guess_traction = start%multiplier
+    call save_problem(path, common, problem, error)
+  end subroutine save_increment
+
+  !> Jumps from the Schur block after a pass, and how far they are from those of the blocks of G.
+  subroutine find_drift(self, balance, new, change, half, field)
+    class(condensed_equilibrium), intent(inout) :: self
+    type(force_balance), intent(in) :: balance
+    type(joint_state), intent(in) :: new(:)
+    real(rk), intent(in) :: change(:, :) !< (3, points) of the excess traction [Pa]
+    real(rk), intent(inout) :: half(:) !< (free unknowns) after forward substitution
+    type(joint_field), intent(inout) :: field
+    real(rk) :: x(size(balance%rhs) + self%num_held)
+    call self%costs%start('correct', 'joints', 'joint')
+    x = 0.0_rk
+    call self%operator%add_forces(self%weight*change, x)
+    call self%jumps%add_jump_forces(x, half)
+    x = 0.0_rk
+    call self%jumps%store_jumps(half, x)
+    if (allocated(self%base)) x(:size(half)) = x(:size(half)) + self%base
+    call self%operator%jumps(x, field%response)
+    field%response = field%response + balance%offset
+    field%drift = self%jump_drift(balance, new, field%response - field%jump)
+    call self%costs%stop()
+  end subroutine find_drift
+
+  !> Response to the guess: forward substitution and jumps, or all unknowns.
+  subroutine begin_solve(self, balance, excess, half, x, error)
+    class(condensed_equilibrium), intent(inout) :: self
+    type(force_balance), intent(in) :: balance
+    real(rk), intent(in) :: excess(:, :) !< (3, points) [Pa]
+    real(rk), allocatable, intent(out) :: half(:) !< (free unknowns) after forward substitution
+    real(rk), intent(out) :: x(:) !< (all unknowns)
+    type(error_type), allocatable, intent(out) :: error
+    if (.not. self%jumps%is_there) then
+      call respond(self, balance%rhs, excess, self%admissible, x, error)
+      return
+    end if
+    x = 0.0_rk
+    call self%operator%add_forces(self%weight*excess, x)
+    half = balance%rhs + x(:size(balance%rhs))
+    call self%costs%start('solve forward', 'structure', 'solver')
+    if (self%exact%is_rounded()) call subtract_base(self, half)
+    if (self%repeated%is_there(self%factor)) then
+      if (.not. balance%is_repeated) call self%repeated%start(self%factor, half, error)
+      call self%repeated%forward(self%factor, half, error)
+    else
+      call self%factor%forward_substitute(half, error)
+    end if
+    x = 0.0_rk
+    call self%jumps%store_jumps(half, x)
+    if (allocated(self%base)) x(:size(half)) = x(:size(half)) + self%base
+    call self%costs%stop()
+  end subroutine begin_solve
+
+  !> Subtracts the forces of the base, which is predicted where there is no solution yet.
+  subroutine subtract_base(self, b)
+    type(condensed_equilibrium), intent(inout) :: self
+    real(rk), intent(inout) :: b(:) !< (free unknowns) [N]
+    if (.not. allocated(self%base)) then
+      allocate (self%base(size(b)), self%base_force(size(b)))
+      call self%exact%predict(b, self%base, self%base_force)
+    end if
+    b = b - self%base_force
+  end subroutine subtract_base
+
+  !> All unknowns, with the change of the joint forces since the guess.
+  subroutine end_solve(self, is_partial, change, half, x, error)
+    class(condensed_equilibrium), intent(inout) :: self
+    logical, intent(in) :: is_partial !< active unknowns alone
+    real(rk), intent(in) :: change(:, :) !< (3, points) of the excess traction [Pa]
+    real(rk), allocatable, intent(inout) :: half(:)
+    real(rk), intent(inout) :: x(:) !< (all unknowns)
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: correction(size(x)), no_load(self%jumps%num_free)
+    if (self%jumps%is_there) then
+      correction = 0.0_rk
+      call self%operator%add_forces(self%weight*change, correction)
+      call self%costs%start('solve backward', 'structure', 'solver')
+      call self%jumps%add_jump_forces(correction, half)
+      x = 0.0_rk
+      if (self%repeated%is_there(self%factor)) then
+        call self%repeated%backward(self%factor, half, is_partial, x(:size(half)), error)
+      else
+        call self%factor%backward_substitute(half, error)
+        x(:size(half)) = half
+      end if
+      if (allocated(self%base)) x(:size(half)) = x(:size(half)) + self%base
+      call self%costs%stop()
+    else if (any(abs(change) > 0.0_rk)) then
+      no_load = 0.0_rk
+      call respond(self, no_load, change, self%admissible, correction, error)
+      x = x + correction
+    end if
+  end subroutine end_solve
+
+  !> x = K_0^-1 (rhs + weight*B^T area*excess).
+  subroutine respond(self, rhs, excess, admissible, x, error)
+    type(condensed_equilibrium), intent(inout) :: self
+    real(rk), intent(in) :: rhs(:) !< (free unknowns)
+    real(rk), intent(in) :: excess(:, :) !< (3, points) [Pa]
+    real(rk), intent(in) :: admissible !< norm of the residual, for a factor in single precision [N]
+    real(rk), intent(out) :: x(:) !< (all unknowns)
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: b(:, :)
+    x = 0.0_rk
+    call self%operator%add_forces(self%weight*excess, x)
+    b = reshape(rhs + x(:size(rhs)), [size(rhs), 1])
+    call self%costs%start('solve', 'structure', 'solver')
+    call self%solve_with_factor(admissible, b, error)
+    call self%costs%stop()
+    x = 0.0_rk
+    x(:size(rhs)) = b(:, 1)
+  end subroutine respond
+end submodule condensed_solve
