@@ -2,6 +2,7 @@ set(sources
   checkpoints/checkpoint_files.f90
   checkpoints/checkpoint_identity.f90
   checkpoints/run_checkpoint.f90
+  fields/error_fields.f90
   fields/field_help.f90
   fields/field_table.f90
   fields/field_type.f90
@@ -20,16 +21,19 @@ set(sources
   quantities/joint_surface.f90
   quantities/law_fields.f90
   quantities/node_means.f90
+  quantities/stress_error.f90
   quantities/stress_fields.f90
   quantities/stress_operator.f90
   quantities/stress_recovery.f90
   record/record_archive.f90
   record/requested_fields.f90
   record/result_writer.f90
+  record/space_errors.f90
   record/run_records.f90
   result_files.f90
   summary/run_closing.f90
   summary/damage_json.f90
+  summary/error_json.f90
   summary/joint_json.f90
   summary/material_summary.f90
   summary/run_progress.f90

@@ -4,7 +4,8 @@
 !> Files with several fields keep the order of the table.
 module field_table
   use field_type, only: result_field, at_nodes, at_points, at_joints, on_faces, &
-                        by_solver, by_recovery, by_law, by_joint, scalar, vector, tensor, counted
+                        at_elements, by_solver, by_recovery, by_law, by_joint, scalar, vector, &
+                        tensor, counted
   use motion_fields, only: displacement, velocity, acceleration, reaction, has_motion, &
                            has_reactions
   use solid_fields, only: stress_on_nodes, stress_of_solids, stress_of_block, strain_on_nodes, &
@@ -12,6 +13,7 @@ module field_table
                           principals_of_solids, extreme_on_nodes, extreme_near_nodes, &
                           extreme_of_block, width_in_blocks, law_width, law_on_nodes, &
                           law_of_solids, law_of_block
+  use error_fields, only: error_of_elements, error_on_nodes
   use joint_fields, only: has_joints, opening_on_nodes, opening_of_joint, slip_of_joint, &
                           traction_of_joint, state_of_joint, used_slip_of_joint, water_of_joint
   use json_writer, only: lower
@@ -96,6 +98,15 @@ contains
                place=at_nodes, wants_smallest=.true., &
                remark='Smallest principal stress of the mean tensor at a node.', &
                provider=by_recovery, requests='ENVELOPE', on_nodes=extreme_on_nodes))
+    call enter(rows, last, result_field( &
+               name='ERROR', meaning='error of the mesh in the stresses', endings=scalar, &
+               unit='1', place=at_elements, &
+               remark='Estimated part of an element in the error of the stresses, over '// &
+               'the norm of the stresses of the whole model (energy norm). '// &
+               'The squares of all elements add up to the square of "relative" in job.json. '// &
+               'On nodes the mean of the elements.', &
+               provider=by_recovery, requests='EL FILE', on_nodes=error_on_nodes, &
+               of_elements=error_of_elements))
     call list_stresses_of_laws(rows, last)
   end subroutine list_stresses
 

@@ -8,18 +8,20 @@ module field_type
   implicit none
   private
   public :: result_field
-  public :: at_nodes, at_points, at_joints, on_faces, place_names
+  public :: at_nodes, at_points, at_joints, on_faces, at_elements, place_names
   public :: by_solver, by_recovery, by_law, by_joint, by_guest
   public :: scalar, vector, tensor, counted
-  public :: values_on_nodes, values_at_points, values_of_block, values_of_joint, width_of, presence
+  public :: values_on_nodes, values_at_points, values_of_block, values_of_joint
+  public :: values_of_elements, width_of, presence
 
   !> Where the values of a field are defined.
   integer, parameter :: at_nodes = 1
   integer, parameter :: at_points = 2 !< integration points of solids; their means on nodes
   integer, parameter :: at_joints = 3 !< points of joints
   integer, parameter :: on_faces = 4 !< points of joints, only on drawn faces
-  character(12), parameter :: place_names(4) = ['nodes       ', 'solid points', 'joint points', &
-                                                'joint faces ']
+  integer, parameter :: at_elements = 5 !< one value for each solid; their means on nodes
+  character(12), parameter :: place_names(5) = ['nodes       ', 'solid points', 'joint points', &
+                                                'joint faces ', 'elements    ']
 
   !> Part of the program that computes a field.
   character(*), parameter :: by_solver = 'equations of motion'
@@ -52,6 +54,7 @@ module field_type
     procedure(values_on_nodes), pointer :: on_nodes => null()
     procedure(values_at_points), pointer :: of_solids => null()
     procedure(values_of_block), pointer :: of_block => null()
+    procedure(values_of_elements), pointer :: of_elements => null()
     procedure(values_of_joint), pointer :: of_joint => null()
   contains
     procedure :: width
@@ -116,6 +119,17 @@ module field_type
       integer, intent(in) :: block !< position in the problem's list
       real(rk), allocatable, intent(out) :: values(:, :) !< (components, points); unallocated: zero
     end subroutine values_of_block
+
+    !> Values of all elements of the mesh.
+    subroutine values_of_elements(self, model, now, stresses, values)
+      import :: result_field, problem, state, recovered_fields, rk
+      implicit none
+      class(result_field), intent(in) :: self
+      type(problem), intent(in) :: model
+      type(state), intent(in) :: now
+      type(recovered_fields), intent(inout) :: stresses !< of this increment
+      real(rk), allocatable, intent(out) :: values(:) !< (elements), zero where there is no solid
+    end subroutine values_of_elements
 
     !> Values at the points of a joint.
     subroutine values_of_joint(self, model, now, number, values)

@@ -10,6 +10,8 @@ module stress_fields
   use law_fields, only: field_at_points, find_inelastic_solids, nodes_of_solids, &
                         is_zero_while_elastic
   use stress_operator, only: nodal_operator, make_nodal_operator, apply_operator
+  use stress_error, only: smoothing_plan, make_smoothing_plan, stress_defect, energy_of_stresses, &
+                          repeat_single_points, add_hourglass_energy
   implicit none
   private
   public :: recovered_fields, principals
@@ -31,6 +33,12 @@ module stress_fields
     real(rk), allocatable :: point_strain(:, :, :), point_stress(:, :, :)
     real(rk), allocatable :: node_strain(:, :), node_stress(:, :)
     real(rk), allocatable :: node_principal(:, :) !< (3, nodes), the largest first [Pa]
+    logical :: has_smoothing = .false. !< made once
+    logical :: has_error = .false. !< valid for this increment
+    type(smoothing_plan) :: smoothing
+    real(rk), allocatable :: defect(:, :, :) !< (6, max_points, solids) smooth less own stress [Pa]
+    !> (solids) squares of the energy norms of the error and of the stress [J]
+    real(rk), allocatable :: error_energy(:), stress_energy(:)
   contains
     procedure :: invalidate
     procedure :: need_plan
@@ -39,6 +47,7 @@ module stress_fields
     procedure :: need_node_strain
     procedure :: need_node_stress
     procedure :: need_principals
+    procedure :: need_error
     procedure :: field_on_nodes
     procedure :: points_on_nodes
     procedure, private :: correct_inelastic
@@ -54,6 +63,7 @@ contains
     self%has_node_strain = .false.
     self%has_node_stress = .false.
     self%has_principals = .false.
+    self%has_error = .false.
   end subroutine invalidate
 
   !> Makes the plan unless it exists.
@@ -217,6 +227,30 @@ contains
     self%node_principal = principals(self%node_stress)
     self%has_principals = .true.
   end subroutine need_principals
+
+  !> Computes the error of the stresses of each solid, once an increment (theory.md, 14.1).
+  subroutine need_error(self, model, now)
+    class(recovered_fields), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    if (self%has_error) return
+    call self%need_points(model, now)
+    if (.not. self%has_smoothing) call make_smoothing_plan(model, self%plan, self%smoothing)
+    self%has_smoothing = .true.
+    if (.not. allocated(self%defect)) then
+      allocate (self%defect(6, max_points, self%plan%num_solids))
+      allocate (self%error_energy(self%plan%num_solids), self%stress_energy(self%plan%num_solids))
+    end if
+    call repeat_single_points(self%plan, self%point_stress)
+    call stress_defect(self%plan, self%smoothing, self%point_stress, self%is_inelastic, &
+                       self%defect)
+    call energy_of_stresses(model, self%plan, self%smoothing, self%defect, self%defect, &
+                            self%error_energy)
+    call add_hourglass_energy(model, self%plan, now%u, self%error_energy)
+    call energy_of_stresses(model, self%plan, self%smoothing, self%point_stress, &
+                            self%point_stress, self%stress_energy)
+    self%has_error = .true.
+  end subroutine need_error
 
   !> Principal values of many tensors.
   function principals(tensor) result(values)

@@ -11,6 +11,7 @@ module record_archive
   use joint_readings, only: joint_record
   use damage_readings, only: damage_record, damage_extreme
   use run_records, only: run_record, text_item
+  use space_errors, only: space_error
   implicit none
   private
   public :: save_record, load_record
@@ -29,6 +30,9 @@ contains
     call file%put('most_taken', record%most_taken)
     call file%put('last_strain', record%last_strain)
     call file%put('last_fracture', record%last_fracture)
+    call file%open_group('space')
+    call save_space_error(record%space, file)
+    call file%close_group()
     ! Stresses by the operator and through the points differ by round-off.
     call file%put('num_recoveries', record%stresses%num_recoveries)
     call file%put('has_operator', record%stresses%has_operator .or. record%stresses%had_operator)
@@ -67,6 +71,9 @@ contains
     call file%get('most_taken', record%most_taken)
     call file%get('last_strain', record%last_strain)
     call file%get('last_fracture', record%last_fracture)
+    call file%open_group('space')
+    call load_space_error(record%space, file)
+    call file%close_group()
     call file%get('num_recoveries', record%stresses%num_recoveries)
     call file%get('has_operator', record%stresses%had_operator)
     call file%confirm('num_joints', size(record%joints))
@@ -94,6 +101,26 @@ contains
     call record%stresses%invalidate()
     call file%report(error)
   end subroutine load_record
+
+  !> Writes the error of the mesh.
+  subroutine save_space_error(record, file)
+    type(space_error), intent(in) :: record
+    class(archive), intent(inout) :: file
+    call file%put('stress', record%stress)
+    call file%put('error', record%error)
+    call file%put('time', record%time)
+    call file%put('sampled', record%sampled)
+  end subroutine save_space_error
+
+  !> Reads the error of the mesh.
+  subroutine load_space_error(record, file)
+    type(space_error), intent(inout) :: record
+    class(archive), intent(inout) :: file
+    call file%get('stress', record%stress)
+    call file%get('error', record%error)
+    call file%get('time', record%time)
+    call file%get('sampled', record%sampled)
+  end subroutine load_space_error
 
   !> Writes the maxima of one joint.
   subroutine save_joint_record(record, file)

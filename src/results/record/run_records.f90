@@ -11,6 +11,7 @@ module run_records
   use joint_readings, only: joint_record, open_joint_record, note_joint
   use damage_readings, only: damage_record, open_damage_record, note_damage
   use law_fields, only: mean_of_elements
+  use space_errors, only: space_error, note_space_error
   use stress_fields, only: recovered_fields
   use field_table, only: list_fields, find_field
   use guest_fields, only: add_guest_fields
@@ -40,6 +41,7 @@ module run_records
     type(joint_record), allocatable :: joints(:)
     type(damage_record) :: damage
     type(extremes_by_face) :: displacement !< length of the vector, relative to the base [m]
+    type(space_error) :: space !< error that the mesh leaves
     type(envelope), allocatable :: envelopes(:) !< of all steps so far
     integer, allocatable :: active(:) !< envelopes of the present step
     type(text_item), allocatable :: warnings(:)
@@ -128,6 +130,9 @@ contains
     do j = 1, size(model%joints)
       call note_joint(self%joints(j), model%joints(j), now%joints(j), now%total_time)
     end do
+    call costs%start('estimate', 'mesh', 'output')
+    call note_space_error(model, now, self%stresses, self%space)
+    call costs%stop()
     if (size(self%active) == 0) return
     call costs%start('recover', 'envelopes', 'output')
     do i = 1, size(self%active)

@@ -32,7 +32,8 @@ contains
     end if
     text = text//lines_of_modes(model, summary)//lines_of_envelopes(model, summary, record)// &
            lines_of_joints(model, summary, record)//lines_of_damage(model, summary, record)// &
-           lines_of_accuracy(model, summary)//line_of_remarks(summary, record)//line_of_costs(costs)
+           lines_of_accuracy(model, summary)//line_of_mesh(record)// &
+           line_of_remarks(summary, record)//line_of_costs(costs)
   end function closing_lines
 
   !> Frequencies of each step that finds them.
@@ -147,6 +148,17 @@ contains
       end do
     end associate
   end function lines_of_accuracy
+
+  !> What the mesh leaves in the stresses (theory.md, 14.1).
+  function line_of_mesh(record) result(text)
+    type(run_record), intent(in) :: record
+    character(:), allocatable :: text
+    text = ''
+    if (record%space%stress <= 0.0_rk) return
+    text = nl//'error of the mesh in the stresses: '// &
+           as_short_text(100.0_rk*record%space%relative())//' % of all stresses together '// &
+           '(energy norm), time '//as_short_text(record%space%time)
+  end function line_of_mesh
 
   !> Numbers of warnings and ignored cards.
   function line_of_remarks(summary, record) result(text)

@@ -13,6 +13,7 @@ module summary_json
   use run_records, only: run_record
   use run_summaries, only: run_summary, step_summary
   use json_writer, only: json_text, lower
+  use error_json, only: put_estimates
   use joint_json, only: put_joints, put_interfaces, put_extremes
   use damage_json, only: put_damage
   use umat_json, only: put_umat
@@ -256,6 +257,7 @@ contains
     type(run_summary), intent(in) :: summary
     type(run_record), intent(in) :: record
     call json%open_object('accuracy')
+    call put_estimates(json, record)
     call json%put_real(maxval([0.0_rk, summary%steps%largest_residual]), 'largest_residual')
     call json%put_real(maxval([0.0_rk, summary%steps%largest_error]), 'largest_energy_error')
     call json%put_integer(maxval([0, summary%steps%most_iterations]), 'most_iterations')

@@ -225,11 +225,35 @@ contains
         call put_field(self%file, group//'/'//item%name, values, item%components(size(values, 1)))
       end associate
     end do
+    call add_elements(self%file, model, now, record, fields, group)
     call add_points(self%file, model, now, record%fields(fields), group)
     if (asks_for_joints(record, fields)) then
       call put_joints(self%file, model, now, record%fields, group//'/joints')
     end if
   end subroutine add_fields
+
+  !> The group `elements` of an increment: fields with one value for each element.
+  subroutine add_elements(file, model, now, record, fields, group)
+    type(hdf5_file), intent(inout) :: file
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    type(run_record), intent(inout) :: record
+    integer, intent(in) :: fields(:) !< rows of the record's table
+    character(*), intent(in) :: group !< of the increment
+    real(rk), allocatable :: values(:)
+    logical :: has_group
+    integer :: i
+    has_group = .false.
+    do i = 1, size(fields)
+      associate (item => record%fields(fields(i)))
+        if (.not. associated(item%of_elements)) cycle
+        if (.not. has_group) call file%make_group(group//'/elements')
+        has_group = .true.
+        call item%of_elements(model, now, record%stresses, values)
+        call file%put(group//'/elements/'//item%name, values)
+      end associate
+    end do
+  end subroutine add_elements
 
   !> Frequencies, effective masses and shapes of a *FREQUENCY step.
   subroutine write_mode_data(self, model, step, modes, record, error)

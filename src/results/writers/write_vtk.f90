@@ -136,6 +136,10 @@ contains
     do i = 1, size(fields)
       call put_field(file, model, now, record, fields(i))
       associate (item => record%fields(fields(i)))
+        if (associated(item%of_elements)) then
+          call item%of_elements(model, now, record%stresses, mean)
+          call file%put_cell_reals(item%name//'_ELEMENT', mean(self%elements))
+        end if
         if (.not. item%has_means) cycle
         call mean_of_elements(model, now, item%name, mean)
         call file%put_cell_reals(item%name//'_MEAN', mean(self%elements))

@@ -55,6 +55,10 @@ contains
     record%most_taken = 1.1_rk
     record%last_strain = 2.2_rk
     record%last_fracture = 3.3_rk
+    record%space%stress = 4.4_rk
+    record%space%error = 5.5_rk
+    record%space%time = 6.6_rk
+    record%space%sampled = 7.7_rk
     do i = 1, size(record%joints)
       associate (joint => record%joints(i))
         call fill_extremes(10.0_rk*i, joint%opening)
@@ -123,6 +127,10 @@ contains
     call compare(log, 'last_strain', a%last_strain, b%last_strain)
     call compare(log, 'last_fracture', a%last_fracture, b%last_fracture)
     call compare_extremes(log, 'displacement', a%displacement, b%displacement)
+    call compare(log, 'space stress', a%space%stress, b%space%stress)
+    call compare(log, 'space error', a%space%error, b%space%error)
+    call compare(log, 'space time', a%space%time, b%space%time)
+    call compare(log, 'space sampled', a%space%sampled, b%space%sampled)
     do i = 1, size(a%joints)
       call compare_extremes(log, 'opening', a%joints(i)%opening, b%joints(i)%opening)
       call compare_extremes(log, 'slip', a%joints(i)%slip, b%joints(i)%slip)

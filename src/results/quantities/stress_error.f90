@@ -1,0 +1,203 @@
+!> The error that the mesh leaves in the stresses: the stress of the elements compared with a
+!> smooth stress (theory.md, 14.1).
+!>
+!> The smooth stress has one value for each node and section, the mean of the corners there, and the
+!> shape functions of the element between the nodes. Across sections it may jump.
+module stress_error
+  use kinds, only: rk
+  use dam_mesh, only: fe_mesh
+  use element_hex8, only: hex8_gradients
+  use node_dofs, only: gather_vectors
+  use problem_definition, only: problem
+  use shape_hex8, only: corners_from_points, corner_of_point, hex8_dofs, point_shape
+  use small_matrix, only: solve_dense
+  use stress_recovery, only: recovery_plan, max_points, few_nodes
+  implicit none
+  private
+  public :: smoothing_plan, make_smoothing_plan, stress_defect, energy_of_stresses
+  public :: repeat_single_points, add_hourglass_energy
+
+  !> A patch is a node with the solids of one section around it.
+  type :: smoothing_plan
+    integer :: num_patches = 0
+    integer, allocatable :: patch(:, :) !< (8, solids)
+    real(rk), allocatable :: volume(:, :) !< (points, solids) [m3]
+    real(rk), allocatable :: compliance(:, :, :) !< (6, 6, materials) [1/Pa]
+  end type smoothing_plan
+
+contains
+
+  !> Numbers the patches, and finds volumes and compliances.
+  subroutine make_smoothing_plan(model, plan, smoothing)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    type(smoothing_plan), intent(out) :: smoothing
+    real(rk) :: gradient(3, 8, 8)
+    integer :: s, status
+    call number_patches(model%mesh, plan, smoothing)
+    allocate (smoothing%volume(max_points, plan%num_solids))
+    do s = 1, plan%num_solids
+      associate (nodes => model%mesh%nodes(:, plan%element_of_solid(s)))
+        call hex8_gradients(model%mesh%x(:, nodes), gradient, smoothing%volume(:, s), status)
+      end associate
+    end do
+    call invert_stiffness(model, smoothing%compliance)
+  end subroutine make_smoothing_plan
+
+  !> Numbers the pairs of node and section: the patches of a node form a chain.
+  subroutine number_patches(mesh, plan, smoothing)
+    type(fe_mesh), intent(in) :: mesh
+    type(recovery_plan), intent(in) :: plan
+    type(smoothing_plan), intent(inout) :: smoothing
+    integer, allocatable :: first(:), next(:), section(:)
+    integer :: s, a, e, p
+    allocate (smoothing%patch(8, plan%num_solids))
+    allocate (first(mesh%num_nodes), next(8*plan%num_solids), section(8*plan%num_solids), source=0)
+    do s = 1, plan%num_solids
+      e = plan%element_of_solid(s)
+      do a = 1, 8
+        p = first(mesh%nodes(a, e))
+        do while (p > 0)
+          if (section(p) == mesh%section_of_element(e)) exit
+          p = next(p)
+        end do
+        if (p == 0) then
+          smoothing%num_patches = smoothing%num_patches + 1
+          p = smoothing%num_patches
+          section(p) = mesh%section_of_element(e)
+          next(p) = first(mesh%nodes(a, e))
+          first(mesh%nodes(a, e)) = p
+        end if
+        smoothing%patch(a, s) = p
+      end do
+    end do
+  end subroutine number_patches
+
+  !> The elastic compliance of each material; zero for materials of joints alone.
+  subroutine invert_stiffness(model, compliance)
+    type(problem), intent(in) :: model
+    real(rk), allocatable, intent(out) :: compliance(:, :, :)
+    real(rk) :: d(6, 6), unit(6, 6)
+    logical :: is_singular
+    integer :: m, i
+    unit = 0.0_rk
+    do i = 1, 6
+      unit(i, i) = 1.0_rk
+    end do
+    allocate (compliance(6, 6, size(model%materials)), source=0.0_rk)
+    do m = 1, size(model%materials)
+      if (.not. allocated(model%materials(m)%law)) cycle
+      call model%materials(m)%law%elastic_stiffness(d)
+      call solve_dense(d, unit, compliance(:, :, m), is_singular)
+      if (is_singular) compliance(:, :, m) = 0.0_rk
+    end do
+  end subroutine invert_stiffness
+
+  !> Repeats the stress of elements with one point at the other points.
+  pure subroutine repeat_single_points(plan, stress)
+    type(recovery_plan), intent(in) :: plan
+    real(rk), intent(inout) :: stress(:, :, :) !< (6, max_points, solids) [Pa]
+    integer :: s
+    do s = 1, plan%num_solids
+      if (plan%num_points(s) == 1) stress(:, 2:, s) = spread(stress(:, 1, s), 2, max_points - 1)
+    end do
+  end subroutine repeat_single_points
+
+  !> The smooth stress less the stress of the elements, at 2 x 2 x 2 points of every solid.
+  subroutine stress_defect(plan, smoothing, stress, is_bounded, defect)
+    type(recovery_plan), intent(in) :: plan
+    type(smoothing_plan), intent(in) :: smoothing
+    real(rk), intent(in) :: stress(:, :, :) !< (6, max_points, solids) at the points [Pa]
+    logical, intent(in) :: is_bounded(:) !< (solids) corners take the value of the nearest point
+    real(rk), intent(out) :: defect(:, :, :) !< (6, max_points, solids) [Pa]
+    real(rk), allocatable :: smooth(:, :)
+    integer :: s
+    call average_patches(plan, smoothing, stress, is_bounded, smooth)
+    !$omp parallel do default(none) shared(plan, smoothing, stress, smooth, defect) &
+    !$omp schedule(static) if (plan%num_solids > few_nodes)
+    do s = 1, plan%num_solids
+      defect(:, :, s) = matmul(smooth(:, smoothing%patch(:, s)), point_shape)
+      defect(:, :, s) = defect(:, :, s) - stress(:, :, s)
+    end do
+    !$omp end parallel do
+  end subroutine stress_defect
+
+  !> The mean of the corners in each patch.
+  subroutine average_patches(plan, smoothing, stress, is_bounded, smooth)
+    type(recovery_plan), intent(in) :: plan
+    type(smoothing_plan), intent(in) :: smoothing
+    real(rk), intent(in) :: stress(:, :, :)
+    logical, intent(in) :: is_bounded(:)
+    real(rk), allocatable, intent(out) :: smooth(:, :) !< (6, patches) [Pa]
+    real(rk) :: to_corner(max_points, 8), at_corner(6, 8)
+    integer, allocatable :: num_corners(:)
+    integer :: s, a
+    to_corner = transpose(corners_from_points())
+    allocate (smooth(6, smoothing%num_patches), source=0.0_rk)
+    allocate (num_corners(smoothing%num_patches), source=0)
+    do s = 1, plan%num_solids
+      if (is_bounded(s)) then
+        at_corner = stress(:, corner_of_point, s)
+      else
+        at_corner = matmul(stress(:, :, s), to_corner)
+      end if
+      do a = 1, 8
+        associate (p => smoothing%patch(a, s))
+          smooth(:, p) = smooth(:, p) + at_corner(:, a)
+          num_corners(p) = num_corners(p) + 1
+        end associate
+      end do
+    end do
+    do a = 1, smoothing%num_patches
+      smooth(:, a) = smooth(:, a)/num_corners(a)
+    end do
+  end subroutine average_patches
+
+  !> The integral of first : D^-1 : second over each solid.
+  subroutine energy_of_stresses(model, plan, smoothing, first, second, energy)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    type(smoothing_plan), intent(in) :: smoothing
+    real(rk), intent(in) :: first(:, :, :), second(:, :, :) !< (6, max_points, solids) [Pa]
+    real(rk), intent(out) :: energy(:) !< (solids) [J]
+    integer :: s, q, m
+    !$omp parallel do default(none) shared(model, plan, smoothing, first, second, energy) &
+    !$omp private(q, m) schedule(static) if (plan%num_solids > few_nodes)
+    do s = 1, plan%num_solids
+      m = model%mesh%material_of_element(plan%element_of_solid(s))
+      energy(s) = 0.0_rk
+      do q = 1, max_points
+        energy(s) = energy(s) + smoothing%volume(q, s) &
+                    *dot_product(first(:, q, s), matmul(smoothing%compliance(:, :, m), &
+                                                        second(:, q, s)))
+      end do
+    end do
+    !$omp end parallel do
+  end subroutine energy_of_stresses
+
+  !> Adds the work of the hourglass control of elements with one point: no stress shows it.
+  subroutine add_hourglass_energy(model, plan, u, energy)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    real(rk), intent(in) :: u(:, :) !< (3, nodes) [m]
+    real(rk), intent(inout) :: energy(:) !< (solids) [J]
+    real(rk) :: d(6, 6), x(3, 8, 1), ke(hex8_dofs, hex8_dofs, 1), moved(hex8_dofs)
+    integer :: i, k, s
+    do i = 1, size(plan%blocks)
+      associate (part => plan%blocks(i))
+        if (plan%formulations(part%formulation)%item%num_points > 1) cycle
+        call model%materials(part%material)%law%elastic_stiffness(d)
+        do k = 1, size(part%solids)
+          s = part%solids(k)
+          associate (nodes => model%mesh%nodes(:, plan%element_of_solid(s)))
+            x(:, :, 1) = model%mesh%x(:, nodes)
+            moved = gather_vectors(u, nodes)
+          end associate
+          ke = 0.0_rk
+          call plan%formulations(part%formulation)%item%add_stabilisation(x, d, ke)
+          energy(s) = energy(s) + max(0.0_rk, dot_product(moved, matmul(ke(:, :, 1), moved)))
+        end do
+      end associate
+    end do
+  end subroutine add_hourglass_energy
+end module stress_error

@@ -1,0 +1,56 @@
+!> The error that the mesh leaves in the stresses, taken where it costs little: at the end of static
+!> steps, and whenever the strain energy has grown by a half since the last time (theory.md, 14.1).
+module space_errors
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use analysis_state, only: state
+  use stress_fields, only: recovered_fields
+  implicit none
+  private
+  public :: space_error, note_space_error
+
+  real(rk), parameter :: growth = 1.5_rk !< of the strain energy, from one sample to the next
+
+  !> Energy norms at the sample with the largest stresses.
+  type :: space_error
+    real(rk) :: stress = 0.0_rk !< root of twice the strain energy of the stresses [J^0.5]
+    real(rk) :: error = 0.0_rk !< of their error [J^0.5]
+    real(rk) :: time = 0.0_rk !< total time [s]
+    real(rk) :: sampled = 0.0_rk !< largest strain energy at a sample [J]
+  contains
+    procedure :: relative
+  end type space_error
+
+contains
+
+  !> The error over the norm of the true stresses, as far as it is known.
+  pure real(rk) function relative(self)
+    class(space_error), intent(in) :: self
+    relative = self%error/max(tiny(1.0_rk), hypot(self%stress, self%error))
+  end function relative
+
+  !> Takes a sample where one is due.
+  subroutine note_space_error(model, now, stresses, record)
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    type(recovered_fields), intent(inout) :: stresses !< of this increment
+    type(space_error), intent(inout) :: record
+    real(rk) :: norm
+    logical :: is_due
+    is_due = now%is_last_of_step .and. model%steps(now%step)%procedure%is_static()
+    ! A reduced model has stresses at the end of its step.
+    if (now%reduction%num_modes == 0) then
+      is_due = is_due .or. now%energy%strain > growth*record%sampled
+    else
+      is_due = is_due .or. now%is_last_of_step
+    end if
+    if (.not. is_due .or. now%energy%strain <= 0.0_rk) return
+    record%sampled = max(record%sampled, now%energy%strain)
+    call stresses%need_error(model, now)
+    norm = sqrt(sum(stresses%stress_energy))
+    if (norm <= record%stress) return
+    record%stress = norm
+    record%error = sqrt(sum(stresses%error_energy))
+    record%time = now%total_time
+  end subroutine note_space_error
+end module space_errors
