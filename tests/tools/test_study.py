@@ -179,6 +179,24 @@ def test_a_small_budget_leaves_rungs_out_by_name(program_path, slide):
     assert "the error of the mesh is not known" in text
 
 
+def test_a_deck_with_errors_names_their_place(program_path, tmp_path):
+    (tmp_path / "bad.inp").write_text("*NODE\n1, 0., x\n")
+    command = [ROOT / "tools/accuracy", "bad.inp", "--program", program_path.resolve()]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, timeout=60)
+    assert done.returncode == 2
+    assert done.stderr.startswith("bad.inp:2: *NODE: found 'x'")
+
+
+def test_options_of_the_program_are_passed_on(program_path, tmp_path):
+    """A deck with a UMAT needs --umat."""
+    for name in ("elastic.inp", "elastic.for"):
+        (tmp_path / name).write_bytes((INPUT / "umat" / name).read_bytes())
+    deck = tmp_path / "elastic.inp"
+    call = ("--budget", "1m", "--", "--umat", "elastic.for")
+    text = call_tool(program_path.resolve(), deck, *call)
+    assert "largest displacement: your deck has an error" in text
+
+
 def test_effects_are_switched_off_in_turn(program_path, slide):
     text = call_tool(program_path.resolve(), slide, "--effects")
     names = [rung.name for rung in list_effects(base_deck(read_deck(slide)))]

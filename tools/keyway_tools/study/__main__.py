@@ -3,7 +3,8 @@
 Runs variants of the deck (increments, a refined mesh, elements, tolerances, ALPHA, stiffness of
 joints, solvers) within a time budget and writes accuracy.csv, accuracy.png and accuracy.html, which
 says what to choose for 10, 5, 2 and 1 %. With --effects it switches each effect of the deck off in
-turn and writes effects.html. A second call keeps the runs that have finished.
+turn and writes effects.html. A second call keeps the runs that have finished. Options of keyway
+follow a `--`, as in: tools/accuracy dam.inp -- --umat law.for
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from __future__ import annotations
 import argparse
 import os
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -51,7 +53,23 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     return parser.parse_args(arguments)
 
 
+def absolute_paths(options: list[str]) -> list[str]:
+    """Options with the full paths of files: the runs have folders of their own."""
+    return [str(Path(option).resolve()) if Path(option).is_file() else option for option in options]
+
+
+def check(program: Path, options: list[str], deck: Path) -> str:
+    """The errors of a deck, with their places in the user's files; '' for none."""
+    command = [str(program), *options, "--check", str(deck)]
+    done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    return done.stderr if done.returncode else ""
+
+
 def main(arguments: list[str]) -> int:
+    options: list[str] = []
+    if "--" in arguments:
+        cut = arguments.index("--")
+        arguments, options = arguments[:cut], absolute_paths(arguments[cut + 1 :])
     given = parse(arguments)
     if not given.deck.is_file():
         sys.stderr.write(f"accuracy: there is no deck '{given.deck}'\n")
@@ -59,11 +77,14 @@ def main(arguments: list[str]) -> int:
     if not given.program.is_file():
         sys.stderr.write(f"accuracy: no program '{given.program}'; tools/setup builds it\n")
         return 2
+    if faults := check(given.program.resolve(), options, given.deck):
+        sys.stderr.write(faults)
+        return 2
     folder = given.o or Path(f"{given.deck.stem}_accuracy")
     folder.mkdir(parents=True, exist_ok=True)
     deck = base_deck(read_deck(given.deck))
     rungs = list_effects(deck) if given.effects else list_rungs(deck)
-    runner = DeckRunner(given.program.resolve(), ["-j", str(given.threads)])
+    runner = DeckRunner(given.program.resolve(), ["-j", str(given.threads), *options])
     version = runner.version.splitlines()[0]
     try:
         outcomes = Ladder(deck, rungs, folder, runner, given.budget).run()

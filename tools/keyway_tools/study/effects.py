@@ -105,9 +105,15 @@ def without_weight(deck: Deck) -> Deck:
 def change_in_words(effect: str, changes: dict[str, float], saved: float) -> str:
     """'Without damping the opening is 80 % larger; the run takes 3 % less time.'"""
     parts = [
-        f"the {name} is {abs(change) * 100:.2g} % {'larger' if change > 0 else 'smaller'}"
+        f"the {name} is {percent(change)} {'larger' if change > 0 else 'smaller'}"
         for name, change in changes.items() if abs(change) >= 5e-5
     ]  # fmt: skip
     what = ", ".join(parts) if parts else "nothing changes by more than 0.005 %"
     time = f"the run takes {abs(saved) * 100:.0f} % {'less' if saved > 0 else 'more'} time"
     return f"{effect[0].upper()}{effect[1:]} {what}; {time}."
+
+
+def percent(change: float) -> str:
+    """Two significant digits, all digits of whole numbers."""
+    size = abs(change) * 100
+    return f"{size:.0f} %" if size >= 10.0 else f"{size:.2g} %"
