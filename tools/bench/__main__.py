@@ -1,6 +1,6 @@
 """Measures the time of runs relative to the equation solver, and the time for given accuracy.
 
-usage: .venv/bin/python tools/bench [run] [accuracy] [joints] [reduced] [peers]
+usage: .venv/bin/python tools/bench [run] [accuracy] [joints] [cracks] [reduced] [peers]
            [--sizes 48000 145000] [--json FILE]
 
 run (default): ratios of times taken in one process, which hardly depend on the machine:
@@ -16,6 +16,9 @@ FILE draws them.
 
 joints: dams of --joints joints in a strong motion: an increment in solves, the set-up of the joints
 in factorisations.
+
+cracks: a dam with two joints whose concrete cracks, Table 1 and a table of openings: increments in
+solves, iterations, share of the laws. --refine divides its elements.
 
 reduced: a dam with the first of --joints joints, with the full and with the reduced model: time of
 an increment, error of the openings and its estimate.
@@ -39,6 +42,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
 
 from cost_of_accuracy import draw, measure_accuracy, tables  # noqa: E402
+from cost_of_cracks import measure_cracks  # noqa: E402
 from cost_of_joints import DAMS, measure_joints  # noqa: E402
 from cost_of_reduced import measure_reduced  # noqa: E402
 from cost_of_run import Figure, measure_all  # noqa: E402
@@ -51,10 +55,11 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         prog="bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     add = parser.add_argument
-    add("what", nargs="*", metavar="run|accuracy|joints|peers", help="what to measure (run)")
+    add("what", nargs="*", metavar="run|accuracy|joints|cracks|peers", help="what to measure (run)")
     add("--sizes", type=int, nargs="+", default=[48_000, 145_000], help="unknowns of the models")
     add("--increments", type=int, default=60, help="dynamic increments (60)")
     add("--joints", type=int, nargs="+", default=[2, 12], choices=DAMS, help="of the dams (2 12)")
+    add("--refine", type=int, default=1, help="of the dam that cracks (1)")
     add("--threads", type=int, default=2, help="of the program (2)")
     add("--program", type=Path, default=ROOT / "build/release/keyway", help="the program")
     add("--json", type=Path, metavar="FILE", help="write the figures as JSON too")
@@ -62,8 +67,9 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("--picture", type=Path, metavar="FILE", help="draw time against accuracy")
     options = parser.parse_args(arguments)
     options.what = options.what or ["run"]
-    if set(options.what) - {"run", "accuracy", "joints", "peers", "reduced"}:
-        parser.error("expected 'run', 'accuracy', 'joints', 'peers' or 'reduced'")
+    known = {"run", "accuracy", "joints", "cracks", "reduced", "peers"}
+    if set(options.what) - known:
+        parser.error(f"expected one of {', '.join(sorted(known))}")
     return options
 
 
@@ -103,6 +109,9 @@ def main(arguments: list[str]) -> int:
         if "joints" in options.what:
             duration = 0.01 * options.increments  # of 0.01 s each
             print(measure_joints(program, folder, options.joints, duration))
+        if "cracks" in options.what:
+            duration = 0.04 * options.increments  # strong motion has begun after 0.4 s
+            print(measure_cracks(program, folder, options.refine, duration))
         if "reduced" in options.what:
             duration = 0.01 * options.increments
             print(measure_reduced(program, folder, options.joints[0], duration))
