@@ -5,6 +5,7 @@ module inelastic_blocks
   use kinds, only: rk
   use dam_mesh, only: fe_mesh
   use element_catalogue, only: is_solid, make_solid
+  use element_matrices, only: strains_at_points
   use element_formulation, only: solid_element
   use gauss_rules, only: hex_point
   use guest_history, only: history, stored_work
@@ -24,11 +25,15 @@ module inelastic_blocks
     integer, allocatable :: elements(:) !< positions in the mesh
     integer :: points_of_element = 0
     real(rk), allocatable :: b(:, :, :, :) !< (6, 24, points, elements) strain operators [1/m]
+    !> (points, 3, 8, elements) derivatives of the shape functions, where they alone make the strain
+    !> operators: a sixth of the numbers [1/m]
+    real(rk), allocatable :: slope(:, :, :, :)
     real(rk), allocatable :: weight(:, :) !< (points, elements) volumes of the points [m3]
     real(rk) :: d(6, 6) = 0.0_rk !< elastic stiffness of the law [Pa]
     type(point_set) :: points !< point q of element e is (e - 1)*points_of_element + q
   contains
     procedure :: add_work
+    procedure :: find_strains, add_forces
   end type inelastic_block
 
 contains
@@ -88,8 +93,86 @@ contains
               part%weight(part%points_of_element, size(elements)))
     call materials(part%material)%law%elastic_stiffness(part%d)
     call formulation%strain_operator(x, part%d, part%b, part%weight, status)
+    call find_slopes(part)
     call place_points(mesh%element_id(elements), x, part)
   end subroutine build_block
+
+  !> Takes the derivatives of the shape functions from the strain operators.
+  pure subroutine find_slopes(part)
+    type(inelastic_block), intent(inout) :: part
+    real(rk) :: plain(6, 3), g(3)
+    integer :: e, a, q, n
+    allocate (part%slope(size(part%b, 3), 3, 8, size(part%b, 4)))
+    do e = 1, size(part%b, 4)
+      do a = 1, 8
+        n = 3*a - 2
+        do q = 1, size(part%b, 3)
+          g = [part%b(1, n, q, e), part%b(2, n + 1, q, e), part%b(3, n + 2, q, e)]
+          part%slope(q, :, a, e) = g
+          plain(:, 1) = [g(1), 0.0_rk, 0.0_rk, g(2), g(3), 0.0_rk]
+          plain(:, 2) = [0.0_rk, g(2), 0.0_rk, g(1), 0.0_rk, g(3)]
+          plain(:, 3) = [0.0_rk, 0.0_rk, g(3), 0.0_rk, g(1), g(2)]
+          if (any(abs(part%b(:, n:n + 2, q, e) - plain) > 0.0_rk)) then
+            deallocate (part%slope)
+            return
+          end if
+        end do
+      end do
+    end do
+  end subroutine find_slopes
+
+  !> eps = B u at the points of all elements.
+  subroutine find_strains(self, u, strain)
+    class(inelastic_block), intent(in) :: self
+    real(rk), intent(in) :: u(:, :) !< (24, elements) [m]
+    real(rk), intent(out) :: strain(6, self%points_of_element, size(self%elements))
+    real(rk) :: sum_of(self%points_of_element, 6)
+    integer :: e, a, n
+    if (.not. allocated(self%slope)) then
+      call strains_at_points(self%b, u, strain)
+      return
+    end if
+    do e = 1, size(self%elements)
+      sum_of = 0.0_rk
+      do a = 1, 8
+        n = 3*a - 2
+        associate (g => self%slope(:, :, a, e))
+          sum_of(:, 1) = sum_of(:, 1) + g(:, 1)*u(n, e)
+          sum_of(:, 2) = sum_of(:, 2) + g(:, 2)*u(n + 1, e)
+          sum_of(:, 3) = sum_of(:, 3) + g(:, 3)*u(n + 2, e)
+          sum_of(:, 4) = sum_of(:, 4) + g(:, 2)*u(n, e) + g(:, 1)*u(n + 1, e)
+          sum_of(:, 5) = sum_of(:, 5) + g(:, 3)*u(n, e) + g(:, 1)*u(n + 2, e)
+          sum_of(:, 6) = sum_of(:, 6) + g(:, 3)*u(n + 1, e) + g(:, 2)*u(n + 2, e)
+        end associate
+      end do
+      strain(:, :, e) = transpose(sum_of)
+    end do
+  end subroutine find_strains
+
+  !> Adds sum B^T sigma of one element.
+  pure subroutine add_forces(self, e, stress, force)
+    class(inelastic_block), intent(in) :: self
+    integer, intent(in) :: e
+    real(rk), intent(in) :: stress(self%points_of_element, 6) !< times volumes of points [N m]
+    real(rk), intent(inout) :: force(hex8_dofs) !< [N]
+    integer :: a, n, q, i
+    if (allocated(self%slope)) then
+      do a = 1, 8
+        n = 3*a - 2
+        associate (g => self%slope(:, :, a, e), s => stress)
+          force(n) = force(n) + sum(g(:, 1)*s(:, 1) + g(:, 2)*s(:, 4) + g(:, 3)*s(:, 5))
+          force(n + 1) = force(n + 1) + sum(g(:, 2)*s(:, 2) + g(:, 1)*s(:, 4) + g(:, 3)*s(:, 6))
+          force(n + 2) = force(n + 2) + sum(g(:, 3)*s(:, 3) + g(:, 1)*s(:, 5) + g(:, 2)*s(:, 6))
+        end associate
+      end do
+      return
+    end if
+    do q = 1, self%points_of_element
+      do i = 1, hex8_dofs
+        force(i) = force(i) + sum(self%b(:, i, q, e)*stress(q, :))
+      end do
+    end do
+  end subroutine add_forces
 
   !> Numbers and places of the points.
   subroutine place_points(id, x, part)
@@ -117,6 +200,7 @@ contains
       end do
     end associate
   end subroutine place_points
+
   !> Energies of the points that have yielded or cracked; all others contribute nothing.
   subroutine add_work(self, own, total)
     class(inelastic_block), intent(in) :: self

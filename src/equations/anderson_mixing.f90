@@ -13,10 +13,12 @@ module anderson_mixing
   real(rk), parameter :: least_angle = 1.0e-10_rk
 
   type :: mixer
+    integer, allocatable :: rows(:) !< unknowns that change; not allocated: all
     integer :: num_pairs = 0
-    !> (unknowns, pairs) differences of s and of g(s) - s
+    !> (rows, pairs) differences of s and of g(s) - s
     real(rk), allocatable :: ds(:, :), df(:, :)
-    real(rk), allocatable :: last_s(:), last_f(:)
+    real(rk), allocatable :: last_s(:), last_f(:) !< (rows)
+    real(rk), private :: gram(most_pairs, most_pairs) = 0.0_rk !< products of df
     integer, private :: next = 1 !< column that the next pair overwrites
   contains
     procedure :: forget
@@ -38,6 +40,21 @@ contains
     class(mixer), intent(inout) :: self
     real(rk), intent(in) :: f(:) !< g(s) - s
     real(rk), intent(inout) :: s(:)
+    real(rk), allocatable :: next(:)
+    if (allocated(self%rows)) then
+      next = s(self%rows)
+      call mix_rows(self, f(self%rows), next)
+      s(self%rows) = next
+    else
+      call mix_rows(self, f, s)
+    end if
+  end subroutine mix_iterates
+
+  !> The same for the rows that change.
+  subroutine mix_rows(self, f, s)
+    type(mixer), intent(inout) :: self
+    real(rk), intent(in) :: f(:)
+    real(rk), intent(inout) :: s(:)
     real(rk) :: weight(most_pairs)
     real(rk), allocatable :: here(:)
     integer :: k
@@ -50,18 +67,23 @@ contains
     end do
     self%last_s = here
     self%last_f = f
-  end subroutine mix_iterates
+  end subroutine mix_rows
 
   !> Stores the difference to the last iterate in place of the oldest difference.
   subroutine keep_pair(self, f, s)
     type(mixer), intent(inout) :: self
     real(rk), intent(in) :: f(:), s(:)
+    integer :: k
     if (.not. allocated(self%ds)) then
       allocate (self%ds(size(s), most_pairs), self%df(size(s), most_pairs))
     end if
     self%ds(:, self%next) = s - self%last_s
     self%df(:, self%next) = f - self%last_f
     self%num_pairs = max(self%num_pairs, self%next)
+    do k = 1, self%num_pairs
+      self%gram(k, self%next) = dot(self%df(:, k), self%df(:, self%next))
+      self%gram(self%next, k) = self%gram(k, self%next)
+    end do
     self%next = 1 + mod(self%next, most_pairs)
   end subroutine keep_pair
 
@@ -72,15 +94,12 @@ contains
     real(rk), intent(out) :: weight(:)
     real(rk) :: gram(self%num_pairs, self%num_pairs), right(self%num_pairs, 1)
     real(rk) :: x(self%num_pairs, 1), scale(self%num_pairs)
-    integer :: i, j
+    integer :: j
     logical :: is_singular
     weight = 0.0_rk
     if (self%num_pairs == 0) return
+    gram = self%gram(:self%num_pairs, :self%num_pairs)
     do j = 1, self%num_pairs
-      do i = 1, j
-        gram(i, j) = dot(self%df(:, i), self%df(:, j))
-        gram(j, i) = gram(i, j)
-      end do
       scale(j) = 1.0_rk/max(sqrt(gram(j, j)), tiny(1.0_rk))
       right(j, 1) = scale(j)*dot(self%df(:, j), f)
     end do

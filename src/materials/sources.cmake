@@ -1,7 +1,6 @@
 set(sources
   at_a_point/material_path.f90
   at_a_point/point_increment.f90
-  concrete/crack_band.f90
   concrete/damage_checks.f90
   concrete/damage_constants.f90
   concrete/damage_curves.f90
@@ -13,9 +12,11 @@ set(sources
   concrete/damage_return.f90
   concrete/damage_screen.f90
   concrete/damage_split.f90
+  concrete/damage_stress.f90
   concrete/damage_tangent.f90
   concrete/damage_yield.f90
   concrete/material_damage_plasticity.f90
+  law/crack_band.f90
   law/material_elastic.f90
   law/material_law.f90
   law/material_points.f90

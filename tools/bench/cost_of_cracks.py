@@ -72,7 +72,8 @@ def measure_cracks(program: Program, folder: Path, refine: int, duration: float)
         elastic.write_text(text)
         cards = PLASTICITY + COMPRESSION + LAWS[law]
         deck = folder / "cracks.inp"
-        deck.write_text(re.sub(ELASTIC, lambda found: found[0] + cards, text, count=1))
+        place = re.search(ELASTIC, text).end()
+        deck.write_text(text[:place] + cards + text[place:])
         lines.append(row(program.run(deck), program.run(elastic), law, peak))
     return "\n".join(lines)
 
@@ -83,7 +84,7 @@ def row(run: Run, elastic: Run, law: str, peak: float) -> str:
     increments, counts = step["increments"], elastic.results.find("steps")[-1]["increments"]
     parts = [p for p in run.parts if p["calls"] >= increments and p["kind"] != "output"]
     whole = sum(p["wall_s"] for p in parts)
-    laws, calls = run.cost("update inelastic solids")
+    laws, calls = run.cost("update CONCRETE")
     return (
         f"| {law} | {peak} | {run.unknowns} | {increments} | {step['cutbacks']} "
         f"| {whole / increments / solve_time(elastic, counts):.1f} "

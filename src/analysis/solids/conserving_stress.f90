@@ -36,6 +36,7 @@ module conserving_stress
     real(rk), allocatable :: force(:) !< (num_total) of the last iterate [N]
   contains
     procedure :: open => choose_blocks
+    procedure :: is_active
     procedure :: add_force
   end type work_correction
 
@@ -64,6 +65,12 @@ contains
     if (.not. any(self%has_energy)) deallocate (self%has_energy)
   end subroutine choose_blocks
 
+  !> Whether the iteration needs energies.
+  pure logical function is_active(self)
+    class(work_correction), intent(in) :: self
+    is_active = allocated(self%has_energy) .and. self%weight > 0.0_rk
+  end function is_active
+
   !> Takes the weighted force from the initial-stress force. Consistent tangents get its derivative.
   subroutine add_force(self, model, numbers, time, old, new, answers, excess)
     class(work_correction), intent(inout) :: self
@@ -75,7 +82,7 @@ contains
     real(rk), intent(inout) :: excess(:) !< (num_total) [N]
     real(rk) :: nodal(3, numbers%num_nodes)
     integer :: i
-    if (.not. allocated(self%has_energy) .or. self%weight <= 0.0_rk) return
+    if (.not. self%is_active()) return
     !$omp parallel do schedule(dynamic) default(none) &
     !$omp shared(self, model, time, old, new, answers) if (has_many_elements(answers))
     do i = 1, size(answers)

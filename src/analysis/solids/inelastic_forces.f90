@@ -11,7 +11,6 @@ module inelastic_forces
   use node_dofs, only: add_vectors, gather_vectors
   use dof_numbering, only: numbering
   use inelastic_blocks, only: inelastic_block
-  use element_matrices, only: strains_at_points
   use gauss_rules, only: hex_point
   use shape_hex8, only: derivative_at, gradient_at, hex8_dofs
   use material_law, only: stress_law
@@ -19,7 +18,7 @@ module inelastic_forces
   implicit none
   private
   public :: block_answer, open_answers, update_points, recall_points, sum_excess, find_failure
-  public :: add_elements, has_many_elements
+  public :: add_elements, has_many_elements, complete_energies
 
   !> Fewer elements than this are faster on one thread.
   integer, parameter :: few_elements = 32
@@ -70,6 +69,26 @@ contains
     end do
   end subroutine update_points
 
+  !> Energies at the strains of the last update, of laws that defer them.
+  subroutine complete_energies(model, time, old, new, answers)
+    type(problem), intent(in) :: model
+    type(time_increment), intent(in) :: time !< wants_energy
+    type(point_state), intent(in) :: old(:) !< (blocks) converged
+    type(point_state), intent(inout) :: new(:) !< (blocks) updated
+    type(block_answer), intent(inout) :: answers(:) !< (blocks)
+    integer :: i
+    !$omp parallel do schedule(dynamic) default(none) shared(model, time, old, new, answers) &
+    !$omp if (has_many_elements(answers))
+    do i = 1, size(answers)
+      associate (law => model%materials(model%inelastic(i)%material)%law)
+        if (.not. law%defers_energy .or. all(new(i)%is_elastic)) cycle
+        call law%update(model%inelastic(i)%points, time, old(i), new(i), answers(i)%tangent, &
+                        answers(i)%report)
+      end associate
+    end do
+    !$omp end parallel do
+  end subroutine complete_energies
+
   !> Whether several threads are faster than one.
   pure logical function has_many_elements(answers)
     type(block_answer), intent(in) :: answers(:)
@@ -112,20 +131,12 @@ contains
       moved(:, e) = gather_vectors(u, model%mesh%nodes(:, part%elements(e)))
     end do
     associate (law => model%materials(part%material)%law)
-      call find_strains(part, moved, new%strain)
+      call part%find_strains(moved, new%strain)
       if (law%wants_gradient) call find_gradients(model%mesh%x, model%mesh%nodes, part, moved, new)
       call law%update(part%points, time, old, new, answer%tangent, answer%report)
     end associate
     call sum_block(part, new, answer)
   end subroutine update_block
-
-  !> eps = B u at the points of all elements.
-  subroutine find_strains(part, moved, strain)
-    type(inelastic_block), intent(in) :: part
-    real(rk), intent(in) :: moved(:, :) !< (24, elements) [m]
-    real(rk), intent(out) :: strain(6, part%points_of_element, size(part%elements))
-    call strains_at_points(part%b, moved, strain)
-  end subroutine find_strains
 
   !> du_i/dx_j: rotation from the shape functions, strain from the element.
   subroutine find_gradients(x, nodes, part, moved, new)
@@ -162,20 +173,21 @@ contains
     type(inelastic_block), intent(in) :: part
     type(point_state), intent(in) :: new
     type(block_answer), intent(inout) :: answer
-    real(rk) :: excess(6)
-    integer :: e, q, p, i
+    real(rk) :: excess(part%points_of_element, 6)
+    integer :: e, q, p
     do e = 1, size(part%elements)
       answer%has_excess(e) = .false.
       answer%force(:, e) = 0.0_rk
+      p = (e - 1)*part%points_of_element
+      if (all(new%is_elastic(p + 1:p + part%points_of_element))) cycle
+      excess = 0.0_rk
       do q = 1, part%points_of_element
         p = (e - 1)*part%points_of_element + q
         if (new%is_elastic(p)) cycle
         answer%has_excess(e) = .true.
-        excess = part%weight(q, e)*(matmul(part%d, new%strain(:, p)) - new%stress(:, p))
-        do i = 1, hex8_dofs
-          answer%force(i, e) = answer%force(i, e) + sum(part%b(:, i, q, e)*excess)
-        end do
+        excess(q, :) = part%weight(q, e)*(matmul(part%d, new%strain(:, p)) - new%stress(:, p))
       end do
+      call part%add_forces(e, excess, answer%force(:, e))
     end do
   end subroutine sum_block
 

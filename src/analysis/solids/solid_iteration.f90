@@ -12,13 +12,14 @@ module solid_iteration
   use kinds, only: rk
   use errors, only: error_type, analysis_failed
   use problem_definition, only: problem
+  use active_unknowns, only: find_active
   use analysis_state, only: state, motion
   use global_vectors, only: multiply, norm
   use material_points, only: time_increment
   use node_dofs, only: zero_vectors
   use lost_damping, only: damping_loss
   use inelastic_forces, only: block_answer, open_answers, update_points, recall_points, &
-                              sum_excess, find_failure
+                              sum_excess, find_failure, complete_energies
   use guest_forces, only: has_histories, recall_guests, update_guests
   use equilibrium, only: equilibrium_solver, balance_outcome, is_dropped
   use increment_balance, only: increment_task
@@ -80,6 +81,7 @@ contains
     self%chosen = self%choices(1)
     call multiply(system%matrix, system%stiffness, now%motion%q, now%motion%elastic)
     if (size(now%points) > 0 .or. has_histories(now%guests)) then
+      if (.not. has_histories(now%guests)) self%mixer%rows = find_active(model, system%numbers)
       allocate (self%excess(system%matrix%num_total))
       self%guest_excess = zero_vectors(model%mesh%num_nodes)
       call open_answers(model%inelastic, self%answers)
@@ -197,6 +199,7 @@ contains
     if (self%chosen%patience > 0) most_iterations = cheap_iterations*most_iterations
     now%task = task
     allocate (outcome%history(0))
+    self%time%wants_energy = self%correction%is_active()
     call self%start_iteration(model, system, before, after, now)
     do while (outcome%iterations < most_iterations)
       if (is_dropped(self%solver%controls)) exit
@@ -211,6 +214,12 @@ contains
       call self%choose_guess(model, system, after, now, error)
       if (allocated(error) .or. now%is_lost) return
     end do
+    if (outcome%has_converged .and. .not. self%time%wants_energy) then
+      self%time%wants_energy = .true.
+      call self%solver%costs%start('update', 'inelastic solids', 'inelastic')
+      call complete_energies(model, self%time, before%points, after%points, self%answers)
+      call self%solver%costs%stop()
+    end if
     if (now%task%balance%is_partial) call self%solver%complete_solution(now%task%x, error)
     task%x = now%task%x
   end subroutine iterate_on_forces

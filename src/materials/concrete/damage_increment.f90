@@ -9,6 +9,7 @@ module damage_increment
   implicit none
   private
   public :: plastic_state, increment_result, integrate_increment, elastic_stress
+  public :: deviator_of, yield_tolerance
 
   integer, parameter :: max_parts = 64
   real(rk), parameter :: yield_tolerance = 1.0e-11_rk !< of F over the strength in compression

@@ -30,6 +30,7 @@ module damage_point
     real(rk) :: time = 0.0_rk !< of the increment, for viscosity [s]
     real(rk) :: stored = 0.0_rk !< energy at its start [J/m3]
     logical :: wants_tangent = .true.
+    logical :: wants_energy = .true. !< stored, dissipated and created energy
     !> The symmetric (1 - d) D instead of the consistent tangent. It also replaces a consistent
     !> tangent that does not exist: see has_regular_flow.
     logical :: is_secant = .false.
@@ -70,7 +71,6 @@ contains
     type(point_answer), intent(out) :: answer
     type(increment_result) :: backbone
     type(end_state) :: finish
-    type(flow_path) :: path
     call integrate_increment(model, motion%before, motion%strain, motion%edges, old%backbone, &
                              placed, backbone)
     answer%has_converged = backbone%has_converged
@@ -90,12 +90,9 @@ contains
       call recover(model, motion, old, new%damage, finish)
       answer%stress = (1.0_rk - finish%d%value)*finish%stress
     end if
-    answer%stored = 0.5_rk*dot_product(answer%stress, motion%strain - new%plastic_strain)
-    call find_path(model, motion, old, placed, backbone, finish, new, path)
-    if (backbone%has_yielded .or. model%viscosity > 0.0_rk) then
-      call dissipate(model, old, backbone, finish, path, answer)
+    if (motion%wants_energy) then
+      call find_energies(model, motion, old, placed, backbone, finish, new, answer)
     end if
-    call count_created(model, motion, old, path, answer)
     if (.not. motion%wants_tangent) return
     if (motion%is_secant .or. .not. has_regular_flow(model, backbone)) then
       call find_secant(model, finish, answer%tangent)
@@ -204,6 +201,25 @@ contains
       tangent(:, i) = matmul(frozen, strain) + matmul(by_damage, damages(i, :))
     end do
   end subroutine differentiate_split
+
+  !> Stored, dissipated and created energy.
+  pure subroutine find_energies(model, motion, old, placed, backbone, finish, new, answer)
+    type(concrete_model), intent(in) :: model
+    type(point_motion), intent(in) :: motion
+    type(point_history), intent(in) :: old
+    type(placed_curves), intent(in) :: placed
+    type(increment_result), intent(in) :: backbone
+    type(end_state), intent(in) :: finish
+    type(point_history), intent(in) :: new
+    type(point_answer), intent(inout) :: answer !< with the stress
+    type(flow_path) :: path
+    answer%stored = 0.5_rk*dot_product(answer%stress, motion%strain - new%plastic_strain)
+    call find_path(model, motion, old, placed, backbone, finish, new, path)
+    if (backbone%has_yielded .or. model%viscosity > 0.0_rk) then
+      call dissipate(model, old, backbone, finish, path, answer)
+    end if
+    call count_created(model, motion, old, path, answer)
+  end subroutine find_energies
 
   !> The path of the effective stress in the increment.
   pure subroutine find_path(model, motion, old, placed, backbone, finish, new, path)

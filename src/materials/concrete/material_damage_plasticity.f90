@@ -9,6 +9,7 @@ module material_damage_plasticity
   use damage_model, only: concrete_model, make_concrete_model, placed_curves, stiffness_of
   use damage_point, only: point_answer, point_history, point_motion, update_point
   use damage_screen, only: screen_points
+  use damage_stress, only: find_stress, has_plain_stress
   use errors, only: deck_is_wrong, error_type, raise
   use kinds, only: rk
   use material_law, only: stress_law
@@ -45,6 +46,7 @@ contains
     end if
     call make_concrete_model(constants, law%model)
     law%is_nonlinear = .true.
+    law%defers_energy = .true.
     law%has_switch = constants%recovery == 'SIGN'
     law%has_free_energy = law%model%splits_energy
     law%num_state = num_state_of(constants%viscosity)
@@ -76,6 +78,7 @@ contains
     type(point_answer) :: answer
     type(placed_curves) :: placed
     real(rk) :: d(6, 6), stored(points%num_points)
+    logical :: is_plain
     integer :: i
     call screen_points(self%model, least_factor(self%model, points), new%strain, new%stress, &
                        stored, new%is_elastic)
@@ -84,6 +87,9 @@ contains
     motion%wants_tangent = time%tangent /= no_tangent
     motion%is_secant = time%tangent == secant_tangent
     motion%holds_switch = time%holds_switches
+    motion%wants_energy = time%wants_energy
+    is_plain = has_plain_stress(self%model) &
+               .and. .not. (motion%wants_tangent .or. motion%wants_energy)
     do i = 1, points%num_points
       if (new%is_elastic(i) .and. old%is_elastic(i)) then
         new%internal(:, i) = old%internal(:, i)
@@ -92,6 +98,14 @@ contains
         if (motion%wants_tangent) tangent(:, :, i) = d
       else
         motion%edges = points%edges(:, :, i)
+        if (is_plain) then
+          motion%strain = new%strain(:, i)
+          call find_stress(self%model, motion, old%internal(:, i), placed, new%internal(:, i), &
+                           answer)
+          new%stress(:, i) = answer%stress
+          new%is_elastic(i) = answer%is_elastic
+          if (answer%has_converged) cycle
+        end if
         call yield_point(self%model, motion, i, old, placed, new, answer)
         if (motion%wants_tangent) tangent(:, :, i) = answer%tangent
         if (answer%has_converged .or. report%failed_point > 0) cycle

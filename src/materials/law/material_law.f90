@@ -13,6 +13,7 @@ module material_law
     logical :: has_switch = .false. !< discontinuous stress: time_increment%holds_switches
     !> The stress is the derivative of the stored energy, which grows by the work less dissipation
     logical :: has_free_energy = .false.
+    logical :: defers_energy = .false. !< updates without energies are faster
     logical :: is_serial = .false. !< one call at a time (user subroutines with saved data)
     logical :: wants_gradient = .false. !< of the displacement, besides the strain
   contains

@@ -59,6 +59,8 @@ module material_points
     !> True: switches that make the stress discontinuous keep their value from the start of the
     !> increment.
     logical :: holds_switches = .false.
+    !> False: laws that defer their energies leave them out.
+    logical :: wants_energy = .true.
   end type time_increment
 
   !> What went wrong in an update.

@@ -6,7 +6,7 @@
 !>   materials/concrete/damage_constants.f90 materials/concrete/damage_curves.f90
 !>   materials/concrete/damage_checks.f90 materials/concrete/damage_model.f90
 !>   materials/concrete/damage_split.f90
-!>   materials/concrete/damage_yield.f90 materials/concrete/crack_band.f90
+!>   materials/concrete/damage_yield.f90 materials/law/crack_band.f90
 !>   materials/concrete/damage_return.f90 materials/concrete/damage_increment.f90
 !>   materials/concrete/damage_tangent.f90 materials/concrete/damage_energy.f90
 !>   materials/concrete/damage_point.f90 materials/concrete/damage_history.f90
