@@ -1,6 +1,6 @@
 !> The stress of a point alone, without energies and tangent: what the iterations of a structure
-!> need. It is that of damage_point for RECOVERY=LEE-FENVES without viscosity, to round-off, in a
-!> third of its time.
+!> need. It is that of damage_point for RECOVERY=LEE-FENVES without viscosity, to round-off, without
+!> principal directions and copies of histories.
 module damage_stress
   use crack_band, only: band_width
   use damage_history, only: last_damage, last_measure, last_strain, width_row
