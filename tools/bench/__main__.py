@@ -1,6 +1,7 @@
 """Measures the time of runs relative to the equation solver, and the time for given accuracy.
 
-usage: .venv/bin/python tools/bench [run] [accuracy] [joints] [cracks] [reduced] [peers]
+usage: .venv/bin/python tools/bench [run] [accuracy] [joints] [cracks] [reduced] [scale]
+           [peers]
            [--sizes 48000 145000] [--json FILE]
 
 run (default): ratios of times taken in one process, which hardly depend on the machine:
@@ -22,6 +23,9 @@ solves, iterations, share of the laws. --refine divides its elements.
 
 reduced: a dam with the first of --joints joints, with the full and with the reduced model: time of
 an increment, error of the openings and its estimate.
+
+scale: growth of time and memory with the unknowns (--sizes) of a linear dam, and with the points of
+--joints joints; exponents are printed, and --picture FILE draws them.
 
 peers: the same dam in Keyway, CalculiX (Debian's calculix-ccx) and OpenSees (pip's openseespy, in
 a Python named by --opensees-python): weight, a linear history, a history with two joints. Time,
@@ -46,6 +50,7 @@ from cost_of_cracks import measure_cracks  # noqa: E402
 from cost_of_joints import DAMS, measure_joints  # noqa: E402
 from cost_of_reduced import measure_reduced  # noqa: E402
 from cost_of_run import Figure, measure_all  # noqa: E402
+from cost_of_scale import draw_growth, measure_scale  # noqa: E402
 from measured_run import Program  # noqa: E402
 from peers.comparison_of_peers import PeerOptions, compare_peers  # noqa: E402
 
@@ -55,7 +60,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         prog="bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     add = parser.add_argument
-    add("what", nargs="*", metavar="run|accuracy|joints|cracks|peers", help="what to measure (run)")
+    add("what", nargs="*", metavar="run|accuracy|joints|...", help="what to measure (run)")
     add("--sizes", type=int, nargs="+", default=[48_000, 145_000], help="unknowns of the models")
     add("--increments", type=int, default=60, help="dynamic increments (60)")
     add("--joints", type=int, nargs="+", default=[2, 12], choices=DAMS, help="of the dams (2 12)")
@@ -67,7 +72,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("--picture", type=Path, metavar="FILE", help="draw time against accuracy")
     options = parser.parse_args(arguments)
     options.what = options.what or ["run"]
-    known = {"run", "accuracy", "joints", "cracks", "reduced", "peers"}
+    known = {"run", "accuracy", "joints", "cracks", "reduced", "scale", "peers"}
     if set(options.what) - known:
         parser.error(f"expected one of {', '.join(sorted(known))}")
     return options
@@ -94,6 +99,13 @@ def peer_options(options: argparse.Namespace) -> PeerOptions:
     )
 
 
+def report_scale(program: Program, folder: Path, options: argparse.Namespace) -> None:
+    growths = measure_scale(program, folder, options.sizes, options.joints)
+    print("\n\n".join(growth.table() for growth in growths))
+    if options.picture:
+        draw_growth(growths, options.picture)
+
+
 def main(arguments: list[str]) -> int:
     options = parse(arguments)
     figures: list[Figure] = []
@@ -115,6 +127,8 @@ def main(arguments: list[str]) -> int:
         if "reduced" in options.what:
             duration = 0.01 * options.increments
             print(measure_reduced(program, folder, options.joints[0], duration))
+        if "scale" in options.what:
+            report_scale(program, folder, options)
         if "peers" in options.what:
             print(compare_peers(peer_options(options), folder))
     if options.picture and rows:

@@ -12,7 +12,7 @@ TOOLS = Path(__file__).resolve().parent.parent
 SHAPE = ["--height", "200", "--crest-arc", "500", "--refine", "2"]
 MESH = ["--arc", "44", "--levels", "16", "--bottom", "12", "--thick", "4"]
 FINE = ["--arc", "104", "--levels", "40", "--bottom", "24", "--thick", "10", "--refine", "1"]
-DAMS = {2: MESH, 12: MESH, 25: FINE}  # joints: options of the mesh
+DAMS = {2: MESH, 6: MESH, 12: MESH, 25: FINE, 50: FINE}  # joints: options of the mesh
 PEAK = "0.35"  # of the motion [g]
 
 
