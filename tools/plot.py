@@ -86,21 +86,6 @@ def _draw_envelopes(faces, step, on, scales: Scales) -> Iterator[list[Path]]:
         yield plot_joint_areas(faces.results, step, scales, on("envelope_opening_joints"))
 
 
-def shared_scales(all_results: list[SiResults], scales: Scales) -> Scales:
-    """One range of each field for several runs: the largest of theirs."""
-    from keyway_tools.dam_views import Faces
-
-    ends = {}
-    for results in all_results:
-        nodes = Faces(results).nodes
-        for step in [step for step in results.steps() if step.envelopes][-1:]:
-            for name in step.envelopes:
-                end = scales.end(name, step.envelopes[name][nodes])
-                ends[name] = max(ends.get(name, 0.0), end)
-    found = {name: end for name, end in ends.items() if end > 0.0 and not FIELDS[name].top}
-    return replace(scales, given=found | scales.given)
-
-
 def draw_material(arguments: list[str]) -> int:
     """Draw curves of material tests in one picture."""
     parser = argparse.ArgumentParser(prog="plot.py material")
@@ -164,7 +149,11 @@ def main(arguments: list[str] | None = None) -> int:
             print(f"plot: no {what} in {folder}; give the folder of a run", file=sys.stderr)
             return 2
         found += [SiResults(folder, job, chosen.units) for job in jobs]
-    scales = shared_scales(found, chosen.range) if chosen.is_shared else chosen.range
+    scales = chosen.range
+    if chosen.is_shared:
+        from keyway_tools.shared_scales import shared_scales
+
+        scales = shared_scales(found, scales)
     for results in found:
         why = why_incomplete(results.folder, results.job)
         if why:

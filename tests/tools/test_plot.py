@@ -19,6 +19,7 @@ from keyway_tools.pictures_faces import plot_envelope
 from keyway_tools.pictures_joints import JointView, range_of
 from keyway_tools.pictures_shapes import masses_in_words
 from keyway_tools.results import Results, find_jobs
+from keyway_tools.shared_scales import shared_scales
 from keyway_tools.si_results import SiResults, Units
 from synthetic_results import write_results
 
@@ -145,7 +146,7 @@ def test_runs_share_a_range(dam_results, tmp_path):
     mesh.brick_sets["COLUMN"] = np.arange(len(mesh.bricks))
     write_results(small, mesh)
     both = [SiResults(small), SiResults(dam_results)]
-    scales = plot.shared_scales(both, Scales())
+    scales = shared_scales(both, Scales())
     assert scales.given["S1"] == pytest.approx(3.0)
     assert scales.given["OPENING"] == pytest.approx(5.0)
     assert "DAMAGET" not in scales.given

@@ -1,0 +1,207 @@
+"""The report of a run, opened in a real browser without a network.
+
+The runs are short; the long deck whose page must stay below 15 MB is a long test.
+"""
+
+import contextlib
+import io
+import json
+import re
+import subprocess
+
+import numpy as np
+import pytest
+from harness import ROOT
+from keyway_tools.report import __main__ as report
+from keyway_tools.report.browser import find_browser, opened, print_pdf
+from keyway_tools.report.values import deck_of, title_of, verdict
+from keyway_tools.si_results import SiResults
+
+NEEDS = "no Chromium, Chrome or Edge; tools/test installs chromium on Debian"
+needs_browser = pytest.mark.skipif(find_browser() is None, reason=NEEDS)
+# Without a graphics card a page takes 10 s to draw, on a busy machine much longer.
+pytestmark = pytest.mark.timeout(900)
+LARGEST = 15e6  # [bytes] of a page: it must still pass as an attachment of a mail
+
+
+def page_of(*arguments):
+    """The page that tools/report writes."""
+    text = io.StringIO()
+    with contextlib.redirect_stdout(text):
+        assert report.main([str(argument) for argument in arguments]) == 0
+    return report.Path(text.getvalue().split()[0])
+
+
+@pytest.fixture(scope="module")
+def block(tmp_path_factory, program_path):
+    """Results of a block on a joint under water: two static steps, 10 saved states, a joint."""
+    folder = tmp_path_factory.mktemp("block")
+    run(program_path, "block_on_joint.inp", folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def modes(tmp_path_factory, program_path):
+    """Results of a step of natural modes alone."""
+    folder = tmp_path_factory.mktemp("modes")
+    run(program_path, "monolith_frequencies.inp", folder)
+    return folder
+
+
+def run(program, deck, folder):
+    command = [str(program), "-q", "-j", "1", "-o", str(folder), str(ROOT / "input" / deck)]
+    assert subprocess.run(command, timeout=300).returncode == 0
+
+
+def summary_of(folder):
+    return json.loads(next(folder.glob("*.json")).read_text())
+
+
+def value_at(summary, path):
+    """A value by its path in job.json."""
+    for key in path.split("."):
+        summary = summary[int(key)] if isinstance(summary, list) else summary[key]
+    return summary
+
+
+@needs_browser
+def test_page_shows_the_numbers_of_job_json(block):
+    """Every number with a path, to the four digits shown; no error in the console."""
+    page_file, summary, errors = page_of(block), summary_of(block), []
+    assert page_file.stat().st_size < LARGEST
+    with opened(page_file, errors) as page:
+        shown = page.eval_on_selector_all(
+            "[data-path]", "all => all.map(e => [e.dataset.path, e.textContent])"
+        )
+        verdict_text = page.inner_text("#verdict")
+        assert page.get_attribute("body", "data-failed") is None
+    assert errors == []
+    assert "finished" in verdict_text
+    assert {"envelopes.U.anywhere.value", "joints.BED.opening.anywhere.value"} <= {
+        path for path, _ in shown
+    }
+    for path, text in shown:
+        in_page_units = 1e-6 if ".S1" in path or ".S3" in path or ".pressure" in path else 1e3
+        expected = in_page_units * value_at(summary, path)
+        assert float(text) == pytest.approx(expected, rel=1e-3, abs=1e-12), path
+
+
+@needs_browser
+def test_slider_moves_the_dam_through_the_saved_states(block):
+    """Positions in the drawing: of the mesh plus the displacement of the chosen time."""
+    results, errors = SiResults(block), []
+    saved = sorted(results.displacements(), key=lambda one: one[1])
+    with opened(page_of(block), errors) as page:
+        page.select_option("#field", "displacement")
+        largest = []
+        for k in (0, len(saved) - 1):
+            page.eval_on_selector("#time", MOVE, k)
+            page.wait_for_function(
+                f"document.getElementById('time-shown').textContent === '{saved[k][1]:.6g} s'"
+            )
+            page.wait_for_timeout(300)
+            largest.append(float(page.get_attribute("#caption-0", "data-largest")))
+            u = results.displacement(saved[k][0])
+            expected = 1e3 * np.linalg.norm(u, axis=1).max()
+            assert largest[-1] == pytest.approx(expected, rel=1e-4)
+        drawn = np.array(page.evaluate(DRAWN))
+        page.eval_on_selector("#factor", MOVE, 0)
+        page.wait_for_timeout(500)
+        at_rest = np.array(page.evaluate(DRAWN))
+    assert errors == []
+    assert largest[1] > largest[0]
+    assert np.ptp(at_rest[0]) == pytest.approx(np.ptp(results.x[:, 0]), rel=1e-6)
+    assert np.abs(drawn - at_rest).max() > 0.02 * np.ptp(results.x[:, 2])
+
+
+MOVE = "(slider, value) => { slider.value = value; slider.dispatchEvent(new Event('input')); }"
+DRAWN = "['x', 'y', 'z'].map(k => Array.from(document.getElementById('space-0').data[0][k]))"
+
+
+@needs_browser
+def test_modes_move_and_fields_change(modes):
+    errors = []
+    with opened(page_of(modes), errors) as page:
+        page.select_option("#field", "mode:1")
+        page.wait_for_timeout(500)
+        before = np.array(page.evaluate(DRAWN))
+        page.click("#play")
+        page.wait_for_timeout(1500)
+        assert np.abs(np.array(page.evaluate(DRAWN)) - before).max() > 0.0
+        hz = page.inner_text("[data-path='steps.0.frequencies.1.hz']")
+        assert "mode 2" in page.inner_text("#caption-0")
+    assert errors == []
+    assert float(hz) == pytest.approx(summary_of(modes)["steps"][0]["frequencies"][1]["hz"], 1e-3)
+
+
+@needs_browser
+def test_two_runs_side_by_side_and_on_paper(block, modes, tmp_path):
+    errors = []
+    path = page_of(block, modes, "-o", tmp_path / "both.html")
+    with opened(path, errors) as page:
+        boxes = [page.locator(f"#space-{k}").bounding_box() for k in (0, 1)]
+        assert boxes[0]["y"] == boxes[1]["y"]
+        assert boxes[0]["x"] + boxes[0]["width"] <= boxes[1]["x"]
+    assert errors == []
+    assert print_pdf(path).read_bytes().startswith(b"%PDF")
+
+
+def test_page_needs_no_network(block):
+    """No address of another file in what the page itself says (plotly.js names some in texts)."""
+    text = page_of(block).read_text()
+    own = re.sub(r"<script>.*?</script>", "", text, flags=re.S)
+    assert re.findall(r"(?:src|href|url)\s*[=(]\s*[\"']?(?!data:)[\w/.:]", own) == []
+
+
+def test_verdict_of_a_stopped_run(block, tmp_path):
+    for file in block.iterdir():
+        if file.is_file():
+            (tmp_path / file.name).write_bytes(file.read_bytes())
+    path = tmp_path / "block_on_joint.json"
+    summary = json.loads(path.read_text())
+    summary |= {"status": "stopped", "message": "no equilibrium at t = 1.2 s", "warnings": ["odd"]}
+    path.write_text(json.dumps(summary))
+    found = verdict(SiResults(tmp_path))
+    assert found[0] == ("bad", "The run is incomplete (stopped): no equilibrium at t = 1.2 s.")
+    assert ("fair", "odd") in found
+    assert "no equilibrium at t = 1.2 s" in page_of(tmp_path).read_text()
+
+
+def test_assumptions_come_from_the_deck(block):
+    deck = deck_of(SiResults(block))
+    assert deck.caution == ""
+    assert "Shows: *JOINT without strength" in deck.remarks
+    assert title_of("** a\n*Heading\n** b\n Dam, 30 m \n*NODE\n") == "Dam, 30 m"
+    assert title_of("*NODE\n1, 0\n") == ""
+
+
+def test_estimates_of_errors_are_shown_where_there_are_some(block, tmp_path):
+    for file in block.iterdir():
+        if file.is_file():
+            (tmp_path / file.name).write_bytes(file.read_bytes())
+    path = tmp_path / "block_on_joint.json"
+    summary = json.loads(path.read_text())
+    summary["accuracy"]["estimates"] = {"U": {"value": 9.0, "error": 1.2, "mesh": 1.1}}
+    path.write_text(json.dumps(summary))
+    text = page_of(tmp_path).read_text()
+    assert text.count("error 1.2, mesh 1.1") == 2  # beside the envelope, and among the estimates
+    assert "no estimate of those" not in text
+
+
+def test_folder_without_results_is_refused(tmp_path, capsys):
+    assert report.main([str(tmp_path)]) == 2
+    assert "no results of Keyway" in capsys.readouterr().err
+
+
+@pytest.mark.full
+@needs_browser
+def test_page_of_the_arch_dam_is_small(tmp_path, program_path):
+    """15 MB, and the opening of a joint as in job.json. Long: 1000 increments."""
+    run(program_path, "xingbiling_matching/xingbiling_matching.inp", tmp_path)
+    path, errors = page_of(tmp_path), []
+    assert path.stat().st_size < LARGEST
+    with opened(path, errors) as page:
+        shown = float(page.inner_text("[data-path='joints.JOINT1.opening.anywhere.value']"))
+    opening = summary_of(tmp_path)["joints"]["JOINT1"]["opening"]["anywhere"]["value"]
+    assert errors == []
+    assert shown == pytest.approx(1e3 * opening, rel=1e-3)

@@ -1,0 +1,173 @@
+"""The dam as the browser draws it: skin, joints, fields, displacements and modes in few bytes."""
+
+from __future__ import annotations
+
+import base64
+from typing import Any
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.colors import to_hex
+
+from ..colour_scale import FIELDS, Scales
+from ..dam_views import Faces
+from ..pictures_joints import joints_with_faces
+from ..pictures_shapes import round_factor
+from ..si_results import SiResults
+
+MOST_BYTES = 4_000_000  # of displacements, and of modes
+MOST_STATES = 200
+
+
+def scene(results: SiResults, scales: Scales) -> dict[str, Any]:
+    """All that the view in space needs."""
+    faces = Faces(results)
+    skin = faces.surface().triangulate()
+    nodes = np.asarray(skin.point_data["vtkOriginalPointIds"])
+    triangles = skin.faces.reshape(-1, 4)[:, 1:]
+    return {
+        "x": packed(results.x[nodes]),
+        "triangles": packed(triangles, "i4"),
+        "edges": _edges(faces, nodes),
+        "eye": _eye(faces),
+        "fields": _fields(results, faces, nodes, scales),
+        "states": _states(results, nodes, faces.size, scales),
+        "modes": _modes(results, nodes, faces.size),
+        "joints": _joints(results, scales),
+    }
+
+
+def _eye(faces: Faces) -> dict[str, float]:
+    """From where the dam is seen first: upstream, aside and above; a slice from its side."""
+    view = next(iter(faces.views.values()))
+    eye = 1.2 * view.towards
+    if len(faces.views) > 1:
+        eye = eye + 0.5 * view.right + np.array([0.0, 0.0, 0.45])
+    return dict(zip("xyz", (float(v) for v in eye), strict=True))
+
+
+def packed(values: np.ndarray, kind: str = "f4") -> dict[str, Any]:
+    """An array as base64 of its bytes, the lowest byte first."""
+    data = np.ascontiguousarray(values, dtype=f"<{kind}")
+    text = base64.b64encode(data.tobytes()).decode("ascii")
+    return {"kind": kind, "shape": list(data.shape), "data": text}
+
+
+def packed_short(values: np.ndarray) -> dict[str, Any]:
+    """An array as 16-bit integers times a scale: an error of 1.5e-5 of the largest value."""
+    scale = float(np.abs(values).max()) / 32767.0 or 1.0
+    return packed(np.rint(values / scale), "i2") | {"scale": scale}
+
+
+def _edges(faces: Faces, nodes: np.ndarray) -> dict[str, Any]:
+    """Sharp edges of the skin as pairs of its points."""
+    sharp = faces.surface().extract_feature_edges(feature_angle=40.0)
+    if sharp.n_points == 0:
+        return packed(np.zeros((0, 2)), "i4")
+    place = {int(node): k for k, node in enumerate(nodes)}
+    old = sharp.point_data["vtkOriginalPointIds"]
+    pairs = sharp.lines.reshape(-1, 3)[:, 1:]
+    return packed(np.vectorize(lambda k: place[int(old[k])])(pairs), "i4")
+
+
+def _fields(
+    results: SiResults, faces: Faces, nodes: np.ndarray, scales: Scales
+) -> list[dict[str, Any]]:
+    """The envelopes of the last step that has some."""
+    kept = [step for step in results.steps() if step.envelopes]
+    if not kept:
+        return []
+    found = []
+    for name in (name for name in FIELDS if name in kept[-1].envelopes and name != "OPENING"):
+        values = kept[-1].envelopes[name]
+        if not np.isfinite(values[faces.nodes]).any():
+            continue
+        shown = FIELDS[name]
+        limits = scales.limits(name, values[faces.nodes])
+        found.append({
+            "name": name,
+            "label": f"{shown.label} over step {kept[-1].name.title()}",
+            "unit": shown.unit,
+            "values": packed(np.nan_to_num(shown.scale * values[nodes])),
+            "ends": limits.ends,
+            "remark": limits.remark,
+            "colours": colours_of(shown.colours, limits.bands),
+        })  # fmt: skip
+    return found
+
+
+def colours_of(name: str, bands: int) -> list[list[Any]]:
+    """A scale of colours in bands."""
+    chosen = colormaps[name].resampled(bands)
+    found = []
+    for k in range(bands):
+        colour = to_hex(chosen(k))
+        found += [[k / bands, colour], [(k + 1) / bands, colour]]
+    return found
+
+
+def _states(
+    results: SiResults, nodes: np.ndarray, size: float, scales: Scales
+) -> dict[str, Any] | None:
+    """Saved displacements, as many as there is room for."""
+    saved = sorted(results.displacements(), key=lambda one: one[1])
+    if not saved:
+        return None
+    count = min(len(saved), MOST_STATES, max(2, MOST_BYTES // (6 * len(nodes))))
+    chosen = [saved[k] for k in np.unique(np.linspace(0, len(saved) - 1, count).astype(int))]
+    u = np.stack([results.displacement(place)[nodes] for place, _ in chosen])
+    sizes = np.linalg.norm(u, axis=2)
+    largest = float(sizes.max())
+    limits = scales.limits("U", sizes)
+    return {
+        "times": [float(f"{time:.9g}") for _, time in chosen],
+        "u": packed_short(u),
+        "factor": round_factor(size, largest),
+        "ends": limits.ends,
+        "colours": colours_of(FIELDS["U"].colours, limits.bands),
+    }
+
+
+def _modes(results: SiResults, nodes: np.ndarray, size: float) -> dict[str, Any] | None:
+    """Mode shapes with a largest displacement of one."""
+    modes = results.modes()
+    if modes is None or len(modes[0]) == 0:
+        return None
+    hz, shapes = modes
+    count = max(1, min(len(hz), MOST_BYTES // (6 * len(nodes))))
+    shapes = shapes[:count][:, nodes]
+    largest = np.linalg.norm(shapes, axis=2).max(axis=1)
+    shapes = shapes / np.where(largest > 0.0, largest, 1.0)[:, None, None]
+    mass = results.effective_mass()
+    return {
+        "hz": [float(value) for value in hz[:count]],
+        "mass": [] if mass is None else mass[:count].tolist(),
+        "shapes": packed_short(shapes),
+        "amplitude": 0.08 * size,
+        "colours": colours_of(FIELDS["U"].colours, 20),
+    }
+
+
+def _joints(results: SiResults, scales: Scales) -> dict[str, Any] | None:
+    """The faces of all joints with their largest openings over the last step."""
+    kept = [step for step in results.steps() if "OPENING" in step.envelopes]
+    joints = joints_with_faces(results)
+    if not kept or not joints:
+        return None
+    opening = np.nan_to_num(kept[-1].envelopes["OPENING"])
+    x, values, triangles, start = [], [], [], 0
+    for joint in joints.values():
+        corners = joint.on_corners(results.x)
+        x.append(corners)
+        values.append(np.maximum(1e3 * joint.on_corners(opening), 0.0))
+        triangles.append(joint.triangles + start)
+        start += len(corners)
+    limits = scales.limits("OPENING", opening)
+    return {
+        "x": packed(np.vstack(x)),
+        "triangles": packed(np.vstack(triangles), "i4"),
+        "values": packed(np.concatenate(values)),
+        "label": f"{FIELDS['OPENING'].label} over step {kept[-1].name.title()}",
+        "ends": limits.ends,
+        "colours": colours_of(FIELDS["OPENING"].colours, limits.bands),
+    }

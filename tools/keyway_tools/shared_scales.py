@@ -1,0 +1,22 @@
+"""One range of colours for several runs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from .colour_scale import FIELDS, Scales
+from .dam_views import Faces
+from .si_results import SiResults
+
+
+def shared_scales(all_results: list[SiResults], scales: Scales) -> Scales:
+    """One range of each field for several runs: the largest of theirs."""
+    ends = {}
+    for results in all_results:
+        nodes = Faces(results).nodes
+        for step in [step for step in results.steps() if step.envelopes][-1:]:
+            for name in step.envelopes:
+                end = scales.end(name, step.envelopes[name][nodes])
+                ends[name] = max(ends.get(name, 0.0), end)
+    found = {name: end for name, end in ends.items() if end > 0.0 and not FIELDS[name].top}
+    return replace(scales, given=found | scales.given)
