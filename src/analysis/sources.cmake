@@ -13,6 +13,7 @@ set(sources
   integrators/static_integrator.f90
   modes/eigen_modes.f90
   modes/modal_damping.f90
+  modes/time_error.f90
   reduced/reduced_basis.f90
   reduced/reduced_energy.f90
   reduced/reduced_estimate.f90

@@ -67,7 +67,7 @@ def test_times_of_later_steps_are_given_from_their_start_too(sliding):
     first, second = results_of(folder)["steps"][:2]
     time = results_of(folder)["displacement"]["anywhere"]["time"]
     (line,) = (x for x in lines if x.startswith("largest displacement"))
-    name, own = re.search(r"\((\w+) (\S+)\)$", line).groups()
+    name, own = re.search(r"\((\w+) ([^\s)]+)\)(?:,|$)", line).groups()
     assert name == second["name"]
     assert float(own) == pytest.approx(time - first["time"], rel=6e-4)
 

@@ -99,6 +99,9 @@ TYPES = (
         is_downstream="of the model",
     ),
     of_record(
+        "motion_error", "src/results/record/motion_errors.f90", "motion_error", "compare_records"
+    ),
+    of_record(
         "space_error", "src/results/record/space_errors.f90", "space_error", "compare_records"
     ),
     of_record(

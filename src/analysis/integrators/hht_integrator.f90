@@ -19,6 +19,9 @@ module hht_integrator
   use hht_scheme, only: hht, make_scheme
   use energy_account, only: add_dynamic_work
   use solid_iteration, only: solid_solver
+  use state_transfer, only: store_motion
+  use time_error, only: error_modes, is_worth_its_cost, make_error_modes, modal_error, &
+                        note_largest, start_modal_error, take_modal_error
   use integrator_type, only: integrator
   implicit none
   private
@@ -26,10 +29,13 @@ module hht_integrator
 
   type, extends(integrator) :: hht_method
     type(hht) :: scheme !< of the present increment size
+    type(error_modes) :: modes !< of the estimate of the error in time; empty without it
+    type(modal_error) :: time_error, next_error !< of the converged and of the next increment
   contains
     procedure :: open_step
     procedure :: start_increment
     procedure :: advance
+    procedure :: store_state
     procedure, private :: take_increment
   end type hht_method
 
@@ -63,8 +69,38 @@ contains
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
     call open_dynamic_step(model, plan, self%system, self%solids, now, results, error)
-    if (.not. allocated(error)) call start_rates(self%system, now)
+    if (allocated(error)) return
+    call start_rates(self%system, now)
+    ! A run that goes on within the step has lost the exact motion: it makes no estimate.
+    if (now%increment > 0 .or. .not. is_worth_its_cost(plan)) return
+    if (self%solids%has_inelastic()) return
+    call results%costs%start('estimate', 'time', 'output')
+    call make_error_modes(model, self%system, self%solids%solver, self%modes)
+    if (allocated(self%modes%square)) then
+      call start_modal_error(self%modes, now%motion, self%time_error)
+    end if
+    call results%costs%stop()
   end subroutine open_step
+
+  !> Writes the motion of a converged increment to the nodes, and reports its error.
+  subroutine store_state(self, model, when, now, results, error)
+    class(hht_method), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(step_time), intent(in) :: when
+    type(state), intent(inout) :: now
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    call store_motion(self%system%numbers, now)
+    if (.not. allocated(self%modes%square)) return
+    call results%costs%start('estimate', 'time', 'output')
+    call take_modal_error(self%modes, self%scheme%dt, now%motion, self%time_error, self%next_error)
+    call note_largest(self%system%numbers, self%modes, now%u, self%next_error)
+    self%time_error = self%next_error
+    associate (own => self%time_error)
+      results%time_error = [own%largest, own%at_largest, own%most/max(tiny(1.0_rk), own%motion)]
+    end associate
+    call results%costs%stop()
+  end subroutine store_state
 
   !> The vectors that HHT passes from one increment to the next, at the start of a step.
   subroutine start_rates(system, now)

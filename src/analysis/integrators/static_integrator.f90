@@ -10,7 +10,8 @@ module static_integrator
   use joint_law, only: joint_state
   use joint_water, only: update_uplift
   use analysis_state, only: state
-  use state_transfer, only: start_motion, sum_contact
+  use node_dofs, only: zero_vectors
+  use state_transfer, only: start_motion, store_motion, sum_contact
   use increment_listener, only: listener
   use equilibrium, only: balance_outcome
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium
@@ -28,6 +29,7 @@ module static_integrator
   contains
     procedure :: open_step
     procedure :: advance
+    procedure :: store_state
     procedure :: is_hopeless
     procedure :: explain_failure
   end type static_method
@@ -144,6 +146,50 @@ contains
                          self%solids%solver%costs, has_changed)
     end subroutine update_water
   end subroutine match_uplift
+
+  !> Writes the motion to the nodes; at the end of the step the dual solution follows.
+  subroutine store_state(self, model, when, now, results, error)
+    class(static_method), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(step_time), intent(in) :: when
+    type(state), intent(inout) :: now
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
+    call store_motion(self%system%numbers, now)
+    if (.not. now%is_last_of_step) return
+    if (size(model%joints) > 0 .or. self%solids%has_inelastic()) return
+    call results%costs%start('estimate', 'mesh', 'output')
+    call find_dual(self, model, now, results)
+    call results%costs%stop()
+  end subroutine store_state
+
+  !> The dual solution: a unit force where and as the displacement is largest (theory.md, 14.2).
+  !> Without it there is no estimate of this error.
+  subroutine find_dual(self, model, now, results)
+    class(static_method), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable :: failure
+    real(rk), allocatable :: force(:, :), x(:, :)
+    real(rk) :: q(self%system%matrix%num_total), largest
+    integer :: node
+    node = maxloc(norm2(now%u, dim=1), dim=1)
+    largest = norm2(now%u(:, node))
+    if (largest <= 0.0_rk) return
+    force = zero_vectors(model%mesh%num_nodes)
+    force(:, node) = now%u(:, node)/largest
+    associate (n => self%system%matrix%num_free)
+      call self%system%numbers%reduce(force, q)
+      x = reshape(q(:n), [n, 1])
+      call self%solids%solver%factor%solve(x, failure)
+      if (allocated(failure)) return
+      q = 0.0_rk
+      q(:n) = x(:, 1)
+    end associate
+    call self%system%numbers%expand(q, force)
+    call move_alloc(force, results%dual)
+  end subroutine find_dual
 
   !> Whether the loads exceed what the joints can carry.
   logical function is_hopeless(self, model, plan, when, before)

@@ -1,5 +1,6 @@
 !> The interface through which the solvers report increments to the results layer.
 module increment_listener
+  use kinds, only: rk
   use errors, only: error_type, raise
   use logging, only: run_log
   use run_ledger, only: ledger
@@ -14,6 +15,12 @@ module increment_listener
   type, abstract :: listener
     type(run_log) :: log
     type(ledger) :: costs !< records nothing until it is opened
+    !> Largest displacement of a dynamic step so far [m], its error in time [m], and the error of
+    !> histories over the largest motion; zero where the step makes no estimate
+    real(rk) :: time_error(3) = 0.0_rk
+    !> (3, nodes) displacement under a unit force where and as the displacement is largest at the
+    !> end of a linear static step [m/N]; allocated until the results have taken it
+    real(rk), allocatable :: dual(:, :)
   contains
     procedure(increment_done), deferred :: increment_done
     procedure :: increment_dropped

@@ -11,6 +11,7 @@ module record_archive
   use joint_readings, only: joint_record
   use damage_readings, only: damage_record, damage_extreme
   use run_records, only: run_record, text_item
+  use motion_errors, only: motion_error
   use space_errors, only: space_error
   implicit none
   private
@@ -32,6 +33,9 @@ contains
     call file%put('last_fracture', record%last_fracture)
     call file%open_group('space')
     call save_space_error(record%space, file)
+    call file%close_group()
+    call file%open_group('moved')
+    call save_motion_error(record%moved, file)
     call file%close_group()
     ! Stresses by the operator and through the points differ by round-off.
     call file%put('num_recoveries', record%stresses%num_recoveries)
@@ -73,6 +77,9 @@ contains
     call file%get('last_fracture', record%last_fracture)
     call file%open_group('space')
     call load_space_error(record%space, file)
+    call file%close_group()
+    call file%open_group('moved')
+    call load_motion_error(record%moved, file)
     call file%close_group()
     call file%get('num_recoveries', record%stresses%num_recoveries)
     call file%get('has_operator', record%stresses%had_operator)
@@ -121,6 +128,29 @@ contains
     call file%get('time', record%time)
     call file%get('sampled', record%sampled)
   end subroutine load_space_error
+
+  !> Writes the error of the largest displacement.
+  subroutine save_motion_error(record, file)
+    type(motion_error), intent(in) :: record
+    class(archive), intent(inout) :: file
+    call file%put('at_time', record%at_time)
+    call file%put('time', record%time)
+    call file%put('history', record%history)
+    call file%put('mesh', record%mesh)
+    call file%put('at_dual', record%at_dual)
+  end subroutine save_motion_error
+
+  !> Reads the error of the largest displacement.
+  subroutine load_motion_error(record, file)
+    type(motion_error), intent(inout) :: record
+    class(archive), intent(inout) :: file
+    call file%get('at_time', record%at_time)
+    call file%get('time', record%time)
+    call file%get('history', record%history)
+    call file%get('mesh', record%mesh)
+    call file%get('at_dual', record%at_dual)
+    record%history = -1.0_rk ! of the increments before the checkpoint alone
+  end subroutine load_motion_error
 
   !> Writes the maxima of one joint.
   subroutine save_joint_record(record, file)

@@ -11,6 +11,7 @@ module run_records
   use joint_readings, only: joint_record, open_joint_record, note_joint
   use damage_readings, only: damage_record, open_damage_record, note_damage
   use law_fields, only: mean_of_elements
+  use motion_errors, only: motion_error
   use space_errors, only: space_error, note_space_error
   use stress_fields, only: recovered_fields
   use field_table, only: list_fields, find_field
@@ -42,6 +43,7 @@ module run_records
     type(damage_record) :: damage
     type(extremes_by_face) :: displacement !< length of the vector, relative to the base [m]
     type(space_error) :: space !< error that the mesh leaves
+    type(motion_error) :: moved !< error of the largest displacement
     type(envelope), allocatable :: envelopes(:) !< of all steps so far
     integer, allocatable :: active(:) !< envelopes of the present step
     type(text_item), allocatable :: warnings(:)

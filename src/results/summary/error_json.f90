@@ -15,8 +15,32 @@ contains
     type(run_record), intent(in) :: record
     call json%open_object('estimates')
     call put_stress(json, record)
+    call put_displacement(json, record)
     call json%close_object()
   end subroutine put_estimates
+
+  !> The largest displacement and the parts of its error; `history` is relative. With joints the
+  !> error in time of the extreme is not known within a factor of 2 (theory.md, 14.3).
+  subroutine put_displacement(json, record)
+    type(json_text), intent(inout) :: json
+    type(run_record), intent(in) :: record
+    logical :: has_time, has_mesh
+    associate (found => record%moved, largest => record%displacement%at(1))
+      has_time = found%has_time(largest) .and. size(record%joints) == 0
+      has_mesh = found%has_mesh(largest)
+      if (.not. (has_time .or. has_mesh .or. found%history >= 0.0_rk)) return
+      call json%open_object('displacement')
+      call json%put_real(largest%value, 'value')
+      if (has_time .or. has_mesh) then
+        call json%put_real(merge(found%time, 0.0_rk, has_time) &
+                           + merge(found%mesh, 0.0_rk, has_mesh), 'error')
+      end if
+      if (has_time) call json%put_real(found%time, 'time')
+      if (has_mesh) call json%put_real(found%mesh, 'mesh')
+      if (found%history >= 0.0_rk) call json%put_real(found%history, 'history')
+      call json%close_object()
+    end associate
+  end subroutine put_displacement
 
   !> Energy norms of the stresses and of the error of the mesh.
   subroutine put_stress(json, record)

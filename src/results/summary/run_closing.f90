@@ -28,13 +28,29 @@ contains
     character(:), allocatable :: text
     text = 'results in the units of the deck:'
     if (record%displacement%at(1)%is_found) then
-      text = text//nl//'largest displacement '//described(record%displacement%at(1), model, summary)
+      text = text//nl//'largest displacement '// &
+             described(record%displacement%at(1), model, summary)//error_of_motion(record)
     end if
     text = text//lines_of_modes(model, summary)//lines_of_envelopes(model, summary, record)// &
            lines_of_joints(model, summary, record)//lines_of_damage(model, summary, record)// &
            lines_of_accuracy(model, summary)//line_of_mesh(record)// &
            line_of_remarks(summary, record)//line_of_costs(costs)
   end function closing_lines
+
+  !> ', +-0.0012 (time; mesh not estimated)': the error of the largest displacement.
+  function error_of_motion(record) result(text)
+    type(run_record), intent(in) :: record
+    character(:), allocatable :: text
+    text = ''
+    associate (found => record%moved, largest => record%displacement%at(1))
+      if (found%has_mesh(largest)) text = ', +-'//as_short_text(found%mesh)//' (mesh)'
+      if (found%has_time(largest) .and. size(record%joints) == 0) then
+        text = ', +-'//as_short_text(found%time)//' (time; mesh not estimated)'
+      end if
+      if (found%history < 0.0_rk) return
+      text = text//', histories +-'//as_short_text(100.0_rk*found%history)//' % (time)'
+    end associate
+  end function error_of_motion
 
   !> Frequencies of each step that finds them.
   function lines_of_modes(model, summary) result(text)

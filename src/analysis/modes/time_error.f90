@@ -1,0 +1,187 @@
+!> The error of the time integration in the lowest modes of the structure with closed joints
+!> (theory.md, 14.2): the exact motion of the modes under the forces of the run, beside the run.
+module time_error
+  use kinds, only: rk
+  use analysis_state, only: motion
+  use eigen_modes, only: num_massive, solve_modes
+  use equilibrium, only: equilibrium_solver
+  use errors, only: error_type
+  use global_vectors, only: multiply
+  use joint_forces, only: reference_stiffness
+  use joint_iteration, only: closed_tangent
+  use problem_definition, only: problem
+  use dof_numbering, only: numbering
+  use step_plan, only: step
+  use step_system, only: dam_system
+  implicit none
+  private
+  public :: error_modes, modal_error, make_error_modes, start_modal_error, take_modal_error
+  public :: note_largest, is_worth_its_cost
+
+  integer, parameter :: most_modes = 10
+  !> The modes cost as much as a few dozen increments.
+  integer, parameter :: least_increments = 500
+
+  !> Modes with unit modal mass; none where there is no estimate.
+  type :: error_modes
+    real(rk), allocatable :: shape(:, :) !< (num_free, modes)
+    real(rk), allocatable :: inertia(:, :) !< (num_free, modes) M times the shapes
+    real(rk), allocatable :: square(:) !< (modes) squared circular frequencies [1/s2]
+    real(rk), allocatable :: damping(:) !< (modes) 2 zeta omega [1/s]
+  end type error_modes
+
+  !> The motion of the modes as exact integration gives it, and the error of the run.
+  type :: modal_error
+    real(rk), allocatable :: exact(:), rate(:) !< (modes) displacement and velocity now
+    real(rk), allocatable :: drive(:) !< (modes) force per mass now
+    real(rk), allocatable :: error(:) !< (modes) displacement of the run less the exact one
+    real(rk) :: most = 0.0_rk !< largest norm of the errors so far
+    real(rk) :: motion = 0.0_rk !< largest norm of the modal displacements so far
+    real(rk) :: largest = 0.0_rk !< displacement so far [m]
+    real(rk) :: at_largest = 0.0_rk !< its error [m]
+  end type modal_error
+
+contains
+
+  !> Is a step long enough for an estimate below 5 % of its cost?
+  pure logical function is_worth_its_cost(plan)
+    type(step), intent(in) :: plan
+    is_worth_its_cost = plan%duration > least_increments*plan%first_increment
+  end function is_worth_its_cost
+
+  !> Finds the modes with the factor of the step, which is then lost. Without them (a body that is
+  !> free to move) there is no estimate.
+  subroutine make_error_modes(model, system, solver, modes)
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    class(equilibrium_solver), intent(inout) :: solver
+    type(error_modes), intent(out) :: modes
+    type(error_type), allocatable :: failure
+    real(rk), allocatable :: closed(:), reference(:, :), mode(:), force(:)
+    integer :: k, num_modes
+    call reference_stiffness(model%joints, system%operator, reference)
+    allocate (closed, source=system%stiffness)
+    call system%operator%add_stiffness(closed_tangent(reference), system%matrix, closed)
+    call solver%factor%factorise(system%matrix, closed, failure)
+    if (allocated(failure)) return
+    num_modes = min(most_modes, num_massive(system%matrix, system%mass))
+    call solve_modes(system%matrix, closed, system%mass, solver%factor, num_modes, modes%square, &
+                     modes%shape, failure)
+    if (allocated(failure)) then
+      if (allocated(modes%square)) deallocate (modes%square)
+      return
+    end if
+    allocate (modes%inertia, mold=modes%shape)
+    allocate (modes%damping(num_modes))
+    allocate (mode(system%matrix%num_total), force(system%matrix%num_total))
+    mode = 0.0_rk
+    associate (n => system%matrix%num_free)
+      do k = 1, num_modes
+        mode(:n) = modes%shape(:, k)
+        call multiply(system%matrix, system%mass, mode, force)
+        modes%inertia(:, k) = force(:n)
+        call system%find_damping_force(mode, force)
+        modes%damping(k) = dot_product(mode(:n), force(:n))
+      end do
+    end associate
+  end subroutine make_error_modes
+
+  !> The exact motion starts with that of the run.
+  subroutine start_modal_error(modes, moving, own)
+    type(error_modes), intent(in) :: modes
+    type(motion), intent(in) :: moving !< at the start of the step
+    type(modal_error), intent(out) :: own
+    own%exact = displacement_of(modes, moving)
+    allocate (own%rate, own%drive, own%error, mold=own%exact)
+    own%error = 0.0_rk
+    call drive_modes(modes, moving, own%exact, own%rate, own%drive)
+  end subroutine start_modal_error
+
+  !> Modal displacements.
+  function displacement_of(modes, moving) result(q)
+    type(error_modes), intent(in) :: modes
+    type(motion), intent(in) :: moving
+    real(rk) :: q(size(modes%square))
+    q = matmul(moving%q(:size(modes%inertia, 1)), modes%inertia)
+  end function displacement_of
+
+  !> Modal velocities, and the forces that drive the modes: those of the balance at the end of the
+  !> increment, with the elastic and the damping force of the mode added.
+  subroutine drive_modes(modes, moving, q, rate, drive)
+    type(error_modes), intent(in) :: modes
+    type(motion), intent(in) :: moving
+    real(rk), intent(in) :: q(:)
+    real(rk), intent(out) :: rate(:), drive(:)
+    associate (n => size(modes%shape, 1))
+      rate = matmul(moving%momentum(:n), modes%shape)
+      drive = matmul(moving%external(:n) - moving%internal(:n) - moving%contact(:n) &
+                     - moving%viscous(:n), modes%shape) + modes%damping*rate + modes%square*q
+    end associate
+  end subroutine drive_modes
+
+  !> The exact motion over an increment in which the forces change linearly.
+  subroutine take_modal_error(modes, dt, after, old, new)
+    type(error_modes), intent(in) :: modes
+    real(rk), intent(in) :: dt !< [s]
+    type(motion), intent(in) :: after !< at the end of the increment
+    type(modal_error), intent(in) :: old
+    type(modal_error), intent(out) :: new
+    real(rk), allocatable :: q(:), rate(:)
+    integer :: k
+    new = old
+    allocate (rate(size(modes%square)))
+    q = displacement_of(modes, after)
+    call drive_modes(modes, after, q, rate, new%drive)
+    do k = 1, size(q)
+      call advance_oscillator(modes%square(k), modes%damping(k), dt, &
+                              [old%drive(k), new%drive(k)], new%exact(k), new%rate(k))
+    end do
+    new%error = q - new%exact
+    new%motion = max(new%motion, norm2(q))
+    new%most = max(new%most, norm2(new%error))
+  end subroutine take_modal_error
+
+  !> x'' + c x' + w2 x = p0 + (p1 - p0) t/dt from 0 to dt, exactly: a + b t and a free vibration.
+  pure subroutine advance_oscillator(w2, c, dt, p, x, v)
+    real(rk), intent(in) :: w2, c, dt !< squared circular frequency, 2 zeta omega, increment
+    real(rk), intent(in) :: p(2) !< force per mass at the start and at the end
+    real(rk), intent(inout) :: x, v
+    real(rk) :: a, b, root, decay, cosine, sine, y, w
+    b = (p(2) - p(1))/(dt*w2)
+    a = (p(1) - c*b)/w2
+    decay = exp(-0.5_rk*c*dt)
+    root = sqrt(abs(w2 - 0.25_rk*c**2))
+    if (w2 > 0.25_rk*c**2) then
+      cosine = cos(root*dt)
+      sine = sin(root*dt)/root
+    else
+      root = max(root, 1.0e-6_rk*c)
+      cosine = cosh(root*dt)
+      sine = sinh(root*dt)/root
+    end if
+    y = x - a
+    w = v - b
+    x = a + b*dt + decay*(cosine*y + sine*(w + 0.5_rk*c*y))
+    v = b + decay*(cosine*w - sine*(0.5_rk*c*w + w2*y))
+  end subroutine advance_oscillator
+
+  !> Keeps the largest displacement so far, and its error: the part along the displacement.
+  subroutine note_largest(numbers, modes, u, own)
+    type(numbering), intent(in) :: numbers
+    type(error_modes), intent(in) :: modes
+    real(rk), intent(in) :: u(:, :) !< (3, nodes) [m]
+    type(modal_error), intent(inout) :: own
+    real(rk), allocatable :: q(:), error(:, :)
+    real(rk) :: largest
+    integer :: node
+    node = maxloc(norm2(u, dim=1), dim=1)
+    largest = norm2(u(:, node))
+    if (largest <= own%largest) return
+    allocate (q(numbers%num_total), source=0.0_rk)
+    q(:size(modes%shape, 1)) = matmul(modes%shape, own%error)
+    allocate (error, mold=u)
+    call numbers%expand(q, error)
+    own%largest = largest
+    own%at_largest = dot_product(error(:, node), u(:, node))/largest
+  end subroutine note_largest
+end module time_error
