@@ -216,7 +216,7 @@ contains
     end do
     if (outcome%has_converged .and. .not. self%time%wants_energy) then
       self%time%wants_energy = .true.
-      call self%solver%costs%start('update', 'inelastic solids', 'inelastic')
+      call self%solver%costs%start('recover', 'inelastic solids', 'inelastic')
       call complete_energies(model, self%time, before%points, after%points, self%answers)
       call self%solver%costs%stop()
     end if

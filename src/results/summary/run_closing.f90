@@ -176,7 +176,7 @@ contains
            '(energy norm), time '//as_short_text(record%space%time)
   end function line_of_mesh
 
-  !> Numbers of warnings and ignored cards.
+  !> Numbers of warnings and ignored cards, if any.
   function line_of_remarks(summary, record) result(text)
     type(run_summary), intent(in) :: summary
     type(run_record), intent(in) :: record
@@ -188,8 +188,9 @@ contains
                           severity_ignored)
     end if
     num_warnings = summary%remarks%num_warnings - num_ignored + size(record%warnings)
+    text = ''
+    if (num_warnings + num_ignored == 0) return
     text = nl//'warnings: '//as_text(num_warnings)//', ignored cards: '//as_text(num_ignored)
-    if (num_warnings + num_ignored == 0) text = nl//'no warnings'
   end function line_of_remarks
 
   !> The effects that have taken most of the time, with their shares.

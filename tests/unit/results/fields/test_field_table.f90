@@ -1,7 +1,7 @@
 !> The table of fields: each row is whole, and each field has the values that its requests need.
 program test_field_table
   use field_table, only: choices_of, columns_of_joints, fields_in_words, find_field, list_fields
-  use field_type, only: at_joints, at_nodes, at_points, on_faces, result_field
+  use field_type, only: at_elements, at_joints, at_nodes, at_points, on_faces, result_field
   use step_plan, only: field_name_length
   use testing, only: test_log, check, check_text
   implicit none
@@ -30,7 +30,8 @@ contains
         call check(log, len(item%meaning) > 0, item%name//' has a meaning')
         call check(log, len(item%provider) > 0, item%name//' has a provider')
         call check(log, allocated(item%remark), item%name//' has a remark, or an empty one')
-        call check(log, any(item%place == [at_nodes, at_points, at_joints, on_faces]), &
+        call check(log, any(item%place == [at_nodes, at_elements, at_points, at_joints, &
+                                               on_faces]), &
                    item%name//' has a place')
         call check(log, item%requests == '' .or. len(item%name) <= field_name_length, &
                    item%name//' can be stored in a request')
