@@ -149,7 +149,13 @@ def estimates(results: SiResults) -> list[tuple[str, str, str]]:
 def accuracy(results: SiResults) -> list[tuple[str, str]]:
     """What job.json has under 'accuracy' beside the estimates, name and value."""
     known = results.summary.get("accuracy", {})
-    rows = leaves({key: value for key, value in known.items() if key != "estimates"}, "")
+    rest = {key: value for key, value in known.items() if key not in ("estimates", "joints")}
+    shares = {name: joint.get("penetration_over_opening", 0.0) for name, joint in
+              known.get("joints", {}).items()}  # fmt: skip
+    if shares:
+        worst = max(shares, key=lambda name: shares[name])
+        rest["largest_penetration_over_opening"] = f"{shares[worst]:.4g} ({worst})"
+    rows = leaves(rest, "")
     return [(path.replace("_", " ").replace(".", ": "), _in_words(value)) for path, value in rows]
 
 
