@@ -31,7 +31,7 @@ contains
         call check(log, len(item%provider) > 0, item%name//' has a provider')
         call check(log, allocated(item%remark), item%name//' has a remark, or an empty one')
         call check(log, any(item%place == [at_nodes, at_elements, at_points, at_joints, &
-                                               on_faces]), &
+                                           on_faces]), &
                    item%name//' has a place')
         call check(log, item%requests == '' .or. len(item%name) <= field_name_length, &
                    item%name//' can be stored in a request')
