@@ -212,6 +212,12 @@ def test_effects_are_switched_off_in_turn(program_path, slide):
     )
 
 
+def test_smallest_and_largest_increments_follow(tmp_path):
+    (tmp_path / "a.inp").write_text("*STEP\n*DYNAMIC\n0.01, 5., , 2.d-2\n*END STEP\n")
+    (card,) = scaled(2.0)(read_deck(tmp_path / "a.inp")).of("DYNAMIC")
+    assert card.lines == ["0.02, 5., , 0.04"]
+
+
 def test_rungs_fit_the_deck():
     """A static elastic deck has no increments, no tolerances, no joints to vary."""
     axes = {rung.axis for rung in list_rungs(base_deck(read_deck(INPUT / "cantilever.inp")))}

@@ -14,6 +14,7 @@ REQUESTS = (
     "NODE FILE", "EL FILE", "OUTPUT", "NODE OUTPUT", "ELEMENT OUTPUT", "NODE PRINT", "EL PRINT",
     "JOINT PRINT", "RESTART",
 )  # fmt: skip
+SIZES = (0, 2, 3)  # fields of *DYNAMIC: first, smallest and largest increment
 SLOWEST = 1.35  # exponent of the time of an increment over unknowns, three-dimensional meshes
 
 
@@ -64,13 +65,16 @@ def list_rungs(deck: Deck) -> list[Rung]:
 
 
 def scaled(factor: float) -> Callable[[Deck], Deck]:
-    """Increments of dynamic steps times a factor."""
+    """Increments of dynamic steps times a factor, with the smallest and the largest."""
 
     def change(deck: Deck) -> Deck:
         new = deck.copy()
         for card in new.of("DYNAMIC"):
-            size, *rest = card.lines[0].split(",")
-            card.lines[0] = ",".join([repr(float(size) * factor), *rest])
+            items = card.lines[0].split(",")
+            for place in SIZES:
+                if place < len(items) and items[place].strip():
+                    items[place] = repr(float(items[place].lower().replace("d", "e")) * factor)
+            card.lines[0] = ", ".join(item.strip() for item in items)
         for card in new.of("STEP"):
             if "INC" in card.parameters and factor < 1.0:
                 card.parameters["INC"] = str(int(int(card.parameters["INC"] or 1) / factor) + 1)
