@@ -20,7 +20,7 @@ module run_forecast
 
   !> What the costs depend on.
   type :: run_counts
-    real(rk) :: unknowns = 0.0_rk, elements = 0.0_rk, points = 0.0_rk !< of joints
+    real(rk) :: unknowns = 0.0_rk, points = 0.0_rk !< of joints
     real(rk) :: law_points = 0.0_rk !< integration points of inelastic solids
     real(rk) :: entries = 0.0_rk !< of the factor
     real(rk) :: analysis = 0.0_rk !< seconds that the analysis has just taken
@@ -86,7 +86,6 @@ contains
     if (allocated(error)) return
     counts%analysis = wall_clock() - started_at
     counts%unknowns = real(system%matrix%num_free, rk)
-    counts%elements = real(model%mesh%num_elements, rk)
     counts%points = real(system%operator%num_points, rk)
     if (allocated(model%inelastic)) then
       do i = 1, size(model%inelastic)

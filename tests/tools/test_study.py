@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from keyway_tools.results import Results
-from keyway_tools.study.deck_cards import Deck, read_deck
+from keyway_tools.study.deck_cards import Deck, number_of, read_deck
 from keyway_tools.study.effects import list_effects
 from keyway_tools.study.errors import observed_order, time_errors
 from keyway_tools.study.ladder import Outcome
@@ -42,7 +42,7 @@ def test_reader_takes_continuations_quotes_and_includes(tmp_path):
     )  # fmt: skip
     assert reservoir.parameters == {"NAME": "LAKE", "LEVEL": "5.", "ADDED MASS": "NONE"}
     assert amplitude.parameters["INPUT"] == f'"{tmp_path / "x.txt"}"'
-    assert static.numbers(0) == [1.0, 1.0]
+    assert [number_of(item) for item in static.lines[0].split(",")] == [1.0, 1.0]
     (tmp_path / "b.inp").write_text(deck.text())
     assert read_deck(tmp_path / "b.inp") == deck
 

@@ -30,7 +30,7 @@ module hht_integrator
   type, extends(integrator) :: hht_method
     type(hht) :: scheme !< of the present increment size
     type(error_modes) :: modes !< of the estimate of the error in time; empty without it
-    type(modal_error) :: time_error, next_error !< of the converged and of the next increment
+    type(modal_error) :: time_error !< of the last converged increment
   contains
     procedure :: open_step
     procedure :: start_increment
@@ -90,12 +90,13 @@ contains
     type(state), intent(inout) :: now
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
+    type(modal_error) :: next
     call store_motion(self%system%numbers, now)
     if (.not. allocated(self%modes%square)) return
     call results%costs%start('estimate', 'time', 'output')
-    call take_modal_error(self%modes, self%scheme%dt, now%motion, self%time_error, self%next_error)
-    call note_largest(self%system%numbers, self%modes, now%u, self%next_error)
-    self%time_error = self%next_error
+    call take_modal_error(self%modes, self%scheme%dt, now%motion, self%time_error, next)
+    call note_largest(self%system%numbers, self%modes, now%u, next)
+    self%time_error = next
     associate (own => self%time_error)
       results%time_error = [own%largest, own%at_largest, own%most/max(tiny(1.0_rk), own%motion)]
     end associate

@@ -29,16 +29,6 @@ class Card:
         """Value of a parameter in capitals; '' where there is none."""
         return (self.parameters.get(name) or "").strip('"').upper()
 
-    def numbers(self, line: int) -> list[float]:
-        """Numbers of a data line; words and empty fields are left out."""
-        found = []
-        for item in self.lines[line].split(","):
-            try:
-                found.append(float(item.strip().lower().replace("d", "e")))
-            except ValueError:
-                continue
-        return found
-
     def text(self) -> str:
         """The card as lines of a deck."""
         parts = [f"*{self.keyword}"]
@@ -52,6 +42,11 @@ class Card:
             else:
                 row += f", {part}"
         return "\n".join([*rows, row, *self.lines]) + "\n"
+
+
+def number_of(item: str) -> float:
+    """A number of a data line; Fortran's exponent D is one too. Raises ValueError."""
+    return float(item.strip().lower().replace("d", "e"))
 
 
 @dataclass

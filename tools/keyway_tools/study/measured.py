@@ -6,6 +6,8 @@ from dataclasses import asdict, dataclass, field
 
 import numpy as np
 
+from keyway_tools.mesh_data import BrickMesh
+from keyway_tools.mesh_quality import volumes
 from keyway_tools.results import Results
 
 # Share of the dam's volume in which the stress is larger than the number that is compared: a
@@ -83,12 +85,7 @@ def exceeded_stress(results: Results) -> float:
 def node_volumes(results: Results) -> np.ndarray:
     """An eighth of the volume of each brick of the dam at each of its nodes, (nodes)."""
     corners = results.connectivity[results.dam]
-    x = results.x[corners]
-    # Determinants at the centre: exact for bricks with parallel faces, good enough for weights.
-    signs = np.array(
-        [[-1, 1, 1, -1, -1, 1, 1, -1], [-1, -1, 1, 1, -1, -1, 1, 1], [-1, -1, -1, -1, 1, 1, 1, 1]]
-    )
-    volumes = np.abs(np.linalg.det(np.einsum("ia,eaj->eij", signs, x) / 8.0)) * 8.0
+    dam = BrickMesh(results.x, corners, np.zeros((0, 8), dtype=int))
     total = np.zeros(len(results.x))
-    np.add.at(total, corners.ravel(), np.repeat(volumes / 8.0, 8))
+    np.add.at(total, corners.ravel(), np.repeat(volumes(dam) / 8.0, 8))
     return total

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from .deck_cards import Card, Deck
+from .deck_cards import Card, Deck, number_of
 from .refined_mesh import BRICKS, refine
 
 # Extremes that every step records.
@@ -73,7 +73,7 @@ def scaled(factor: float) -> Callable[[Deck], Deck]:
             items = card.lines[0].split(",")
             for place in SIZES:
                 if place < len(items) and items[place].strip():
-                    items[place] = repr(float(items[place].lower().replace("d", "e")) * factor)
+                    items[place] = repr(number_of(items[place]) * factor)
             card.lines[0] = ", ".join(item.strip() for item in items)
         for card in new.of("STEP"):
             if "INC" in card.parameters and factor < 1.0:
