@@ -138,7 +138,8 @@ contains
     type(modal_motion), intent(inout) :: own
     integer, intent(inout) :: n
     allocate (own%start(4), own%start_traction(3, 4), own%start_factor(2), own%y(3), own%rate(3), &
-              own%acceleration(3), own%port(5), own%port_rate(5), own%port_acceleration(5))
+              own%acceleration(3), own%port(5), own%port_rate(5), own%port_acceleration(5), &
+              own%rest(5), own%rest_rate(5), own%rest_acceleration(5))
     call fill(own%start, n)
     call fill(own%start_traction, n)
     call fill(own%start_factor, n)
@@ -148,6 +149,9 @@ contains
     call fill(own%port, n)
     call fill(own%port_rate, n)
     call fill(own%port_acceleration, n)
+    call fill(own%rest, n)
+    call fill(own%rest_rate, n)
+    call fill(own%rest_acceleration, n)
   end subroutine fill_modal
 
   !> What is known of a reduced model.

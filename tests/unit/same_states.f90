@@ -163,6 +163,9 @@ contains
     call compare(log, what//'port', a%port, b%port)
     call compare(log, what//'port_rate', a%port_rate, b%port_rate)
     call compare(log, what//'port_acceleration', a%port_acceleration, b%port_acceleration)
+    call compare(log, what//'rest', a%rest, b%rest)
+    call compare(log, what//'rest_rate', a%rest_rate, b%rest_rate)
+    call compare(log, what//'rest_acceleration', a%rest_acceleration, b%rest_acceleration)
   end subroutine compare_modal
 
   !> What is known of a reduced model.

@@ -149,6 +149,7 @@ contains
       end if
       call external_force(system%groups, model%amplitudes, when, own%external)
       call multiply(system%matrix, system%stiffness, modal%start, own%elastic)
+      self%basis%start_traction = modal%start_traction
       contact = 0.0_rk
       call system%operator%add_forces(modal%start_traction, contact)
       allocate (self%basis%force(system%matrix%num_total, n + 2))
@@ -217,6 +218,7 @@ contains
     type(reduced_model) :: fresh
     real(rk), allocatable :: values(:), shapes(:, :)
     fresh%force = self%basis%force
+    fresh%start_traction = self%basis%start_traction
     fresh%starts_balanced = self%basis%starts_balanced
     fresh%shift = shift_of_increment/plan%first_increment**2
     values = self%system%stiffness + fresh%shift*self%system%mass
@@ -280,6 +282,9 @@ contains
       modal%port = [(0.0_rk, k=1, size(basis%path, 1))]
       modal%port_rate = modal%port
       modal%port_acceleration = modal%port
+      modal%rest = modal%port
+      modal%rest_rate = modal%port
+      modal%rest_acceleration = modal%port
       own%carried = modal%start_traction
       own%jump_rate = 0.0_rk*own%carried
       own%v(:n) = matmul(basis%mode, modal%rate)

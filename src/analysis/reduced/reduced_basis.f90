@@ -37,6 +37,7 @@ module reduced_basis
     real(rk) :: residual_mass = 0.0_rk !< mass of the rest over its stiffness [s2]
     real(rk) :: residual_damping = 0.0_rk !< damping of the rest over its stiffness [s]
     real(rk), allocatable :: force(:, :) !< (num_total, loads) f_k [N]
+    real(rk), allocatable :: start_traction(:, :) !< (3, points) of the joints at the start [Pa]
     !> The last load but one, forces that are not balanced at the start, is round-off or what an
     !> iteration has left: its direction is accidental and must not shape the modes.
     logical :: starts_balanced = .false.
@@ -96,6 +97,7 @@ contains
     fewer%path = basis%path(:, :num_modes)
     fewer%damping = basis%damping(:num_modes, :num_modes)
     fewer%force = basis%force
+    fewer%start_traction = basis%start_traction
     fewer%probe = [(k, k=1, size(basis%probe))]
     fewer%mode = basis%mode(basis%probe, :num_modes)
     fewer%sample = basis%sample

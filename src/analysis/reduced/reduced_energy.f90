@@ -2,6 +2,7 @@
 !> the modes and the ports.
 module reduced_energy
   use analysis_state, only: modal_motion, state
+  use dense_products, only: symmetric_times, times_vector, transposed_times_vector
   use energy_account, only: find_error
   use global_vectors, only: work
   use guest_histories, only: sum_work
@@ -12,15 +13,10 @@ module reduced_energy
   use kinds, only: rk
   use problem_definition, only: problem
   use reduced_basis, only: reduced_model
-  use reduced_increment, only: modal_forces, port_forces
+  use reduced_increment, only: find_rates, modal_forces, port_forces
   implicit none
   private
   public :: add_reduced_work
-
-  !> Responses of the rest to the forces that it follows, and to their rates, at one time.
-  type :: rest_response
-    real(rk), allocatable :: x(:), rate(:), acceleration(:) !< (ports)
-  end type rest_response
 
 contains
 
@@ -34,78 +30,74 @@ contains
     type(state), intent(in) :: before
     type(state), intent(inout) :: after
     type(stored_work) :: old_stores, stores
-    type(rest_response) :: first, last
     real(rk) :: external, damping, strain, inertial
     call sum_work(model, before, old_stores)
     call sum_work(model, after, stores)
     associate (old => before%motion%modal, new => after%motion%modal, energy => after%energy)
-      first = respond(basis, old)
-      last = respond(basis, new)
-      external = external_work(basis, old, new, first, last, factors)
+      call find_response(basis, scheme, old, new)
+      external = external_work(basis, old, new, factors)
       damping = work(new%y - old%y, matmul(basis%damping, old%rate), &
                      matmul(basis%damping, new%rate)) &
-                + basis%residual_damping*work(last%x - first%x, old%port_rate, new%port_rate)
-      strain = stored_strain(basis, new, last) - stored_strain(basis, old, first)
-      inertial = inertial_work(basis, operator, scheme, factors, before, after, last%x - first%x)
+                + basis%residual_damping*work(new%rest - old%rest, old%port_rate, new%port_rate)
+      strain = stored_strain(basis, new) - stored_strain(basis, old)
+      inertial = inertial_work(basis, operator, scheme, factors, before, after, new%rest - old%rest)
       energy%external = energy%external + external
       energy%damping = energy%damping + damping
       energy%strain = energy%strain + strain + stores%stored - old_stores%stored
-      energy%kinetic = energy%kinetic + kinetic(basis, new, last) - kinetic(basis, old, first)
+      energy%kinetic = energy%kinetic + kinetic(basis, new) - kinetic(basis, old)
       energy%friction = stores%friction
       energy%fracture = stores%fracture
       energy%crushing = stores%crushing
       energy%numerical = energy%numerical + external - damping - strain - inertial &
                          - (stores%stored - old_stores%stored + stores%friction &
                             - old_stores%friction + stores%fracture - old_stores%fracture) &
-                         - newmark_excess(basis, scheme, old, new, first, last)
+                         - newmark_excess(basis, scheme, old, new)
       call find_error(energy)
     end associate
   end subroutine add_reduced_work
 
-  !> Responses of the rest.
-  function respond(basis, modal) result(response)
+  !> Response of the rest at the end, from that at the start and the forces of the ports.
+  subroutine find_response(basis, scheme, old, new)
     type(reduced_model), intent(in) :: basis
-    type(modal_motion), intent(in) :: modal
-    type(rest_response) :: response
-    response%x = matmul(basis%residual, modal%port)
-    response%rate = matmul(basis%residual, modal%port_rate)
-    response%acceleration = matmul(basis%residual, modal%port_acceleration)
-  end function respond
+    type(hht), intent(in) :: scheme
+    type(modal_motion), intent(in) :: old
+    type(modal_motion), intent(inout) :: new
+    new%rest = symmetric_times(basis%residual, new%port)
+    call find_rates(scheme, old%rest, old%rest_rate, old%rest_acceleration, new%rest, &
+                    new%rest_rate, new%rest_acceleration)
+  end subroutine find_response
 
   !> Work of the loads, those at the start of the step included.
-  real(rk) function external_work(basis, old, new, first, last, factors)
+  real(rk) function external_work(basis, old, new, factors)
     type(reduced_model), intent(in) :: basis
     type(modal_motion), intent(in) :: old, new
-    type(rest_response), intent(in) :: first, last
     real(rk), intent(in) :: factors(:, :) !< (loads, 2) beyond the start
-    real(rk) :: mean(size(factors, 1)), path(size(first%x))
+    real(rk) :: mean(size(factors, 1)), path(size(old%rest))
     integer :: n
     n = size(old%start_factor)
     mean = 0.5_rk*(factors(:, 1) + factors(:, 2))
     mean(:n) = mean(:n) + old%start_factor
     mean(n + 1:) = 0.0_rk
-    path = last%x - first%x + matmul(basis%path, new%y - old%y)
+    path = new%rest - old%rest + times_vector(basis%path, new%y - old%y)
     external_work = sum(mean*path(size(path) - size(mean) + 1:))
   end function external_work
 
   !> Strain energy of the solids beyond that at the start of the step. The last load is the internal
   !> force there.
-  real(rk) function stored_strain(basis, modal, rest)
+  real(rk) function stored_strain(basis, modal)
     type(reduced_model), intent(in) :: basis
     type(modal_motion), intent(in) :: modal
-    type(rest_response), intent(in) :: rest
     integer :: last
-    last = size(rest%x)
-    stored_strain = rest%x(last) + sum(basis%path(last, :)*modal%y) &
-                    + 0.5_rk*(sum(basis%lambda*modal%y**2) + sum(modal%port*rest%x))
+    last = size(modal%rest)
+    stored_strain = modal%rest(last) + sum(basis%path(last, :)*modal%y) &
+                    + 0.5_rk*(sum(basis%lambda*modal%y**2) + sum(modal%port*modal%rest))
   end function stored_strain
 
   !> Kinetic energy.
-  pure real(rk) function kinetic(basis, modal, rest)
+  pure real(rk) function kinetic(basis, modal)
     type(reduced_model), intent(in) :: basis
     type(modal_motion), intent(in) :: modal
-    type(rest_response), intent(in) :: rest
-    kinetic = 0.5_rk*(sum(modal%rate**2) + basis%residual_mass*sum(modal%port_rate*rest%rate))
+    kinetic = 0.5_rk*(sum(modal%rate**2) + basis%residual_mass*sum(modal%port_rate*modal%rest_rate))
   end function kinetic
 
   !> Work of the inertia forces as the balance gives them, joints by their laws. At the start they
@@ -124,7 +116,7 @@ contains
                bulk => 1.0_rk + scheme%alpha, beta => basis%residual_damping)
       inertial_work = work(new%y - old%y, old%acceleration, &
                            bulk*modal_forces(basis, new) - scheme%alpha*modal_forces(basis, old) &
-                           + matmul(force, basis%path)) &
+                           + transposed_times_vector(basis%path, force)) &
                       + work(moved, basis%residual_mass*old%port_acceleration, &
                              force - bulk*(new%port + beta*new%port_rate) &
                              + scheme%alpha*(old%port + beta*old%port_rate))
@@ -132,16 +124,15 @@ contains
   end function inertial_work
 
   !> Change of the kinetic energy beyond du . M (mean acceleration) (7.4).
-  pure real(rk) function newmark_excess(basis, scheme, old, new, first, last) result(excess)
+  pure real(rk) function newmark_excess(basis, scheme, old, new) result(excess)
     type(reduced_model), intent(in) :: basis
     type(hht), intent(in) :: scheme
     type(modal_motion), intent(in) :: old, new
-    type(rest_response), intent(in) :: first, last
     excess = excess_of(new%y - old%y, old%acceleration, new%acceleration, old%acceleration, &
                        new%acceleration) &
-             + basis%residual_mass*excess_of(last%x - first%x, old%port_acceleration, &
-                                             new%port_acceleration, first%acceleration, &
-                                             last%acceleration)
+             + basis%residual_mass*excess_of(new%rest - old%rest, old%port_acceleration, &
+                                             new%port_acceleration, &
+                                             old%rest_acceleration, new%rest_acceleration)
   contains
     !> For displacements, accelerations and inertia forces at both ends.
     pure real(rk) function excess_of(dx, a0, a1, force0, force1)

@@ -8,6 +8,7 @@
 module reduced_increment
   use analysis_state, only: modal_motion, motion, state
   use amplitudes, only: amplitude
+  use dense_products, only: symmetric_times, times_vector, transposed_times_vector
   use equilibrium, only: balance_outcome, force_balance
   use hht_scheme, only: hht
   use joint_forces, only: gather_jumps, gather_tractions
@@ -15,12 +16,12 @@ module reduced_increment
   use kinds, only: rk
   use problem_definition, only: problem
   use reduced_basis, only: reduced_model
-  use reduced_scheme, only: reduced_matrices
+  use reduced_scheme, only: force_of, reduced_matrices
   use step_loads, only: factor_at, load_group, step_time
   use step_plan, only: step_controls
   implicit none
   private
-  public :: load_factors, port_forces, modal_forces, take_reduced_increment
+  public :: load_factors, port_forces, modal_forces, take_reduced_increment, find_rates
 
 contains
 
@@ -78,7 +79,7 @@ contains
     type(state), intent(inout) :: after
     type(balance_outcome), intent(out) :: outcome
     real(rk), dimension(3, matrices%operator%num_points) :: traction, jump
-    real(rk) :: known(basis%num_modes), rest(size(basis%residual, 1)), moved(size(jump))
+    real(rk) :: known(basis%num_modes), rest(size(basis%residual, 1)), moved(size(rest))
     call sum_known_forces(basis, matrices, before%motion%modal, known, rest)
     associate (start => before%motion%modal%start_traction, new => after%motion%modal, &
                operator => matrices%operator)
@@ -89,11 +90,8 @@ contains
         outcome%iterations = 1
       else
         call operator%jumps(before%motion%modal%start, jump)
-        moved = matmul(basis%path(:size(jump), :), new%y) &
-                + matmul(basis%residual(:size(jump), :), new%port) &
-                + matmul(matrices%compliance, matrices%scheme%joint_weight &
-                         *force_of(operator, start))
-        jump = jump + reshape(moved, shape(jump))
+        moved = times_vector(basis%path, new%y) + symmetric_times(basis%residual, new%port)
+        jump = jump + reshape(moved(:size(jump)) + matrices%held_jump, shape(jump))
         call solve_with_joints(matrices, model, controls, jump, before, after, traction, outcome)
         if (.not. outcome%has_converged) return
         call solve_modes()
@@ -105,7 +103,8 @@ contains
     subroutine solve_modes()
       real(rk) :: force(size(rest))
       force = port_forces(matrices%operator, matrices%scheme, factors, before%motion, traction)
-      after%motion%modal%y = matmul(matrices%inverse, known + matmul(force, basis%path))
+      after%motion%modal%y = times_vector(matrices%inverse, known &
+                                          + transposed_times_vector(basis%path, force))
       after%motion%modal%port = (rest + force)/matrices%rest
     end subroutine solve_modes
   end subroutine take_reduced_increment
@@ -139,14 +138,6 @@ contains
     rate_at_zero = rate + (1.0_rk - scheme%gamma)*scheme%dt*acceleration &
                    - scheme%velocity_of_x*predicted
   end subroutine predict
-
-  !> Forces of the joints in rows.
-  pure function force_of(operator, traction) result(force)
-    type(jump_operator), intent(in) :: operator
-    real(rk), intent(in) :: traction(:, :) !< (3, points) [Pa]
-    real(rk) :: force(size(traction)) !< [N]
-    force = reshape(spread(operator%area, 1, 3)*traction, [size(traction)])
-  end function force_of
 
   !> The iteration on the joints, from jumps that go on as in the last increment.
   subroutine solve_with_joints(matrices, model, controls, open_jump, before, after, traction, &

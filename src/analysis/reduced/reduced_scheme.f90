@@ -9,7 +9,7 @@ module reduced_scheme
   use blas_threads, only: use_many_threads, use_one_thread
   use contact_scaling, only: find_contact_scale
   use dense_factor, only: factorise_dense, lu_factor, solve_factored
-  use dense_products, only: times
+  use dense_products, only: times, times_vector
   use equilibrium, only: balance_outcome, force_balance
   use hht_scheme, only: hht
   use joint_forces, only: joint_field, reference_stiffness
@@ -27,7 +27,7 @@ module reduced_scheme
   use tangent_equations, only: joint_tangent
   implicit none
   private
-  public :: reduced_matrices
+  public :: reduced_matrices, force_of
 
   type :: reduced_matrices
     type(hht) :: scheme
@@ -35,6 +35,8 @@ module reduced_scheme
     real(rk), allocatable :: inverse(:, :) !< (modes, modes) Z [1/(1/s2)]
     real(rk) :: rest = 1.0_rk !< K_eff of the rest over its stiffness
     real(rk), allocatable :: compliance(:, :) !< (rows, rows) C [m/N]
+    !> (rows) jumps that the tractions at the start of the step prevent, C w area t [m]
+    real(rk), allocatable :: held_jump(:)
     type(condensed_joints) :: joints !< with G
   contains
     procedure :: prepare, solve_joints
@@ -60,6 +62,8 @@ contains
     jump = basis%path(:num_rows(operator%num_points), :)
     self%compliance = times(jump, times(self%inverse, transpose(jump)))
     self%compliance = self%compliance + basis%residual(:size(jump, 1), :size(jump, 1))/self%rest
+    self%held_jump = times_vector(self%compliance, &
+                                  scheme%joint_weight*force_of(operator, basis%start_traction))
     if (operator%num_points > 0) call close_joints(self, joints, operator)
     if (operator%num_points > few_points) call use_one_thread(levels)
   end subroutine prepare
@@ -113,6 +117,14 @@ contains
       own%tangent = no_tangent
     end associate
   end subroutine close_joints
+
+  !> Forces of the joints in rows.
+  pure function force_of(operator, traction) result(force)
+    type(jump_operator), intent(in) :: operator
+    real(rk), intent(in) :: traction(:, :) !< (3, points) [Pa]
+    real(rk) :: force(size(traction)) !< [N]
+    force = reshape(spread(operator%area, 1, 3)*traction, [size(traction)])
+  end function force_of
 
   !> Joint states at the end of an increment, and the tractions of the equilibrium there.
   subroutine solve_joints(self, controls, balance, joints, old, new, traction, outcome)

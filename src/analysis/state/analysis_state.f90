@@ -64,6 +64,7 @@ module analysis_state
     real(rk), allocatable :: y(:), rate(:), acceleration(:) !< (modes) and their rates
     !> (ports) forces on joints [N], then factors of loads, whose static response the rest has
     real(rk), allocatable :: port(:), port_rate(:), port_acceleration(:)
+    real(rk), allocatable :: rest(:), rest_rate(:), rest_acceleration(:) !< (ports) that response
   end type modal_motion
 
   !> Motion and forces in the unknowns of a step. The integrator allocates what it needs.

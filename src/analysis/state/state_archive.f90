@@ -361,6 +361,9 @@ contains
     call file%put('port', own%port)
     call file%put('port_rate', own%port_rate)
     call file%put('port_acceleration', own%port_acceleration)
+    call file%put('rest', own%rest)
+    call file%put('rest_rate', own%rest_rate)
+    call file%put('rest_acceleration', own%rest_acceleration)
   end subroutine save_modal
 
   !> Reads the motion of a reduced model.
@@ -376,5 +379,8 @@ contains
     call file%get('port', own%port)
     call file%get('port_rate', own%port_rate)
     call file%get('port_acceleration', own%port_acceleration)
+    call file%get('rest', own%rest)
+    call file%get('rest_rate', own%rest_rate)
+    call file%get('rest_acceleration', own%rest_acceleration)
   end subroutine load_modal
 end module state_archive

@@ -3,7 +3,8 @@ module dense_products
   use kinds, only: rk
   implicit none
   private
-  public :: times, transposed_times
+  public :: times, transposed_times, times_vector, transposed_times_vector, &
+            symmetric_times
 
   ! The arguments are those of the BLAS.
   ! allow(assumed-size)
@@ -17,6 +18,26 @@ module dense_products
       real(rk), intent(in) :: a(lda, *), b(ldb, *)
       real(rk), intent(inout) :: c(ldc, n)
     end subroutine dgemm
+
+    subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
+      import :: rk
+      implicit none
+      character, intent(in) :: trans
+      integer, intent(in) :: m, n, lda, incx, incy
+      real(rk), intent(in) :: alpha, beta
+      real(rk), intent(in) :: a(lda, *), x(n)
+      real(rk), intent(inout) :: y(m)
+    end subroutine dgemv
+
+    subroutine dsymv(uplo, n, alpha, a, lda, x, incx, beta, y, incy)
+      import :: rk
+      implicit none
+      character, intent(in) :: uplo
+      integer, intent(in) :: n, lda, incx, incy
+      real(rk), intent(in) :: alpha, beta
+      real(rk), intent(in) :: a(lda, *), x(n)
+      real(rk), intent(inout) :: y(n)
+    end subroutine dsymv
   end interface
 
 contains
@@ -40,4 +61,31 @@ contains
     call dgemm('T', 'N', size(a, 2), size(b, 2), size(b, 1), 1.0_rk, a, size(a, 1), b, &
                size(b, 1), 0.0_rk, product, size(a, 2))
   end function transposed_times
+
+  !> A x.
+  function times_vector(a, x) result(product)
+    real(rk), intent(in), contiguous :: a(:, :), x(:)
+    real(rk) :: product(size(a, 1))
+    product = 0.0_rk
+    if (size(a) == 0) return
+    call dgemv('N', size(a, 1), size(a, 2), 1.0_rk, a, size(a, 1), x, 1, 0.0_rk, product, 1)
+  end function times_vector
+
+  !> A^T x.
+  function transposed_times_vector(a, x) result(product)
+    real(rk), intent(in), contiguous :: a(:, :), x(:)
+    real(rk) :: product(size(a, 2))
+    product = 0.0_rk
+    if (size(a) == 0) return
+    call dgemv('T', size(a, 1), size(a, 2), 1.0_rk, a, size(a, 1), x, 1, 0.0_rk, product, 1)
+  end function transposed_times_vector
+
+  !> A x with a symmetric A, from its lower triangle.
+  function symmetric_times(a, x) result(product)
+    real(rk), intent(in), contiguous :: a(:, :), x(:)
+    real(rk) :: product(size(x))
+    product = 0.0_rk
+    if (size(a) == 0) return
+    call dsymv('L', size(a, 1), 1.0_rk, a, size(a, 1), x, 1, 0.0_rk, product, 1)
+  end function symmetric_times
 end module dense_products
