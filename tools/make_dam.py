@@ -30,6 +30,8 @@ from keyway_tools.arch_shape import ArchShape
 from keyway_tools.deck_text import mesh_deck
 from keyway_tools.mesh_data import BrickMesh
 from keyway_tools.mesh_quality import find_faults, report
+from keyway_tools.records.for_deck import motion_files
+from keyway_tools.records.record import FACTORS
 from keyway_tools.surface_fit import fit_report
 
 ELEMENT_TYPES = ("C3D8", "C3D8B", "C3D8I", "C3D8R")
@@ -139,9 +141,20 @@ def add_deck_options(parser: argparse.ArgumentParser) -> None:
     )
     group.add_argument("--added-mass", choices=("DIAGONAL", "NORMAL"), default="DIAGONAL")
     group.add_argument(
-        "--motion", nargs="+", default=[], metavar="FILE", help="accelerations along x, y, z [m/s2]"
+        "--motion",
+        nargs="+",
+        default=[],
+        type=Path,
+        metavar="FILE",
+        help="accelerations along x, y, z: one value a line [m/s2], or any record that "
+        "make_motion.py --record reads",
     )
-    group.add_argument("--motion-dt", type=float, default=0.01, help="step of the files [s] (0.01)")
+    group.add_argument(
+        "--motion-dt", type=float, default=0.01, help="time between values of one column [s] (0.01)"
+    )
+    group.add_argument(
+        "--motion-unit", type=str.upper, choices=tuple(FACTORS), help="where records name none"
+    )
     group.add_argument("--duration", type=float, default=10.0, help="of the dynamic step [s] (10)")
     group.add_argument(
         "--increment", type=float, default=0.01, help="of the dynamic step [s] (0.01)"
@@ -222,11 +235,8 @@ def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
         water = round(chosen.height * 105.0 / 135.5, 3)
     if not 0.0 <= water <= chosen.height:
         raise ValueError(f"water must lie in 0..{chosen.height:g} (the height), found {water:g}")
-    if len(chosen.motion) > 3:
-        raise ValueError(f"motion takes files along x, y, z; found {len(chosen.motion)}")
-    missing = [file for file in chosen.motion if not Path(file).is_file()]
-    if missing:
-        raise ValueError(f"there is no motion file '{missing[0]}'")
+    prefix = chosen.output.with_name(f"{chosen.output.stem}_motion")
+    motions, motion_dt = motion_files(chosen.motion, chosen.motion_unit, chosen.motion_dt, prefix)
     return DeckOptions(
         title=chosen.title,
         element_type=chosen.element,
@@ -241,8 +251,8 @@ def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
         has_joint_law=not chosen.bonded,
         water_depth=water if water > 0.0 else None,
         added_mass_direction=chosen.added_mass,
-        motions=tuple(Path(os.path.relpath(file, folder)).as_posix() for file in chosen.motion),
-        motion_dt=chosen.motion_dt,
+        motions=tuple(Path(os.path.relpath(file, folder)).as_posix() for file in motions),
+        motion_dt=motion_dt,
         duration=chosen.duration,
         increment=chosen.increment,
         damping=tuple(chosen.damping),

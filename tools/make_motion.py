@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
-"""Make a three-component ground motion that fits a design spectrum.
+"""Make a three-component ground motion that fits a design spectrum, or take a recorded one.
 
 Writes PREFIX_x.txt, PREFIX_y.txt, PREFIX_z.txt (accelerations in m/s2 for *AMPLITUDE, INPUT=...),
 PREFIX.json (options and misfits), PREFIX_spectra.png and PREFIX_records.png. The same seed gives
 the same record. Default target: the spectrum of the Chinese standard for hydraulic structures
 (NB 35047-2015, GB 51247-2018) for arch dams on hard rock: beta = 1 at T = 0, 2.5 from 0.1 s to
 T_g = 0.2 s, then 2.5 (T_g / T)^0.6, not below 0.5; vertical 2/3 of the horizontal acceleration.
+
+With --record FILE... the motion is that of files, turned into m/s2, cut, resampled and scaled:
+
+    make_motion.py --record RSN1_A.AT2 RSN1_B.AT2 RSN1_UP.AT2 --pga 0.3 --baseline -o quake
 """
 
 from __future__ import annotations
@@ -25,6 +29,9 @@ from keyway_tools.motion_files import (
     write_amplitude,
     write_summary,
 )
+from keyway_tools.records.command import add_options, make_from_records
+
+DEFAULT_PGA = 0.269  # [g]
 
 
 def read_options(arguments: list[str] | None) -> argparse.Namespace:
@@ -35,18 +42,26 @@ def read_options(arguments: list[str] | None) -> argparse.Namespace:
     spectrum, times = DesignSpectrum(), MotionOptions()
     parser.add_argument("-o", "--output", type=Path, default=Path("motion"), help="PREFIX (motion)")
     parser.add_argument("--seed", type=int, default=1, help="of the random phases (1)")
-    parser.add_argument("--pga", type=float, default=0.269, help="horizontal peak [g] (0.269)")
+    parser.add_argument("--pga", type=float, help="horizontal peak [g] (0.269)")
     parser.add_argument("--vertical", type=float, default=VERTICAL_SHARE, help="share (2/3)")
     parser.add_argument("--plateau", type=float, default=spectrum.plateau, help="beta_max (2.5)")
     parser.add_argument("--tg", type=float, default=spectrum.corner, help="T_g [s] (0.2)")
     parser.add_argument("--decay", type=float, default=spectrum.decay, help="exponent (0.6)")
     parser.add_argument("--duration", type=float, default=times.duration, help="[s] (10)")
-    parser.add_argument("--dt", type=float, default=times.dt, help="[s] (0.01)")
+    parser.add_argument("--dt", type=float, help="[s] (0.01); of --record: in files of one column")
     parser.add_argument("--rise", type=float, help="end of the envelope's rise [s] (0.1 duration)")
     parser.add_argument("--strong", type=float, help="end of its level part [s] (0.6 duration)")
     parser.add_argument("--format", choices=("VALUES", "PAIRS"), default="VALUES", dest="layout")
     parser.add_argument("--no-pictures", action="store_true")
+    add_options(parser)
     return parser.parse_args(arguments)
+
+
+def refuse_record_options(chosen: argparse.Namespace) -> None:
+    """Options that have an effect with --record alone."""
+    for name in ("unit", "axes", "cut", "resample", "fit", "factor", "baseline"):
+        if getattr(chosen, name):
+            raise ValueError(f"--{name} has no effect without --record FILE")
 
 
 def times_of(chosen: argparse.Namespace) -> MotionOptions:
@@ -82,6 +97,12 @@ def main(arguments: list[str] | None = None) -> int:
     """Fit the three components and write them."""
     chosen = read_options(arguments)
     try:
+        if chosen.record:
+            make_from_records(chosen, DEFAULT_PGA)
+            return 0
+        refuse_record_options(chosen)
+        chosen.pga = DEFAULT_PGA if chosen.pga is None else chosen.pga
+        chosen.dt = MotionOptions().dt if chosen.dt is None else chosen.dt
         options = times_of(chosen)
     except ValueError as fault:
         print(f"make_motion: {fault}", file=sys.stderr)

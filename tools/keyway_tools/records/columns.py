@@ -1,0 +1,104 @@
+"""Records in columns: time and one to three components, or the values of one component alone."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from .record import FACTORS, Record, RecordError, choose_unit, unit_named_in
+
+MOST_COMPONENTS = 3
+_SEPARATORS = re.compile(r"[,;\s]+")
+EVEN = 1.0e-3  # admissible scatter of the time between values, over its mean
+
+
+def read_columns(path: Path, lines: list[str], unit: str | None, dt: float | None) -> list[Record]:
+    """All components of a file in columns."""
+    heading, rows = _split_heading(path, lines)
+    table = np.array(rows)
+    if table.shape[1] == 1:
+        if dt is None:
+            raise RecordError(f"{path}: one column without times; give the time between them (dt)")
+        step, values = dt, table
+    else:
+        step, values = _time_step(path, table[:, 0]), table[:, 1:]
+    if values.shape[1] > MOST_COMPONENTS:
+        raise RecordError(
+            f"{path}: {values.shape[1] + 1} columns; expected a time and one to three components"
+        )
+    named = unit_named_in("\n".join(heading))
+    unit = choose_unit(path, named, unit, float(np.abs(values).max()))
+    names = _names_of(heading, values.shape[1])
+    return [
+        Record(FACTORS[unit] * column, step, name, path, "columns", unit)
+        for name, column in zip(names, values.T, strict=True)
+    ]
+
+
+def _split_heading(path: Path, lines: list[str]) -> tuple[list[str], list[list[float]]]:
+    """The lines above the numbers, and the numbers of each line."""
+    heading: list[str] = []
+    rows: list[list[float]] = []
+    for number, line in enumerate(lines, 1):
+        text = line.strip()
+        if not text:
+            continue
+        row = None if text.startswith(("#", "%", "!", "//", "*")) else _numbers(text)
+        if row is None:
+            if rows and not text.startswith(("#", "%", "!", "//", "*")):
+                raise RecordError(f"{path}:{number}: found '{text[:40]}'; expected numbers")
+            heading.append(text)
+        elif rows and len(row) != len(rows[0]):
+            raise RecordError(
+                f"{path}:{number}: {len(row)} numbers; expected {len(rows[0])} as in the rows above"
+            )
+        else:
+            rows.append(row)
+    if len(rows) < 2:
+        raise RecordError(f"{path}: no record: expected rows of numbers")
+    return heading, rows
+
+
+def _numbers(text: str) -> list[float] | None:
+    """The numbers of a line, or None where a word is no number."""
+    words = [word for word in _SEPARATORS.split(text) if word]
+    try:
+        return [float(re.sub("[dD]", "e", word)) for word in words]
+    except ValueError:
+        return None
+
+
+def _time_step(path: Path, time: np.ndarray) -> float:
+    """The time between values [s], which must be even."""
+    steps = np.diff(time)
+    mean = float(steps.mean())
+    if not np.all(steps > 0.0):
+        place = int(np.argmin(steps > 0.0)) + 1
+        raise RecordError(
+            f"{path}: time {time[place]:g} after {time[place - 1]:g}; expected times that ascend"
+        )
+    if np.abs(steps - mean).max() > max(EVEN * mean, 2.0 * _resolution(time)):
+        raise RecordError(
+            f"{path}: the time between values goes from {steps.min():g} to {steps.max():g} s; "
+            "expected equal times"
+        )
+    return float(f"{mean:.6g}")
+
+
+def _resolution(time: np.ndarray) -> float:
+    """The last digit that times of a file are written with, at most a millisecond [s]."""
+    for digits in range(3, 9):
+        if np.allclose(np.round(time, digits), time, rtol=0.0, atol=1e-12):
+            return 10.0**-digits
+    return 0.0
+
+
+def _names_of(heading: list[str], count: int) -> list[str]:
+    """Names of the components from the last line above the numbers, where it has one a column."""
+    if heading:
+        words = [w for w in re.split(r"[,;\t]+|\s{2,}", heading[-1].lstrip("#%!/* ")) if w.strip()]
+        if len(words) == count + 1:
+            return [word.strip() for word in words[1:]]
+    return [f"column {k + 2}" for k in range(count)] if count > 1 else ["record"]

@@ -1,0 +1,51 @@
+"""Records of any kind as files that a deck reads: one value a line, in m/s2."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..motion_files import write_amplitude
+from .read_record import read_record
+from .treatment import same_times
+
+AXES = ("x", "y", "z")
+
+
+def is_plain(path: Path) -> bool:
+    """Whether a file has one number a line, which a deck reads as it is."""
+    for line in path.read_text(errors="replace").splitlines():
+        try:
+            float(line)
+        except ValueError:
+            return False
+    return True
+
+
+def motion_files(
+    files: list[Path], unit: str | None, dt: float, prefix: Path
+) -> tuple[list[Path], float]:
+    """Files along x, y, z with values in m/s2, and the time between the values [s].
+
+    Files of one column of values in m/s2 are taken as they are. Others are read as records and
+    written as PREFIX_x.txt, PREFIX_y.txt, PREFIX_z.txt. Raises ValueError with the file, what is
+    wrong and what is expected.
+    """
+    missing = [file for file in files if not file.is_file()]
+    if missing:
+        raise ValueError(f"there is no motion file '{missing[0]}'")
+    if unit is None and all(is_plain(file) for file in files):
+        found = len(files)
+    else:
+        records = [record for file in files for record in read_record(file, unit, dt)]
+        found = len(records)
+    if found > len(AXES):
+        raise ValueError(f"motion takes files along x, y, z; found {found} components")
+    if unit is None and found == len(files) and all(is_plain(file) for file in files):
+        return files, dt
+    treated = same_times(dict(zip(AXES, records, strict=False)), None)
+    prefix.parent.mkdir(parents=True, exist_ok=True)
+    written = []
+    for axis, record in treated.items():
+        written.append(prefix.with_name(f"{prefix.name}_{axis}.txt"))
+        write_amplitude(written[-1], record.acceleration, record.dt, "VALUES")
+    return written, treated["x"].dt

@@ -1,0 +1,144 @@
+"""Records of networks: PEER (AT2), COSMOS and CSMIP volume 2, K-NET and KiK-net.
+
+Layouts: PEER Ground Motion Database, "File format"; COSMOS Strong Motion Data Format, version 1.20
+(2001): real header 62 is the time between values in ms; NIED, "K-NET ASCII format": counts times
+the scale factor are gal, and the mean is taken off.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from .record import FACTORS, Record, RecordError, choose_unit, unit_named_in
+
+NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
+AT2_COUNT = re.compile(r"NPTS\s*=\s*(\d+).*?DT\s*=\s*([0-9.eE+-]+)", re.IGNORECASE)
+AT2_OLD_COUNT = re.compile(r"^\s*(\d+)\s+([0-9.eE+-]+)\s+NPTS\s*,\s*DT", re.IGNORECASE)
+COSMOS_DATA = re.compile(r"^\s*(\d+)\s+(\w+)\s+pts.*?units?\s*=\s*([^,(]+)", re.IGNORECASE)
+COSMOS_REALS = re.compile(r"^\s*(\d+)\s+Real-header values", re.IGNORECASE)
+CSMIP_DATA = re.compile(
+    r"^\s*(\d+)\s+points of accel data equally spaced at\s*([0-9.]+)\s*sec,?\s*in\s*([^.(]+)",
+    re.IGNORECASE,
+)
+FORMAT = re.compile(r"(\d+)\s*[FE]\s*(\d+)\.(\d+)", re.IGNORECASE)
+CHANNEL = re.compile(r"\bCh(?:an|annel)?\s*\.?\s*(\d+)\s*:?\s*([\w .-]{0,12})", re.IGNORECASE)
+COSMOS_INTERVAL = 62  # number of the real header with the time between values [ms]
+LONGEST_NAME = 12  # of the direction of a PEER record
+MOST_HEADERS = 60  # lines of a channel above its values
+
+
+def numbers_in(lines: list[str], count: int, width: int | None, path: Path) -> np.ndarray:
+    """The first numbers of some lines, in columns of a width where it is known."""
+    values: list[float] = []
+    for line in lines:
+        if width:
+            text = line.rstrip("\n")
+            words = [text[k : k + width] for k in range(0, len(text), width)]
+            words = [word for word in words if word.strip()]
+        else:
+            words = NUMBER.findall(line)
+        try:
+            values += [float(word.replace("D", "e").replace("d", "e")) for word in words]
+        except ValueError:
+            raise RecordError(f"{path}: found '{line.strip()[:40]}'; expected numbers") from None
+        if len(values) >= count:
+            return np.array(values[:count])
+    raise RecordError(f"{path}: {len(values)} values; its header says {count}")
+
+
+def read_at2(path: Path, lines: list[str], unit: str | None) -> list[Record]:
+    """A PEER file: four lines, then values."""
+    found = AT2_COUNT.search(lines[3]) or AT2_OLD_COUNT.search(lines[3])
+    if not found:
+        raise RecordError(f"{path}:4: found '{lines[3].strip()[:60]}'; expected NPTS= and DT=")
+    if re.search(r"velocity|displacement", lines[2], re.IGNORECASE):
+        raise RecordError(f"{path}:3: '{lines[2].strip()[:60]}'; expected an acceleration")
+    values = numbers_in(lines[4:], int(found[1]), None, path)
+    unit = choose_unit(path, unit_named_in("\n".join(lines[:3])), unit, np.abs(values).max())
+    name = lines[1].split(",")[-1].strip()
+    if "," not in lines[1] or len(name) > LONGEST_NAME:
+        name = path.stem
+    return [Record(FACTORS[unit] * values, float(found[2]), name, path, "PEER AT2", unit)]
+
+
+def read_cosmos(path: Path, lines: list[str], unit: str | None) -> list[Record]:
+    """The channels of acceleration of a COSMOS file."""
+    records, start = [], 0
+    for number, line in enumerate(lines):
+        found = COSMOS_DATA.match(line)
+        if not found:
+            continue
+        heading, start = lines[start:number], number + 1
+        if not found[2].lower().startswith("accel"):
+            continue
+        width = int(FORMAT.search(line)[2]) if FORMAT.search(line) else None
+        values = numbers_in(lines[number + 1 :], int(found[1]), width, path)
+        own = unit_named_in(f"({found[3].strip()})") or unit_named_in(found[3])
+        chosen = choose_unit(path, own, unit, np.abs(values).max())
+        step = _cosmos_interval(path, heading)
+        name = _channel_of(heading, len(records) + 1)
+        records.append(Record(FACTORS[chosen] * values, step, name, path, "COSMOS", chosen))
+    return records
+
+
+def _cosmos_interval(path: Path, heading: list[str]) -> float:
+    """The time between values [s] from the real header of a channel."""
+    for number, line in enumerate(heading):
+        found = COSMOS_REALS.match(line)
+        if found:
+            layout = FORMAT.search(line)
+            width = int(layout[2]) if layout else None
+            return (
+                1.0e-3
+                * numbers_in(heading[number + 1 :], int(found[1]), width, path)[COSMOS_INTERVAL - 1]
+            )
+    raise RecordError(f"{path}: no real header; expected '100 Real-header values follow'")
+
+
+def read_csmip(path: Path, lines: list[str], unit: str | None) -> list[Record]:
+    """The channels of acceleration of a file of the Californian network (volume 2)."""
+    records, start = [], 0
+    for number, line in enumerate(lines):
+        found = CSMIP_DATA.match(line)
+        if not found:
+            continue
+        width = int(FORMAT.search(line)[2]) if FORMAT.search(line) else None
+        values = numbers_in(lines[number + 1 :], int(found[1]), width, path)
+        chosen = choose_unit(path, unit_named_in(found[3]), unit, np.abs(values).max())
+        name = _channel_of(lines[max(start, number - MOST_HEADERS) : number], len(records) + 1)
+        step = float(found[2])
+        records.append(Record(FACTORS[chosen] * values, step, name, path, "CSMIP", chosen))
+        start = number + 1
+    return records
+
+
+def _channel_of(heading: list[str], number: int) -> str:
+    """Number and direction of a channel as its header names them."""
+    for line in heading:
+        found = CHANNEL.search(line)
+        if found:
+            return f"channel {found[1]} {found[2].strip()}".strip()
+    return f"channel {number}"
+
+
+def read_kyoshin(path: Path, lines: list[str], unit: str | None) -> list[Record]:
+    """A file of K-NET or KiK-net."""
+    facts = {line[:18].strip(): line[18:].strip() for line in lines[:17]}
+    try:
+        frequency = float(NUMBER.search(facts["Sampling Freq(Hz)"])[0])
+        factor, counts = (float(NUMBER.search(s)[0]) for s in facts["Scale Factor"].split("/"))
+        direction = facts["Dir."]
+    except (KeyError, TypeError, ValueError):
+        raise RecordError(
+            f"{path}: expected Sampling Freq(Hz), Dir. and Scale Factor in the first 17 lines"
+        ) from None
+    choose_unit(path, "CM/S2", unit, 0.0)
+    text = [NUMBER.findall(line) for line in lines[17:]]
+    values = np.array([float(word) for words in text for word in words]) * factor / counts
+    if values.size < 2:
+        raise RecordError(f"{path}: no values after the first 17 lines")
+    values = 0.01 * (values - values.mean())
+    return [Record(values, 1.0 / frequency, direction, path, "K-NET", "CM/S2")]
