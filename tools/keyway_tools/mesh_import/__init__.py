@@ -1,0 +1,1 @@
+"""Meshes of other programs (Gmsh, Abaqus, VTK, MED, ...) as decks of Keyway."""
