@@ -19,6 +19,7 @@ set(sources
   growing_lists.f90
   kinds.f90
   math/dense_factor.f90
+  math/single_factor.f90
   math/dense_products.f90
   math/row_tables.f90
   math/small_matrix.f90

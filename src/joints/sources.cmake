@@ -1,5 +1,6 @@
 set(sources
   compliance/block_compliance.f90
+  compliance/coupling_block.f90
   compliance/contact_scaling.f90
   compliance/joint_compliance.f90
   compliance/joint_operator.f90

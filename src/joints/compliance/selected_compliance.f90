@@ -33,7 +33,7 @@ contains
     integer, intent(out) :: missing
     type(error_type), allocatable, intent(out) :: error
     type(group_unknowns) :: of_group(groups%num_groups)
-    real(rk) :: own(groups%num_groups), coupling
+    real(rk) :: own(groups%num_groups), scale, coupling
     real(rk), allocatable :: values(:, :)
     integer :: j, k, absent
     logical :: has_failed
@@ -49,15 +49,16 @@ contains
       call take_block(top, of_group(j), of_group(j), values, absent)
       missing = missing + absent
       own(j) = own_size(values, spring(groups%row(groups%first_row(j):groups%first_row(j + 1) - 1)))
-      call blocks%put(j, j, 1.0_rk, values)
+      call blocks%put(j, j, 1.0_rk, values, 0.0_rk)
     end do
     do j = 1, groups%num_groups
       do k = 1, j - 1
         if (.not. are_known(top, of_group(j)%unknown, of_group(k)%unknown)) cycle
         call take_block(top, of_group(j), of_group(k), values, absent)
-        coupling = norm2(values)/max(sqrt(own(j))*sqrt(own(k)), tiny(1.0_rk))
+        scale = max(sqrt(own(j))*sqrt(own(k)), tiny(1.0_rk))
+        coupling = norm2(values)/scale
         if (coupling < smallest) cycle
-        call blocks%put(j, k, coupling, values)
+        call blocks%put(j, k, coupling, values, smallest*scale)
       end do
     end do
     call top%forget_inverse()

@@ -20,6 +20,7 @@ module tangent_equations
     !> No factor has been used since the increment began. The first ones depend on its start alone,
     !> so that a run that is continued takes the same ones.
     logical :: is_first = .true.
+    logical :: is_single = .false. !< factors of several groups may be in single precision
   contains
     procedure :: set_tangent, solve
     procedure, private :: precondition, iterate
@@ -46,6 +47,7 @@ contains
     real(rk), intent(in) :: share(:) !< (points) weight*area [m2]
     real(rk), intent(in) :: tangent(:, :, :) !< (3, 3, points) [Pa/m]
     real(rk) :: kept
+    logical :: is_single
     integer :: p, i, g
     self%change = -tangent
     do p = 1, size(share)
@@ -57,10 +59,11 @@ contains
     if (.not. allocated(self%group)) allocate (self%group(blocks%groups%num_groups))
     kept = merge(kept_share, 0.0_rk, size(self%group) > 1 .and. .not. self%is_first)
     self%is_first = .false.
+    is_single = self%is_single .and. size(self%group) > 1
     !$omp parallel do schedule(dynamic) default(none) if (size(self%group) > 1) &
-    !$omp shared(self, blocks, kept)
+    !$omp shared(self, blocks, kept, is_single)
     do g = 1, size(self%group)
-      call update_factor(blocks, g, self%change, kept, self%group(g))
+      call update_factor(blocks, g, self%change, kept, is_single, self%group(g))
     end do
     !$omp end parallel do
     self%is_singular = .not. all(self%group%is_there)

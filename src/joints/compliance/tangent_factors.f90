@@ -3,6 +3,7 @@
 module tangent_factors
   use block_compliance, only: compliance_blocks
   use dense_factor, only: lu_factor, factorise_dense, solve_factored
+  use single_factor, only: single_lu, factorise_single, solve_single
   use joint_rows, only: num_axes, row_of, point_of, axis_of
   use kinds, only: rk
   implicit none
@@ -14,19 +15,21 @@ module tangent_factors
     integer, allocatable :: row(:) !< rows of the group with D not zero
     real(rk), allocatable :: change(:, :, :) !< (3, 3, points) D at the factor [N/m]
     type(lu_factor) :: factor
+    type(single_lu) :: single !< in place of `factor` where it preconditions
   end type group_factor
 
 contains
 
   !> Factors a group anew where other rows are changed than in its factor, or D differs by more than
   !> a share of its largest entry at a point.
-  subroutine update_factor(blocks, group, all_changes, share, self)
+  subroutine update_factor(blocks, group, all_changes, share, is_single, self)
     type(compliance_blocks), intent(in) :: blocks
     integer, intent(in) :: group
     real(rk), intent(in) :: all_changes(:, :, :) !< (3, 3, points) D [N/m]
     real(rk), intent(in) :: share !< of D that may differ
+    logical, intent(in) :: is_single !< single precision is enough
     type(group_factor), intent(inout) :: self
-    real(rk), allocatable :: change(:, :, :)
+    real(rk), allocatable :: change(:, :, :), matrix(:, :)
     integer, allocatable :: row(:)
     change = all_changes(:, :, blocks%groups%members(group))
     call list_rows(change, row)
@@ -35,7 +38,12 @@ contains
     end if
     self%row = row
     self%change = change
-    call factorise(blocks%block(group, group)%values, row, change, self%factor)
+    call form_matrix(blocks%block(group, group)%values, row, change, matrix)
+    self%single%is_there = .false.
+    if (is_single) call factorise_single(matrix, self%single)
+    self%is_there = self%single%is_there
+    if (self%is_there) return
+    call factorise_dense(matrix, self%factor)
     self%is_there = .not. self%factor%is_singular
   end subroutine update_factor
 
@@ -73,13 +81,12 @@ contains
     end do
   end function is_near
 
-  !> Factors I - D G on some rows.
-  subroutine factorise(compliance, row, change, factor)
+  !> I - D G on some rows.
+  subroutine form_matrix(compliance, row, change, matrix)
     real(rk), intent(in) :: compliance(:, :) !< G of the group [m/N]
     integer, intent(in) :: row(:)
     real(rk), intent(in) :: change(:, :, :) !< (3, 3, points) [N/m]
-    type(lu_factor), intent(out) :: factor
-    real(rk), allocatable :: matrix(:, :)
+    real(rk), allocatable, intent(out) :: matrix(:, :)
     real(rk) :: d(num_axes, size(row))
     integer :: k, l, first(size(row))
     do k = 1, size(row)
@@ -95,8 +102,7 @@ contains
       end associate
       matrix(l, l) = matrix(l, l) + 1.0_rk
     end do
-    call factorise_dense(matrix, factor)
-  end subroutine factorise
+  end subroutine form_matrix
 
   !> Solves for the rows of a group, in place; other rows are zero.
   subroutine solve_group(self, x)
@@ -104,7 +110,11 @@ contains
     real(rk), intent(inout) :: x(:) !< (rows of the group)
     real(rk) :: z(size(self%row), 1)
     z(:, 1) = x(self%row)
-    call solve_factored(self%factor, z)
+    if (self%single%is_there) then
+      call solve_single(self%single, z(:, 1))
+    else
+      call solve_factored(self%factor, z)
+    end if
     x = 0.0_rk
     x(self%row) = z(:, 1)
   end subroutine solve_group

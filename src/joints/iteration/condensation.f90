@@ -3,6 +3,7 @@
 module condensation
   use kinds, only: rk
   use errors, only: error_type
+  use anderson_mixing, only: mixer
   use matrix_pattern, only: pattern
   use global_vectors, only: distance, norm
   use joint_law, only: joint_state
@@ -45,8 +46,8 @@ module condensation
 
   !> Admissible drift of the jumps, as a fraction of the residual tolerance.
   real(rk), parameter :: allowed_drift = 0.1_rk
-  !> Coupling of the blocks of G that are kept.
-  real(rk), parameter :: smallest_coupling = 1.0e-4_rk
+  !> Coupling of the blocks of G that are kept, and error of these blocks.
+  real(rk), parameter :: smallest_coupling = 5.0e-10_rk
   !> Most corrections of a solution with a factor in single precision.
   integer, parameter :: most_refinements = 10
   !> Most points for which all blocks of G are kept where an increment needs them.
@@ -168,7 +169,7 @@ contains
     logical, intent(out) :: was_complete !< or is too large
     type(error_type), allocatable, intent(out) :: error
     type(group_list) :: groups
-    was_complete = self%condensed%blocks%is_complete &
+    was_complete = self%condensed%blocks%left_out <= smallest_coupling &
                    .or. self%operator%num_points > most_completed
     if (was_complete) return
     groups = self%condensed%blocks%groups

@@ -4,7 +4,22 @@ submodule(condensation) condensed_solve
   implicit none
 
   !> Most corrections for the blocks of G that are left out.
-  integer, parameter :: most_passes = 12
+  integer, parameter :: most_passes = 25
+  !> Residual of a rough equilibrium, over the largest residual or the drift before: what the blocks
+  !> of G that are left out change anyway, in statics and in time.
+  real(rk), parameter :: rough_in_statics = 1.0e-2_rk, rough_in_time = 2.0e-4_rk
+  !> A drift that is expected to be so small, over the admissible one, is not computed.
+  real(rk), parameter :: sure_share = 0.1_rk
+  !> The same for what is left out of G: the drift is some ten times as large.
+  real(rk), parameter :: small_share = 0.01_rk
+
+  !> Passes of the iteration on jumps; each starts from the exact jumps at the forces of the last.
+  type :: pass_history
+    real(rk) :: rough = 0.0_rk !< residual of a rough equilibrium over the drift
+    real(rk) :: drift(2) = 0.0_rk !< of the last pass and the one before
+    type(mixer) :: mixing !< Anderson's acceleration of the shift
+    real(rk), allocatable :: shift(:) !< (rows) jumps by the blocks that are left out [m]
+  end type pass_history
 
 contains
 
@@ -21,6 +36,7 @@ contains
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
     type(joint_field) :: field, start
+    type(pass_history) :: passes
     real(rk), dimension(3, self%operator%num_points) :: excess, last_excess
     real(rk), allocatable :: half(:)
     integer :: pass, iterations
@@ -32,6 +48,7 @@ contains
       if (allocated(error)) return
       call operator%jumps(x, field%response)
       field%response = field%response + balance%offset
+      call start_passes(self, balance, passes)
       do pass = 1, most_passes
         call self%costs%start('iterate', 'joints', 'joint')
         if (self%controls%most_unsaved < huge(1)) start = field
@@ -46,10 +63,11 @@ contains
         outcome%iterations = iterations
         if (.not. outcome%has_converged) return
         excess = excess_traction(k_ref, field%jump, balance%offset, field%iterate)
-        if (self%condensed%blocks%is_complete) exit
+        if (is_last_pass(self, passes)) exit
         call find_drift(self, balance, new, excess - last_excess, half, field)
         last_excess = excess
-        if (field%drift <= allowed_drift*self%controls%residual_tolerance) exit
+        if (field%drift <= admissible_drift(self) .and. .not. self%condensed%is_rough) exit
+        call start_pass(self, field, passes)
         call linearise_again(self%condensed, joints, operator, old, field, new)
       end do
     end associate
@@ -57,6 +75,61 @@ contains
     self%excess = excess
     call end_solve(self, balance%is_partial, excess - last_excess, half, x, error)
   end subroutine solve_from
+
+  !> The first pass starts from the guess.
+  subroutine start_passes(self, balance, passes)
+    class(condensed_equilibrium), intent(inout) :: self
+    type(force_balance), intent(in) :: balance
+    type(pass_history), intent(inout) :: passes
+    self%condensed%keeps_factors = .false.
+    self%condensed%rough_residual = 0.0_rk
+    self%condensed%rough_share = 0.0_rk
+    if (has_small_rest(self)) return
+    passes%rough = merge(rough_in_statics, rough_in_time, balance%is_static)
+    self%condensed%rough_share = passes%rough
+    allocate (passes%shift(size(self%condensed%k_ref)), source=0.0_rk)
+  end subroutine start_passes
+
+  !> The next pass starts from the exact jumps. Anderson's acceleration adds what further passes
+  !> would change.
+  subroutine start_pass(self, field, passes)
+    class(condensed_equilibrium), intent(inout) :: self
+    type(joint_field), intent(inout) :: field !< its response is exact
+    type(pass_history), intent(inout) :: passes
+    real(rk), dimension(size(field%jump)) :: change, last
+    self%condensed%keeps_factors = .true.
+    self%condensed%rough_share = 0.0_rk
+    self%condensed%rough_residual = passes%rough*field%drift
+    passes%drift = [field%drift, passes%drift(1)]
+    change = reshape(field%response - field%jump, [size(change)])
+    last = passes%shift
+    call passes%mixing%advance(change, passes%shift)
+    field%response = field%response + reshape(passes%shift - last - change, shape(field%response))
+  end subroutine start_pass
+
+  !> Whether no drift is left to be expected. The solution is checked for a drift in any case.
+  logical function is_last_pass(self, passes)
+    class(condensed_equilibrium), intent(in) :: self
+    type(pass_history), intent(in) :: passes
+    is_last_pass = has_small_rest(self)
+    if (is_last_pass .or. self%condensed%is_rough) return
+    associate (last => passes%drift(1), before => passes%drift(2))
+      is_last_pass = 0.0_rk < before .and. last < before .and. &
+                     last*(last/before) <= sure_share*admissible_drift(self)
+    end associate
+  end function is_last_pass
+
+  !> Whether what is left out of G moves the jumps less than a solution may drift.
+  pure logical function has_small_rest(self)
+    class(condensed_equilibrium), intent(in) :: self
+    has_small_rest = self%condensed%blocks%left_out <= small_share*admissible_drift(self)
+  end function has_small_rest
+
+  !> Drift that a solution may have.
+  pure real(rk) function admissible_drift(self)
+    class(condensed_equilibrium), intent(in) :: self
+    admissible_drift = allowed_drift*self%controls%residual_tolerance
+  end function admissible_drift
 
   !> Saves an increment as a problem of its own (--save-joint-problems).
   subroutine save_increment(self, balance, joints, old, start, error)

@@ -7,8 +7,9 @@
 !> sweep visits all points and gives each the force for which its d agrees with contact and friction
 !> while the other forces of its group stay, and the d of other groups.
 module contact_sweeps
-  use block_compliance, only: compliance_blocks, add_product
+  use block_compliance, only: compliance_blocks
   use contact_scaling, only: open_group
+  use coupling_block, only: add_product
   use joint_forces, only: joint_field
   use joint_law, only: joint_state, state_bonded
   use joint_operator, only: jump_operator
@@ -103,10 +104,10 @@ contains
       spring = reshape(points%spring(:, point), shape(spring))
       answer = reshape(closed_jump(:, point), shape(answer))
       do k = 1, groups%num_groups
-        if (k == group .or. .not. allocated(blocks%block(group, k)%values)) cycle
+        if (k == group .or. .not. blocks%block(group, k)%is_there()) cycle
         associate (other => groups%members(k))
-          call add_product(blocks%block(group, k)%values, &
-                           reshape(d(:, other)/points%spring(:, other), [3*size(other)]), answer)
+          call blocks%block(group, k)%add_to( &
+            reshape(d(:, other)/points%spring(:, other), [3*size(other)]), answer)
         end associate
       end do
       missing = answer/spring - reshape(force(:, point), shape(missing))

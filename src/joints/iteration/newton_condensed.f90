@@ -25,6 +25,12 @@ module newton_condensed
 
   type, extends(joint_process) :: condensed_joints
     type(joint_tangent) :: tangent !< of the last iteration
+    !> An equilibrium is found roughly where its residual is this share of the largest one of the
+    !> iteration, or this residual; 0 for the tolerances of *CONTROLS. Blocks of G that are left out
+    !> are then made up for.
+    real(rk) :: rough_share = 0.0_rk, rough_residual = 0.0_rk
+    logical :: is_rough = .false. !< the last equilibrium was found roughly
+    logical :: keeps_factors = .false. !< those of the last iteration fit the next one
     !> (3, points) response [m] and excess traction [Pa] when the iteration starts
     real(rk), allocatable :: start_response(:, :), start_excess(:, :)
   contains
@@ -35,8 +41,9 @@ module newton_condensed
   !> Newton's linear equations are solved to this share of their right-hand side, or of the
   !> admissible residual.
   real(rk), parameter :: linear_share = 1.0e-3_rk, admissible_share = 0.1_rk
-  !> The correction that decides convergence needs some digits.
-  real(rk), parameter :: judged_share = 1.0e-4_rk
+  !> The correction that decides convergence needs some digits, more of them where a small force
+  !> may move a block far.
+  real(rk), parameter :: judged_in_statics = 1.0e-4_rk, judged_in_time = 1.0e-2_rk
 
   real(rk), parameter :: roundoff = 4.0_rk*epsilon(1.0_rk)
 
@@ -62,7 +69,7 @@ contains
     class(condensed_joints), intent(inout) :: self
     type(jump_operator), intent(in) :: operator
     type(joint_field), intent(in) :: field !< linearised; its response is for k_ref
-    self%tangent%is_first = .true.
+    self%tangent%is_first = .not. self%keeps_factors
     self%start_response = field%response
     self%start_excess = self%k_ref*field%jump - field%iterate
     self%force = share_of(self%weight, operator)*field%multiplier
@@ -130,11 +137,15 @@ contains
     type(joint_state), intent(inout) :: new(:)
     type(balance_outcome), intent(inout) :: outcome
     type(iteration_history) :: history
+    real(rk) :: most ! of all residuals
     real(rk), dimension(3, operator%num_points) :: correction, linear, rest
     allocate (history%unbalance(0))
+    most = 0.0_rk
+    self%is_rough = .false.
     do while (goes_on(history, outcome, controls%max_iterations))
       if (is_dropped(controls)) return
       outcome%iterations = outcome%iterations + 1
+      self%tangent%is_single = .not. field%is_static
       call self%tangent%set_tangent(self%blocks, self%k_ref, self%weight*operator%area, &
                                     field%tangent)
       if (self%tangent%is_singular) return ! a smaller increment may avoid it
@@ -144,8 +155,15 @@ contains
       linear = linear + rest/spread(self%weight*operator%area, 1, 3)
       call take_step(joints, operator, old, self%k_ref, correction, linear, field, new)
       call measure_residual(operator, self%k_ref, field, linear, outcome)
+      most = max(most, outcome%residual)
+      self%is_rough = is_near_enough()
+      if (self%is_rough) then
+        outcome%has_converged = .true.
+        exit
+      end if
       if (outcome%residual <= controls%residual_tolerance) then
-        call solve_correction(self, excess_jump(field%traction), judged_share, 0.0_rk, &
+        call solve_correction(self, excess_jump(field%traction), &
+                              merge(judged_in_statics, judged_in_time, field%is_static), 0.0_rk, &
                               correction, rest)
         call measure_correction(field, self%k_ref, correction, &
                                 controls%increment_tolerance, outcome)
@@ -155,6 +173,13 @@ contains
     end do
     field%iterate = linear
   contains
+    !> Whether a rough equilibrium is found that is not an exact one.
+    pure logical function is_near_enough()
+      is_near_enough = outcome%residual <= max(self%rough_share*most, self%rough_residual) &
+                       .and. outcome%residual > controls%residual_tolerance &
+                       .and. .not. allocated(field%tresca%bound)
+    end function is_near_enough
+
     !> Residual of the linear equations that need not be solved for. Where the residual is within
     !> its tolerance, the correction is not, and needs more digits.
     real(rk) function negligible_force()

@@ -1,0 +1,167 @@
+!> A block of the compliance of the joints: jumps of one group of points by forces on another, dense
+!> or as a product of two narrow matrices.
+!>
+!> Groups that do not touch each other see only what is smooth in each other's forces: a block of
+!> some hundred rows has the rank of some ten to any accuracy that counts.
+module coupling_block
+  use kinds, only: rk, long
+  implicit none
+  private
+  public :: dense_block, make_block, transpose_block, add_product
+
+  type :: dense_block
+    real(rk) :: coupling = 0.0_rk !< size, relative to the own blocks of both groups
+    real(rk), allocatable :: values(:, :) !< [m/N]; not allocated where the block is left out
+    !> (rows, rank) and (columns, rank): the block is left*transpose(right) in place of `values`
+    real(rk), allocatable :: left(:, :), right(:, :)
+  contains
+    procedure :: is_there, add_to, as_values, num_entries
+  end type dense_block
+
+  !> From this share of columns with forces on, a product with the whole block is quicker.
+  real(rk), parameter :: most_columns = 0.6_rk
+  !> Blocks of stronger coupling are those of neighbours, whose rank is high.
+  real(rk), parameter :: most_coupling = 1.0e-2_rk
+  integer, parameter :: few_steps = 8 !< until lengths that were updated are computed again
+  !> Most entries of the two narrow matrices, over those of the block.
+  real(rk), parameter :: most_entries = 0.6_rk
+
+  interface
+    subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
+      import :: rk
+      implicit none
+      character, intent(in) :: trans
+      integer, intent(in) :: m, n, lda, incx, incy
+      real(rk), intent(in) :: alpha, a(lda, n), x(merge(m, n, trans == 'T')), beta
+      real(rk), intent(inout) :: y(merge(n, m, trans == 'T'))
+    end subroutine dgemv
+
+    subroutine dger(m, n, alpha, x, incx, y, incy, a, lda)
+      import :: rk
+      implicit none
+      integer, intent(in) :: m, n, incx, incy, lda
+      real(rk), intent(in) :: alpha, x(m), y(n)
+      real(rk), intent(inout) :: a(lda, n)
+    end subroutine dger
+  end interface
+
+contains
+
+  !> A block of given values, narrow where two narrow matrices are smaller and exact to `allowed`.
+  subroutine make_block(values, coupling, allowed, block)
+    real(rk), intent(in) :: values(:, :) !< [m/N]
+    real(rk), intent(in) :: coupling
+    real(rk), intent(in) :: allowed !< Frobenius norm of the error; 0 keeps all values [m/N]
+    type(dense_block), intent(out) :: block
+    block%coupling = coupling
+    if (allowed > 0.0_rk .and. coupling < most_coupling) call narrow(values, allowed, block)
+    if (.not. allocated(block%left)) block%values = values
+  end subroutine make_block
+
+  !> Gram-Schmidt's orthogonalisation of the columns, the longest first, until what is left of all
+  !> columns is small. Without result where it needs too many.
+  subroutine narrow(values, allowed, block)
+    real(rk), intent(in) :: values(:, :), allowed ! [m/N]
+    type(dense_block), intent(inout) :: block
+    real(rk), allocatable :: rest(:, :), left(:, :), right(:, :)
+    real(rk) :: square(size(values, 2)) ! of the lengths of the columns
+    integer :: rank, most, c, m, n
+    m = size(values, 1)
+    n = size(values, 2)
+    most = int(most_entries*real(m, rk)*real(n, rk)/real(max(m + n, 1), rk))
+    allocate (rest, source=values)
+    allocate (left(m, most), right(n, most))
+    do rank = 0, most
+      if (mod(rank, few_steps) == 0) square = sum(rest**2, 1)
+      if (sum(square) <= allowed**2) square = sum(rest**2, 1)
+      if (sum(square) <= allowed**2) exit
+      if (rank == most) return
+      c = maxloc(square, 1)
+      left(:, rank + 1) = rest(:, c)/norm2(rest(:, c))
+      call dgemv('T', m, n, 1.0_rk, rest, m, left(:, rank + 1), 1, 0.0_rk, right(:, rank + 1), 1)
+      call dger(m, n, -1.0_rk, left(:, rank + 1), 1, right(:, rank + 1), 1, rest, m)
+      square = square - right(:, rank + 1)**2
+    end do
+    block%left = left(:, :rank)
+    block%right = right(:, :rank)
+  end subroutine narrow
+
+  pure logical function is_there(self)
+    class(dense_block), intent(in) :: self
+    is_there = allocated(self%values) .or. allocated(self%left)
+  end function is_there
+
+  !> The block of the forces on the first group that move the second.
+  pure subroutine transpose_block(block, turned)
+    type(dense_block), intent(in) :: block
+    type(dense_block), intent(out) :: turned
+    turned%coupling = block%coupling
+    if (allocated(block%values)) turned%values = transpose(block%values)
+    if (.not. allocated(block%left)) return
+    turned%left = block%right
+    turned%right = block%left
+  end subroutine transpose_block
+
+  !> y = y + A x.
+  subroutine add_to(self, x, y)
+    class(dense_block), intent(in) :: self
+    real(rk), intent(in), contiguous :: x(:) ! [N]
+    real(rk), intent(inout), contiguous :: y(:) ! [m]
+    real(rk), allocatable :: inner(:)
+    if (allocated(self%values)) then
+      call add_product(self%values, x, y)
+    else if (allocated(self%left)) then
+      associate (m => size(y), n => size(x), rank => size(self%left, 2))
+        allocate (inner(rank))
+        call dgemv('T', n, rank, 1.0_rk, self%right, n, x, 1, 0.0_rk, inner, 1)
+        call dgemv('N', m, rank, 1.0_rk, self%left, m, inner, 1, 1.0_rk, y, 1)
+      end associate
+    end if
+  end subroutine add_to
+
+  pure function as_values(self) result(values)
+    class(dense_block), intent(in) :: self
+    real(rk), allocatable :: values(:, :) !< [m/N]
+    if (allocated(self%values)) then
+      values = self%values
+    else
+      values = matmul(self%left, transpose(self%right))
+    end if
+  end function as_values
+
+  pure integer(long) function num_entries(self)
+    class(dense_block), intent(in) :: self
+    num_entries = 0
+    if (allocated(self%values)) num_entries = size(self%values, kind=long)
+    if (allocated(self%left)) num_entries = size(self%left, kind=long) + size(self%right, kind=long)
+  end function num_entries
+
+  !> y = y + A x with the columns whose x is not zero: most points of a joint are often closed.
+  subroutine add_product(a, x, y)
+    real(rk), intent(in), contiguous :: a(:, :)
+    real(rk), intent(in), contiguous :: x(:)
+    real(rk), intent(inout), contiguous :: y(:)
+    integer :: column(size(x)), num_columns, c, last
+    num_columns = 0
+    do c = 1, size(x)
+      if (.not. abs(x(c)) > 0.0_rk) cycle
+      num_columns = num_columns + 1
+      column(num_columns) = c
+    end do
+    if (num_columns == 0) return
+    if (num_columns > most_columns*size(x)) then
+      call dgemv('N', size(a, 1), size(a, 2), 1.0_rk, a, size(a, 1), x, 1, 1.0_rk, y, 1)
+      return
+    end if
+    last = num_columns - mod(num_columns, 4)
+    do c = 1, last, 4
+      associate (k => column(c:c + 3))
+        y = y + (x(k(1))*a(:, k(1)) + x(k(2))*a(:, k(2))) &
+            + (x(k(3))*a(:, k(3)) + x(k(4))*a(:, k(4)))
+      end associate
+    end do
+    do c = last + 1, num_columns
+      y = y + x(column(c))*a(:, column(c))
+    end do
+  end subroutine add_product
+end module coupling_block
