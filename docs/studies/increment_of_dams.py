@@ -1,6 +1,8 @@
 """What the size of the increment does to maxima and to histories of openings of a jointed dam.
 
-    python docs/studies/increment_of_dams.py PROGRAM FOLDER
+    python docs/studies/increment_of_dams.py PROGRAM FOLDER [accuracy]
+
+With `accuracy` the increments follow their estimated error (*CONTROLS, ACCURACY).
 
 The dam of tests/dam_trials.py (135.5 m, 3000 unknowns, massless rock, two joints of k_n 1e11
 Pa/m) under 2.5 s of motion that fits a design spectrum and 1.5 s of free vibration. Reference:
@@ -17,12 +19,13 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tools")]
 
-from dam_trials import UNDAMPED, run_trial, trial_of  # noqa: E402
+from dam_trials import UNDAMPED, deck_of, run_trial, trial_of  # noqa: E402
 from harness import Program, Run  # noqa: E402
 
 DAMPED = (0.05, 2.0, 10.0)
 TRIALS = ((0.5, DAMPED), (1.0, DAMPED), (2.0, DAMPED), (1.0, UNDAMPED))
 REFERENCE, INCREMENTS = 0.00125, (0.01, 0.005, 0.0025)  # [s]
+ASKED = (0.1, 0.05, 0.02)
 FIELDS = ("S1", "S3", "U", "OPENING")
 
 
@@ -58,7 +61,9 @@ def main(program: str, folder: str) -> None:
         runs = {}
         for dt in (REFERENCE, *INCREMENTS):
             trial = trial_of(size, 1e11, dt, damping)
-            runs[dt] = run_trial(Program(Path(program), place, 1, 3600.0), trial, name=f"dam{dt}")
+            runs[dt] = run_trial(
+                Program(Path(program).resolve(), place, 1, 3600.0), trial, name=f"dam{dt}"
+            )
         exact = largest(runs[REFERENCE])
         for dt in INCREMENTS:
             share = 100.0 * np.abs(largest(runs[dt]) / exact - 1.0)
@@ -68,5 +73,30 @@ def main(program: str, folder: str) -> None:
             print(f"{size:6.1f} {damping[0]:8.2f} {dt:10.4f} {row}  {span}", flush=True)
 
 
+def with_accuracy(program: str, folder: str) -> None:
+    """One dam whose increments follow their error."""
+    place = Path(folder)
+    place.mkdir(parents=True, exist_ok=True)
+    own = Program(Path(program).resolve(), place, 1, 3600.0)
+    reference = run_trial(own, trial_of(1.0, 1e11, REFERENCE, DAMPED), name="fine")
+    exact = largest(reference)
+    text, files = deck_of(trial_of(1.0, 1e11, 0.01, DAMPED))
+    print("| ACCURACY | increments | max S1 | max U | max opening | openings at one time |")
+    for asked in ASKED:
+        cards = f"0.01, 4\n*CONTROLS, ACCURACY={asked}\n"
+        deck = text.replace("*DYNAMIC, DIRECT", "*DYNAMIC").replace("0.01, 4\n", cards)
+        run = own(deck, name=f"asked{asked}", files=files)
+        share = 100.0 * np.abs(largest(run) / exact - 1.0)
+        histories = 100.0 * max(errors_of_histories(run, reference))
+        (found,) = run.json["accuracy"]["increments"].values()
+        sizes = sorted(found["sizes"], key=lambda item: -item["size"])
+        steps = ", ".join(f"{item['increments']} of {item['size']:g} s" for item in sizes)
+        row = f"| {asked} | {steps} | {share[0]:.2f} % | {share[2]:.2f} % | {share[3]:.2f} % |"
+        print(f"{row} {histories:.1f} % |", flush=True)
+
+
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    if sys.argv[3:] == ["accuracy"]:
+        with_accuracy(*sys.argv[1:3])
+    else:
+        main(*sys.argv[1:])

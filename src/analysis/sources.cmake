@@ -37,6 +37,7 @@ set(sources
   state/analysis_state.f90
   state/guest_histories.f90
   state/increment_listener.f90
+  state/motion_archive.f90
   state/state_archive.f90
   state/state_transfer.f90
   state/step_control.f90
@@ -46,8 +47,10 @@ set(sources
   steps/step_report.f90
   steps/user_increments.f90
   system/energy_account.f90
+  system/error_in_time.f90
   system/hht_scheme.f90
   system/joint_water.f90
+  system/kept_solvers.f90
   system/step_equilibrium.f90
   system/step_loads.f90
   system/step_system.f90

@@ -1,6 +1,6 @@
 !> The contract of linear solvers. A distributed back end would extend this type.
 module linear_solver
-  use kinds, only: rk
+  use kinds, only: rk, long
   use errors, only: error_type, raise
   use factor_top, only: top_of_factor
   use matrix_pattern, only: pattern
@@ -22,6 +22,7 @@ module linear_solver
     procedure :: choose_active => activate_all
     procedure :: substitute => refuse_part
     procedure :: keep_single => keep_double
+    procedure :: num_entries => unknown_entries
   end type equation_solver
 
   !> Parts of a factor. The upper part holds the columns of the active unknowns and all columns that
@@ -107,6 +108,12 @@ contains
     logical, intent(out) :: is_kept
     is_kept = size(unknown) < 0
   end subroutine keep_double
+
+  !> Entries of the factor; 0 where the solver does not say.
+  integer(long) function unknown_entries(self) result(entries)
+    class(equation_solver), intent(in) :: self
+    entries = 0_long
+  end function unknown_entries
 
   !> y = L^-1 y or y = L^-T y with a part of the factor, in the order of elimination.
   subroutine refuse_part(self, part, is_forward, y, error)

@@ -2,7 +2,7 @@
 !> joints last.
 module solver_cholmod
   use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_int, c_loc, c_null_ptr, c_ptr
-  use kinds, only: rk
+  use kinds, only: rk, long
   use errors, only: error_type, raise, system_failed
   use factor_top, only: choose_top, top_of_factor
   use matrix_pattern, only: pattern
@@ -27,7 +27,7 @@ module solver_cholmod
   contains
     procedure :: analyse, factorise, solve, statistics
     procedure :: take_schur_block, take_top, forward_substitute, backward_substitute
-    procedure :: choose_active, substitute, keep_single
+    procedure :: choose_active, substitute, keep_single, num_entries
     final :: release
   end type cholmod_solver
 
@@ -327,6 +327,14 @@ contains
     if (c_associated(self%handle)) call keyway_cholmod_statistics(self%handle, entries, bytes, &
                                                                   peak_bytes)
   end subroutine statistics
+
+  !> Entries of the factor.
+  integer(long) function num_entries(self)
+    class(cholmod_solver), intent(in) :: self
+    real(rk) :: entries, bytes, peak_bytes
+    call self%statistics(entries, bytes, peak_bytes)
+    num_entries = int(entries, long)
+  end function num_entries
 
   !> Frees the memory of CHOLMOD.
   subroutine release(self)

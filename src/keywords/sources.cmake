@@ -50,6 +50,7 @@ set(sources
   mesh/keywords_section.f90
   mesh/keywords_sets.f90
   read_deck.f90
+  steps/check_accuracy.f90
   steps/check_requests.f90
   steps/finish_step.f90
   steps/history_file.f90

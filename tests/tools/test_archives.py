@@ -12,6 +12,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 STATE = "src/analysis/state/analysis_state.f90"
 STATE_ARCHIVE = "src/analysis/state/state_archive.f90"
+MOTION_ARCHIVE = "src/analysis/state/motion_archive.f90"
 RECORD_ARCHIVE = "src/results/record/record_archive.f90"
 SUMMARY = "src/results/summary/run_summaries.f90"
 SUMMARY_ARCHIVE = "src/results/summary/summary_archive.f90"
@@ -64,9 +65,10 @@ TYPES = (
     ),
     of_state("increment_status", STATE, "status"),
     of_state("energy_balance", STATE, "energy"),
-    of_state("motion", STATE, "motion"),
-    of_state("modal_motion", STATE, "modal"),
+    of_state("motion", STATE, "motion", MOTION_ARCHIVE),
+    of_state("modal_motion", STATE, "modal", MOTION_ARCHIVE),
     of_state("reduction_status", STATE, "reduction"),
+    of_state("time_accuracy", STATE, "accuracy"),
     of_state("last_matrix", STATE, "matrix"),
     of_state("increment_control", "src/analysis/state/step_control.f90", "control"),
     of_state(
@@ -201,13 +203,14 @@ def test_a_forgotten_component_is_found():
         "end type motion", "real(rk) :: news(3)\nend type motion"
     )
     assert "news" in components(source, "motion")
-    assert not re.search(r"%news\b", body(without_comments(STATE_ARCHIVE), "save_motion"))
+    assert not re.search(r"%news\b", body(without_comments(MOTION_ARCHIVE), "save_motion"))
 
 
 def test_values_keep_their_names():
     """The name in the file is that of the component."""
     for path in (
         STATE_ARCHIVE,
+        MOTION_ARCHIVE,
         "src/joints/law/joint_history.f90",
         "src/materials/law/material_points.f90",
     ):

@@ -3,7 +3,7 @@
 module full_state
   use kinds, only: rk
   use analysis_state, only: state, increment_status, energy_balance, last_matrix, motion, &
-                            modal_motion, reduction_status
+                            modal_motion, reduction_status, time_accuracy
   use step_control, only: increment_control
   use joint_law, only: joint_state
   use material_points, only: point_state
@@ -68,6 +68,7 @@ contains
     call fill_energy(status%energy, n)
     call fill_control(status%control, n)
     call fill_reduction(status%reduction, n)
+    call fill_accuracy(status%accuracy, n)
   end subroutine fill_status
 
   !> Energies.
@@ -87,6 +88,25 @@ contains
     call fill(energy%largest, n)
   end subroutine fill_energy
 
+  !> Error in time.
+  subroutine fill_accuracy(accuracy, n)
+    type(time_accuracy), intent(inout) :: accuracy
+    integer, intent(inout) :: n
+    call fill(accuracy%num_known, n)
+    call fill(accuracy%size, n)
+    call fill(accuracy%size_before, n)
+    call fill(accuracy%largest, n)
+    call fill(accuracy%mean_rate, n)
+    call fill(accuracy%held_rate, n)
+    call fill(accuracy%velocity_square, n)
+    call fill(accuracy%acceleration_square, n)
+    call fill(accuracy%third_square, n)
+    call fill(accuracy%error, n)
+    call fill(accuracy%largest_error, n)
+    call fill(accuracy%damped, n)
+    call fill(accuracy%kinetic, n)
+  end subroutine fill_accuracy
+
   !> Size of increments.
   subroutine fill_control(control, n)
     type(increment_control), intent(inout) :: control
@@ -95,6 +115,8 @@ contains
     call fill(control%last_size, n)
     call fill(control%smallest, n)
     call fill(control%largest, n)
+    call fill(control%first, n)
+    call fill(control%finest, n)
     call fill(control%duration, n)
     call fill(control%growth, n)
     call fill(control%easy_needed, n)
@@ -112,7 +134,7 @@ contains
               own%contact(4), own%balanced(4), &
               own%viscous(4), own%viscous_rate(4), own%lost_damping(4), own%correction(4), &
               own%carried_correction(4), own%momentum(4), own%inertia(4), own%carried(3, 4), &
-              own%jump_rate(3, 4))
+              own%jump_rate(3, 4), own%slope(4), own%bend(4))
     call fill(own%q, n)
     call fill(own%v, n)
     call fill(own%a, n)
@@ -128,6 +150,8 @@ contains
     call fill(own%carried_correction, n)
     call fill(own%momentum, n)
     call fill(own%inertia, n)
+    call fill(own%slope, n)
+    call fill(own%bend, n)
     call fill(own%carried, n)
     call fill(own%jump_rate, n)
     call fill_modal(own%modal, n)

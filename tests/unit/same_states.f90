@@ -4,7 +4,7 @@ module same_states
   use kinds, only: rk, long
   use step_control, only: increment_control
   use analysis_state, only: state, increment_status, energy_balance, last_matrix, motion, &
-                            modal_motion, reduction_status
+                            modal_motion, reduction_status, time_accuracy
   use guest_history, only: history_slot
   use joint_law, only: joint_state
   use material_points, only: point_state
@@ -86,6 +86,7 @@ contains
     call compare_energy(log, what//'energy%', a%energy, b%energy)
     call compare_control(log, what//'control%', a%control, b%control)
     call compare_reduction(log, what//'reduction%', a%reduction, b%reduction)
+    call compare_accuracy(log, what//'accuracy%', a%accuracy, b%accuracy)
   end subroutine compare_status
 
   !> Energies.
@@ -106,6 +107,26 @@ contains
     call compare(log, what//'largest', a%largest, b%largest)
   end subroutine compare_energy
 
+  !> Error in time.
+  subroutine compare_accuracy(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    type(time_accuracy), intent(in) :: a, b
+    call compare(log, what//'num_known', a%num_known, b%num_known)
+    call compare(log, what//'size', a%size, b%size)
+    call compare(log, what//'size_before', a%size_before, b%size_before)
+    call compare(log, what//'largest', a%largest, b%largest)
+    call compare(log, what//'mean_rate', a%mean_rate, b%mean_rate)
+    call compare(log, what//'held_rate', a%held_rate, b%held_rate)
+    call compare(log, what//'velocity_square', a%velocity_square, b%velocity_square)
+    call compare(log, what//'acceleration_square', a%acceleration_square, b%acceleration_square)
+    call compare(log, what//'third_square', a%third_square, b%third_square)
+    call compare(log, what//'error', a%error, b%error)
+    call compare(log, what//'largest_error', a%largest_error, b%largest_error)
+    call compare(log, what//'damped', a%damped, b%damped)
+    call compare(log, what//'kinetic', a%kinetic, b%kinetic)
+  end subroutine compare_accuracy
+
   !> Size of increments.
   subroutine compare_control(log, what, a, b)
     type(test_log), intent(inout) :: log
@@ -115,6 +136,8 @@ contains
     call compare(log, what//'last_size', a%last_size, b%last_size)
     call compare(log, what//'smallest', a%smallest, b%smallest)
     call compare(log, what//'largest', a%largest, b%largest)
+    call compare(log, what//'first', a%first, b%first)
+    call compare(log, what//'finest', a%finest, b%finest)
     call compare(log, what//'duration', a%duration, b%duration)
     call compare(log, what//'growth', a%growth, b%growth)
     call compare(log, what//'easy_needed', a%easy_needed, b%easy_needed)
@@ -144,6 +167,8 @@ contains
     call compare(log, what//'carried_correction', a%carried_correction, b%carried_correction)
     call compare(log, what//'momentum', a%momentum, b%momentum)
     call compare(log, what//'inertia', a%inertia, b%inertia)
+    call compare(log, what//'slope', a%slope, b%slope)
+    call compare(log, what//'bend', a%bend, b%bend)
     call compare(log, what//'carried', a%carried, b%carried)
     call compare(log, what//'jump_rate', a%jump_rate, b%jump_rate)
     call compare_modal(log, what//'modal%', a%modal, b%modal)

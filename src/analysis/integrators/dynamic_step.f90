@@ -22,7 +22,7 @@ module dynamic_step
   use solid_iteration, only: solid_solver
   implicit none
   private
-  public :: build_dynamic_step, open_dynamic_step, largest_force
+  public :: build_dynamic_step, open_dynamic_step, make_step_solver, largest_force
 
   !> In free flight all forces are round-off: the residual is then measured against this fraction of
   !> the force that would stop the dam within the increment.
@@ -77,16 +77,28 @@ contains
       call results%increment_done(model, now, error)
       if (allocated(error)) return
     end if
+    call make_step_solver(model, plan, system, solids%has_inelastic() .and. &
+                          .not. has_histories(now%guests), solids, results, error)
+  end subroutine open_dynamic_step
+
+  !> Makes a solver and plans its factor.
+  subroutine make_step_solver(model, plan, system, has_active_part, solids, results, error)
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(dam_system), intent(in) :: system
+    logical, intent(in) :: has_active_part !< solves are repeated for unknowns of inelastic solids
+    type(solid_solver), intent(inout) :: solids
+    class(listener), intent(inout) :: results
+    type(error_type), allocatable, intent(out) :: error
     call results%costs%start('analyse', 'structure', 'solver')
     call make_equilibrium(plan, system, all(solids%choices%is_symmetric()), solids%solver, error)
     call results%costs%stop()
     if (allocated(error)) return
     solids%solver%costs = results%costs
-    if (.not. solids%has_inelastic() .or. has_histories(now%guests)) return
     ! Refined solves are complete ones.
-    if (plan%controls%keeps_single) return
+    if (.not. has_active_part .or. plan%controls%keeps_single) return
     call solids%solver%repeated%open(solids%solver%factor, find_active(model, system%numbers))
-  end subroutine open_dynamic_step
+  end subroutine make_step_solver
 
   !> Forces at the start of the step and the acceleration that balances them. Supports that follow
   !> an amplitude start with its velocity.

@@ -11,12 +11,14 @@ module hht_integrator
   use increment_listener, only: listener
   use joint_forces, only: gather_tractions
   use joint_water, only: update_uplift
-  use equilibrium, only: balance_outcome
+  use equilibrium, only: balance_outcome, equilibrium_solver
+  use guest_forces, only: has_histories
   use step_equilibrium, only: prepare_equilibrium, set_modal_damping
   use step_system, only: dam_system
   use step_loads, only: step_time, external_force, prescribed_values
-  use dynamic_step, only: open_dynamic_step
+  use dynamic_step, only: make_step_solver, open_dynamic_step
   use hht_scheme, only: hht, make_scheme
+  use kept_solvers, only: solver_shelf
   use energy_account, only: add_dynamic_work
   use solid_iteration, only: solid_solver
   use state_transfer, only: store_motion
@@ -29,6 +31,8 @@ module hht_integrator
 
   type, extends(integrator) :: hht_method
     type(hht) :: scheme !< of the present increment size
+    type(solver_shelf) :: shelf !< solvers of other sizes, with *CONTROLS, ACCURACY
+    logical :: has_active_part = .false. !< solves are repeated for the unknowns of inelastic solids
     type(error_modes) :: modes !< of the estimate of the error in time; empty without it
     type(modal_error) :: time_error !< of the last converged increment
   contains
@@ -71,6 +75,7 @@ contains
     call open_dynamic_step(model, plan, self%system, self%solids, now, results, error)
     if (allocated(error)) return
     call start_rates(self%system, now)
+    self%has_active_part = self%solids%has_inelastic() .and. .not. has_histories(now%guests)
     ! A run that goes on within the step has lost the exact motion: it makes no estimate.
     if (now%increment > 0 .or. .not. is_worth_its_cost(plan)) return
     if (self%solids%has_inelastic()) return
@@ -123,12 +128,19 @@ contains
     real(rk), intent(in) :: dt
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
+    logical :: is_kept
     if (abs(dt - self%scheme%dt) <= 1.0e-12_rk*dt) return
+    is_kept = .false.
+    if (plan%follows_accuracy()) then
+      call change_solver(self, model, plan, dt, results, is_kept, error)
+      if (allocated(error)) return
+    end if
     self%scheme = make_scheme(plan%alpha, dt, plan%controls%joint_forces)
     call effective_values(self%system, self%scheme, self%solids%values)
     self%solids%weight = 1.0_rk + plan%alpha
     call self%solids%correction%open(model, 1.0_rk/(self%scheme%gamma*self%solids%weight))
     call self%solids%matrix%start_elastic(dt)
+    if (is_kept) return
     call results%costs%start('iterate', 'structure', 'solver')
     call set_modal_damping(self%system, self%solids%weight*self%scheme%velocity_of_x, &
                            self%solids%solver)
@@ -136,6 +148,40 @@ contains
                              self%solids%solver, error)
     call results%costs%stop()
   end subroutine start_increment
+
+  !> Keeps the solver of the last size, and takes that of the new size or makes one. A factor that
+  !> cracks have changed is not kept.
+  subroutine change_solver(self, model, plan, dt, results, is_kept, error)
+    class(hht_method), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    real(rk), intent(in) :: dt !< [s]
+    class(listener), intent(inout) :: results
+    logical, intent(out) :: is_kept !< the new solver has its factor
+    type(error_type), allocatable, intent(out) :: error
+    class(equilibrium_solver), allocatable :: next
+    real(rk) :: condition
+    is_kept = .false.
+    if (.not. self%scheme%dt > 0.0_rk) return
+    call self%shelf%take(dt, next)
+    is_kept = allocated(next)
+    if (.not. (is_kept .or. is_power(dt/plan%first_increment))) return
+    condition = self%solids%solver%condition
+    if (self%solids%matrix%is_elastic) call self%shelf%put(self%scheme%dt, self%solids%solver)
+    if (is_kept) call move_alloc(next, self%solids%solver)
+    if (allocated(self%solids%solver)) return
+    call make_step_solver(model, plan, self%system, self%has_active_part, self%solids, results, &
+                          error)
+    if (.not. allocated(error)) self%solids%solver%condition = condition
+  end subroutine change_solver
+
+  !> Whether a number is a power of two, as the sizes are that a step returns to.
+  pure logical function is_power(ratio)
+    real(rk), intent(in) :: ratio
+    real(rk) :: exponent
+    exponent = log(ratio)/log(2.0_rk)
+    is_power = abs(exponent - anint(exponent)) < 1.0e-6_rk
+  end function is_power
 
   !> Values of K_eff, without joints.
   subroutine effective_values(system, scheme, values)

@@ -14,7 +14,7 @@ module analysis_state
   implicit none
   private
   public :: state, increment_status, last_matrix, motion, modal_motion, energy_balance
-  public :: reduction_status, vibration_mode
+  public :: reduction_status, time_accuracy, vibration_mode
 
   !> Energies since the start of the analysis [J]. `error` is the imbalance over `largest`, the
   !> largest energy so far: the present energies of a dam at rest are no reference.
@@ -36,6 +36,23 @@ module analysis_state
     real(rk) :: estimate = 0.0_rk !< error of the openings, over the largest
   end type reduction_status
 
+  !> The error in time of a step whose increments follow it (theory.md, 7.5). Norms are weighted by
+  !> the mass.
+  type :: time_accuracy
+    integer :: num_known = 0 !< increments that the differences of the displacements have seen
+    real(rk) :: size = 0.0_rk, size_before = 0.0_rk !< of the last two increments [s]
+    real(rk) :: largest = 0.0_rk !< norm of the displacements so far
+    real(rk) :: mean_rate = 0.0_rk, held_rate = 0.0_rk !< of the error; its slowly falling maximum
+    !> Means of squared norms of velocity, acceleration and third derivative
+    real(rk) :: velocity_square = 0.0_rk, acceleration_square = 0.0_rk, third_square = 0.0_rk
+    real(rk) :: error = 0.0_rk !< that has added up, less what damping has taken
+    real(rk) :: largest_error = 0.0_rk !< so far
+    real(rk) :: damped = 0.0_rk !< energy at the start of the step [J]
+    real(rk) :: kinetic = 0.0_rk !< integral over time [J s]
+  contains
+    procedure :: relative
+  end type time_accuracy
+
   !> Time of the analysis, course of the last increment and size of the next increment.
   type :: increment_status
     integer :: step = 0, increment = 0, iterations = 0
@@ -54,6 +71,7 @@ module analysis_state
     type(energy_balance) :: energy
     type(increment_control) :: control
     type(reduction_status) :: reduction
+    type(time_accuracy) :: accuracy
   end type increment_status
 
   !> Motion of a reduced model since the start of its step (theory.md, 7.4).
@@ -84,6 +102,9 @@ module analysis_state
     !> end of the increment carries it [N]; of solids with a free energy in dynamic steps only
     real(rk), allocatable :: correction(:), carried_correction(:)
     real(rk), allocatable :: momentum(:), inertia(:) !< M v [N s], M a [N]
+    !> (num_total) first [m/s] and second [m/s2] divided difference of q over the last increments;
+    !> with *CONTROLS, ACCURACY only
+    real(rk), allocatable :: slope(:), bend(:)
     real(rk), allocatable :: carried(:, :) !< (3, points) t* of the implicit joint impulse [Pa]
     real(rk), allocatable :: jump_rate(:, :) !< (3, points) in the last increment [m/s]
     type(modal_motion) :: modal !< of a reduced model
@@ -116,4 +137,11 @@ module analysis_state
     real(rk) :: effective_mass(3) = 0.0_rk !< in x, y, z [kg]
     real(rk), allocatable :: shape(:, :) !< (3, nodes), unit modal mass
   end type vibration_mode
+contains
+
+  !> The largest error so far over the largest displacement.
+  pure real(rk) function relative(self)
+    class(time_accuracy), intent(in) :: self
+    relative = self%largest_error/max(tiny(1.0_rk), self%largest)
+  end function relative
 end module analysis_state

@@ -5,12 +5,14 @@ module state_archive
   use archive_type, only: archive
   use guest_histories, only: history_reference, list_histories
   use step_control, only: increment_control
-  use analysis_state, only: state, increment_status, energy_balance, last_matrix, motion, &
-                            modal_motion, reduction_status
+  use analysis_state, only: state, increment_status, energy_balance, last_matrix, &
+                            reduction_status, time_accuracy
+  use motion_archive, only: save_motion, load_motion
   use write_text, only: as_text
   implicit none
   private
   public :: save_state, load_state, save_energy, load_energy, save_reduction, load_reduction
+  public :: save_accuracy, load_accuracy
 
 contains
 
@@ -170,6 +172,9 @@ contains
     call file%open_group('reduction')
     call save_reduction(status%reduction, file)
     call file%close_group()
+    call file%open_group('accuracy')
+    call save_accuracy(status%accuracy, file)
+    call file%close_group()
   end subroutine save_status
 
   !> Reads where the analysis is.
@@ -200,6 +205,9 @@ contains
     call file%close_group()
     call file%open_group('reduction')
     call load_reduction(status%reduction, file)
+    call file%close_group()
+    call file%open_group('accuracy')
+    call load_accuracy(status%accuracy, file)
     call file%close_group()
   end subroutine load_status
 
@@ -257,6 +265,44 @@ contains
     call file%get('estimate', reduction%estimate)
   end subroutine load_reduction
 
+  !> Writes the error in time.
+  subroutine save_accuracy(accuracy, file)
+    type(time_accuracy), intent(in) :: accuracy
+    class(archive), intent(inout) :: file
+    call file%put('num_known', accuracy%num_known)
+    call file%put('size', accuracy%size)
+    call file%put('size_before', accuracy%size_before)
+    call file%put('largest', accuracy%largest)
+    call file%put('mean_rate', accuracy%mean_rate)
+    call file%put('held_rate', accuracy%held_rate)
+    call file%put('velocity_square', accuracy%velocity_square)
+    call file%put('acceleration_square', accuracy%acceleration_square)
+    call file%put('third_square', accuracy%third_square)
+    call file%put('error', accuracy%error)
+    call file%put('largest_error', accuracy%largest_error)
+    call file%put('damped', accuracy%damped)
+    call file%put('kinetic', accuracy%kinetic)
+  end subroutine save_accuracy
+
+  !> Reads the error in time.
+  subroutine load_accuracy(accuracy, file)
+    type(time_accuracy), intent(inout) :: accuracy
+    class(archive), intent(inout) :: file
+    call file%get('num_known', accuracy%num_known)
+    call file%get('size', accuracy%size)
+    call file%get('size_before', accuracy%size_before)
+    call file%get('largest', accuracy%largest)
+    call file%get('mean_rate', accuracy%mean_rate)
+    call file%get('held_rate', accuracy%held_rate)
+    call file%get('velocity_square', accuracy%velocity_square)
+    call file%get('acceleration_square', accuracy%acceleration_square)
+    call file%get('third_square', accuracy%third_square)
+    call file%get('error', accuracy%error)
+    call file%get('largest_error', accuracy%largest_error)
+    call file%get('damped', accuracy%damped)
+    call file%get('kinetic', accuracy%kinetic)
+  end subroutine load_accuracy
+
   !> Writes the size of increments.
   subroutine save_control(control, file)
     type(increment_control), intent(in) :: control
@@ -265,6 +311,8 @@ contains
     call file%put('last_size', control%last_size)
     call file%put('smallest', control%smallest)
     call file%put('largest', control%largest)
+    call file%put('first', control%first)
+    call file%put('finest', control%finest)
     call file%put('duration', control%duration)
     call file%put('growth', control%growth)
     call file%put('easy_needed', control%easy_needed)
@@ -282,6 +330,8 @@ contains
     call file%get('last_size', control%last_size)
     call file%get('smallest', control%smallest)
     call file%get('largest', control%largest)
+    call file%get('first', control%first)
+    call file%get('finest', control%finest)
     call file%get('duration', control%duration)
     call file%get('growth', control%growth)
     call file%get('easy_needed', control%easy_needed)
@@ -290,97 +340,4 @@ contains
     call file%get('cuts_in_a_row', control%cuts_in_a_row)
     call file%get('cutbacks', control%cutbacks)
   end subroutine load_control
-
-  !> Writes the vectors of the integrator that are allocated.
-  subroutine save_motion(own, file)
-    type(motion), intent(in) :: own
-    class(archive), intent(inout) :: file
-    call file%put('q', own%q)
-    call file%put('v', own%v)
-    call file%put('a', own%a)
-    call file%put('external', own%external)
-    call file%put('elastic', own%elastic)
-    call file%put('internal', own%internal)
-    call file%put('contact', own%contact)
-    call file%put('balanced', own%balanced)
-    call file%put('viscous', own%viscous)
-    call file%put('viscous_rate', own%viscous_rate)
-    call file%put('lost_damping', own%lost_damping)
-    call file%put('correction', own%correction)
-    call file%put('carried_correction', own%carried_correction)
-    call file%put('momentum', own%momentum)
-    call file%put('inertia', own%inertia)
-    call file%put('carried', own%carried)
-    call file%put('jump_rate', own%jump_rate)
-    call file%open_group('modal')
-    call save_modal(own%modal, file)
-    call file%close_group()
-  end subroutine save_motion
-
-  !> Reads the vectors of the integrator that are allocated.
-  subroutine load_motion(own, file)
-    type(motion), intent(inout) :: own
-    class(archive), intent(inout) :: file
-    type(motion) :: none
-    integer :: extent(1)
-    own = none
-    call file%get('q', own%q)
-    extent = 0
-    if (allocated(own%q)) extent = shape(own%q)
-    call file%get('v', own%v, extent)
-    call file%get('a', own%a, extent)
-    call file%get('external', own%external, extent)
-    call file%get('elastic', own%elastic, extent)
-    call file%get('internal', own%internal, extent)
-    call file%get('contact', own%contact, extent)
-    call file%get('balanced', own%balanced, extent)
-    call file%get('viscous', own%viscous, extent)
-    call file%get('viscous_rate', own%viscous_rate, extent)
-    call file%get('lost_damping', own%lost_damping, extent)
-    call file%get('correction', own%correction, extent)
-    call file%get('carried_correction', own%carried_correction, extent)
-    call file%get('momentum', own%momentum, extent)
-    call file%get('inertia', own%inertia, extent)
-    call file%get('carried', own%carried)
-    call file%get('jump_rate', own%jump_rate)
-    call file%open_group('modal')
-    call load_modal(own%modal, file)
-    call file%close_group()
-  end subroutine load_motion
-
-  !> Writes the motion of a reduced model.
-  subroutine save_modal(own, file)
-    type(modal_motion), intent(in) :: own
-    class(archive), intent(inout) :: file
-    call file%put('start', own%start)
-    call file%put('start_traction', own%start_traction)
-    call file%put('start_factor', own%start_factor)
-    call file%put('y', own%y)
-    call file%put('rate', own%rate)
-    call file%put('acceleration', own%acceleration)
-    call file%put('port', own%port)
-    call file%put('port_rate', own%port_rate)
-    call file%put('port_acceleration', own%port_acceleration)
-    call file%put('rest', own%rest)
-    call file%put('rest_rate', own%rest_rate)
-    call file%put('rest_acceleration', own%rest_acceleration)
-  end subroutine save_modal
-
-  !> Reads the motion of a reduced model.
-  subroutine load_modal(own, file)
-    type(modal_motion), intent(inout) :: own
-    class(archive), intent(inout) :: file
-    call file%get('start', own%start)
-    call file%get('start_traction', own%start_traction)
-    call file%get('start_factor', own%start_factor)
-    call file%get('y', own%y)
-    call file%get('rate', own%rate)
-    call file%get('acceleration', own%acceleration)
-    call file%get('port', own%port)
-    call file%get('port_rate', own%port_rate)
-    call file%get('port_acceleration', own%port_acceleration)
-    call file%get('rest', own%rest)
-    call file%get('rest_rate', own%rest_rate)
-    call file%get('rest_acceleration', own%rest_acceleration)
-  end subroutine load_modal
 end module state_archive

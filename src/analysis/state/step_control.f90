@@ -17,18 +17,24 @@ module step_control
   !> Round-off of times, over the increment: a sum of n equal increments is off by up to n^2*1e-16.
   real(rk), parameter :: roundoff = 1.0e-6_rk
 
+  integer, parameter :: most_halvings = 60
+
   !> A new component gets a line in save and load of state_archive.
   type :: increment_control
     real(rk) :: size = 0.0_rk !< of the next increment [s]
     real(rk) :: last_size = 0.0_rk !< of the last increment that was cut [s]
     real(rk) :: smallest = 0.0_rk, largest = 0.0_rk !< [s]
+    !> With *CONTROLS, ACCURACY: the first increment, and the smallest that accuracy asks for [s].
+    !> Sizes are powers of two of the first. 0 where sizes do not follow the estimated error
+    real(rk) :: first = 0.0_rk, finest = 0.0_rk
     real(rk) :: duration = 0.0_rk !< of the step [s]
     real(rk) :: growth = static_growth
     integer :: easy_needed = easy_increments
     logical :: is_direct = .false.
     integer :: easy_so_far = 0, cuts_in_a_row = 0, cutbacks = 0
   contains
-    procedure :: next_size, accept, cut, least_size
+    procedure :: next_size, accept, cut, least_size, follow_error
+    procedure, private :: on_grid
   end type increment_control
 
 contains
@@ -47,6 +53,14 @@ contains
     control%smallest = min(control%smallest, control%size)
     control%largest = min(plan%largest_increment, plan%duration)
     if (.not. is_dynamic) return
+    if (plan%follows_accuracy()) then
+      control%first = control%size
+      control%finest = control%first
+      do while (0.5_rk*control%finest >= max(plan%finest_increment, control%smallest) &
+                *(1.0_rk - roundoff))
+        control%finest = 0.5_rk*control%finest
+      end do
+    end if
     control%growth = dynamic_growth
     control%easy_needed = easy_dynamic_increments
     if (plan%largest_increment >= huge(1.0_rk)) control%largest = control%size
@@ -67,7 +81,7 @@ contains
     integer, intent(in) :: iterations
     self%cuts_in_a_row = 0
     self%easy_so_far = merge(self%easy_so_far + 1, 0, iterations <= easy_iterations)
-    if (self%is_direct .or. self%easy_so_far < self%easy_needed) return
+    if (self%is_direct .or. self%first > 0.0_rk .or. self%easy_so_far < self%easy_needed) return
     if (self%size*self%growth <= self%largest*(1.0_rk + roundoff)) then
       self%size = self%size*self%growth
     else if (self%easy_needed == easy_increments) then
@@ -75,6 +89,40 @@ contains
     end if
     self%easy_so_far = 0
   end subroutine accept
+
+  !> The estimated error chooses the size of the next increment, after `accept`. The size is doubled
+  !> where a multiple of the new size ends, so that multiples of the first increment are met.
+  pure subroutine follow_error(self, time, doublings)
+    class(increment_control), intent(inout) :: self
+    real(rk), intent(in) :: time !< within the step [s]
+    integer, intent(in) :: doublings !< of the size; negative: halvings
+    real(rk) :: wanted
+    if (.not. self%first > 0.0_rk .or. doublings == 0) return
+    if (doublings < 0) then
+      wanted = max(self%size*2.0_rk**doublings, self%finest)
+      if (wanted < self%size) self%easy_so_far = 0
+      self%size = min(self%size, wanted)
+      return
+    end if
+    wanted = 2.0_rk*self%size
+    if (self%easy_so_far < self%easy_needed) return
+    if (wanted > self%largest*(1.0_rk + roundoff)) return
+    if (abs(time/wanted - anint(time/wanted)) > roundoff*max(1.0_rk, time/wanted)) return
+    self%size = wanted
+    self%easy_so_far = 0
+  end subroutine follow_error
+
+  !> The largest power of two of the first increment up to a size.
+  pure real(rk) function on_grid(self, size) result(grid)
+    class(increment_control), intent(in) :: self
+    real(rk), intent(in) :: size !< [s]
+    integer :: halvings
+    grid = self%first
+    do halvings = 1, most_halvings
+      if (grid <= size*(1.0_rk + roundoff)) exit
+      grid = 0.5_rk*grid
+    end do
+  end function on_grid
 
   !> The smallest increment that halving can still reach.
   pure real(rk) function least_size(self) result(size)
@@ -94,6 +142,7 @@ contains
     self%cuts_in_a_row = self%cuts_in_a_row + 1
     self%easy_so_far = 0
     self%size = min(cut_factor, max(ratio, smallest_ratio))*size
+    if (self%first > 0.0_rk) self%size = self%on_grid(self%size)
     gives_up = self%is_direct .or. self%cuts_in_a_row > most_cuts_in_a_row &
                .or. self%size < self%smallest*(1.0_rk - roundoff)
   end subroutine cut

@@ -2,10 +2,11 @@
 !> cuts, accepts and reports increments. The integrator of the step computes the trial state.
 module step_loop
   use kinds, only: rk
+  use error_in_time, only: find_weights, note_error_in_time
   use errors, only: error_type, raise, system_failed
   use problem_definition, only: problem
   use step_plan, only: step
-  use analysis_state, only: last_matrix, reduction_status, state
+  use analysis_state, only: last_matrix, reduction_status, state, time_accuracy
   use step_control, only: increment_control, start_control
   use increment_listener, only: listener
   use equilibrium, only: balance_outcome, is_dropped
@@ -25,6 +26,7 @@ module step_loop
     type(step_time) :: when !< its end
     type(balance_outcome) :: outcome
     type(increment_control) :: control !< before the first cut of the increment
+    real(rk), allocatable :: weights(:) !< of the unknowns in the error in time; only where needed
   end type attempt
 
 contains
@@ -78,6 +80,7 @@ contains
     now%step_start = now%total_time
     now%matrix = last_matrix()
     now%reduction = reduction_status()
+    now%accuracy = time_accuracy()
     associate (fixed => plan%fixities)
       now%support_start = [(now%u(fixed(k)%dof, fixed(k)%node), k=1, size(fixed))]
     end associate
@@ -156,6 +159,7 @@ contains
     next%when = step_time(is_dynamic=plan%procedure%has_inertia, start=now%step_start, &
                           duration=plan%duration)
     if (now%increment == 0) call start_control(plan, plan%procedure%has_inertia, now%control)
+    if (plan%follows_accuracy()) call find_weights(method%system, next%weights)
     next%trial = now
     next%control = now%control
     do while (now%step_time < plan%duration)
@@ -218,6 +222,7 @@ contains
       call record_uplift(model, plan%loads, groups, next%when, trial%joints, results%costs)
       call method%solids%matrix%store(trial%matrix)
       call trial%control%accept(method%solids%effort(next%outcome%own_iterations()))
+      if (allocated(next%weights)) call follow_error(plan, now, next, results)
       call count_increment(plan, next%when, next%outcome, trial)
       call method%store_state(model, next%when, trial, results, error)
     end associate
@@ -226,6 +231,19 @@ contains
     next%control = now%control
     call close_increment(model, plan, now, results, error)
   end subroutine accept
+
+  !> The estimated error in time chooses the size of the next increment.
+  subroutine follow_error(plan, now, next, results)
+    type(step), intent(in) :: plan
+    type(state), intent(in) :: now
+    type(attempt), intent(inout) :: next
+    class(listener), intent(inout) :: results
+    integer :: doublings
+    call results%costs%start('estimate', 'increments', 'output')
+    call note_error_in_time(plan, next%weights, next%when%increment, now, next%trial, doublings)
+    call next%trial%control%follow_error(next%when%now, doublings)
+    call results%costs%stop()
+  end subroutine follow_error
 
   !> Cuts the increment, or ends the run, at once where even the smallest increment is hopeless.
   subroutine cut(model, plan, method, now, next, error)

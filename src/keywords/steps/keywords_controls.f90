@@ -21,8 +21,12 @@ contains
     spec%name = 'CONTROLS'
     spec%family = 'step'
     spec%place = 'step'
-    spec%meaning = 'Tolerances of the iteration, from this step on.'
-    spec%example = '*CONTROLS, RESIDUAL=1e-8, ITERATIONS=25'
+    spec%meaning = 'Tolerances of the iteration, from this step on. With ACCURACY increments '// &
+                   'are powers of two of the first increment, from an eighth of it to four '// &
+                   'times it, but no longer than the samples of the motion, unless *DYNAMIC '// &
+                   'names the smallest and the largest.'
+    spec%example = '*CONTROLS, RESIDUAL=1e-8, ITERATIONS=25'//new_line('a')// &
+                   '*CONTROLS, ACCURACY=0.02'
     spec%most_lines = 0
     allocate (spec%parameters, source=[ &
               field('RESIDUAL', kind_real, 'residual over the reference force', '', &
@@ -34,6 +38,10 @@ contains
                     'solids (TANGENT); those on joints go on while they gain, and start '// &
                     'again after sweeps over the points', &
                     default='15', lowest=1.0_rk, highest=1.0e4_rk), &
+              field('ACCURACY', kind_real, 'error of displacements in time, over the largest '// &
+                    'displacement: the increments of *DYNAMIC follow its estimate; 0: they do '// &
+                    'not', default='0', &
+                    lowest=0.0_rk, highest=0.5_rk), &
               field('JOINT SOLVER', kind_choice, 'iterate on the joints alone (condensed) or '// &
                     'on everything (full Newton)', default='AUTO', &
                     choices=joint_solvers), &
@@ -61,6 +69,7 @@ contains
       if (this%has('RESIDUAL')) controls%residual_tolerance = this%real('RESIDUAL')
       if (this%has('INCREMENT')) controls%increment_tolerance = this%real('INCREMENT')
       if (this%has('ITERATIONS')) controls%max_iterations = this%integer('ITERATIONS')
+      if (this%has('ACCURACY')) controls%accuracy = this%real('ACCURACY')
       if (this%has('JOINT SOLVER')) controls%joint_solver = this%word('JOINT SOLVER')
       if (this%has('PRECISION')) controls%keeps_single = this%word('PRECISION') == 'SINGLE'
       if (this%has('JOINT FORCES')) controls%joint_forces = this%word('JOINT FORCES')

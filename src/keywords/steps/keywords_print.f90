@@ -27,7 +27,8 @@ contains
     type(keyword), intent(inout) :: spec
     character(*), intent(in) :: choices !< fields, 'U | V'
     type(field) :: how_often
-    how_often = field('FREQUENCY', kind_integer, 'number of increments between outputs; 0 for '// &
+    how_often = field('FREQUENCY', kind_integer, 'number of increments between outputs; with '// &
+                      '*CONTROLS, ACCURACY, from 2 on, of first increments in time; 0 for '// &
                       'no output', &
                       default='1', lowest=0.0_rk)
     if (allocated(spec%parameters)) then

@@ -1,5 +1,6 @@
 !> *STEP, *END STEP and the procedures *STATIC, *DYNAMIC, *FREQUENCY.
 module keywords_step
+  use check_accuracy, only: set_accuracy_limits
   use deck_card, only: card
   use deck_scan, only: is_keyword
   use diagnostics, only: diagnostic_list, place
@@ -74,6 +75,7 @@ contains
     end if
     call check_base_motion(model, faults)
     call check_joint_forces(model, faults)
+    call set_accuracy_limits(model, faults)
     call close_step(model)
   end subroutine read_end_step
 

@@ -49,6 +49,9 @@ module step_plan
     real(rk) :: residual_tolerance = 1.0e-6_rk !< residual over the reference force
     real(rk) :: increment_tolerance = 1.0e-6_rk !< last correction over the increment
     integer :: max_iterations = 15
+    !> ACCURACY: error in time that the size of increments follows, over the largest displacement;
+    !> 0 where sizes do not follow it
+    real(rk) :: accuracy = 0.0_rk
     logical :: keeps_single = .false. !< PRECISION=SINGLE: of the factor, outside of the joints
     character(16) :: joint_solver = 'AUTO' !< 'CONDENSED', 'FULL' or 'AUTO'
     !> Joint forces in time: 'IMPLICIT' (the impulse of a step is dt times the joint force at its
@@ -102,6 +105,7 @@ module step_plan
     integer :: line = 0 !< of the procedure's card, for messages
     real(rk) :: first_increment = 1.0_rk, duration = 1.0_rk !< [s]
     real(rk) :: smallest_increment = 0.0_rk, largest_increment = huge(1.0_rk) !< [s]
+    real(rk) :: finest_increment = 0.0_rk !< that *CONTROLS, ACCURACY may choose [s]
     logical :: is_direct = .false. !< increments of fixed size
     integer :: max_increments = 100000 !< *STEP, INC
     real(rk) :: alpha = -0.05_rk !< of a scheme with `uses_alpha`
@@ -116,7 +120,7 @@ module step_plan
     type(step_controls) :: controls
     integer :: checkpoint_frequency = 0 !< *RESTART: every so many increments, 0 for none
   contains
-    procedure :: default_smallest
+    procedure :: default_smallest, follows_accuracy
   end type step
 
   !> Smallest increments unless the deck names one. They do not depend on the duration of a dynamic
@@ -130,6 +134,13 @@ contains
     class(step_procedure), intent(in) :: self
     is_static = .not. (self%has_inertia .or. self%finds_modes) .and. self%name /= ''
   end function is_static
+
+  !> Whether the estimated error in time chooses the size of increments.
+  pure logical function follows_accuracy(self)
+    class(step), intent(in) :: self
+    follows_accuracy = self%controls%accuracy > 0.0_rk .and. self%procedure%has_inertia &
+                       .and. .not. self%is_direct
+  end function follows_accuracy
 
   !> The smallest increment where the deck names none. A static step whose first increment is small
   !> can be cut as well.

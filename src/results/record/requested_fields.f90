@@ -7,7 +7,7 @@ module requested_fields
   use run_records, only: run_record
   use print_kinds, only: prints_of_joints
   use reduced_nodes, only: is_followed
-  use result_writer, only: is_due
+  use result_writer, only: is_due, meets
   implicit none
   private
   public :: list_due_fields, asks_for_joints, is_of_law, needs_nodes
@@ -26,8 +26,7 @@ contains
     integer :: r, i, f
     allocate (fields(0))
     if (.not. allocated(model%steps(now%step)%outputs)) return
-    if (now%is_stop .and. any(mod(now%increment, max(1, model%steps(now%step)%outputs%frequency)) &
-                              == 0)) return
+    if (now%is_stop .and. any(meets(now, max(1, model%steps(now%step)%outputs%frequency)))) return
     do r = 1, size(model%steps(now%step)%outputs)
       associate (request => model%steps(now%step)%outputs(r))
         if (.not. is_due(now, request%frequency)) cycle

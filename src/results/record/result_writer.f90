@@ -10,7 +10,9 @@ module result_writer
   use run_records, only: run_record
   implicit none
   private
-  public :: writer, is_due, starts_analysis
+  public :: writer, is_due, meets, starts_analysis
+
+  real(rk), parameter :: round_off = 1.0e-6_rk !< of a number of increments
 
   type, abstract :: writer
     logical :: is_idle = .false. !< set by `open`: the model has nothing for this writer
@@ -134,13 +136,26 @@ contains
     if (frequency <= 0) then
       is_due = .false.
     else if (now%is_stop) then
-      is_due = mod(now%increment, frequency) /= 0
+      is_due = .not. meets(now, frequency)
     else if (now%increment == 0) then
       is_due = starts_analysis(now)
     else
-      is_due = now%is_last_of_step .or. mod(now%increment, frequency) == 0
+      is_due = now%is_last_of_step .or. meets(now, frequency)
     end if
   end function is_due
+
+  !> Does an increment end a multiple of `frequency`? Increments that follow the estimated error are
+  !> counted in time: multiples of so many first increments.
+  elemental logical function meets(now, frequency)
+    type(state), intent(in) :: now
+    integer, intent(in) :: frequency
+    real(rk) :: interval
+    meets = mod(now%increment, frequency) == 0
+    if (.not. now%control%first > 0.0_rk .or. frequency == 1) return
+    interval = frequency*now%control%first
+    meets = floor(now%step_time/interval + round_off) &
+            > floor((now%step_time - now%increment_size)/interval + round_off)
+  end function meets
 
   !> True for the state from which the whole analysis starts.
   pure logical function starts_analysis(now)

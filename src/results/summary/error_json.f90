@@ -2,10 +2,12 @@
 module error_json
   use kinds, only: rk
   use json_writer, only: json_text
+  use problem_definition, only: problem
   use run_records, only: run_record
+  use run_summaries, only: follows_error, run_summary
   implicit none
   private
-  public :: put_estimates
+  public :: put_estimates, put_increments
 
 contains
 
@@ -18,6 +20,34 @@ contains
     call put_displacement(json, record)
     call json%close_object()
   end subroutine put_estimates
+
+  !> Steps whose increments follow the estimated error: the error over the largest displacement, and
+  !> how many increments have which size.
+  subroutine put_increments(json, model, summary)
+    type(json_text), intent(inout) :: json
+    type(problem), intent(in) :: model
+    type(run_summary), intent(in) :: summary
+    integer :: i, k
+    call json%open_object('increments')
+    do i = 1, size(summary%steps)
+      associate (part => summary%steps(i))
+        if (.not. follows_error(part)) cycle
+        call json%open_object(model%steps(part%step)%name)
+        call json%put_real(model%steps(part%step)%controls%accuracy, 'wanted')
+        call json%put_real(part%accuracy%relative(), 'estimated_error')
+        call json%open_array('sizes')
+        do k = 1, size(part%sizes)
+          call json%open_object()
+          call json%put_real(part%sizes(k), 'size')
+          call json%put_integer(part%of_size(k), 'increments')
+          call json%close_object()
+        end do
+        call json%close_array()
+        call json%close_object()
+      end associate
+    end do
+    call json%close_object()
+  end subroutine put_increments
 
   !> The largest displacement and the parts of its error; `history` is relative. With joints the
   !> error in time of the extreme is not known within a factor of 2 (theory.md, 14.3).

@@ -8,7 +8,7 @@ module run_closing
   use problem_definition, only: problem
   use run_ledger, only: ledger, ledger_part
   use run_records, only: run_record
-  use run_summaries, only: run_summary
+  use run_summaries, only: follows_error, run_summary
   use write_text, only: as_text, as_short_text
   implicit none
   private
@@ -33,7 +33,8 @@ contains
     end if
     text = text//lines_of_modes(model, summary)//lines_of_envelopes(model, summary, record)// &
            lines_of_joints(model, summary, record)//lines_of_damage(model, summary, record)// &
-           lines_of_accuracy(model, summary)//line_of_mesh(record)// &
+           lines_of_accuracy(model, summary)//lines_of_increments(model, summary)// &
+           line_of_mesh(record)// &
            line_of_remarks(summary, record)//line_of_costs(costs)
   end function closing_lines
 
@@ -164,6 +165,34 @@ contains
       end do
     end associate
   end function lines_of_accuracy
+
+  !> Increments that have followed the estimated error, from the longest on.
+  function lines_of_increments(model, summary) result(text)
+    type(problem), intent(in) :: model
+    type(run_summary), intent(in) :: summary
+    character(:), allocatable :: text
+    real(rk) :: below
+    integer :: i, k, n
+    text = ''
+    do i = 1, size(summary%steps)
+      associate (part => summary%steps(i))
+        if (.not. follows_error(part)) cycle
+        text = text//nl//'increments of step '//model%steps(part%step)%name//':'
+        below = huge(1.0_rk)
+        do n = 1, size(part%sizes)
+          k = maxloc(part%sizes, dim=1, mask=part%sizes < below)
+          below = part%sizes(k)
+          if (n > 1) text = text//','
+          text = text//' '//as_text(part%of_size(k))//' of '//as_short_text(part%sizes(k))//' s'
+        end do
+        text = text//'; estimated error in time '// &
+               as_short_text(100.0_rk*part%accuracy%relative())//' % of the largest displacement'
+        if (part%accuracy%relative() > model%steps(part%step)%controls%accuracy) then
+          text = text//', more than was asked for: name a smaller smallest increment'
+        end if
+      end associate
+    end do
+  end function lines_of_increments
 
   !> What the mesh leaves in the stresses (theory.md, 14.1).
   function line_of_mesh(record) result(text)

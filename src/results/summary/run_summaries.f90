@@ -4,10 +4,12 @@ module run_summaries
   use diagnostics, only: diagnostic_list
   use node_dofs, only: num_directions
   use problem_definition, only: problem
-  use analysis_state, only: state, energy_balance, reduction_status, vibration_mode
+  use analysis_state, only: state, energy_balance, reduction_status, time_accuracy, vibration_mode
   implicit none
   private
-  public :: run_summary, step_summary
+  public :: run_summary, step_summary, follows_error
+
+  real(rk), parameter :: same_size = 1.0e-6_rk !< relative difference of increments
 
   !> One step that has begun.
   type :: step_summary
@@ -20,6 +22,9 @@ module run_summaries
     real(rk) :: largest_residual = 0.0_rk, largest_error = 0.0_rk !< error of the energy balance
     type(energy_balance) :: energy !< at its end [J]
     type(reduction_status) :: reduction
+    type(time_accuracy) :: accuracy !< of increments that follow the estimated error
+    real(rk), allocatable :: sizes(:) !< of such increments [s]
+    integer, allocatable :: of_size(:) !< (sizes) number of increments
     type(vibration_mode), allocatable :: modes(:) !< without shapes
   end type step_summary
 
@@ -45,7 +50,7 @@ contains
     integer, intent(in) :: step
     type(step_summary) :: fresh
     fresh%step = step
-    allocate (fresh%modes(0))
+    allocate (fresh%modes(0), fresh%sizes(0), fresh%of_size(0))
     self%steps = [self%steps, fresh]
     if (self%num_unknowns == 0) self%num_unknowns = count_unknowns(model, step)
   end subroutine begin_step
@@ -82,6 +87,10 @@ contains
       last%cutbacks = now%cutbacks
       last%energy = now%energy
       last%reduction = now%reduction
+      last%accuracy = now%accuracy
+      if (now%control%first > 0.0_rk .and. now%increment > 0) then
+        call count_size(last, now%increment_size)
+      end if
       last%most_iterations = max(last%most_iterations, now%iterations)
       last%augmentations = last%augmentations + now%augmentations
       last%most_augmentations = max(last%most_augmentations, now%augmentations)
@@ -90,6 +99,28 @@ contains
       last%largest_error = max(last%largest_error, abs(now%energy%error))
     end associate
   end subroutine note
+
+  !> Whether the estimated error in time has chosen the increments of a step.
+  elemental logical function follows_error(part)
+    type(step_summary), intent(in) :: part
+    follows_error = .false.
+    if (allocated(part%sizes)) follows_error = size(part%sizes) > 0
+  end function follows_error
+
+  !> Counts an increment among those of its size.
+  subroutine count_size(part, size_now)
+    type(step_summary), intent(inout) :: part
+    real(rk), intent(in) :: size_now !< [s]
+    integer :: i
+    do i = 1, size(part%sizes)
+      if (abs(part%sizes(i) - size_now) <= same_size*size_now) exit
+    end do
+    if (i > size(part%sizes)) then
+      part%sizes = [part%sizes, size_now]
+      part%of_size = [part%of_size, 0]
+    end if
+    part%of_size(i) = part%of_size(i) + 1
+  end subroutine count_size
 
   !> Records the modes of the present step.
   subroutine note_modes(self, modes)

@@ -5,7 +5,8 @@ module summary_archive
   use errors, only: error_type
   use kinds, only: rk
   use run_summaries, only: run_summary, step_summary
-  use state_archive, only: load_energy, load_reduction, save_energy, save_reduction
+  use state_archive, only: load_accuracy, load_energy, load_reduction, save_accuracy, save_energy, &
+                           save_reduction
   use write_text, only: as_text
   implicit none
   private
@@ -74,6 +75,11 @@ contains
     call file%open_group('reduction')
     call save_reduction(part%reduction, file)
     call file%close_group()
+    call file%open_group('accuracy')
+    call save_accuracy(part%accuracy, file)
+    call file%close_group()
+    call file%put('sizes', part%sizes)
+    call file%put('of_size', part%of_size)
     call file%put('num_modes', size(part%modes))
     do i = 1, size(part%modes)
       call file%put('hz_'//as_text(i), part%modes(i)%hz)
@@ -104,6 +110,11 @@ contains
     call file%open_group('reduction')
     call load_reduction(part%reduction, file)
     call file%close_group()
+    call file%open_group('accuracy')
+    call load_accuracy(part%accuracy, file)
+    call file%close_group()
+    call file%get('sizes', part%sizes)
+    call file%get('of_size', part%of_size)
     call file%get('num_modes', num_modes)
     allocate (part%modes(num_modes))
     do i = 1, num_modes

@@ -11,9 +11,9 @@ module summary_json
   use guest_type, only: guest_reference
   use problem_definition, only: problem
   use run_records, only: run_record
-  use run_summaries, only: run_summary, step_summary
+  use run_summaries, only: follows_error, run_summary, step_summary
   use json_writer, only: json_text, lower
-  use error_json, only: put_estimates
+  use error_json, only: put_estimates, put_increments
   use joint_json, only: put_joints, put_interfaces, put_extremes
   use damage_json, only: put_damage
   use umat_json, only: put_umat
@@ -261,6 +261,7 @@ contains
     call json%put_real(maxval([0.0_rk, summary%steps%largest_residual]), 'largest_residual')
     call json%put_real(maxval([0.0_rk, summary%steps%largest_error]), 'largest_energy_error')
     call json%put_integer(maxval([0, summary%steps%most_iterations]), 'most_iterations')
+    if (any(follows_error(summary%steps))) call put_increments(json, model, summary)
     if (any(summary%steps%reduction%num_modes > 0)) call put_reductions(json, model, summary)
     if (size(model%joints) > 0) call put_contact(json, model, summary, record)
     call json%close_object()

@@ -147,11 +147,43 @@ contains
       call control%accept(3)
     end do
     call check_close(log, control%size, 0.01_rk, 1.0e-15_rk, 'and doubled again')
+    call follow_an_error(log, plan)
     plan%is_direct = .true.
     call start_control(plan, .true., control)
     call control%cut(0.01_rk, 1.0_rk, gives_up)
     call check(log, gives_up, 'direct increments are not cut')
   end subroutine increments_grow_and_shrink
+
+  !> Sizes that follow an error: powers of two within the limits, doubled at their multiples.
+  subroutine follow_an_error(log, given)
+    type(test_log), intent(inout) :: log
+    type(step), intent(in) :: given
+    type(step) :: plan
+    type(increment_control) :: control
+    logical :: gives_up
+    integer :: i
+    plan = given
+    plan%controls%accuracy = 0.02_rk
+    plan%procedure%has_inertia = .true.
+    plan%finest_increment = 0.0011_rk
+    plan%largest_increment = 0.04_rk
+    call start_control(plan, .true., control)
+    call control%follow_error(0.01_rk, -2)
+    call check_close(log, control%size, 0.0025_rk, 1.0e-15_rk, 'quartered')
+    call control%follow_error(0.01_rk, -2)
+    call check_close(log, control%size, 0.00125_rk, 1.0e-15_rk, 'the finest is above the limit')
+    do i = 1, 10
+      call control%accept(3)
+    end do
+    call control%follow_error(0.01125_rk, 1)
+    call check_close(log, control%size, 0.00125_rk, 1.0e-15_rk, 'no multiple of the new size')
+    call control%follow_error(0.0125_rk, 1)
+    call check_close(log, control%size, 0.0025_rk, 1.0e-15_rk, 'doubled')
+    call control%follow_error(0.015_rk, 1)
+    call check_close(log, control%size, 0.0025_rk, 1.0e-15_rk, 'not again at once')
+    call control%cut(0.01_rk, 0.2_rk, gives_up)
+    call check_close(log, control%size, 0.00125_rk, 1.0e-15_rk, 'cut to a power of two')
+  end subroutine follow_an_error
 
   !> Lowest frequency of one box with one free direction: w^2 = 3 E/(rho L^2).
   subroutine bar_vibrates(log)

@@ -1,0 +1,93 @@
+!> *CONTROLS, ACCURACY at the end of its step: where it has no meaning, and between which sizes
+!> increments may vary.
+module check_accuracy
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use kinds, only: rk
+  use model_draft, only: draft
+  use step_plan, only: step_load
+  implicit none
+  private
+  public :: set_accuracy_limits
+
+  !> Increments that the estimated error may choose, over the first increment.
+  real(rk), parameter :: finest_ratio = 0.125_rk, longest_ratio = 4.0_rk
+  real(rk), parameter :: round_off = 1.0e-6_rk !< of a sampling interval
+  character(*), parameter :: reduced = 'REDUCED' !< scheme
+
+contains
+
+  !> *CONTROLS may precede the procedure: the step is checked at its end.
+  subroutine set_accuracy_limits(model, faults)
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i
+    do i = model%step_origin%card, model%current
+      if (.not. model%cards(i)%keyword == 'CONTROLS') cycle
+      if (.not. model%cards(i)%has('ACCURACY')) cycle
+      if (model%cards(i)%real('ACCURACY') > 0.0_rk) call refuse(model, model%cards(i), faults)
+    end do
+    associate (now => model%now)
+      if (now%procedure%scheme == reduced) now%controls%accuracy = 0.0_rk
+      if (.not. now%follows_accuracy()) return
+      now%finest_increment = finest_ratio*now%first_increment
+      if (is_given(model, 3)) now%finest_increment = now%smallest_increment
+      if (is_given(model, 4)) return
+      now%largest_increment = max(now%first_increment, &
+                                  min(longest_ratio*now%first_increment, &
+                                      (1.0_rk + round_off)*shortest_sample(model)))
+    end associate
+  end subroutine set_accuracy_limits
+
+  !> Errors where no estimate could choose the size.
+  subroutine refuse(model, given, faults)
+    type(draft), intent(in) :: model
+    type(card), intent(in) :: given
+    type(diagnostic_list), intent(inout) :: faults
+    associate (now => model%now)
+      if (now%procedure%name == '') return
+      if (.not. now%procedure%has_inertia) then
+        call given%fault_parameter(faults, 'ACCURACY', 'ACCURACY has no meaning in a step *'// &
+                                   trim(now%procedure%name)//', which has no error in time', &
+                                   'ACCURACY in a step *DYNAMIC')
+      else if (now%procedure%scheme == reduced) then
+        call given%fault_parameter(faults, 'ACCURACY', 'ACCURACY and *DYNAMIC, REDUCED exclude '// &
+                                   'each other: a reduced model is tried with one increment', &
+                                   'no REDUCED, or no ACCURACY of *CONTROLS')
+      else if (now%is_direct) then
+        call given%fault_parameter(faults, 'ACCURACY', 'ACCURACY and *DYNAMIC, DIRECT exclude '// &
+                                   'each other: DIRECT fixes the increment', &
+                                   'no DIRECT, or no ACCURACY')
+      end if
+    end associate
+  end subroutine refuse
+
+  !> Whether the procedure names the smallest (3) or the largest (4) increment.
+  pure logical function is_given(model, column)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: column
+    is_given = .false.
+    associate (own => model%cards(model%current_procedure))
+      if (own%num_lines > 0) is_given = .not. own%is_empty_at(1, column)
+    end associate
+  end function is_given
+
+  !> The shortest time between two values of an amplitude of the step: longer increments would miss
+  !> values.
+  pure real(rk) function shortest_sample(model) result(shortest)
+    type(draft), intent(in) :: model
+    type(step_load), allocatable :: loads(:)
+    integer :: i, n
+    shortest = huge(1.0_rk)
+    loads = model%active_loads%loads_of_step()
+    do i = 1, size(model%problem%amplitudes)
+      associate (time => model%problem%amplitudes(i)%time)
+        if (.not. (any(loads%amplitude == i) .or. any(model%supports%history == i) &
+                   .or. any(model%point_forces%history == i))) cycle
+        n = size(time)
+        if (n > 1) shortest = min(shortest, minval(time(2:) - time(:n - 1)))
+      end associate
+    end do
+    shortest = shortest/(1.0_rk + round_off) ! of huge as well
+  end function shortest_sample
+end module check_accuracy

@@ -1,0 +1,165 @@
+"""*CONTROLS, ACCURACY: increments follow the estimated error in time.
+
+A damped oscillator, and a column of 8 elements, under motions of the base: steady, quiet with a
+strong part in the middle, and noise. The truth has a 32nd of the first increment.
+"""
+
+import csv
+import json
+import math
+import signal
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from brick_decks import brick_deck, elastic
+from keyway_tools.box_mesh import box_mesh, stretched
+
+FIRST = 0.04  # s, also of the motions
+DURATION = 24.0
+RATIO = 0.05
+ASKED = (0.05, 0.02, 0.01)
+STRONG = (8.0, 14.0)  # s
+
+
+def motion_of(name: str) -> np.ndarray:
+    times = np.arange(0.0, DURATION + FIRST, FIRST)
+    if name == "noise":
+        noise = np.random.default_rng(3).normal(size=times.size)
+        return 2.0 * np.convolve(noise, np.ones(3) / 3.0, "same")
+    steady = np.sin(1.7 * times) + np.sin(6.0 * times) + 0.7 * np.sin(11.0 * times + 1.0)
+    if name == "steady":
+        return steady
+    return steady * np.where((times < STRONG[0]) | (times > STRONG[1]), 0.02, 1.0)
+
+
+def column(bricks: int, motion: str, increment: float, controls: str = "", more: str = "") -> str:
+    """An upright column, held sideways, under its weight; its lowest frequency is 1 Hz."""
+    mesh, number = box_mesh((1, 1, bricks), stretched((1.0, 1.0, 1.0)))
+    mesh.node_sets["ALL"] = number.ravel()
+    mesh.node_sets["BASE"] = number[:, :, 0].ravel()
+    mesh.node_sets["TOP"] = number[:1, :1, -1].ravel()
+    omega = 2.0 * math.pi
+    # One brick: k = E, m = rho/3. Many: omega = (pi/2) sqrt(E/rho).
+    law = elastic(omega**2, 0.0, 3.0 if bricks == 1 else (0.5 * math.pi) ** 2)
+    damping = f"ALPHA={1.2 * RATIO * omega!r}, BETA={0.8 * RATIO / omega!r}"
+    law = law.replace("*ELASTIC", f"*DAMPING, {damping}\n*ELASTIC")
+    values = "".join(f"{value:.10g}\n" for value in motion_of(motion))
+    cards = f"*AMPLITUDE, NAME=LOAD, FORMAT=VALUES, DT={FIRST}\n{values}{law}"
+    cards += "*BOUNDARY\nALL, 1, 2\nBASE, 3, 3\n*STEP\n*STATIC\n*DLOAD\n"
+    cards += "BODY, GRAV, 1., 0., 0., -1.\n*END STEP\n*STEP, INC=1000000\n"
+    cards += "*DYNAMIC" if controls else "*DYNAMIC, DIRECT"
+    cards += f"\n{increment!r}, {DURATION}\n{controls}"
+    cards += "*BASE MOTION, DOF=3, AMPLITUDE=LOAD, SCALE=1.\n"
+    return brick_deck(mesh, "C3D8", f"{cards}*NODE PRINT, NSET=TOP\nU\n{more}*END STEP\n")
+
+
+def history(run) -> tuple[np.ndarray, np.ndarray]:
+    """Times and displacements of the top in the dynamic step."""
+    table = run.csv("node_TOP")
+    return table["time"], table["U3"]
+
+
+def factors_of(run) -> int:
+    return sum(p["calls"] for p in run.json["ledger"]["parts"] if p["name"] == "factor structure")
+
+
+def sizes_of(run) -> dict[float, int]:
+    """Increments of each size, over the first increment."""
+    (found,) = run.json["accuracy"]["increments"].values()
+    return {s["size"] / FIRST: s["increments"] for s in found["sizes"]}
+
+
+@pytest.mark.parametrize("motion", ["steady", "burst", "noise"])
+@pytest.mark.parametrize(("bricks", "name"), [(1, "oscillator"), (8, "column")])
+def test_true_error(keyway, documented, bricks, name, motion):
+    """The error of the top at any time stays below what was asked for; a quarter of it is the least
+    that sizes in powers of two can promise, and the estimate keeps some more."""
+    fine, exact = history(keyway(column(bricks, motion, FIRST / 32)))
+    for asked in ASKED:
+        run = keyway(column(bricks, motion, FIRST, f"*CONTROLS, ACCURACY={asked}\n"))
+        times, u = history(run)
+        error = np.abs(u - np.interp(times, fine, exact)).max() / np.abs(exact).max()
+        assert 0.1 * asked < error < asked
+        documented("accuracy asked", (name, motion), f"{asked}", error)
+        sizes = sizes_of(run)
+        assert len(sizes) <= 5
+        assert all(math.log2(size) % 1.0 < 1e-6 for size in sizes)
+        assert factors_of(run) == len(sizes) + 1  # each size once, and the static step
+
+
+def test_quiet_strong_quiet(keyway):
+    run = keyway(column(1, "burst", FIRST, "*CONTROLS, ACCURACY=0.02\n"))
+    times, _ = history(run)
+    size = np.diff(times) / FIRST
+    time = times[1:] - 1.0
+
+    def mean(first: float, last: float) -> float:
+        return size[(time > first) & (time < last)].mean()
+
+    assert mean(4.0, STRONG[0]) > 1.9 * mean(STRONG[0] + 1.0, STRONG[1])
+    assert mean(19.0, DURATION) > 1.9 * mean(STRONG[0] + 1.0, STRONG[1])
+
+
+def test_undamped_steps_share_the_error(keyway):
+    """Without damping errors add up over the whole step."""
+    fine, exact = history(keyway(undamped(FIRST / 32, "")))
+    times, u = history(keyway(undamped(FIRST, "*CONTROLS, ACCURACY=0.05\n")))
+    error = np.abs(u - np.interp(times, fine, exact)).max() / np.abs(exact).max()
+    assert error < 0.05
+
+
+def undamped(increment: float, controls: str) -> str:
+    lines = column(1, "burst", increment, controls).splitlines()
+    return "\n".join(line for line in lines if not line.startswith("*DAMPING")) + "\n"
+
+
+def test_limits_of_the_data_line(keyway):
+    """The smallest and the largest increment that the deck names bound the sizes."""
+    deck = column(1, "burst", FIRST, "*CONTROLS, ACCURACY=0.005\n")
+    data = f"{FIRST!r}, {DURATION}\n"
+    limited = deck.replace(data, f"{FIRST!r}, {DURATION}, {0.3 * FIRST!r}, {2.0 * FIRST!r}\n")
+    assert limited != deck
+    assert min(sizes_of(keyway(limited))) == pytest.approx(0.5)
+    still = limited.replace("ACCURACY=0.005", "ACCURACY=0.5")
+    assert max(sizes_of(keyway(still))) == pytest.approx(2.0)
+
+
+def test_regular_output(keyway):
+    """FREQUENCY counts first increments: output comes at regular times."""
+    more = "*NODE PRINT, NSET=BASE, FREQUENCY=5\nRF\n"
+    run = keyway(column(1, "burst", FIRST, "*CONTROLS, ACCURACY=0.02\n", more))
+    times = np.unique(run.csv("node_BASE")["time"]) - 1.0
+    assert times == pytest.approx(5.0 * FIRST * np.arange(1, 121), abs=1e-9)
+
+
+def test_two_threads(make_program, program_path):
+    deck = column(8, "burst", FIRST, "*CONTROLS, ACCURACY=0.02\n")
+    program = make_program(program_path)
+    one, two = (history(program(deck, "-j", n, name=f"job{n}")) for n in ("1", "2"))
+    assert one[0] == pytest.approx(two[0], rel=1e-12)
+    assert one[1] == pytest.approx(two[1], abs=1e-9 * np.abs(one[1]).max())
+
+
+def test_killed_and_continued(program_path: Path, tmp_path: Path):
+    """The run that goes on has the sizes and the displacements of the run that was not killed."""
+    more = "*RESTART, WRITE, FREQUENCY=7\n"
+    deck = tmp_path / "job.inp"
+    deck.write_text(column(8, "burst", FIRST, "*CONTROLS, ACCURACY=0.02\n", more))
+    whole, parts = tmp_path / "whole", tmp_path / "parts"
+    subprocess.run([program_path, "-q", "-o", whole, deck], check=True)
+    process = subprocess.Popen([program_path, "-q", "-o", parts, deck])
+    table = parts / "job_energy.csv"
+    while process.poll() is None and (not table.exists() or table.read_bytes().count(b"\n") < 600):
+        pass
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    subprocess.run([program_path, "-q", "-o", parts, "--continue", deck], check=True)
+    tables = []
+    for folder in (whole, parts):
+        with (folder / "job_node_TOP.csv").open() as file:
+            tables.append(list(csv.reader(file)))
+    assert tables[0] == tables[1]
+    found = [json.loads((folder / "job.json").read_text())["accuracy"] for folder in (whole, parts)]
+    assert found[0]["increments"] == found[1]["increments"]
