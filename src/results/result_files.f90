@@ -159,7 +159,7 @@ contains
     call self%costs%start('recover', 'extremes', 'output')
     call self%record%note(model, now, self%costs)
     call note_time_error(self%time_error, self%record%moved)
-    call note_dual(model, now, self%dual, self%record%stresses, self%record%moved)
+    call note_dual(model, now, self%costs, self%dual, self%record%stresses, self%record%moved)
     self%has_unwritten_envelopes = size(self%record%active) > 0
     call self%summary%note(now)
     call self%costs%stop()

@@ -48,6 +48,18 @@ def test_no_estimate_that_misleads(keyway, element):
     assert "displacement" not in keyway(cook(8, element)).json["accuracy"]["estimates"]
 
 
+def test_switched_off(keyway):
+    """ERROR ESTIMATE=OFF leaves no estimate and nothing in the ledger."""
+    off = "*CONTROLS, ERROR ESTIMATE=OFF\n"
+    static = cook(8, "C3D8").replace("*STATIC\n", f"*STATIC\n{off}")
+    moving = shaken(1, GRID, -0.05).replace("*DLOAD", f"{off}*DLOAD")
+    for deck in (static, moving):
+        assert off in deck
+        run = keyway(deck)
+        assert run.json["accuracy"]["estimates"] == {}
+        assert not any(p["name"].startswith("estimate") for p in run.json["ledger"]["parts"])
+
+
 def shaken(bricks: int, dt: float, alpha: float) -> str:
     """An upright column, held sideways, whose weight changes; its lowest frequency is 1 Hz."""
     mesh, number = box_mesh((1, 1, bricks), stretched((1.0, 1.0, 1.0)))

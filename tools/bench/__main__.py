@@ -1,7 +1,7 @@
 """Measures the time of runs relative to the equation solver, and the time for given accuracy.
 
 usage: .venv/bin/python tools/bench [run] [accuracy] [joints] [cracks] [reduced] [scale]
-           [peers]
+           [estimates] [peers]
            [--sizes 48000 145000] [--json FILE]
 
 run (default): ratios of times taken in one process, which hardly depend on the machine:
@@ -27,6 +27,8 @@ an increment, error of the openings and its estimate.
 scale: growth of time and memory with the unknowns (--sizes) of a linear dam, and with the points of
 --joints joints; exponents are printed, and --picture FILE draws them.
 
+estimates: the share of the estimates of errors in the time of each deck of input/ (or --decks).
+
 peers: the same dam in Keyway, CalculiX (Debian's calculix-ccx) and OpenSees (pip's openseespy, in
 a Python named by --opensees-python): weight, a linear history, a history with two joints. Time,
 memory and displacements side by side, as in docs/performance.md. The first of --sizes is used.
@@ -47,6 +49,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 
 from cost_of_accuracy import draw, measure_accuracy, tables  # noqa: E402
 from cost_of_cracks import measure_cracks  # noqa: E402
+from cost_of_estimates import HEAD, decks_of_input, measure_estimates  # noqa: E402
 from cost_of_joints import DAMS, measure_joints  # noqa: E402
 from cost_of_reduced import measure_reduced  # noqa: E402
 from cost_of_run import Figure, measure_all  # noqa: E402
@@ -67,12 +70,13 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("--refine", type=int, default=1, help="of the dam that cracks (1)")
     add("--threads", type=int, default=2, help="of the program (2)")
     add("--program", type=Path, default=ROOT / "build/release/keyway", help="the program")
+    add("--decks", type=Path, nargs="+", help="of `estimates` (all of input/)")
     add("--json", type=Path, metavar="FILE", help="write the figures as JSON too")
     add("--opensees-python", metavar="PYTHON", help="a Python that has openseespy")
     add("--picture", type=Path, metavar="FILE", help="draw time against accuracy")
     options = parser.parse_args(arguments)
     options.what = options.what or ["run"]
-    known = {"run", "accuracy", "joints", "cracks", "reduced", "scale", "peers"}
+    known = {"run", "accuracy", "joints", "cracks", "reduced", "scale", "estimates", "peers"}
     if set(options.what) - known:
         parser.error(f"expected one of {', '.join(sorted(known))}")
     return options
@@ -106,6 +110,18 @@ def report_scale(program: Program, folder: Path, options: argparse.Namespace) ->
         draw_growth(growths, options.picture)
 
 
+def report_others(program: Program, folder: Path, options: argparse.Namespace) -> None:
+    """Measurements that have a report of their own."""
+    if "scale" in options.what:
+        report_scale(program, folder, options)
+    if "estimates" in options.what:
+        print(HEAD)
+        decks = options.decks or decks_of_input(ROOT / "input")
+        measure_estimates(program, decks, folder)
+    if "peers" in options.what:
+        print(compare_peers(peer_options(options), folder))
+
+
 def main(arguments: list[str]) -> int:
     options = parse(arguments)
     figures: list[Figure] = []
@@ -127,10 +143,7 @@ def main(arguments: list[str]) -> int:
         if "reduced" in options.what:
             duration = 0.01 * options.increments
             print(measure_reduced(program, folder, options.joints[0], duration))
-        if "scale" in options.what:
-            report_scale(program, folder, options)
-        if "peers" in options.what:
-            print(compare_peers(peer_options(options), folder))
+        report_others(program, folder, options)
     if options.picture and rows:
         draw(rows, options.picture)
     if options.json:

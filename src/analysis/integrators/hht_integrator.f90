@@ -78,7 +78,7 @@ contains
     self%has_active_part = self%solids%has_inelastic() .and. .not. has_histories(now%guests)
     ! A run that goes on within the step has lost the exact motion: it makes no estimate.
     if (now%increment > 0 .or. .not. is_worth_its_cost(plan)) return
-    if (self%solids%has_inelastic()) return
+    if (self%solids%has_inelastic() .or. .not. plan%controls%estimates_errors) return
     call results%costs%start('estimate', 'time', 'output')
     call make_error_modes(model, self%system, self%solids%solver, self%modes)
     if (allocated(self%modes%square)) then

@@ -158,6 +158,7 @@ contains
     call store_motion(self%system%numbers, now)
     if (.not. now%is_last_of_step) return
     if (size(model%joints) > 0 .or. self%solids%has_inelastic()) return
+    if (.not. model%steps(now%step)%controls%estimates_errors) return
     call results%costs%start('estimate', 'mesh', 'output')
     call find_dual(self, model, now, results)
     call results%costs%stop()

@@ -15,7 +15,7 @@ module eigen_modes
   use arpack, only: lanczos
   implicit none
   private
-  public :: find_modes, solve_modes, num_massive
+  public :: list_massive, find_modes, solve_modes, num_massive
 
   integer, parameter :: few = 200 !< most unknowns with mass for the dense problem
   real(rk), parameter :: smallest_share = 1.0e-12_rk !< smallest 1/f^2 of a mode, over the largest

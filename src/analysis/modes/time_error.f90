@@ -3,7 +3,7 @@
 module time_error
   use kinds, only: rk
   use analysis_state, only: motion
-  use eigen_modes, only: num_massive, solve_modes
+  use eigen_modes, only: list_massive, solve_modes
   use equilibrium, only: equilibrium_solver
   use errors, only: error_type
   use global_vectors, only: multiply
@@ -25,7 +25,10 @@ module time_error
   !> Modes with unit modal mass; none where there is no estimate.
   type :: error_modes
     real(rk), allocatable :: shape(:, :) !< (num_free, modes)
-    real(rk), allocatable :: inertia(:, :) !< (num_free, modes) M times the shapes
+    !> Unknowns with mass: the forces on others are balanced, and M has no rows for them
+    integer, allocatable :: massive(:)
+    real(rk), allocatable :: own(:, :) !< (massive, modes) the shapes
+    real(rk), allocatable :: inertia(:, :) !< (massive, modes) M times the shapes
     real(rk), allocatable :: square(:) !< (modes) squared circular frequencies [1/s2]
     real(rk), allocatable :: damping(:) !< (modes) 2 zeta omega [1/s]
   end type error_modes
@@ -64,14 +67,16 @@ contains
     call system%operator%add_stiffness(closed_tangent(reference), system%matrix, closed)
     call solver%factor%factorise(system%matrix, closed, failure)
     if (allocated(failure)) return
-    num_modes = min(most_modes, num_massive(system%matrix, system%mass))
+    modes%massive = list_massive(system%matrix, system%mass)
+    num_modes = min(most_modes, size(modes%massive))
     call solve_modes(system%matrix, closed, system%mass, solver%factor, num_modes, modes%square, &
                      modes%shape, failure)
     if (allocated(failure)) then
       if (allocated(modes%square)) deallocate (modes%square)
       return
     end if
-    allocate (modes%inertia, mold=modes%shape)
+    modes%own = modes%shape(modes%massive, :)
+    allocate (modes%inertia, mold=modes%own)
     allocate (modes%damping(num_modes))
     allocate (mode(system%matrix%num_total), force(system%matrix%num_total))
     mode = 0.0_rk
@@ -79,7 +84,7 @@ contains
       do k = 1, num_modes
         mode(:n) = modes%shape(:, k)
         call multiply(system%matrix, system%mass, mode, force)
-        modes%inertia(:, k) = force(:n)
+        modes%inertia(:, k) = force(modes%massive)
         call system%find_damping_force(mode, force)
         modes%damping(k) = dot_product(mode(:n), force(:n))
       end do
@@ -102,7 +107,7 @@ contains
     type(error_modes), intent(in) :: modes
     type(motion), intent(in) :: moving
     real(rk) :: q(size(modes%square))
-    q = matmul(moving%q(:size(modes%inertia, 1)), modes%inertia)
+    q = matmul(moving%q(modes%massive), modes%inertia)
   end function displacement_of
 
   !> Modal velocities, and the forces that drive the modes: those of the balance at the end of the
@@ -112,11 +117,13 @@ contains
     type(motion), intent(in) :: moving
     real(rk), intent(in) :: q(:)
     real(rk), intent(out) :: rate(:), drive(:)
-    associate (n => size(modes%shape, 1))
-      rate = matmul(moving%momentum(:n), modes%shape)
-      drive = matmul(moving%external(:n) - moving%internal(:n) - moving%contact(:n) &
-                     - moving%viscous(:n), modes%shape) + modes%damping*rate + modes%square*q
+    real(rk) :: force(size(modes%massive))
+    associate (rows => modes%massive)
+      rate = matmul(moving%momentum(rows), modes%own)
+      force = moving%external(rows) - moving%internal(rows) - moving%contact(rows) &
+              - moving%viscous(rows)
     end associate
+    drive = matmul(force, modes%own) + modes%damping*rate + modes%square*q
   end subroutine drive_modes
 
   !> The exact motion over an increment in which the forces change linearly.

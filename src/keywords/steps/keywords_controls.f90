@@ -42,6 +42,8 @@ contains
                     'displacement: the increments of *DYNAMIC follow its estimate; 0: they do '// &
                     'not', default='0', &
                     lowest=0.0_rk, highest=0.5_rk), &
+              field('ERROR ESTIMATE', kind_choice, 'errors that the run estimates for its '// &
+                    'summary (docs/accuracy.md)', default='ON', choices='ON | OFF'), &
               field('JOINT SOLVER', kind_choice, 'iterate on the joints alone (condensed) or '// &
                     'on everything (full Newton)', default='AUTO', &
                     choices=joint_solvers), &
@@ -70,6 +72,9 @@ contains
       if (this%has('INCREMENT')) controls%increment_tolerance = this%real('INCREMENT')
       if (this%has('ITERATIONS')) controls%max_iterations = this%integer('ITERATIONS')
       if (this%has('ACCURACY')) controls%accuracy = this%real('ACCURACY')
+      if (this%has('ERROR ESTIMATE')) then
+        controls%estimates_errors = this%word('ERROR ESTIMATE') == 'ON'
+      end if
       if (this%has('JOINT SOLVER')) controls%joint_solver = this%word('JOINT SOLVER')
       if (this%has('PRECISION')) controls%keeps_single = this%word('PRECISION') == 'SINGLE'
       if (this%has('JOINT FORCES')) controls%joint_forces = this%word('JOINT FORCES')

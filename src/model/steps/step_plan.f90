@@ -52,6 +52,7 @@ module step_plan
     !> ACCURACY: error in time that the size of increments follows, over the largest displacement;
     !> 0 where sizes do not follow it
     real(rk) :: accuracy = 0.0_rk
+    logical :: estimates_errors = .true. !< ERROR ESTIMATE
     logical :: keeps_single = .false. !< PRECISION=SINGLE: of the factor, outside of the joints
     character(16) :: joint_solver = 'AUTO' !< 'CONDENSED', 'FULL' or 'AUTO'
     !> Joint forces in time: 'IMPLICIT' (the impulse of a step is dt times the joint force at its

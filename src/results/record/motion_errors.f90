@@ -4,6 +4,7 @@ module motion_errors
   use analysis_state, only: state
   use extremes, only: extreme
   use problem_definition, only: problem
+  use run_ledger, only: ledger
   use stress_error, only: energy_of_stresses
   use stress_fields, only: recovered_fields
   use stress_recovery, only: recovery_plan
@@ -51,9 +52,23 @@ contains
     record%history = found(3)
   end subroutine note_time_error
 
+  !> Takes the dual solution, if there is one.
+  subroutine note_dual(model, now, costs, dual, stresses, record)
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    type(ledger), intent(in) :: costs
+    real(rk), allocatable, intent(inout) :: dual(:, :) !< (3, nodes) [m/N]; is taken
+    type(recovered_fields), intent(inout) :: stresses
+    type(motion_error), intent(inout) :: record
+    if (.not. allocated(dual)) return
+    call costs%start('estimate', 'mesh', 'output')
+    call weigh_dual(model, now, dual, stresses, record)
+    call costs%stop()
+  end subroutine note_dual
+
   !> The error of the mesh in the largest displacement of a linear static state: the defects of its
   !> stresses and of those under a unit force there, over each other (theory.md, 14.2).
-  subroutine note_dual(model, now, dual, stresses, record)
+  subroutine weigh_dual(model, now, dual, stresses, record)
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
     real(rk), allocatable, intent(inout) :: dual(:, :) !< (3, nodes) [m/N]; is taken
@@ -62,13 +77,11 @@ contains
     type(state), allocatable :: other
     real(rk), allocatable :: defect(:, :, :), energy(:), taken(:, :)
     real(rk) :: largest
-    if (.not. allocated(dual)) return
     call move_alloc(dual, taken)
     largest = maxval(norm2(now%u, dim=1))
     if (largest <= record%at_dual) return
     call stresses%need_plan(model)
     if (.not. is_reliable(stresses%plan)) return
-    call stresses%invalidate()
     call stresses%need_error(model, now)
     defect = stresses%defect
     allocate (other, source=now)
@@ -81,7 +94,7 @@ contains
     call stresses%invalidate()
     record%at_dual = largest
     record%mesh = abs(sum(energy))
-  end subroutine note_dual
+  end subroutine weigh_dual
 
   !> Whether all solids are C3D8 or C3D8B: with other elements the estimate is 0.3 to 100 times the
   !> error (verification.md).

@@ -132,9 +132,11 @@ contains
     do j = 1, size(model%joints)
       call note_joint(self%joints(j), model%joints(j), now%joints(j), now%total_time)
     end do
-    call costs%start('estimate', 'mesh', 'output')
-    call note_space_error(model, now, self%stresses, self%space)
-    call costs%stop()
+    if (model%steps(now%step)%controls%estimates_errors) then
+      call costs%start('estimate', 'mesh', 'output')
+      call note_space_error(model, now, self%stresses, self%space)
+      call costs%stop()
+    end if
     if (size(self%active) == 0) return
     call costs%start('recover', 'envelopes', 'output')
     do i = 1, size(self%active)
