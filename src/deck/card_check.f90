@@ -93,7 +93,9 @@ contains
           cycle
         end if
         associate (wanted => the_card%spec%parameters(j))
-          if (wanted%kind == kind_flag) then
+          if (wanted%has_no_effect) then
+            call the_card%ignore(faults, given%name//' has no effect here')
+          else if (wanted%kind == kind_flag) then
             if (given%has_value) call the_card%fault_parameter( &
               faults, given%name, given%name//' takes no value', expected_in(wanted))
           else if (given%value_first > given%value_last) then

@@ -6,7 +6,7 @@ module field_text
   use write_text, only: as_text
   implicit none
   private
-  public :: expected_in, kind_in_words, names_of_columns, text_or_nothing
+  public :: expected_in, kind_in_words, names_of_columns, text_or_nothing, with_commas
 
   integer, parameter :: longest_meaning = 80 !< letters; longer meanings are left out before choices
 

@@ -127,6 +127,7 @@ contains
     type(field), intent(in) :: described
     character(:), allocatable :: text
     text = text_or_nothing(described%meaning)
+    if (described%has_no_effect) return
     if (described%kind == kind_flag) then
       text = text//' (flag)'
     else

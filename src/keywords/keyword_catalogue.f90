@@ -10,7 +10,7 @@ module keyword_catalogue
   use keywords_initial, only: describe_initial_conditions, read_initial_conditions
   use keywords_interface, only: describe_interface, read_interface
   use keywords_joint, only: describe_joint, describe_joint_law, read_joint, read_joint_law
-  use keywords_later, only: add_later_keywords
+  use keywords_other, only: add_ignored_keywords, add_later_keywords
   use keywords_loads, only: describe_cload, describe_dload, describe_dsload, read_cload, &
                             read_dload, read_dsload
   use keywords_material, only: describe_density, describe_material, describe_material_damping, &
@@ -20,7 +20,7 @@ module keyword_catalogue
                             read_nodes
   use keywords_output, only: describe_el_file, describe_element_output, describe_envelope, &
                              describe_node_file, describe_node_output, describe_output, &
-                             describe_preprint, read_envelope, read_fields, read_output
+                             describe_preprint, read_envelope, read_files, read_fields, read_output
   use keywords_print, only: describe_el_print, describe_joint_print, describe_node_print, &
                             read_el_print, read_joint_print, read_node_print
   use keywords_reservoir, only: describe_reservoir, read_reservoir
@@ -49,6 +49,7 @@ contains
     call add_step_keywords(list)
     call add_output_keywords(list)
     call add_later_keywords(list)
+    call add_ignored_keywords(list)
     call list%trim()
   end subroutine list_keywords
 
@@ -97,8 +98,8 @@ contains
     call list%add(describe_node_print, read_node_print, pass_rest)
     call list%add(describe_el_print, read_el_print, pass_rest)
     call list%add(describe_joint_print, read_joint_print, pass_rest)
-    call list%add(describe_node_file, read_fields, pass_rest)
-    call list%add(describe_el_file, read_fields, pass_rest)
+    call list%add(describe_node_file, read_files, pass_rest)
+    call list%add(describe_el_file, read_files, pass_rest)
     call list%add(describe_output, read_output, pass_rest)
     call list%add(describe_node_output, read_fields, pass_rest)
     call list%add(describe_element_output, read_fields, pass_rest)

@@ -50,6 +50,7 @@ set(sources
   mesh/keywords_section.f90
   mesh/keywords_sets.f90
   read_deck.f90
+  steps/card_fields.f90
   steps/check_accuracy.f90
   steps/check_requests.f90
   steps/finish_step.f90
@@ -58,8 +59,8 @@ set(sources
   steps/keywords_boundary.f90
   steps/keywords_controls.f90
   steps/keywords_initial.f90
-  steps/keywords_later.f90
   steps/keywords_restart.f90
+  steps/keywords_other.f90
   steps/keywords_output.f90
   steps/keywords_print.f90
   steps/keywords_step.f90

@@ -175,6 +175,7 @@ contains
     integer, intent(in) :: step(:) !< of each card
     type(diagnostic_list), intent(inout) :: faults
     integer :: i
+    if (model%cards(number)%has('VARIABLE') .or. model%cards(number)%has('HISTORY')) return
     do i = number + 1, size(step)
       if (step(i) /= step(number) .or. is_keyword(model%cards(i), 'OUTPUT')) exit
       if (is_keyword(model%cards(i), 'NODE OUTPUT')) return

@@ -26,6 +26,7 @@ contains
     do i = 1, size(step)
       associate (this => model%cards(i))
         if (is_keyword(this, 'NODE PRINT')) then
+          if (.not. this%has('NSET')) cycle
           call nodes_of_set(this, 'NSET', model, faults, nodes)
           call warn_of_bare_nodes(this, 0, nodes, model, 'its fields stay zero', faults)
         else if (is_keyword(this, 'BOUNDARY') .or. is_keyword(this, 'INITIAL CONDITIONS') .or. &

@@ -118,6 +118,7 @@ module model_draft
     real(rk) :: total_time = 0.0_rk !< at the start of the step [s]
     logical :: has_new_output = .false. !< *NODE FILE or a similar keyword in this step
     integer :: output_frequency = 1 !< of the last *OUTPUT
+    logical :: output_is_history = .false. !< the last *OUTPUT opened histories
     logical :: prints_given(size(kinds_of_prints)) = .false. !< kinds that this step has requested
   contains
     procedure :: here

@@ -37,6 +37,7 @@ contains
     model%supports%is_new = .false.
     model%has_new_output = .false.
     model%output_frequency = 1
+    model%output_is_history = .false.
     model%prints_given = .false.
   end subroutine open_step
 

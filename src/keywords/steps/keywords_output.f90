@@ -1,12 +1,15 @@
 !> *NODE FILE, *EL FILE, *OUTPUT, *NODE OUTPUT, *ELEMENT OUTPUT, *ENVELOPE, *PREPRINT.
 module keywords_output
   use card_reader, only: field_reader
+  use card_fields, only: take_fields
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use field_table, only: choices_of, ending_of_points, fields_in_words, find_field, list_fields
   use field_type, only: at_points, result_field
-  use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, without_effect
-  use keywords_print, only: add_frequency, fields_of
+  use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, kind_real, &
+                          kind_word, without_effect
+  use keywords_other, only: add_idle_parameters
+  use keywords_print, only: add_frequency, fields_of, read_histories
   use kinds, only: rk
   use model_draft, only: draft
   use step_plan, only: field_name_length, field_request
@@ -14,12 +17,22 @@ module keywords_output
   private
   public :: describe_node_file, describe_el_file, describe_output, describe_node_output
   public :: describe_element_output, describe_envelope, describe_preprint
-  public :: read_fields, read_output, read_envelope, fields_of_envelope
+  public :: read_files, read_fields, read_output, read_envelope, fields_of_envelope
 
   character, parameter :: nl = new_line('a')
   character(*), parameter :: series = ' The fields go to the VTK series (job.pvd) and to '// &
                              'job.h5. The request stays for the next steps until a '// &
                              'step has its own.'
+  !> Of *NODE FILE and *EL FILE in CalculiX, of *NODE OUTPUT and *ELEMENT OUTPUT in Abaqus.
+  character(16), parameter :: idle_of_files(11) = [ &
+                              'NSET            ', 'ELSET           ', 'GLOBAL          ', &
+                              'OUTPUT          ', 'OUTPUT ALL      ', 'TOTALS          ', &
+                              'TIME POINTS     ', 'LAST ITERATIONS ', 'CONTACT ELEMENTS', &
+                              'POSITION        ', 'DIRECTIONS      ']
+  character(16), parameter :: idle_of_output(7) = [ &
+                              'OP              ', 'NAME            ', 'MODE LIST       ', &
+                              'TIME MARKS      ', 'FILTER          ', 'SENSOR          ', &
+                              'TIME POINTS     ']
 
 contains
 
@@ -29,7 +42,8 @@ contains
     spec%meaning = 'Fields of nodes: '//fields_in_words('NODE FILE')//'.'//series
     spec%example = '*NODE FILE, FREQUENCY=10'//nl//'U, OPENING'
     call add_frequency(spec, choices_of('NODE FILE'))
-    spec%fewest_lines = 1
+    call add_idle_parameters(spec, idle_of_files)
+    spec%checks_own_data = .true.
   end subroutine describe_node_file
 
   subroutine describe_el_file(spec)
@@ -39,38 +53,88 @@ contains
                    'within a section.'//series
     spec%example = '*EL FILE, FREQUENCY=10'//nl//'S, SP, DAMAGET'
     call add_frequency(spec, choices_of('EL FILE'))
-    spec%fewest_lines = 1
+    call add_idle_parameters(spec, idle_of_files)
+    spec%checks_own_data = .true.
   end subroutine describe_el_file
 
   subroutine describe_output(spec)
     type(keyword), intent(out) :: spec
-    type(field) :: flag
     spec%name = 'OUTPUT'
-    spec%meaning = 'Opens requests of *NODE OUTPUT and *ELEMENT OUTPUT.'
+    spec%meaning = 'Opens requests of *NODE OUTPUT and *ELEMENT OUTPUT: FIELD for fields of '// &
+                   'the whole model, HISTORY for histories of sets.'
     spec%example = '*OUTPUT, FIELD, FREQUENCY=10'//nl//'*NODE OUTPUT'//nl//'U'
     call add_frequency(spec, '')
     deallocate (spec%columns)
     allocate (spec%columns(0))
     spec%most_lines = 0
-    flag = field('FIELD', kind_flag, 'fields of the whole model (histories: *NODE PRINT)')
-    spec%parameters = [spec%parameters, flag]
+    spec%parameters = [spec%parameters, &
+                       field('FIELD', kind_flag, 'fields of the whole model'), &
+                       field('HISTORY', kind_flag, 'histories of sets, as *NODE PRINT'), &
+                       field('VARIABLE', kind_choice, 'requests at once, with FIELD: U, RF and '// &
+                             'S, or all', choices='PRESELECT | ALL'), &
+                       field('NUMBER INTERVAL', kind_integer, 'outputs in a step, in place of '// &
+                             'FREQUENCY', lowest=1.0_rk), &
+                       field('TIME INTERVAL', kind_real, 'time between outputs, in place of '// &
+                             'FREQUENCY', 's', lowest=0.0_rk, excludes_lowest=.true.)]
+    call add_idle_parameters(spec, idle_of_output)
   end subroutine describe_output
 
   subroutine read_output(this, model, faults)
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
+    type(field_request) :: new
     if (.not. model%is_in_step) call this%warn(faults, 'is outside a step')
-    model%output_frequency = this%integer('FREQUENCY')
+    model%output_frequency = frequency_of(this, model)
+    model%output_is_history = this%has('HISTORY')
+    if (.not. this%has('VARIABLE') .or. model%output_is_history) return
+    new%frequency = model%output_frequency
+    if (this%word('VARIABLE') == 'ALL') then
+      new%fields = [character(field_name_length) :: words_of(choices_of('NODE FILE')), &
+                    words_of(choices_of('EL FILE'))]
+    else
+      new%fields = [character(field_name_length) :: 'U', 'RF', 'S']
+    end if
+    call add_files(new, model)
   end subroutine read_output
+
+  !> Increments between outputs. Where the card gives times, of the first increment of the step.
+  pure integer function frequency_of(this, model) result(frequency)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    frequency = this%integer('FREQUENCY')
+    associate (now => model%now)
+      if (this%has('NUMBER INTERVAL')) then
+        frequency = nint(now%duration/(now%first_increment*this%integer('NUMBER INTERVAL')))
+      else if (this%has('TIME INTERVAL')) then
+        frequency = nint(this%real('TIME INTERVAL')/now%first_increment)
+      else
+        return
+      end if
+    end associate
+    frequency = max(1, frequency)
+  end function frequency_of
+
+  !> The words of a list 'U | V'.
+  pure function words_of(list) result(words)
+    character(*), intent(in) :: list
+    character(field_name_length), allocatable :: words(:)
+    integer :: first, length
+    allocate (words(0))
+    first = 1
+    do while (first <= len(list))
+      length = index(list(first:)//' | ', ' | ') - 1
+      words = [character(field_name_length) :: words, list(first:first + length - 1)]
+      first = first + length + 3
+    end do
+  end function words_of
 
   subroutine describe_node_output(spec)
     type(keyword), intent(out) :: spec
     call describe_node_file(spec)
     spec%name = 'NODE OUTPUT'
     spec%example = '*OUTPUT, FIELD, FREQUENCY=10'//nl//'*NODE OUTPUT'//nl//'U, RF'
-    deallocate (spec%parameters)
-    allocate (spec%parameters(0))
+    call set_parameters(spec, 'NSET')
   end subroutine describe_node_output
 
   subroutine describe_element_output(spec)
@@ -78,27 +142,75 @@ contains
     call describe_el_file(spec)
     spec%name = 'ELEMENT OUTPUT'
     spec%example = '*OUTPUT, FIELD, FREQUENCY=10'//nl//'*ELEMENT OUTPUT'//nl//'S'
-    deallocate (spec%parameters)
-    allocate (spec%parameters(0))
+    call set_parameters(spec, 'ELSET')
   end subroutine describe_element_output
 
-  !> Reads all four keywords. They differ in their fields and in the card that gives the frequency.
+  !> Parameters of a request after *OUTPUT.
+  subroutine set_parameters(spec, set)
+    type(keyword), intent(inout) :: spec
+    character(*), intent(in) :: set !< its parameter
+    deallocate (spec%parameters)
+    allocate (spec%parameters, source=[ &
+              field(set, kind_word, 'the set of a history; fields are those of the whole model'), &
+              field('VARIABLE', kind_choice, 'all fields of the keyword, or the usual one', &
+                    choices='PRESELECT | ALL')])
+    call add_idle_parameters(spec, ['POSITION  ', 'DIRECTIONS', 'EXTERIOR  '])
+  end subroutine set_parameters
+
+  !> *NODE OUTPUT and *ELEMENT OUTPUT.
   subroutine read_fields(this, model, faults)
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
+    if (model%output_is_history) then
+      call read_histories(this, model, faults)
+    else
+      call take_files(this, model%output_frequency, model, faults)
+    end if
+  end subroutine read_fields
+
+  !> *NODE FILE and *EL FILE.
+  subroutine read_files(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    call take_files(this, this%integer('FREQUENCY'), model, faults)
+  end subroutine read_files
+
+  !> The fields of a card for the files of fields.
+  subroutine take_files(this, frequency, model, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: frequency
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
     type(field_request) :: new
-    new%fields = fields_of(this, 'U')
+    character(:), allocatable :: choices, usual
+    choices = choices_of('EL FILE')
+    usual = 'S'
+    if (index(this%spec%name, 'NODE') > 0) then
+      choices = choices_of('NODE FILE')
+      usual = 'U'
+    end if
+    call take_fields(this, choices, usual, faults, new%fields)
     call warn_of_repeats(this, faults)
-    new%frequency = model%output_frequency
-    if (index(this%keyword, 'FILE') > 0) new%frequency = this%integer('FREQUENCY')
+    if (this%has('VARIABLE')) then
+      if (this%word('VARIABLE') == 'ALL') new%fields = words_of(choices)
+    end if
+    new%frequency = frequency
+    if (size(new%fields) > 0) call add_files(new, model)
+  end subroutine take_files
+
+  !> Adds a request. The first request of a step replaces those of earlier steps.
+  subroutine add_files(new, model)
+    type(field_request), intent(in) :: new
+    type(draft), intent(inout) :: model
     if (.not. model%has_new_output) then
       deallocate (model%now%outputs)
       allocate (model%now%outputs(0))
     end if
     model%has_new_output = .true.
     if (new%frequency > 0) model%now%outputs = [model%now%outputs, new]
-  end subroutine read_fields
+  end subroutine add_files
 
   subroutine describe_envelope(spec)
     type(keyword), intent(out) :: spec

@@ -1,5 +1,6 @@
 !> *NODE PRINT, *EL PRINT, *JOINT PRINT: histories in CSV files.
 module keywords_print
+  use card_fields, only: take_fields
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
@@ -7,6 +8,7 @@ module keywords_print
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_word
   use kinds, only: rk
   use model_draft, only: draft
+  use keywords_other, only: add_idle_parameters
   use named_things, only: elements_of_set, joint_names, nodes_of_set
   use nearest_words, only: nearest_word
   use print_kinds, only: file_pattern, kinds_of_prints, prints_of_elements, prints_of_joints, &
@@ -16,7 +18,7 @@ module keywords_print
   private
   public :: describe_node_print, describe_el_print, describe_joint_print
   public :: read_node_print, read_el_print, read_joint_print
-  public :: add_frequency, fields_of
+  public :: add_frequency, fields_of, read_histories
 
   character, parameter :: nl = new_line('a')
 
@@ -84,21 +86,49 @@ contains
                    'own.'
     spec%example = '*NODE PRINT, NSET=CREST, FREQUENCY=2'//nl//'U, A'
     allocate (spec%parameters, source=[ &
-              field('NSET', kind_word, 'the nodes', is_required=.true.)])
+              field('NSET', kind_word, 'the nodes; without it nothing is printed')])
     call add_frequency(spec, choices_of(spec%name))
+    call add_idle_parameters(spec, ['GLOBAL     ', 'TOTALS     ', 'SUMMARY    ', 'TIME POINTS'])
+    spec%checks_own_data = .true.
   end subroutine describe_node_print
 
   subroutine read_node_print(this, model, faults)
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
+    call add_nodes(this, this%integer('FREQUENCY'), model, faults)
+  end subroutine read_node_print
+
+  !> The history of a set of nodes.
+  subroutine add_nodes(this, frequency, model, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: frequency
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
     type(print_request) :: new
+    if (.not. this%has('NSET')) then
+      call this%ignore(faults, 'has no effect: there is no NSET')
+      return
+    end if
     new%kind = prints_of_nodes
     new%name = this%word('NSET')
+    new%frequency = frequency
     call nodes_of_set(this, 'NSET', model, faults, new%members)
-    new%fields = fields_of(this, 'U')
-    call add_request(this, new, model)
-  end subroutine read_node_print
+    call take_fields(this, choices_of('NODE PRINT'), 'U', faults, new%fields)
+    if (size(new%fields) > 0) call add_request(new, model)
+  end subroutine add_nodes
+
+  !> The requests of *NODE OUTPUT and *ELEMENT OUTPUT after *OUTPUT, HISTORY.
+  subroutine read_histories(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    if (this%spec%name == 'NODE OUTPUT') then
+      call add_nodes(this, model%output_frequency, model, faults)
+    else
+      call add_elements(this, model%output_frequency, model, faults)
+    end if
+  end subroutine read_histories
 
   subroutine describe_el_print(spec)
     type(keyword), intent(out) :: spec
@@ -106,26 +136,43 @@ contains
     spec%meaning = 'History of elements at their integration points in '//spec%meaning//'.'
     spec%example = '*EL PRINT, ELSET=HEEL'//nl//'S'
     allocate (spec%parameters, source=[ &
-              field('ELSET', kind_word, 'the elements', is_required=.true.)])
+              field('ELSET', kind_word, 'the elements; without it nothing is printed')])
     call add_frequency(spec, choices_of(spec%name))
+    call add_idle_parameters(spec, ['POSITION   ', 'TOTALS     ', 'SUMMARY    ', 'GLOBAL     ', &
+                                    'TIME POINTS'])
+    spec%checks_own_data = .true.
   end subroutine describe_el_print
 
   subroutine read_el_print(this, model, faults)
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
+    call add_elements(this, this%integer('FREQUENCY'), model, faults)
+  end subroutine read_el_print
+
+  !> The history of a set of elements.
+  subroutine add_elements(this, frequency, model, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: frequency
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
     type(print_request) :: new
+    if (.not. this%has('ELSET')) then
+      call this%ignore(faults, 'has no effect: there is no ELSET')
+      return
+    end if
     new%kind = prints_of_elements
     new%name = this%word('ELSET')
+    new%frequency = frequency
     call elements_of_set(this, 'ELSET', model, faults, new%members)
     if (.not. all(is_solid(model%problem%mesh%element_type(new%members)))) then
       call this%fault_parameter(faults, 'ELSET', 'the set contains elements that are not '// &
                                 'solids', &
                                 'solid elements; for joints *JOINT PRINT')
     end if
-    new%fields = fields_of(this, 'S')
-    call add_request(this, new, model)
-  end subroutine read_el_print
+    call take_fields(this, choices_of('EL PRINT'), 'S', faults, new%fields)
+    if (size(new%fields) > 0) call add_request(new, model)
+  end subroutine add_elements
 
   subroutine describe_joint_print(spec)
     type(keyword), intent(out) :: spec
@@ -160,17 +207,16 @@ contains
                                 nearest_word(new%name, joint_names(model)))
     end if
     if (this%has('NSET')) call nodes_of_set(this, 'NSET', model, faults, new%near_nodes)
-    call add_request(this, new, model)
+    new%frequency = this%integer('FREQUENCY')
+    call add_request(new, model)
   end subroutine read_joint_print
 
   !> Adds a request. The first request of a kind in a step replaces those of earlier steps.
-  subroutine add_request(this, new, model)
-    type(card), intent(in) :: this
-    type(print_request), intent(inout) :: new
+  subroutine add_request(new, model)
+    type(print_request), intent(in) :: new
     type(draft), intent(inout) :: model
     type(print_request), allocatable :: kept(:)
     integer :: i
-    new%frequency = this%integer('FREQUENCY')
     allocate (kept(0))
     do i = 1, size(model%now%prints)
       if (model%now%prints(i)%kind == new%kind .and. .not. model%prints_given(new%kind)) cycle

@@ -3,6 +3,7 @@ module keywords_restart
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use keyword_spec, only: field, keyword, kind_flag, kind_integer
+  use keywords_other, only: add_idle_parameters
   use model_draft, only: draft
   implicit none
   private
@@ -25,6 +26,7 @@ contains
               field('FREQUENCY', kind_integer, 'every so many increments; 0: none', default='1')])
     spec%parameters(2)%lowest = 0
     allocate (spec%columns(0))
+    call add_idle_parameters(spec, ['OVERLAY        ', 'NUMBER INTERVAL', 'TIME MARKS     '])
   end subroutine describe_restart
 
   subroutine read_restart(this, model, faults)

@@ -1,0 +1,82 @@
+!> The fields that a card of an output keyword names, in our words or those of Abaqus and CalculiX.
+!> Words that are no field of the keyword are noted as ignored input: such cards never stop a run.
+module card_fields
+  use card_reader, only: field_reader
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use field_text, only: with_commas
+  use nearest_words, only: nearest_choice
+  use step_plan, only: field_name_length
+  implicit none
+  private
+  public :: take_fields
+
+  !> A word of another program and the field that holds it.
+  type :: synonym
+    character(7) :: word
+    character(field_name_length) :: field
+  end type synonym
+
+  !> Strains are small here: logarithmic (LE) and nominal ones (NE) are E.
+  type(synonym), parameter :: synonyms(*) = [ &
+                              synonym('U1', 'U'), synonym('U2', 'U'), synonym('U3', 'U'), &
+                              synonym('UT', 'U'), synonym('V1', 'V'), synonym('V2', 'V'), &
+                              synonym('V3', 'V'), synonym('VT', 'V'), synonym('A1', 'A'), &
+                              synonym('A2', 'A'), synonym('A3', 'A'), synonym('AT', 'A'), &
+                              synonym('RF1', 'RF'), synonym('RF2', 'RF'), synonym('RF3', 'RF'), &
+                              synonym('RT', 'RF'), synonym('S11', 'S'), synonym('S22', 'S'), &
+                              synonym('S33', 'S'), synonym('S12', 'S'), synonym('S13', 'S'), &
+                              synonym('S23', 'S'), synonym('LE', 'E'), synonym('NE', 'E'), &
+                              synonym('MAXPS', 'SP'), synonym('COPEN', 'OPENING'), &
+                              synonym('CDIS', 'OPENING'), synonym('CDISP', 'OPENING')]
+
+contains
+
+  !> Each field that the card names, once. Without data lines they are `default`.
+  subroutine take_fields(this, choices, default, faults, fields)
+    type(card), intent(in) :: this
+    character(*), intent(in) :: choices !< of the keyword, 'U | V'
+    character(*), intent(in) :: default !< a field; '' for none
+    type(diagnostic_list), intent(inout) :: faults
+    character(field_name_length), allocatable, intent(out) :: fields(:)
+    type(field_reader) :: reader
+    character(:), allocatable :: word, unknown, nearest
+    unknown = ''
+    nearest = ''
+    allocate (fields(0))
+    do while (reader%advance(this))
+      if (this%is_empty_at(reader%line, reader%field)) cycle
+      word = this%word_at(reader%line, reader%field)
+      if (.not. is_among(own_word(word), choices)) then
+        unknown = unknown//', '//word
+        if (len(nearest) == 0) nearest = nearest_choice(word, choices)
+      else if (.not. any(fields == own_word(word))) then
+        fields = [character(field_name_length) :: fields, own_word(word)]
+      end if
+    end do
+    if (len(unknown) > 0) then
+      if (len(nearest) > 0) nearest = "; did you mean '"//nearest//"'?"
+      call this%ignore(faults, 'not written: '//unknown(3:)//'; expected '// &
+                       with_commas(choices)//nearest)
+    else if (size(fields) == 0 .and. len(default) > 0) then
+      fields = [character(field_name_length) :: default]
+    end if
+  end subroutine take_fields
+
+  !> Our word for a field.
+  pure function own_word(word) result(own)
+    character(*), intent(in) :: word
+    character(:), allocatable :: own
+    integer :: i
+    own = word
+    do i = 1, size(synonyms)
+      if (synonyms(i)%word == word) own = trim(synonyms(i)%field)
+    end do
+  end function own_word
+
+  !> Whether a word is one of the choices.
+  pure logical function is_among(word, choices)
+    character(*), intent(in) :: word, choices
+    is_among = index('| '//choices//' |', '| '//word//' |') > 0
+  end function is_among
+end module card_fields

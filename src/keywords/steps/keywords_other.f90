@@ -1,0 +1,110 @@
+!> Keywords and parameters of other programs that are not available yet, each an error at its place
+!> in the deck, or that have no effect here, each noted as ignored input.
+module keywords_other
+  use keyword_handler, only: keyword_list
+  use keyword_spec, only: field, keyword, kind_text, later, without_effect
+  implicit none
+  private
+  public :: add_later_keywords, add_ignored_keywords, add_idle_parameters
+
+contains
+
+  !> Keywords of Abaqus and CalculiX.
+  subroutine add_later_keywords(list)
+    type(keyword_list), intent(inout) :: list
+    character(*), parameter :: family = 'other programs'
+    call add_later(list, 'PART', family, 'model', 'Opens a part.')
+    call add_later(list, 'END PART', family, 'model', 'Closes a part.')
+    call add_later(list, 'ASSEMBLY', family, 'model', 'Opens the assembly of parts.')
+    call add_later(list, 'END ASSEMBLY', family, 'model', 'Closes the assembly of parts.')
+    call add_later(list, 'INSTANCE', family, 'model', 'Places a part in the assembly.')
+    call add_later(list, 'END INSTANCE', family, 'model', 'Closes an instance.')
+    call add_later(list, 'EQUATION', family, 'model', 'Linear equations between displacements.')
+    call add_later(list, 'CONTACT PAIR', family, 'model', 'Contact of two surfaces, as a joint.')
+    call add_later(list, 'SURFACE INTERACTION', family, 'model', 'Names a law of contact.')
+    call add_later(list, 'SURFACE BEHAVIOR', family, 'model', 'Normal law of contact.')
+    call add_later(list, 'FRICTION', family, 'model', 'Friction of contact.')
+    call add_later(list, 'PLASTIC', family, 'material', 'Metal plasticity.')
+    call add_later(list, 'EXPANSION', family, 'material', 'Thermal expansion.')
+    call add_later(list, 'TEMPERATURE', family, 'step', 'Temperatures of nodes [K].')
+    call add_later(list, 'PARAMETER', family, 'model', 'Names for numbers of the deck.')
+    call add_later(list, 'RIGID BODY', family, 'model', 'Makes a part rigid.')
+    call add_later(list, 'MPC', family, 'model', 'Constraints between nodes.')
+    call add_later(list, 'COUPLING', family, 'model', 'Couples a surface to a node.')
+    call add_later(list, 'TRANSFORM', family, 'model', 'Axes of nodes.')
+    call add_later(list, 'ORIENTATION', family, 'model', 'Axes of a material.')
+  end subroutine add_later_keywords
+
+  !> Adds a keyword without a handler.
+  subroutine add_later(list, name, family, place, meaning)
+    type(keyword_list), intent(inout) :: list
+    character(*), intent(in) :: name, family, place, meaning
+    list%num_keywords = list%num_keywords + 1
+    associate (spec => list%specs(list%num_keywords))
+      spec%name = name
+      spec%family = family
+      spec%place = place
+      spec%meaning = meaning
+      spec%example = ''
+      spec%status = later
+      allocate (spec%parameters(0), spec%columns(0))
+    end associate
+  end subroutine add_later
+
+  !> Cards that ask Abaqus or CalculiX for output.
+  subroutine add_ignored_keywords(list)
+    type(keyword_list), intent(inout) :: list
+    call add_ignored(list, 'CONTACT OUTPUT', 'Contact results. Joints: *JOINT PRINT, OPENING.')
+    call add_ignored(list, 'CONTACT FILE', 'Contact results. Joints: *JOINT PRINT, OPENING.')
+    call add_ignored(list, 'CONTACT PRINT', 'Contact results. Joints: *JOINT PRINT, OPENING.')
+    call add_ignored(list, 'ENERGY OUTPUT', 'Energies. They are always in job_energy.csv.')
+    call add_ignored(list, 'ENERGY PRINT', 'Energies. They are always in job_energy.csv.')
+    call add_ignored(list, 'ENERGY FILE', 'Energies. They are always in job_energy.csv.')
+    call add_ignored(list, 'SECTION PRINT', 'Forces of a section.')
+    call add_ignored(list, 'SECTION FILE', 'Forces of a section.')
+    call add_ignored(list, 'INCREMENTATION OUTPUT', 'Data of increments. They are in job.log.')
+    call add_ignored(list, 'MODAL OUTPUT', 'Data of modes. They are in job.json.')
+    call add_ignored(list, 'MODAL FILE', 'Data of modes. They are in job.json.')
+    call add_ignored(list, 'MONITOR', 'Watches one degree of freedom.')
+    call add_ignored(list, 'PRINT', 'Chooses what Abaqus prints while it runs.')
+    call add_ignored(list, 'FILE FORMAT', 'Format of the results file of Abaqus.')
+    call add_ignored(list, 'TIME POINTS', 'Times of output.')
+  end subroutine add_ignored_keywords
+
+  !> Adds a keyword without effect.
+  subroutine add_ignored(list, name, meaning)
+    type(keyword_list), intent(inout) :: list
+    character(*), intent(in) :: name, meaning
+    list%num_keywords = list%num_keywords + 1
+    associate (spec => list%specs(list%num_keywords))
+      spec%name = name
+      spec%family = 'other programs'
+      spec%place = 'anywhere'
+      spec%meaning = meaning
+      spec%example = ''
+      spec%status = without_effect
+      allocate (spec%parameters(0), spec%columns(0))
+    end associate
+  end subroutine add_ignored
+
+  !> Adds parameters of other programs that are noted as ignored input.
+  subroutine add_idle_parameters(spec, names)
+    type(keyword), intent(inout) :: spec
+    character(*), intent(in) :: names(:)
+    type(field), allocatable :: longer(:)
+    integer :: i, n
+    n = 0
+    if (allocated(spec%parameters)) n = size(spec%parameters)
+    allocate (longer(n + size(names)))
+    do i = 1, n
+      longer(i) = spec%parameters(i)
+    end do
+    do i = 1, size(names)
+      longer(n + i)%name = trim(names(i))
+      longer(n + i)%kind = kind_text
+      longer(n + i)%meaning = 'has no effect here'
+      longer(n + i)%has_no_effect = .true.
+    end do
+    call move_alloc(longer, spec%parameters)
+  end subroutine add_idle_parameters
+end module keywords_other
