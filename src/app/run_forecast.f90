@@ -2,7 +2,8 @@
 !> factor and the speed of this machine, measured for a moment.
 !>
 !> The coefficients are those of runs on two cores of 2.2 GHz (`reference_rate`). Joints and cracks
-!> take the iterations of strong motions. Dense matrices of joints grow with their points squared.
+!> take the iterations of strong motions. Dense matrices of joints grow with their points squared,
+!> or with their points where joints are separators in the factor.
 module run_forecast
   use dense_products, only: times
   use errors, only: error_type
@@ -29,6 +30,9 @@ module run_forecast
   real(rk), parameter :: reference_rate = 45.0e9_rk !< products of matrices [operations/s]
   integer, parameter :: size_of_trial = 384, num_trials = 3
   real(rk), parameter :: largest = 3.0e5_rk !< unknowns of a model whose factor is planned
+  !> Points of joints that stay together at the end of the factor; of more points each group is a
+  !> separator, and the inverse of the factor is kept in its pattern for a moment.
+  real(rk), parameter :: most_at_the_end = 1500.0_rk
 
   ! On the reference machine [s]: per entry of the factor, unknown, point of a joint, integration
   ! point of a law and increment.
@@ -120,7 +124,12 @@ contains
   pure real(rk) function memory_of(counts) result(memory)
     type(run_counts), intent(in) :: counts
     memory = 22.0_rk + 1.0e-5_rk*counts%entries + 2.5e-3_rk*counts%unknowns &
-             + 1.0e-3_rk*counts%law_points + 2.4e-4_rk*counts%points**2
+             + 1.0e-3_rk*counts%law_points
+    if (counts%points <= most_at_the_end) then
+      memory = memory + 2.4e-4_rk*counts%points**2
+    else
+      memory = memory + 0.8e-5_rk*counts%entries + 0.08_rk*counts%points
+    end if
   end function memory_of
 
   !> Speed of products of matrices now, the best of some trials [operations/s].
