@@ -78,7 +78,7 @@ contains
     type(draft), intent(in) :: model
     type(step_load), allocatable :: loads(:)
     integer :: i, n
-    shortest = huge(1.0_rk)
+    shortest = 0.5_rk*huge(1.0_rk) ! the caller adds round-off
     loads = model%active_loads%loads_of_step()
     do i = 1, size(model%problem%amplitudes)
       associate (time => model%problem%amplitudes(i)%time)
@@ -88,6 +88,5 @@ contains
         if (n > 1) shortest = min(shortest, minval(time(2:) - time(:n - 1)))
       end associate
     end do
-    shortest = shortest/(1.0_rk + round_off) ! of huge as well
   end function shortest_sample
 end module check_accuracy
