@@ -34,6 +34,7 @@ set(sources
   solids/solid_iteration.f90
   solids/solid_tangent.f90
   solids/tangent_choice.f90
+  stages/stage_entry.f90
   state/analysis_state.f90
   state/guest_histories.f90
   state/increment_listener.f90

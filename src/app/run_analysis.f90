@@ -29,7 +29,7 @@ contains
 
   !> Runs a problem with the options of the command line. After an error the results are readable.
   subroutine run_problem(model, given, remarks, echo, costs, started_at, lock, error)
-    type(problem), intent(in) :: model
+    type(problem), intent(inout) :: model
     type(command_line), intent(in) :: given
     type(diagnostic_list), intent(in) :: remarks !< warnings of the deck
     character(*), intent(in) :: echo !< the deck with its defaults, for the log
@@ -55,7 +55,7 @@ contains
 
   !> Opens the results, runs the steps and closes the results.
   subroutine run_alone(model, given, echo, costs, started_at, earlier, results, error)
-    type(problem), intent(in) :: model
+    type(problem), intent(inout) :: model
     type(command_line), intent(in) :: given
     character(*), intent(in) :: echo
     type(ledger), intent(in) :: costs

@@ -6,7 +6,7 @@ module assemble_elements
   use kinds, only: rk
   use errors, only: error_type, raise
   use problem_definition, only: problem
-  use node_dofs, only: num_directions
+  use node_dofs, only: add_vectors, num_directions, zero_vectors
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
   use element_formulation, only: solid_element
@@ -17,7 +17,7 @@ module assemble_elements
   use scatter_matrix, only: scatter_nodes
   implicit none
   private
-  public :: assemble_stiffness, assemble_mass, assemble_damping
+  public :: assemble_stiffness, assemble_mass, assemble_damping, assemble_origins
 
 contains
 
@@ -59,6 +59,39 @@ contains
                       (model%materials%alpha + alpha)*model%materials%density, matrix, values, &
                       error)
   end subroutine assemble_damping
+
+  !> Sum of K_e u_0 over the elements, and of their energies at u_0.
+  subroutine assemble_origins(model, numbers, origin, force, energy, error)
+    type(problem), intent(in) :: model
+    type(numbering), intent(in) :: numbers
+    real(rk), intent(in) :: origin(:, :) !< (24, elements) u_0 [m]
+    real(rk), intent(out) :: force(:) !< (num_total) [N]
+    real(rk), intent(out) :: energy !< [J]
+    type(error_type), allocatable, intent(out) :: error
+    type(block_list) :: blocks
+    real(rk) :: one(size(model%materials)), zero(size(model%materials)), own(hex8_dofs)
+    real(rk), allocatable :: ke(:, :, :), nodal(:, :)
+    integer :: i, k, bad(2)
+    one = 1.0_rk
+    zero = 0.0_rk
+    energy = 0.0_rk
+    bad = 0
+    nodal = zero_vectors(model%mesh%num_nodes)
+    call list_blocks(model, numbers, blocks)
+    do i = 1, blocks%num_blocks
+      associate (elements => blocks%element(blocks%first(i):blocks%first(i + 1) - 1))
+        if (.not. any(abs(origin(:, elements)) > 0.0_rk)) cycle
+        call integrate_block(model, elements, one, zero, ke, bad)
+        do k = 1, size(elements)
+          own = matmul(ke(:, :, k), origin(:, elements(k)))
+          energy = energy + 0.5_rk*dot_product(origin(:, elements(k)), own)
+          call add_vectors(own, model%mesh%nodes(:, elements(k)), nodal)
+        end do
+      end associate
+    end do
+    call numbers%reduce(nodal, force)
+    if (bad(1) > 0) call report_jacobian(model%mesh%element_id(bad(1)), bad(2), error)
+  end subroutine assemble_origins
 
   !> Sum of stiffness*K_e + density*M_e (M_e of unit density).
   subroutine sum_elements(model, numbers, stiffness, density, matrix, values, error)

@@ -2,7 +2,7 @@
 module constraint_elimination
   use kinds, only: rk
   use errors, only: error_type
-  use dam_mesh, only: fe_mesh, node_tie
+  use dam_mesh, only: fe_mesh, node_tie, are_there
   use guest_list, only: ties_of
   use guest_type, only: guest_slot
   use joint_points, only: dam_joint
@@ -12,7 +12,7 @@ module constraint_elimination
   use jump_links, only: nodal_points, link_nodes
   implicit none
   private
-  public :: number_step
+  public :: number_step, keep_present
 
   !> Most nodes of points without jumps that are ordered last: the Schur block is dense, with 0.3 GB
   !> for 6000 unknowns.
@@ -50,11 +50,39 @@ contains
     call list_points(joints, points)
     points%is_light = nodes_of_quads(mesh)
     call ties_of(guests, ties)
+    call keep_present(mesh, ties)
     call link_nodes(dofs, points, ties, is_used, is_fixed, links, error)
     if (allocated(error)) return
     call mark_last(joints, links%first_jump, is_used, links%is_last)
     call number_unknowns(dofs, is_used, is_fixed, links, numbers, error)
   end subroutine number_step
+
+  !> Leaves out the ties of nodes that are absent, or that follow an absent node.
+  subroutine keep_present(mesh, ties)
+    type(fe_mesh), intent(in) :: mesh
+    type(node_tie), intent(inout) :: ties(:)
+    logical, allocatable :: is_kept(:)
+    integer, allocatable :: rows(:), first(:), items(:)
+    integer :: i, k, t
+    if (.not. allocated(mesh%is_node_absent)) return
+    do i = 1, size(ties)
+      associate (tie => ties(i))
+        is_kept = [(are_there(mesh, [tie%node(k), tie%item(tie%first(k):tie%first(k + 1) - 1)]), &
+                    k=1, size(tie%node))]
+        rows = pack([(k, k=1, size(is_kept))], is_kept)
+        items = [([(t, t=tie%first(rows(k)), tie%first(rows(k) + 1) - 1)], k=1, size(rows))]
+        allocate (first(size(rows) + 1), source=1)
+        do k = 1, size(rows)
+          first(k + 1) = first(k) + tie%first(rows(k) + 1) - tie%first(rows(k))
+        end do
+        tie%node = tie%node(rows)
+        tie%is_tied = tie%is_tied(:, rows)
+        tie%item = tie%item(items)
+        tie%weight = tie%weight(items)
+        call move_alloc(first, tie%first)
+      end associate
+    end do
+  end subroutine keep_present
 
   !> Nodes of interface quadrilaterals, which are without mass.
   pure function nodes_of_quads(mesh) result(is_there)

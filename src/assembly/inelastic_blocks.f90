@@ -40,10 +40,12 @@ contains
 
   !> Sorts the elements with nonlinear laws into blocks; size 0 for none. The Jacobian of all
   !> elements must be positive.
-  subroutine list_inelastic_blocks(mesh, materials, blocks)
+  subroutine list_inelastic_blocks(mesh, materials, blocks, class_of)
     type(fe_mesh), intent(in) :: mesh
     type(material), intent(in) :: materials(:)
     type(inelastic_block), allocatable, intent(out) :: blocks(:)
+    !> (elements) those of one block have the same; they come and go together
+    integer, intent(in), optional :: class_of(:)
     integer, allocatable :: group(:)
     logical, allocatable :: is_pending(:)
     integer :: e, m, first, last, num_blocks
@@ -61,6 +63,7 @@ contains
       group = pack([(e, e=1, mesh%num_elements)], is_pending .and. &
                    mesh%material_of_element == mesh%material_of_element(first) .and. &
                    mesh%element_type == mesh%element_type(first))
+      if (present(class_of)) group = pack(group, class_of(group) == class_of(first))
       is_pending(group) = .false.
       do first = 1, size(group), largest_block
         last = min(size(group), first + largest_block - 1)

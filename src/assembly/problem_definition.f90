@@ -4,6 +4,7 @@ module problem_definition
   use file_identity, only: file_path
   use dam_mesh, only: fe_mesh, named_set, surface
   use amplitudes, only: amplitude
+  use stage_plan, only: stages
   use step_plan, only: step, initial_value
   use material_law, only: material
   use material_tests, only: material_test
@@ -17,7 +18,7 @@ module problem_definition
   private
   public :: problem
 
-  !> Immutable once the deck is read.
+  !> Immutable once the deck is read, except for the elements that a stage takes out of the mesh.
   type :: problem
     character(:), allocatable :: deck_file !< as given on the command line
     character(:), allocatable :: heading
@@ -37,6 +38,7 @@ module problem_definition
     type(load_slot), allocatable :: loads(:)
     type(initial_value), allocatable :: initial_values(:)
     type(step), allocatable :: steps(:)
+    type(stages) :: stages !< elements that come and go, joints that are grouted
     type(user_library), pointer :: umat => null() !< loaded library of the user, null for none
     integer :: upstream_surface = 0 !< surface of the first reservoir, 0 for none
   end type problem

@@ -7,6 +7,7 @@ module finish_model
   use finish_interfaces, only: complete_interfaces
   use finish_joints, only: complete_joints
   use finish_materials, only: complete_materials
+  use finish_stages, only: complete_stages
   use finish_ties, only: complete_ties
   use finish_uplift, only: complete_uplift
   use joined_twice, only: refuse_joined_twice
@@ -35,6 +36,7 @@ contains
     if (.not. faults%has_errors()) call complete_ties(model, faults)
     call complete_joints(model, faults)
     if (.not. faults%has_errors()) call complete_uplift(model, faults)
+    call complete_stages(model, faults)
     call trim_loads(model)
   end subroutine complete_model
 

@@ -28,6 +28,7 @@ module keyword_catalogue
   use keywords_sets, only: describe_elset, describe_nset, describe_surface, read_elset, &
                            read_nset, read_surface
   use keywords_restart, only: describe_restart, read_restart
+  use keywords_stages, only: describe_grout, describe_model_change, read_grout, read_model_change
   use keywords_step, only: describe_dynamic, describe_end_step, describe_frequency, &
                            describe_static, describe_step, read_dynamic, read_end_step, &
                            read_frequency, read_static, read_step
@@ -91,6 +92,8 @@ contains
     call list%add(describe_dsload, read_dsload, pass_rest)
     call list%add(describe_reservoir, read_reservoir, pass_rest)
     call list%add(describe_base_motion, read_base_motion, pass_rest)
+    call list%add(describe_model_change, read_model_change, pass_rest)
+    call list%add(describe_grout, read_grout, pass_rest)
   end subroutine add_step_keywords
 
   subroutine add_output_keywords(list)

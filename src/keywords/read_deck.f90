@@ -19,6 +19,7 @@ module read_deck
   use finish_model, only: complete_model
   use finish_tests, only: complete_tests
   use inelastic_blocks, only: list_inelastic_blocks
+  use stage_plan, only: classes_of
   use keyword_catalogue, only: list_keywords
   use keyword_handler, only: keyword_list, pass_elements, pass_nodes, pass_rest
   use keywords_elements, only: make_room_for_elements, trim_mesh
@@ -86,7 +87,14 @@ contains
     call warn_of_histories(model, faults)
     call warn_of_idle_steps(model, faults)
     call warn_of_repeats(model, faults)
-    call list_inelastic_blocks(model%problem%mesh, model%problem%materials, model%problem%inelastic)
+    if (allocated(model%problem%stages%is_absent)) then
+      call list_inelastic_blocks(model%problem%mesh, model%problem%materials, &
+                                 model%problem%inelastic, &
+                                 classes_of(model%problem%stages%is_absent))
+    else
+      call list_inelastic_blocks(model%problem%mesh, model%problem%materials, &
+                                 model%problem%inelastic)
+    end if
     call warn_of_missing_fields(model, faults)
   end subroutine complete_and_verify
 

@@ -50,6 +50,8 @@ set(sources
   mesh/keywords_section.f90
   mesh/keywords_sets.f90
   read_deck.f90
+  stages/finish_stages.f90
+  stages/keywords_stages.f90
   steps/card_fields.f90
   steps/check_accuracy.f90
   steps/check_requests.f90

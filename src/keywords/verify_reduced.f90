@@ -20,6 +20,9 @@ contains
         if (plan%procedure%scheme /= 'REDUCED') cycle
         call refuse_solids(model, s, faults)
         call refuse_water(model, s, faults)
+        if (model%problem%stages%is_there_any()) then
+          call refuse(model, s, 'the model is built in stages (*MODEL CHANGE, *GROUT)', faults)
+        end if
         if (any(plan%fixities%amplitude > 0)) then
           call refuse(model, s, 'a support of the step moves, and a reduced model holds its '// &
                       'supports', faults)

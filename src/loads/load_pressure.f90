@@ -1,7 +1,7 @@
 !> *DLOAD P1..P6 and HP1..HP6, *DSLOAD P: pressure on faces of solids, uniform or hydrostatic.
 module load_pressure
   use applied_load, only: load
-  use dam_mesh, only: fe_mesh, surface
+  use dam_mesh, only: fe_mesh, surface, element_is_there
   use kinds, only: rk
   use mesh_faces, only: face_nodes
   use shape_quad4, only: facet_point
@@ -30,6 +30,7 @@ contains
     real(rk) :: share(3, 4)
     integer :: i, a, nodes(4)
     do i = 1, size(self%faces%element)
+      if (.not. element_is_there(mesh, self%faces%element(i))) cycle
       nodes = face_nodes(mesh, self%faces%element(i), self%faces%face(i))
       share = face_force(self, mesh%x(:, nodes))
       do a = 1, 4

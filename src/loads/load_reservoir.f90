@@ -7,7 +7,7 @@
 !> diagonal.
 module load_reservoir
   use applied_load, only: load
-  use dam_mesh, only: fe_mesh, surface
+  use dam_mesh, only: fe_mesh, surface, element_is_there
   use dof_numbering, only: numbering
   use guest_type, only: mass_matrix
   use kinds, only: rk
@@ -48,6 +48,7 @@ contains
     integer :: i, a, nodes(4)
     if (.not. self%is_hydrostatic) return
     do i = 1, size(self%faces%element)
+      if (.not. element_is_there(mesh, self%faces%element(i))) cycle
       nodes = face_nodes(mesh, self%faces%element(i), self%faces%face(i))
       call integrate_wet_part(mesh%x(:, nodes), self%water, wet)
       do a = 1, 4
@@ -110,6 +111,7 @@ contains
     allocate (normal(3, mesh%num_nodes), mass(mesh%num_nodes), source=0.0_rk)
     factor = westergaard*self%density*sqrt(self%water%level - self%water%bed)
     do i = 1, size(self%faces%element)
+      if (.not. element_is_there(mesh, self%faces%element(i))) cycle
       nodes = face_nodes(mesh, self%faces%element(i), self%faces%face(i))
       call integrate_wet_part(mesh%x(:, nodes), self%water, wet)
       do a = 1, 4

@@ -16,5 +16,6 @@ set(sources
   steps/load_books.f90
   steps/material_tests.f90
   steps/print_kinds.f90
+  steps/stage_plan.f90
   steps/step_plan.f90
 )

@@ -34,6 +34,8 @@ contains
     call fill(now%a, n)
     call fill(now%reaction, n)
     call fill(now%support_start, n)
+    allocate (now%origin(24, 2))
+    call fill(now%origin, n)
     call fill_matrix(now%matrix, n)
     call fill_motion(now%motion, n)
     allocate (now%joints(2), now%points(1), now%guests(2))
@@ -83,6 +85,7 @@ contains
     call fill(energy%fracture, n)
     call fill(energy%crushing, n)
     call fill(energy%numerical, n)
+    call fill(energy%stages, n)
     call fill(energy%initial, n)
     call fill(energy%error, n)
     call fill(energy%largest, n)
@@ -134,7 +137,7 @@ contains
               own%contact(4), own%balanced(4), &
               own%viscous(4), own%viscous_rate(4), own%lost_damping(4), own%correction(4), &
               own%carried_correction(4), own%momentum(4), own%inertia(4), own%carried(3, 4), &
-              own%jump_rate(3, 4), own%slope(4), own%bend(4))
+              own%jump_rate(3, 4), own%slope(4), own%bend(4), own%release(4))
     call fill(own%q, n)
     call fill(own%v, n)
     call fill(own%a, n)
@@ -152,6 +155,7 @@ contains
     call fill(own%inertia, n)
     call fill(own%slope, n)
     call fill(own%bend, n)
+    call fill(own%release, n)
     call fill(own%carried, n)
     call fill(own%jump_rate, n)
     call fill_modal(own%modal, n)
@@ -207,7 +211,7 @@ contains
     allocate (history%gap(2), history%shift(2), history%jump(3, 2), history%traction(3, 2), &
               history%slip(2, 2), history%is_broken(2), history%status(2), &
               history%num_openings(2), history%friction_work(2), history%fracture_work(2), &
-              history%internal(2, 2), history%water(2))
+              history%internal(2, 2), history%water(2), history%origin(3, 2), history%phase(2))
     call fill(history%gap, n)
     call fill(history%shift, n)
     call fill(history%jump, n)
@@ -220,6 +224,8 @@ contains
     call fill(history%fracture_work, n)
     call fill(history%internal, n)
     call fill(history%water, n)
+    call fill(history%origin, n)
+    call fill(history%phase, n)
   end subroutine fill_joint
 
   !> Points of a block.

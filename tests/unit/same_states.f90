@@ -33,6 +33,7 @@ contains
     call compare(log, what//'a', a%a, b%a)
     call compare(log, what//'reaction', a%reaction, b%reaction)
     call compare(log, what//'support_start', a%support_start, b%support_start)
+    call compare(log, what//'origin', a%origin, b%origin)
     call compare_matrix(log, what//'matrix%', a%matrix, b%matrix)
     call compare_motion(log, what//'motion%', a%motion, b%motion)
     do i = 1, size(a%joints)
@@ -102,6 +103,7 @@ contains
     call compare(log, what//'fracture', a%fracture, b%fracture)
     call compare(log, what//'crushing', a%crushing, b%crushing)
     call compare(log, what//'numerical', a%numerical, b%numerical)
+    call compare(log, what//'stages', a%stages, b%stages)
     call compare(log, what//'initial', a%initial, b%initial)
     call compare(log, what//'error', a%error, b%error)
     call compare(log, what//'largest', a%largest, b%largest)
@@ -169,6 +171,7 @@ contains
     call compare(log, what//'inertia', a%inertia, b%inertia)
     call compare(log, what//'slope', a%slope, b%slope)
     call compare(log, what//'bend', a%bend, b%bend)
+    call compare(log, what//'release', a%release, b%release)
     call compare(log, what//'carried', a%carried, b%carried)
     call compare(log, what//'jump_rate', a%jump_rate, b%jump_rate)
     call compare_modal(log, what//'modal%', a%modal, b%modal)
@@ -233,6 +236,8 @@ contains
     call compare(log, what//'fracture_work', a%fracture_work, b%fracture_work)
     call compare(log, what//'internal', a%internal, b%internal)
     call compare(log, what//'water', a%water, b%water)
+    call compare(log, what//'origin', a%origin, b%origin)
+    call compare(log, what//'phase', a%phase, b%phase)
   end subroutine compare_joint
 
   !> Points of a block.

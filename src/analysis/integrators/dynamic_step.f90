@@ -14,7 +14,7 @@ module dynamic_step
   use active_unknowns, only: find_active
   use guest_forces, only: has_histories
   use step_system, only: dam_system, build_structure, build_inertia, build_damping, &
-                         build_loads
+                         build_loads, build_origins
   use step_loads, only: step_time, external_force, prescribed_values
   use start_acceleration, only: find_start
   use energy_account, only: open_account
@@ -44,6 +44,7 @@ contains
       if (.not. allocated(error)) call build_inertia(model, plan, system, costs, error)
       if (.not. allocated(error)) call build_damping(model, plan, system, costs, error)
       if (.not. allocated(error)) call build_modal_damping(model, plan, system, costs, error)
+      if (.not. allocated(error)) call build_origins(model, now%origin, system, costs, error)
       if (allocated(error)) return
       call build_loads(model, plan, now%u, system, costs)
     end associate
@@ -70,7 +71,7 @@ contains
     call results%costs%stop()
     if (allocated(error)) return
     call results%costs%start('recover', 'energy', 'solver')
-    call open_account(model, system%diagonal, now, now%total_time <= 0.0_rk)
+    call open_account(model, system, now, now%total_time <= 0.0_rk, plan%changes_stage)
     call results%costs%stop()
     if (now%increment == 0) then ! not after a restart within the step
       call store_motion(system%numbers, now)

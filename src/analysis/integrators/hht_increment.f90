@@ -129,7 +129,7 @@ contains
       new%momentum = old%momentum + rest*old%inertia + scheme%gamma*dt*new%inertia
       call system%find_damping_force(new%a, new%viscous_rate)
       new%viscous = old%viscous + rest*old%viscous_rate + scheme%gamma*dt*new%viscous_rate
-      call multiply(system%matrix, system%stiffness, new%q, new%elastic)
+      call system%find_elastic(new%q, new%elastic)
       call solids%set_internal(new)
       new%balanced = bulk*(new%external - new%viscous - new%internal) &
                      - scheme%alpha*(old%external - old%viscous - old%internal)

@@ -93,7 +93,7 @@ contains
     call find_followed(plan, self%system, self%basis, now%motion%modal%start, self%solids%solver, &
                        self%followed, error)
     if (allocated(error) .or. now%increment > 0) return
-    call open_account(model, self%system%diagonal, now, now%total_time <= 0.0_rk)
+    call open_account(model, self%system, now, now%total_time <= 0.0_rk, .false.)
     call store_motion(self%system%numbers, now)
     call results%increment_done(model, now, error)
   end subroutine open_step

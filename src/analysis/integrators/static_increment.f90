@@ -7,12 +7,12 @@
 module static_increment
   use kinds, only: rk
   use errors, only: error_type
-  use global_vectors, only: multiply, norm
+  use global_vectors, only: norm
   use problem_definition, only: problem
   use joint_law, only: joint_state
   use joint_operator, only: jump_operator
   use joint_forces, only: gather_tractions
-  use analysis_state, only: state
+  use analysis_state, only: motion, state
   use state_transfer, only: sum_contact
   use equilibrium, only: balance_outcome
   use step_equilibrium, only: add_moving_supports
@@ -46,7 +46,7 @@ contains
         call solids%solve_increment(model, system, task, before, after, outcome, error)
         if (allocated(error) .or. .not. outcome%has_converged) return
         new%q = task%start + task%x
-        call multiply(system%matrix, system%stiffness, new%q, new%elastic)
+        call system%find_elastic(new%q, new%elastic)
         call solids%set_internal(new)
         call sum_contact(system%operator, after)
         new%balanced = 0.0_rk
@@ -70,6 +70,7 @@ contains
     real(rk), allocatable :: moved(:)
     associate (old => before%motion, new => after%motion, n => system%matrix%num_free)
       call external_force(system%groups, model%amplitudes, when, new%external)
+      call fade_release(when, old, new)
       new%q = old%q
       call prescribed_values(system%supports, model%amplitudes, when, new%q)
       moved = new%q - old%q
@@ -85,6 +86,18 @@ contains
       allocate (task%x(size(moved)))
     end associate
   end subroutine pose_task
+
+  !> The force that balances the change of a stage falls linearly to zero at the end of the step.
+  subroutine fade_release(when, old, new)
+    type(step_time), intent(in) :: when !< the end of the increment
+    type(motion), intent(in) :: old
+    type(motion), intent(inout) :: new
+    real(rk) :: rest
+    if (.not. allocated(old%release)) return
+    rest = when%duration - when%now
+    new%release = old%release*(rest/(rest + when%increment))
+    new%external = new%external + new%release
+  end subroutine fade_release
 
   !> The largest of the forces before and after, reactions included. For a dam without stress (its
   !> load returned to zero, or it moves with its supports) the reference is the round-off of the

@@ -8,14 +8,14 @@ module static_integrator
   use step_plan, only: step
   use free_blocks, only: exceeds_joints, name_free_block
   use joint_law, only: joint_state
-  use joint_water, only: update_uplift
+  use joint_water, only: press_grout, update_uplift
   use analysis_state, only: state
   use node_dofs, only: zero_vectors
   use state_transfer, only: start_motion, store_motion, sum_contact
   use increment_listener, only: listener
   use equilibrium, only: balance_outcome
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium
-  use step_system, only: build_structure, build_loads
+  use step_system, only: build_structure, build_loads, build_origins
   use step_loads, only: step_time, external_force
   use tangent_choice, only: tangent, choose_tangents
   use energy_account, only: open_account, add_static_work
@@ -55,7 +55,11 @@ contains
     type(tangent), allocatable :: choices(:)
     call build_structure(model, plan, self%system, results%costs, error)
     if (allocated(error)) return
+    call build_origins(model, now%origin, self%system, results%costs, error)
+    if (allocated(error)) return
     call build_loads(model, plan, now%u, self%system, results%costs)
+    call press_grout(plan, self%system%operator, self%system%matrix%num_total, now%joints, &
+                     self%system%groups)
     call results%costs%start('analyse', 'structure', 'solver')
     choices = choose_tangents(model, plan)
     call make_equilibrium(plan, self%system, all(choices%is_symmetric()), self%solids%solver, error)
@@ -74,7 +78,7 @@ contains
     if (self%solids%has_inelastic()) self%solids%values = self%system%stiffness
     call start_forces(self, model, plan, now)
     call results%costs%start('recover', 'energy', 'solver')
-    call open_account(model, self%system%diagonal, now, now%total_time <= 0.0_rk)
+    call open_account(model, self%system, now, now%total_time <= 0.0_rk, plan%changes_stage)
     call results%costs%stop()
   end subroutine open_step
 
@@ -93,6 +97,11 @@ contains
                           step_time(start=now%total_time, duration=plan%duration), own%external)
       call sum_contact(self%system%operator, now)
       own%balanced = own%external - own%internal - own%contact
+      if (.not. plan%changes_stage) return
+      own%release = -own%balanced
+      own%release(self%system%matrix%num_free + 1:) = 0.0_rk
+      own%external = own%external + own%release
+      own%balanced = own%balanced + own%release
     end associate
   end subroutine start_forces
 
@@ -157,7 +166,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     call store_motion(self%system%numbers, now)
     if (.not. now%is_last_of_step) return
-    if (size(model%joints) > 0 .or. self%solids%has_inelastic()) return
+    if (size(model%joints) > 0 .or. self%solids%has_inelastic() .or. allocated(now%origin)) return
     if (.not. model%steps(now%step)%controls%estimates_errors) return
     call results%costs%start('estimate', 'mesh', 'output')
     call find_dual(self, model, now, results)

@@ -6,6 +6,7 @@
 !> summed over the points that are not elastic. Threads update blocks of elements; forces are
 !> summed in the order of the blocks, so that results do not depend on the number of threads.
 module inelastic_forces
+  use dam_mesh, only: element_is_there
   use kinds, only: rk
   use problem_definition, only: problem
   use node_dofs, only: add_vectors, gather_vectors
@@ -48,24 +49,25 @@ contains
   end subroutine open_answers
 
   !> Strains from displacements and stresses by the laws, for all blocks.
-  subroutine update_points(model, u, time, old, new, answers)
+  subroutine update_points(model, u, origin, time, old, new, answers)
     type(problem), intent(in) :: model
     real(rk), intent(in) :: u(:, :) !< (3, nodes) at the end of the increment [m]
+    real(rk), allocatable, intent(in) :: origin(:, :) !< (24, elements) without stress, if any [m]
     type(time_increment), intent(in) :: time
     type(point_state), intent(in) :: old(:) !< (blocks) converged
     type(point_state), intent(inout) :: new(:) !< (blocks)
     type(block_answer), intent(inout) :: answers(:) !< (blocks)
     integer :: i
-    !$omp parallel do schedule(dynamic) default(none) shared(model, u, time, old, new, answers) &
-    !$omp if (has_many_elements(answers))
+    !$omp parallel do schedule(dynamic) default(none) if (has_many_elements(answers)) &
+    !$omp shared(model, u, origin, time, old, new, answers)
     do i = 1, size(answers)
       if (model%materials(model%inelastic(i)%material)%law%is_serial) cycle
-      call update_block(model, model%inelastic(i), u, time, old(i), new(i), answers(i))
+      call update_block(model, model%inelastic(i), u, origin, time, old(i), new(i), answers(i))
     end do
     !$omp end parallel do
     do i = 1, size(answers)
       if (.not. model%materials(model%inelastic(i)%material)%law%is_serial) cycle
-      call update_block(model, model%inelastic(i), u, time, old(i), new(i), answers(i))
+      call update_block(model, model%inelastic(i), u, origin, time, old(i), new(i), answers(i))
     end do
   end subroutine update_points
 
@@ -112,10 +114,11 @@ contains
   end subroutine recall_points
 
   !> Updates one block.
-  subroutine update_block(model, part, u, time, old, new, answer)
+  subroutine update_block(model, part, u, origin, time, old, new, answer)
     type(problem), intent(in) :: model
     type(inelastic_block), intent(in) :: part
     real(rk), intent(in) :: u(:, :) !< (3, nodes) [m]
+    real(rk), allocatable, intent(in) :: origin(:, :) !< (24, elements) without stress, if any [m]
     type(time_increment), intent(in) :: time
     type(point_state), intent(in) :: old
     type(point_state), intent(inout) :: new
@@ -127,8 +130,13 @@ contains
       deallocate (answer%tangent)
       allocate (answer%tangent(6, 6, num_tangents))
     end if
+    if (.not. element_is_there(model%mesh, part%elements(1))) then ! all of the block are absent
+      call sum_block(part, new, answer)
+      return
+    end if
     do e = 1, size(part%elements)
       moved(:, e) = gather_vectors(u, model%mesh%nodes(:, part%elements(e)))
+      if (allocated(origin)) moved(:, e) = moved(:, e) - origin(:, part%elements(e))
     end do
     associate (law => model%materials(part%material)%law)
       call part%find_strains(moved, new%strain)

@@ -14,7 +14,7 @@ module solid_iteration
   use problem_definition, only: problem
   use active_unknowns, only: find_active
   use analysis_state, only: state, motion
-  use global_vectors, only: multiply, norm
+  use global_vectors, only: norm
   use material_points, only: time_increment
   use node_dofs, only: zero_vectors
   use lost_damping, only: damping_loss
@@ -79,7 +79,7 @@ contains
     self%stops_early = plan%procedure%has_inertia .and. .not. plan%is_direct
     self%choices = choose_tangents(model, plan)
     self%chosen = self%choices(1)
-    call multiply(system%matrix, system%stiffness, now%motion%q, now%motion%elastic)
+    call system%find_elastic(now%motion%q, now%motion%elastic)
     if (size(now%points) > 0 .or. has_histories(now%guests)) then
       if (.not. has_histories(now%guests)) self%mixer%rows = find_active(model, system%numbers)
       allocate (self%excess(system%matrix%num_total))
@@ -306,7 +306,8 @@ contains
     real(rk) :: u(3, model%mesh%num_nodes)
     call system%numbers%expand(task%start + task%x, u)
     call self%solver%costs%start('update', 'inelastic solids', 'inelastic')
-    call update_points(model, u, self%time, before%points, after%points, self%answers)
+    call update_points(model, u, before%origin, self%time, before%points, after%points, &
+                       self%answers)
     call update_guests(model, u, self%time%size, before%guests, after%guests, self%guest_excess)
     call sum_excess(model, system%numbers, self%answers, self%guest_excess, self%excess)
     call self%correction%add_force(model, system%numbers, self%time, before%points, after%points, &
@@ -328,7 +329,7 @@ contains
     q = now%task%start + now%task%x
     reference = now%task%reference_force
     if (now%task%counts_reactions) then
-      call multiply(system%matrix, system%stiffness, q, product)
+      call system%find_elastic(q, product)
       reference = max(reference, norm(product - self%excess))
     end if
     outcome%residual = now%force/max(reference, tiny(1.0_rk))

@@ -24,6 +24,9 @@ module analysis_state
     real(rk) :: fracture = 0.0_rk !< dissipated by cracking and crushing, in joints and solids
     real(rk) :: crushing = 0.0_rk !< the part of `fracture` that is crushing
     real(rk) :: numerical = 0.0_rk !< dissipated by the time integration, from its own formula
+    !> Work of elements that come and go, and of grout: their energy, and the forces that the change
+    !> of a stage leaves without balance
+    real(rk) :: stages = 0.0_rk
     real(rk) :: initial = 0.0_rk !< kinetic and strain energy at the start of the analysis
     real(rk) :: error = 0.0_rk, largest = 0.0_rk
   end type energy_balance
@@ -90,7 +93,8 @@ module analysis_state
     real(rk), allocatable :: q(:) !< (num_total) unknowns [m]
     real(rk), allocatable :: v(:), a(:) !< (num_total) their rates [m/s], [m/s2]
     real(rk), allocatable :: external(:) !< (num_total) f, forces of the loads [N]
-    real(rk), allocatable :: elastic(:) !< (num_total) K q, undamaged elements [N]
+    !> (num_total) force of the undamaged elements: K q, less that of their origins [N]
+    real(rk), allocatable :: elastic(:)
     real(rk), allocatable :: internal(:) !< (num_total) sum of B^T sigma over the elements [N]
     real(rk), allocatable :: contact(:) !< (num_total) B^T (area t), the joints by their laws [N]
     real(rk), allocatable :: balanced(:) !< (num_total) M a as the balance of forces gives it [N]
@@ -105,6 +109,9 @@ module analysis_state
     !> (num_total) first [m/s] and second [m/s2] divided difference of q over the last increments;
     !> with *CONTROLS, ACCURACY only
     real(rk), allocatable :: slope(:), bend(:)
+    !> (num_total) force that balances what the change of a stage has left without balance, part of
+    !> `external`; it falls to zero in its step [N]
+    real(rk), allocatable :: release(:)
     real(rk), allocatable :: carried(:, :) !< (3, points) t* of the implicit joint impulse [Pa]
     real(rk), allocatable :: jump_rate(:, :) !< (3, points) in the last increment [m/s]
     type(modal_motion) :: modal !< of a reduced model
@@ -125,6 +132,9 @@ module analysis_state
     real(rk), allocatable :: reaction(:, :) !< (3, nodes) zero where nothing is fixed [N]
     !> (fixities of the step) displacement at the start of the step, where supports start from [m]
     real(rk), allocatable :: support_start(:)
+    !> (24, elements) displacement of the nodes at which an element has no stress, since it appeared
+    !> there; in models with *MODEL CHANGE only [m]
+    real(rk), allocatable :: origin(:, :)
     type(last_matrix) :: matrix
     type(motion) :: motion !< the same in the unknowns of the step, with the forces
     type(joint_state), allocatable :: joints(:) !< (joints of the problem)

@@ -30,6 +30,7 @@ contains
     call file%put('a', now%a)
     call file%put('reaction', now%reaction)
     call file%put('support_start', now%support_start)
+    call file%put('origin', now%origin)
     call file%open_group('matrix')
     call save_matrix(now%matrix, file)
     call file%close_group()
@@ -118,6 +119,8 @@ contains
     call file%get('reaction', now%reaction)
     if (allocated(now%support_start)) deallocate (now%support_start)
     call file%get('support_start', now%support_start)
+    if (allocated(now%origin)) deallocate (now%origin)
+    call file%get('origin', now%origin)
   end subroutine load_fields
 
   !> Writes the last matrix.
@@ -223,6 +226,7 @@ contains
     call file%put('fracture', energy%fracture)
     call file%put('crushing', energy%crushing)
     call file%put('numerical', energy%numerical)
+    call file%put('stages', energy%stages)
     call file%put('initial', energy%initial)
     call file%put('error', energy%error)
     call file%put('largest', energy%largest)
@@ -240,6 +244,7 @@ contains
     call file%get('fracture', energy%fracture)
     call file%get('crushing', energy%crushing)
     call file%get('numerical', energy%numerical)
+    call file%get('stages', energy%stages)
     call file%get('initial', energy%initial)
     call file%get('error', energy%error)
     call file%get('largest', energy%largest)

@@ -84,7 +84,11 @@ contains
       do p = 1, joints(j)%num_points
         pair = pair + 1
         first = numbers%first_jump(pair)
-        if (first > 0) q(first:first + 2) = states(j)%jump(:, p)
+        if (first == 0) cycle
+        q(first:first + 2) = states(j)%jump(:, p)
+        if (allocated(states(j)%origin)) then
+          q(first:first + 2) = q(first:first + 2) + states(j)%origin(:, p)
+        end if
       end do
     end do
   end subroutine set_exact_jumps

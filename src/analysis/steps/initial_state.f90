@@ -89,7 +89,8 @@ contains
     if (size(now%points) == 0) return
     call open_answers(model%inelastic, answers)
     old = now%points
-    call update_points(model, now%u, time_increment(tangent=no_tangent), old, now%points, answers)
+    call update_points(model, now%u, now%origin, time_increment(tangent=no_tangent), old, &
+                       now%points, answers)
     call find_failure(model, answers, size_ratio, why)
     if (allocated(why)) call raise(error, 'initial displacements: '//why)
   end subroutine strain_points

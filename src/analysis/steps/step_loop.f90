@@ -13,6 +13,7 @@ module step_loop
   use step_loads, only: step_time
   use joint_water, only: record_uplift
   use integrator_type, only: integrator
+  use stage_entry, only: enter_stage, show_stage
   use integrator_catalogue, only: make_integrator
   use step_report, only: close_increment, count_increment, report_failure
   use user_increments, only: begin_user_increment
@@ -34,7 +35,7 @@ contains
   !> Runs all steps. A loaded state continues where it was saved. On an error `now` is the last
   !> converged state; the listener has it.
   subroutine run_all_steps(model, now, results, error)
-    type(problem), intent(in) :: model
+    type(problem), intent(inout) :: model !< its mesh takes the elements of each stage
     type(state), allocatable, intent(inout) :: now !< as `start_analysis` makes it, or loaded
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
@@ -43,8 +44,11 @@ contains
     do i = first_step(now), size(model%steps)
       call make_integrator(model%steps(i)%procedure, method)
       if (i == now%step .and. now%increment > 0) then
+        call show_stage(model, i)
         call reopen_step(model, model%steps(i), method, now, results, error)
       else
+        call enter_stage(model, i, now, error)
+        if (allocated(error)) return
         call enter_step(i, model%steps(i), now)
         call method%open_step(model, model%steps(i), now, results, error)
       end if

@@ -24,21 +24,25 @@ contains
 
   !> Kinetic and strain energy at the start of a step. At the start of the analysis they are the
   !> initial energy, together with the dissipation by initial displacements.
-  subroutine open_account(model, diagonal, now, is_first)
+  subroutine open_account(model, system, now, is_first, changes_stage)
     type(problem), intent(in) :: model
-    real(rk), intent(in) :: diagonal(:) !< (num_total) of K [N/m]
+    type(dam_system), intent(in) :: system
     type(state), intent(inout) :: now
     logical, intent(in) :: is_first !< step of the analysis
+    logical, intent(in) :: changes_stage !< elements have come or gone, or joints were grouted
     type(stored_work) :: guests
-    real(rk) :: kinetic_before
+    real(rk) :: kinetic_before, others_before
     call sum_work(model, now, guests)
     associate (energy => now%energy)
       kinetic_before = energy%kinetic
-      call set_stored(guests, diagonal, now)
+      others_before = energy%strain + energy%friction + energy%fracture
+      call set_stored(guests, system, now)
       if (is_first) then
         energy%initial = energy%kinetic + energy%strain + energy%friction + energy%fracture
       else ! kinetic energy is lost where velocities are set to zero
         energy%numerical = energy%numerical + kinetic_before - energy%kinetic
+        if (changes_stage) energy%stages = energy%stages - others_before + energy%strain &
+                                           + energy%friction + energy%fracture
       end if
       call find_error(energy)
     end associate
@@ -53,16 +57,22 @@ contains
     type(state), intent(inout) :: after
     type(stored_work) :: guests
     real(rk), allocatable :: du(:)
+    real(rk) :: released
     call sum_work(model, after, guests)
     associate (old => before%motion, new => after%motion, n => system%matrix%num_free)
       du = new%q - old%q
       call add_external(du, n, old, new, after%energy)
+      if (allocated(new%release)) then
+        released = work(du, old%release, new%release)
+        after%energy%stages = after%energy%stages + released
+        after%energy%external = after%energy%external - released
+      end if
       after%energy%numerical = after%energy%numerical + work(du, old%contact, new%contact) &
                                + work(du(:n), old%balanced, new%balanced) &
                                + inelastic_work(du, old, new) &
                                - change_of_stores(model, before, guests)
     end associate
-    call set_stored(guests, system%diagonal, after)
+    call set_stored(guests, system, after)
   end subroutine add_static_work
 
   !> Adds the work of a dynamic increment, or of a part of it.
@@ -97,7 +107,7 @@ contains
               - change_of_stores(model, before, guests) - excess + lost
     end associate
     after%energy%numerical = after%energy%numerical + taken
-    call set_stored(guests, system%diagonal, after)
+    call set_stored(guests, system, after)
   end subroutine add_dynamic_work
 
   !> Work of the loads and of moving supports.
@@ -141,18 +151,18 @@ contains
   end function change_of_stores
 
   !> Energies of the state.
-  subroutine set_stored(guests, diagonal, now)
+  subroutine set_stored(guests, system, now)
     type(stored_work), intent(in) :: guests !< of the histories of `now`
-    real(rk), intent(in) :: diagonal(:) !< (num_total) of K [N/m]
+    type(dam_system), intent(in) :: system
     type(state), intent(inout) :: now
     associate (own => now%motion, energy => now%energy)
       energy%kinetic = 0.0_rk
       if (allocated(own%momentum)) energy%kinetic = 0.5_rk*dot(own%v, own%momentum)
-      energy%strain = 0.5_rk*dot(own%q, own%elastic) + guests%stored
+      energy%strain = system%stored_energy(own%q, own%elastic) + guests%stored
       energy%friction = guests%friction
       energy%fracture = guests%fracture
       energy%crushing = guests%crushing
-      energy%largest = max(energy%largest, idle_share*total(diagonal*own%q**2))
+      energy%largest = max(energy%largest, idle_share*total(system%diagonal*own%q**2))
       call find_error(energy)
     end associate
   end subroutine set_stored
@@ -161,10 +171,11 @@ contains
   pure subroutine find_error(energy)
     type(energy_balance), intent(inout) :: energy
     real(rk) :: imbalance
-    imbalance = energy%external + energy%initial - energy%kinetic - energy%strain - energy%damping &
-                - energy%friction - energy%fracture - energy%numerical
+    imbalance = energy%external + energy%initial + energy%stages - energy%kinetic - energy%strain &
+                - energy%damping - energy%friction - energy%fracture - energy%numerical
     energy%largest = max(energy%largest, abs(energy%external), energy%kinetic, energy%strain, &
-                         abs(energy%damping), energy%friction, energy%fracture, energy%initial)
+                         abs(energy%damping), energy%friction, energy%fracture, energy%initial, &
+                         abs(energy%stages))
     energy%error = abs(imbalance)/max(energy%largest, tiny(1.0_rk))
   end subroutine find_error
 end module energy_account

@@ -5,15 +5,15 @@
 !> the end of the previous increment.
 module joint_water
   use kinds, only: rk
-  use joint_law, only: joint_state, state_open
+  use joint_law, only: joint_state, state_open, takes_grout
   use joint_operator, only: jump_operator
   use problem_definition, only: problem
   use step_loads, only: load_group, step_time, factor_at
-  use step_plan, only: step_load
+  use step_plan, only: step, step_load
   use run_ledger, only: ledger
   implicit none
   private
-  public :: update_uplift, record_uplift
+  public :: update_uplift, record_uplift, press_grout
 
 contains
 
@@ -45,6 +45,29 @@ contains
       call move_alloc(pressure, groups(g)%pressure)
     end do
   end subroutine update_uplift
+
+  !> The grout of a step presses the faces apart, until the end of the step where it hardens.
+  subroutine press_grout(plan, operator, num_unknowns, states, groups)
+    type(step), intent(in) :: plan
+    type(jump_operator), intent(in) :: operator
+    integer, intent(in) :: num_unknowns !< free and prescribed
+    type(joint_state), intent(in) :: states(:)
+    type(load_group), allocatable, intent(inout) :: groups(:)
+    type(load_group) :: fresh
+    integer :: g
+    if (.not. allocated(plan%grouts)) return
+    fresh%rule = step_load(start_factor=0.0_rk, end_factor=1.0_rk)
+    do g = 1, size(plan%grouts)
+      associate (grout => plan%grouts(g))
+        if (grout%pressure <= 0.0_rk) cycle
+        fresh%force = spread(0.0_rk, 1, num_unknowns)
+        call push_faces(operator, grout%joint, &
+                        merge(grout%pressure, 0.0_rk, takes_grout(states(grout%joint))), &
+                        fresh%force)
+        groups = [groups, fresh]
+      end associate
+    end do
+  end subroutine press_grout
 
   !> Forces B^T (area p) that open one joint.
   subroutine push_faces(operator, joint, pressure, force)

@@ -10,7 +10,8 @@ module step_system
   use global_vectors, only: diagonal, dot, multiply
   use matrix_pattern, only: pattern, drop_zeros
   use pattern_builder, only: list_cells, build_pattern
-  use assemble_elements, only: assemble_stiffness, assemble_mass, assemble_damping
+  use assemble_elements, only: assemble_stiffness, assemble_mass, assemble_damping, &
+                               assemble_origins
   use damping_rayleigh, only: rayleigh_coefficients
   use guest_list, only: add_guest_matrices, any_has_matrix, guests_of_step
   use guest_type, only: guest_reference, damping_matrix, mass_matrix, stiffness_matrix
@@ -20,13 +21,17 @@ module step_system
   use run_ledger, only: ledger
   implicit none
   private
-  public :: dam_system, build_structure, build_inertia, build_damping, build_loads
+  public :: dam_system, build_structure, build_inertia, build_damping, build_loads, build_origins
 
   type :: dam_system
     type(numbering) :: numbers
     type(pattern) :: matrix
     real(rk), allocatable :: stiffness(:) !< values of K, without joints [N/m]
     real(rk), allocatable :: diagonal(:) !< (num_total) of K [N/m]
+    !> (num_total) sum of K_e u_0 over the elements, u_0 the displacements at which they have no
+    !> stress; in models with *MODEL CHANGE only [N]
+    real(rk), allocatable :: origin_force(:)
+    real(rk) :: origin_energy = 0.0_rk !< sum of 1/2 u_0 K_e u_0 [J]
     real(rk), allocatable :: mass(:) !< values of M, added mass included; size 0 in a static step
     type(pattern) :: mass_pattern !< of the entries of M that are not zero, for products
     real(rk), allocatable :: mass_entries(:) !< their values [kg]
@@ -37,7 +42,7 @@ module step_system
     type(load_group), allocatable :: groups(:)
     type(support), allocatable :: supports(:)
   contains
-    procedure :: find_damping_force, add_damping
+    procedure :: find_damping_force, add_damping, find_elastic, stored_energy
   end type dam_system
 
 contains
@@ -59,6 +64,25 @@ contains
       end associate
     end do
   end subroutine find_damping_force
+
+  !> The force of the undamaged elements: K q, less that of their origins.
+  subroutine find_elastic(self, q, force)
+    class(dam_system), intent(in) :: self
+    real(rk), intent(in) :: q(:) !< (num_total) [m]
+    real(rk), intent(out) :: force(:) !< (num_total) [N]
+    call multiply(self%matrix, self%stiffness, q, force)
+    if (allocated(self%origin_force)) force = force - self%origin_force
+  end subroutine find_elastic
+
+  !> The energy of the undamaged elements.
+  real(rk) function stored_energy(self, q, elastic) result(energy)
+    class(dam_system), intent(in) :: self
+    real(rk), intent(in) :: q(:) !< (num_total) [m]
+    real(rk), intent(in) :: elastic(:) !< (num_total) from find_elastic [N]
+    energy = 0.5_rk*dot(q, elastic)
+    if (.not. allocated(self%origin_force)) return
+    energy = energy - 0.5_rk*dot(q, self%origin_force) + self%origin_energy
+  end function stored_energy
 
   !> Adds a multiple of C, without modal damping, to the values of a matrix.
   subroutine add_damping(self, factor, values)
@@ -83,7 +107,7 @@ contains
     if (allocated(error)) return
     call list_cells(model%mesh, guests, cells)
     call build_pattern(system%numbers, cells, system%matrix)
-    call build_jump_operator(system%numbers, model%joints, system%operator)
+    call build_jump_operator(system%numbers, model%mesh, model%joints, system%operator)
     call find_separators(system%numbers, system%operator, system%matrix%group, &
                          system%matrix%jump, system%matrix%joined)
     call assemble_stiffness(model, system%numbers, system%matrix, system%stiffness, error)
@@ -95,6 +119,21 @@ contains
     call diagonal(system%matrix, system%stiffness, system%diagonal)
     call costs%stop('assemble structure')
   end subroutine build_structure
+
+  !> The forces of elements at their origins, where the model has any.
+  subroutine build_origins(model, origin, system, costs, error)
+    type(problem), intent(in) :: model
+    real(rk), allocatable, intent(in) :: origin(:, :) !< (24, elements) [m]
+    type(dam_system), intent(inout) :: system
+    type(ledger), intent(in) :: costs
+    type(error_type), allocatable, intent(out) :: error
+    if (.not. allocated(origin)) return
+    call costs%start('assemble', 'stages', 'stages')
+    allocate (system%origin_force(system%matrix%num_total))
+    call assemble_origins(model, system%numbers, origin, system%origin_force, &
+                          system%origin_energy, error)
+    call costs%stop()
+  end subroutine build_origins
 
   !> Mass of the solids and of the guests.
   subroutine build_inertia(model, plan, system, costs, error)

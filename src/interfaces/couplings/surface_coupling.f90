@@ -6,7 +6,7 @@
 !>   K = k int N^T N dA.
 module surface_coupling
   use facet_segments, only: find_segments
-  use dam_mesh, only: fe_mesh
+  use dam_mesh, only: fe_mesh, are_there
   use dof_numbering, only: numbering
   use guest_type, only: guest, stiffness_matrix
   use kinds, only: rk
@@ -92,6 +92,7 @@ contains
     integer :: s, i
     k = 0.0_rk
     do s = 1, size(self%node, 2)
+      if (.not. are_there(mesh, self%node(:, s))) cycle
       do i = 1, num_directions
         k(i::num_directions, i::num_directions) = self%stiffness*self%product(:, :, s)
       end do

@@ -1,6 +1,7 @@
 !> All joints as one operator on the unknowns: jumps v = B q in local axes, three rows per point,
 !> and forces B^T (area t). At a point with jump unknowns d the rows of B are those of v = d.
 module joint_operator
+  use dam_mesh, only: fe_mesh, are_there
   use kinds, only: rk
   use joint_points, only: dam_joint
   use node_dofs, only: num_directions
@@ -29,8 +30,9 @@ contains
 
   !> Builds B from the points of the joints and T. Points are counted through all nodal
   !> joints, as in the numbering's `first_jump`.
-  subroutine build_jump_operator(numbers, joints, operator)
+  subroutine build_jump_operator(numbers, mesh, joints, operator)
     type(numbering), intent(in) :: numbers
+    type(fe_mesh), intent(in) :: mesh !< a point with an absent element has empty rows
     type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(out) :: operator
     integer, allocatable :: place(:)
@@ -54,6 +56,13 @@ contains
         point = operator%first_point(j) + p - 1
         operator%area(point) = joints(j)%area(p)
         operator%x(:, point) = joints(j)%x(:, p)
+        associate (nodes => joints(j)%node(joints(j)%first(p):joints(j)%first(p + 1) - 1))
+          if (.not. are_there(mesh, nodes)) then
+            operator%row_start(row_of(point, 1) + 1:row_of(point, num_axes) + 1) = &
+              operator%row_start(row_of(point, 1))
+            cycle
+          end if
+        end associate
         call add_rows(joints(j), p, merge(pair, 0, joints(j)%is_nodal), numbers, point, place, &
                       operator)
       end do

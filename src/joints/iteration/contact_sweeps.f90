@@ -11,7 +11,7 @@ module contact_sweeps
   use contact_scaling, only: open_group
   use coupling_block, only: add_product
   use joint_forces, only: joint_field
-  use joint_law, only: joint_state, state_bonded
+  use joint_law, only: joint_state, is_bare, state_bonded
   use joint_operator, only: jump_operator
   use joint_points, only: dam_joint
   use joint_rows, only: num_axes, row_of
@@ -42,7 +42,7 @@ contains
     type(joint_state), intent(in) :: new(:) !< of the last evaluation
     type(swept_points), intent(out) :: points
     real(rk) :: strength
-    integer :: j, first, last
+    integer :: j, p, first, last
     points%share = weight*operator%area
     points%spring = 1.0_rk/(spread(points%share, 1, 3)*k_ref)
     associate (n => operator%num_points)
@@ -55,6 +55,9 @@ contains
       call joints(j)%law%limits(points%friction(first), points%cohesion(first), strength)
       points%friction(first:last) = points%friction(first)
       points%cohesion(first:last) = points%cohesion(first)
+      do p = first, last
+        if (is_bare(old(j), p - first + 1)) points%cohesion(p) = 0.0_rk
+      end do
       points%slip(:, first:last) = old(j)%slip
       points%is_bonded(first:last) = new(j)%status == state_bonded
     end do

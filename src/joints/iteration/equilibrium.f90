@@ -11,7 +11,7 @@ module equilibrium
   use joint_law, only: joint_state
   use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
-  use joint_forces, only: gather_jumps, gather_tractions
+  use joint_forces, only: gather_jumps, gather_tractions, take_origins
   use active_solve, only: repeated_solve
   use linear_solver, only: equation_solver
   use refined_solve, only: exact_matrix
@@ -128,6 +128,7 @@ contains
     type(joint_state), intent(in) :: old(:) !< converged histories
     allocate (self%offset(3, operator%num_points), self%guess(3, operator%num_points))
     call operator%jumps(q, self%offset)
+    call take_origins(operator, old, self%offset)
     call gather_jumps(operator, old, self%guess)
   end subroutine set_jumps
 

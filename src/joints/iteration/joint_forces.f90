@@ -1,7 +1,7 @@
 !> The laws of all joints at once: tractions and tangents of all points of the operator.
 module joint_forces
   use kinds, only: rk
-  use joint_law, only: joint_state
+  use joint_law, only: joint_state, phase_absent, state_open
   use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use contact_augmentation, only: contact_multiplier
@@ -10,6 +10,7 @@ module joint_forces
   private
   public :: joint_field, tresca_limits, start_joints, reference_stiffness
   public :: evaluate_joints, gather_tractions, gather_jumps, gather_gaps, linear_tractions
+  public :: take_origins
 
   !> Friction with given limits in place of that of the laws.
   type :: tresca_limits
@@ -89,11 +90,52 @@ contains
         call joints(j)%law%linearise(jump, old(j), multiplier, field%scale%own(:, first:last), &
                                      new(j), field%iterate(:, first:last), &
                                      field%tangent(:, :, first:last))
+        if (allocated(old(j)%phase)) then
+          call silence_absent(old(j), new(j), field%iterate(:, first:last), &
+                              field%tangent(:, :, first:last))
+        end if
       end associate
     end do
     field%is_open = .not. any(any(abs(field%tangent) > 0.0_rk, 1), 1)
     call gather_tractions(operator, new, field%traction)
   end subroutine evaluate_joints
+
+  !> Points behind which an element is absent carry nothing and do not change.
+  pure subroutine silence_absent(old, new, iterate, tangent)
+    type(joint_state), intent(in) :: old !< converged history
+    type(joint_state), intent(inout) :: new !< trial history
+    real(rk), intent(inout) :: iterate(:, :) !< (3, points) [Pa]
+    real(rk), intent(inout) :: tangent(:, :, :) !< (3, 3, points) [Pa/m]
+    integer :: p
+    do p = 1, size(old%phase)
+      if (old%phase(p) /= phase_absent) cycle
+      iterate(:, p) = 0.0_rk
+      tangent(:, :, p) = 0.0_rk
+      new%jump(:, p) = 0.0_rk
+      new%traction(:, p) = 0.0_rk
+      new%slip(:, p) = 0.0_rk
+      new%internal(:, p) = old%internal(:, p)
+      new%is_broken(p) = old%is_broken(p)
+      new%friction_work(p) = old%friction_work(p)
+      new%fracture_work(p) = old%fracture_work(p)
+      new%status(p) = state_open
+    end do
+  end subroutine silence_absent
+
+  !> Relative displacements of the nodes where those of the laws are zero, taken from those of the
+  !> nodes; nothing in models without stages.
+  subroutine take_origins(operator, states, jump)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: states(:)
+    real(rk), intent(inout) :: jump(:, :) !< (3, points) [m]
+    integer :: j
+    do j = 1, size(states)
+      if (.not. allocated(states(j)%origin)) cycle
+      associate (own => jump(:, operator%first_point(j):operator%first_point(j + 1) - 1))
+        own = own - states(j)%origin
+      end associate
+    end do
+  end subroutine take_origins
 
   !> Tractions of the laws at all points.
   subroutine gather_tractions(operator, states, traction)

@@ -15,8 +15,8 @@ module joint_contraction
   use contraction_keyword, only: describe_contraction
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
-  use joint_law, only: allocate_state, joint_state, solid_behind, state_bonded, state_open, &
-                       state_slip, state_stick, traction_law
+  use joint_law, only: allocate_state, is_bare, joint_state, solid_behind, state_bonded, &
+                       state_open, state_slip, state_stick, traction_law
   use kinds, only: rk
   use slip_dissipation, only: closing_work, opening_work, sliding_work
   implicit none
@@ -176,6 +176,7 @@ contains
       before = point_state(old%gap(p) + old%shift(p), old%jump(:, p), old%traction(:, p), &
                            old%slip(:, p), old%friction_work(p), old%fracture_work(p), &
                            self%cohesion, old%is_broken(p), old%status(p))
+      if (is_bare(old, p)) before%cohesion = 0.0_rk
       after = before
       has_failed = new%num_openings(p) >= openings_to_failure
       if (has_failed) after%cohesion = 0.0_rk
@@ -235,11 +236,11 @@ contains
       if (point%jump(1) > law%strength/k(1)) share = (law%strength/k(1) - before%jump(1))/step(1)
       point%fracture_work = before%fracture_work + 0.5_rk*sum(k*(before%jump + share*step)**2)
     else if (opening <= 0.0_rk) then
-      limit = slip_limit(law, opening, law%cohesion)
+      limit = slip_limit(law, opening, before%cohesion)
       rise = step(1) + (point%gap - before%gap)
       point%friction_work = before%friction_work &
                             + opening_work(before%traction(2:3), limit, &
-                                           -opening/rise*step(2:3), law%cohesion, k(2))
+                                           -opening/rise*step(2:3), before%cohesion, k(2))
     end if
     point%traction = 0.0_rk
     point%slip = point%jump(2:3)
@@ -276,7 +277,7 @@ contains
     else
       point%friction_work = before%friction_work &
                             + sliding_work(before%traction(2:3), &
-                                           slip_limit(law, old_opening, law%cohesion), &
+                                           slip_limit(law, old_opening, before%cohesion), &
                                            trial, limit, k)
     end if
   end subroutine close_point

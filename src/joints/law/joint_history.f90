@@ -10,8 +10,14 @@ module joint_history
   private
   public :: joint_state, allocate_state
   public :: state_open, state_stick, state_slip, state_bonded
+  public :: phase_absent, phase_contact, phase_full, is_bare, takes_grout
 
   integer, parameter :: state_open = 0, state_stick = 1, state_slip = 2, state_bonded = 3
+
+  !> What a point may do, in models with stages.
+  integer, parameter :: phase_absent = 0 !< nothing: an element behind the point is absent
+  integer, parameter :: phase_contact = 1 !< contact and friction: the point is not grouted yet
+  integer, parameter :: phase_full = 2 !< all of its law
 
   !> History of all points of one joint, converged or trial. A new component gets a line in save and
   !> load.
@@ -20,7 +26,8 @@ module joint_history
     !> (points) multiplier of the contact over the normal stiffness, <= 0: contact begins where the
     !> opening is -shift, so that the joint carries pressure without penetration [m]
     real(rk), allocatable :: shift(:)
-    real(rk), allocatable :: jump(:, :) !< (3, points) relative displacement [m]
+    !> (3, points) relative displacement, since `origin` where the joint has one [m]
+    real(rk), allocatable :: jump(:, :)
     real(rk), allocatable :: traction(:, :) !< (3, points) by the law at `jump` [Pa]
     real(rk), allocatable :: slip(:, :) !< (2, points) irrecoverable sliding [m]
     logical, allocatable :: is_broken(:) !< tensile strength lost
@@ -34,6 +41,10 @@ module joint_history
     real(rk), allocatable :: fracture_work(:) !< dissipated when the strength was lost [J/m2]
     real(rk), allocatable :: internal(:, :) !< (variables, points) the law's own history
     real(rk), allocatable :: water(:) !< (points) water pressure, in joints with water
+    !> (3, points) relative displacement of the nodes where that of the law is zero: when the point
+    !> appeared, or was grouted [m]; in models with stages only
+    real(rk), allocatable :: origin(:, :)
+    integer, allocatable :: phase(:) !< (points) in models with stages only
   contains
     procedure :: save => save_joint
     procedure :: load => load_joint
@@ -57,6 +68,8 @@ contains
     call file%put('fracture_work', self%fracture_work)
     call file%put('internal', self%internal)
     call file%put('water', self%water)
+    call file%put('origin', self%origin)
+    call file%put('phase', self%phase)
   end subroutine save_joint
 
   !> Reads the history of one joint from the present group. The history must be in its initial
@@ -75,8 +88,26 @@ contains
     call file%get('friction_work', self%friction_work)
     call file%get('fracture_work', self%fracture_work)
     call file%get('internal', self%internal)
-    if (allocated(self%gap)) call file%get('water', self%water, shape(self%gap))
+    if (.not. allocated(self%gap)) return
+    call file%get('water', self%water, shape(self%gap))
+    call file%get('origin', self%origin, [3, size(self%gap)])
+    call file%get('phase', self%phase, shape(self%gap))
   end subroutine load_joint
+
+  !> Whether a point has contact and friction alone: a joint before it is grouted.
+  pure logical function is_bare(state, point)
+    type(joint_state), intent(in) :: state
+    integer, intent(in) :: point
+    is_bare = .false.
+    if (allocated(state%phase)) is_bare = state%phase(point) /= phase_full
+  end function is_bare
+
+  !> The points that a *GROUT fills: those that are there, but for intact ones.
+  pure function takes_grout(state) result(takes)
+    type(joint_state), intent(in) :: state !< of a joint in a model with stages
+    logical :: takes(size(state%phase))
+    takes = state%phase == phase_contact .or. (state%phase == phase_full .and. state%is_broken)
+  end function takes_grout
 
   !> Allocates the history of the points of one joint; all values but the gap are zero.
   pure subroutine allocate_state(gap, state, num_internal)

@@ -8,7 +8,7 @@ module dam_mesh
   use row_tables, only: weighted_rows
   implicit none
   private
-  public :: fe_mesh, named_set, surface, node_tie
+  public :: fe_mesh, named_set, surface, node_tie, element_is_there, are_there
 
   type :: fe_mesh
     integer :: num_nodes = 0
@@ -20,6 +20,11 @@ module dam_mesh
     integer, allocatable :: nodes(:, :) !< node positions; shape (8, num_elements), unused are 0
     integer, allocatable :: material_of_element(:) !< position in the list of materials, 0 for none
     integer, allocatable :: section_of_element(:) !< number of its *SOLID SECTION, 0 for none
+    integer :: stage = 0 !< how often *MODEL CHANGE has acted so far
+    !> (elements) taken out by *MODEL CHANGE in the present step; such an element has material 0, so
+    !> that it takes part in nothing. Not allocated in models without *MODEL CHANGE.
+    logical, allocatable :: is_absent(:)
+    logical, allocatable :: is_node_absent(:) !< (nodes) all elements of the node are absent
   end type fe_mesh
 
   !> A set of nodes or elements: positions in the mesh, ascending, each once.
@@ -43,4 +48,22 @@ module dam_mesh
     integer, allocatable :: node(:) !< (ties) the node that follows
     logical, allocatable :: is_tied(:, :) !< (3, ties) the tied directions
   end type node_tie
+
+contains
+
+  !> Whether an element takes part in the present step.
+  pure logical function element_is_there(mesh, element) result(is_there)
+    type(fe_mesh), intent(in) :: mesh
+    integer, intent(in) :: element !< position
+    is_there = .true.
+    if (allocated(mesh%is_absent)) is_there = .not. mesh%is_absent(element)
+  end function element_is_there
+
+  !> Whether all these nodes take part in the present step.
+  pure logical function are_there(mesh, nodes)
+    type(fe_mesh), intent(in) :: mesh
+    integer, intent(in) :: nodes(:) !< positions
+    are_there = .true.
+    if (allocated(mesh%is_node_absent)) are_there = .not. any(mesh%is_node_absent(nodes))
+  end function are_there
 end module dam_mesh

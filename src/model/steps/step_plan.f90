@@ -6,6 +6,7 @@ module step_plan
   private
   public :: step, step_load, step_fixity, print_request, field_request, step_controls
   public :: step_damping, step_reduction, initial_value, step_procedure, field_name_length
+  public :: grouting
 
   integer, parameter :: field_name_length = 8 !< of names of fields that a deck may give
 
@@ -84,6 +85,12 @@ module step_plan
     procedure :: is_static
   end type step_procedure
 
+  !> *GROUT of one joint.
+  type :: grouting
+    integer :: joint = 0 !< position
+    real(rk) :: pressure = 0.0_rk !< of the grout; 0: it hardens at the start of the step [Pa]
+  end type grouting
+
   !> *DAMPING of a step.
   type :: step_damping
     real(rk) :: ratio = 0.0_rk !< of Rayleigh damping; 0 for none
@@ -120,6 +127,8 @@ module step_plan
     character(field_name_length), allocatable :: envelope(:) !< fields of *ENVELOPE
     type(step_controls) :: controls
     integer :: checkpoint_frequency = 0 !< *RESTART: every so many increments, 0 for none
+    type(grouting), allocatable :: grouts(:) !< *GROUT in this step
+    logical :: changes_stage = .false. !< elements come or go, or joints are grouted, at its start
   contains
     procedure :: default_smallest, follows_accuracy
   end type step

@@ -21,6 +21,9 @@ module checkpoint_identity
   character(*), parameter :: free_cards = ' HEADING | RESTART | PREPRINT '
   !> Definitions that may be added: later steps can need them.
   character(*), parameter :: addable_cards = ' AMPLITUDE | NSET | ELSET | SURFACE '
+  !> Cards that act on the state before their own step: they say what a joint is before it is
+  !> grouted, and which elements come and go together.
+  character(*), parameter :: early_cards = ' MODEL CHANGE | GROUT '
 
 contains
 
@@ -130,19 +133,20 @@ contains
     end function word
   end subroutine parse_cards
 
-  !> Keeps the cards outside of steps and in the steps up to a number.
+  !> Keeps the cards outside of steps and in the steps up to a number, and those of stages.
   subroutine keep_up_to(step, cards)
     integer, intent(in) :: step
     type(card_digest), allocatable, intent(inout) :: cards(:)
     type(card_digest), allocatable :: some(:)
     integer :: i, last
-    allocate (some(count(cards%step <= step)))
+    allocate (some(size(cards)))
     last = 0
     do i = 1, size(cards)
-      if (cards(i)%step > step) cycle
+      if (cards(i)%step > step .and. .not. is_in(cards(i)%keyword, early_cards)) cycle
       last = last + 1
       some(last) = cards(i)
     end do
+    some = some(:last)
     call move_alloc(some, cards)
   end subroutine keep_up_to
 
@@ -190,8 +194,9 @@ contains
     character(*), intent(in) :: reason
     type(error_type), allocatable, intent(out) :: error
     call raise(error, 'keyway: --continue: the checkpoint does not belong to this run: '// &
-               reason//nl//'Only steps after the one of the checkpoint may change, and '// &
-               'amplitudes, sets and surfaces of new names may be added. Without --continue '// &
-               'the analysis starts from the beginning', deck_is_wrong)
+               reason//nl//'Only steps after the one of the checkpoint may change (not their '// &
+               '*MODEL CHANGE and *GROUT), and amplitudes, sets and surfaces of new names '// &
+               'may be added. Without --continue the analysis starts from the beginning', &
+               deck_is_wrong)
   end subroutine refuse
 end module checkpoint_identity

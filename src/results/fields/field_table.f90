@@ -15,7 +15,8 @@ module field_table
                           law_of_solids, law_of_block
   use error_fields, only: error_of_elements, error_on_nodes
   use joint_fields, only: has_joints, opening_on_nodes, opening_of_joint, slip_of_joint, &
-                          traction_of_joint, state_of_joint, used_slip_of_joint, water_of_joint
+                          traction_of_joint, state_of_joint, used_slip_of_joint, &
+                          water_of_joint, phase_of_joint
   use json_writer, only: lower
   implicit none
   private
@@ -168,6 +169,12 @@ contains
                name='WATER', meaning='water pressure in joints', endings=scalar, unit='Pa', &
                place=at_joints, remark='Only in joints with UPLIFT (*JOINT LAW).', &
                provider='uplift', requests='', of_joint=water_of_joint))
+    call enter(rows, last, result_field( &
+               name='GROUTED', meaning='stage of joints', endings=scalar, unit='1', &
+               is_integer=.true., place=at_joints, &
+               remark='0 an element behind the point is absent, 1 not grouted yet, '// &
+               '2 the whole law. Only in models with stages.', &
+               provider='stages', requests='', of_joint=phase_of_joint))
   end subroutine list_fields_of_joints
 
   !> Fields of the laws of inelastic solids.

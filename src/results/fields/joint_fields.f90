@@ -10,7 +10,7 @@ module joint_fields
   private
   public :: has_joints, opening_on_nodes
   public :: opening_of_joint, slip_of_joint, traction_of_joint, state_of_joint
-  public :: used_slip_of_joint, water_of_joint
+  public :: used_slip_of_joint, water_of_joint, phase_of_joint
 
 contains
 
@@ -97,6 +97,18 @@ contains
     real(rk), allocatable, intent(out) :: values(:, :) !< (1, points) [Pa]
     if (allocated(now%joints(number)%water)) values = one_row(now%joints(number)%water)
   end subroutine water_of_joint
+
+  !> GROUTED, a whole number; joints without stages have none.
+  subroutine phase_of_joint(self, model, now, number, values)
+    class(result_field), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    integer, intent(in) :: number
+    real(rk), allocatable, intent(out) :: values(:, :) !< (1, points)
+    if (allocated(now%joints(number)%phase)) then
+      values = one_row(real(now%joints(number)%phase, rk))
+    end if
+  end subroutine phase_of_joint
 
   !> A list as a table of one row.
   pure function one_row(list) result(row)

@@ -7,11 +7,11 @@ module stress_error
   use kinds, only: rk
   use dam_mesh, only: fe_mesh
   use element_hex8, only: hex8_gradients
-  use node_dofs, only: gather_vectors
   use problem_definition, only: problem
   use shape_hex8, only: corners_from_points, corner_of_point, hex8_dofs, point_shape
   use small_matrix, only: solve_dense
-  use stress_recovery, only: recovery_plan, max_points, few_nodes
+  use analysis_state, only: state
+  use stress_recovery, only: recovery_plan, motion_of_element, max_points, few_nodes
   implicit none
   private
   public :: smoothing_plan, make_smoothing_plan, stress_defect, energy_of_stresses
@@ -58,19 +58,26 @@ contains
       do a = 1, 8
         p = first(mesh%nodes(a, e))
         do while (p > 0)
-          if (section(p) == mesh%section_of_element(e)) exit
+          if (section(p) == section_of(e)) exit
           p = next(p)
         end do
         if (p == 0) then
           smoothing%num_patches = smoothing%num_patches + 1
           p = smoothing%num_patches
-          section(p) = mesh%section_of_element(e)
+          section(p) = section_of(e)
           next(p) = first(mesh%nodes(a, e))
           first(mesh%nodes(a, e)) = p
         end if
         smoothing%patch(a, s) = p
       end do
     end do
+  contains
+    !> The section of a solid; those that are absent have one of their own.
+    pure integer function section_of(element)
+      integer, intent(in) :: element
+      section_of = -1
+      if (mesh%material_of_element(element) > 0) section_of = mesh%section_of_element(element)
+    end function section_of
   end subroutine number_patches
 
   !> The elastic compliance of each material; zero for materials of joints alone.
@@ -166,6 +173,7 @@ contains
     do s = 1, plan%num_solids
       m = model%mesh%material_of_element(plan%element_of_solid(s))
       energy(s) = 0.0_rk
+      if (m == 0) cycle
       do q = 1, max_points
         energy(s) = energy(s) + smoothing%volume(q, s) &
                     *dot_product(first(:, q, s), matmul(smoothing%compliance(:, :, m), &
@@ -176,10 +184,10 @@ contains
   end subroutine energy_of_stresses
 
   !> Adds the work of the hourglass control of elements with one point: no stress shows it.
-  subroutine add_hourglass_energy(model, plan, u, energy)
+  subroutine add_hourglass_energy(model, plan, now, energy)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
-    real(rk), intent(in) :: u(:, :) !< (3, nodes) [m]
+    type(state), intent(in) :: now
     real(rk), intent(inout) :: energy(:) !< (solids) [J]
     real(rk) :: d(6, 6), x(3, 8, 1), ke(hex8_dofs, hex8_dofs, 1), moved(hex8_dofs)
     integer :: i, k, s
@@ -189,10 +197,8 @@ contains
         call model%materials(part%material)%law%elastic_stiffness(d)
         do k = 1, size(part%solids)
           s = part%solids(k)
-          associate (nodes => model%mesh%nodes(:, plan%element_of_solid(s)))
-            x(:, :, 1) = model%mesh%x(:, nodes)
-            moved = gather_vectors(u, nodes)
-          end associate
+          x(:, :, 1) = model%mesh%x(:, model%mesh%nodes(:, plan%element_of_solid(s)))
+          moved = motion_of_element(model, now, plan%element_of_solid(s))
           ke = 0.0_rk
           call plan%formulations(part%formulation)%item%add_stabilisation(x, d, ke)
           energy(s) = energy(s) + max(0.0_rk, dot_product(moved, matmul(ke(:, :, 1), moved)))

@@ -21,7 +21,8 @@ module stress_fields
   !> `point_...` (6, max_points, solids), `node_...` (6 or 3, nodes); order 11 22 33 12 13 23.
   type :: recovered_fields
     type(recovery_plan) :: plan
-    logical :: has_plan = .false., has_operator = .false. !< made once
+    logical :: has_plan = .false., has_operator = .false. !< made once for each stage
+    integer :: stage = 0 !< that the plan is made for
     logical :: has_inelastic = .false. !< valid for this increment
     logical :: has_points = .false., has_node_strain = .false. !< valid for this increment
     logical :: has_node_stress = .false., has_principals = .false.
@@ -33,7 +34,7 @@ module stress_fields
     real(rk), allocatable :: point_strain(:, :, :), point_stress(:, :, :)
     real(rk), allocatable :: node_strain(:, :), node_stress(:, :)
     real(rk), allocatable :: node_principal(:, :) !< (3, nodes), the largest first [Pa]
-    logical :: has_smoothing = .false. !< made once
+    logical :: has_smoothing = .false. !< made once for each stage
     logical :: has_error = .false. !< valid for this increment
     type(smoothing_plan) :: smoothing
     real(rk), allocatable :: defect(:, :, :) !< (6, max_points, solids) smooth less own stress [Pa]
@@ -70,10 +71,20 @@ contains
   subroutine need_plan(self, model)
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: model
-    if (self%has_plan) return
+    if (self%has_plan .and. self%stage == model%mesh%stage) return
+    if (self%has_plan) call forget_plan(self)
     call make_recovery_plan(model, self%plan)
     self%has_plan = .true.
+    self%stage = model%mesh%stage
   end subroutine need_plan
+
+  !> Forgets what belongs to the elements of an earlier stage.
+  subroutine forget_plan(self)
+    type(recovered_fields), intent(inout) :: self
+    self%has_operator = .false.
+    self%has_smoothing = .false.
+    if (allocated(self%point_strain)) deallocate (self%point_strain, self%point_stress)
+  end subroutine forget_plan
 
   !> Finds the solids and nodes that have left elasticity, once an increment.
   subroutine need_inelastic(self, model, now)
@@ -134,7 +145,7 @@ contains
     self%num_recoveries = self%num_recoveries + 1
     if (.not. allocated(self%node_stress)) allocate (self%node_stress(6, model%mesh%num_nodes))
     call self%need_inelastic(model, now)
-    if (self%had_operator .and. .not. self%has_operator) then
+    if (self%had_operator .and. .not. (self%has_operator .or. allocated(now%origin))) then
       call make_nodal_operator(model, self%plan, self%operator)
       self%has_operator = .true.
     end if
@@ -145,7 +156,7 @@ contains
     end if
     call self%need_points(model, now)
     call average_at_nodes(self%plan, self%point_stress, self%is_inelastic, self%node_stress)
-    if (self%num_recoveries < recoveries_before_operator) return
+    if (self%num_recoveries < recoveries_before_operator .or. allocated(now%origin)) return
     if (2*size(self%inelastic_nodes) > model%mesh%num_nodes) return
     call make_nodal_operator(model, self%plan, self%operator)
     self%has_operator = .true.
@@ -246,7 +257,7 @@ contains
                        self%defect)
     call energy_of_stresses(model, self%plan, self%smoothing, self%defect, self%defect, &
                             self%error_energy)
-    call add_hourglass_energy(model, self%plan, now%u, self%error_energy)
+    call add_hourglass_energy(model, self%plan, now, self%error_energy)
     call energy_of_stresses(model, self%plan, self%smoothing, self%point_stress, &
                             self%point_stress, self%stress_energy)
     self%has_error = .true.

@@ -3,6 +3,7 @@
 !> Elastic solids: eps = B u with the element's own operator, sigma = D eps. Solids of inelastic
 !> blocks: strain and stress of their states. A wedge is a hexahedron with repeated nodes.
 module stress_recovery
+  use dam_mesh, only: element_is_there
   use kinds, only: rk
   use element_formulation, only: solid_element
   use element_catalogue, only: is_solid, make_solid
@@ -14,7 +15,7 @@ module stress_recovery
   implicit none
   private
   public :: recovery_plan, make_recovery_plan, recover_points, copy_solid, max_points
-  public :: operators_of_block, few_nodes
+  public :: operators_of_block, motion_of_element, few_nodes
 
   integer, parameter :: max_points = 8 !< most integration points of an element
   integer, parameter :: few_nodes = 2000 !< smaller models are faster on one thread
@@ -128,6 +129,7 @@ contains
     allocate (plan%node_start(model%mesh%num_nodes + 1), source=0)
     do s = 1, plan%num_solids
       section = model%mesh%section_of_element(plan%element_of_solid(s))
+      if (.not. element_is_there(model%mesh, plan%element_of_solid(s))) cycle
       do a = 1, 8
         node = model%mesh%nodes(a, plan%element_of_solid(s))
         lowest_section(node) = min(lowest_section(node), section)
@@ -148,6 +150,7 @@ contains
     subroutine visit_corners(counting)
       logical, intent(in) :: counting
       do s = 1, plan%num_solids
+        if (.not. element_is_there(model%mesh, plan%element_of_solid(s))) cycle
         section = model%mesh%section_of_element(plan%element_of_solid(s))
         do a = 1, 8
           node = model%mesh%nodes(a, plan%element_of_solid(s))
@@ -179,7 +182,7 @@ contains
           call copy_solid(plan, now, plan%blocks(i)%solids(k), strain, stress)
         end do
       else
-        call recover_block(model, plan, plan%blocks(i), now%u, strain, stress)
+        call recover_block(model, plan, plan%blocks(i), now, strain, stress)
       end if
     end do
     !$omp end parallel do
@@ -201,11 +204,11 @@ contains
   end subroutine copy_solid
 
   !> Strain and stress of one elastic block.
-  subroutine recover_block(model, plan, part, u, strain, stress)
+  subroutine recover_block(model, plan, part, now, strain, stress)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(element_block), intent(in) :: part
-    real(rk), intent(in) :: u(:, :)
+    type(state), intent(in) :: now
     real(rk), intent(inout) :: strain(:, :, :), stress(:, :, :)
     real(rk), allocatable :: b(:, :, :, :), moved(:, :), found(:, :, :)
     real(rk) :: d(6, 6)
@@ -215,8 +218,7 @@ contains
     points = size(b, 3)
     allocate (found(6, points, n), moved(hex8_dofs, n))
     do k = 1, n
-      moved(:, k) = &
-        gather_vectors(u, model%mesh%nodes(:, plan%element_of_solid(part%solids(k))))
+      moved(:, k) = motion_of_element(model, now, plan%element_of_solid(part%solids(k)))
     end do
     call strains_at_points(b, moved, found)
     do k = 1, n
@@ -226,6 +228,16 @@ contains
       end do
     end do
   end subroutine recover_block
+
+  !> Displacements of the nodes of an element since it appeared without stress.
+  pure function motion_of_element(model, now, element) result(moved)
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    integer, intent(in) :: element !< position
+    real(rk) :: moved(hex8_dofs) !< [m]
+    moved = gather_vectors(now%u, model%mesh%nodes(:, element))
+    if (allocated(now%origin)) moved = moved - now%origin(:, element)
+  end function motion_of_element
 
   !> Strain operators of the elements of a block at their points, and the elastic stiffness.
   subroutine operators_of_block(model, plan, part, b, d)

@@ -198,7 +198,7 @@ contains
         call json%put_integer(part%iterations, 'iterations')
         call json%put_integer(part%cutbacks, 'cutbacks')
         call put_modes(json, part)
-        call put_energy(json, part)
+        call put_energy(json, part, model%stages%is_there_any())
         call json%close_object()
       end associate
     end do
@@ -222,9 +222,10 @@ contains
   end subroutine put_modes
 
   !> Energies at the end of a step; the error is the largest in the step.
-  subroutine put_energy(json, part)
+  subroutine put_energy(json, part, has_stages)
     type(json_text), intent(inout) :: json
     type(step_summary), intent(in) :: part
+    logical, intent(in) :: has_stages
     call json%open_object('energy')
     call json%put_real(part%energy%external, 'external')
     call json%put_real(part%energy%kinetic, 'kinetic')
@@ -234,6 +235,7 @@ contains
     call json%put_real(part%energy%fracture, 'fracture')
     call json%put_real(part%energy%crushing, 'crushing')
     call json%put_real(part%energy%numerical, 'numerical')
+    if (has_stages) call json%put_real(part%energy%stages, 'stages')
     call json%put_real(part%largest_error, 'error')
     call json%close_object()
   end subroutine put_energy

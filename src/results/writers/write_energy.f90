@@ -27,7 +27,7 @@ module write_energy
     procedure :: finish => close_energy
   end type energy_file
 
-  character(*), parameter :: header = 'step,increment,time,'//energy_columns
+  character(*), parameter :: header = 'step,increment,time,'
 
 contains
 
@@ -39,7 +39,7 @@ contains
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     call record%list_file(file_name(stem)//'_energy.csv')
-    call self%file%open(stem//'_energy.csv', header, error)
+    call self%file%open(stem//'_energy.csv', header//energy_columns(model), error)
   end subroutine open_energy
 
   !> Goes on with the file.
@@ -49,7 +49,7 @@ contains
     character(*), intent(in) :: stem
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
-    call self%file%go_on(stem//'_energy.csv', header, error)
+    call self%file%go_on(stem//'_energy.csv', header//energy_columns(model), error)
   end subroutine go_on_with_energy
 
   !> The path of the file.
@@ -85,7 +85,8 @@ contains
     type(run_record), intent(inout) :: record
     type(error_type), allocatable, intent(out) :: error
     if (.not. is_due(now, 1)) return
-    call self%file%add_row(now%step, now%increment, [now%total_time, energy_row(now%energy)])
+    call self%file%add_row(now%step, now%increment, [now%total_time, &
+                                                     energy_row(model, now%energy)])
     call self%file%save(error)
   end subroutine write_energies
 

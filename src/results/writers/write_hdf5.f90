@@ -84,7 +84,8 @@ contains
       call file%make_group('/history/joints')
       call self%increments%start(file, '/history/increments', &
                                  increment_columns)
-      call self%energies%start(file, '/history/energy', 'step,increment,time,'//energy_columns)
+      call self%energies%start(file, '/history/energy', &
+                               'step,increment,time,'//energy_columns(model))
       if (record%damage%is_present) then
         call self%damages%start(file, '/history/damage', 'step,increment,time,'//damage_columns)
       end if
@@ -116,7 +117,8 @@ contains
     end if
     associate (rows => self%num_rows)
       call self%increments%go_on('/history/increments', increment_columns, rows)
-      call self%energies%go_on('/history/energy', 'step,increment,time,'//energy_columns, rows)
+      call self%energies%go_on('/history/energy', &
+                               'step,increment,time,'//energy_columns(model), rows)
       if (record%damage%is_present) then
         call self%damages%go_on('/history/damage', 'step,increment,time,'//damage_columns, rows)
       end if
@@ -194,7 +196,7 @@ contains
     time = [real(now%step, rk), real(now%increment, rk), now%total_time]
     call self%increments%add(self%file, [time, now%increment_size, real(now%iterations, rk), &
                                          now%residual])
-    call self%energies%add(self%file, [time, energy_row(now%energy)])
+    call self%energies%add(self%file, [time, energy_row(model, now%energy)])
     if (record%damage%is_present) then
       call self%damages%add(self%file, [time, damage_row(record%damage)])
     end if

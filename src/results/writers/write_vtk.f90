@@ -1,5 +1,6 @@
 !> The VTK series: job_vtk/job_NNNN.vtu with job.pvd, envelopes and modes.
 module write_vtk
+  use dam_mesh, only: element_is_there
   use kinds, only: rk
   use errors, only: error_type
   use problem_definition, only: problem
@@ -29,6 +30,7 @@ module write_vtk
     character(:), allocatable :: folder !< '.../job_vtk/'
     character(:), allocatable :: job
     logical :: has_grid = .false. !< the arrays below and the folder exist
+    integer :: stage = 0 !< that the grid is made for
     integer :: num_frames = 0
     integer, allocatable :: connectivity(:), ends(:), kinds(:), elements(:) !< of solids
     type(pvd_file) :: frames
@@ -236,16 +238,20 @@ contains
     call save_listed(self, file, '_modes_step'//text_of(step)//'.vtu', record, error)
   end subroutine write_mode_shapes
 
-  !> Makes the folder and the cells, once.
+  !> Makes the folder and the cells, once for each stage.
   subroutine prepare(self, model, error)
     class(vtk_series), intent(inout) :: self
     type(problem), intent(in) :: model
     type(error_type), allocatable, intent(out) :: error
     integer :: e, c, last, corners(8), num_corners
-    if (self%has_grid) return
+    if (self%has_grid .and. self%stage == model%mesh%stage) return
     call make_folder(self%folder(:len(self%folder) - 1), error)
     if (allocated(error)) return
-    self%elements = pack([(e, e=1, model%mesh%num_elements)], is_solid(model%mesh%element_type))
+    if (self%has_grid) deallocate (self%connectivity, self%ends, self%kinds)
+    self%stage = model%mesh%stage
+    self%elements = pack([(e, e=1, model%mesh%num_elements)], &
+                         is_solid(model%mesh%element_type) .and. &
+                         [(element_is_there(model%mesh, e), e=1, model%mesh%num_elements)])
     allocate (self%connectivity(8*size(self%elements)))
     allocate (self%ends(size(self%elements)), self%kinds(size(self%elements)))
     last = 0

@@ -32,7 +32,7 @@ contains
 
   !> Runs all steps; an error fails the test.
   subroutine run(model, results, log)
-    type(problem), intent(in) :: model
+    type(problem), intent(inout) :: model
     type(recorder), intent(inout) :: results
     type(test_log), intent(inout) :: log
     type(state), allocatable :: now

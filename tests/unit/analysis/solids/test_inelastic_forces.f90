@@ -86,8 +86,9 @@ contains
     integer, intent(in) :: tangent
     real(rk), intent(out) :: excess(:)
     real(rk) :: u(3, model%mesh%num_nodes)
+    real(rk), allocatable :: no_origin(:, :)
     call numbers%expand(q, u)
-    call update_points(model, u, time_increment(tangent=tangent), old, new, answers)
+    call update_points(model, u, no_origin, time_increment(tangent=tangent), old, new, answers)
     call sum_excess(model, numbers, answers, zero_vectors(model%mesh%num_nodes), excess)
   end subroutine find_excess
 

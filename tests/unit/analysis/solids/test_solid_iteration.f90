@@ -74,7 +74,7 @@ contains
 
   !> Runs it.
   subroutine run(model, results, now, log)
-    type(problem), intent(in) :: model
+    type(problem), intent(inout) :: model
     type(recorder), intent(inout) :: results
     type(state), allocatable, intent(out) :: now
     type(test_log), intent(inout) :: log
@@ -305,7 +305,7 @@ contains
 
   !> The first increment of a static step, by itself.
   subroutine solve_increment(model, outcome)
-    type(problem), intent(in) :: model
+    type(problem), intent(inout) :: model
     type(balance_outcome), intent(out) :: outcome
     type(dam_system) :: system
     type(solid_solver) :: solids

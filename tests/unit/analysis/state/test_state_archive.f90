@@ -143,7 +143,7 @@ contains
 
   !> Saves a state, loads it into a new analysis and runs to the end: all states are the same.
   subroutine goes_on(model, states, k, what, log)
-    type(problem), intent(in) :: model
+    type(problem), intent(inout) :: model
     type(state), intent(in) :: states(:) !< of the whole run
     integer, intent(in) :: k !< the one that is saved
     character(*), intent(in) :: what

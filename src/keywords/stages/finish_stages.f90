@@ -1,0 +1,87 @@
+!> Completes the stages of a deck, and checks them.
+module finish_stages
+  use deck_scan, only: is_keyword
+  use diagnostics, only: diagnostic_list
+  use model_draft, only: draft
+  implicit none
+  private
+  public :: complete_stages
+
+contains
+
+  !> Marks the steps that change a stage. Nothing happens in a deck without stages.
+  subroutine complete_stages(model, faults)
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: s
+    call check_places(model, faults)
+    call note_grouted(model)
+    if (.not. model%problem%stages%is_there_any()) return
+    do s = 1, size(model%problem%steps)
+      model%problem%steps(s)%changes_stage = changes_elements(model, s) &
+                                             .or. hardens(model, s, .false.) &
+                                             .or. hardens(model, s - 1, .true.)
+    end do
+    if (.not. allocated(model%problem%stages%is_absent)) return
+    model%problem%stages%material = model%problem%mesh%material_of_element
+  end subroutine complete_stages
+
+  !> Stages change in static steps; models with *INTERFACE have none.
+  subroutine check_places(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i, s
+    s = 0
+    do i = 1, size(model%cards)
+      if (is_keyword(model%cards(i), 'STEP')) s = s + 1
+      if (.not. (is_keyword(model%cards(i), 'MODEL CHANGE') .or. &
+                 is_keyword(model%cards(i), 'GROUT'))) cycle
+      if (s < 1 .or. s > model%num_steps) cycle
+      if (.not. model%problem%steps(s)%procedure%is_static()) then
+        call model%cards(i)%fault(faults, 'a stage begins in a step that is not static', &
+                                  '*STATIC in this step')
+      else if (is_keyword(model%cards(i), 'MODEL CHANGE') .and. size(model%interfaces) > 0) then
+        call model%cards(i)%fault(faults, 'the model has an *INTERFACE, whose quadrilaterals '// &
+                                  'would stay without a solid', '*TIE or *JOINT between surfaces')
+      end if
+    end do
+  end subroutine check_places
+
+  !> The joints that some step grouts.
+  subroutine note_grouted(model)
+    type(draft), intent(inout) :: model
+    integer :: s
+    do s = 1, size(model%problem%steps)
+      if (.not. allocated(model%problem%steps(s)%grouts)) cycle
+      associate (plan => model%problem%stages)
+        if (.not. allocated(plan%is_grouted)) then
+          allocate (plan%is_grouted(size(model%joints)), source=.false.)
+        end if
+        plan%is_grouted(model%problem%steps(s)%grouts%joint) = .true.
+      end associate
+    end do
+  end subroutine note_grouted
+
+  !> Whether elements come or go at the start of a step.
+  pure logical function changes_elements(model, s)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: s !< step
+    changes_elements = .false.
+    if (.not. allocated(model%problem%stages%is_absent)) return
+    associate (is_absent => model%problem%stages%is_absent)
+      changes_elements = any(is_absent(:, s))
+      if (s > 1) changes_elements = any(is_absent(:, s) .neqv. is_absent(:, s - 1))
+    end associate
+  end function changes_elements
+
+  !> Whether a step has grout with, or without, pressure.
+  pure logical function hardens(model, s, has_pressure)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: s !< step; 0 has none
+    logical, intent(in) :: has_pressure
+    hardens = .false.
+    if (s < 1) return
+    if (.not. allocated(model%problem%steps(s)%grouts)) return
+    hardens = any((model%problem%steps(s)%grouts%pressure > 0.0) .eqv. has_pressure)
+  end function hardens
+end module finish_stages

@@ -1,0 +1,43 @@
+!> Which elements there are in each step (*MODEL CHANGE), and which joints are grouted (*GROUT).
+module stage_plan
+  implicit none
+  private
+  public :: stages, classes_of
+
+  !> Nothing is allocated in a deck without these keywords.
+  type :: stages
+    logical, allocatable :: is_absent(:, :) !< (elements, steps)
+    integer, allocatable :: material(:) !< (elements) of the complete model
+    logical, allocatable :: is_grouted(:) !< (joints) has a *GROUT in some step
+  contains
+    procedure :: is_there_any
+  end type stages
+
+contains
+
+  !> Whether the deck has stages.
+  pure logical function is_there_any(self)
+    class(stages), intent(in) :: self
+    is_there_any = allocated(self%is_absent) .or. allocated(self%is_grouted)
+  end function is_there_any
+
+  !> Numbers the elements so that those of one number come and go together.
+  pure function classes_of(is_absent) result(class_of)
+    logical, intent(in) :: is_absent(:, :) !< (elements, steps)
+    integer :: class_of(size(is_absent, 1))
+    integer :: first(2*size(is_absent, 1) + 1), s, e, key, num_classes
+    class_of = 1
+    do s = 1, size(is_absent, 2)
+      first = 0
+      num_classes = 0
+      do e = 1, size(class_of)
+        key = 2*class_of(e) - merge(1, 0, is_absent(e, s))
+        if (first(key) == 0) then
+          num_classes = num_classes + 1
+          first(key) = num_classes
+        end if
+        class_of(e) = first(key)
+      end do
+    end do
+  end function classes_of
+end module stage_plan
