@@ -1,6 +1,6 @@
 !> Time of the law of concrete per point, in blocks as in an analysis, on one thread.
 program bench_concrete
-  use concrete_model, only: lee_fenves, repeat_chance, table_one
+  use concrete_model, only: lee_fenves, table_one
   use damage_constants, only: concrete_constants
   use errors, only: error_type
   use kinds, only: rk
@@ -8,6 +8,7 @@ program bench_concrete
   use material_law, only: start_points
   use material_points, only: consistent_tangent, no_tangent, point_set, point_state, &
                              secant_tangent, time_increment, update_report
+  use testing, only: repeat_chance
   implicit none
   integer, parameter :: block = 128 !< points of 16 elements
   integer, parameter :: repeats = 4000
