@@ -34,6 +34,7 @@ set(sources
   report/run_ledger.f90
   report/timer.f90
   system/file_identity.f90
+  system/machine.f90
   system/run_lock.f90
   system/stop_signals.f90
   system/system_calls.c

@@ -21,6 +21,14 @@ void keyway_set_blas_threads(int threads)
   if (find("openblas_set_num_threads", &set)) set(threads);
 }
 
+/* Name of the kernels that OpenBLAS has chosen, in `room` characters; "" for another library. */
+void keyway_blas_kernels(char *name, int room)
+{
+  char *(*get_name)(void);
+  name[0] = '\0';
+  if (find("openblas_get_corename", &get_name)) snprintf(name, (size_t)room, "%s", get_name());
+}
+
 /* 1 when the BLAS threads are OpenMP's. */
 int keyway_blas_uses_openmp(void)
 {

@@ -2,11 +2,14 @@
 !>
 !> Threads of OpenBLAS spin between calls and slow down OpenMP, so only factors use them.
 module blas_threads
-  use, intrinsic :: iso_c_binding, only: c_int
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
   use omp_lib, only: omp_get_max_active_levels, omp_get_max_threads, omp_set_max_active_levels
   implicit none
   private
   public :: use_many_threads, use_one_thread, restart_with_fast_libraries, warm_up_blas
+  public :: kernels_of_blas
+
+  integer, parameter :: longest_name = 64
 
   interface
     subroutine keyway_set_blas_threads(threads) bind(c)
@@ -28,6 +31,13 @@ module blas_threads
       integer(c_int) :: answer
     end function keyway_blas_uses_openmp
 
+    subroutine keyway_blas_kernels(name, room) bind(c)
+      import :: c_char, c_int, longest_name
+      implicit none
+      character(kind=c_char), intent(out) :: name(longest_name)
+      integer(c_int), value :: room
+    end subroutine keyway_blas_kernels
+
     !> Restarts the program if OpenBLAS does not know the processor or if idle threads would keep
     !> their cores busy; must be the first call of the program.
     subroutine restart_with_fast_libraries() bind(c, name='keyway_restart_with_fast_libraries')
@@ -36,6 +46,20 @@ module blas_threads
   end interface
 
 contains
+
+  !> The kernels that OpenBLAS has chosen for this processor; 'unknown' for another library.
+  function kernels_of_blas() result(text)
+    character(:), allocatable :: text
+    character(kind=c_char) :: name(longest_name)
+    integer :: i
+    call keyway_blas_kernels(name, int(longest_name, c_int))
+    text = ''
+    do i = 1, longest_name
+      if (name(i) == c_null_char) exit
+      text = text//name(i)
+    end do
+    if (text == '') text = 'unknown'
+  end function kernels_of_blas
 
   !> Gives the BLAS as many threads as OpenMP has. CHOLMOD must not open teams of threads: these
   !> have four threads regardless of the user's number, and doubled the processor time of a factor.

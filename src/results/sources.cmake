@@ -36,6 +36,7 @@ set(sources
   summary/damage_json.f90
   summary/error_json.f90
   summary/joint_json.f90
+  summary/machine_json.f90
   summary/material_summary.f90
   summary/run_progress.f90
   summary/run_summaries.f90

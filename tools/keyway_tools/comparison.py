@@ -15,7 +15,14 @@ from keyway_tools.results import Results
 # Columns that identify a row; two tables are matched by those that both have.
 KEYS = ("step", "increment", "node", "element", "point")
 # Entries that may differ between two runs of one deck: user, machine and time.
-SUMMARY_IGNORED = ("program.*", "deck.*", "ledger.*", "*.wall_s", "ignored_input.*.file")
+SUMMARY_IGNORED = (
+    "program.*",
+    "machine.*",
+    "deck.*",
+    "ledger.*",
+    "*.wall_s",
+    "ignored_input.*.file",
+)
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,8 @@ NO_RESULTS = (".log", ".out")
 # Entries of the summary that depend on the machine and the hour, or are prose.
 SUMMARY_IGNORED = (
     "program.*",
+    "machine.*",
+    "machine.*",
     "deck",
     "deck.*",
     "ledger",

@@ -14,6 +14,7 @@ module summary_json
   use run_summaries, only: follows_error, run_summary, step_summary
   use json_writer, only: json_text, lower
   use error_json, only: put_estimates, put_increments
+  use machine_json, only: put_machine
   use joint_json, only: put_joints, put_interfaces, put_extremes
   use damage_json, only: put_damage
   use umat_json, only: put_umat
@@ -41,6 +42,7 @@ contains
     logical :: is_good
     call json%open_object()
     call put_program(json)
+    call put_machine(json)
     call json%put_text(trim(summary%status), 'status')
     call json%put_text(summary%message, 'message')
     call json%open_object('deck')
