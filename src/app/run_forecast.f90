@@ -1,15 +1,17 @@
-!> What a run will take: time and memory, from counts of the model, the planned entries of the
-!> factor and the speed of this machine, measured for a moment.
+!> What a run will take: time, memory and files, from counts of the model, the planned entries of
+!> the factor and the speed of this machine.
 !>
-!> The coefficients are those of runs on two cores of 2.2 GHz (`reference_rate`). Joints and cracks
-!> take the iterations of strong motions. Dense matrices of joints grow with their points squared,
-!> or with their points where joints are separators in the factor.
+!> The coefficients are those of runs on two processors of the machine whose speeds are `reference`.
+!> Joints and cracks take the iterations of strong motions. Dense matrices of joints grow with
+!> their points squared, or with their points where joints are separators in the factor.
 module run_forecast
-  use dense_products, only: times
   use errors, only: error_type
   use kinds, only: rk
+  use machine_speed, only: find_speeds, speed
+  use omp_lib, only: omp_get_max_threads
   use problem_definition, only: problem
-  use run_ledger, only: ledger
+  use run_file_sizes, only: size_of_files
+  use run_ledger, only: ledger, ledger_part
   use solver_cholmod, only: cholmod_solver
   use step_plan, only: step
   use step_system, only: build_structure, dam_system
@@ -24,22 +26,32 @@ module run_forecast
     real(rk) :: unknowns = 0.0_rk, points = 0.0_rk !< of joints
     real(rk) :: law_points = 0.0_rk !< integration points of inelastic solids
     real(rk) :: entries = 0.0_rk !< of the factor
-    real(rk) :: analysis = 0.0_rk !< seconds that the analysis has just taken
+    real(rk) :: reading = 0.0_rk !< seconds that reading the deck has taken
+    real(rk) :: analysis = 0.0_rk !< seconds that building and planning the first matrix has taken
   end type run_counts
 
-  real(rk), parameter :: reference_rate = 45.0e9_rk !< products of matrices [operations/s]
-  integer, parameter :: size_of_trial = 384, num_trials = 3
+  type(speed), parameter :: reference = speed(products=5.8e10_rk, sweeps=2.8e9_rk)
   real(rk), parameter :: largest = 3.0e5_rk !< unknowns of a model whose factor is planned
   !> Points of joints that stay together at the end of the factor; of more points each group is a
   !> separator, and the inverse of the factor is kept in its pattern for a moment.
   real(rk), parameter :: most_at_the_end = 1500.0_rk
+  real(rk), parameter :: busy = 1.5_rk !< times as slow as ever measured: it is said
 
-  ! On the reference machine [s]: per entry of the factor, unknown, point of a joint, integration
-  ! point of a law and increment.
-  real(rk), parameter :: factor_time = 1.0e-11_rk, solve_time = 1.6e-9_rk
-  real(rk), parameter :: products_time = 3.0e-7_rk, envelope_time = 1.3e-7_rk
-  real(rk), parameter :: point_time = 3.0e-5_rk, law_time = 1.5e-6_rk, law_iterations = 8.0_rk
-  real(rk), parameter :: output_time = 3.0e-4_rk
+  ! On the reference machine [s].
+  real(rk), parameter :: start_time = 0.004_rk, step_time = 0.005_rk
+  real(rk), parameter :: factor_time = 2.0e-11_rk !< per entry to the power of 1.5
+  real(rk), parameter :: solve_time = 1.1e-9_rk !< per entry of a factor near the processor
+  real(rk), parameter :: far_solve_time = 1.6e-9_rk !< per entry of a factor in the memory
+  real(rk), parameter :: far_entries = 1.6e7_rk
+  real(rk), parameter :: products_time = 2.7e-7_rk, envelope_time = 1.2e-7_rk !< per unknown
+  real(rk), parameter :: point_time = 1.5e-5_rk, pair_time = 1.2e-8_rk !< of joints
+  real(rk), parameter :: law_time = 1.2e-7_rk
+  real(rk), parameter :: law_iterations = 11.0_rk, static_iterations = 15.0_rk
+  real(rk), parameter :: iteration_time = 6.0e-8_rk !< of inelastic solids, per unknown
+  real(rk), parameter :: mode_solves = 10.0_rk !< for each mode
+  real(rk), parameter :: set_up_solves = 15.0_rk !< of a step with joints
+  real(rk), parameter :: output_time = 2.5e-4_rk, file_time = 4.0e-3_rk !< per increment, per MB
+  real(rk), parameter :: serial_share = 0.4_rk !< of an increment without laws
 
 contains
 
@@ -50,24 +62,31 @@ contains
     character(:), allocatable :: text
     character, parameter :: nl = new_line('a')
     type(run_counts) :: counts
-    real(rk) :: time, slowness
+    type(speed) :: now, best
+    real(rk) :: time, delay, files
     logical :: is_counted
-    integer :: i
     text = ''
     if (size(model%steps) == 0) return
     call count_work(model, costs, counts, is_counted)
     if (.not. is_counted) return
-    slowness = reference_rate/measured_rate()
-    time = 0.1_rk + 2.0_rk*counts%analysis
-    do i = 1, size(model%steps)
-      time = time + slowness*time_of_step(model%steps(i), counts)
-    end do
-    text = 'Cost on this machine, as it is busy now'//nl// &
+    call find_speeds(now, best)
+    delay = slowness(now)/slowness(best)
+    counts%reading = counts%reading/delay
+    counts%analysis = counts%analysis/delay
+    files = size_of_files(model, counts%points)
+    time = time_of_run(model%steps, counts, slowness(best)) + file_time*files
+    text = 'Cost on this machine, when it is idle'//nl// &
            '  unknowns                '//as_text(nint(counts%unknowns))//nl// &
            '  entries of the factor   '//as_short_text(counts%entries)//nl// &
            '  time                    about '//as_short_text(rounded(time))//' s'//nl// &
            '  memory                  about '// &
-           as_short_text(rounded(memory_of(counts)))//' MB'
+           as_short_text(rounded(memory_of(model%steps, counts)))//' MB'//nl// &
+           '  files                   about '// &
+           as_short_text(rounded(files))//' MB'
+    if (delay > busy) then
+      text = text//nl//'  the machine is busy now: about '// &
+             as_short_text(rounded(delay*time))//' s'
+    end if
   end function forecast_of
 
   !> Builds the structure of the first step and plans its factor.
@@ -79,10 +98,12 @@ contains
     type(dam_system) :: system
     type(cholmod_solver) :: factor
     type(error_type), allocatable :: error
+    type(ledger_part), allocatable :: parts(:)
     real(rk) :: bytes, peak, started_at
     integer :: i
     is_counted = .false.
     if (3.0_rk*model%mesh%num_nodes > largest) return
+    call costs%read_parts(parts, counts%reading)
     started_at = wall_clock()
     call build_structure(model, model%steps(1), system, costs, error)
     if (allocated(error)) return
@@ -100,54 +121,72 @@ contains
     is_counted = .true.
   end subroutine count_work
 
-  !> Time of a step on the reference machine [s].
+  !> How slow a machine is, over the reference. Solves and products with sparse matrices are
+  !> limited by the memory, laws and factors by the processor.
+  pure real(rk) function slowness(machine)
+    type(speed), intent(in) :: machine
+    slowness = sqrt(reference%products/machine%products*reference%sweeps/machine%sweeps)
+  end function slowness
+
+  !> Time of a run [s].
+  real(rk) function time_of_run(steps, counts, slow) result(time)
+    type(step), intent(in) :: steps(:)
+    type(run_counts), intent(in) :: counts
+    real(rk), intent(in) :: slow !< this machine over the reference
+    integer :: i
+    time = slow*start_time + counts%reading
+    do i = 1, size(steps)
+      time = time + counts%analysis + slow*time_of_step(steps(i), counts)
+    end do
+  end function time_of_run
+
+  !> Time of a step on the reference machine, without what is counted from the run [s].
   real(rk) function time_of_step(plan, counts) result(time)
     type(step), intent(in) :: plan
     type(run_counts), intent(in) :: counts
-    real(rk) :: solve, increments, iterations
-    solve = solve_time*counts%entries
-    time = factor_time*counts%entries**1.5_rk + 2.0_rk*counts%analysis
+    real(rk) :: solve, increment, iterations, laws, share, spread
+    ! Two threads did the work of the reference.
+    spread = 2.0_rk/omp_get_max_threads()
+    share = serial_share + (1.0_rk - serial_share)*spread
+    solve = counts%entries*(solve_time + (far_solve_time - solve_time) &
+                            *min(1.0_rk, counts%entries/far_entries))
+    time = step_time + spread*factor_time*counts%entries**1.5_rk
     if (plan%procedure%finds_modes) then
-      time = time + 4.0_rk*plan%num_modes*solve
+      time = time + share*mode_solves*plan%num_modes*solve
       return
     end if
-    increments = max(1.0_rk, plan%duration/max(plan%first_increment, tiny(1.0_rk)))
+    if (counts%points > 0.0_rk) time = time + share*set_up_solves*solve
     iterations = 0.0_rk
-    if (counts%law_points > 0.0_rk) iterations = law_iterations
-    time = time + increments*(output_time + solve + products_time*counts%unknowns &
-                              + point_time*counts%points &
-                              + iterations*(0.7_rk*solve + law_time*counts%law_points))
-    if (allocated(plan%envelope)) time = time + increments*envelope_time*counts%unknowns
+    if (counts%law_points > 0.0_rk) then
+      iterations = law_iterations
+      if (plan%procedure%is_static()) iterations = static_iterations
+    end if
+    laws = iterations*spread*law_time*counts%law_points
+    increment = solve + products_time*counts%unknowns &
+                + counts%points &
+                *(point_time + pair_time*min(counts%points, most_at_the_end)) &
+                + iterations*(solve + iteration_time*counts%unknowns)
+    if (allocated(plan%envelope)) increment = increment + envelope_time*counts%unknowns
+    time = time + plan%num_planned()*(output_time + share*increment + laws)
   end function time_of_step
 
-  !> Memory [MB].
-  pure real(rk) function memory_of(counts) result(memory)
+  !> Memory [MB]. A dynamic step has mass, damping and the matrix of the increment as well.
+  pure real(rk) function memory_of(steps, counts) result(memory)
+    type(step), intent(in) :: steps(:)
     type(run_counts), intent(in) :: counts
-    memory = 22.0_rk + 1.0e-5_rk*counts%entries + 2.5e-3_rk*counts%unknowns &
-             + 1.0e-3_rk*counts%law_points
+    real(rk) :: of_unknown
+    of_unknown = 2.5e-3_rk
+    if (any(steps%procedure%has_inertia)) of_unknown = 4.0e-3_rk
+    memory = 23.0_rk + 1.2e-5_rk*counts%entries + of_unknown*counts%unknowns &
+             + 3.0e-3_rk*counts%law_points
     if (counts%points <= most_at_the_end) then
       memory = memory + 2.4e-4_rk*counts%points**2
     else
-      memory = memory + 0.8e-5_rk*counts%entries + 0.08_rk*counts%points
+      memory = memory + 0.6e-5_rk*counts%entries + 0.08_rk*counts%points
     end if
   end function memory_of
 
-  !> Speed of products of matrices now, the best of some trials [operations/s].
-  real(rk) function measured_rate() result(rate)
-    real(rk), allocatable :: a(:, :), b(:, :), c(:, :)
-    real(rk) :: started_at
-    integer :: i
-    allocate (a(size_of_trial, size_of_trial), b(size_of_trial, size_of_trial), source=1.0_rk)
-    allocate (c(size_of_trial, size_of_trial))
-    rate = 1.0_rk
-    do i = 1, num_trials
-      started_at = wall_clock()
-      c = times(a, b)
-      rate = max(rate, 2.0_rk*real(size_of_trial, rk)**3/max(wall_clock() - started_at, 1.0e-6_rk))
-    end do
-  end function measured_rate
-
-  !> One significant digit, or two below 3: a forecast has no more.
+  !> Two significant digits, the second a 0 or 5 above 3: a forecast has no more.
   pure real(rk) function rounded(number)
     real(rk), intent(in) :: number
     real(rk) :: unit

@@ -3,10 +3,12 @@ set(sources
   cli.f90
   disk_advice.f90
   earlier_results.f90
+  machine_speed.f90
   main.f90
   model_summary.f90
   motion_peaks.f90
   run_analysis.f90
+  run_file_sizes.f90
   run_forecast.f90
   run_material.f90
   shared_costs.f90

@@ -113,6 +113,34 @@ def test_check_forecasts_the_memory_of_the_run(keyway, deck):
     assert 1.0 / 1.5 < found / memory < 1.5
 
 
+def test_check_forecasts_the_files_and_keeps_the_speed_of_the_machine(program_path, tmp_path):
+    """Files within a factor of 1.5; the speeds are those of the best call so far."""
+    deck = INPUT / "petersson_beam.inp"
+    here = os.environ | {"XDG_CACHE_HOME": str(tmp_path / "cache")}
+    command = [program_path.resolve(), "--check", deck]
+    text = subprocess.run(command, env=here, capture_output=True, text=True, check=True).stdout
+    files = float(re.search(r"files +about (\S+) MB", text)[1])
+    subprocess.run([program_path.resolve(), "-q", "-o", tmp_path / "run", deck], check=True)
+    found = sum(path.stat().st_size for path in (tmp_path / "run").rglob("*") if path.is_file())
+    assert 1.0 / 1.5 < found / 1e6 / files < 1.5
+    kept = tmp_path / "cache/keyway/machine_speed.txt"
+    name, *speeds = kept.read_text().splitlines()
+    assert len(speeds) == 2
+    kept.write_text(f"other\n1.0\n2.0\n{name}\n1e15\n1e15\n")
+    text = subprocess.run(command, env=here, capture_output=True, text=True, check=True).stdout
+    assert "the machine is busy now: about" in text
+    assert kept.read_text() == f"other\n1.0\n2.0\n{name}\n1e15\n1e15\n"
+
+
+def test_the_machine_is_in_the_summary(keyway):
+    """What /proc/cpuinfo says, and the threads that the run was given."""
+    machine = keyway(INPUT / "gravity_column.inp", "-j", "1").json["machine"]
+    assert list(machine) == ["processor", "processors", "threads", "blas_kernels", "memory_mb"]
+    assert machine["threads"] == 1
+    assert machine["processors"] == len(os.sched_getaffinity(0))
+    assert machine["memory_mb"] > 100
+
+
 def read_all(descriptor: int) -> str:
     parts = []
     try:

@@ -1,7 +1,7 @@
 """Measures the time of runs relative to the equation solver, and the time for given accuracy.
 
 usage: .venv/bin/python tools/bench [run] [accuracy] [joints] [cracks] [reduced] [scale]
-           [estimates] [peers]
+           [estimates] [peers] [forecast]
            [--sizes 48000 145000] [--json FILE]
 
 run (default): ratios of times taken in one process, which hardly depend on the machine:
@@ -32,6 +32,9 @@ estimates: the share of the estimates of errors in the time of each deck of inpu
 peers: the same dam in Keyway, CalculiX (Debian's calculix-ccx) and OpenSees (pip's openseespy, in
 a Python named by --opensees-python): weight, a linear history, a history with two joints. Time,
 memory and displacements side by side, as in docs/performance.md. The first of --sizes is used.
+
+forecast: what `keyway --check` says of --decks (all of input/) on an idle machine, and what their
+runs took, as in docs/performance.md.
 """
 
 from __future__ import annotations
@@ -47,6 +50,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
 
+from cost_forecast import decks_of, measure_forecasts  # noqa: E402
 from cost_of_accuracy import draw, measure_accuracy, tables  # noqa: E402
 from cost_of_cracks import measure_cracks  # noqa: E402
 from cost_of_estimates import HEAD, decks_of_input, measure_estimates  # noqa: E402
@@ -70,13 +74,14 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("--refine", type=int, default=1, help="of the dam that cracks (1)")
     add("--threads", type=int, default=2, help="of the program (2)")
     add("--program", type=Path, default=ROOT / "build/release/keyway", help="the program")
-    add("--decks", type=Path, nargs="+", help="of `estimates` (all of input/)")
+    add("--decks", type=Path, nargs="+", help="of estimates and forecast (all of input/)")
     add("--json", type=Path, metavar="FILE", help="write the figures as JSON too")
     add("--opensees-python", metavar="PYTHON", help="a Python that has openseespy")
     add("--picture", type=Path, metavar="FILE", help="draw time against accuracy")
     options = parser.parse_args(arguments)
     options.what = options.what or ["run"]
-    known = {"run", "accuracy", "joints", "cracks", "reduced", "scale", "estimates", "peers"}
+    known = {"run", "accuracy", "joints", "cracks", "reduced", "scale", "estimates", "peers",
+             "forecast"}  # fmt: skip
     if set(options.what) - known:
         parser.error(f"expected one of {', '.join(sorted(known))}")
     return options
@@ -118,6 +123,9 @@ def report_others(program: Program, folder: Path, options: argparse.Namespace) -
         print(HEAD)
         decks = options.decks or decks_of_input(ROOT / "input")
         measure_estimates(program, decks, folder)
+    if "forecast" in options.what:
+        decks = options.decks or decks_of(ROOT / "input")
+        print(measure_forecasts(program, folder, decks))
     if "peers" in options.what:
         print(compare_peers(peer_options(options), folder))
 

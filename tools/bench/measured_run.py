@@ -6,6 +6,7 @@ import re
 import resource
 import subprocess
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -44,9 +45,10 @@ class Program:
     path: Path
     threads: int = 2
 
-    def run(self, deck: Path) -> Run:
-        out = deck.parent / f"results_{deck.stem}"
-        wall, processor = self._time("-j", str(self.threads), "-q", "-o", str(out), str(deck))
+    def run(self, deck: Path, out: Path | None = None, options: Sequence[str] = ()) -> Run:
+        out = out or deck.parent / f"results_{deck.stem}"
+        words = ["-j", str(self.threads), "-q", *options, "-o", str(out), str(deck)]
+        wall, processor = self._time(*words)
         return Run(wall, processor, Results(out, deck.stem))
 
     def check(self, deck: Path) -> float:
