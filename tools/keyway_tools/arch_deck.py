@@ -116,7 +116,8 @@ def _requests(mesh: BrickMesh, options: DeckOptions) -> list[str]:
     parts = ["*NODE PRINT, NSET=CROWN_CREST", "U, A"]
     for name in mesh.joint_names:
         parts += [f"*JOINT PRINT, JOINT={name}, NSET={name}_CREST"]
-    parts += [f"*NODE FILE, FREQUENCY={options.picture_frequency}", "U"]
+    fields = "U, OPENING" if mesh.joint_names else "U"
+    parts += [f"*NODE FILE, FREQUENCY={options.picture_frequency}", fields]
     parts += [f"*EL FILE, FREQUENCY={options.picture_frequency}", "SP"]
     parts += ["*ENVELOPE", "S1, S3, U" + (", OPENING" if mesh.joint_names else "")]
     return parts

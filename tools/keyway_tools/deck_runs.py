@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import hashlib
 import json
 import os
@@ -20,6 +21,8 @@ RECORD = ".batch.json"
 EXTREMES = ("S1", "S3", "OPENING", "DAMAGET")
 # Meaning of the exit codes of the program (deck.md, "Running").
 STATUS_OF_CODE = {0: "finished", 1: "stopped", 2: "bad deck", 3: "system failed"}
+PR_SET_PDEATHSIG = 1  # of linux/prctl.h
+_prctl = getattr(ctypes.CDLL(None), "prctl", None)
 GRACE = 10.0  # seconds from the request to end until the process is killed
 
 
@@ -34,6 +37,7 @@ class Record:
     options: list[str] = field(default_factory=list)
     exit_code: int | None = None
     wall_s: float | None = None
+    processor_s: float | None = None  # of all threads
     peak_memory_mb: float | None = None
     extremes: dict[str, float | None] = field(default_factory=dict)
     message: str = ""
@@ -78,6 +82,12 @@ def earlier_record(folder: Path) -> Record | None:
         return None
 
 
+def end_with_parent() -> None:
+    """Lets a child end when this process is killed; Linux alone has the call."""
+    if _prctl is not None:
+        _prctl(PR_SET_PDEATHSIG, int(signal.SIGTERM), 0, 0, 0)
+
+
 class DeckRunner:
     """Runs one deck after another for any number of threads, until `end` is called."""
 
@@ -89,6 +99,12 @@ class DeckRunner:
         self.is_ending = False
         self._children: set[subprocess.Popen[bytes]] = set()
         self._lock = threading.Lock()
+
+    def is_kept(self, deck: Path, folder: Path) -> bool:
+        """Whether a run of this deck has finished in the folder."""
+        wanted = Record("", "", "", digest_of(deck, self.version), self.options)
+        earlier = earlier_record(folder)
+        return earlier is not None and is_same(earlier, wanted)
 
     def run(self, deck: Path, folder: Path, again: bool = False) -> Record:
         """Runs the deck, or returns the record of an equal run that finished."""
@@ -115,9 +131,13 @@ class DeckRunner:
             child = subprocess.Popen(
                 command, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT,
                 start_new_session=True,
+                # With other threads, a function between fork and exec could wait for ever.
+                preexec_fn=end_with_parent if threading.active_count() == 1 else None,  # noqa: PLW1509
             )  # fmt: skip
         with self._lock:
             self._children.add(child)
+        if self.is_ending:  # since a moment ago
+            os.killpg(child.pid, signal.SIGTERM)
         watch = threading.Timer(self.timeout, self._end, [child]) if self.timeout else None
         if watch:
             watch.start()
@@ -129,6 +149,7 @@ class DeckRunner:
         if watch:
             watch.cancel()
         record.wall_s = round(time.monotonic() - start, 3)
+        record.processor_s = round(usage.ru_utime + usage.ru_stime, 3)
         record.peak_memory_mb = round(usage.ru_maxrss / 1024, 1)
         record.exit_code = child.returncode
         record.status = self._status(child.returncode, record.wall_s)
@@ -152,6 +173,17 @@ class DeckRunner:
             until = time.monotonic() + patience
             while child in self._children and time.monotonic() < until:
                 time.sleep(0.05)
+
+    def stop(self) -> None:
+        """Ends the running children after an exception has left `run`: nobody waits for them."""
+        self.is_ending = True
+        for child in list(self._children):
+            os.killpg(child.pid, signal.SIGTERM)
+            try:
+                child.wait(GRACE)
+            except subprocess.TimeoutExpired:
+                os.killpg(child.pid, signal.SIGKILL)
+                child.wait()
 
     def end(self) -> None:
         """Ends the running children; waiting decks are not started."""

@@ -6,7 +6,6 @@ import json
 from pathlib import Path
 from typing import Any
 
-import jinja2
 import numpy as np
 from markupsafe import Markup
 from plotly.offline import get_plotlyjs
@@ -17,6 +16,7 @@ from ..pictures_shapes import largest_state, masses_in_words
 from ..si_results import SiResults
 from .curves import ledger, plots
 from .scene import scene
+from .templates import render
 from .values import accuracy, deck_of, echo_of, estimates, header, joints, key_numbers, verdict
 
 HERE = Path(__file__).parent
@@ -31,13 +31,10 @@ def write_page(all_results: list[SiResults], scales: Scales, path: Path) -> Path
         "time": first,
         "runs": [{key: run[key] for key in ("scene", "plots", "ledger")} for run in runs],
     }
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True
-    )
-    text = environment.get_template("page.html").render(
+    text = render(
+        HERE / "page.html",
         title=" and ".join(run["name"] for run in runs),
         runs=runs,
-        css=Markup((HERE / "page.css").read_text(encoding="utf-8")),
         js=Markup((HERE / "page.js").read_text(encoding="utf-8")),
         plotly=Markup(get_plotlyjs().replace("</script", "<\\/script")),
         data=Markup(json.dumps(_finite(data), allow_nan=False).replace("<", "\\u003c")),

@@ -1,31 +1,43 @@
 """What accuracy costs in time, for any deck.
 
 Runs variants of the deck (increments, a refined mesh, elements, tolerances, ALPHA, stiffness of
-joints, solvers) within a time budget and writes accuracy.csv, accuracy.png and accuracy.html, which
-says what to choose for 10, 5, 2 and 1 %. With --effects it switches each effect of the deck off in
-turn and writes effects.html. A second call keeps the runs that have finished. Options of keyway
-follow a `--`, as in: tools/accuracy dam.inp -- --umat law.for
+joints, coupling, solvers) within a time budget and writes accuracy.html, which says what to choose
+for 10, 5, 2 and 1 %, with accuracy.csv, accuracy.json and accuracy.png. With --effects it switches
+each effect of the deck off in turn and writes effects.html. A second call keeps the runs that have
+finished. Options of keyway follow a `--`, as in: tools/accuracy dam.inp -- --umat law.for
 """
 
 from __future__ import annotations
 
 import argparse
+import hashlib
+import json
 import os
 import re
+import signal
 import subprocess
 import sys
+from datetime import datetime
 from pathlib import Path
+from typing import Any
 
 from keyway_tools.deck_runs import DeckRunner
+from keyway_tools.results import Results
 
+from .couplings import coupling_rungs
 from .deck_cards import read_deck
 from .effects import list_effects
 from .errors import errors_of
-from .ladder import Ladder, Outcome
-from .page import accuracy_page, draw, effect_sentences, effects_page, sentences, write_table
-from .rungs import base_deck, list_rungs
+from .facts import facts_of, write_table
+from .ladder import JOB, Ladder, Outcome
+from .page import OWN_SECONDS, WALL_SECONDS, accuracy_page, effects_page
+from .pictures import draw
+from .rungs import base_deck, finer_rung, list_rungs
+from .words import effect_sentences, sentences
 
 ROOT = Path(__file__).resolve().parents[3]
+# Folders of the deck as it is, in a ladder and among effects
+ALL = {False: "the_deck_as_it_is", True: "all_effects"}
 UNITS = {"": 1.0, "s": 1.0, "m": 60.0, "h": 3600.0}
 
 
@@ -47,6 +59,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("--budget", type=seconds, default=1200.0, metavar="TIME",
         help="time for all runs, as 90s, 20m, 2h (20m)")  # fmt: skip
     add("--effects", action="store_true", help="switch the effects off in turn")
+    add("--verify", action="store_true", help="compare with a run finer than the ladder's finest")
     add("-o", type=Path, metavar="DIR", help="folder of the study (DECK's name with _accuracy)")
     add("--threads", type=int, default=os.cpu_count() or 1, help="of each run (all processors)")
     add("--program", type=Path, default=ROOT / "build/release/keyway", help="the program")
@@ -80,39 +93,85 @@ def main(arguments: list[str]) -> int:
     if faults := check(given.program.resolve(), options, given.deck):
         sys.stderr.write(faults)
         return 2
-    folder = given.o or Path(f"{given.deck.stem}_accuracy")
-    folder.mkdir(parents=True, exist_ok=True)
-    deck = base_deck(read_deck(given.deck))
-    rungs = list_effects(deck) if given.effects else list_rungs(deck)
+    given.o = given.o or Path(f"{given.deck.stem}_accuracy")
+    given.o.mkdir(parents=True, exist_ok=True)
     runner = DeckRunner(given.program.resolve(), ["-j", str(given.threads), *options])
-    version = runner.version.splitlines()[0]
+
+    def stop(*_: object) -> None:
+        runner.is_ending = True
+        raise KeyboardInterrupt
+
+    for request in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(request, stop)
     try:
-        outcomes = Ladder(deck, rungs, folder, runner, given.budget).run()
+        return study(given, runner)
+    except KeyboardInterrupt:
+        runner.stop()
+        sys.stderr.write("accuracy: stopped; the same call goes on, finished runs are kept\n")
+        return 130
     except RuntimeError as error:
         sys.stderr.write(f"accuracy: {error}\n")
         return 1
-    write = write_effects if given.effects else write_accuracy
-    return write(folder, given.deck, version, outcomes)
 
 
-def write_accuracy(folder: Path, deck: Path, version: str, outcomes: list[Outcome]) -> int:
-    errors = errors_of(outcomes)
-    if not errors:
-        sys.stderr.write("accuracy: the deck has no displacement, stress or frequency to compare\n")
-        return 1
-    write_table(folder / "accuracy.csv", outcomes, errors)
-    if picture := draw(outcomes, errors):
+def study(given: argparse.Namespace, runner: DeckRunner) -> int:
+    """Runs the variants and writes what they show."""
+    deck = base_deck(read_deck(given.deck))
+    rungs = list_effects(deck) if given.effects else [*list_rungs(deck), *coupling_rungs(deck)]
+    if given.verify and not given.effects:
+        rungs.append(finer_rung(deck))
+    ladder = Ladder(deck, rungs, given.o, runner, given.budget, say)
+    outcomes = ladder.run()
+    header = header_of(given, runner, outcomes[0])
+    what_seconds_are = OWN_SECONDS if given.threads == 1 else WALL_SECONDS
+    if given.effects:
+        page = given.o / "effects.html"
+        text = effects_page(given.deck, header, what_seconds_are, outcomes)
+        lines = effect_sentences(outcomes)
+    else:
+        page = given.o / "accuracy.html"
+        errors = errors_of(outcomes)
+        if not errors:
+            raise RuntimeError("the deck has no displacement, stress or frequency to compare")
+        facts = facts_of(outcomes, errors)
+        facts |= {"deck": given.deck.name, "header": header, "what_seconds_are": what_seconds_are}
+        write_files(given.o, facts)
+        text = accuracy_page(given.deck, facts)
+        lines = sentences(facts)
+    page.write_text(text, encoding="utf-8")
+    say("\n".join([*lines, str(page)]))
+    return 0
+
+
+def say(text: str) -> None:
+    """Prints at once: a run may take long."""
+    sys.stdout.write(text + "\n")
+    sys.stdout.flush()
+
+
+def header_of(given: argparse.Namespace, runner: DeckRunner, base: Outcome) -> list[list[str]]:
+    """Deck, date, program and machine of a study."""
+    digest = hashlib.sha256(given.deck.read_bytes()).hexdigest()
+    machine = Results(given.o / "runs" / ALL[given.effects] / "results", JOB).find("machine")
+    assert base.measured
+    return [
+        ["Deck", str(given.deck)],
+        ["Digest", f"sha256 {digest}"],
+        ["Date", datetime.now().strftime("%Y-%m-%d %H:%M")],
+        ["Program", runner.version.splitlines()[0]],
+        ["Machine", f"{machine['processor']}, {machine['processors']} processors, kernels "
+                    f"{machine['blas_kernels']}, {machine['memory_mb']} MB"],
+        ["Threads", str(given.threads)],
+        ["Model", f"{base.measured.unknowns:,} unknowns, {base.measured.increments:,} increments"],
+    ]  # fmt: skip
+
+
+def write_files(folder: Path, facts: dict[str, Any]) -> None:
+    """Table, picture and data beside the page."""
+    write_table(folder / "accuracy.csv", facts)
+    (folder / "accuracy.json").write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
+    if picture := draw(facts):
         (folder / "accuracy.png").write_bytes(picture)
-    text = accuracy_page(deck, version, outcomes, errors)
-    (folder / "accuracy.html").write_text(text, encoding="utf-8")
-    sys.stdout.write("\n".join(sentences(outcomes, errors)) + f"\n{folder / 'accuracy.html'}\n")
-    return 0
-
-
-def write_effects(folder: Path, deck: Path, version: str, outcomes: list[Outcome]) -> int:
-    (folder / "effects.html").write_text(effects_page(deck, version, outcomes), encoding="utf-8")
-    sys.stdout.write("\n".join(effect_sentences(outcomes)) + f"\n{folder / 'effects.html'}\n")
-    return 0
 
 
 if __name__ == "__main__":

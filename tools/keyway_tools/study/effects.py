@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from .deck_cards import Deck
+from .deck_cards import Card, Deck, number_of
 from .rungs import Rung, as_it_is
 
 CONCRETE = (
@@ -12,6 +12,14 @@ CONCRETE = (
     "CONCRETE COMPRESSION DAMAGE", "CONCRETE TENSION DAMAGE",
 )  # fmt: skip
 BONDED = "1e30"  # strength of a joint that never opens [Pa]
+UPLIFT = ("UPLIFT", "PROFILE", "TAIL WATER")
+# Parameters of a joint law that are effects of their own
+LAW_EFFECTS = {
+    "FRICTION": "friction in the joints",
+    "COHESION": "cohesion of the joints",
+    "TENSILE STRENGTH": "tensile strength of the joints",
+    "GAP": "the gaps of the joints",
+}
 AXES = {"1": "x", "2": "y", "3": "z"}
 
 
@@ -23,24 +31,27 @@ def list_effects(deck: Deck) -> list[Rung]:
         if is_there:
             found.append(Rung("effect", f"without {name}", 1.0, 1.0, change))
 
-    motions = sorted({card.value("DOF") for card in deck.of("BASE MOTION")})
-    for dof in motions:
+    laws, reservoirs = list(deck.of("JOINT LAW")), list(deck.of("RESERVOIR"))
+    for dof in sorted({card.value("DOF") for card in deck.of("BASE MOTION")}):
         add(f"the motion along {AXES.get(dof, dof)}", True, without_motion(dof))
-    reservoirs = list(deck.of("RESERVOIR"))
+    add("the water", bool(reservoirs), without_water)
     has_mass = any(card.value("ADDED MASS") not in ("", "NONE") for card in reservoirs)
     add("the added mass of the water", has_mass, dropped("RESERVOIR", "ADDED MASS", "DIRECTION"))
-    add("uplift in the joints", any(card.value("UPLIFT") for card in deck.of("JOINT LAW")),
-        dropped("JOINT LAW", "UPLIFT", "PROFILE", "TAIL WATER"))  # fmt: skip
-    add("opening and sliding of the joints", deck.has("JOINT LAW"), bonded)
-    rough = any(card.value("FRICTION") not in ("", "0", "0.", "0.0") for card in
-                deck.of("JOINT LAW"))  # fmt: skip
-    add("friction in the joints", rough, smooth)
+    add("uplift in the joints", any(card.value("UPLIFT") for card in laws),
+        dropped("JOINT LAW", *UPLIFT))  # fmt: skip
+    add("opening and sliding of the joints", deck.has("JOINT"), bonded)
+    for name, words in LAW_EFFECTS.items():
+        add(words, any(is_positive(card, name) for card in laws), without_value(name))
     add("cracking of the concrete", deck.has(CONCRETE[0]), without_cards(CONCRETE))
-    dampings = [card for step in deck.steps() for card in step if card.keyword == "DAMPING"]
-    add("damping", bool(dampings), without_cards(("DAMPING",)))
+    add("damping", deck.has("DAMPING"), without_cards(("DAMPING",)))
     weights = [card for card in deck.of("DLOAD") if any(is_weight(line) for line in card.lines)]
     add("weight", bool(weights), without_weight)
     return found
+
+
+def is_positive(card: Card, name: str) -> bool:
+    value = card.value(name)
+    return bool(value) and number_of(value) > 0.0
 
 
 def is_weight(line: str) -> bool:
@@ -87,10 +98,23 @@ def bonded(deck: Deck) -> Deck:
     return new
 
 
-def smooth(deck: Deck) -> Deck:
-    new = deck.copy()
-    for card in new.of("JOINT LAW"):
-        card.parameters["FRICTION"] = "0"
+def without_value(name: str) -> Callable[[Deck], Deck]:
+    """With a parameter of joint laws at zero."""
+
+    def change(deck: Deck) -> Deck:
+        new = deck.copy()
+        for card in new.of("JOINT LAW"):
+            if name in card.parameters:
+                card.parameters[name] = "0"
+        return new
+
+    return change
+
+
+def without_water(deck: Deck) -> Deck:
+    """Without reservoirs, and without the uplift that they feed."""
+    new = dropped("JOINT LAW", *UPLIFT)(deck)
+    new.without(list(new.of("RESERVOIR")))
     return new
 
 

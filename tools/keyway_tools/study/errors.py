@@ -2,6 +2,7 @@
 
 Increment: where three sizes converge regularly, Richardson's extrapolation with the order that they
 show gives the limit; else the finest run is the limit, and its distance to the next one is added.
+No increment has a smaller error than a finer one.
 Mesh and element: one refinement. The limit lies between the extrapolations of first order (corners)
 and of second order (smooth stresses); the error is the distance to the farther one. Errors of time,
 mesh and iteration are added, and their sum is multiplied by the safety factor of Roache (1994),
@@ -10,7 +11,7 @@ Journal of Fluids Engineering 116, 405-413: 1.25 for limits that three sizes or 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -21,6 +22,8 @@ from .measured import QUANTITIES
 ORDERS = (0.5, 3.0)  # observed orders in time that count as regular
 GROWTH = 1.1  # a largest stress that grows by more with one refinement is at a singular place
 SAFETY = 1.25
+BASE, FINE_MESH = "the deck as it is", "mesh refined"  # names of rungs
+REFINEMENTS = (2, 3, 4)  # of meshes that are extrapolated
 TARGETS = (0.10, 0.05, 0.02, 0.01)
 
 
@@ -52,6 +55,7 @@ class Choice:
     mesh: str
     seconds: float  # predicted where the combination was not run
     error: float
+    is_extrapolated: bool = False  # finer than all that was run
 
 
 def errors_of(outcomes: list[Outcome]) -> list[Error]:
@@ -118,6 +122,11 @@ def time_errors(found: list[tuple[Outcome, float]]) -> tuple[float, dict[str, fl
     }
     if order is None:
         errors[found[-1][0].name] = doubt
+    # A larger increment that is nearer to the limit is a coincidence: nobody can choose it.
+    largest = 0.0
+    for outcome, _ in reversed(found):
+        largest = max(largest, errors[outcome.name])
+        errors[outcome.name] = largest
     return float(limit), errors
 
 
@@ -164,10 +173,24 @@ def choices_of(error: Error, outcomes: list[Outcome]) -> list[Choice | None]:
     chosen: list[Choice | None] = []
     for target in TARGETS:
         good = [choice for choice in found if choice.error <= target]
+        if not good:
+            good = [c for c in finer_choices(error, seconds, base.seconds) if c.error <= target]
         best = min(good, key=lambda choice: choice.seconds, default=None)
-        if best:
-            best = Choice(
-                best.quantity, target, best.increment, best.mesh, best.seconds, best.error
-            )
-        chosen.append(best)
+        chosen.append(best and replace(best, target=target))
     return chosen
+
+
+def finer_choices(error: Error, seconds: dict[str, float], base: float) -> list[Choice]:
+    """Meshes that are refined more often than any that was run: an error of first order is halved
+    each time, and the time grows by the same factor."""
+    if FINE_MESH not in error.mesh or FINE_MESH not in seconds:
+        return []
+    ratio = seconds[FINE_MESH] / base
+    found = []
+    for times, (increment, in_time) in product(REFINEMENTS, error.time.items()):
+        in_space = error.mesh[BASE] / 2.0**times
+        total = SAFETY * (in_time + in_space + error.iteration)
+        cost = seconds[increment] * ratio**times
+        name = f"mesh refined {times} times"
+        found.append(Choice(error.quantity, 0.0, increment, name, cost, total, True))
+    return found

@@ -3,24 +3,28 @@
 from __future__ import annotations
 
 import re
+import subprocess
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from keyway_tools.deck_runs import DeckRunner
+from keyway_tools.deck_runs import DeckRunner, Record
 from keyway_tools.results import Results
 
 from .deck_cards import Deck
 from .measured import Measured, measure
 from .refined_mesh import RefinementError
-from .rungs import Rung, as_it_is
+from .rungs import Rung
 
 # The order in which the budget is spent.
 PRIORITY = (
-    "base", "increment", "mesh", "element", "tolerance", "stiffness", "alpha", "solver", "effect",
+    "base", "increment", "mesh", "element", "tolerance", "coupling", "stiffness", "alpha", "solver",
+    "effect", "finer",
 )  # fmt: skip
+FORECAST_BY_COUNTS = ("mesh", "coupling", "finer")  # axes that change the size of the model
 JOB = "study"
+SHORTEST = 10.0  # time that a run has at least before the budget ends it [s]
 
 
 @dataclass
@@ -28,7 +32,7 @@ class Outcome:
     """A rung with what became of it."""
 
     rung: Rung
-    predicted: float | None  # seconds; None: not known before the first run
+    predicted: float | None  # seconds; None: not known
     measured: Measured | None = None
     why_not: str = ""  # why there are no numbers
 
@@ -56,53 +60,136 @@ class Ladder:
         self.budget = budget  # seconds of all runs
         self.say = say
         self.spent = 0.0
+        self.waited, self.worked = 0.0, 0.0  # time of the fresh runs: by the clock, measured
 
     def run(self) -> list[Outcome]:
         """Runs all rungs that fit into the budget. The first one is the deck as it is."""
-        found: list[Outcome] = []
-        for rung in self.rungs:
-            known = found[0].measured if found else None
-            predicted = known.seconds * rung.factor if known else None
-            outcome = Outcome(rung, predicted)
-            found.append(outcome)
-            if predicted is not None and self.spent + predicted > self.budget:
-                outcome.why_not = f"would take about {predicted:.0f} s: beyond the budget"
-                self.say(f"{rung.name}: {outcome.why_not}")
+        first = Outcome(self.rungs[0], self.forecast(self.rungs[0]))
+        if (first.predicted or 0.0) > self.budget and not self.is_kept(first.rung):
+            raise RuntimeError(
+                f"the deck as it is would take about {first.predicted:.3g} s, the budget is "
+                f"{self.budget:.3g} s"
+            )
+        self.run_one(first)
+        if first.measured is None:
+            raise RuntimeError(f"the deck as it is does not run: {first.why_not}")
+        found = [first, *(Outcome(rung, self.predict(rung, first)) for rung in self.rungs[1:])]
+        self.say_plan(found)
+        for outcome in found[1:]:
+            if outcome.why_not:
+                self.say(f"{outcome.name}: {outcome.why_not}")
+                continue
+            left = self.budget - self.spent
+            needed = self.delay() * (outcome.predicted or 0.0)
+            if needed > left and not self.is_kept(outcome.rung):
+                outcome.why_not = f"would take about {needed:.3g} s: beyond the budget"
+                self.say(f"{outcome.name}: {outcome.why_not}")
                 continue
             self.run_one(outcome)
-            if rung.change is as_it_is and outcome.measured is None:
-                raise RuntimeError(f"the deck as it is does not run: {outcome.why_not}")
         return found
+
+    def delay(self) -> float:
+        """How long a measured second takes: other programs may keep the machine busy."""
+        return max(1.0, self.waited / self.worked) if self.worked > 1.0 else 1.0
+
+    def say_plan(self, outcomes: list[Outcome]) -> None:
+        """The predicted time of all rungs before they run."""
+        self.say(f"predicted time of the variants, budget {self.budget:.3g} s:")
+        for outcome in outcomes[1:]:
+            self.say(f"  {outcome.predicted or 0.0:8.3g} s  {outcome.name}")
+        total = sum(outcome.predicted or 0.0 for outcome in outcomes)
+        self.say(f"  {total:8.3g} s  in all")
+
+    def predict(self, rung: Rung, base: Outcome) -> float:
+        """Seconds of a rung, from those of the deck as it is.
+
+        Where the size of the model changes, the forecasts of the program give the ratio.
+        """
+        assert base.measured
+        factor = rung.factor
+        if rung.axis in FORECAST_BY_COUNTS and base.predicted:
+            found = self.forecast(rung)
+            if found is not None:
+                factor = found / base.predicted
+        return base.measured.seconds * factor
+
+    def forecast(self, rung: Rung) -> float | None:
+        """What the program says that the deck of a rung takes [s]; None if it says nothing."""
+        try:
+            deck = self.write_deck(rung)
+        except RefinementError:
+            return None
+        command = [str(self.runner.program), *self.runner.options, "--check", str(deck)]
+        done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+        found = re.search(r"time +about (\S+) s", done.stdout.partition("Cost on this machine")[2])
+        return float(found[1]) if found else None
+
+    def folder_of(self, rung: Rung) -> Path:
+        name = re.sub(r"[^a-z0-9]+", "_", rung.name.lower()).strip("_")
+        return self.folder / "runs" / name
+
+    def write_deck(self, rung: Rung) -> Path:
+        """The deck of a rung; it is left alone if it is the same as before."""
+        folder = self.folder_of(rung)
+        text = rung.change(self.base).text()
+        folder.mkdir(parents=True, exist_ok=True)
+        deck = folder / f"{JOB}.inp"
+        if not deck.exists() or deck.read_text(encoding="utf-8") != text:
+            deck.write_text(text, encoding="utf-8")
+        return deck
+
+    def is_kept(self, rung: Rung) -> bool:
+        """Whether an earlier call has finished this rung."""
+        try:
+            deck = self.write_deck(rung)
+        except RefinementError:
+            return False
+        return self.runner.is_kept(deck, self.folder_of(rung) / "results")
 
     def run_one(self, outcome: Outcome) -> None:
         """Runs one rung, or reads its results."""
         rung = outcome.rung
-        name = re.sub(r"[^a-z0-9]+", "_", rung.name.lower()).strip("_")
-        folder = self.folder / "runs" / name
-        folder.mkdir(parents=True, exist_ok=True)
-        deck = folder / f"{JOB}.inp"
         try:
-            write_changed(deck, rung.change(self.base).text())
+            deck = self.write_deck(rung)
         except RefinementError as error:
             outcome.why_not = str(error)
             self.say(f"{rung.name}: {error}")
             return
-        about = "" if outcome.predicted is None else f", about {outcome.predicted:.0f} s"
+        about = "" if outcome.predicted is None else f", about {outcome.predicted:.3g} s"
         self.say(f"{rung.name}{about} ..")
-        self.runner.timeout = max(60.0, self.budget - self.spent)
+        self.runner.timeout = max(SHORTEST, self.budget - self.spent)
         started = time.monotonic()
-        record = self.runner.run(deck, folder / "results")
-        self.spent += time.monotonic() - started
+        record = self.runner.run(deck, self.folder_of(rung) / "results")
+        elapsed = time.monotonic() - started
+        self.spent += elapsed
+        if self.runner.is_ending:
+            raise KeyboardInterrupt
         if record.status != "finished":
-            outcome.why_not = f"{record.status}: {record.message}".rstrip(": ")
+            outcome.why_not = why_not(record)
             self.say(f"{rung.name}: {outcome.why_not}")
             return
-        outcome.measured = measure(Results(folder / "results", JOB))
+        outcome.measured = self.measure(rung, record)
+        if not record.was_kept:
+            self.waited += elapsed
+            self.worked += outcome.measured.seconds
         kept = " (kept from an earlier call)" if record.was_kept else ""
-        self.say(f"{rung.name}: {outcome.measured.seconds:.1f} s{kept}")
+        self.say(f"{rung.name}: {outcome.measured.seconds:.3g} s{kept}")
+
+    def measure(self, rung: Rung, record: Record) -> Measured:
+        """The numbers of a run. One thread: its own seconds, whatever else the machine does."""
+        found = measure(Results(self.folder_of(rung) / "results", JOB))
+        if is_alone(self.runner.options) and record.processor_s:
+            found.seconds = record.processor_s
+        return found
 
 
-def write_changed(path: Path, text: str) -> None:
-    """Writes a file unless it has this text already."""
-    if not path.exists() or path.read_text(encoding="utf-8") != text:
-        path.write_text(text, encoding="utf-8")
+def is_alone(options: list[str]) -> bool:
+    """Whether a run has one thread."""
+    return "-j" in options and options[options.index("-j") + 1] == "1"
+
+
+def why_not(record: Record) -> str:
+    """Why a run gives no numbers."""
+    if record.status == "timed out":
+        return "did not end within the budget"
+    return f"{record.status}: {record.message}".rstrip(": ")

@@ -77,3 +77,46 @@ def members(card: Card, sets: dict[str, set[int]]) -> set[int]:
 def add(sets: dict[str, set[int]], name: str, numbers) -> None:
     if name:
         sets.setdefault(name, set()).update(numbers)
+
+
+def list_card(keyword: str, name: str, numbers: list[int]) -> Card:
+    """A set of numbers, eight to a line."""
+    rows = [numbers[i : i + 8] for i in range(0, len(numbers), 8)]
+    return Card(keyword, {keyword: name}, [", ".join(map(str, row)) for row in rows])
+
+
+SUPPORTS = {"ENCASTRE": (1, 3), "PINNED": (1, 3), "XSYMM": (1, 1), "YSYMM": (2, 2),
+            "ZSYMM": (3, 3)}  # fmt: skip
+
+
+def back_of_slice(deck: Deck, sets: MeshSets) -> set[int]:
+    """The back of a slice: one brick thick between two planes, held across on one of them.
+
+    Empty for any other body: a plate that bends needs bricks through its thickness.
+    """
+    for axis in range(3):
+        values = {x[axis] for x in sets.nodes.values()}
+        if len(values) != 2:
+            continue
+        held = held_nodes(deck, sets, axis + 1)
+        for value in values:
+            plane = {node for node, x in sets.nodes.items() if x[axis] == value}
+            if plane <= held:
+                return plane
+    return set()
+
+
+def held_nodes(deck: Deck, sets: MeshSets, dof: int) -> set[int]:
+    """Nodes whose motion along one axis is prescribed."""
+    found: set[int] = set()
+    for card in deck.of("BOUNDARY"):
+        for line in card.lines:
+            label, first, *rest = (item.strip().upper() for item in [*line.split(","), ""])
+            if first in SUPPORTS:
+                low, high = SUPPORTS[first]
+            else:
+                low = int(first)
+                high = int(rest[0]) if rest and rest[0] else low
+            if low <= dof <= high:
+                found |= {int(label)} if label.isdigit() else sets.node_sets.get(label, set())
+    return found

@@ -1,5 +1,7 @@
 """The mesh of any deck, refined: each brick becomes eight, each quadrilateral of a joint four.
 
+A slice is refined in its plane alone.
+
 New nodes lie on straight edges and flat middles: the shape of the dam stays that of the coarse
 mesh. Sets of elements and surfaces follow their elements. Supports and initial values hold new
 nodes between old ones on the surface; forces (*CLOAD) and prints keep the old nodes.
@@ -13,7 +15,7 @@ from itertools import product
 from math import gcd
 
 from .deck_cards import Card, Deck
-from .mesh_sets import MeshSets, element_rows, read_sets
+from .mesh_sets import MeshSets, back_of_slice, element_rows, list_card, read_sets
 
 BRICKS = ("C3D8", "C3D8I", "C3D8B", "C3D8R")
 # Corners of a brick on a lattice of 3 x 3 x 3 points, in the order of its nodes.
@@ -26,6 +28,8 @@ FACE_NODES = {
 }  # fmt: skip
 FACE_SIDES = {"1": (2, 0), "2": (2, 1), "3": (1, 0), "4": (0, 1), "5": (1, 1), "6": (0, 0)}
 
+Corners = tuple[tuple[int, ...], ...]
+Side = tuple[int | None, ...]
 Key = tuple[tuple[int, int], ...]  # parents of a node and how often each counts
 
 
@@ -46,10 +50,11 @@ class Refinement:
         self.sets: MeshSets = read_sets(deck)
         self.next_node = max(self.sets.nodes) + 1
         self.new_nodes: dict[Key, int] = {}
-        self.children: dict[int, list[tuple[int, tuple[int, ...]]]] = {}  # number and side
+        self.children: dict[int, list[tuple[int, Side]]] = {}  # number and side
         self.surface_keys: set[Key] = set()
         self.next_element = 1
         self.doubled: dict[frozenset[int], int] = {}  # corner that counts twice in a triangle
+        self.back = back_of_slice(deck, self.sets)  # nodes of one of the planes of a slice
 
     def deck(self) -> Deck:
         """The refined deck."""
@@ -93,30 +98,38 @@ class Refinement:
         parameters = {name: text for name, text in card.parameters.items() if name != "ELSET"}
         return Card("ELEMENT", parameters, lines)
 
-    def split_brick(self, nodes: list[int]) -> list[tuple[tuple[int, ...], list[int]]]:
-        """Eight bricks, each with its side of the three axes."""
+    def split_brick(self, nodes: list[int]) -> list[tuple[Side, list[int]]]:
+        """Eight bricks, or four in a slice, each with its side of the three axes."""
         self.check_triangles(nodes)
-        point = {
-            place: self.node_at(corners_at(place, CORNERS, nodes))
-            for place in product(range(3), repeat=3)
-        }
-        return [
-            (side, [point[tuple(s + c // 2 for s, c in zip(side, corner, strict=True))]
-                    for corner in CORNERS])
-            for side in product(range(2), repeat=3)
-        ]  # fmt: skip
+        return self.split(nodes, CORNERS)
 
-    def split_square(self, nodes: list[int]) -> dict[tuple[int, ...], list[int]]:
-        """Four quadrilaterals by their sides of the two axes."""
-        point = {
-            place: self.node_at(corners_at(place, SQUARE, nodes))
-            for place in product(range(3), repeat=2)
-        }
-        return {
-            side: [point[tuple(s + c // 2 for s, c in zip(side, corner, strict=True))]
-                   for corner in SQUARE]
-            for side in product(range(2), repeat=2)
-        }  # fmt: skip
+    def split_square(self, nodes: list[int]) -> dict[Side, list[int]]:
+        """Four quadrilaterals, or two in a slice, by their sides of the two axes."""
+        return dict(self.split(nodes, SQUARE))
+
+    def split(self, nodes: list[int], corners: Corners) -> list[tuple[Side, list[int]]]:
+        """The children of an element, each with its side of every axis; None: it has both sides."""
+        whole = self.whole_axis(nodes, corners)
+        axes = range(len(corners[0]))
+        found = []
+        for side in product(*[(None,) if i == whole else (0, 1) for i in axes]):
+            places = [
+                tuple(c if s is None else s + c // 2 for s, c in zip(side, corner, strict=True))
+                for corner in corners
+            ]
+            found.append((side, [self.node_at(corners_at(p, corners, nodes)) for p in places]))
+        return found
+
+    def whole_axis(self, nodes: list[int], corners: Corners) -> int | None:
+        """The axis of an element across the slice, along which it is not split."""
+        back = [node in self.back for node in nodes]
+        if not any(back) or all(back):
+            return None
+        for i in range(len(corners[0])):
+            sides = {(corner[i], is_back) for corner, is_back in zip(corners, back, strict=True)}
+            if len(sides) == 2:
+                return i
+        return None
 
     def node_at(self, parents: list[int]) -> int:
         """The node in the middle of its parents."""
@@ -202,7 +215,7 @@ class Refinement:
         axis, side = FACE_SIDES[face]
         elements = self.sets.elements_of(label)
         return [child for e in sorted(elements) for child, at in self.children[e]
-                if at[axis] == side]  # fmt: skip
+                if at[axis] in (side, None)]  # fmt: skip
 
     def grown_lines(self, card: Card) -> list[str]:
         """Lines on nodes and sets, for the new nodes too."""
@@ -251,9 +264,3 @@ def key_of(parents: list[int]) -> Key:
 
 def grown_name(name: str) -> str:
     return f"{name}_AND_NEW"
-
-
-def list_card(keyword: str, name: str, numbers: list[int]) -> Card:
-    """A set of numbers, eight to a line."""
-    rows = [numbers[i : i + 8] for i in range(0, len(numbers), 8)]
-    return Card(keyword, {keyword: name}, [", ".join(map(str, row)) for row in rows])

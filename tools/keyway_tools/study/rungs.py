@@ -15,6 +15,7 @@ REQUESTS = (
     "JOINT PRINT", "RESTART",
 )  # fmt: skip
 SIZES = (0, 2, 3)  # fields of *DYNAMIC: first, smallest and largest increment
+FINEST_INCREMENT = 0.125  # of the check of a ladder
 SLOWEST = 1.35  # exponent of the time of an increment over unknowns, three-dimensional meshes
 
 
@@ -22,7 +23,7 @@ SLOWEST = 1.35  # exponent of the time of an increment over unknowns, three-dime
 class Rung:
     """A variant of the deck: its axis, its place on the axis, and how its deck is made."""
 
-    axis: str  # "increment", "mesh", "element", "tolerance", "alpha", "stiffness", "solver"
+    axis: str  # "increment", "mesh", "element", "tolerance", "coupling", "alpha", ..
     name: str
     factor: float  # of the time of the deck as it is, predicted
     size: float  # of what the error depends on: increment, element; 1: as in the deck
@@ -81,6 +82,20 @@ def scaled(factor: float) -> Callable[[Deck], Deck]:
         return new
 
     return change
+
+
+def finer_rung(deck: Deck) -> Rung:
+    """Finer than all rungs of the ladder: to check what the ladder promises."""
+    factor = 64.0**SLOWEST
+
+    def change(deck: Deck) -> Deck:
+        return scaled(FINEST_INCREMENT)(refine(refine(deck)))
+
+    name = "mesh refined twice"
+    if deck.has("DYNAMIC"):
+        name += f", increment x {FINEST_INCREMENT:g}"
+        factor /= FINEST_INCREMENT
+    return Rung("finer", name, factor, 0.25, change)
 
 
 def is_hht(card: Card) -> bool:
@@ -167,11 +182,14 @@ def stiffness_rung(factor: float) -> Rung:
 def solver_rungs(deck: Deck) -> list[Rung]:
     """Solvers: they cost time, and may change the results within the tolerances only."""
     found = []
+    is_elastic = not (deck.has("CONCRETE DAMAGED PLASTICITY") or deck.has("USER MATERIAL"))
+    if deck.has("DYNAMIC") and is_elastic:
+        single = controls({"PRECISION": "SINGLE"})
+        found.append(Rung("solver", "PRECISION=SINGLE", 1.0, 1.0, single))
     if deck.has("JOINT"):
         found.append(
             Rung("solver", "JOINT SOLVER=FULL", 5.0, 1.0, controls({"JOINT SOLVER": "FULL"}))
         )
-    is_elastic = not (deck.has("CONCRETE DAMAGED PLASTICITY") or deck.has("USER MATERIAL"))
     if (
         deck.has("DYNAMIC")
         and deck.has("JOINT")
