@@ -73,8 +73,9 @@ def section(facts: dict[str, Any]) -> str:
         lines += ["", wrapped(text[0].upper() + text[1:])]
     if place := facts["singular"]:
         lines += ["", wrapped(sentence_of_place(place))]
-    lines += ["", "| other variants | time |" + "".join(f" {SHORT[q['quantity']]} |" for q in
-              facts["quantities"]), "|---|---|" + "---|" * len(facts["quantities"])]  # fmt: skip
+    if facts["changes"]:
+        heads = "".join(f" {SHORT[one['quantity']]} |" for one in facts["quantities"])
+        lines += ["", f"| other variants | time |{heads}", "|---|---|" + "---|" * heads.count("|")]
     lines += [row_of_change(change, facts) for change in facts["changes"]]
     if any(one["error"] is not None for one in facts["quantities"]):
         picture = f"pictures/accuracy_of_{name_of(facts)}.png"

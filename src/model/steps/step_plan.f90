@@ -166,11 +166,9 @@ contains
     class(step), intent(in) :: self
     real(rk) :: usual
     usual = self%first_increment
-    if (self%is_direct .or. self%follows_accuracy()) then
-      num_planned = max(1.0_rk, self%duration/max(usual, tiny(1.0_rk)))
-      return
+    if (.not. (self%is_direct .or. self%follows_accuracy())) then
+      if (self%largest_increment < self%duration) usual = self%largest_increment
     end if
-    if (self%largest_increment < self%duration) usual = self%largest_increment
     num_planned = max(1.0_rk, self%duration/max(usual, tiny(1.0_rk)))
   end function num_planned
 end module step_plan

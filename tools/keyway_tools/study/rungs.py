@@ -188,7 +188,7 @@ def solver_rungs(deck: Deck) -> list[Rung]:
         found.append(Rung("solver", "PRECISION=SINGLE", 1.0, 1.0, single))
     if deck.has("JOINT"):
         found.append(
-            Rung("solver", "JOINT SOLVER=FULL", 5.0, 1.0, controls({"JOINT SOLVER": "FULL"}))
+            Rung("solver", "JOINT SOLVER=FULL", 1.5, 1.0, controls({"JOINT SOLVER": "FULL"}))
         )
     if (
         deck.has("DYNAMIC")
