@@ -35,12 +35,14 @@ def facts_of(outcomes: list[Outcome], errors: list[Error]) -> dict[str, Any]:
 
 def facts_of_error(error: Error, outcomes: list[Outcome]) -> dict[str, Any]:
     """The error of the deck as it is, its parts, and what to choose."""
+    tight = [one for one in outcomes if one.rung.axis == "tolerance"]
+    is_known = not tight or any(one.measured and one.rung.size < 1e-6 for one in tight)
     found: dict[str, Any] = {
         "quantity": error.quantity,
         "value": rounded(outcomes[0].measured.values[error.quantity]),  # type: ignore[union-attr]
         "limit": rounded(error.limit),
         "increment": rounded(error.time[BASE]),
-        "iteration": rounded(error.iteration),
+        "iteration": rounded(error.iteration) if is_known else None,
     }
     total = error.total(BASE, BASE)
     if total is None:

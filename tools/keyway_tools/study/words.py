@@ -91,8 +91,10 @@ def time_in_words(seconds: float) -> str:
     return f"{seconds:.3g} s"
 
 
-def percent(share: float) -> str:
+def percent(share: float | None) -> str:
     """Two digits: '7.7 %'; what is smaller than 0.005 % is 0."""
+    if share is None:
+        return "not known"
     size = 100.0 * share
     return "0 %" if abs(size) < 0.005 else f"{size:.0f} %" if size >= 9.95 else f"{size:.2g} %"
 
