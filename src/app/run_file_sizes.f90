@@ -8,7 +8,7 @@ module run_file_sizes
   use step_plan, only: field_request, print_request, step
   implicit none
   private
-  public :: size_of_files
+  public :: num_planned, size_of_files
 
   ! Bytes; the parts that no request changes were measured.
   real(rk), parameter :: of_number = 8.0_rk, of_column = 22.0_rk !< in binary files, in tables
@@ -52,7 +52,7 @@ contains
       bytes = 6.0_rk*of_number*plan%num_modes*model%mesh%num_nodes
       return
     end if
-    increments = plan%num_planned()
+    increments = num_planned(plan)
     bytes = of_increment*increments
     if (allocated(plan%outputs)) then
       bytes = bytes + num_states(plan%outputs, increments)*mesh
@@ -67,6 +67,17 @@ contains
               *size_of_print(model, table, plan%prints(i), joint_points)
     end do
   end function size_of_step
+
+  !> Increments that the deck plans; the analysis may cut some, or lengthen them up to the largest.
+  pure real(rk) function num_planned(plan)
+    type(step), intent(in) :: plan
+    real(rk) :: usual
+    usual = plan%first_increment
+    if (.not. (plan%is_direct .or. plan%follows_accuracy())) then
+      if (plan%largest_increment < plan%duration) usual = plan%largest_increment
+    end if
+    num_planned = max(1.0_rk, plan%duration/max(usual, tiny(1.0_rk)))
+  end function num_planned
 
   !> States that the most frequent of some requests writes.
   pure real(rk) function num_states(requests, increments)

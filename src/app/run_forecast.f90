@@ -10,7 +10,7 @@ module run_forecast
   use machine_speed, only: find_speeds, speed
   use omp_lib, only: omp_get_max_threads
   use problem_definition, only: problem
-  use run_file_sizes, only: size_of_files
+  use run_file_sizes, only: num_planned, size_of_files
   use run_ledger, only: ledger, ledger_part
   use solver_cholmod, only: cholmod_solver
   use step_plan, only: step
@@ -167,7 +167,7 @@ contains
                 *(point_time + pair_time*min(counts%points, most_at_the_end)) &
                 + iterations*(solve + iteration_time*counts%unknowns)
     if (allocated(plan%envelope)) increment = increment + envelope_time*counts%unknowns
-    time = time + plan%num_planned()*(output_time + share*increment + laws)
+    time = time + num_planned(plan)*(output_time + share*increment + laws)
   end function time_of_step
 
   !> Memory [MB]. A dynamic step has mass, damping and the matrix of the increment as well.

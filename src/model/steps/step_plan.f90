@@ -130,7 +130,7 @@ module step_plan
     type(grouting), allocatable :: grouts(:) !< *GROUT in this step
     logical :: changes_stage = .false. !< elements come or go, or joints are grouted, at its start
   contains
-    procedure :: default_smallest, follows_accuracy, num_planned
+    procedure :: default_smallest, follows_accuracy
   end type step
 
   !> Smallest increments unless the deck names one. They do not depend on the duration of a dynamic
@@ -160,15 +160,4 @@ contains
     if (.not. self%procedure%has_inertia) smallest = min(smallest_of_duration*self%duration, &
                                                          smallest)
   end function default_smallest
-
-  !> Increments that the deck plans; the analysis may cut some, or lengthen them up to the largest.
-  pure real(rk) function num_planned(self)
-    class(step), intent(in) :: self
-    real(rk) :: usual
-    usual = self%first_increment
-    if (.not. (self%is_direct .or. self%follows_accuracy())) then
-      if (self%largest_increment < self%duration) usual = self%largest_increment
-    end if
-    num_planned = max(1.0_rk, self%duration/max(usual, tiny(1.0_rk)))
-  end function num_planned
 end module step_plan
