@@ -7,6 +7,8 @@ import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
+import h5py
+
 SAVED = Path(__file__).resolve().parent / "saved"
 METHODS = ("policy", "newton", "sweeps", "passes")
 
@@ -48,4 +50,17 @@ def unpack(folder: Path, files: list[Path]) -> list[Path]:
     paths = [folder / path.stem for path in files]
     for path, source in zip(paths, files, strict=True):
         path.write_bytes(lzma.decompress(source.read_bytes()))
+        add_absent(path)
     return paths
+
+
+def add_absent(path: Path) -> None:
+    """Adds what histories of joints have in models with stages alone: vectors without values.
+
+    The problems were saved before there were stages.
+    """
+    with h5py.File(path, "r+") as file:
+        for problem in (file[name] for name in file if name.startswith("problem_")):
+            for joint in (problem[name] for name in problem if name.startswith("joint_")):
+                for name in {"origin", "phase"} - set(joint):
+                    joint[name] = h5py.Empty("i4")

@@ -26,7 +26,6 @@ def trial(join: str) -> Trial:
         duration=0.2,
         is_coarse=True,
         blocks=BlockOptions(fine=(2,), join=join),
-        edits=(("*NODE FILE, FREQUENCY=10\nU\n", "*NODE FILE, FREQUENCY=10\nU, OPENING\n"),),
     )
 
 
