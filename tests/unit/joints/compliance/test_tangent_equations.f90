@@ -96,7 +96,7 @@ contains
     real(rk) :: x(n), y(n), again(n)
     integer :: i
     call take_blocks(dense, spread(1.0_rk/k, 1, n), groups, 0.0_rk, blocks)
-    call check(log, .not. blocks%left_out > 0.0_rk .and. blocks%num_entries() == n*n, 'all blocks')
+    call check(log, blocks%left_out <= 0.0_rk .and. blocks%num_entries() == n*n, 'all blocks')
     x = [(cos(0.7_rk*i), i=1, n)]
     call blocks%product(x, y)
     call check_close(log, maxval(abs(y - matmul(dense, x)))/maxval(abs(y)), 0.0_rk, 1.0e-13_rk, &
