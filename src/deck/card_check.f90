@@ -99,6 +99,7 @@ contains
             if (given%has_value) call the_card%fault_parameter( &
               faults, given%name, given%name//' takes no value', expected_in(wanted))
           else if (given%value_first > given%value_last) then
+            if (wanted%may_be_bare) cycle
             call the_card%fault_parameter(faults, given%name, given%name//' has no value', &
                                           expected_in(wanted))
           else

@@ -33,6 +33,7 @@ module keyword_spec
     logical :: is_required = .false.
     real(rk) :: lowest = -huge(1.0_rk), highest = huge(1.0_rk) !< allowed range
     logical :: excludes_lowest = .false., excludes_highest = .false. !< open range
+    logical :: may_be_bare = .false. !< a parameter that may stand without a value
     logical :: has_no_effect = .false. !< of other programs, with any value; noted as ignored input
   end type field
 

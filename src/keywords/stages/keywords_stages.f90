@@ -32,7 +32,7 @@ contains
                    'that the change leaves without balance act over the step. Absent '// &
                    'elements have neither weight nor mass, nor loads on their faces; a point '// &
                    'of a joint, a tied node and a spring act while all nodes that they '// &
-                   'connect have an element.'
+                   'connect have an element. ADD alone is ADD=STRAIN FREE.'
     spec%example = '*MODEL CHANGE, TYPE=ELEMENT, REMOVE'//nl//'LIFT_2, LIFT_3'//nl// &
                    '*MODEL CHANGE, TYPE=ELEMENT, ADD=STRAIN FREE'//nl//'LIFT_2'
     spec%fewest_lines = 1
@@ -41,7 +41,7 @@ contains
               field('TYPE', kind_choice, 'what changes', default='ELEMENT', choices='ELEMENT'), &
               field('REMOVE', kind_flag, 'takes the elements out'), &
               field('ADD', kind_choice, 'puts the elements in, without stress', &
-                    choices='STRAIN FREE')])
+                    choices='STRAIN FREE', may_be_bare=.true.)])
     allocate (spec%columns, source=[ &
               field('elements', kind_reference, 'an element or a set', is_required=.true.)])
   end subroutine describe_model_change
