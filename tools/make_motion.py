@@ -21,15 +21,11 @@ from pathlib import Path
 
 import numpy as np
 from keyway_tools.design_spectrum import VERTICAL_SHARE, DesignSpectrum
-from keyway_tools.ground_motion import MotionOptions, final_motion, fit_motion
-from keyway_tools.motion_files import (
-    GRAVITY,
-    plot_records,
-    plot_spectra,
-    write_amplitude,
-    write_summary,
-)
+from keyway_tools.ground_motion import Motion, MotionOptions, final_motion, fit_motion
+from keyway_tools.motion_files import plot_spectra, write_amplitude, write_summary
+from keyway_tools.motion_pictures import Accelerogram, plot_accelerograms
 from keyway_tools.records.command import add_options, make_from_records
+from keyway_tools.response_spectrum import GRAVITY
 
 DEFAULT_PGA = 0.269  # [g]
 
@@ -93,6 +89,18 @@ def print_facts(name: str, motion, peak: float, options: MotionOptions) -> None:
     )
 
 
+def draw(prefix: Path, motions: dict[str, Motion], peaks: dict[str, float], dt: float) -> None:
+    """Pictures of the spectra and of the components in time."""
+    spectra = prefix.with_name(f"{prefix.name}_spectra.png")
+    records = prefix.with_name(f"{prefix.name}_records.png")
+    components = [
+        Accelerogram(f"Component {name}", peaks[name] * motion.acceleration, dt)
+        for name, motion in motions.items()
+    ]
+    print("wrote", plot_spectra(spectra, motions, peaks))
+    print("wrote", plot_accelerograms(records, components))
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Fit the three components and write them."""
     chosen = read_options(arguments)
@@ -125,10 +133,7 @@ def main(arguments: list[str] | None = None) -> int:
     facts |= {"spectrum": asdict(spectrum), "record": asdict(options)}
     write_summary(prefix.with_name(f"{prefix.name}.json"), motions, facts)
     if not chosen.no_pictures:
-        spectra = prefix.with_name(f"{prefix.name}_spectra.png")
-        records = prefix.with_name(f"{prefix.name}_records.png")
-        print("wrote", plot_spectra(spectra, motions, peaks))
-        print("wrote", plot_records(records, motions, peaks, options.dt))
+        draw(prefix, motions, peaks, options.dt)
     return 0
 
 

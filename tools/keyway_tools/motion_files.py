@@ -1,4 +1,4 @@
-"""Writing ground motions: files for *AMPLITUDE, a summary, pictures."""
+"""Writing ground motions: files for *AMPLITUDE, a summary, a picture of spectra."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ import numpy as np
 
 from .ground_motion import Motion
 from .picture_style import GREY, new_figure, save_figure
-
-GRAVITY = 9.81  # [m/s2]
+from .response_spectrum import GRAVITY
 
 
 def write_amplitude(path: Path, acceleration: np.ndarray, dt: float, layout: str) -> None:
@@ -59,31 +58,3 @@ def plot_spectra(path: Path, motions: dict[str, Motion], peaks: dict[str, float]
     axes[0].set_ylabel("spectral acceleration, 5 % [g]")
     axes[0].set_ylim(bottom=0.0, top=1.15 * axes[0].get_ylim()[1])
     return save_figure(figure, path)
-
-
-def plot_records(
-    path: Path, motions: dict[str, Motion], peaks: dict[str, float], dt: float
-) -> Path:
-    """Acceleration, velocity and displacement of each component in time."""
-    figure, axes = new_figure(3, width=10.0, row_height=2.2, columns=len(motions), sharex=True)
-    axes = np.asarray(axes).reshape(3, -1)
-    for column, (name, motion) in enumerate(motions.items()):
-        acceleration = peaks[name] * motion.acceleration
-        velocity = _integral(acceleration, dt)
-        curves = (acceleration / GRAVITY, velocity, _integral(velocity, dt))
-        time = dt * np.arange(len(acceleration))
-        for axis, curve in zip(axes[:, column], curves, strict=True):
-            axis.plot(time, curve, lw=0.9)
-        axes[0, column].set_title(f"Component {name}")
-        axes[-1, column].set_xlabel("time [s]")
-    for axis, label in zip(
-        axes[:, 0], ("acceleration [g]", "velocity [m/s]", "displacement [m]"), strict=True
-    ):
-        axis.set_ylabel(label)
-    figure.align_ylabels()
-    return save_figure(figure, path)
-
-
-def _integral(values: np.ndarray, dt: float) -> np.ndarray:
-    """Running trapezoidal integral."""
-    return dt * np.concatenate(([0.0], np.cumsum(0.5 * (values[1:] + values[:-1]))))

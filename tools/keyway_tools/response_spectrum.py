@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.signal import lfilter
 
+GRAVITY = 9.81  # [m/s2], by which peaks and spectra are divided for g
 POINTS_A_PERIOD = 24  # of the response, so that its peaks are found within 1 %
 
 

@@ -34,7 +34,7 @@ contains
     if (number == 1) call start_phases(model, now%joints)
     if (.not. model%steps(number)%changes_stage) return
     if (number > 1) call harden_pressed(model, model%steps(number - 1), now%joints)
-    if (changes_elements(model, number)) then
+    if (model%stages%changes_elements(number)) then
       call move_elements(model, number, now, error)
       if (allocated(error)) return
     end if
@@ -50,7 +50,7 @@ contains
     associate (mesh => model%mesh, plan => model%stages)
       mesh%is_absent = plan%is_absent(:, number)
       mesh%material_of_element = merge(0, plan%material, mesh%is_absent)
-      mesh%stage = count([(changes_elements(model, s), s=1, number)])
+      mesh%stage = count([(plan%changes_elements(s), s=1, number)])
       if (.not. allocated(mesh%is_node_absent)) allocate (mesh%is_node_absent(mesh%num_nodes))
       mesh%is_node_absent = .false.
       do e = 1, mesh%num_elements
@@ -69,21 +69,6 @@ contains
     integer, allocatable :: nodes(:)
     nodes = pack(mesh%nodes(:, element), mesh%nodes(:, element) > 0)
   end function nodes_of
-
-  !> Whether elements come or go at the start of a step.
-  pure logical function changes_elements(model, number)
-    type(problem), intent(in) :: model
-    integer, intent(in) :: number !< of the step
-    changes_elements = .false.
-    if (.not. allocated(model%stages%is_absent)) return
-    associate (is_absent => model%stages%is_absent)
-      if (number == 1) then
-        changes_elements = any(is_absent(:, 1))
-      else
-        changes_elements = any(is_absent(:, number) .neqv. is_absent(:, number - 1))
-      end if
-    end associate
-  end function changes_elements
 
   !> Phases and origins of the joints of the complete model; joints to be grouted are in contact.
   subroutine start_phases(model, joints)

@@ -20,7 +20,7 @@ module block_compliance
     !> Largest coupling that is left out, in blocks or in their accuracy; huge if it is not known
     real(rk) :: left_out = 0.0_rk
   contains
-    procedure :: start, put, product, num_entries, as_dense
+    procedure :: start, put, put_coupling, product, num_entries, as_dense
   end type compliance_blocks
 
 contains
@@ -34,6 +34,19 @@ contains
     if (allocated(self%block)) deallocate (self%block)
     allocate (self%block(groups%num_groups, groups%num_groups))
   end subroutine start
+
+  !> Puts a block and its transpose if groups are coupled by it.
+  subroutine put_coupling(self, j, k, scale, values, smallest)
+    class(compliance_blocks), intent(inout) :: self
+    integer, intent(in) :: j, k !< groups
+    real(rk), intent(in) :: scale !< geometric mean of the sizes of both own blocks [m/N]
+    real(rk), intent(in) :: values(:, :) !< [m/N]
+    real(rk), intent(in) :: smallest !< coupling of a block that is kept
+    real(rk) :: size_of_both, coupling
+    size_of_both = max(scale, tiny(1.0_rk))
+    coupling = norm2(values)/size_of_both
+    if (coupling >= smallest) call self%put(j, k, coupling, values, smallest*size_of_both)
+  end subroutine put_coupling
 
   !> Puts a block and its transpose.
   subroutine put(self, j, k, coupling, values, allowed)
@@ -86,13 +99,10 @@ contains
     real(rk), intent(in) :: smallest !< coupling of a block that is kept
     real(rk), intent(in) :: own(:) !< (groups) sizes of the own blocks [m/N]
     type(compliance_blocks), intent(inout) :: blocks
-    real(rk) :: scale, coupling
     integer :: k
     do k = 1, j - 1
       associate (values => dense(rows_of(groups, j), rows_of(groups, k)))
-        scale = max(sqrt(own(j))*sqrt(own(k)), tiny(1.0_rk))
-        coupling = norm2(values)/scale
-        if (coupling >= smallest) call blocks%put(j, k, coupling, values, smallest*scale)
+        call blocks%put_coupling(j, k, sqrt(own(j))*sqrt(own(k)), values, smallest)
       end associate
     end do
   end subroutine take_row

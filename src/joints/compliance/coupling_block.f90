@@ -4,6 +4,7 @@
 !> Groups that do not touch each other see only what is smooth in each other's forces: a block of
 !> some hundred rows has the rank of some ten to any accuracy that counts.
 module coupling_block
+  use dense_products, only: times_vector, transposed_times_vector
   use kinds, only: rk, long
   implicit none
   private
@@ -27,15 +28,6 @@ module coupling_block
   real(rk), parameter :: most_entries = 0.6_rk
 
   interface
-    subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
-      import :: rk
-      implicit none
-      character, intent(in) :: trans
-      integer, intent(in) :: m, n, lda, incx, incy
-      real(rk), intent(in) :: alpha, a(lda, n), x(merge(m, n, trans == 'T')), beta
-      real(rk), intent(inout) :: y(merge(n, m, trans == 'T'))
-    end subroutine dgemv
-
     subroutine dger(m, n, alpha, x, incx, y, incy, a, lda)
       import :: rk
       implicit none
@@ -78,7 +70,7 @@ contains
       if (rank == most) return
       c = maxloc(square, 1)
       left(:, rank + 1) = rest(:, c)/norm2(rest(:, c))
-      call dgemv('T', m, n, 1.0_rk, rest, m, left(:, rank + 1), 1, 0.0_rk, right(:, rank + 1), 1)
+      right(:, rank + 1) = transposed_times_vector(rest, left(:, rank + 1))
       call dger(m, n, -1.0_rk, left(:, rank + 1), 1, right(:, rank + 1), 1, rest, m)
       square = square - right(:, rank + 1)**2
     end do
@@ -107,15 +99,10 @@ contains
     class(dense_block), intent(in) :: self
     real(rk), intent(in), contiguous :: x(:) ! [N]
     real(rk), intent(inout), contiguous :: y(:) ! [m]
-    real(rk), allocatable :: inner(:)
     if (allocated(self%values)) then
       call add_product(self%values, x, y)
     else if (allocated(self%left)) then
-      associate (m => size(y), n => size(x), rank => size(self%left, 2))
-        allocate (inner(rank))
-        call dgemv('T', n, rank, 1.0_rk, self%right, n, x, 1, 0.0_rk, inner, 1)
-        call dgemv('N', m, rank, 1.0_rk, self%left, m, inner, 1, 1.0_rk, y, 1)
-      end associate
+      y = y + times_vector(self%left, transposed_times_vector(self%right, x))
     end if
   end subroutine add_to
 
@@ -150,7 +137,7 @@ contains
     end do
     if (num_columns == 0) return
     if (num_columns > most_columns*size(x)) then
-      call dgemv('N', size(a, 1), size(a, 2), 1.0_rk, a, size(a, 1), x, 1, 1.0_rk, y, 1)
+      y = y + times_vector(a, x)
       return
     end if
     last = num_columns - mod(num_columns, 4)

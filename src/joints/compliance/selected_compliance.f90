@@ -33,7 +33,7 @@ contains
     integer, intent(out) :: missing
     type(error_type), allocatable, intent(out) :: error
     type(group_unknowns) :: of_group(groups%num_groups)
-    real(rk) :: own(groups%num_groups), scale, coupling
+    real(rk) :: own(groups%num_groups)
     real(rk), allocatable :: values(:, :)
     integer :: j, k, absent
     logical :: has_failed
@@ -55,10 +55,7 @@ contains
       do k = 1, j - 1
         if (.not. are_known(top, of_group(j)%unknown, of_group(k)%unknown)) cycle
         call take_block(top, of_group(j), of_group(k), values, absent)
-        scale = max(sqrt(own(j))*sqrt(own(k)), tiny(1.0_rk))
-        coupling = norm2(values)/scale
-        if (coupling < smallest) cycle
-        call blocks%put(j, k, coupling, values, smallest*scale)
+        call blocks%put_coupling(j, k, sqrt(own(j))*sqrt(own(k)), values, smallest)
       end do
     end do
     call top%forget_inverse()

@@ -18,7 +18,7 @@ contains
     call note_grouted(model)
     if (.not. model%problem%stages%is_there_any()) return
     do s = 1, size(model%problem%steps)
-      model%problem%steps(s)%changes_stage = changes_elements(model, s) &
+      model%problem%steps(s)%changes_stage = model%problem%stages%changes_elements(s) &
                                              .or. hardens(model, s, .false.) &
                                              .or. hardens(model, s - 1, .true.)
     end do
@@ -61,18 +61,6 @@ contains
       end associate
     end do
   end subroutine note_grouted
-
-  !> Whether elements come or go at the start of a step.
-  pure logical function changes_elements(model, s)
-    type(draft), intent(in) :: model
-    integer, intent(in) :: s !< step
-    changes_elements = .false.
-    if (.not. allocated(model%problem%stages%is_absent)) return
-    associate (is_absent => model%problem%stages%is_absent)
-      changes_elements = any(is_absent(:, s))
-      if (s > 1) changes_elements = any(is_absent(:, s) .neqv. is_absent(:, s - 1))
-    end associate
-  end function changes_elements
 
   !> Whether a step has grout with, or without, pressure.
   pure logical function hardens(model, s, has_pressure)

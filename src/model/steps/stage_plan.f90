@@ -11,6 +11,7 @@ module stage_plan
     logical, allocatable :: is_grouted(:) !< (joints) has a *GROUT in some step
   contains
     procedure :: is_there_any
+    procedure :: changes_elements
   end type stages
 
 contains
@@ -20,6 +21,19 @@ contains
     class(stages), intent(in) :: self
     is_there_any = allocated(self%is_absent) .or. allocated(self%is_grouted)
   end function is_there_any
+
+  !> Whether elements come or go at the start of a step.
+  pure logical function changes_elements(self, step)
+    class(stages), intent(in) :: self
+    integer, intent(in) :: step !< number of the step
+    changes_elements = .false.
+    if (.not. allocated(self%is_absent)) return
+    if (step == 1) then
+      changes_elements = any(self%is_absent(:, 1))
+    else
+      changes_elements = any(self%is_absent(:, step) .neqv. self%is_absent(:, step - 1))
+    end if
+  end function changes_elements
 
   !> Numbers the elements so that those of one number come and go together.
   pure function classes_of(is_absent) result(class_of)

@@ -40,7 +40,3 @@ class FaceOwners:
     def of(self, face: np.ndarray) -> list[tuple[int, int]]:
         """(brick, face 1..6) of each brick with this face."""
         return self._owners.get(tuple(sorted(face.tolist())), [])
-
-    def exterior(self) -> list[tuple[int, int]]:
-        """Faces of one brick alone."""
-        return [pairs[0] for pairs in self._owners.values() if len(pairs) == 1]

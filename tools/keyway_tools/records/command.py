@@ -11,9 +11,11 @@ import numpy as np
 from ..design_spectrum import DesignSpectrum
 from ..ground_motion import final_motion
 from ..motion_files import write_amplitude
-from .pictures import plot_records, plot_spectra
+from ..motion_pictures import Accelerogram, plot_accelerograms
+from ..response_spectrum import GRAVITY
+from .pictures import plot_spectra
 from .read_record import read_record
-from .record import FACTORS, GRAVITY, Record, RecordError
+from .record import AXES, FACTORS, Record, RecordError
 from .treatment import (
     cut,
     factor_to_peak,
@@ -22,8 +24,6 @@ from .treatment import (
     settle,
     strong_duration,
 )
-
-AXES = ("x", "y", "z")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -135,7 +135,11 @@ def write_all(
         spectrum = DesignSpectrum(chosen.plateau, chosen.tg, chosen.decay)
         target = lambda period: peak * spectrum(period)  # noqa: E731
     print("wrote", plot_spectra(prefix.with_name(f"{prefix.name}_spectra.png"), records, target))
-    print("wrote", plot_records(prefix.with_name(f"{prefix.name}_records.png"), records))
+    motions = [
+        Accelerogram(f"{axis}: {record.name}", record.acceleration, record.dt)
+        for axis, record in records.items()
+    ]
+    print("wrote", plot_accelerograms(prefix.with_name(f"{prefix.name}_records.png"), motions))
 
 
 def facts_of(record: Record) -> dict:

@@ -6,9 +6,8 @@ from pathlib import Path
 
 from ..motion_files import write_amplitude
 from .read_record import read_record
+from .record import AXES
 from .treatment import same_times
-
-AXES = ("x", "y", "z")
 
 
 def is_plain(path: Path) -> bool:
@@ -19,6 +18,12 @@ def is_plain(path: Path) -> bool:
         except ValueError:
             return False
     return True
+
+
+def check_number(components: int) -> None:
+    """Raises ValueError if there are more components than axes."""
+    if components > len(AXES):
+        raise ValueError(f"motion takes files along x, y, z; found {components} components")
 
 
 def motion_files(
@@ -34,14 +39,10 @@ def motion_files(
     if missing:
         raise ValueError(f"there is no motion file '{missing[0]}'")
     if unit is None and all(is_plain(file) for file in files):
-        found = len(files)
-    else:
-        records = [record for file in files for record in read_record(file, unit, dt)]
-        found = len(records)
-    if found > len(AXES):
-        raise ValueError(f"motion takes files along x, y, z; found {found} components")
-    if unit is None and found == len(files) and all(is_plain(file) for file in files):
+        check_number(len(files))
         return files, dt
+    records = [record for file in files for record in read_record(file, unit, dt)]
+    check_number(len(records))
     treated = same_times(dict(zip(AXES, records, strict=False)), None)
     prefix.parent.mkdir(parents=True, exist_ok=True)
     written = []

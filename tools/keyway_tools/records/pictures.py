@@ -1,4 +1,4 @@
-"""Pictures of records: spectra, and acceleration, velocity and displacement in time."""
+"""Picture of the spectra of records."""
 
 from __future__ import annotations
 
@@ -6,11 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
 
 from ..picture_style import GREY, new_figure, save_figure
-from ..response_spectrum import response_spectrum
-from .record import GRAVITY, Record
+from ..response_spectrum import GRAVITY, response_spectrum
+from .record import Record
 
 PERIODS = np.geomspace(0.03, 5.0, 160)  # [s]
 
@@ -35,24 +34,4 @@ def plot_spectra(
     axis.set_ylabel("spectral acceleration, 5 % [g]")
     axis.set_ylim(bottom=0.0)
     axis.legend()
-    return save_figure(figure, path)
-
-
-def plot_records(path: Path, records: dict[str, Record]) -> Path:
-    """Acceleration, velocity and displacement of each component in time."""
-    figure, axes = new_figure(3, width=10.0, row_height=2.2, columns=len(records), sharex=True)
-    axes = np.asarray(axes).reshape(3, -1)
-    for column, (name, record) in enumerate(records.items()):
-        velocity = cumulative_trapezoid(record.acceleration, dx=record.dt, initial=0.0)
-        displacement = cumulative_trapezoid(velocity, dx=record.dt, initial=0.0)
-        time = record.dt * np.arange(record.acceleration.size)
-        curves = (record.acceleration / GRAVITY, velocity, displacement)
-        for axis, curve in zip(axes[:, column], curves, strict=True):
-            axis.plot(time, curve, lw=0.9)
-        axes[0, column].set_title(f"{name}: {record.name}")
-        axes[-1, column].set_xlabel("time [s]")
-    labels = ("acceleration [g]", "velocity [m/s]", "displacement [m]")
-    for axis, label in zip(axes[:, 0], labels, strict=True):
-        axis.set_ylabel(label)
-    figure.align_ylabels()
     return save_figure(figure, path)

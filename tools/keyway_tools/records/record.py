@@ -8,7 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-GRAVITY = 9.81  # [m/s2]
+from ..response_spectrum import GRAVITY
+
+AXES = ("x", "y", "z")
 FACTORS = {"G": GRAVITY, "M/S2": 1.0, "CM/S2": 0.01, "MM/S2": 0.001}  # to m/s2
 _PER_SECOND_SQUARED = r"\s*/\s*(?:s(?:ec)?\s*(?:\^|\*\*)?\s*2|s(?:ec)?\s*/\s*s(?:ec)?)(?![0-9])"
 _NAMES = {

@@ -9,8 +9,8 @@ import numpy as np
 from scipy.signal import resample_poly
 
 from ..ground_motion import correct_baseline
-from ..response_spectrum import response_spectrum
-from .record import GRAVITY, Record, RecordError
+from ..response_spectrum import GRAVITY, response_spectrum
+from .record import Record, RecordError
 
 TAPER = 0.05  # of the duration, at both ends of a corrected record
 LARGEST_FRACTION = 1000
