@@ -7,9 +7,10 @@
 
 RESULTS is the folder that a run was given with -o. For each job in it: principal-stress,
 displacement and damage envelopes on the dam's faces and on sections, its damaged elements,
-openings, slip and state over the joints, openings in time, the deformed shape, mode shapes,
-histories of nodes and energies, as far as the run has stored them. The pictures show MPa and mm;
---units says what the deck has if it is not in m and Pa. The names of the pictures are printed.
+openings, slip and state over the joints, openings in time, the stages of construction, the
+deformed shape, mode shapes, histories of nodes and energies, as far as the run has stored them.
+The pictures show MPa and mm; --units says what the deck has if it is not in m and Pa. The names of
+the pictures are printed.
 
 The colours of stresses end where 99 % of the nodes do if the extreme is far beyond (a corner), and
 the picture says so. --range full: to the extreme; --range S1=3: to 3 MPa; --range shared: one range
@@ -48,6 +49,7 @@ def draw_job(results: SiResults, sheet: Sheet, scales: Scales) -> Iterator[list[
     from keyway_tools.dam_views import Faces
     from keyway_tools.pictures_damage import plot_damaged_elements
     from keyway_tools.pictures_shapes import plot_deformed, plot_modes
+    from keyway_tools.pictures_stages import plot_stages
 
     def on(name: str) -> Sheet:
         return replace(sheet, path=sheet.path / f"{results.job}_{name}")
@@ -55,7 +57,8 @@ def draw_job(results: SiResults, sheet: Sheet, scales: Scales) -> Iterator[list[
     faces = Faces(results)
     kept = [step for step in results.steps() if step.envelopes]
     if kept:
-        yield from _draw_envelopes(faces, kept[-1], on, scales)
+        yield from _draw_envelopes(Faces(results, kept[-1].number), kept[-1], on, scales)
+    yield plot_stages(faces, on("stages"))
     yield plot_joint_slips(results, scales, on("slip_joints"))
     yield plot_joint_states(results, on("state_joints"))
     yield plot_damaged_elements(faces, scales, on("damage"))

@@ -10,6 +10,7 @@ set(sources
   fields/joint_fields.f90
   fields/motion_fields.f90
   fields/solid_fields.f90
+  fields/stage_fields.f90
   input_files.f90
   quantities/covered_faces.f90
   quantities/dam_faces.f90

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import h5py
 import numpy as np
 import pytest
 from stage_decks import GRAVITY, LOAD, OUTPUT, WEIGHT, YOUNG, add, build, lifts, remove, step
@@ -178,6 +179,36 @@ def test_pictures_show_the_elements_that_are_there(keyway):
         for path in sorted(folder.glob("job_0*.vtu"))
     ]
     assert cells == [b"1", b"2", b"3"]
+
+
+def test_the_stage_of_each_element(keyway):
+    """STAGE is the step in which an element was added last, 0 while it is absent."""
+    request = LOAD + "*EL FILE\nSTAGE\n"
+    steps = step(remove("L2", "L3") + request) + step(add("L2")) + step(add("L3"))
+    steps += step(remove("L3")) + step(add("L3"))
+    run = keyway(lifts(3) + steps)
+    expected = [[1, 0, 0], [1, 2, 0], [1, 2, 3], [1, 2, 0], [1, 2, 5]]
+    with h5py.File(run.folder / "job.h5") as file:
+        nodes = np.unique(file["mesh/connectivity"][:])
+        level = file["mesh/x"][:, 2][nodes]
+        for number, stages in enumerate(expected, start=1):
+            group = file[f"steps/{number:04d}"]
+            now = group["increments"][sorted(group["increments"])[-1]]
+            assert group["stage"][:].tolist() == stages
+            assert now["elements/STAGE"][:].tolist() == stages
+            of_node = [stages[0], *stages]  # of the lift below a level: it comes first
+            at_level = [set(now["STAGE"][:][nodes][level == z]) for z in range(4)]
+            assert at_level == [{s} for s in of_node]
+    frames = sorted((run.folder / "job_vtk").glob("job_0*.vtu"))
+    assert b"STAGE_ELEMENT" in frames[0].read_bytes()
+
+
+def test_a_deck_without_stages_has_no_stage(keyway):
+    """A request of STAGE is a warning where nothing comes or goes."""
+    run = keyway(lifts(1) + step(LOAD + "*EL FILE\nS, STAGE\n"))
+    assert "step STAGE has no field STAGE; it is not written" in run.stderr
+    with h5py.File(run.folder / "job.h5") as file:
+        assert "stage" not in file["steps/0001"]
 
 
 def test_a_part_without_support_is_named(keyway):

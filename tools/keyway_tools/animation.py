@@ -42,7 +42,7 @@ def _frames(faces: Faces, scales: Scales, saved: list[tuple[str, float]]) -> Ite
     limits = scales.limits("U", sizes)
     page = None
     for place, time in saved:
-        pictures = _state(faces, faces.results.displacement(place), factor, limits)
+        pictures = _state(faces.at(place), faces.results.displacement(place), factor, limits)
         heading = f"t = {time:.2f} s, displacements drawn {factor:g} times\n{faces.results.note}"
         if page is None:
             colours = FIELDS["U"].colours
@@ -62,8 +62,9 @@ def _state(faces: Faces, u: np.ndarray, factor: float, limits: Limits) -> dict[s
     shown = FIELDS["U"]
     length = shown.scale * np.linalg.norm(u, axis=1)
     paint = Paint(length, limits.ends, shown.colours, limits.bands)
+    wire = Faces(faces.results).surface()
     body, lines = faces.grid(factor * u), faces.joint_lines(factor * u)
-    return render_views(faces.with_above(), body, paint, lines, faces.surface(), fixed=1.25)
+    return render_views(faces.with_above(), body, paint, lines, wire, fixed=1.25)
 
 
 def _pixels(figure) -> np.ndarray:

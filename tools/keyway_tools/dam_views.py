@@ -14,13 +14,22 @@ TILT = 12.0  # [deg] from above
 
 
 class Faces:
-    """The dam's body and the views of it."""
+    """The dam's body and the views of it: the complete dam, or what is there in a step."""
 
-    def __init__(self, results: SiResults):
+    def __init__(self, results: SiResults, step: int | None = None):
         self.results = results
-        self.cells = results.connectivity[results.dam]
+        self.elements = results.dam
+        self.views = _views(results, np.unique(results.connectivity[results.dam]))
+        stage = results.stage(step) if step else None
+        if stage is not None and stage[self.elements].any():
+            self.elements = self.elements[stage[self.elements] > 0]
+        self.cells = results.connectivity[self.elements]
         self.nodes = np.unique(self.cells)
-        self.views = _views(results, self.nodes)
+
+    def at(self, place: str) -> Faces:
+        """What is there in the step of a saved increment, '/steps/0003/increments/...'."""
+        step = int(place.split("/")[2])
+        return self if self.results.stage(step) is None else Faces(self.results, step)
 
     def grid(self, shift: np.ndarray | None = None) -> pv.UnstructuredGrid:
         """The body, displaced by `shift` on all nodes."""
@@ -66,16 +75,22 @@ class Faces:
         parts = []
         for name in self.results.joint_names():
             joint = self.results.joint_faces(name)
-            if joint is None or len(joint.facets) == 0:
-                continue
-            nodes, place = np.unique(joint.facets, return_inverse=True)
-            place = place.reshape(joint.facets.shape)
-            faces = np.hstack([np.full((len(place), 1), 4), place])
-            part = pv.PolyData(x[nodes].astype(float), faces.ravel())
-            if values is not None:
-                part["value"] = values[nodes]
-            parts.append(part.extract_feature_edges(feature_edges=False))
+            facets = joint.facets if joint is not None else np.empty((0, 4), dtype=int)
+            facets = facets[np.isin(facets, self.nodes).all(axis=1)]
+            if len(facets):
+                parts.append(border_of(facets, x, values))
         return pv.merge(parts) if parts else None
+
+
+def border_of(facets: np.ndarray, x: np.ndarray, values: np.ndarray | None = None) -> pv.PolyData:
+    """The lines around facets (rows of four nodes); given values of all nodes become 'value'."""
+    nodes, place = np.unique(facets, return_inverse=True)
+    place = place.reshape(facets.shape)
+    faces = np.hstack([np.full((len(place), 1), 4), place])
+    part = pv.PolyData(x[nodes].astype(float), faces.ravel())
+    if values is not None:
+        part["value"] = values[nodes]
+    return part.extract_feature_edges(feature_edges=False)
 
 
 def _views(results: SiResults, nodes: np.ndarray) -> dict[str, View]:

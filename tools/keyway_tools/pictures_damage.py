@@ -23,11 +23,11 @@ def plot_mean_envelope(
     faces: Faces, step: Step, name: str, scales: Scales, sheet: Sheet
 ) -> list[Path]:
     """The largest mean damage of the elements over a step, on every view."""
-    field, results = FIELDS[name], faces.results
+    field = FIELDS[name]
     damage = step.means[name]
     limits = scales.limits(name, damage)
     body = faces.grid()
-    body.cell_data["value"] = damage[results.dam]
+    body.cell_data["value"] = damage[faces.elements]
     paint = Paint(None, limits.ends, field.colours, limits.bands)
     pictures = render_views(faces.views, body, paint, faces.joint_lines())
     heading = f"{field.label} over step {step.name.title()}\n"
@@ -39,7 +39,7 @@ def plot_mean_envelope(
 def _worst_element(faces: Faces, damage: np.ndarray) -> str:
     """The most damaged element of the dam in words."""
     results = faces.results
-    worst = results.dam[damage[results.dam].argmax()]
+    worst = faces.elements[damage[faces.elements].argmax()]
     if damage[worst] <= 0.0:
         return "no damage"
     where = place_of(results.x[results.connectivity[worst]].mean(axis=0))

@@ -44,6 +44,7 @@ def plot_deformed(faces: Faces, scales: Scales, sheet: Sheet) -> list[Path]:
     if state is None:
         return []
     place, time = state
+    faces = faces.at(place)
     u = faces.results.displacement(place)
     length = np.linalg.norm(u, axis=1)
     largest = float(length[faces.nodes].max())

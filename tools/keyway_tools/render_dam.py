@@ -161,9 +161,12 @@ def _add_body(plotter, surface: pv.PolyData, paint: Paint) -> None:
 
 
 def _add_outline(plotter, outline: pv.PolyData, view: View, paint: Paint) -> None:
-    """Lines a little in front of the body: black, or thick and coloured by their 'value'."""
+    """Lines a little in front of the body: black, of their 'rgb', or coloured by their 'value'."""
     body = float(np.ptp(outline.points, axis=0).max())
     lines = outline.translate(0.004 * body * view.towards)
+    if "rgb" in lines.cell_data:
+        plotter.add_mesh(lines, scalars="rgb", rgb=True, line_width=5.0, lighting=False)
+        return
     if "value" not in lines.point_data:
         plotter.add_mesh(lines, color="black", line_width=3.0)
         return

@@ -203,6 +203,14 @@ class Results:
             found.append(Step(int(key), name, procedure, envelopes, means))
         return found
 
+    def stage(self, step: int) -> np.ndarray | None:
+        """The step in which each element was added, 0 where it is absent in a step.
+
+        None in decks without *MODEL CHANGE.
+        """
+        path = f"steps/{step:04d}/stage"
+        return self.file[path][:] if path in self.file else None
+
     def envelope_time(self, step: Step, field: str) -> np.ndarray:
         """Time of the extreme at each node [s]."""
         name = ENVELOPE_NAMES[field]

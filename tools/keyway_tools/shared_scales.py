@@ -13,8 +13,8 @@ def shared_scales(all_results: list[SiResults], scales: Scales) -> Scales:
     """One range of each field for several runs: the largest of theirs."""
     ends = {}
     for results in all_results:
-        nodes = Faces(results).nodes
         for step in [step for step in results.steps() if step.envelopes][-1:]:
+            nodes = Faces(results, step.number).nodes
             for name in step.envelopes:
                 end = scales.end(name, step.envelopes[name][nodes])
                 ends[name] = max(ends.get(name, 0.0), end)

@@ -12,6 +12,7 @@ module stage_plan
   contains
     procedure :: is_there_any
     procedure :: changes_elements
+    procedure :: step_of_elements
   end type stages
 
 contains
@@ -34,6 +35,19 @@ contains
       changes_elements = any(self%is_absent(:, step) .neqv. self%is_absent(:, step - 1))
     end if
   end function changes_elements
+
+  !> The step in which each element was added, 1 where it has been there since the first, 0 where it
+  !> is absent. The deck has *MODEL CHANGE.
+  pure function step_of_elements(self, step) result(added)
+    class(stages), intent(in) :: self
+    integer, intent(in) :: step !< the present one
+    integer :: added(size(self%is_absent, 1))
+    integer :: s
+    added = 0
+    do s = 1, step
+      added = merge(0, merge(s, added, added == 0), self%is_absent(:, s))
+    end do
+  end function step_of_elements
 
   !> Numbers the elements so that those of one number come and go together.
   pure function classes_of(is_absent) result(class_of)

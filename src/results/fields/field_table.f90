@@ -17,6 +17,7 @@ module field_table
   use joint_fields, only: has_joints, opening_on_nodes, opening_of_joint, slip_of_joint, &
                           traction_of_joint, state_of_joint, used_slip_of_joint, &
                           water_of_joint, phase_of_joint
+  use stage_fields, only: stage_of_elements, stage_on_nodes, width_in_stages
   use json_writer, only: lower
   implicit none
   private
@@ -37,6 +38,7 @@ contains
     last = 0
     call list_motion(rows, last)
     call list_stresses(rows, last)
+    call list_stages(rows, last)
     call list_fields_of_joints(rows, last)
     call list_fields_of_laws(rows, last)
     allocate (table(last))
@@ -131,6 +133,20 @@ contains
                provider=by_law, requests='ENVELOPE', count=width_in_blocks, &
                on_nodes=extreme_near_nodes, of_block=extreme_of_block))
   end subroutine list_stresses_of_laws
+
+  !> When elements were added.
+  subroutine list_stages(rows, last)
+    type(result_field), intent(inout) :: rows(:)
+    integer, intent(inout) :: last !< number of fields so far
+    call enter(rows, last, result_field( &
+               name='STAGE', meaning='step in which an element was added', endings=scalar, &
+               unit='1', is_integer=.true., place=at_elements, &
+               remark='0 where the element is absent, 1 where it has been there since the '// &
+               'first step. On nodes the smallest of the elements that are there. '// &
+               'Only in models with *MODEL CHANGE.', &
+               provider='stages', requests='EL FILE', count=width_in_stages, &
+               on_nodes=stage_on_nodes, of_elements=stage_of_elements))
+  end subroutine list_stages
 
   !> Fields of joints.
   subroutine list_fields_of_joints(rows, last)

@@ -336,6 +336,9 @@ contains
     call self%file%set(step_group(step), 'procedure', &
                        trim(model%steps(step)%procedure%name))
     call self%file%make_group(step_group(step)//'/increments')
+    if (allocated(model%stages%is_absent)) then
+      call self%file%put(step_group(step)//'/stage', model%stages%step_of_elements(step))
+    end if
   end subroutine make_step_group
 
   !> Writes all rows and flushes the file.

@@ -1,0 +1,137 @@
+"""The construction of a dam: what is there in each stage, and which joints are grouted."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pyvista as pv
+from matplotlib.colors import BoundaryNorm
+from matplotlib.lines import Line2D
+from scipy.spatial import cKDTree
+
+from .dam_views import Faces, border_of
+from .picture_style import Sheet, headline, hide_frame, new_figure, plt
+from .render_dam import Paint, Picture, render
+from .results import Results
+
+MOST_PANELS = 12
+COLUMNS = 4
+COLOURS = "YlGnBu"
+OPEN, GROUTED = (20, 20, 20), (213, 94, 0)  # lines of joints, red green blue
+
+
+def plot_stages(faces: Faces, sheet: Sheet) -> list[Path]:
+    """A panel for each step that adds or removes elements, or grouts a joint.
+
+    Elements have the colour of the step in which they were added; absent ones are not drawn.
+    """
+    steps = changing_steps(faces.results)
+    if not steps:
+        return []
+    steps = [steps[k] for k in np.unique(np.linspace(0, len(steps) - 1, MOST_PANELS).astype(int))]
+    colours = plt.get_cmap(COLOURS, steps[-1])
+    pictures = [_stage(faces, step, (0.5, steps[-1] + 0.5)) for step in steps]
+    columns = min(COLUMNS, len(steps))
+    shape = max(p.image.shape[0] / p.image.shape[1] for p in pictures)
+    figure, axes = new_figure(
+        -(-len(steps) // columns), width=max(3.6 * columns, 7.0), row_height=3.6 * shape + 0.5,
+        columns=columns, squeeze=False,
+    )  # fmt: skip
+    for axis in axes.flat:
+        hide_frame(axis)
+    for axis, step, picture in zip(axes.flat, steps, pictures, strict=False):
+        axis.imshow(picture.image, extent=picture.extent)
+        axis.set_title(f"step {step}: {_name(faces.results, step)}", fontsize=11)
+    norm = BoundaryNorm(np.arange(0.5, steps[-1] + 1.0), steps[-1])
+    shades = plt.cm.ScalarMappable(norm, colours)
+    bar = figure.colorbar(shades, ax=axes.ravel().tolist(), shrink=0.7, aspect=30)
+    bar.set_ticks(np.unique(np.linspace(1, steps[-1], min(steps[-1], 12)).astype(int)))
+    bar.set_label("step in which an element was added")
+    if _has_grouts(faces.results):
+        lines = {"joint, not grouted": OPEN, "joint, grouted": GROUTED}
+        handles = [
+            Line2D([], [], color=np.array(rgb) / 255.0, lw=2.5, label=label)
+            for label, rgb in lines.items()
+        ]
+        figure.legend(handles=handles, loc="outside lower left", ncols=2)
+    headline(figure, "Stages of construction")
+    return sheet.save(figure)
+
+
+def changing_steps(results: Results) -> list[int]:
+    """Numbers of the steps whose elements, or grouted points of joints, are new; the first too."""
+    found, before = [], None
+    for key in sorted(results.file["steps"]):
+        step = int(key)
+        now = (results.stage(step), *_grouted_points(results, step).values())
+        if all(part is None for part in now):
+            continue
+        if before is None or any(
+            a is not None and b is not None and (a > 0).tolist() != (b > 0).tolist()
+            for a, b in zip(now, before, strict=True)
+        ):
+            found.append(step)
+        before = now
+    return found if len(found) > 1 else []
+
+
+def _grouted_points(results: Results, step: int) -> dict[str, np.ndarray | None]:
+    """Whether the points of each joint are grouted at the end of a step; None where not saved."""
+    saved = results.file[f"steps/{step:04d}"].get("increments", {})
+    saved = [group for _, group in sorted(saved.items()) if "joints" in group]
+    found: dict[str, np.ndarray | None] = {}
+    for name in results.joint_names():
+        path = f"joints/{name}/grouted"
+        known = saved and path in saved[-1]
+        found[name] = (saved[-1][path][:] == 2).astype(int) if known else None
+    return found
+
+
+def _has_grouts(results: Results) -> bool:
+    """Whether some joint waits for its grout in some step."""
+    for key in results.file["steps"]:
+        points = _grouted_points(results, int(key)).values()
+        if any(p is not None and (p == 0).any() for p in points):
+            return True
+    return False
+
+
+def _name(results: Results, step: int) -> str:
+    """The name of a step in small letters."""
+    name = results.file[f"steps/{step:04d}"].attrs["name"]
+    name = name.decode() if isinstance(name, bytes) else str(np.ravel(name)[0])
+    return name.strip("\0 ").replace("_", " ").lower()
+
+
+def _stage(faces: Faces, step: int, ends: tuple[float, float]) -> Picture:
+    """What is there in a step, inside the outline of the complete dam."""
+    now = Faces(faces.results, step)
+    body = now.grid()
+    stage = faces.results.stage(step)
+    values = np.ones(len(now.elements)) if stage is None else stage[now.elements]
+    body.cell_data["value"] = values.astype(float)
+    view = list(now.views.values())[-1]
+    paint = Paint(None, ends, COLOURS, round(ends[1] - ends[0]))
+    return render(body, view, paint, _lines(now, step), faces.surface())
+
+
+def _lines(faces: Faces, step: int) -> pv.PolyData | None:
+    """Lines of the joints: those around grouted facets have a colour of their own."""
+    parts = []
+    for name, grouted in _grouted_points(faces.results, step).items():
+        joint = faces.results.joint_faces(name)
+        if joint is None:
+            continue
+        facets = joint.facets[np.isin(joint.facets, faces.nodes).all(axis=1)]
+        done = np.zeros(len(facets), dtype=bool)
+        if grouted is not None and len(facets):
+            points = faces.results.units.length * faces.results.file[f"joints/{name}/x"][:]
+            near = cKDTree(points).query(faces.results.x[facets].reshape(-1, 3))[1]
+            done = grouted[near].reshape(-1, 4).all(axis=1)
+        for chosen, rgb in ((facets[~done], OPEN), (facets[done], GROUTED)):
+            if len(chosen):
+                part = border_of(chosen, faces.results.x)
+                part.cell_data["rgb"] = np.tile(np.array(rgb, dtype=np.uint8), (part.n_cells, 1))
+                parts.append(part)
+    return pv.merge(parts) if parts else None
