@@ -11,6 +11,11 @@ Blocks between joints may have separate meshes, here the middle one 3:2:
 
     tools/make_dam.py -o dam.inp --arc 16 --levels 7 --bottom 2 --thick 2 --joints 2 \
         --refine 2 --fine 2 --fine-refine 3 --fine-thick 3
+
+Outlets stand in a block with a separate mesh, here the fourth of seven above 55 % of the height:
+
+    tools/make_dam.py -o dam.inp --arc 34 --levels 14 --bottom 4 --joints 6 --arches parabolic \
+        --fine 4 --fine-above 0.55 --join auto-chain --outlets 3 --unknowns 20000
 """
 
 from __future__ import annotations
@@ -18,16 +23,19 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+from functools import partial
 from pathlib import Path
 
-from keyway_tools.arch_blocks import JOINS, BlockOptions, build_block_dam
+from keyway_tools.arch_blocks import JOINS, build_block_dam
+from keyway_tools.arch_command import add_arch_options, block_options_of
 from keyway_tools.arch_dam import DamOptions, build_arch_dam
 from keyway_tools.arch_deck import DeckOptions, arch_dam_deck
 from keyway_tools.arch_header import header
-from keyway_tools.arch_lattice import PartMesh
 from keyway_tools.arch_rock import RockOptions
 from keyway_tools.arch_shape import ArchShape
+from keyway_tools.arch_size import sized_dam, unknowns_of
 from keyway_tools.deck_text import mesh_deck
+from keyway_tools.joint_points import name_joint_points
 from keyway_tools.mesh_data import BrickMesh
 from keyway_tools.mesh_quality import find_faults, report
 from keyway_tools.records.for_deck import motion_files
@@ -87,7 +95,11 @@ def add_block_options(parser: argparse.ArgumentParser) -> None:
     )
     group.add_argument("--refine", type=int, default=1, help="elements along a cell's side (1)")
     group.add_argument(
-        "--fine", type=int, nargs="+", default=[], metavar="B", help="blocks, 1 at the left end"
+        "--fine",
+        nargs="+",
+        default=[],
+        metavar="B",
+        help="blocks, 1 at the left end; B:REFINE:THICK for a mesh of that block alone",
     )
     group.add_argument("--fine-refine", type=int, help="elements along a cell's side there (twice)")
     group.add_argument("--fine-thick", type=int, help="through the thickness there (twice)")
@@ -102,7 +114,7 @@ def add_block_options(parser: argparse.ArgumentParser) -> None:
         choices=JOINS,
         default="auto",
         help="JOINT8 between equal meshes, joints on surfaces, the paper's chain; auto: surfaces "
-        "where meshes differ",
+        "where meshes differ; auto-chain: the chain there",
     )
     group.add_argument(
         "--slave", choices=("fine", "coarse"), default="fine", help="side of such joints (fine)"
@@ -184,6 +196,7 @@ def read_options(arguments: list[str] | None) -> argparse.Namespace:
     add_shape_options(parser)
     add_mesh_options(parser)
     add_block_options(parser)
+    add_arch_options(parser)
     add_deck_options(parser)
     return parser.parse_args(arguments)
 
@@ -201,30 +214,20 @@ def mesh_options_of(chosen: argparse.Namespace) -> DamOptions:
         num_height=chosen.levels,
         num_thick=chosen.thick,
         num_bottom=chosen.bottom,
-        num_joints=chosen.joints,
+        num_joints=len(chosen.joint_places) or chosen.joints,
+        joint_places=tuple(chosen.joint_places),
         rock=None if chosen.no_rock else rock,
     )
 
 
-def block_options_of(chosen: argparse.Namespace) -> BlockOptions | None:
-    """BlockOptions from the command line; None for the classical dam of one mesh."""
-    is_classical = chosen.refine == 1 and not chosen.fine and not chosen.tie_all
-    if is_classical and chosen.join in ("auto", "matching"):
-        return None
-    own = PartMesh(
-        refine=2 * chosen.refine if chosen.fine_refine is None else chosen.fine_refine,
-        thick=2 * chosen.thick if chosen.fine_thick is None else chosen.fine_thick,
-        shift=chosen.shift,
-    )
-    return BlockOptions(
-        refine=chosen.refine,
-        fine=tuple(chosen.fine),
-        fine_mesh=own,
-        fine_above=chosen.fine_above,
-        join=chosen.join,
-        slave=chosen.slave,
-        is_tied=chosen.tie_all,
-    )
+def read_cards(file: Path | None) -> tuple[str, ...]:
+    """Lines of a file with cards, without comments."""
+    if file is None:
+        return ()
+    if not file.is_file():
+        raise ValueError(f"there is no file of cards '{file}'")
+    lines = (line.rstrip() for line in file.read_text(encoding="utf-8").splitlines())
+    return tuple(line for line in lines if line and not line.startswith("**"))
 
 
 def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
@@ -240,6 +243,7 @@ def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
     return DeckOptions(
         title=chosen.title,
         element_type=chosen.element,
+        concrete_cards=read_cards(chosen.concrete_cards),
         concrete=tuple(chosen.concrete),
         rock=tuple(chosen.rock),
         normal_stiffness=chosen.kn,
@@ -261,6 +265,14 @@ def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
     )
 
 
+def build_dam(chosen: argparse.Namespace, shape: ArchShape, dam: DamOptions) -> BrickMesh:
+    """The mesh: classical, or of blocks with separate meshes."""
+    blocks = block_options_of(chosen, dam)
+    if blocks is None:
+        return build_arch_dam(shape, dam)
+    return build_block_dam(shape, dam, blocks)
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Write the deck and its mesh; print the report."""
     chosen = read_options(arguments)
@@ -268,14 +280,15 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         shape = ArchShape(**{name: getattr(chosen, name) for name in names})
         mesh_options, options = mesh_options_of(chosen), deck_options_of(chosen)
-        blocks = block_options_of(chosen)
-        if blocks is None:
-            mesh = build_arch_dam(shape, mesh_options)
-        else:
-            mesh = build_block_dam(shape, mesh_options, blocks)
+        build = partial(build_dam, chosen, shape)
+        if chosen.unknowns:
+            mesh_options = sized_dam(mesh_options, chosen.unknowns, build)
+        mesh, blocks = build(mesh_options), block_options_of(chosen, mesh_options)
     except ValueError as fault:
         print(f"make_dam: {fault}", file=sys.stderr)
         return 2
+    if chosen.histories:
+        name_joint_points(mesh)
     faults = find_faults(mesh)
     if faults:
         print("make_dam: the mesh has faults:\n  " + "\n  ".join(faults), file=sys.stderr)
@@ -302,13 +315,12 @@ def write_deck(
 
 def show(chosen: argparse.Namespace, mesh: BrickMesh, mesh_file: Path) -> None:
     """Print the report on the mesh, and draw the mesh if requested."""
-    free = 3 * (len(mesh.x) - len(mesh.node_sets["FIXED"]))
     print(report(mesh))
     if mesh.surface_joints or mesh.ties:
         print(fit_report(mesh))
     counts = f"{len(mesh.x)} nodes, {len(mesh.bricks)} bricks, {len(mesh.joints)} joint elements"
     counts += f", {len(mesh.quads)} interface quads" if len(mesh.quads) else ""
-    print(f"{counts}, {free} unknowns")
+    print(f"{counts}, {unknowns_of(mesh)} unknowns")
     print(f"wrote {chosen.output} and {mesh_file}")
     if chosen.picture:
         from keyway_tools.picture_mesh import picture_mesh  # VTK is slow to load

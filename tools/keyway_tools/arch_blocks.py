@@ -9,7 +9,7 @@ meshes. Blocks of one mesh keep the classical joint of JOINT8 elements.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
@@ -20,9 +20,11 @@ from .arch_rock import build_rock
 from .arch_shape import ArchShape
 from .arch_stations import joint_stations, place_stations
 from .mesh_data import BrickMesh
+from .outlets.options import OutletOptions
+from .outlets.part import OutletPart
 
 FINE = PartMesh(refine=2, thick=6)
-JOINS = ("auto", "matching", "surfaces", "chain")
+JOINS = ("auto", "auto-chain", "matching", "surfaces", "chain")
 
 
 @dataclass(frozen=True)
@@ -32,12 +34,20 @@ class BlockOptions:
     refine: int = 1  # elements along each side of a cell in ordinary blocks and on the rock
     fine: tuple[int, ...] = ()  # blocks with a separate mesh, from 1 at the left end
     fine_mesh: PartMesh = FINE
+    # of single blocks: meshes other than fine_mesh
+    own_meshes: dict[int, PartMesh] = field(default_factory=dict)
+    outlets: OutletOptions | None = None  # in one of the fine blocks
     fine_above: float = 0.0  # share of the height above which they are finer
-    join: str = "auto"  # auto: JOINT8 between equal meshes, surfaces between different ones
+    # auto: JOINT8 between equal meshes, surfaces between different ones (auto-chain: the chain)
+    join: str = "auto"
     # side of a joint on surfaces: fine or coarse (equal meshes: right, left). A block of two parts
     # is never the slave: its nodes along the tie between them follow others
     slave: str = "fine"
     is_tied: bool = False  # tie every block to the rock, also with equal meshes
+
+    def mesh_of(self, block: int) -> PartMesh:
+        """The mesh of a fine block."""
+        return self.own_meshes.get(block, self.fine_mesh)
 
     def __post_init__(self) -> None:
         if self.join not in JOINS:
@@ -113,7 +123,7 @@ def build_block_dam(shape: ArchShape, dam: DamOptions, options: BlockOptions) ->
     """The whole mesh; left-right symmetric when the blocks are."""
     stations = place_stations(shape, dam.num_arc, dam.num_height, dam.num_bottom)
     lattice = Lattice(shape, stations)
-    joints = joint_stations(shape, stations, dam.num_joints)
+    joints = joint_stations(shape, stations, dam.num_joints, dam.joint_places)
     ends = [-stations.count, *joints, stations.count]
     whole = Assembly()
     base = PartMesh(options.refine, dam.num_thick)
@@ -163,7 +173,8 @@ def _build_blocks(
     blocks = []
     for number, columns in enumerate(pairwise(ends), start=1):
         is_fine = number in options.fine
-        layers = [(0, lattice.top, options.fine_mesh if is_fine else base)]
+        own = options.mesh_of(number) if is_fine else base
+        layers = [(0, lattice.top, own)]
         if is_fine and cut > 0:
             foot = max(int(slot[abs(c)]) for c in columns)
             if foot > cut:
@@ -171,10 +182,13 @@ def _build_blocks(
                     f"block {number} meets the rock at level {foot} of {lattice.top}, above "
                     f"level {cut}, where it is to be finer"
                 )
-            layers = [(0, cut, base), (cut, lattice.top, options.fine_mesh)]
+            layers = [(0, cut, base), (cut, lattice.top, own)]
+        outlets = options.outlets if options.outlets and options.outlets.block == number else None
         parts = []
         for low, high, mesh in layers:
-            parts.append(Part(lattice, mesh, columns, (low, high), fixed, whole.num_nodes))
+            stretch = lattice, mesh, columns, (low, high), fixed, whole.num_nodes
+            is_pierced = outlets and high == lattice.top
+            parts.append(OutletPart(outlets, *stretch) if is_pierced else Part(*stretch))
             whole.add_part(parts[-1])
         lowest = layers[0][2]
         differs = (lowest.refine, lowest.thick) != (base.refine, base.thick)
@@ -182,11 +196,16 @@ def _build_blocks(
         differs = differs or (lowest.shift != 0.0 and climbs)
         blocks.append(Block(number, parts, is_fine, has_rock and (options.is_tied or differs)))
         if len(parts) == 2:
-            names = f"LIFT{number}_FINE", f"LIFT{number}_COARSE"
-            whole.mesh.surfaces[names[0]] = parts[1].faces["BASE"]
-            whole.mesh.surfaces[names[1]] = parts[0].faces["TOP"]
-            whole.mesh.ties[f"LIFT{number}"] = names
+            _tie_lift(whole.mesh, number, parts)
     return blocks
+
+
+def _tie_lift(mesh: BrickMesh, number: int, parts: list[Part]) -> None:
+    """The tie between the lower and the finer upper part of a block."""
+    names = f"LIFT{number}_FINE", f"LIFT{number}_COARSE"
+    mesh.surfaces[names[0]] = parts[1].faces["BASE"]
+    mesh.surfaces[names[1]] = parts[0].faces["TOP"]
+    mesh.ties[f"LIFT{number}"] = names
 
 
 def _join(whole: Assembly, left: Block, right: Block, options: BlockOptions) -> None:
@@ -194,8 +213,9 @@ def _join(whole: Assembly, left: Block, right: Block, options: BlockOptions) -> 
     name = f"JOINT{left.number}"
     is_equal = left.has_mesh_of(right)
     join = options.join
-    if join == "auto":
-        join = "matching" if is_equal else "surfaces"
+    if join.startswith("auto"):
+        different = "chain" if join == "auto-chain" else "surfaces"
+        join = "matching" if is_equal else different
     if join == "matching":
         if not is_equal:
             raise ValueError(f"{name}: JOINT8 elements need equal meshes on both sides")

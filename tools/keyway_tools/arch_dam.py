@@ -25,6 +25,7 @@ class DamOptions:
     num_thick: int = 3
     num_bottom: int = 4  # of num_arc, on the flat bottom of the valley
     num_joints: int = 2
+    joint_places: tuple[float, ...] = ()  # [m] along the crest from its left end; else equal parts
     # None: no rock, the abutment is the fixed boundary
     rock: RockOptions | None = field(default_factory=RockOptions)
 
@@ -141,7 +142,7 @@ def build_arch_dam(shape: ArchShape, options: DamOptions | None = None) -> Brick
     """The whole mesh, exactly symmetric left to right."""
     options = options or DamOptions()
     stations = place_stations(shape, options.num_arc, options.num_height, options.num_bottom)
-    parted = joint_stations(shape, stations, options.num_joints)
+    parted = joint_stations(shape, stations, options.num_joints, options.joint_places)
     nodes = DamNodes(shape, stations, options, parted)
     bricks, upstream, downstream = _dam_bricks(nodes)
     mesh = BrickMesh(np.concatenate(nodes.x), bricks, np.zeros((0, 8), dtype=int))

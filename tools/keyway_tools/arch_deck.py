@@ -15,6 +15,7 @@ class DeckOptions:
     title: str = "Arch dam with contraction joints"
     element_type: str = "C3D8"
     concrete: tuple[float, float, float] = (22.0e9, 0.167, 2400.0)  # E [Pa], nu, rho [kg/m3]
+    concrete_cards: tuple[str, ...] = ()  # that follow *ELASTIC: the law of the concrete
     rock: tuple[float, float] = (20.0e9, 0.24)  # E [Pa], nu; massless
     joint_thickness: float = 0.02  # gives k_n = E / thickness, k_t = k_n / (2 (1 + nu))
     normal_stiffness: float | None = None  # k_n [Pa/m]; None: from the thickness
@@ -58,6 +59,7 @@ def _materials(mesh: BrickMesh, options: DeckOptions) -> list[str]:
         f"{density}",
         "*ELASTIC",
         f"{modulus:g}, {poisson}",
+        *options.concrete_cards,
     ]
     parts += ["*SOLID SECTION, ELSET=DAM, MATERIAL=CONCRETE"]
     if "ROCK" in mesh.brick_sets:
@@ -115,11 +117,15 @@ def _amplitudes(options: DeckOptions) -> list[str]:
 def _requests(mesh: BrickMesh, options: DeckOptions) -> list[str]:
     parts = ["*NODE PRINT, NSET=CROWN_CREST", "U, A"]
     for name in mesh.joint_names:
-        parts += [f"*JOINT PRINT, JOINT={name}, NSET={name}_CREST"]
+        points = f"{name}_HISTORY" if f"{name}_HISTORY" in mesh.node_sets else f"{name}_CREST"
+        parts += [f"*JOINT PRINT, JOINT={name}, NSET={points}"]
     fields = "U, OPENING" if mesh.joint_names else "U"
     parts += [f"*NODE FILE, FREQUENCY={options.picture_frequency}", fields]
-    parts += [f"*EL FILE, FREQUENCY={options.picture_frequency}", "SP"]
-    parts += ["*ENVELOPE", "S1, S3, U" + (", OPENING" if mesh.joint_names else "")]
+    has_law = bool(options.concrete_cards)
+    damage = ", DAMAGET" if has_law else ""
+    parts += [f"*EL FILE, FREQUENCY={options.picture_frequency}", f"SP{damage}"]
+    kept = "S1, S3, U" + (", OPENING" if mesh.joint_names else "")
+    parts += ["*ENVELOPE", kept + (", S1_POINT, S3_POINT, DAMAGET" if has_law else "")]
     return parts
 
 

@@ -55,7 +55,7 @@ def header(
         lines += paragraph(
             "Joints",
             f"{len(mesh.joint_names)} vertical planes through the axis of the crest's upstream arc,"
-            " at equal parts of the crest (places assumed)" + (f", {ends}" if has_one_mesh else ""),
+            f" {_joint_places(options)} (places assumed)" + (f", {ends}" if has_one_mesh else ""),
         )
     lines += paragraph(
         "Weight", "acts on the finished dam at once: no stages of building, no grouting (assumed)"
@@ -88,6 +88,8 @@ def _block_lines(mesh: BrickMesh, options: DamOptions, blocks: BlockOptions) -> 
             f"{', '.join(mesh.surface_joints)} lie on surfaces: no joint elements, no interface "
             "elements (mortar, docs/different_meshes.md)",
         )
+    if blocks.outlets is not None:
+        lines += _outlet_lines(blocks)
     if mesh.interfaces:
         lines += paragraph(
             "Different meshes",
@@ -104,6 +106,27 @@ def _block_lines(mesh: BrickMesh, options: DamOptions, blocks: BlockOptions) -> 
     return lines
 
 
+def _outlet_lines(blocks: BlockOptions) -> list[str]:
+    """Lines on outlets, piers and corbel."""
+    outlets = blocks.outlets
+    sizes = (
+        f"{outlets.count} through block {outlets.block}, {outlets.width:.4g} m wide, z "
+        f"{outlets.sill:.4g} to {outlets.roof:.4g} m; piers beside them to z "
+        f"{outlets.pier_top:.4g} m and a corbel {outlets.corbel_depth:.4g} m deep below the sill "
+        f"stand {outlets.pier_length:.4g} m out of the downstream face. All edges lie at the "
+        "nearest edges of elements. No gates: no water in the outlets nor on their walls"
+    )
+    return paragraph("Outlets (assumed)", sizes)
+
+
+def _joint_places(options: DamOptions) -> str:
+    """Where the joints are."""
+    if not options.joint_places:
+        return "at equal parts of the crest"
+    places = ", ".join(f"{place:g}" for place in sorted(options.joint_places))
+    return f"nearest to {places} m along the crest from its left end"
+
+
 def _shape_lines(shape: ArchShape) -> list[str]:
     """Lines on the dam and its valley."""
     dam = (
@@ -111,11 +134,17 @@ def _shape_lines(shape: ArchShape) -> list[str]:
         f"thickness {shape.crest_thickness} m (crest) to {shape.base_thickness} m (base), "
         "linear between (the law between is assumed)"
     )
+    if shape.abutment_thickening != 1.0:
+        dam += (
+            f"; at the abutment {shape.abutment_thickening:g} of that (assumed), growing with the "
+            "square of the angle"
+        )
+    kind = "a crown" if shape.arches == "parabolic" else "an upstream"
     curves = (
-        f"circular arches; central angle of the crest {shape.crest_angle} deg, that is an upstream "
-        f"radius of {shape.crest_radius:.3f} m; at the base {shape.base_radius_ratio} of that, "
-        "linear between; the upstream face of the crown is a parabola in the depth d below the "
-        f"crest, y = -{shape.crest_overhang} d "
+        f"{shape.arches} arches; central angle of the crest {shape.crest_angle} deg, that is "
+        f"{kind} radius of {shape.crest_radius:.3f} m; at the base {shape.base_radius_ratio} of "
+        "that, linear between; the upstream face of the crown is a parabola in the depth d below "
+        f"the crest, y = -{shape.crest_overhang} d "
         f"+ {shape.crest_overhang} d^2 / (2 * {shape.vertical_tangent} * height)"
     )
     valley = (

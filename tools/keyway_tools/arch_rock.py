@@ -90,7 +90,7 @@ def _extrude(surface: np.ndarray, shape: ArchShape, options: RockOptions) -> np.
     # the outer box is rotated with the arch, as far as its ends allow
     y = surface[:, :, 1]
     room = np.minimum(1.0, (y[:, -1:] - y) * (y - y[:, :1]) / (0.5 * (y[:, -1:] - y[:, :1])) ** 2)
-    run = np.abs(outer[:, :, 0] - surface[:, :, 0]) * surface[:, :, 0] / shape.crest_radius
+    run = np.abs(outer[:, :, 0] - surface[:, :, 0]) * surface[:, :, 0] / shape.axis
     outer[:, :, 1] += options.fanning * room * run
     shares = grade(options.num_deep, options.growth)
     layers = surface[:, :, None] + shares[None, None, :, None] * (outer - surface)[:, :, None]

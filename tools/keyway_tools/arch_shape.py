@@ -1,10 +1,11 @@
-"""Shape of a double-curvature arch dam: crown cantilever, circular arches, V-shaped valley.
+"""Shape of a double-curvature arch dam: crown cantilever, arches, V-shaped valley.
 
 Axes: x across the valley with 0 at the crown, y downstream, z up with 0 at the foot of the crown.
 The crest's upstream edge passes through (0, 0, height).
 
-Every vertical plane through the centre axis of the crest's upstream arc is a mesh plane, so
-contraction joints are vertical planes that are radial at the crest.
+The normals of the ends of the crest's upstream arc meet in the axis of the dam (of a circular arch
+its centre). Every vertical plane through the axis is a mesh plane, so contraction joints are
+vertical planes that are normal to a circular crest, and nearly so to a parabolic one.
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+
+from .arch_curves import CURVES, ArchCurve
 
 
 @dataclass(frozen=True)
@@ -28,11 +31,19 @@ class ArchShape:
     crest_overhang: float = 0.25  # slope of the upstream crown at the crest, upstream with depth
     vertical_tangent: float = 0.65  # depth / height where the upstream crown is vertical
     bottom_width: float = 40.0  # of the valley at z = 0, along x
+    abutment_thickening: float = 1.0  # thickness at the abutment over that at the crown, each level
+    arches: str = "circular"  # or parabolic
 
     def __post_init__(self) -> None:
         for name in ("height", "crest_arc", "crest_thickness", "base_thickness"):
             if getattr(self, name) <= 0.0:
                 raise ValueError(f"{name} must be > 0, found {getattr(self, name)}")
+        if self.arches not in CURVES:
+            raise ValueError(f"arches must be {' or '.join(CURVES)}, found '{self.arches}'")
+        if not 0.5 <= self.abutment_thickening <= 3.0:
+            raise ValueError(
+                f"abutment_thickening must lie in 0.5..3, found {self.abutment_thickening}"
+            )
         if not 0.0 < self.crest_angle < 160.0:
             raise ValueError(f"crest_angle must lie in 0..160 degrees, found {self.crest_angle}")
         if not 0.0 < self.vertical_tangent <= 1.5:
@@ -43,20 +54,35 @@ class ArchShape:
                 f"(the width at the crest), found {self.bottom_width}"
             )
         widest = max(self.bottom_width / 2.0, 0.0)
-        if widest >= self.upstream_radius(0.0):
+        if widest >= self.curve.reach(self.upstream_radius(0.0)):
             raise ValueError(
                 "the arch at the base does not span the valley: raise base_radius_ratio"
             )
 
     @property
+    def curve(self) -> ArchCurve:
+        """The kind of the arches."""
+        return CURVES[self.arches]
+
+    @property
+    def half_angle(self) -> float:
+        """Half the central angle of the crest's upstream arc [rad]."""
+        return math.radians(self.crest_angle) / 2.0
+
+    @property
     def crest_radius(self) -> float:
-        """Radius of the crest's upstream arc [m]; also the y of its centre axis."""
-        return self.crest_arc / math.radians(self.crest_angle)
+        """Radius of the crest's upstream arc at the crown [m]."""
+        return float(self.curve.radius(self.crest_arc, self.half_angle))
+
+    @property
+    def axis(self) -> float:
+        """The y of the dam's axis [m]."""
+        return float(self.curve.axis(self.crest_radius, self.half_angle))
 
     @property
     def crest_half_width(self) -> float:
         """Half the chord of the crest's upstream arc [m]."""
-        return self.crest_radius * math.sin(math.radians(self.crest_angle) / 2.0)
+        return float(self.curve.half_chord(self.crest_radius, self.half_angle))
 
     def half_width(self, z):
         """Half-width of the valley at height z, where the upstream face meets the rock [m]."""
@@ -68,10 +94,17 @@ class ArchShape:
         share = np.asarray(z) / self.height
         return self.crest_radius * (self.base_radius_ratio + (1.0 - self.base_radius_ratio) * share)
 
-    def thickness(self, z):
-        """Thickness along a mesh plane at height z [m]; linear between crest and base."""
+    def thickness(self, z, angle=0.0):
+        """Thickness along a mesh plane [m]; linear between crest and base.
+
+        From the crown to the abutment it grows with the square of the plane's angle.
+        """
         depth = 1.0 - np.asarray(z) / self.height
-        return self.crest_thickness + (self.base_thickness - self.crest_thickness) * depth
+        crown = self.crest_thickness + (self.base_thickness - self.crest_thickness) * depth
+        if self.abutment_thickening == 1.0:
+            return crown
+        share = np.divide(angle, np.maximum(self.abutment_angle(z), 1e-12))
+        return crown * (1.0 + (self.abutment_thickening - 1.0) * np.minimum(share**2, 1.0))
 
     def upstream_crown(self, z):
         """y of the upstream face of the crown cantilever [m]: a parabola in the depth."""
@@ -80,24 +113,31 @@ class ArchShape:
         return -slope * depth + slope / (2.0 * self.vertical_tangent) * depth**2
 
     def upstream_distance(self, angle, z):
-        """Distance of the upstream face from the crest's centre axis, at an angle [rad] and z."""
-        radius = self.upstream_radius(z)
-        offset = self.crest_radius - self.upstream_crown(z) - radius
-        return offset * np.cos(angle) + np.sqrt(radius**2 - (offset * np.sin(angle)) ** 2)
+        """Distance of the upstream face from the dam's axis, at an angle [rad] and z."""
+        vertex = self.axis - self.upstream_crown(z)
+        return self.curve.distance(angle, vertex, self.upstream_radius(z))
+
+    def plane_angle(self, x, z):
+        """Angle [rad] of the mesh plane through the point of the upstream face at x and z."""
+        y = self.curve.y(x, self.upstream_crown(z), self.upstream_radius(z))
+        return np.arctan2(x, self.axis - y)
 
     def abutment_angle(self, z):
         """Angle [rad] of the mesh plane in which the upstream face meets the valley at height z."""
-        radius = self.upstream_radius(z)
         x = self.half_width(z)
-        if np.any(x >= radius):
+        if np.any(x >= self.curve.reach(self.upstream_radius(z))):
             raise ValueError("an arch does not span the valley: raise base_radius_ratio")
-        y = self.upstream_crown(z) + radius - np.sqrt(radius**2 - x**2)
-        return np.arctan2(x, self.crest_radius - y)
+        return self.plane_angle(x, z)
+
+    def crest_position(self, angle):
+        """Length of the crest's upstream arc from the crown to a mesh plane [m]."""
+        x = self.upstream_distance(angle, self.height) * np.sin(angle)
+        return self.curve.arc(x, self.crest_radius)
 
     def point(self, angle, z, share):
         """Point of the dam; share goes from 0 (downstream face) to 1 (upstream face)."""
         far = self.upstream_distance(angle, z)
-        distance = far - (1.0 - np.asarray(share)) * self.thickness(z)
+        distance = far - (1.0 - np.asarray(share)) * self.thickness(z, angle)
         x = distance * np.sin(angle)
-        y = self.crest_radius - distance * np.cos(angle)
+        y = self.axis - distance * np.cos(angle)
         return np.stack(np.broadcast_arrays(x, y, np.asarray(z, dtype=float)), axis=-1)

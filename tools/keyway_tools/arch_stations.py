@@ -58,25 +58,32 @@ def place_stations(shape: ArchShape, num_arc: int, num_height: int, num_bottom: 
             foot_slot.append(level + 1 if is_last else level)
             foot_z.append(levels[level + 1] if is_last else levels[level] + climb * part / columns)
     x = np.linspace(0.0, shape.bottom_width / 2.0, flat + 1)
-    radius, crown = shape.upstream_radius(0.0), shape.upstream_crown(0.0)
-    on_bottom = np.arctan2(x, shape.crest_radius - (crown + radius - np.sqrt(radius**2 - x**2)))
+    on_bottom = shape.plane_angle(x, 0.0)
     on_slope = shape.abutment_angle(np.array(foot_z[flat + 1 :]))
     return Stations(
         levels, np.concatenate((on_bottom, on_slope)), np.array(foot_slot), np.array(foot_z)
     )
 
 
-def joint_stations(shape: ArchShape, stations: Stations, num_joints: int) -> list[int]:
-    """Signed stations (negative: left half) nearest to equal parts of the crest's arc."""
-    arc = shape.crest_radius * stations.angle
+def joint_stations(
+    shape: ArchShape, stations: Stations, num_joints: int, places: tuple[float, ...] = ()
+) -> list[int]:
+    """Signed stations (negative: left half) nearest to places along the crest's arc.
+
+    `places` are metres from the left end of the crest; without them the joints part the crest
+    equally.
+    """
+    arc = shape.crest_position(stations.angle)
+    if not places:
+        places = tuple(shape.crest_arc * (j + 1) / (num_joints + 1) for j in range(num_joints))
     found = []
-    for joint in range(num_joints):
-        target = shape.crest_arc * ((joint + 1) / (num_joints + 1) - 0.5)
+    for place in sorted(places):
+        target = place - 0.5 * shape.crest_arc
         station = int(np.argmin(np.abs(arc - abs(target))))
         found.append(station if target > 0.0 else -station)
     inside = [abs(s) for s in found if stations.foot_slot[abs(s)] < len(stations.levels) - 1]
-    if len(set(found)) < num_joints or len(inside) < num_joints:
+    if len(set(found)) < len(places) or len(inside) < len(places):
         raise ValueError(
-            f"{num_joints} joints do not fit into {2 * stations.count} columns of elements"
+            f"{len(places)} joints do not fit into {2 * stations.count} columns of elements"
         )
     return found

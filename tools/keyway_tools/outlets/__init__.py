@@ -1,0 +1,1 @@
+"""Outlets through the upper part of an arch dam: holes, piers, corbel."""
