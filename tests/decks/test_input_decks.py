@@ -2,11 +2,10 @@
 
 from pathlib import Path
 
-import batch
-import compare
 import make_input
 import pytest
 from harness import ROOT
+from keyway.commands import batch, compare
 from keyway_tools.results import Results
 
 # Decks that take longer than a minute.

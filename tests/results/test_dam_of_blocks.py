@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import h5py
 import numpy as np
-import plot
 import pytest
 import pyvista
 from dam_trials import Trial, mesh_of, run_trial
 from harness import Program, Run
+from keyway.commands import plot
 from keyway_tools.arch_blocks import BlockOptions
 from keyway_tools.mesh_data import BrickMesh
 from keyway_tools.results import Results

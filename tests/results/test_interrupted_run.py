@@ -8,8 +8,8 @@ import signal
 import subprocess
 from pathlib import Path
 
-import plot
 import pytest
+from keyway.commands import plot
 from keyway_tools.results import why_incomplete
 from restart_case import differences, kill_at, rows_of, start
 from test_stopped_run import DECK

@@ -12,10 +12,10 @@ import csv
 import h5py
 import meshio
 import numpy as np
-import plot
 import pytest
 import pyvista
 from harness import Program, Run
+from keyway.commands import plot
 from keyway_tools.box_mesh import box_mesh
 from keyway_tools.deck_text import mesh_deck
 from keyway_tools.mesh_data import BrickMesh

@@ -8,10 +8,11 @@ import sys
 import time
 from pathlib import Path
 
-import batch
 import pytest
+from harness import ROOT
+from keyway.commands import batch
 
-BATCH = Path(batch.__file__)
+BATCH = ROOT / "tools/batch.py"
 
 # Acts by the first line of the deck: `ok VALUE`, `fail CODE`, `sleep SECONDS` or `crash`.
 PROGRAM = """import json, os, signal, sys, time

@@ -3,10 +3,10 @@
 import json
 from pathlib import Path
 
-import compare
 import h5py
 import numpy as np
 import pytest
+from keyway.commands import compare
 
 HEADER = "step,increment,time,node,U1,U2,state\n"
 ROWS = ["1,1,0.5,7,1.0e-3,2.0e-9,open\n", "1,1,0.5,9,-4.0,0,stick\n", "1,2,1.0,7,3,nan,slip\n"]

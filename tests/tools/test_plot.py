@@ -7,8 +7,8 @@ import imageio_ffmpeg
 import matplotlib.image
 import numpy as np
 import PIL.Image
-import plot
 import pytest
+from keyway.commands import plot
 from keyway_tools.arch_dam import DamOptions, build_arch_dam
 from keyway_tools.arch_shape import ArchShape
 from keyway_tools.box_mesh import box_mesh, stretched

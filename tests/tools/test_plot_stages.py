@@ -5,8 +5,8 @@ from __future__ import annotations
 import h5py
 import matplotlib.image
 import numpy as np
-import plot
 import pytest
+from keyway.commands import plot
 from keyway_tools.arch_dam import DamOptions, build_arch_dam
 from keyway_tools.arch_shape import ArchShape
 from keyway_tools.dam_views import Faces

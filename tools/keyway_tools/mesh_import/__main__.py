@@ -19,6 +19,7 @@ from pathlib import Path
 
 from ..deck_text import id_lines, mesh_deck
 from ..mesh_quality import find_faults, report
+from ..program import command_name
 from .build import Imported, import_mesh
 from .grouped_mesh import MeshError, deck_name, read_grouped_mesh
 
@@ -28,7 +29,9 @@ KINDS = ("C3D8", "C3D8B", "C3D8I", "C3D8R")
 def parse(arguments: list[str] | None) -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(
-        prog="mesh", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog=command_name("mesh"),
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("file", type=Path, help="the mesh")
     parser.add_argument("-o", "--output", type=Path, help="mesh part of the deck (FILE_mesh.inp)")

@@ -15,6 +15,7 @@ import sys
 from pathlib import Path
 
 from ..colour_scale import Scales, parse_ranges
+from ..program import command_name
 from ..results import Results
 from ..si_results import SiResults, Units
 
@@ -22,7 +23,9 @@ from ..si_results import SiResults, Units
 def parse(arguments: list[str] | None) -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(
-        prog="report", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog=command_name("report"),
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("results", type=Path, nargs="+", help="folders of runs' results")
     parser.add_argument("-o", "--output", type=Path, help="the page (JOB_report.html in RESULTS)")

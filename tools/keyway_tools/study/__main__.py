@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from keyway_tools.deck_runs import DeckRunner
+from keyway_tools.program import command_name, given_program
 from keyway_tools.results import Results
 
 from .couplings import coupling_rungs
@@ -35,7 +36,6 @@ from .pictures import draw
 from .rungs import base_deck, finer_rung, list_rungs
 from .words import effect_sentences, sentences
 
-ROOT = Path(__file__).resolve().parents[3]
 # Folders of the deck as it is, in a ladder and among effects
 ALL = {False: "the_deck_as_it_is", True: "all_effects"}
 UNITS = {"": 1.0, "s": 1.0, "m": 60.0, "h": 3600.0}
@@ -51,7 +51,7 @@ def seconds(text: str) -> float:
 
 def parse(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
-        prog="tools/accuracy", description=__doc__,
+        prog=command_name("tools/accuracy"), description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )  # fmt: skip
     add = parser.add_argument
@@ -62,7 +62,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("--verify", action="store_true", help="compare with a run finer than the ladder's finest")
     add("-o", type=Path, metavar="DIR", help="folder of the study (DECK's name with _accuracy)")
     add("--threads", type=int, default=os.cpu_count() or 1, help="of each run (all processors)")
-    add("--program", type=Path, default=ROOT / "build/release/keyway", help="the program")
+    add("--program", type=Path, help="the program (KEYWAY, build/release of the checkout, PATH)")
     return parser.parse_args(arguments)
 
 
@@ -78,7 +78,8 @@ def check(program: Path, options: list[str], deck: Path) -> str:
     return done.stderr if done.returncode else ""
 
 
-def main(arguments: list[str]) -> int:
+def main(arguments: list[str] | None = None) -> int:
+    arguments = sys.argv[1:] if arguments is None else arguments
     options: list[str] = []
     if "--" in arguments:
         cut = arguments.index("--")
@@ -87,15 +88,17 @@ def main(arguments: list[str]) -> int:
     if not given.deck.is_file():
         sys.stderr.write(f"accuracy: there is no deck '{given.deck}'\n")
         return 2
-    if not given.program.is_file():
-        sys.stderr.write(f"accuracy: no program '{given.program}'; tools/setup builds it\n")
+    try:
+        given.program = given_program(given.program)
+    except FileNotFoundError as error:
+        sys.stderr.write(f"accuracy: {error}\n")
         return 2
-    if faults := check(given.program.resolve(), options, given.deck):
+    if faults := check(given.program, options, given.deck):
         sys.stderr.write(faults)
         return 2
     given.o = given.o or Path(f"{given.deck.stem}_accuracy")
     given.o.mkdir(parents=True, exist_ok=True)
-    runner = DeckRunner(given.program.resolve(), ["-j", str(given.threads), *options])
+    runner = DeckRunner(given.program, ["-j", str(given.threads), *options])
 
     def stop(*_: object) -> None:
         runner.is_ending = True

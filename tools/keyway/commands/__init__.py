@@ -1,0 +1,1 @@
+"""The commands keyway-plot, keyway-batch and keyway-compare."""

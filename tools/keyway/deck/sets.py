@@ -1,0 +1,79 @@
+"""Sets of nodes and elements, from the cards that define them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from .card import Card
+from .deck_file import DeckError
+from .fields import Value, as_text, quoted_if_needed
+
+# The parameter that names a set, and the keyword whose data lines begin with its members.
+_MEMBERS = {"NSET": "NODE", "ELSET": "ELEMENT"}
+_NODES = {"IFACE4": 4}  # of an element; 8 for all others
+_A_LINE = 12
+
+
+def collect(cards: Iterable[Card], kind: str) -> dict[str, set[int]]:
+    """The sets by their names in capitals; `kind` is NSET or ELSET.
+
+    Raises DeckError for members that are neither numbers nor sets above.
+    """
+    sets: dict[str, set[int]] = {}
+    above = None
+    for card in cards:
+        if card.keyword and not card.is_a("INCLUDE"):
+            above = card
+        source = above if not card.keyword else card  # an included file of bare data lines
+        name = source.parameters.get(kind) if source and source.keyword else None
+        if source is None or not name:
+            continue
+        if source.is_a(_MEMBERS[kind]):
+            sets.setdefault(name.upper(), set()).update(_first_numbers(source, card))
+        elif source.is_a(kind):
+            sets.setdefault(name.upper(), set()).update(_members(source, card, sets))
+    return sets
+
+
+def _first_numbers(source: Card, card: Card) -> Iterator[int]:
+    """Numbers of nodes or elements; elements may take several lines."""
+    num_fields = 1
+    if source.is_a("ELEMENT"):
+        num_fields += _NODES.get((source.parameters.get("TYPE") or "").upper(), 8)
+    fields: list[str] = []
+    for row in card.data:
+        fields += row[:]
+        if source.is_a("NODE") or len(fields) >= num_fields:
+            yield _number(fields[0], card)
+            fields = []
+
+
+def _members(source: Card, card: Card, sets: dict[str, set[int]]) -> Iterator[int]:
+    """Members of *NSET or *ELSET: numbers, sets above, ranges with GENERATE."""
+    for row in card.data:
+        if "GENERATE" in source.parameters:
+            first, last, step = (_number(text, card) for text in [*row, "1", "1"][:3])
+            yield from range(first, last + 1, max(step, 1))
+            continue
+        for text in row:
+            if text.upper() in sets:
+                yield from sets[text.upper()]
+            elif text:
+                yield _number(text, card)
+
+
+def _number(text: str, card: Card) -> int:
+    try:
+        return int(text)
+    except ValueError:
+        raise DeckError(f"{card.where}: '{text}' is neither a number nor a set above") from None
+
+
+def set_text(kind: str, name: str, members: Iterable[Value]) -> str:
+    """A card *NSET or *ELSET. Raises DeckError where there are no members."""
+    items = [as_text(member) for member in members]
+    if not items:
+        raise DeckError(f"*{kind} {name}: expected members")
+    rows = [items[start : start + _A_LINE] for start in range(0, len(items), _A_LINE)]
+    head = f"*{kind}, {kind}={quoted_if_needed(name)}"
+    return "\n".join([head, *(", ".join(row) for row in rows)]) + "\n"
