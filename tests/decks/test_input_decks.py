@@ -8,12 +8,14 @@ from harness import ROOT
 from keyway.commands import batch, compare
 from keyway_tools.results import Results
 
+# User materials need --umat: tests/umat runs them. The meshes of Jinping are not kept.
+OTHERS = {"umat", "jinping"}
 # Decks that take longer than a minute.
 LONG = {"xingbiling", "xingbiling_matching", "xingbiling_different"}
 DECKS = {
     p.stem: p
     for p in sorted((ROOT / "input").rglob("*.inp"))
-    if batch.has_step(p) and p.parent.name != "umat"  # those need --umat: tests/umat runs them
+    if batch.has_step(p) and p.parent.name not in OTHERS
 }
 SHORT = [name for name in DECKS if name not in LONG]
 

@@ -130,7 +130,8 @@ def _requests(mesh: BrickMesh, options: DeckOptions) -> list[str]:
 
 
 def _static_step(mesh: BrickMesh, options: DeckOptions) -> list[str]:
-    parts = ["**", "** Weight of the dam and water", "*STEP, NAME=WEIGHT", "*STATIC", "1., 1."]
+    parts = ["**", "** Weight of the dam and water", "*STEP, NAME=WEIGHT", "*STATIC"]
+    parts += ["0.1, 1." if options.concrete_cards else "1., 1."]
     parts += ["*DLOAD", "DAM, GRAV, 9.81, 0., 0., -1."]
     if options.water_depth is not None:
         parts += [
@@ -143,8 +144,13 @@ def _static_step(mesh: BrickMesh, options: DeckOptions) -> list[str]:
 def _dynamic_step(mesh: BrickMesh, options: DeckOptions) -> list[str]:
     ratio, f1, f2 = options.damping
     parts = ["**", "** Earthquake; motion relative to the base"]
-    parts += ["*STEP, NAME=EARTHQUAKE, INC=1000000", f"*DYNAMIC, DIRECT, ALPHA={options.alpha:g}"]
-    parts += [f"{options.increment:g}, {options.duration:g}"]
+    parts += ["*STEP, NAME=EARTHQUAKE, INC=1000000"]
+    times = f"{options.increment:g}, {options.duration:g}"
+    if options.concrete_cards:  # cracks may need smaller increments
+        parts += [f"*DYNAMIC, ALPHA={options.alpha:g}"]
+        parts += [f"{times}, {1e-4 * options.increment:g}, {options.increment:g}"]
+    else:
+        parts += [f"*DYNAMIC, DIRECT, ALPHA={options.alpha:g}", times]
     parts += [f"*DAMPING, RATIO={ratio:g}, F1={f1:g}, F2={f2:g}"]
     for dof, name in enumerate(
         ("MOTION_X", "MOTION_Y", "MOTION_Z")[: len(options.motions)], start=1

@@ -1,0 +1,69 @@
+#!/usr/bin/env python3
+"""Write the decks of the Jinping dam: `tools/make_jinping.py` writes those of input/jinping.
+
+    tools/make_jinping.py                               # all of input/jinping, with their meshes
+    tools/make_jinping.py my/dam.inp --unknowns 15000 --law fracture-energy --duration 5
+    tools/make_jinping.py my/dam.inp --kn 1e11 --friction 0.3 --picture
+
+Options that are not named here are those of tools/make_dam.py.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from keyway_tools.jinping.concrete import LAWS, RECOVERIES
+from keyway_tools.jinping.decks import DURATION, FULL, SMALL, JinpingDeck, write_deck
+
+INPUT = Path(__file__).resolve().parents[1] / "input"
+KEPT = {
+    "jinping": JinpingDeck(),
+    "jinping_fracture_energy": JinpingDeck(law="fracture-energy"),
+    "jinping_without_outlets": JinpingDeck(has_outlets=False),
+}
+
+
+def read_options(arguments: list[str] | None) -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    add = parser.add_argument
+    add("deck", type=Path, nargs="?", help="deck to write (all of input/jinping)")
+    add("--unknowns", type=int, help=f"at least ({FULL}; {SMALL} is a size for trials)")
+    add("--law", choices=LAWS, help="of the concrete (table1)")
+    add("--recovery", choices=RECOVERIES, help="of stiffness in compression (LEE-FENVES)")
+    add("--no-outlets", action="store_true", help="leave out outlets, piers and corbel")
+    add("--duration", type=float, help=f"of the motion [s] ({DURATION:g})")
+    add("--motion-of", type=Path, default=INPUT / "xingbiling", help="folder of the motion")
+    chosen, chosen.others = parser.parse_known_args(arguments)
+    if chosen.deck is None and any(
+        value for name, value in vars(chosen).items() if name != "motion_of"
+    ):
+        parser.error("name the deck to which the options apply")
+    return chosen
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Write one deck, or those of input/jinping."""
+    chosen = read_options(arguments)
+    if chosen.deck is None:
+        decks = {INPUT / "jinping" / f"{name}.inp": deck for name, deck in KEPT.items()}
+    else:
+        usual = JinpingDeck()
+        one = JinpingDeck(
+            law=chosen.law or usual.law,
+            recovery=chosen.recovery or usual.recovery,
+            has_outlets=not chosen.no_outlets,
+            unknowns=chosen.unknowns or usual.unknowns,
+            duration=chosen.duration or usual.duration,
+            options=tuple(chosen.others),
+        )
+        decks = {chosen.deck: one}
+    return max(write_deck(deck, path, chosen.motion_of) for path, deck in decks.items())
+
+
+if __name__ == "__main__":
+    sys.exit(main())
