@@ -9,6 +9,7 @@ set(sources
   integrators/massless_acceleration.f90
   integrators/reduced_integrator.f90
   integrators/start_acceleration.f90
+  integrators/static_duals.f90
   integrators/static_increment.f90
   integrators/static_integrator.f90
   modes/eigen_modes.f90
@@ -36,6 +37,7 @@ set(sources
   solids/tangent_choice.f90
   stages/stage_entry.f90
   state/analysis_state.f90
+  state/dual_solutions.f90
   state/guest_histories.f90
   state/increment_listener.f90
   state/motion_archive.f90

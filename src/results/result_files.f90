@@ -12,7 +12,8 @@ module result_files
   use analysis_state, only: state, vibration_mode
   use increment_listener, only: listener
   use run_progress, only: progress_clock
-  use motion_errors, only: note_dual, note_time_error
+  use dual_solutions, only: of_displacement
+  use goal_errors, only: note_duals, note_time_error
   use run_records, only: run_record
   use run_summaries, only: run_summary
   use result_writer, only: is_due, starts_analysis
@@ -158,8 +159,8 @@ contains
     call self%clock%note(model, now)
     call self%costs%start('recover', 'extremes', 'output')
     call self%record%note(model, now, self%costs)
-    call note_time_error(self%time_error, self%record%moved)
-    call note_dual(model, now, self%costs, self%dual, self%record%stresses, self%record%moved)
+    call note_time_error(self%time_error, self%record%goals(of_displacement))
+    call note_duals(model, now, self%costs, self%duals, self%record%stresses, self%record%goals)
     self%has_unwritten_envelopes = size(self%record%active) > 0
     call self%summary%note(now)
     call self%costs%stop()

@@ -26,7 +26,7 @@ set(sources
   quantities/stress_fields.f90
   quantities/stress_operator.f90
   quantities/stress_recovery.f90
-  record/motion_errors.f90
+  record/goal_errors.f90
   record/record_archive.f90
   record/requested_fields.f90
   record/result_writer.f90

@@ -100,9 +100,7 @@ TYPES = (
         is_upstream="of the model",
         is_downstream="of the model",
     ),
-    of_record(
-        "motion_error", "src/results/record/motion_errors.f90", "motion_error", "compare_records"
-    ),
+    of_record("goal_error", "src/results/record/goal_errors.f90", "goal_error", "compare_records"),
     of_record(
         "space_error", "src/results/record/space_errors.f90", "space_error", "compare_records"
     ),

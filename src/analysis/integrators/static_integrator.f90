@@ -10,7 +10,6 @@ module static_integrator
   use joint_law, only: joint_state
   use joint_water, only: press_grout, update_uplift
   use analysis_state, only: state
-  use node_dofs, only: zero_vectors
   use state_transfer, only: start_motion, store_motion, sum_contact
   use increment_listener, only: listener
   use equilibrium, only: balance_outcome
@@ -20,6 +19,7 @@ module static_integrator
   use tangent_choice, only: tangent, choose_tangents
   use energy_account, only: open_account, add_static_work
   use integrator_type, only: integrator
+  use static_duals, only: find_duals, is_affordable
   use static_increment, only: take_static_increment
   implicit none
   private
@@ -156,7 +156,7 @@ contains
     end subroutine update_water
   end subroutine match_uplift
 
-  !> Writes the motion to the nodes; at the end of the step the dual solution follows.
+  !> Writes the motion to the nodes; at the end of the step the dual solutions follow.
   subroutine store_state(self, model, when, now, results, error)
     class(static_method), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -166,40 +166,14 @@ contains
     type(error_type), allocatable, intent(out) :: error
     call store_motion(self%system%numbers, now)
     if (.not. now%is_last_of_step) return
-    if (size(model%joints) > 0 .or. self%solids%has_inelastic() .or. allocated(now%origin)) return
-    if (.not. model%steps(now%step)%controls%estimates_errors) return
+    if (self%solids%has_inelastic() .or. allocated(now%origin)) return
+    associate (controls => model%steps(now%step)%controls)
+      if (.not. (controls%estimates_errors .and. is_affordable(model, controls))) return
+    end associate
     call results%costs%start('estimate', 'mesh', 'output')
-    call find_dual(self, model, now, results)
+    call find_duals(model, self%system, self%solids%solver, now, results%duals)
     call results%costs%stop()
   end subroutine store_state
-
-  !> The dual solution: a unit force where and as the displacement is largest (theory.md, 14.2).
-  !> Without it there is no estimate of this error.
-  subroutine find_dual(self, model, now, results)
-    class(static_method), intent(inout) :: self
-    type(problem), intent(in) :: model
-    type(state), intent(in) :: now
-    class(listener), intent(inout) :: results
-    type(error_type), allocatable :: failure
-    real(rk), allocatable :: force(:, :), x(:, :)
-    real(rk) :: q(self%system%matrix%num_total), largest
-    integer :: node
-    node = maxloc(norm2(now%u, dim=1), dim=1)
-    largest = norm2(now%u(:, node))
-    if (largest <= 0.0_rk) return
-    force = zero_vectors(model%mesh%num_nodes)
-    force(:, node) = now%u(:, node)/largest
-    associate (n => self%system%matrix%num_free)
-      call self%system%numbers%reduce(force, q)
-      x = reshape(q(:n), [n, 1])
-      call self%solids%solver%factor%solve(x, failure)
-      if (allocated(failure)) return
-      q = 0.0_rk
-      q(:n) = x(:, 1)
-    end associate
-    call self%system%numbers%expand(q, force)
-    call move_alloc(force, results%dual)
-  end subroutine find_dual
 
   !> Whether the loads exceed what the joints can carry.
   logical function is_hopeless(self, model, plan, when, before)

@@ -6,6 +6,7 @@ module increment_listener
   use run_ledger, only: ledger
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
+  use dual_solutions, only: dual_solution
   use stop_signals, only: name_of_signal
   implicit none
   private
@@ -18,9 +19,8 @@ module increment_listener
     !> Largest displacement of a dynamic step so far [m], its error in time [m], and the error of
     !> histories over the largest motion; zero where the step makes no estimate
     real(rk) :: time_error(3) = 0.0_rk
-    !> (3, nodes) displacement under a unit force where and as the displacement is largest at the
-    !> end of a linear static step [m/N]; allocated until the results have taken it
-    real(rk), allocatable :: dual(:, :)
+    !> Of the end of a linear static step; allocated until the results have taken them
+    type(dual_solution), allocatable :: duals(:)
   contains
     procedure(increment_done), deferred :: increment_done
     procedure :: increment_dropped

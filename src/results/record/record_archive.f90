@@ -11,7 +11,7 @@ module record_archive
   use joint_readings, only: joint_record
   use damage_readings, only: damage_record, damage_extreme
   use run_records, only: run_record, text_item
-  use motion_errors, only: motion_error
+  use goal_errors, only: goal_error
   use space_errors, only: space_error
   implicit none
   private
@@ -34,9 +34,11 @@ contains
     call file%open_group('space')
     call save_space_error(record%space, file)
     call file%close_group()
-    call file%open_group('moved')
-    call save_motion_error(record%moved, file)
-    call file%close_group()
+    do i = 1, size(record%goals)
+      call file%open_group('goal_'//as_text(i))
+      call save_goal_error(record%goals(i), file)
+      call file%close_group()
+    end do
     ! Stresses by the operator and through the points differ by round-off.
     call file%put('num_recoveries', record%stresses%num_recoveries)
     call file%put('has_operator', record%stresses%has_operator .or. record%stresses%had_operator)
@@ -78,9 +80,11 @@ contains
     call file%open_group('space')
     call load_space_error(record%space, file)
     call file%close_group()
-    call file%open_group('moved')
-    call load_motion_error(record%moved, file)
-    call file%close_group()
+    do i = 1, size(record%goals)
+      call file%open_group('goal_'//as_text(i))
+      call load_goal_error(record%goals(i), file)
+      call file%close_group()
+    end do
     call file%get('num_recoveries', record%stresses%num_recoveries)
     call file%get('has_operator', record%stresses%had_operator)
     call file%confirm('num_joints', size(record%joints))
@@ -129,28 +133,32 @@ contains
     call file%get('sampled', record%sampled)
   end subroutine load_space_error
 
-  !> Writes the error of the largest displacement.
-  subroutine save_motion_error(record, file)
-    type(motion_error), intent(in) :: record
+  !> Writes the errors of a result.
+  subroutine save_goal_error(record, file)
+    type(goal_error), intent(in) :: record
     class(archive), intent(inout) :: file
     call file%put('at_time', record%at_time)
     call file%put('time', record%time)
     call file%put('history', record%history)
     call file%put('mesh', record%mesh)
     call file%put('at_dual', record%at_dual)
-  end subroutine save_motion_error
+    call file%put('joints', record%joints)
+    call file%put('iteration', record%iteration)
+  end subroutine save_goal_error
 
-  !> Reads the error of the largest displacement.
-  subroutine load_motion_error(record, file)
-    type(motion_error), intent(inout) :: record
+  !> Reads the errors of a result.
+  subroutine load_goal_error(record, file)
+    type(goal_error), intent(inout) :: record
     class(archive), intent(inout) :: file
     call file%get('at_time', record%at_time)
     call file%get('time', record%time)
     call file%get('history', record%history)
     call file%get('mesh', record%mesh)
     call file%get('at_dual', record%at_dual)
+    call file%get('joints', record%joints)
+    call file%get('iteration', record%iteration)
     record%history = -1.0_rk ! of the increments before the checkpoint alone
-  end subroutine load_motion_error
+  end subroutine load_goal_error
 
   !> Writes the maxima of one joint.
   subroutine save_joint_record(record, file)

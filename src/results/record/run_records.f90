@@ -11,7 +11,7 @@ module run_records
   use joint_readings, only: joint_record, open_joint_record, note_joint
   use damage_readings, only: damage_record, open_damage_record, note_damage
   use law_fields, only: mean_of_elements
-  use motion_errors, only: motion_error
+  use goal_errors, only: goal_error
   use space_errors, only: space_error, note_space_error
   use stress_fields, only: recovered_fields
   use field_table, only: list_fields, find_field
@@ -43,7 +43,7 @@ module run_records
     type(damage_record) :: damage
     type(extremes_by_face) :: displacement !< length of the vector, relative to the base [m]
     type(space_error) :: space !< error that the mesh leaves
-    type(motion_error) :: moved !< error of the largest displacement
+    type(goal_error) :: goals(2) !< errors of the largest displacement and of the largest opening
     type(envelope), allocatable :: envelopes(:) !< of all steps so far
     integer, allocatable :: active(:) !< envelopes of the present step
     type(text_item), allocatable :: warnings(:)
@@ -59,6 +59,7 @@ module run_records
     procedure :: warn_once
     procedure :: list_file
     procedure :: has_envelope_of_nodes
+    procedure :: largest_opening
     procedure, private :: check_law, check_time_stepping, check_crack_energy, has_warned
     procedure, private :: update_envelope, note_nodes, note_points, note_joints
   end type run_record
@@ -309,6 +310,15 @@ contains
     class(run_record), intent(in) :: self
     has_envelope_of_nodes = any(self%fields(self%envelopes(self%active)%row)%place /= at_joints)
   end function has_envelope_of_nodes
+
+  !> The joint with the largest opening; 0 where none has opened.
+  pure integer function largest_opening(self) result(joint)
+    class(run_record), intent(in) :: self
+    joint = 0
+    if (size(self%joints) == 0) return
+    joint = maxloc(self%joints%opening%at(1)%value, dim=1)
+    if (self%joints(joint)%opening%at(1)%value <= 0.0_rk) joint = 0
+  end function largest_opening
 
   !> Keeps a warning, each text once.
   subroutine warn_once(self, text)

@@ -1,6 +1,8 @@
 !> The errors that a run estimates, in job.json (theory.md, 14).
 module error_json
   use kinds, only: rk
+  use dual_solutions, only: of_displacement, of_opening
+  use goal_errors, only: goal_error
   use json_writer, only: json_text
   use problem_definition, only: problem
   use run_records, only: run_record
@@ -12,12 +14,14 @@ module error_json
 contains
 
   !> The object `estimates` of `accuracy`: what is not estimated is left out.
-  subroutine put_estimates(json, record)
+  subroutine put_estimates(json, model, record)
     type(json_text), intent(inout) :: json
+    type(problem), intent(in) :: model
     type(run_record), intent(in) :: record
     call json%open_object('estimates')
     call put_stress(json, record)
     call put_displacement(json, record)
+    call put_opening(json, model, record)
     call json%close_object()
   end subroutine put_estimates
 
@@ -49,28 +53,48 @@ contains
     call json%close_object()
   end subroutine put_increments
 
-  !> The largest displacement and the parts of its error; `history` is relative. With joints the
-  !> error in time of the extreme is not known within a factor of 2 (theory.md, 14.3).
+  !> The largest displacement. With joints the error in time of the extreme is not known within a
+  !> factor of 2 (theory.md, 14.3).
   subroutine put_displacement(json, record)
     type(json_text), intent(inout) :: json
     type(run_record), intent(in) :: record
-    logical :: has_time, has_mesh
-    associate (found => record%moved, largest => record%displacement%at(1))
-      has_time = found%has_time(largest) .and. size(record%joints) == 0
-      has_mesh = found%has_mesh(largest)
-      if (.not. (has_time .or. has_mesh .or. found%history >= 0.0_rk)) return
-      call json%open_object('displacement')
-      call json%put_real(largest%value, 'value')
-      if (has_time .or. has_mesh) then
-        call json%put_real(merge(found%time, 0.0_rk, has_time) &
-                           + merge(found%mesh, 0.0_rk, has_mesh), 'error')
-      end if
-      if (has_time) call json%put_real(found%time, 'time')
-      if (has_mesh) call json%put_real(found%mesh, 'mesh')
-      if (found%history >= 0.0_rk) call json%put_real(found%history, 'history')
-      call json%close_object()
-    end associate
+    type(goal_error) :: found
+    found = record%goals(of_displacement)
+    if (size(record%joints) > 0) found%at_time = 0.0_rk
+    if (.not. record%displacement%at(1)%is_found) return
+    call put_goal(json, 'displacement', record%displacement%at(1)%value, '', found)
   end subroutine put_displacement
+
+  !> The largest opening of all joints.
+  subroutine put_opening(json, model, record)
+    type(json_text), intent(inout) :: json
+    type(problem), intent(in) :: model
+    type(run_record), intent(in) :: record
+    integer :: j
+    j = record%largest_opening()
+    if (j == 0) return
+    call put_goal(json, 'opening', record%joints(j)%opening%at(1)%value, model%joints(j)%name, &
+                  record%goals(of_opening))
+  end subroutine put_opening
+
+  !> A result and the parts of its error, if any is known; `history` is relative.
+  subroutine put_goal(json, name, value, joint, found)
+    type(json_text), intent(inout) :: json
+    character(*), intent(in) :: name, joint
+    real(rk), intent(in) :: value !< [m]
+    type(goal_error), intent(in) :: found
+    if (found%total(value) < 0.0_rk .and. found%history < 0.0_rk) return
+    call json%open_object(name)
+    call json%put_real(value, 'value')
+    if (joint /= '') call json%put_text(joint, 'joint')
+    if (found%total(value) >= 0.0_rk) call json%put_real(found%total(value), 'error')
+    if (found%has_time(value)) call json%put_real(found%time, 'time')
+    if (found%has_mesh(value)) call json%put_real(found%mesh, 'mesh')
+    if (found%has_joints(value)) call json%put_real(found%joints, 'joints')
+    if (found%has_iteration(value)) call json%put_real(found%iteration, 'iteration')
+    if (found%history >= 0.0_rk) call json%put_real(found%history, 'history')
+    call json%close_object()
+  end subroutine put_goal
 
   !> Energy norms of the stresses and of the error of the mesh.
   subroutine put_stress(json, record)

@@ -3,7 +3,9 @@
 module run_closing
   use damage_readings, only: damage_extreme, levels
   use diagnostics, only: severity_ignored
+  use dual_solutions, only: of_displacement, of_opening
   use extremes, only: extreme
+  use goal_errors, only: goal_error
   use kinds, only: rk
   use problem_definition, only: problem
   use run_ledger, only: ledger, ledger_part
@@ -15,6 +17,7 @@ module run_closing
   public :: closing_lines
 
   integer, parameter :: most_joints = 6, most_effects = 6, most_modes = 6 !< that are listed
+  real(rk), parameter :: smallest_part = 1.0e-3_rk !< of an error that is named, over all of it
   character, parameter :: nl = new_line('a')
 
 contains
@@ -38,20 +41,45 @@ contains
            line_of_remarks(summary, record)//line_of_costs(costs)
   end function closing_lines
 
-  !> ', +-0.0012 (time; mesh not estimated)': the error of the largest displacement.
+  !> The error of the largest displacement. With joints that in time is not known within a factor
+  !> of 2 (theory.md, 14.3).
   function error_of_motion(record) result(text)
     type(run_record), intent(in) :: record
     character(:), allocatable :: text
-    text = ''
-    associate (found => record%moved, largest => record%displacement%at(1))
-      if (found%has_mesh(largest)) text = ', +-'//as_short_text(found%mesh)//' (mesh)'
-      if (found%has_time(largest) .and. size(record%joints) == 0) then
-        text = ', +-'//as_short_text(found%time)//' (time; mesh not estimated)'
-      end if
-      if (found%history < 0.0_rk) return
-      text = text//', histories +-'//as_short_text(100.0_rk*found%history)//' % (time)'
-    end associate
+    type(goal_error) :: found
+    found = record%goals(of_displacement)
+    if (size(record%joints) > 0) found%at_time = 0.0_rk
+    text = error_of(found, record%displacement%at(1)%value)
   end function error_of_motion
+
+  !> ', +-0.0012 (time 0.0004, mesh 0.0008)': what is known of the error of a result.
+  function error_of(found, value) result(text)
+    type(goal_error), intent(in) :: found
+    real(rk), intent(in) :: value !< [m]
+    character(:), allocatable :: text, parts
+    text = ''
+    parts = ''
+    if (found%has_time(value)) call add('time', found%time)
+    if (found%has_mesh(value)) call add('mesh', found%mesh)
+    if (found%has_joints(value)) call add('joints', found%joints)
+    if (found%has_iteration(value)) call add('iteration', found%iteration)
+    if (parts /= '') then
+      text = ', +-'//as_short_text(found%total(value))//' ('//parts(3:)
+      if (.not. found%has_mesh(value)) text = text//'; mesh not estimated'
+      text = text//')'
+    end if
+    if (found%history < 0.0_rk) return
+    text = text//', histories +-'//as_short_text(100.0_rk*found%history)//' % (time)'
+  contains
+    !> Adds a part that matters.
+    subroutine add(name, part)
+      character(*), intent(in) :: name
+      real(rk), intent(in) :: part !< [m]
+      if (part >= smallest_part*found%total(value)) then
+        parts = parts//', '//name//' '//as_short_text(part)
+      end if
+    end subroutine add
+  end function error_of
 
   !> Frequencies of each step that finds them.
   function lines_of_modes(model, summary) result(text)
@@ -107,6 +135,9 @@ contains
       associate (opening => record%joints(j)%opening%at(1), slip => record%joints(j)%slip%at(1))
         if (opening%is_found .and. opening%value > 0.0_rk) then
           text = text//'largest opening '//described(opening, model, summary)
+          if (j == record%largest_opening()) then
+            text = text//error_of(record%goals(of_opening), opening%value)
+          end if
         else
           text = text//'never open'
         end if

@@ -261,7 +261,7 @@ contains
     type(run_summary), intent(in) :: summary
     type(run_record), intent(in) :: record
     call json%open_object('accuracy')
-    call put_estimates(json, record)
+    call put_estimates(json, model, record)
     call json%put_real(maxval([0.0_rk, summary%steps%largest_residual]), 'largest_residual')
     call json%put_real(maxval([0.0_rk, summary%steps%largest_error]), 'largest_energy_error')
     call json%put_integer(maxval([0, summary%steps%most_iterations]), 'most_iterations')

@@ -59,11 +59,13 @@ contains
     record%space%error = 5.5_rk
     record%space%time = 6.6_rk
     record%space%sampled = 7.7_rk
-    record%moved%at_time = 7.9_rk
-    record%moved%time = 8.8_rk
-    record%moved%history = -1.0_rk
-    record%moved%mesh = 10.1_rk
-    record%moved%at_dual = 11.1_rk
+    record%goals(2)%at_time = 7.9_rk
+    record%goals(2)%time = 8.8_rk
+    record%goals(2)%history = -1.0_rk
+    record%goals(2)%mesh = 10.1_rk
+    record%goals(2)%at_dual = 11.1_rk
+    record%goals(2)%joints = 12.1_rk
+    record%goals(2)%iteration = 13.1_rk
     do i = 1, size(record%joints)
       associate (joint => record%joints(i))
         call fill_extremes(10.0_rk*i, joint%opening)
@@ -136,11 +138,13 @@ contains
     call compare(log, 'space error', a%space%error, b%space%error)
     call compare(log, 'space time', a%space%time, b%space%time)
     call compare(log, 'space sampled', a%space%sampled, b%space%sampled)
-    call compare(log, 'moved at_time', a%moved%at_time, b%moved%at_time)
-    call compare(log, 'moved time', a%moved%time, b%moved%time)
-    call compare(log, 'moved history', a%moved%history, b%moved%history)
-    call compare(log, 'moved mesh', a%moved%mesh, b%moved%mesh)
-    call compare(log, 'moved at_dual', a%moved%at_dual, b%moved%at_dual)
+    call compare(log, 'goal at_time', a%goals(2)%at_time, b%goals(2)%at_time)
+    call compare(log, 'goal time', a%goals(2)%time, b%goals(2)%time)
+    call compare(log, 'goal history', a%goals(2)%history, b%goals(2)%history)
+    call compare(log, 'goal mesh', a%goals(2)%mesh, b%goals(2)%mesh)
+    call compare(log, 'goal at_dual', a%goals(2)%at_dual, b%goals(2)%at_dual)
+    call compare(log, 'goal joints', a%goals(2)%joints, b%goals(2)%joints)
+    call compare(log, 'goal iteration', a%goals(2)%iteration, b%goals(2)%iteration)
     do i = 1, size(a%joints)
       call compare_extremes(log, 'opening', a%joints(i)%opening, b%joints(i)%opening)
       call compare_extremes(log, 'slip', a%joints(i)%slip, b%joints(i)%slip)
