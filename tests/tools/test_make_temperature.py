@@ -1,0 +1,186 @@
+"""Temperature fields of dams by tools/make_temperature.py."""
+
+from __future__ import annotations
+
+import make_temperature
+import matplotlib.image
+import numpy as np
+import pytest
+from keyway_tools.box_mesh import box_mesh, stretched
+from keyway_tools.deck_text import mesh_deck
+from keyway_tools.temperature.climate import Air, Climate, Level, Water
+
+LENGTH, THICKNESS, HEIGHT = 6.0, 9.0, 30.0  # of the wall, upstream face at y = 0 [m]
+WAVE = ["--air", "14", "10"]
+WATER = ["--water", "16", "9", "6", "--level", "20"]
+DIGITS = 5e-7  # of the file
+
+
+@pytest.fixture
+def deck(tmp_path):
+    """A wall on a block of rock, its mesh in an included file."""
+    mesh, number = box_mesh((2, 6, 10), stretched((LENGTH, THICKNESS, HEIGHT)))
+    low = np.arange(len(mesh.bricks)).reshape(2, 6, 10)
+    mesh.brick_sets = {"DAM": low[:, :, 2:].ravel(), "ROCK": low[:, :, :2].ravel()}
+    mesh.surfaces = {
+        "UPSTREAM": [(int(b), 3) for b in low[:, 0, 2:].ravel()],
+        "DOWNSTREAM": [(int(b), 5) for b in low[:, -1, 2:].ravel()],
+    }
+    mesh.node_sets = {"WET": number[:, 0, 2:].ravel(), "DRY": number[:, -1, 2:].ravel()}
+    mesh.node_sets["CREST"] = number[:, 3, -1]
+    types = {"DAM": "C3D8", "ROCK": "C3D8"}
+    # sets of bricks must lie in the order of the mesh
+    order = np.concatenate(list(mesh.brick_sets.values()))
+    rank = np.argsort(order)
+    mesh.bricks = mesh.bricks[order]
+    mesh.brick_sets = {name: rank[m] for name, m in mesh.brick_sets.items()}
+    mesh.surfaces = {n: [(int(rank[b]), f) for b, f in faces] for n, faces in mesh.surfaces.items()}
+    (tmp_path / "wall_mesh.inp").write_text(mesh_deck(mesh, types, "A wall"))
+    (tmp_path / "wall.inp").write_text("*INCLUDE, INPUT=wall_mesh.inp\n")
+    return tmp_path / "wall.inp", mesh
+
+
+def make(path, *options):
+    assert make_temperature.main([str(path), "--no-picture", *options]) == 0
+    rows = np.genfromtxt(path.with_name("wall_temperature.csv"), delimiter=",", names=True)
+    return {time: rows[rows["time"] == time] for time in np.unique(rows["time"])}
+
+
+def at(rows, mesh, x):
+    """Value at a node of the mesh."""
+    node = np.linalg.norm(mesh.x - x, axis=1).argmin() + 1
+    return float(rows["value"][rows["node"] == node][0])
+
+
+def test_faces_have_the_temperature_of_air_and_water(deck):
+    """Above and below the level at 20 m; the foot is at 6 m."""
+    path, mesh = deck
+    field = make(path, *WAVE, *WATER, "--year", "12", "--times", "0", "3", "6.5")
+    assert list(field) == [0.0, 3.0, 6.5]
+    month = np.array([0.0, 3.0, 6.5])
+    water, air = Water(16.0, 9.0, 6.0, 14.0), Air(14.0, 10.0)
+    for k, rows in enumerate(field.values()):
+        assert at(rows, mesh, (0, THICKNESS, 12)) == pytest.approx(
+            air.on_face(month)[k], abs=DIGITS
+        )
+        assert at(rows, mesh, (0, 0, 27)) == pytest.approx(air.on_face(month)[k], abs=DIGITS)
+        for z in (6.0, 12.0):
+            wet = water.at(np.array([20.0 - z]), month)[k]
+            assert at(rows, mesh, (3, 0, z)) == pytest.approx(wet, abs=DIGITS)
+        assert len(rows) == 3 * 7 * 9  # no rock
+
+
+def test_zhus_formula():
+    """Means at surface and bottom, lags and the fall of the amplitude as in the formula."""
+    water = Water(16.0, 9.0, 6.0, 100.0)
+    assert water.mean_at(np.array([0.0, 100.0])).tolist() == pytest.approx([16.0, 6.0])
+    assert water.lag_at(np.array([0.0, 1e3])).tolist() == pytest.approx([0.85, 2.15])
+    assert water.amplitude_at(np.array([50.0]))[0] == pytest.approx(9.0 * np.exp(-0.9))
+    warmest = water.at(np.array([0.0]), np.array([6.5 + 0.85, 0.5 + 0.85]))
+    assert warmest.ravel().tolist() == pytest.approx([25.0, 7.0])
+
+
+def test_units_of_time_and_the_month_of_the_start(deck):
+    """A year of 12 from January is a year of 365.25 days from April, three months later."""
+    path, _ = deck
+    months = make(path, *WAVE, "--year", "12", "--times", "3", "7")
+    days = make(path, *WAVE, "--year", "365.25", "--start", "3", "--times", "0", "121.75")
+    for one, other in zip(months.values(), days.values(), strict=True):
+        assert one["value"] == pytest.approx(other["value"], abs=2 * DIGITS)
+    seconds = make(path, *WAVE)
+    assert len(seconds) == 13
+    assert max(seconds) == pytest.approx(31557600.0)
+    assert seconds[0.0]["value"] == pytest.approx(seconds[max(seconds)]["value"], abs=2 * DIGITS)
+
+
+def test_surfaces_and_node_sets_are_the_same_faces(deck):
+    path, _ = deck
+    one = make(path, *WAVE, *WATER, "--times", "0")
+    other = make(path, *WAVE, *WATER, "--times", "0", "--upstream", "WET", "--downstream", "dry")
+    assert np.array_equal(one[0.0]["value"], other[0.0]["value"])
+
+
+def test_rock_has_one_temperature(deck):
+    """Nodes outside of the dam; those on the contact belong to the dam."""
+    path, mesh = deck
+    rows = make(path, *WAVE, "--rock", "12.5", "--times", "0", "1")[1.0]
+    assert len(rows) == len(mesh.x)
+    assert rows["node"].tolist() == list(range(1, len(mesh.x) + 1))
+    below = mesh.x[:, 2] < 5.9
+    assert set(rows["value"][below]) == {12.5}
+    assert not (rows["value"][~below] == 12.5).any()
+
+
+def test_the_straight_line_is_one(deck):
+    """--linear: equal differences along the thickness, the mean of the field."""
+    path, mesh = deck
+    rows = make(path, *WAVE, *WATER, "--times", "0", "--linear")[0.0]
+    y = np.linspace(0.0, THICKNESS, 7)
+    values = np.array([at(rows, mesh, (3, one, 12)) for one in y])
+    assert np.abs(np.diff(values, 2)).max() < 4 * DIGITS
+
+
+def test_a_level_that_changes():
+    """A point between low and high water is dry while the water is low."""
+    level = Level.parse(["0:20", "6:10"])
+    climate = Climate(Air(14.0, 10.0), Water(16.0, 9.0, 6.0, 14.0), level)
+    month = np.array([0.0, 3.0, 6.0, 9.0, 12.0])
+    assert level.at(month).tolist() == pytest.approx([20.0, 15.0, 10.0, 15.0, 20.0])
+    face = climate.upstream(np.array([14.0]), month)[0]
+    assert face[2] == pytest.approx(climate.air.on_face(month)[2])
+    assert face[0] == pytest.approx(climate.water.at(np.array([6.0]), month)[0])
+    assert not level.is_constant
+
+
+def test_the_sun_warms_dry_faces_only(deck):
+    path, mesh = deck
+    plain = make(path, *WAVE, *WATER, "--times", "0")[0.0]
+    sunny = make(path, *WAVE, *WATER, "--times", "0", "--sun", "3", "0")[0.0]
+    dry, wet = (3, THICKNESS, 12), (3, 0, 12)
+    assert at(sunny, mesh, dry) - at(plain, mesh, dry) == pytest.approx(3.0, abs=2 * DIGITS)
+    assert at(sunny, mesh, wet) == pytest.approx(at(plain, mesh, wet), abs=2 * DIGITS)
+
+
+def test_picture_of_four_dates(deck, capsys):
+    path, _ = deck
+    assert make_temperature.main([str(path), *WAVE, *WATER]) == 0
+    picture = path.with_name("wall_temperature.png")
+    assert str(picture) in capsys.readouterr().out
+    image = matplotlib.image.imread(picture)[..., :3]
+    assert (np.ptp(image, axis=2) > 0.3).mean() > 0.02
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--dam", "WALL"], "no set of elements 'WALL'; expected one of DAM, ROCK"),
+        (["--upstream", "FACE"], "no surface or node set 'FACE'; expected one of CREST, DOWN"),
+        (["--upstream", "CREST"], "'CREST' has no face of the dam's elements"),
+        (["--level", "20"], "--water and --level belong together"),
+        (["--water", "16", "9", "6"], "--water and --level belong together"),
+        (["--water", "16", "9", "6", "--level", "5"], "depth of the water: -1 m; expected > 0"),
+        (["--water", "16", "-9", "6", "--level", "20"], "amplitude of the water: -9; expected"),
+        (["--water", "16", "9", "6", "--level", "low"], "expected one height, or MONTH:HEIGHT"),
+        (["--water", "16", "9", "6", "--level", "1:9", "13:8"], "expected different ones, 0 to 12"),
+        (["--diffusivity", "0"], "diffusivity: 0 m2/s; expected > 0"),
+        (["--year", "-1"], "length of a year: -1; expected > 0"),
+        (["--times", "1", "0"], "expected growing times"),
+        (["--harmonics", "500"], "harmonics: 500; expected 1 to 191"),
+        (["--harmonics", "0"], "harmonics: 0; expected 1 to 191"),
+    ],
+)
+def test_input_that_cannot_be_used(deck, capsys, options, message):
+    path, _ = deck
+    assert make_temperature.main([str(path), *WAVE, *options]) == 2
+    assert message in capsys.readouterr().err
+    assert not path.with_name("wall_temperature.csv").exists()
+
+
+def test_a_deck_that_is_not_there(tmp_path, capsys):
+    assert make_temperature.main([str(tmp_path / "none.inp"), *WAVE]) == 2
+    assert "there is no deck" in capsys.readouterr().err
+
+
+def test_an_amplitude_below_zero(deck, capsys):
+    assert make_temperature.main([str(deck[0]), "--air", "14", "-10"]) == 2
+    assert "amplitude of the air: -10; expected >= 0" in capsys.readouterr().err

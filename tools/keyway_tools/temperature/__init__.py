@@ -1,0 +1,1 @@
+"""The seasonal temperature of a dam from air and water (docs/temperature.md)."""

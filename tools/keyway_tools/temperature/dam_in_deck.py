@@ -1,0 +1,124 @@
+"""The dam of a deck: its nodes, its two faces, and how deep each node lies between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pyvista as pv
+
+from ..mesh_data import BRICK_FACES
+from ..study.deck_cards import Deck, read_deck
+from ..study.mesh_sets import MeshSets, element_rows, read_sets
+
+
+@dataclass(frozen=True)
+class Dam:
+    """Nodes of the dam by their numbers in the deck; positions count from 0."""
+
+    numbers: np.ndarray  # (nodes)
+    x: np.ndarray  # (nodes, 3) [m]
+    bricks: np.ndarray  # (bricks, 8) positions
+    upstream: list[list[int]]  # faces: positions of three or four nodes
+    downstream: list[list[int]]
+    others: np.ndarray  # numbers of all other nodes of the deck
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a node lies in the thickness."""
+
+    depth: np.ndarray  # below the upstream face [m]
+    thickness: np.ndarray  # [m]
+    z_upstream: np.ndarray  # height of the nearest point of the upstream face [m]
+    z_downstream: np.ndarray
+
+
+def read_dam(path: Path, dam: str, upstream: str, downstream: str) -> Dam:
+    """The dam of a deck by the names of its elements and of its faces. Raises ValueError."""
+    if not path.is_file():
+        raise ValueError(f"there is no deck '{path}'")
+    deck = read_deck(path)
+    sets = read_sets(deck)
+    if dam.upper() not in sets.element_sets:
+        raise ValueError(
+            f"{path}: no set of elements '{dam}'; expected one of {_list(sets.element_sets)}"
+        )
+    elements = _bricks(deck, sets.element_sets[dam.upper()])
+    if not elements:
+        raise ValueError(f"{path}: set '{dam}' has no element of 8 nodes")
+    numbers = np.unique(np.concatenate([np.array(nodes) for nodes in elements.values()]))
+    position = {int(number): place for place, number in enumerate(numbers)}
+    faces = [_face(path, deck, sets, name, elements) for name in (upstream, downstream)]
+    return Dam(
+        numbers,
+        np.array([sets.nodes[int(number)] for number in numbers]),
+        np.array([[position[n] for n in nodes] for nodes in elements.values()]),
+        *([[position[n] for n in dict.fromkeys(face)] for face in own] for own in faces),
+        np.array(sorted(set(sets.nodes) - set(position)), dtype=int),
+    )
+
+
+def _list(names) -> str:
+    return ", ".join(sorted(names)[:12]) or "none"
+
+
+def _bricks(deck: Deck, wanted: set[int]) -> dict[int, list[int]]:
+    """Nodes of the solids of a set, by the number of the element."""
+    found = {}
+    for card in deck.of("ELEMENT"):
+        if not card.value("TYPE").startswith("C3D8"):
+            continue
+        found |= {number: nodes for number, nodes in element_rows(card) if number in wanted}
+    return found
+
+
+def _face(
+    path: Path, deck: Deck, sets: MeshSets, name: str, elements: dict[int, list[int]]
+) -> list[list[int]]:
+    """Node numbers of each face of a surface, or of the faces whose nodes all are in a node set."""
+    card = next((c for c in deck.of("SURFACE") if c.value("NAME") == name.upper()), None)
+    found: list[list[int]] = []
+    if card is not None:
+        for line in card.lines:
+            label, face = (item.strip() for item in line.split(",")[:2])
+            corners = BRICK_FACES[int(face.upper().removeprefix("S")) - 1]
+            own = [e for e in sets.elements_of(label) if e in elements]
+            found += [[elements[e][k] for k in corners] for e in own]
+    elif name.upper() in sets.node_sets:
+        kept = sets.node_sets[name.upper()]
+        for nodes in elements.values():
+            faces = [[nodes[k] for k in corners] for corners in BRICK_FACES]
+            found += [face for face in faces if len(set(face)) > 2 and kept.issuperset(face)]
+    else:
+        known = [c.value("NAME") for c in deck.of("SURFACE")] + list(sets.node_sets)
+        raise ValueError(f"{path}: no surface or node set '{name}'; expected one of {_list(known)}")
+    if not found:
+        raise ValueError(f"{path}: '{name}' has no face of the dam's elements")
+    return found
+
+
+def place_nodes(dam: Dam) -> Place:
+    """Depth and thickness at each node by the nearest points of both faces."""
+    near, far = (_nearest(dam, faces) for faces in (dam.upstream, dam.downstream))
+    depth = np.linalg.norm(dam.x - near, axis=1)
+    rest = np.linalg.norm(dam.x - far, axis=1)
+    return Place(depth, depth + rest, near[:, 2], far[:, 2])
+
+
+def first_layer(dam: Dam, place: Place) -> float:
+    """Largest thickness of the elements at the upstream face [m]."""
+    wet = np.unique(np.concatenate(dam.upstream).astype(int))
+    at_face = np.isin(dam.bricks, wet).sum(axis=1) >= 3
+    return float(place.depth[dam.bricks[at_face]].max())
+
+
+def _nearest(dam: Dam, faces: list[list[int]]) -> np.ndarray:
+    """The nearest point of a face to each node, the node itself where it is one of the face."""
+    cells = np.concatenate([[len(face), *face] for face in faces])
+    skin = pv.PolyData(dam.x, cells).triangulate()
+    point = np.asarray(skin.find_closest_cell(dam.x, return_closest_point=True)[1])
+    own = np.unique(np.concatenate(faces).astype(int))
+    point[own] = dam.x[own]
+    return point

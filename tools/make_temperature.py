@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+"""Write the seasonal temperature of a dam, from the air and the water at its faces.
+
+    tools/make_temperature.py dam.inp --air 14 10 --water 16 9 6 --level 105 \
+        --year 12 --times 0 1 2 3 4 5 6 7 8 9 10 11 12 -o dam_temperature.csv
+
+The file has rows `time,node,value` for *TEMPERATURE, FILE=...; NAME.png shows the field on four
+dates. The upstream face has the temperature of the water below its level (Zhu's formula), that of
+the air above it; the downstream face that of the air. Between the faces the temperature is the
+steady periodic solution of conduction through the thickness. docs/temperature.md has the formulas
+and what they leave out. Lengths are in m, temperatures in degrees Celsius, months count from
+1 January: 0.5 is the middle of January.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+import numpy as np
+from keyway_tools.temperature.climate import MONTHS, WARMEST, Air, Climate, Level, Water
+from keyway_tools.temperature.dam_in_deck import (
+    Dam,
+    Place,
+    first_layer,
+    place_nodes,
+    read_dam,
+)
+from keyway_tools.temperature.field import YEAR, Clock, seasonal_field, write_field
+from keyway_tools.temperature.periodic_wall import Wall
+
+FEW, MANY = 1, 12  # harmonics for a constant level, and for one that changes
+
+
+def read_options(arguments: list[str] | None) -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("deck", type=Path, help="deck with the mesh; *INCLUDE files are read")
+    parser.add_argument("-o", "--output", type=Path, help="file (NAME_temperature.csv)")
+    parser.add_argument("--no-picture", action="store_true", help="only the file")
+    add_mesh_options(parser)
+    add_climate_options(parser)
+    add_time_options(parser)
+    return parser.parse_args(arguments)
+
+
+def add_mesh_options(parser: argparse.ArgumentParser) -> None:
+    """Names in the deck."""
+    group = parser.add_argument_group("dam")
+    group.add_argument("--dam", default="DAM", help="set of the dam's elements (DAM)")
+    text = "face, a surface or a set of nodes"
+    group.add_argument("--upstream", default="UPSTREAM", help=f"{text} (UPSTREAM)")
+    group.add_argument("--downstream", default="DOWNSTREAM", help=f"{text} (DOWNSTREAM)")
+    group.add_argument(
+        "--diffusivity", type=float, default=1.0e-6, help="of the concrete [m2/s] (1e-6)"
+    )
+    group.add_argument(
+        "--linear", action="store_true", help="straight through the thickness: for coarse meshes"
+    )
+    group.add_argument(
+        "--rock", type=float, metavar="T", help="temperature of all other nodes (not written)"
+    )
+
+
+def add_climate_options(parser: argparse.ArgumentParser) -> None:
+    """Air, sun and water."""
+    group = parser.add_argument_group("air and water")
+    pair = ("MEAN", "AMPLITUDE")
+    group.add_argument("--air", type=float, nargs=2, required=True, metavar=pair, help="of a year")
+    group.add_argument(
+        "--warmest", type=float, default=WARMEST, metavar="MONTH", help=f"of the air ({WARMEST})"
+    )
+    group.add_argument(
+        "--sun", type=float, nargs=2, default=(0.0, 0.0), metavar=pair, help="of dry faces (0 0)"
+    )
+    group.add_argument(
+        "--water", type=float, nargs=3, metavar=("SURFACE", "AMPLITUDE", "BOTTOM"),
+        help="annual mean and amplitude at the surface, mean at the bottom (no water)",
+    )  # fmt: skip
+    group.add_argument(
+        "--level", nargs="+", metavar="Z", help="of the water: a height, or MONTH:HEIGHT words"
+    )
+    group.add_argument("--bed", type=float, help="height of the bottom (foot of the face)")
+
+
+def add_time_options(parser: argparse.ArgumentParser) -> None:
+    """Times of the deck."""
+    group = parser.add_argument_group("times of the deck")
+    group.add_argument(
+        "--times", type=float, nargs="+", metavar="T", help="of the file (each month of a year)"
+    )
+    group.add_argument("--start", type=float, default=0.0, metavar="MONTH", help="at time 0 (0)")
+    text = "length of a year in the deck's unit of time"
+    group.add_argument("--year", type=float, default=YEAR, help=f"{text} ({YEAR:.0f})")
+    group.add_argument(
+        "--harmonics", type=int, help=f"of a year ({FEW}; {MANY} where the level changes)"
+    )
+
+
+def climate_of(chosen: argparse.Namespace, dam: Dam) -> Climate:
+    """Air and water from the command line. Raises ValueError."""
+    air = Air(*chosen.air, chosen.warmest, *chosen.sun)
+    if (chosen.water is None) != (chosen.level is None):
+        raise ValueError("--water and --level belong together: expected both or none")
+    if chosen.water is None:
+        return Climate(air)
+    level = Level.parse(chosen.level)
+    foot = min(dam.x[node, 2] for face in dam.upstream for node in face)
+    bed = foot if chosen.bed is None else chosen.bed
+    surface, amplitude, bottom = chosen.water
+    depth = max(level.heights) - bed
+    return Climate(air, Water(surface, amplitude, bottom, depth, chosen.warmest), level)
+
+
+def times_of(chosen: argparse.Namespace) -> np.ndarray:
+    """Times of the file, growing. Raises ValueError."""
+    if chosen.times is None:
+        return chosen.year * np.arange(MONTHS + 1.0) / MONTHS
+    times = np.array(chosen.times)
+    if (np.diff(times) <= 0.0).any():
+        raise ValueError("--times: expected growing times")
+    return times
+
+
+def show(dam: Dam, place: Place, wall: Wall, is_linear: bool) -> None:
+    """Print sizes, and whether the elements are too thick for the wave of a year."""
+    low, high = place.thickness.min(), place.thickness.max()
+    print(f"{len(dam.numbers)} nodes of the dam, {low:.2f} to {high:.2f} m thick")
+    layer, fall = first_layer(dam, place), 1.0 / wall.wave_number(1).real
+    if layer > fall and not is_linear:
+        print(f"note: elements at the faces are up to {layer:.1f} m thick, the wave of a year")
+        print(f"      falls by e over {fall:.1f} m: --linear keeps its mean and its moment")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Write the field and its picture."""
+    chosen = read_options(arguments)
+    output = chosen.output or chosen.deck.with_name(f"{chosen.deck.stem}_temperature.csv")
+    try:
+        dam = read_dam(chosen.deck, chosen.dam, chosen.upstream, chosen.downstream)
+        climate, times = climate_of(chosen, dam), times_of(chosen)
+        is_even = climate.level is None or climate.level.is_constant
+        harmonics = FEW if is_even else MANY
+        if chosen.harmonics is not None:
+            harmonics = chosen.harmonics
+        clock, place = Clock(chosen.start, chosen.year), place_nodes(dam)
+        wall = Wall(place.depth, place.thickness, chosen.diffusivity, YEAR)
+        field = seasonal_field(wall, place, climate, harmonics, chosen.linear)
+        values = field.at(clock.part_of_year(times))
+        output.parent.mkdir(parents=True, exist_ok=True)
+        write_field(output, dam, values, times, chosen.rock)
+    except (OSError, ValueError) as fault:
+        print(f"make_temperature: {fault}", file=sys.stderr)
+        return 2
+    show(dam, place, wall, chosen.linear)
+    print(f"{len(times)} times, {values.min():.2f} to {values.max():.2f} degrees; wrote {output}")
+    if not chosen.no_picture:
+        from keyway_tools.temperature.pictures import plot_seasons  # VTK is slow to load
+
+        print("wrote", plot_seasons(dam, field, output.with_suffix(".png")))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
