@@ -1,7 +1,7 @@
 # keyway_add_umat(name SOURCES file.. [FLAGS flag..]): a shared library of a UMAT, made by Keyway itself
 # as `keyway --umat file..` would make it, for `keyway --umat <name>.so job.inp`. The path of the
 # library is the property KEYWAY_LIBRARY of the target. Outside of Keyway's own build the program is
-# the one in the PATH, or KEYWAY_PROGRAM.
+# that of find_package(keyway), else the one in the PATH, or KEYWAY_PROGRAM.
 function(keyway_add_umat name)
   cmake_parse_arguments(PARSE_ARGV 1 umat "" "" "SOURCES;FLAGS")
   if(NOT umat_SOURCES)
@@ -9,6 +9,8 @@ function(keyway_add_umat name)
   endif()
   if(TARGET keyway)
     set(program $<TARGET_FILE:keyway>)
+  elseif(TARGET keyway::keyway)
+    set(program $<TARGET_FILE:keyway::keyway>)
   else()
     find_program(KEYWAY_PROGRAM keyway REQUIRED)
     set(program "${KEYWAY_PROGRAM}")
