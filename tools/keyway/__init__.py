@@ -15,6 +15,7 @@ deck.write("stiff.inp")
 from keyway_tools.program import find_program
 
 from .deck import Card, Deck, DeckError
+from .job_schema import job_schema
 from .run_results import RunResults, open_run
 from .running import RunError, run
 
@@ -27,6 +28,7 @@ __all__ = [
     "RunError",
     "RunResults",
     "find_program",
+    "job_schema",
     "open",
     "run",
 ]

@@ -26,6 +26,9 @@ module summary_json
   !> Blanks at the end of the summary of a run that goes on: room for its last summary on a disk
   !> that is full by then.
   integer, parameter :: reserve = 8192
+  !> Name and version of what job.json holds (docs/versions.md); names may be added in a version.
+  character(*), parameter :: schema_name = 'keyway-job'
+  integer, parameter :: schema_version = 1
 
 contains
 
@@ -41,6 +44,7 @@ contains
     character(:), allocatable :: text
     logical :: is_good
     call json%open_object()
+    call put_schema(json)
     call put_program(json)
     call put_machine(json)
     call json%put_text(trim(summary%status), 'status')
@@ -70,6 +74,15 @@ contains
     call write_over(path, json%contents(), is_good)
     if (is_good) deallocate (error)
   end subroutine write_summary
+
+  !> What the file holds, for readers that check it.
+  subroutine put_schema(json)
+    type(json_text), intent(inout) :: json
+    call json%open_object('schema')
+    call json%put_text(schema_name, 'name')
+    call json%put_integer(schema_version, 'version')
+    call json%close_object()
+  end subroutine put_schema
 
   !> The program and its source version.
   subroutine put_program(json)
