@@ -4,12 +4,12 @@
     tools/make_temperature.py dam.inp --air 14 10 --water 16 9 6 --level 105 \
         --year 12 --times 0 1 2 3 4 5 6 7 8 9 10 11 12 -o dam_temperature.csv
 
-The file has rows `time,node,value` for *TEMPERATURE, FILE=...; NAME.png shows the field on four
-dates. The upstream face has the temperature of the water below its level (Zhu's formula), that of
-the air above it; the downstream face that of the air. Between the faces the temperature is the
-steady periodic solution of conduction through the thickness. docs/temperature.md has the formulas
-and what they leave out. Lengths are in m, temperatures in degrees Celsius, months count from
-1 January: 0.5 is the middle of January.
+The file has a row for each node and a column for each time, for *TEMPERATURE, INPUT=...; NAME.png
+shows the field on four dates. The upstream face has the temperature of the water below its level
+(Zhu's formula), that of the air above it; the downstream face that of the air. Between the faces
+the temperature is the steady periodic solution of conduction through the thickness.
+docs/temperature.md has the formulas and what they leave out. Lengths are in m, temperatures in
+degrees Celsius, months count from 1 January: 0.5 is the middle of January.
 """
 
 from __future__ import annotations

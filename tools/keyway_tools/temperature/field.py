@@ -47,19 +47,17 @@ def seasonal_field(
 def write_field(
     path: Path, dam: Dam, temperature: np.ndarray, times: np.ndarray, rock: float | None = None
 ) -> None:
-    """Rows `time,node,value`, ordered by time and node; `temperature` has shape (nodes, times).
+    """A row for each node in the order of its number, a column for each time.
 
-    Nodes outside of the dam get the value `rock` at all times, none where it is None.
+    `temperature` has shape (nodes, times). Nodes outside of the dam have the value `rock`, no row
+    where it is None. A file of one time has no time: *TEMPERATURE then takes the values alone.
     """
     others = dam.others if rock is not None else dam.others[:0]
     numbers = np.concatenate([dam.numbers, others])
-    order = np.argsort(numbers, kind="stable")
+    outside = np.full((len(others), len(times)), rock or 0.0)
+    values = np.concatenate([temperature, outside])
+    heads = [f"{time:.12g}" for time in times] if len(times) > 1 else ["temperature"]
     with path.open("w", encoding="utf-8") as file:
-        file.write("time,node,value\n")
-        for k, time in enumerate(times):
-            values = np.concatenate([temperature[:, k], np.full(len(others), rock or 0.0)])
-            stamp = f"{time:.12g}"
-            file.writelines(
-                f"{stamp},{number},{value:.6f}\n"
-                for number, value in zip(numbers[order], values[order], strict=True)
-            )
+        file.write(",".join(["node", *heads]) + "\n")
+        for row in np.argsort(numbers, kind="stable"):
+            file.write(f"{numbers[row]}," + ",".join(f"{v:.6g}" for v in values[row]) + "\n")
