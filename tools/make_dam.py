@@ -27,13 +27,18 @@ from functools import partial
 from pathlib import Path
 
 from keyway_tools.arch_blocks import JOINS, build_block_dam
-from keyway_tools.arch_command import add_arch_options, block_options_of
+from keyway_tools.arch_command import (
+    add_arch_options,
+    block_options_of,
+    construction_of,
+)
 from keyway_tools.arch_dam import DamOptions, build_arch_dam
 from keyway_tools.arch_deck import DeckOptions, arch_dam_deck
 from keyway_tools.arch_header import header
 from keyway_tools.arch_rock import RockOptions
 from keyway_tools.arch_shape import ArchShape
 from keyway_tools.arch_size import sized_dam, unknowns_of
+from keyway_tools.construction.lifts import name_lifts
 from keyway_tools.deck_text import mesh_deck
 from keyway_tools.joint_points import name_joint_points
 from keyway_tools.mesh_data import BrickMesh
@@ -262,6 +267,7 @@ def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
         damping=tuple(chosen.damping),
         num_modes=chosen.modes,
         picture_frequency=chosen.picture_every,
+        construction=construction_of(chosen),
     )
 
 
@@ -284,6 +290,8 @@ def main(arguments: list[str] | None = None) -> int:
         if chosen.unknowns:
             mesh_options = sized_dam(mesh_options, chosen.unknowns, build)
         mesh, blocks = build(mesh_options), block_options_of(chosen, mesh_options)
+        if options.construction:
+            name_lifts(mesh, mesh_options.num_height, options.construction.num_lifts)
     except ValueError as fault:
         print(f"make_dam: {fault}", file=sys.stderr)
         return 2
@@ -293,7 +301,8 @@ def main(arguments: list[str] | None = None) -> int:
     if faults:
         print("make_dam: the mesh has faults:\n  " + "\n  ".join(faults), file=sys.stderr)
         return 1
-    heading = header(mesh, shape, mesh_options, options.title, tuple(chosen.note), blocks)
+    notes = tuple(chosen.note)
+    heading = header(mesh, shape, mesh_options, options.title, notes, blocks, options.construction)
     mesh_file = write_deck(chosen, mesh, heading, options)
     show(chosen, mesh, mesh_file)
     return 0

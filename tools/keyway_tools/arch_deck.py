@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from .construction.lifts import Construction, construction_steps
 from .deck_text import comment
 from .mesh_data import BrickMesh
 
@@ -36,13 +37,14 @@ class DeckOptions:
     damping: tuple[float, float, float] = (0.05, 2.0, 10.0)  # ratio at two frequencies [Hz]
     num_modes: int = 0  # > 0: a *FREQUENCY step between the static and the dynamic one
     picture_frequency: int = 10  # increments between two states of the VTK series
+    construction: Construction | None = None  # None: the dam is there at once
 
 
 def arch_dam_deck(mesh: BrickMesh, heading: str, mesh_file: str, options: DeckOptions) -> str:
     """Main file of the deck, which includes the mesh by *INCLUDE."""
     parts = [comment(heading), "*HEADING", options.title, f"*INCLUDE, INPUT={mesh_file}"]
     parts += _materials(mesh, options) + _joints(mesh, options) + _couplings(mesh, options)
-    parts += ["*BOUNDARY", "FIXED, 1, 3", *_amplitudes(options), *_static_step(mesh, options)]
+    parts += ["*BOUNDARY", "FIXED, 1, 3", *_amplitudes(options), *_static_steps(mesh, options)]
     if options.num_modes > 0:
         parts += ["**", "** Natural modes: joints closed, added mass of the water included"]
         parts += ["*STEP, NAME=MODES", "*FREQUENCY", str(options.num_modes), "*END STEP"]
@@ -129,16 +131,31 @@ def _requests(mesh: BrickMesh, options: DeckOptions) -> list[str]:
     return parts
 
 
-def _static_step(mesh: BrickMesh, options: DeckOptions) -> list[str]:
-    parts = ["**", "** Weight of the dam and water", "*STEP, NAME=WEIGHT", "*STATIC"]
-    parts += ["0.1, 1." if options.concrete_cards else "1., 1."]
-    parts += ["*DLOAD", "DAM, GRAV, 9.81, 0., 0., -1."]
-    if options.water_depth is not None:
-        parts += [
-            f"*RESERVOIR, NAME=LAKE, SURFACE=UPSTREAM, LEVEL={options.water_depth:g}, BED=0.,",
-            f"   ADDED MASS=WESTERGAARD, DIRECTION={options.added_mass_direction}",
-        ]
-    return parts + _requests(mesh, options) + ["*END STEP"]
+def _static_steps(mesh: BrickMesh, options: DeckOptions) -> list[str]:
+    """Weight and water at once, or construction and then water."""
+    building = options.construction
+    if building is None:
+        weight = ["*DLOAD", "DAM, GRAV, 9.81, 0., 0., -1."]
+        about = ["**", "** Weight of the dam and water"]
+        return about + _static_step("WEIGHT", weight + _reservoir(options), mesh, options)
+    fields = ["*NODE FILE", "U, OPENING" if mesh.joint_names else "U", "*EL FILE", "SP, STAGE"]
+    parts = construction_steps(building, mesh.joint_names, fields)
+    about = ["**", "** Water" if options.water_depth else "** Histories from here on"]
+    return parts + about + _static_step("WATER", _reservoir(options), mesh, options)
+
+
+def _static_step(name: str, loads: list[str], mesh: BrickMesh, options: DeckOptions) -> list[str]:
+    parts = [f"*STEP, NAME={name}", "*STATIC", "0.1, 1." if options.concrete_cards else "1., 1."]
+    return parts + loads + _requests(mesh, options) + ["*END STEP"]
+
+
+def _reservoir(options: DeckOptions) -> list[str]:
+    if options.water_depth is None:
+        return []
+    return [
+        f"*RESERVOIR, NAME=LAKE, SURFACE=UPSTREAM, LEVEL={options.water_depth:g}, BED=0.,",
+        f"   ADDED MASS=WESTERGAARD, DIRECTION={options.added_mass_direction}",
+    ]
 
 
 def _dynamic_step(mesh: BrickMesh, options: DeckOptions) -> list[str]:

@@ -7,6 +7,7 @@ import textwrap
 from .arch_blocks import BlockOptions
 from .arch_dam import DamOptions
 from .arch_shape import ArchShape
+from .construction.lifts import Construction, construction_in_words
 from .mesh_data import BrickMesh
 from .mesh_quality import report
 from .surface_fit import fit_report
@@ -26,6 +27,7 @@ def header(
     title: str,
     notes: tuple[str, ...],
     blocks: BlockOptions | None = None,
+    building: Construction | None = None,
 ) -> str:
     """Title, axes, shape, mesh, rock, joints, notes and the report on the mesh."""
     lines = [title, ""]
@@ -57,9 +59,8 @@ def header(
             f"{len(mesh.joint_names)} vertical planes through the axis of the crest's upstream arc,"
             f" {_joint_places(options)} (places assumed)" + (f", {ends}" if has_one_mesh else ""),
         )
-    lines += paragraph(
-        "Weight", "acts on the finished dam at once: no stages of building, no grouting (assumed)"
-    )
+    at_once = "acts on the finished dam at once: no stages of building, no grouting (assumed)"
+    lines += paragraph("Weight", construction_in_words(building) if building else at_once)
     for note in notes:
         lines += paragraph(*note.split(": ", 1))
     lines += ["", report(mesh)]

@@ -36,7 +36,7 @@ def id_lines(positions: np.ndarray) -> Iterable[str]:
 
 
 def mesh_deck(mesh: BrickMesh, element_types: dict[str, str], header: str) -> str:
-    """Mesh part of a deck: *NODE, *ELEMENT by set, *NSET, *SURFACE.
+    """Mesh part of a deck: *NODE, *ELEMENT by set, *ELSET, *NSET, *SURFACE.
 
     Bricks are numbered from 1 in the order of the mesh, joint elements and then quads after them.
     """
@@ -53,6 +53,9 @@ def mesh_deck(mesh: BrickMesh, element_types: dict[str, str], header: str) -> st
         lines.append(f"*ELEMENT, TYPE=IFACE4, ELSET={name}")
         first = len(mesh.bricks) + len(mesh.joints) + int(members[0]) + 1
         lines.extend(element_lines(first, mesh.quads[members]))
+    for name, members in mesh.element_sets.items():
+        lines.append(f"*ELSET, ELSET={name}")
+        lines.extend(id_lines(members))
     for name, members in mesh.node_sets.items():
         lines.append(f"*NSET, NSET={name}")
         lines.extend(id_lines(members))

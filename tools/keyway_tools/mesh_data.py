@@ -25,6 +25,8 @@ class BrickMesh:
     bricks: np.ndarray  # node positions, shape (bricks, 8); a wedge repeats corners 3-4 and 7-8
     joints: np.ndarray  # node positions, shape (joints, 8): master face, slave face
     brick_sets: dict[str, np.ndarray] = field(default_factory=dict)  # positions of bricks
+    # further sets of bricks, which may share some: positions
+    element_sets: dict[str, np.ndarray] = field(default_factory=dict)
     joint_sets: dict[str, np.ndarray] = field(default_factory=dict)  # positions of joint elements
     node_sets: dict[str, np.ndarray] = field(default_factory=dict)  # positions of nodes
     surfaces: dict[str, list[tuple[int, int]]] = field(default_factory=dict)  # (brick, face 1..6)

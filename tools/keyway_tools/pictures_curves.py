@@ -18,33 +18,58 @@ def _curves_by(values: dict[str, np.ndarray], key: str) -> dict[int, np.ndarray]
 
 
 def plot_openings(results: SiResults, sheet: Sheet) -> list[Path]:
-    """Opening of the points of every *JOINT PRINT in time, one panel a joint."""
+    """Opening of the points of every *JOINT PRINT in time, one row a joint.
+
+    Static steps and motions have columns of their own: the years of the one hide the seconds of
+    the other.
+    """
     names = [name for name in results.tables() if name.startswith("joint_")]
     tables = {name.removeprefix("joint_"): results.table(name) for name in names}
     tables = {name: table for name, table in tables.items() if len(table.get("time", ()))}
     if not tables:
         return []
-    figure, axes = new_figure(len(tables), width=12.0, row_height=2.9, sharex=True, squeeze=False)
-    for axis, (name, table) in zip(axes[:, 0], tables.items(), strict=True):
-        _opening_panel(axis, name, table)
-    axes[-1, 0].set_xlabel("time [s]")
+    columns = _columns(results, list(tables.values()))
+    figure, axes = new_figure(
+        len(tables), width=12.0 + 4.0 * (len(columns) - 1), row_height=2.9, columns=len(columns),
+        sharex="col", squeeze=False,
+    )  # fmt: skip
+    for row, (name, table) in zip(axes, tables.items(), strict=True):
+        for axis, (kind, steps) in zip(row, columns.items(), strict=True):
+            _opening_panel(axis, table, steps)
+            axis.set_title(f"Opening of joint {name}{', ' if kind else ''}{kind}")
+        row[0].set_ylabel("opening [mm]")
+        row[-1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    for axis, kind in zip(axes[-1], columns, strict=True):
+        axis.set_xlabel("time of the deck" if kind == STATIC else "time [s]")
     return sheet.save(figure)
 
 
-def _opening_panel(axis, name: str, table: dict[str, np.ndarray]) -> None:
-    """The points that open most."""
+STATIC, MOTION = "static steps", "motion"
+
+
+def _columns(results: SiResults, tables: list[dict[str, np.ndarray]]) -> dict[str, set[int]]:
+    """Numbers of the steps in each column; one column without a name where one serves all."""
+    found: dict[str, set[int]] = {STATIC: set(), MOTION: set()}
+    for step in results.steps():
+        found[MOTION if "DYNAMIC" in step.procedure else STATIC].add(step.number)
+    for kind, steps in list(found.items()):
+        times = {t for table in tables for t in table["time"][np.isin(table["step"], list(steps))]}
+        if len(times) < 3:
+            del found[kind]
+    return found if len(found) > 1 else {"": {int(s) for table in tables for s in table["step"]}}
+
+
+def _opening_panel(axis, table: dict[str, np.ndarray], steps: set[int]) -> None:
+    """The points that open most in all steps, in some of them."""
     points = _curves_by(table, "point")
     most = sorted(points, key=lambda p: -table["opening"][points[p]].max())[:MOST_CURVES]
     for point in most:
-        rows = points[point]
-        x, y, z = (table[axis_name][rows[0]] for axis_name in "xyz")
+        rows = points[point][np.isin(table["step"][points[point]], list(steps))]
+        x, y, z = (table[axis_name][points[point][0]] for axis_name in "xyz")
         label = f"point {point} ({x:.1f}, {y:.1f}, {z:.1f}) m"
         axis.plot(table["time"][rows], 1000.0 * table["opening"][rows], lw=1.0, label=label)
     axis.axhline(0.0, color=GREY, lw=0.8)
-    axis.set_title(f"Opening of joint {name}")
-    axis.set_ylabel("opening [mm]")
     axis.margins(x=0.0)
-    axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 
 def plot_nodes(results: SiResults, sheet: Sheet) -> list[Path]:

@@ -165,7 +165,7 @@ def _add_outline(plotter, outline: pv.PolyData, view: View, paint: Paint) -> Non
     body = float(np.ptp(outline.points, axis=0).max())
     lines = outline.translate(0.004 * body * view.towards)
     if "rgb" in lines.cell_data:
-        plotter.add_mesh(lines, scalars="rgb", rgb=True, line_width=5.0, lighting=False)
+        plotter.add_mesh(lines, scalars="rgb", rgb=True, line_width=9.0, lighting=False)
         return
     if "value" not in lines.point_data:
         plotter.add_mesh(lines, color="black", line_width=3.0)
