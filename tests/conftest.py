@@ -11,7 +11,7 @@ from documented import Documented
 from harness import ROOT, Program
 
 LIMIT_OF_LONG_TESTS = 3600  # [s]
-NUMERICAL = {"decks", "points", "results", "verify"}  # folders
+NUMERICAL = {"compatibility", "decks", "points", "results", "verify"}  # folders
 # Compares runs with each other, on one and two threads: one kind of kernels is enough.
 NOT_NUMERICAL = {"test_input_decks.py"}
 

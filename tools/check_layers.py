@@ -63,6 +63,7 @@ ROOMS = (
     "results/writers",
     "results/checkpoints",
     "results",
+    "keywords/assembly",
     "keywords/draft",
     "keywords/mesh",
     "keywords/materials",

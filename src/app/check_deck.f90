@@ -34,7 +34,7 @@ contains
     integer :: i
     call load_user_routines(given, lock, umat, error)
     if (allocated(error)) return
-    call read_problem(given%deck, model, faults, echo, given%is_material, umat)
+    call read_problem(given%deck, model, faults, echo, given%reading, umat)
     if (faults%num_warnings > 0 .and. .not. given%is_quiet) then
       write (error_unit, '(a)') text_of_warnings(faults)
     end if

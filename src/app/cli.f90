@@ -1,6 +1,7 @@
 !> The command line: options, and output that needs no deck.
 module cli
   use build_info, only: compiler, compiler_flags, libraries, program_version
+  use deck_options, only: reading_options
   use errors, only: deck_is_wrong, error_type, raise
   use field_help, only: field_lines, field_page
   use keyword_catalogue, only: list_all => list_keywords
@@ -25,6 +26,7 @@ module cli
     character(:), allocatable :: folder !< folder of the results
     character(:), allocatable :: keyword !< argument of --keywords, '' for all
     character(:), allocatable :: field !< argument of --fields, '' for all
+    type(reading_options) :: reading !< what the deck means
     type(umat_request) :: umat !< --umat and the options that go with it
     integer :: num_threads = 0 !< 0: as many as the system has
     integer :: most_unsaved = huge(1) !< iterations on joints; --save-joint-problems
@@ -40,7 +42,7 @@ module cli
   character(*), parameter :: options = '-o | -j | -q | --check | --keywords | --fields | '// &
                              '--version | --help | -h | --continue | --umat | --umat-flags | '// &
                              '--umat-library | --umat-threadsafe | --umat-check | --material | '// &
-                             '--save-joint-problems'
+                             '--save-joint-problems | --c3d8=full | --c3d8=bbar | --small-strain'
 
 contains
 
@@ -61,6 +63,9 @@ contains
            '  --umat-check       compare DDSDDE of the UMAT with differences of STRESS'//nl// &
            '  --save-joint-problems N  save increments with more than N iterations on '// &
            'joints, one HDF5 file each'//nl// &
+           '  --c3d8=full|bbar   meaning of C3D8: 2 x 2 x 2 points (CalculiX) or B-bar '// &
+           '(Abaqus)'//nl// &
+           '  --small-strain     analyse steps with NLGEOM=YES with small strains'//nl// &
            '  --keywords [NAME]  the reference of all keywords, or of one'//nl// &
            '  --fields [NAME]    the fields of results: components, place, unit, meaning'//nl// &
            '  -q                 print errors only'//nl// &
@@ -126,6 +131,11 @@ contains
       given%is_check = .true.
     case ('--material')
       given%is_material = .true.
+      given%reading%is_for_tests = .true.
+    case ('--c3d8=full', '--c3d8=bbar')
+      given%reading%c3d8 = upper_case(word(8:))
+    case ('--small-strain')
+      given%reading%takes_small_strain = .true.
     case ('-q')
       given%is_quiet = .true.
     case ('--version')

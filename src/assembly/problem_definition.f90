@@ -2,6 +2,7 @@
 module problem_definition
   use card_digests, only: card_digest
   use file_identity, only: file_path
+  use instance_list, only: mesh_instance
   use dam_mesh, only: fe_mesh, named_set, surface
   use amplitudes, only: amplitude
   use stage_plan, only: stages
@@ -22,6 +23,7 @@ module problem_definition
   type :: problem
     character(:), allocatable :: deck_file !< as given on the command line
     character(:), allocatable :: heading
+    type(mesh_instance), allocatable :: instances(:) !< of parts; none in most decks
     type(file_path), allocatable :: inputs(:) !< all files that were read
     type(card_digest), allocatable :: cards(:) !< of the deck, without material tests
     type(fe_mesh) :: mesh

@@ -26,8 +26,13 @@ module card_lines
     integer :: num_heads = 1 !< number of keyword lines
     type(line_origin), allocatable :: rows(:) !< keyword lines, then data lines
     integer, allocatable :: field_first(:), field_last(:) !< bytes of each field, without quotes
+    integer, allocatable :: read_first(:), read_last(:) !< bytes read in place of them, if rewritten
+    logical :: is_repeat = .false. !< read before: a place has one remark
   contains
     procedure :: find_field
+    procedure :: find_place
+    procedure :: position_of
+    procedure :: widen
     procedure :: spot
     procedure :: spot_of_field
     procedure :: spot_of_keyword
@@ -37,21 +42,78 @@ module card_lines
 
 contains
 
-  !> Bytes of a field in the body; first > last for an empty or missing field.
+  !> Bytes to be read for a field; first > last for an empty or missing field.
   pure subroutine find_field(self, line, field, first, last)
     class(line_store), intent(in) :: self
     integer, intent(in) :: line, field !< data line and field
     integer, intent(out) :: first, last
-    integer :: row, i
+    integer :: i
+    i = self%position_of(line, field)
     first = 1
     last = 0
+    if (i == 0) return
+    if (allocated(self%read_first)) then
+      first = self%read_first(i)
+      last = self%read_last(i)
+    else
+      first = self%field_first(i)
+      last = self%field_last(i)
+    end if
+  end subroutine find_field
+
+  !> Bytes of a field as the user wrote it; first > last for an empty or missing field.
+  pure subroutine find_place(self, line, field, first, last)
+    class(line_store), intent(in) :: self
+    integer, intent(in) :: line, field !< data line and field
+    integer, intent(out) :: first, last
+    integer :: i
+    i = self%position_of(line, field)
+    first = 1
+    last = 0
+    if (i == 0) return
+    first = self%field_first(i)
+    last = self%field_last(i)
+  end subroutine find_place
+
+  !> Position of a field in `field_first`, 0 for a missing field.
+  pure integer function position_of(self, line, field) result(position)
+    class(line_store), intent(in) :: self
+    integer, intent(in) :: line, field !< data line and field
+    integer :: row
+    position = 0
     row = self%num_heads + line
     if (line < 1 .or. row > size(self%rows)) return
     if (field < 1 .or. field > self%rows(row)%num_fields) return
-    i = self%rows(row)%first_field + field - 1
-    first = self%field_first(i)
-    last = self%field_last(i)
-  end subroutine find_field
+    position = self%rows(row)%first_field + field - 1
+  end function position_of
+
+  !> Gives every data line at least so many fields; the new ones are empty.
+  pure subroutine widen(self, fewest)
+    class(line_store), intent(inout) :: self
+    integer, intent(in) :: fewest !< fields of a line
+    integer, allocatable :: first(:), last(:)
+    integer :: row, num, used
+    associate (lines => self%rows(self%num_heads + 1:))
+      num = sum(max(fewest, lines%num_fields))
+      if (all(lines%num_fields >= fewest)) return
+    end associate
+    allocate (first(num), last(num))
+    used = 0
+    do row = self%num_heads + 1, size(self%rows)
+      associate (line => self%rows(row), old => self%rows(row)%first_field)
+        num = max(fewest, line%num_fields)
+        first(used + 1:used + num) = line%last + 1
+        last(used + 1:used + num) = line%last
+        first(used + 1:used + line%num_fields) = self%field_first(old:old + line%num_fields - 1)
+        last(used + 1:used + line%num_fields) = self%field_last(old:old + line%num_fields - 1)
+        line%first_field = used + 1
+        line%num_fields = num
+        used = used + num
+      end associate
+    end do
+    call move_alloc(first, self%field_first)
+    call move_alloc(last, self%field_last)
+  end subroutine widen
 
   !> Place of some bytes of the body in their file.
   pure function spot(self, row, first, last, keyword)
@@ -67,6 +129,7 @@ contains
       spot%length = last - first + 1
       spot%keyword = keyword
       spot%source = self%body(origin%first:origin%last)
+      spot%is_repeat = self%is_repeat
     end associate
   end function spot
 
@@ -82,7 +145,7 @@ contains
       first = self%rows(row)%first
       last = self%rows(row)%last
     else
-      call self%find_field(line, field, first, last)
+      call self%find_place(line, field, first, last)
       if (field > self%rows(row)%num_fields) first = self%rows(row)%last + 1
       last = max(first, last)
     end if

@@ -22,6 +22,7 @@ module deck_card
     logical :: has_value = .false. !< the parameter has a '='
     integer :: value_row = 1 !< line of the value
     integer :: value_first = 1, value_last = 0 !< bytes of the value, without quotes
+    integer :: read_first = 0, read_last = 0 !< bytes read in place of the value, if rewritten
   end type card_parameter
 
   !> One keyword of the deck with its parameters and data.
@@ -89,7 +90,13 @@ contains
     i = self%find_parameter(name)
     value = ''
     if (i > 0) then
-      value = self%lines%body(self%parameters(i)%value_first:self%parameters(i)%value_last)
+      associate (given => self%parameters(i))
+        if (given%read_first > 0) then
+          value = self%lines%body(given%read_first:given%read_last)
+        else
+          value = self%lines%body(given%value_first:given%value_last)
+        end if
+      end associate
     end if
     if (len(value) == 0) value = parameter_default(self%spec, name)
   end function text

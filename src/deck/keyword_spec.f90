@@ -6,7 +6,7 @@ module keyword_spec
   implicit none
   private
   public :: keyword, keyword_variant, field
-  public :: parameter_default, column_default, find_spec
+  public :: parameter_default, column_default, column_of_field, find_spec
   public :: choices_of, spec_of_variant
   public :: kind_real, kind_integer, kind_word, kind_flag, kind_choice, kind_text, kind_reference
   public :: available, later, without_effect

@@ -6,6 +6,7 @@ set(sources
   deck_card.f90
   deck_file.f90
   deck_lexer.f90
+  deck_options.f90
   deck_scan.f90
   deck_source.f90
   deck_words.f90

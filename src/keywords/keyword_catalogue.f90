@@ -1,5 +1,7 @@
 !> The single list of keywords: specification and handler of each.
 module keyword_catalogue
+  use keywords_assembly, only: describe_assembly, describe_end_assembly, describe_end_instance, &
+                               describe_end_part, describe_instance, describe_part
   use keyword_handler, only: keyword_list, pass_definitions, pass_elements, pass_nodes, pass_rest
   use keywords_amplitude, only: describe_amplitude, read_amplitude
   use keywords_base_motion, only: describe_base_motion, read_base_motion
@@ -63,6 +65,12 @@ contains
     call list%add(describe_nset, read_nset, pass_rest)
     call list%add(describe_elset, read_elset, pass_rest)
     call list%add(describe_surface, read_surface, pass_rest)
+    call list%add(describe_part)
+    call list%add(describe_end_part)
+    call list%add(describe_assembly)
+    call list%add(describe_instance)
+    call list%add(describe_end_instance)
+    call list%add(describe_end_assembly)
     call list%add(describe_material, read_material, pass_definitions)
     call list%add(describe_density, read_density, pass_definitions)
     call list%add(describe_material_damping, read_material_damping, pass_definitions)

@@ -13,11 +13,14 @@ module read_deck
   use check_steps, only: verify_steps
   use check_unused, only: warn_of_unused
   use check_water, only: warn_of_water
+  use choose_c3d8, only: choose_element
   use deck_echo, only: echo_of_cards
   use deck_lexer, only: read_cards
+  use deck_options, only: reading_options
   use diagnostics, only: diagnostic_list, place, severity_error
   use finish_model, only: complete_model
   use finish_tests, only: complete_tests
+  use flatten_assembly, only: flatten
   use inelastic_blocks, only: list_inelastic_blocks
   use stage_plan, only: classes_of
   use keyword_catalogue, only: list_keywords
@@ -35,12 +38,12 @@ module read_deck
 contains
 
   !> Reads and verifies a deck. The problem can be solved if `faults` has no error.
-  subroutine read_problem(path, full_problem, faults, echo, for_tests, umat)
+  subroutine read_problem(path, full_problem, faults, echo, options, umat)
     character(*), intent(in) :: path !< of the deck
     type(problem), allocatable, intent(out) :: full_problem
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable, intent(out) :: echo !< the deck with every default value
-    logical, intent(in), optional :: for_tests !< of materials: the model may be incomplete
+    type(reading_options), intent(in), optional :: options
     type(user_library), pointer, intent(in), optional :: umat !< library of --umat
     type(keyword_list) :: list
     type(draft) :: model
@@ -52,18 +55,21 @@ contains
                       'the deck is empty', 'keywords, lines that begin with *')
     end if
     call open_draft(path, model)
-    if (present(for_tests)) model%runs_tests = for_tests
+    if (present(options)) model%options = options
+    echo = ''
+    call make_flat(list, model, faults)
+    if (faults%has_errors() .and. size(model%cards) == 0) return
     if (present(umat)) model%problem%umat => umat
     call match_cards(list, model, keyword_of_card, faults)
     call handle_cards(list, keyword_of_card, model, faults)
     model%problem%steps = model%problem%steps(:model%num_steps)
-    if (model%runs_tests) then
+    if (model%options%is_for_tests) then
       call complete_tests(model, faults)
     else
       call complete_and_verify(model, faults)
     end if
     call list_input_files(model%cards, model%problem%inputs)
-    if (.not. (model%runs_tests .or. faults%has_errors())) then
+    if (.not. (model%options%is_for_tests .or. faults%has_errors())) then
       call digests_of_cards(model%cards, model%problem%cards)
     end if
     call move_alloc(model%problem, full_problem)
@@ -117,6 +123,15 @@ contains
     allocate (model%material_requests(0), model%procedure_card(0), model%ties(0))
     allocate (model%interfaces(0))
   end subroutine open_draft
+
+  !> Cards of a model without parts, with the meaning of C3D8.
+  subroutine make_flat(list, model, faults)
+    type(keyword_list), intent(in) :: list
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    call flatten(model%cards, list%specs, model%problem%instances, faults)
+    call choose_element(model%cards, model%options%c3d8, size(model%problem%instances) > 0, faults)
+  end subroutine make_flat
 
   !> Finds the keyword of each card and checks its place.
   subroutine match_cards(list, model, keyword_of_card, faults)

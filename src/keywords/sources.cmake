@@ -1,4 +1,12 @@
 set(sources
+  assembly/assembly_structure.f90
+  assembly/card_rewrite.f90
+  assembly/choose_c3d8.f90
+  assembly/flatten_assembly.f90
+  assembly/instance_numbers.f90
+  assembly/instance_placement.f90
+  assembly/instance_words.f90
+  assembly/keywords_assembly.f90
   checks/check_histories.f90
   checks/check_idle_steps.f90
   checks/check_loads.f90

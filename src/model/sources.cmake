@@ -8,6 +8,7 @@ set(sources
   mesh/body_parts.f90
   mesh/dam_mesh.f90
   mesh/id_map.f90
+  mesh/instance_list.f90
   mesh/mesh_faces.f90
   mesh/node_dofs.f90
   mesh/set_lists.f90

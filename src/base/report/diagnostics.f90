@@ -20,6 +20,7 @@ module diagnostics
     integer :: length = 0 !< of the word meant, in bytes
     character(:), allocatable :: keyword !< upper case, without the star; '' where there is none
     character(:), allocatable :: source !< the line of the deck
+    logical :: is_repeat = .false. !< the line was read before: its places have one remark each
   end type place
 
   !> One fault or remark.
@@ -60,6 +61,7 @@ contains
     character(*), intent(in), optional :: nearest !< a known word of similar spelling
     type(place), intent(in), optional :: first !< where the same was defined before
     type(diagnostic) :: new
+    if (is_known(self, severity, spot)) return
     new%severity = severity
     new%spot = spot
     new%problem = problem
@@ -75,6 +77,32 @@ contains
       call append_diagnostic(self%warnings, self%num_warnings, new)
     end if
   end subroutine add_diagnostic
+
+  !> Whether a line that is read several times has a remark at the place.
+  pure logical function is_known(self, severity, spot)
+    class(diagnostic_list), intent(in) :: self
+    integer, intent(in) :: severity
+    type(place), intent(in) :: spot
+    integer :: i
+    is_known = .false.
+    if (.not. spot%is_repeat) return
+    if (severity == severity_error) then
+      do i = 1, self%num_kept
+        is_known = is_known .or. is_same_place(self%errors(i)%spot, spot)
+      end do
+    else
+      do i = 1, self%num_warnings
+        is_known = is_known .or. is_same_place(self%warnings(i)%spot, spot)
+      end do
+    end if
+  end function is_known
+
+  !> Whether two places have one file, line and column.
+  pure logical function is_same_place(a, b)
+    type(place), intent(in) :: a, b
+    is_same_place = a%line == b%line .and. a%column == b%column
+    if (is_same_place) is_same_place = a%file == b%file
+  end function is_same_place
 
   !> Keeps one of the first errors; of missing things only a few, so that their cause, which may be
   !> found later, has a place.

@@ -3,6 +3,7 @@
 module check_loads
   use amplitudes, only: amplitude
   use deck_scan, only: is_keyword, steps_of_cards
+  use dload_labels, only: elements_in_words
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
   use load_base_motion, only: base_motion
@@ -126,7 +127,7 @@ contains
       if (step(i) > s .or. .not. is_keyword(model%cards(i), 'DLOAD')) cycle
       do line = 1, model%cards(i)%num_lines
         if (model%cards(i)%word_at(line, 2) /= 'GRAV') cycle
-        if (model%cards(i)%word_at(line, 1)//' GRAV' == target) found = i
+        if (elements_in_words(model%cards(i), line)//' GRAV' == target) found = i
       end do
     end do
   end function card_of_weight

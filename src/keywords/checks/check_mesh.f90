@@ -83,6 +83,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     logical :: is_for_abaqus
     integer :: i
+    if (model%options%c3d8 /= '') return
     is_for_abaqus = model%is_from_cae
     do i = 1, size(model%cards)
       is_for_abaqus = is_for_abaqus .or. model%cards(i)%keyword == 'PREPRINT'
@@ -93,7 +94,8 @@ contains
       if (model%cards(i)%word('TYPE') /= 'C3D8') cycle
       call model%cards(i)%warn(faults, 'the deck was written for Abaqus, whose C3D8 is C3D8B '// &
                                '(B-bar) here; C3D8 has full integration', &
-                               'TYPE=C3D8B for the element of Abaqus')
+                               'TYPE=C3D8B for the element of Abaqus, or --c3d8=bbar; '// &
+                               '--c3d8=full for C3D8 without this remark')
       return
     end do
   end subroutine warn_of_c3d8

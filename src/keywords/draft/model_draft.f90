@@ -4,6 +4,7 @@
 module model_draft
   use applied_load, only: load, load_slot
   use deck_card, only: card
+  use deck_options, only: reading_options
   use diagnostics, only: diagnostic_list
   use dof_tables, only: dof_table
   use guest_type, only: guest, guest_slot
@@ -92,7 +93,7 @@ module model_draft
     real(rk), allocatable :: record_factor(:) !< (amplitudes) of a unit that only the file names
     logical :: is_from_cae = .false. !< a comment names Abaqus/CAE
     logical, allocatable :: has_element(:) !< (nodes) an element has the node
-    logical :: runs_tests = .false. !< the deck is read for its *MATERIAL TESTs
+    type(reading_options) :: options !< of the command line
     type(section_request), allocatable :: sections(:)
     type(law_request), allocatable :: laws(:)
     type(joint_request), allocatable :: joints(:)

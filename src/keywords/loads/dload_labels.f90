@@ -16,7 +16,7 @@ module dload_labels
   implicit none
   private
   public :: dload_label, num_labels, list_labels, find_label, choices_of_labels, labels_in_words, &
-            meaning_of_labels
+            meaning_of_labels, elements_in_words
 
   type :: dload_label
     character(:), allocatable :: name !< without the number of a face
@@ -59,6 +59,15 @@ contains
                             'at z_top and above, p at z_ref.', 'p [Pa], z_top, z_ref [m]', &
                             num_faces=6, num_numbers=3, fewest_numbers=3, put=put_water)
   end subroutine list_labels
+
+  !> What the elements of a line are called.
+  pure function elements_in_words(this, line) result(name)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line
+    character(:), allocatable :: name
+    name = this%word_at(line, 1)
+    if (len(name) == 0) name = 'ALL SOLIDS'
+  end function elements_in_words
 
   !> Position of the label that a word names, 0 for another word.
   pure integer function find_label(labels, word) result(found)
@@ -132,6 +141,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(gravity_load) :: weight
     class(load), allocatable :: item
+    character(:), allocatable :: target
     real(rk) :: direction(3)
     integer :: num_given
     num_given = this%num_fields(line) - 3
@@ -150,10 +160,10 @@ contains
     weight%kind = 'gravity'
     weight%elements = elements
     weight%acceleration = direction
+    target = elements_in_words(this, line)
     allocate (item, source=weight)
-    call put_load(model, item, 'gravity '//this%word_at(line, 1), 'DLOAD', &
-                  this%word_at(line, 1)//' GRAV', pattern_of(direction), &
-                  this%real_at(line, 3), history)
+    call put_load(model, item, 'gravity '//target, 'DLOAD', target//' GRAV', &
+                  pattern_of(direction), this%real_at(line, 3), history)
   end subroutine put_gravity
 
   subroutine put_pressure(this, line, elements, history, model, faults)

@@ -5,6 +5,7 @@ module keywords_loads
   use diagnostics, only: diagnostic_list
   use dload_labels, only: choices_of_labels, dload_label, find_label, labels_in_words, &
                           list_labels, meaning_of_labels, num_labels
+  use element_catalogue, only: is_solid
   use enter_load, only: put_load
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real, kind_reference, &
                           kind_word
@@ -102,7 +103,7 @@ contains
                    'UPSTREAM, HP3, 1.03e6, 105., 0.'
     spec%checks_own_data = .true.
     allocate (spec%columns, source=[ &
-              field('element', kind_reference, 'the elements'), &
+              field('element', kind_reference, 'the elements; GRAV without them: all solids'), &
               field('label', kind_choice, 'what acts', is_required=.true., &
                     choices=choices_of_labels()), &
               field('magnitude', kind_real, 'acceleration [m/s2] or pressure [Pa]', &
@@ -124,12 +125,29 @@ contains
     if (this%word('OP') == 'NEW') call model%active_loads%clear_old('DLOAD')
     do line = 1, this%num_lines
       num_before = faults%num_errors
-      call elements_at(this, line, 1, model, faults, elements)
+      call find_elements(this, line, model, faults, elements)
       call check_label(this, line, labels, found, faults)
       if (faults%num_errors > num_before) cycle
       call labels(found)%put(this, line, elements, history, model, faults)
     end do
   end subroutine read_dload
+
+  !> Elements of a line; gravity without elements acts on all solids.
+  subroutine find_elements(this, line, model, faults, elements)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable, intent(out) :: elements(:) !< positions
+    integer :: e
+    if (this%is_empty_at(line, 1) .and. this%word_at(line, 2) == 'GRAV') then
+      associate (mesh => model%problem%mesh)
+        elements = pack([(e, e=1, mesh%num_elements)], is_solid(mesh%element_type))
+      end associate
+    else
+      call elements_at(this, line, 1, model, faults, elements)
+    end if
+  end subroutine find_elements
 
   !> Checks the label of a line and its numbers.
   subroutine check_label(this, line, labels, found, faults)

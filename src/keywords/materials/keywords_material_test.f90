@@ -115,7 +115,7 @@ contains
     call read_legs(this, faults, new%legs)
     model%problem%tests = [model%problem%tests, new]
     model%test_origin = [model%test_origin, model%here(0)]
-    if (model%runs_tests) return
+    if (model%options%is_for_tests) return
     call this%ignore(faults, 'has no effect in an analysis; keyway --material runs it')
   end subroutine read_material_test
 

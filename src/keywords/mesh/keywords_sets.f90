@@ -48,7 +48,10 @@ contains
     spec%repeats_columns = .true.
     allocate (spec%parameters, source=[ &
               field(name, kind_word, 'name of the set', is_required=.true.), &
-              field('GENERATE', kind_flag, 'each line holds: first, last, step (1)')])
+              field('GENERATE', kind_flag, 'each line holds: first, last, step (1)'), &
+              field('INSTANCE', kind_word, 'in an *ASSEMBLY: instance of the ids and sets'), &
+              field('INTERNAL', kind_flag, 'a set that Abaqus/CAE has named, a set like others'), &
+              field('UNSORTED', kind_flag, 'the order of the ids is kept, as it always is')])
     allocate (spec%columns, source=[ &
               field('member', kind_reference, 'id of a '//kind//' or name of a set, any '// &
                     'number in a line')])
@@ -161,7 +164,8 @@ contains
     allocate (spec%parameters, source=[ &
               field('NAME', kind_word, 'name of the surface', is_required=.true.), &
               field('TYPE', kind_choice, 'what it is made of', default='ELEMENT', &
-                    choices='ELEMENT')])
+                    choices='ELEMENT'), &
+              field('INTERNAL', kind_flag, 'a surface that Abaqus/CAE has named')])
     allocate (spec%columns, source=[ &
               field('element', kind_reference, 'the elements', &
                     is_required=.true.), &

@@ -13,12 +13,6 @@ contains
   subroutine add_later_keywords(list)
     type(keyword_list), intent(inout) :: list
     character(*), parameter :: family = 'other programs'
-    call add_later(list, 'PART', family, 'model', 'Opens a part.')
-    call add_later(list, 'END PART', family, 'model', 'Closes a part.')
-    call add_later(list, 'ASSEMBLY', family, 'model', 'Opens the assembly of parts.')
-    call add_later(list, 'END ASSEMBLY', family, 'model', 'Closes the assembly of parts.')
-    call add_later(list, 'INSTANCE', family, 'model', 'Places a part in the assembly.')
-    call add_later(list, 'END INSTANCE', family, 'model', 'Closes an instance.')
     call add_later(list, 'EQUATION', family, 'model', 'Linear equations between displacements.')
     call add_later(list, 'CONTACT PAIR', family, 'model', 'Contact of two surfaces, as a joint.')
     call add_later(list, 'SURFACE INTERACTION', family, 'model', 'Names a law of contact.')

@@ -54,6 +54,7 @@ contains
     call json%put_text(summary%deck_digest, 'sha256')
     call json%close_object()
     call put_model(json, model, summary)
+    call put_instances(json, model)
     call put_effects(json, model)
     call put_interfaces(json, model)
     call put_remarks(json, summary, record)
@@ -116,6 +117,25 @@ contains
     call json%put_integer(size(model%materials), 'materials')
     call json%close_object()
   end subroutine put_model
+
+  !> The instances of parts, with what is added to the numbers of their nodes and elements.
+  subroutine put_instances(json, model)
+    type(json_text), intent(inout) :: json
+    type(problem), intent(in) :: model
+    integer :: i
+    if (.not. allocated(model%instances)) return
+    if (size(model%instances) == 0) return
+    call json%open_array('instances')
+    do i = 1, size(model%instances)
+      call json%open_object()
+      call json%put_text(model%instances(i)%name, 'name')
+      call json%put_text(model%instances(i)%part, 'part')
+      call json%put_integer(model%instances(i)%nodes_added, 'nodes_added')
+      call json%put_integer(model%instances(i)%elements_added, 'elements_added')
+      call json%close_object()
+    end do
+    call json%close_array()
+  end subroutine put_instances
 
   !> The guests of the model: loads, joints, springs, ties, inelastic materials, damping.
   subroutine put_effects(json, model)
