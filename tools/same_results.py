@@ -21,7 +21,8 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 import numpy as np
-from keyway.commands.batch import has_step, positive
+from keyway.batch.cases import has_step
+from keyway.commands.batch import positive
 from keyway_tools.deck_runs import digest_of, files_of
 from keyway_tools.written_values import Difference, compare_written
 

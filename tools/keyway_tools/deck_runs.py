@@ -106,6 +106,12 @@ class DeckRunner:
         earlier = earlier_record(folder)
         return earlier is not None and is_same(earlier, wanted)
 
+    def record_of(self, deck: Path, folder: Path) -> Record:
+        """What a run of this deck has left in the folder; 'not run' where it has left nothing."""
+        wanted = Record(str(deck), str(folder), "not run", digest_of(deck, self.version))
+        earlier = earlier_record(folder)
+        return earlier if earlier and earlier.digest == wanted.digest else wanted
+
     def run(self, deck: Path, folder: Path, again: bool = False) -> Record:
         """Runs the deck, or returns the record of an equal run that finished."""
         record = Record(str(deck), str(folder), "not run", options=self.options)

@@ -1,8 +1,18 @@
 """Runs many decks, several at a time, and prints a table of the runs.
 
+    keyway-batch DECKS ... [-o DIR] [-j RUNS]
+    keyway-batch TEMPLATE --table VALUES.csv [-o DIR] [-j RUNS]
+    keyway-batch ... --on slurm [--sbatch=--partition=long]
+    keyway-batch ... --on dask://HOST:8786
+
 The results of a deck are in DIR/<name of the deck>. A deck that finished before with the same
-content (included files too), options and version of the program is not run again. Options of
-keyway follow a `--`, as in: keyway-batch input/*/*.inp -j 2 -- -q
+content (included files too), options and version of the program is not run again: the same call
+goes on after an interruption. Options of keyway follow a `--`, as in: keyway-batch input/*/*.inp
+-j 2 -- -q
+
+With --table each row of the CSV file is a case: the template has the names of its columns in
+braces, as in *JOINT LAW, FRICTION={FRICTION}; a column `case` names the cases. DIR/batch.csv, and
+batch.parquet where pyarrow is installed, has values, costs and extremes of all cases.
 """
 
 from __future__ import annotations
@@ -10,18 +20,22 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import re
-import signal
 import sys
-from collections import Counter
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
 from pathlib import Path
 
-from keyway_tools.deck_runs import EXTREMES, DeckRunner, Record
+from keyway_tools.deck_runs import Record
 from keyway_tools.program import given_program
 
+from keyway.batch.cases import BatchError, Case, cases_of_decks, cases_of_table
+from keyway.batch.on_dask import run_on_dask
+from keyway.batch.on_local import run_locally
+from keyway.batch.on_slurm import request_for, run_on_slurm, script_of
+from keyway.batch.plan import Plan
+from keyway.batch.table import result_table, table_of
+
 EXIT_INTERRUPTED = 130
+PLAN = "batch_plan.json"
 
 
 def parse(arguments: list[str]) -> argparse.Namespace:
@@ -36,24 +50,38 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     )
     add = parser.add_argument
     add("decks", nargs="+", type=Path, metavar="DECKS", help="decks, or folders with decks")
-    add(
-        "-o",
-        type=Path,
-        default=Path("results"),
-        metavar="DIR",
-        help="folder of the results (results)",
-    )
-    add("-j", type=positive, default=1, metavar="RUNS", help="runs at a time (1)")
-    add("--threads", type=positive, help="threads of each run (processors / runs)")
+    add("-o", type=Path, default=Path("results"), metavar="DIR", help="folder of results (results)")
+    add("--table", type=Path, metavar="CSV", help="values of the cases; DECKS is one template")
+    add("--on", type=place, default="local", help="local, slurm or dask://HOST:PORT (local)")
+    add("-j", type=positive, metavar="RUNS", help="runs at a time (1; on Slurm 20)")
+    add("--threads", type=positive, help="threads of each run (processors / runs; else 1)")
     add("--timeout", type=float, metavar="SECONDS", help="ends a run that takes longer")
     add("--again", action="store_true", help="run finished decks again")
     add("--program", type=Path, help="the program (KEYWAY, build/release of the checkout, PATH)")
     add("--json", metavar="FILE", help="write the table also as JSON; -: only JSON, on stdout")
+    slurm = parser.add_argument_group("on Slurm")
+    text = "of each job (three times the forecast of --check, and 10 minutes)"
+    slurm.add_argument("--minutes", type=positive, help=text)
+    text = "MB of each job (1.5 times the forecast of --check, and 200 MB)"
+    slurm.add_argument("--memory", type=positive, help=text)
+    slurm.add_argument("--sbatch", action="append", default=[], metavar="OPTION",
+                       help="further option of sbatch; may be repeated")  # fmt: skip
     result = parser.parse_args(arguments)
-    processors = len(os.sched_getaffinity(0))
-    threads = result.threads or max(1, processors // result.j)
-    result.options = ["-j", str(threads), *options]
+    if result.table and (len(result.decks) != 1 or not result.decks[0].is_file()):
+        parser.error("--table takes one template deck")
+    is_local = result.on == "local"
+    result.j = result.j or (1 if is_local else 20)
+    processors = len(os.sched_getaffinity(0)) if is_local else result.j
+    result.threads = result.threads or max(1, processors // result.j)
+    result.options = ["-j", str(result.threads), *options]
     return result
+
+
+def place(text: str) -> str:
+    """Where the runs are: local, slurm or an address of Dask."""
+    if text in ("local", "slurm") or text.startswith(("dask://", "tcp://")):
+        return text
+    raise argparse.ArgumentTypeError(f"'{text}'; expected local, slurm or dask://HOST:PORT")
 
 
 def positive(text: str) -> int:
@@ -63,84 +91,25 @@ def positive(text: str) -> int:
     return value
 
 
-def find_decks(places: list[Path]) -> list[Path]:
-    """The decks named, and the files *.inp with a step in the folders named."""
-    found: list[Path] = []
-    for place in places:
-        if place.is_dir():
-            found += [p for p in sorted(place.rglob("*.inp")) if has_step(p)]
-        elif place.is_file():
-            found.append(place)
-        else:
-            raise FileNotFoundError(f"there is no deck '{place}'")
-    if not found:
-        raise FileNotFoundError("no decks found")
-    return list(dict.fromkeys(p.resolve() for p in found))
+def say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
 
 
-def has_step(path: Path) -> bool:
-    text = path.read_text(encoding="utf-8", errors="replace")
-    return re.search(r"^\s*\*\s*STEP\b", text, re.IGNORECASE | re.MULTILINE) is not None
-
-
-def folders_of(decks: list[Path], top: Path) -> dict[Path, Path]:
-    """A folder for each deck: its name, after the name of its parent if two decks share a name."""
-    count = Counter(deck.stem for deck in decks)
-    folders = {
-        deck: top / (deck.stem if count[deck.stem] == 1 else f"{deck.parent.name}_{deck.stem}")
-        for deck in decks
-    }
-    if len({*folders.values()}) < len(decks):
-        raise ValueError("several decks have the same name and folder name; rename them")
-    return folders
-
-
-def run_all(runner: DeckRunner, folders: dict[Path, Path], options) -> list[Record]:
-    """Runs the decks on options.j threads; an interruption ends running and waiting decks."""
-    handler = signal.signal(signal.SIGTERM, signal.default_int_handler)
-    done = 0
-    with ThreadPoolExecutor(options.j) as pool:
-        futures = [pool.submit(runner.run, d, f, options.again) for d, f in folders.items()]
-        try:
-            for future in futures:
-                record = future.result()
-                done += 1
-                kept = " (kept)" if record.was_kept else ""
-                name = Path(record.folder).name
-                print(f"{done}/{len(futures)} {name}: {record.status}{kept}", file=sys.stderr)
-        except KeyboardInterrupt:
-            print("batch: interrupted, ending the runs", file=sys.stderr)
-            runner.end()
-    signal.signal(signal.SIGTERM, handler)
-    return [future.result() for future in futures]
-
-
-def cell(value: float | None, form: str) -> str:
-    return "-" if value is None else format(value, form)
-
-
-def table_of(records: list[Record]) -> str:
-    """One line for each run."""
-    rows = [("deck", "status", "time [s]", "memory [MB]", *EXTREMES)]
-    for record in records:
-        rows.append(
-            (
-                Path(record.folder).name,
-                record.status + (" (kept)" if record.was_kept else ""),
-                cell(record.wall_s, ".1f"),
-                cell(record.peak_memory_mb, ".0f"),
-                *(cell(record.extremes.get(name), ".4g") for name in EXTREMES),
-            )
-        )
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = []
-    for row in rows:
-        left = [text.ljust(width) for text, width in zip(row[:2], widths[:2], strict=True)]
-        right = [text.rjust(width) for text, width in zip(row[2:], widths[2:], strict=True)]
-        lines.append("  ".join(left + right))
-    failed = [r for r in records if r.status != "finished" and r.message]
-    lines += [f"{Path(r.folder).name}: {r.message}" for r in failed]
-    return "\n".join(lines)
+def run_plan(plan: Plan, options: argparse.Namespace) -> tuple[list[Record], bool]:
+    """Run a plan where it is wanted: the records, and whether it was interrupted."""
+    if options.on == "local":
+        return run_locally(plan, options.j, say)
+    file = options.o / PLAN
+    numbers = plan.unfinished()
+    is_whole = True
+    if numbers and options.on == "slurm":
+        asked = numbers[:1] if options.table else numbers  # rows of a table share their mesh
+        request = request_for(plan, asked, options.threads, options.minutes, options.memory)
+        script = script_of(file, numbers, options.j, request, options.sbatch)
+        is_whole = run_on_slurm(plan, file, script, say)
+    elif numbers:
+        is_whole = run_on_dask(plan, file, options.on, say)
+    return plan.records(), not is_whole
 
 
 def report(records: list[Record], target: str | None) -> None:
@@ -153,21 +122,25 @@ def report(records: list[Record], target: str | None) -> None:
         Path(target).write_text(content + "\n", encoding="utf-8")
 
 
+def find_cases(options: argparse.Namespace) -> list[Case]:
+    if options.table:
+        return cases_of_table(options.decks[0], options.table, options.o)
+    return cases_of_decks(options.decks, options.o)
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Run the decks and print the table."""
     options = parse(sys.argv[1:] if arguments is None else arguments)
     try:
-        folders = folders_of(find_decks(options.decks), options.o)
-        runner = DeckRunner(given_program(options.program), options.options, options.timeout)
-    except (OSError, ValueError) as error:
+        cases = find_cases(options)
+        program = given_program(options.program)
+        plan = Plan.of(program, options.options, options.timeout, options.again, cases)
+        records, is_interrupted = run_plan(plan, options)
+    except (OSError, ValueError, BatchError) as error:
         print(f"batch: {error}", file=sys.stderr)
         return 2
-    records = run_all(runner, folders, options)
     report(records, options.json)
-    if runner.is_ending:
+    result_table(cases, records).write(options.o)
+    if is_interrupted:
         return EXIT_INTERRUPTED
     return 0 if all(record.status == "finished" for record in records) else 1
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

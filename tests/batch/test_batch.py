@@ -11,38 +11,15 @@ from pathlib import Path
 import pytest
 from harness import ROOT
 from keyway.commands import batch
+from made_up_program import write_program
 
 BATCH = ROOT / "tools/batch.py"
-
-# Acts by the first line of the deck: `ok VALUE`, `fail CODE`, `sleep SECONDS` or `crash`.
-PROGRAM = """import json, os, signal, sys, time
-from pathlib import Path
-if sys.argv[1] == "--version":
-    print("fake 1"); sys.exit()
-deck, folder = Path(sys.argv[-1]), Path(sys.argv[2])
-with open(folder.parent / "calls.txt", "a") as calls:
-    print(deck.stem, *sys.argv[3:-1], file=calls)
-verb, _, value = deck.read_text().splitlines()[0].removeprefix("** ").partition(" ")
-if verb == "sleep":
-    time.sleep(float(value))
-if verb == "crash":
-    os.kill(os.getpid(), signal.SIGSEGV)
-if verb == "fail":
-    print("deck:1: wrong"); sys.exit(int(value))
-summary = {"program": {}, "status": "finished", "message": "",
-    "envelopes": {"S1": {"anywhere": {"value": float(value or 0)}}}}
-(folder / (deck.stem + ".json")).write_text(json.dumps(summary))
-"""
 
 
 @pytest.fixture
 def place(tmp_path, monkeypatch):
     """A folder with the program, decks made by `deck(name, line)`, and the calls it saw."""
-    script, program = tmp_path / "fake.py", tmp_path / "keyway"
-    script.write_text(PROGRAM)
-    # Not as the script's first line: the interpreter's path may hold blanks.
-    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{script}" "$@"\n')
-    program.chmod(0o755)
+    write_program(tmp_path)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

@@ -1,0 +1,103 @@
+"""Templates with tables of values: the cases, the faults that are named, the table of results."""
+
+from __future__ import annotations
+
+import csv
+import json
+
+import pandas as pd
+import pytest
+from harness import ROOT
+from keyway.batch.cases import BatchError, cases_of_table
+from keyway.commands import batch
+
+TEMPLATE = """** A block, friction {FRICTION}, unknown {here}
+*INCLUDE, INPUT=parts/mesh.inp
+*JOINT LAW, NAME=CONTACT, FRICTION={FRICTION}
+*AMPLITUDE, NAME=MOTION, INPUT=records/{RECORD}.txt
+*STEP
+"""
+
+
+@pytest.fixture
+def place(tmp_path):
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts/mesh.inp").write_text("*NODE\n1, 0.\n")
+    (tmp_path / "dam.inp").write_text(TEMPLATE)
+    return tmp_path
+
+
+def cases(place, table: str):
+    (place / "values.csv").write_text(table)
+    return cases_of_table(place / "dam.inp", place / "values.csv", place / "out")
+
+
+def test_each_row_is_a_deck_with_its_values_and_files(place):
+    found = cases(place, "FRICTION,RECORD\n0.6, a\n\n0.8,b\n")
+    assert [case.name for case in found] == ["dam_001", "dam_002"]
+    text = found[1].deck.read_text()
+    assert "friction 0.8, unknown {here}" in text
+    assert "*INCLUDE, INPUT=../../parts/mesh.inp\n" in text
+    assert "FRICTION=0.8\n" in text
+    assert "INPUT=../../records/b.txt\n" in text
+
+
+def test_a_column_names_the_cases(place):
+    found = cases(place, "case,FRICTION,RECORD\nlow,0.6,a\nhigh,0.8,a\n")
+    assert [case.deck.name for case in found] == ["low.inp", "high.inp"]
+
+
+@pytest.mark.parametrize(
+    ("table", "fault"),
+    [
+        ("FRICTION\n0.6\n", r"dam\.inp:4: \{RECORD\} is no column of .*one of FRICTION"),
+        ("FRICTION,RECORD,E\n1,a,2\n", r"no line of .*dam\.inp has \{E\}"),
+        ("FRICTION,RECORD\n0.6\n", r"values\.csv: row 1: 1 values, expected 2"),
+        ("FRICTION,RECORD\n0.6,\n", r"values\.csv: row 1: 1 values, expected 2"),
+        ("FRICTION,FRICTION\n1,2\n", r"values\.csv:1: expected different names"),
+        ("FRICTION,RECORD\n", "expected a header line and a line for each case"),
+        ("case,FRICTION,RECORD\na,1,x\na,2,x\n", "the case 'a' is there twice"),
+        ("case,FRICTION,RECORD\n../a,1,x\n", r"'\.\./a' is no name of a case"),
+    ],
+)
+def test_faults_are_named(place, table, fault):
+    with pytest.raises(BatchError, match=fault):
+        cases(place, table)
+
+
+def test_a_table_runs_and_goes_on(program_path, tmp_path, monkeypatch, capsys):
+    """Three frictions of a block on a joint; the second call runs nothing again."""
+    monkeypatch.chdir(tmp_path)
+    deck = (ROOT / "input/block_on_joint.inp").read_text()
+    (tmp_path / "block.inp").write_text(deck.replace("FRICTION=0.6", "FRICTION={FRICTION}"))
+    (tmp_path / "values.csv").write_text("case,FRICTION\nlow,0.1\nusual,0.6\nhigh,0.8\n")
+    words = ["block.inp", "--table", "values.csv", "-o", "out", "-j", "2",
+             "--program", str(program_path)]  # fmt: skip
+    assert batch.main(words) == 1  # the block slides away with a friction of 0.1
+    frame = pd.read_csv("out/batch.csv").set_index("case")
+    assert frame["status"].to_dict() == {"low": "stopped", "usual": "finished", "high": "finished"}
+    assert frame["FRICTION"].to_dict() == {"low": 0.1, "usual": 0.6, "high": 0.8}
+    summary = json.loads((tmp_path / "out/usual/usual.json").read_text())
+    opening = summary["joints"]["BED"]["opening"]["anywhere"]["value"]
+    assert frame.loc["usual", "opening_BED"] == pytest.approx(opening, rel=1e-12)
+    assert frame.loc["usual", "displacement"] > 0.0
+    assert pd.read_parquet("out/batch.parquet")["FRICTION"].tolist() == [0.1, 0.6, 0.8]
+    capsys.readouterr()
+    batch.main(words)
+    text = capsys.readouterr()
+    assert text.out.count("(kept)") == 2
+    with (tmp_path / "out/batch.csv").open() as file:
+        assert len(list(csv.reader(file))) == 4
+
+
+def test_usage(tmp_path, capsys, program_path):
+    (tmp_path / "a.inp").write_text("*STEP\n")
+    (tmp_path / "v.csv").write_text("A\n1\n")
+    path = str(tmp_path / "a.inp")
+    with pytest.raises(SystemExit):
+        batch.main([path, path, "--table", str(tmp_path / "v.csv")])
+    with pytest.raises(SystemExit):
+        batch.main([path, "--on", "moon"])
+    words = [path, "--table", str(tmp_path / "v.csv"), "-o", str(tmp_path / "o")]
+    assert batch.main([*words, "--program", str(program_path)]) == 2
+    assert "no line of" in capsys.readouterr().err

@@ -1,0 +1,116 @@
+"""The table of a batch: on the terminal, and with all results as CSV and Parquet."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from keyway_tools.deck_runs import EXTREMES, Record
+
+from keyway.run_results import open_run
+
+from .cases import NAME, Case
+
+
+def cell(value: float | None, form: str) -> str:
+    return "-" if value is None else format(value, form)
+
+
+def table_of(records: list[Record]) -> str:
+    """One line for each run."""
+    rows = [("deck", "status", "time [s]", "memory [MB]", *EXTREMES)]
+    for record in records:
+        rows.append(
+            (
+                Path(record.folder).name,
+                record.status + (" (kept)" if record.was_kept else ""),
+                cell(record.wall_s, ".1f"),
+                cell(record.peak_memory_mb, ".0f"),
+                *(cell(record.extremes.get(name), ".4g") for name in EXTREMES),
+            )
+        )
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = []
+    for row in rows:
+        left = [text.ljust(width) for text, width in zip(row[:2], widths[:2], strict=True)]
+        right = [text.rjust(width) for text, width in zip(row[2:], widths[2:], strict=True)]
+        lines.append("  ".join(left + right))
+    failed = [r for r in records if r.status != "finished" and r.message]
+    lines += [f"{Path(r.folder).name}: {r.message}" for r in failed]
+    return "\n".join(lines)
+
+
+@dataclass(frozen=True)
+class ResultTable:
+    """A row for each case: its values, how the run went, and its extremes."""
+
+    columns: list[str]
+    rows: list[list[Any]]  # None where there is no value
+
+    def write(self, folder: Path) -> list[Path]:
+        """Write batch.csv, and batch.parquet where pyarrow is installed; their paths."""
+        folder.mkdir(parents=True, exist_ok=True)
+        paths = [folder / "batch.csv"]
+        with paths[0].open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(self.columns)
+            writer.writerows([["" if v is None else v for v in row] for row in self.rows])
+        try:
+            import pyarrow
+            import pyarrow.parquet
+        except ImportError:
+            return paths
+        columns = zip(*self.rows, strict=True) if self.rows else [()] * len(self.columns)
+        arrays = [pyarrow.array(column) for column in map(list, columns)]
+        paths.append(folder / "batch.parquet")
+        pyarrow.parquet.write_table(pyarrow.table(arrays, names=self.columns), paths[1])
+        return paths
+
+
+def result_table(cases: list[Case], records: list[Record]) -> ResultTable:
+    """Values, costs and extremes of all cases.
+
+    Extremes are those of job.json: S1, S3, OPENING, U, DAMAGET, .. of *ENVELOPE (largest, of S3
+    smallest, anywhere), `displacement`, `opening_NAME` and `slip_NAME` of each joint.
+    """
+    found = []
+    for case, record in zip(cases, records, strict=True):
+        values = {name: _number(text) for name, text in case.values.items() if name != NAME}
+        run = {
+            "status": record.status, "exit_code": record.exit_code, "wall_s": record.wall_s,
+            "processor_s": record.processor_s, "peak_memory_mb": record.peak_memory_mb,
+            "message": record.message,
+        }  # fmt: skip
+        found.append({NAME: case.name, **values, **run, **_extremes(case)})
+    columns = list(dict.fromkeys(name for row in found for name in row))
+    return ResultTable(columns, [[row.get(name) for name in columns] for row in found])
+
+
+def _extremes(case: Case) -> dict[str, float | None]:
+    try:
+        summary = open_run(case.folder / f"{case.deck.stem}.json").summary
+    except (OSError, ValueError):
+        return {}
+    found = {"displacement": _anywhere(summary.get("displacement"))}
+    found |= {name: _anywhere(one) for name, one in (summary.get("envelopes") or {}).items()}
+    for joint, extremes in (summary.get("joints") or {}).items():
+        for name in ("opening", "slip"):
+            found[f"{name}_{joint}"] = _anywhere(extremes.get(name))
+    if damage := summary.get("damage"):
+        found["DAMAGET"] = damage["DAMAGET"]["value"]
+    return found
+
+
+def _anywhere(places: Any) -> float | None:
+    value = ((places or {}).get("anywhere") or {}).get("value")
+    return None if value is None else float(value)
+
+
+def _number(text: str) -> float | str:
+    """A value of the table: a number where it is one."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
