@@ -1,10 +1,11 @@
 !> Products of large dense matrices (BLAS).
 module dense_products
+  use, intrinsic :: iso_fortran_env, only: single => real32
   use kinds, only: rk
   implicit none
   private
   public :: times, transposed_times, times_vector, transposed_times_vector, &
-            symmetric_times
+            symmetric_times, single_times_vector, transposed_single_times_vector
 
   ! The arguments are those of the BLAS.
   ! allow(assumed-size)
@@ -28,6 +29,16 @@ module dense_products
       real(rk), intent(in) :: a(lda, *), x(n)
       real(rk), intent(inout) :: y(m)
     end subroutine dgemv
+
+    subroutine sgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
+      import :: single
+      implicit none
+      character, intent(in) :: trans
+      integer, intent(in) :: m, n, lda, incx, incy
+      real(single), intent(in) :: alpha, beta
+      real(single), intent(in) :: a(lda, *), x(*)
+      real(single), intent(inout) :: y(*)
+    end subroutine sgemv
 
     subroutine dsymv(uplo, n, alpha, a, lda, x, incx, beta, y, incy)
       import :: rk
@@ -79,6 +90,30 @@ contains
     if (size(a) == 0) return
     call dgemv('T', size(a, 1), size(a, 2), 1.0_rk, a, size(a, 1), x, 1, 0.0_rk, product, 1)
   end function transposed_times_vector
+
+  !> A x with A and the sums in single precision.
+  function single_times_vector(a, x) result(product)
+    real(single), intent(in), contiguous :: a(:, :)
+    real(rk), intent(in) :: x(:)
+    real(rk) :: product(size(a, 1))
+    real(single) :: rounded(size(a, 1))
+    rounded = 0.0_single
+    if (size(a) > 0) call sgemv('N', size(a, 1), size(a, 2), 1.0_single, a, size(a, 1), &
+                                real(x, single), 1, 0.0_single, rounded, 1)
+    product = real(rounded, rk)
+  end function single_times_vector
+
+  !> A^T x with A and the sums in single precision.
+  function transposed_single_times_vector(a, x) result(product)
+    real(single), intent(in), contiguous :: a(:, :)
+    real(rk), intent(in) :: x(:)
+    real(rk) :: product(size(a, 2))
+    real(single) :: rounded(size(a, 2))
+    rounded = 0.0_single
+    if (size(a) > 0) call sgemv('T', size(a, 1), size(a, 2), 1.0_single, a, size(a, 1), &
+                                real(x, single), 1, 0.0_single, rounded, 1)
+    product = real(rounded, rk)
+  end function transposed_single_times_vector
 
   !> A x with a symmetric A, from its lower triangle.
   function symmetric_times(a, x) result(product)

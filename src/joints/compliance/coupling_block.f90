@@ -1,10 +1,15 @@
 !> A block of the compliance of the joints: jumps of one group of points by forces on another, dense
 !> or as a product of two narrow matrices.
 !>
+!> The product of a block takes the time of reading it. A block of weak coupling is therefore kept
+!> in single precision.
+!>
 !> Groups that do not touch each other see only what is smooth in each other's forces: a block of
 !> some hundred rows has the rank of some ten to any accuracy that counts.
 module coupling_block
-  use dense_products, only: times_vector, transposed_times_vector
+  use, intrinsic :: iso_fortran_env, only: single => real32
+  use dense_products, only: single_times_vector, times_vector, transposed_single_times_vector, &
+                            transposed_times_vector
   use kinds, only: rk, long
   implicit none
   private
@@ -12,9 +17,11 @@ module coupling_block
 
   type :: dense_block
     real(rk) :: coupling = 0.0_rk !< size, relative to the own blocks of both groups
-    real(rk), allocatable :: values(:, :) !< [m/N]; not allocated where the block is left out
-    !> (rows, rank) and (columns, rank): the block is left*transpose(right) in place of `values`
-    real(rk), allocatable :: left(:, :), right(:, :)
+    !> One of these is allocated, or none where the block is left out [m/N]
+    real(rk), allocatable :: values(:, :)
+    real(single), allocatable :: rounded(:, :)
+    !> (rows, rank) and (columns, rank): the block is left*transpose(right)
+    real(single), allocatable :: left(:, :), right(:, :)
   contains
     procedure :: is_there, add_to, as_values, num_entries
   end type dense_block
@@ -24,6 +31,9 @@ module coupling_block
   !> Blocks of stronger coupling are those of neighbours, whose rank is high.
   real(rk), parameter :: most_coupling = 1.0e-2_rk
   integer, parameter :: few_steps = 8 !< until lengths that were updated are computed again
+  !> What rounding to single precision changes of a block, over its norm: measured 2e-8, with two
+  !> narrow matrices 3e-8.
+  real(rk), parameter :: rounding = 2.0e-8_rk
   !> Most entries of the two narrow matrices, over those of the block.
   real(rk), parameter :: most_entries = 0.6_rk
 
@@ -46,8 +56,12 @@ contains
     real(rk), intent(in) :: allowed !< Frobenius norm of the error; 0 keeps all values [m/N]
     type(dense_block), intent(out) :: block
     block%coupling = coupling
-    if (allowed > 0.0_rk .and. coupling < most_coupling) call narrow(values, allowed, block)
-    if (.not. allocated(block%left)) block%values = values
+    if (allowed <= 0.0_rk .or. rounding*norm2(values) > allowed) then
+      block%values = values
+      return
+    end if
+    if (coupling < most_coupling) call narrow(values, allowed, block)
+    if (.not. allocated(block%left)) block%rounded = real(values, single)
   end subroutine make_block
 
   !> Gram-Schmidt's orthogonalisation of the columns, the longest first, until what is left of all
@@ -74,13 +88,13 @@ contains
       call dger(m, n, -1.0_rk, left(:, rank + 1), 1, right(:, rank + 1), 1, rest, m)
       square = square - right(:, rank + 1)**2
     end do
-    block%left = left(:, :rank)
-    block%right = right(:, :rank)
+    block%left = real(left(:, :rank), single)
+    block%right = real(right(:, :rank), single)
   end subroutine narrow
 
   pure logical function is_there(self)
     class(dense_block), intent(in) :: self
-    is_there = allocated(self%values) .or. allocated(self%left)
+    is_there = allocated(self%values) .or. allocated(self%rounded) .or. allocated(self%left)
   end function is_there
 
   !> The block of the forces on the first group that move the second.
@@ -89,6 +103,7 @@ contains
     type(dense_block), intent(out) :: turned
     turned%coupling = block%coupling
     if (allocated(block%values)) turned%values = transpose(block%values)
+    if (allocated(block%rounded)) turned%rounded = transpose(block%rounded)
     if (.not. allocated(block%left)) return
     turned%left = block%right
     turned%right = block%left
@@ -101,8 +116,10 @@ contains
     real(rk), intent(inout), contiguous :: y(:) ! [m]
     if (allocated(self%values)) then
       call add_product(self%values, x, y)
+    else if (allocated(self%rounded)) then
+      call add_rounded(self%rounded, x, y)
     else if (allocated(self%left)) then
-      y = y + times_vector(self%left, transposed_times_vector(self%right, x))
+      y = y + single_times_vector(self%left, transposed_single_times_vector(self%right, x))
     end if
   end subroutine add_to
 
@@ -111,8 +128,10 @@ contains
     real(rk), allocatable :: values(:, :) !< [m/N]
     if (allocated(self%values)) then
       values = self%values
+    else if (allocated(self%rounded)) then
+      values = real(self%rounded, rk)
     else
-      values = matmul(self%left, transpose(self%right))
+      values = matmul(real(self%left, rk), transpose(real(self%right, rk)))
     end if
   end function as_values
 
@@ -120,6 +139,7 @@ contains
     class(dense_block), intent(in) :: self
     num_entries = 0
     if (allocated(self%values)) num_entries = size(self%values, kind=long)
+    if (allocated(self%rounded)) num_entries = size(self%rounded, kind=long)
     if (allocated(self%left)) num_entries = size(self%left, kind=long) + size(self%right, kind=long)
   end function num_entries
 
@@ -129,12 +149,7 @@ contains
     real(rk), intent(in), contiguous :: x(:)
     real(rk), intent(inout), contiguous :: y(:)
     integer :: column(size(x)), num_columns, c, last
-    num_columns = 0
-    do c = 1, size(x)
-      if (.not. abs(x(c)) > 0.0_rk) cycle
-      num_columns = num_columns + 1
-      column(num_columns) = c
-    end do
+    call list_columns(x, column, num_columns)
     if (num_columns == 0) return
     if (num_columns > most_columns*size(x)) then
       y = y + times_vector(a, x)
@@ -151,4 +166,34 @@ contains
       y = y + x(column(c))*a(:, column(c))
     end do
   end subroutine add_product
+
+  !> The same with A in single precision.
+  subroutine add_rounded(a, x, y)
+    real(single), intent(in), contiguous :: a(:, :)
+    real(rk), intent(in) :: x(:)
+    real(rk), intent(inout) :: y(:)
+    integer :: column(size(x)), num_columns, c
+    call list_columns(x, column, num_columns)
+    if (num_columns > most_columns*size(x)) then
+      y = y + single_times_vector(a, x)
+      return
+    end if
+    do c = 1, num_columns
+      y = y + x(column(c))*real(a(:, column(c)), rk)
+    end do
+  end subroutine add_rounded
+
+  !> Columns that x is not zero for.
+  pure subroutine list_columns(x, column, num_columns)
+    real(rk), intent(in) :: x(:)
+    integer, intent(out) :: column(:)
+    integer, intent(out) :: num_columns
+    integer :: c
+    num_columns = 0
+    do c = 1, size(x)
+      if (.not. abs(x(c)) > 0.0_rk) cycle
+      num_columns = num_columns + 1
+      column(num_columns) = c
+    end do
+  end subroutine list_columns
 end module coupling_block
