@@ -70,6 +70,7 @@ ROOMS = (
     "keywords/joints",
     "keywords/stages",
     "keywords/steps",
+    "keywords/contact",
     "keywords/loads",
     "keywords/checks",
     "keywords",

@@ -84,7 +84,7 @@ def read_rows(lines: list[str]) -> list[tuple[str, str]]:
         elif line[FIELD_WIDTH - 2 : FIELD_WIDTH] == "  " or line[FIELD_WIDTH - 1] == " ":
             rows.append((line[:FIELD_WIDTH].strip(), line[FIELD_WIDTH:].strip()))
         else:  # a name that is longer than its column
-            found = re.match(r"  ([A-Z0-9 ]+) (?=\S)", line)
+            found = re.match(r"  ([A-Z0-9 -]+) (?=\S)", line)
             rows.append((found[1], line[found.end() :].strip()))
     return rows
 

@@ -12,7 +12,7 @@ module model_summary
   use print_kinds, only: kinds_of_prints
   implicit none
   private
-  public :: summary_of, summary_of_tests
+  public :: summary_of, summary_of_joints, summary_of_tests
 
   character, parameter :: nl = new_line('a')
   integer, parameter :: name_width = 24
@@ -51,6 +51,14 @@ contains
     text = titled('Materials', materials_of(model))//titled('Material tests', tests_of(model))
     text = text(len(nl) + 1:)
   end function summary_of_tests
+
+  !> The joints with their stiffnesses, for the log; '' without joints.
+  pure function summary_of_joints(model) result(text)
+    type(problem), intent(in) :: model
+    character(:), allocatable :: text !< lines with new_line between them
+    text = ''
+    if (size(model%joints) > 0) text = 'Joints'//joints_of(model)
+  end function summary_of_joints
 
   !> '  name    value'.
   pure function row(name, value) result(text)

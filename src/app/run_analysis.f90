@@ -19,6 +19,7 @@ module run_analysis
   use shared_costs, only: share_costs
   use result_files, only: result_folder
   use cli, only: command_line
+  use model_summary, only: summary_of_joints
   use run_closing, only: closing_lines
   use user_routines, only: close_user_routines, end_user_routines
   implicit none
@@ -140,6 +141,7 @@ contains
     call results%log%open(given%is_quiet, error, results%stem//'.log', given%is_continued)
     if (allocated(error)) return
     call results%log%note(echo)
+    if (size(model%joints) > 0) call results%log%note(summary_of_joints(model))
     if (earlier /= '') then
       call results%log%say('the earlier run of this job (process and host: '//earlier// &
                            ') was killed')

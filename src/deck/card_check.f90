@@ -4,14 +4,14 @@ module card_check
   use diagnostics, only: diagnostic_list, place, severity_error
   use field_text, only: expected_in, names_of_columns, text_or_nothing
   use keyword_spec, only: field, find_spec, keyword, kind_choice, kind_flag, kind_integer, &
-                          kind_real, kind_word, later, spec_of_variant, without_effect
+                          kind_real, kind_word, later, refused, spec_of_variant, without_effect
   use kinds, only: rk
   use nearest_words, only: nearest_choice, nearest_word
   use parse_text, only: largest_number, parse_integer, parse_real, single_blanks, upper_case
   use write_text, only: as_text
   implicit none
   private
-  public :: check_card, match_card, longest_name
+  public :: check_card, check_lines, match_card, longest_name
 
   integer, parameter :: longest_name = 80 !< letters of a name, as in Abaqus
 
@@ -30,6 +30,9 @@ contains
       call fault_unknown(the_card, specs, faults)
     else if (specs(found)%status == later) then
       call the_card%fault(faults, 'not available yet')
+      found = 0
+    else if (specs(found)%status == refused) then
+      call the_card%fault(faults, 'not available', specs(found)%way_out)
       found = 0
     else if (specs(found)%status == without_effect) then
       call the_card%ignore(faults, 'has no effect here')

@@ -1,7 +1,7 @@
 !> The keyword reference, made from the specifications with which decks are checked.
 module keyword_help
   use field_text, only: kind_in_words, text_or_nothing
-  use keyword_spec, only: field, find_spec, keyword, kind_flag, later, without_effect
+  use keyword_spec, only: field, find_spec, keyword, kind_flag, later, refused, without_effect
   use nearest_words, only: nearest_word
   use parse_text, only: single_blanks, upper_case, without_blanks
   use write_text, only: as_text
@@ -163,6 +163,8 @@ contains
     select case (spec%status)
     case (later)
       text = ' (not available yet)'
+    case (refused)
+      text = ' (not available)'
     case (without_effect)
       text = ' (no effect here)'
     case default

@@ -9,7 +9,7 @@ module keyword_spec
   public :: parameter_default, column_default, column_of_field, find_spec
   public :: choices_of, spec_of_variant
   public :: kind_real, kind_integer, kind_word, kind_flag, kind_choice, kind_text, kind_reference
-  public :: available, later, without_effect
+  public :: available, later, without_effect, refused
 
   !> Kinds of values of a field.
   integer, parameter :: kind_real = 1, kind_integer = 2, kind_word = 3, kind_flag = 4
@@ -21,6 +21,7 @@ module keyword_spec
   integer, parameter :: available = 1
   integer, parameter :: later = 2 !< known, an error: 'not available yet'
   integer, parameter :: without_effect = 3 !< understood, a warning
+  integer, parameter :: refused = 4 !< known, an error; `way_out` says what to take instead
 
   !> A parameter of the keyword line, or a column of its data lines.
   type :: field
@@ -53,6 +54,7 @@ module keyword_spec
     character(:), allocatable :: example !< lines of a deck, separated by new_line
     character(:), allocatable :: place !< 'model', 'step', 'anywhere', 'material'
     integer :: status = available
+    character(:), allocatable :: way_out !< of a refused keyword
     type(field), allocatable :: parameters(:)
     character(:), allocatable :: chooser !< parameter that selects the variant
     type(keyword_variant), allocatable :: variants(:)

@@ -4,6 +4,7 @@ module finish_model
   use cover_checks, only: report_bare
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
+  use finish_contact, only: complete_clearances
   use finish_interfaces, only: complete_interfaces
   use finish_joints, only: complete_joints
   use finish_materials, only: complete_materials
@@ -32,6 +33,7 @@ contains
     call check_materials(model, faults)
     call check_solids(model, faults)
     call complete_interfaces(model, faults)
+    call complete_clearances(model, faults)
     if (.not. faults%has_errors()) call refuse_joined_twice(model, faults)
     if (.not. faults%has_errors()) call complete_ties(model, faults)
     call complete_joints(model, faults)

@@ -6,13 +6,17 @@ module keyword_catalogue
   use keywords_amplitude, only: describe_amplitude, read_amplitude
   use keywords_base_motion, only: describe_base_motion, read_base_motion
   use keywords_boundary, only: describe_boundary, read_boundary
+  use keywords_contact_law, only: describe_behavior, describe_friction, describe_interaction, &
+                                  read_behavior, read_friction, read_interaction
+  use keywords_contact_pair, only: describe_clearance, describe_contact_pair, read_clearance, &
+                                   read_contact_pair
   use keywords_controls, only: describe_controls, describe_step_damping, read_controls, &
                                read_step_damping
   use keywords_elements, only: describe_element, read_elements
   use keywords_initial, only: describe_initial_conditions, read_initial_conditions
   use keywords_interface, only: describe_interface, read_interface
   use keywords_joint, only: describe_joint, describe_joint_law, read_joint, read_joint_law
-  use keywords_other, only: add_ignored_keywords, add_later_keywords
+  use keywords_other, only: add_ignored_keywords, add_later_keywords, add_refused_keywords
   use keywords_loads, only: describe_cload, describe_dload, describe_dsload, read_cload, &
                             read_dload, read_dsload
   use keywords_material, only: describe_density, describe_material, describe_material_damping, &
@@ -40,7 +44,7 @@ module keyword_catalogue
   private
   public :: list_keywords
 
-  integer, parameter :: most_keywords = 100
+  integer, parameter :: most_keywords = 150
 
 contains
 
@@ -52,6 +56,7 @@ contains
     call add_step_keywords(list)
     call add_output_keywords(list)
     call add_later_keywords(list)
+    call add_refused_keywords(list)
     call add_ignored_keywords(list)
     call list%trim()
   end subroutine list_keywords
@@ -81,6 +86,11 @@ contains
     call list%add(describe_joint, read_joint, pass_rest)
     call list%add(describe_tie, read_tie, pass_rest)
     call list%add(describe_interface, read_interface, pass_rest)
+    call list%add(describe_interaction, read_interaction, pass_definitions)
+    call list%add(describe_behavior, read_behavior, pass_definitions)
+    call list%add(describe_friction, read_friction, pass_definitions)
+    call list%add(describe_contact_pair, read_contact_pair, pass_rest)
+    call list%add(describe_clearance, read_clearance, pass_rest)
     call list%add(describe_amplitude, read_amplitude, pass_definitions)
     call list%add(describe_initial_conditions, read_initial_conditions, pass_rest)
   end subroutine add_model_keywords

@@ -121,7 +121,7 @@ contains
     allocate (model%record_factor(0))
     allocate (model%sections(0), model%laws(0), model%joints(0))
     allocate (model%material_requests(0), model%procedure_card(0), model%ties(0))
-    allocate (model%interfaces(0))
+    allocate (model%interfaces(0), model%interactions(0), model%clearances(0))
   end subroutine open_draft
 
   !> Cards of a model without parts, with the meaning of C3D8.

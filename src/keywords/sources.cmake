@@ -17,11 +17,15 @@ set(sources
   checks/check_steps.f90
   checks/check_unused.f90
   checks/check_water.f90
+  contact/finish_contact.f90
+  contact/keywords_contact_law.f90
+  contact/keywords_contact_pair.f90
   deck_echo.f90
   draft/keyword_handler.f90
   draft/model_draft.f90
   draft/named_things.f90
   finish_model.f90
+  joints/contact_clearance.f90
   joints/contact_defaults.f90
   joints/cover_checks.f90
   joints/finish_interfaces.f90
@@ -57,6 +61,7 @@ set(sources
   mesh/keywords_nodes.f90
   mesh/keywords_section.f90
   mesh/keywords_sets.f90
+  mesh/surface_of_nodes.f90
   read_deck.f90
   stages/finish_stages.f90
   stages/keywords_stages.f90

@@ -27,6 +27,7 @@ class Pair:
     density: float = 2400.0
     law: str = "KN=1e10, KT=1e10"
     base_is_slave: bool = False
+    lift: float = 0.0  # of the block in the mesh [m]
 
     def turned(self, x: np.ndarray) -> np.ndarray:
         """Coordinates or vectors of the joint's axes in those of the deck."""
@@ -52,6 +53,7 @@ class Pair:
         )
         bricks = np.arange(np.prod(self.counts)).reshape(self.counts)
         below = bricks.size + np.arange(np.prod(self.base_counts)).reshape(self.base_counts)
+        mesh.x[block.ravel(), 2] += self.lift
         mesh.x = self.turned(mesh.x)
         mesh.brick_sets = {"BLOCK": bricks.ravel(), "BASE": below.ravel()}
         mesh.node_sets = {

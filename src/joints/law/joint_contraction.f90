@@ -30,6 +30,7 @@ module joint_contraction
     real(rk) :: friction = 0.0_rk !< mu
     real(rk) :: cohesion = 0.0_rk !< c of the closed joint [Pa]
     real(rk) :: thickness = 0.02_rk !< for the default of k_n [m]; paper_notes.md, 3
+    real(rk) :: layer_factor = 0.0_rk !< k_n over E/h of a layer of elements; 0: from the thickness
   contains
     procedure, nopass :: describe => describe_contraction
     procedure :: read_card
@@ -94,6 +95,9 @@ contains
     type(solid_behind), intent(in) :: solid
     if (self%penetration > 0.0_rk .and. self%normal_stiffness <= 0.0_rk &
         .and. self%strength <= 0.0_rk) self%normal_stiffness = solid%layer_stiffness
+    if (self%normal_stiffness <= 0.0_rk) then
+      self%normal_stiffness = self%layer_factor*solid%layer_stiffness
+    end if
     if (self%normal_stiffness <= 0.0_rk) self%normal_stiffness = solid%young/self%thickness
     if (self%tangent_stiffness > 0.0_rk) return
     self%tangent_stiffness = self%normal_stiffness/(2.0_rk*(1.0_rk + solid%poisson))

@@ -1,8 +1,8 @@
-!> Warns of amplitudes, materials and joint laws that nothing uses.
+!> Warns of amplitudes, materials, joint laws and surface interactions that nothing uses.
 module check_unused
   use deck_scan, only: is_keyword
   use diagnostics, only: diagnostic_list
-  use model_draft, only: draft
+  use model_draft, only: draft, law_of_joint
   use text_table, only: text_numbers
   implicit none
   private
@@ -17,6 +17,7 @@ contains
     call warn_of_amplitudes(model, faults)
     call warn_of_materials(model, faults)
     call warn_of_laws(model, faults)
+    call warn_of_interactions(model, faults)
   end subroutine warn_of_unused
 
   !> An amplitude is used if the parameter AMPLITUDE of a card names it.
@@ -58,6 +59,25 @@ contains
     end do
   end subroutine warn_of_materials
 
+  !> A surface interaction is used if a contact pair names it.
+  subroutine warn_of_interactions(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    logical :: is_used
+    integer :: i, j
+    do i = 1, size(model%interactions)
+      is_used = .false.
+      do j = 1, size(model%joints)
+        is_used = is_used .or. (model%joints(j)%contact_law > 0 .and. &
+                                model%joints(j)%law == model%interactions(i)%name)
+      end do
+      if (is_used) cycle
+      associate (place => model%cards(model%interactions(i)%spot%card))
+        call place%warn(faults, "nothing uses surface interaction '"//place%text('NAME')//"'")
+      end associate
+    end do
+  end subroutine warn_of_interactions
+
   !> A joint law is used if a joint names it.
   subroutine warn_of_laws(model, faults)
     type(draft), intent(in) :: model
@@ -65,10 +85,7 @@ contains
     logical :: is_used
     integer :: i, j
     do i = 1, size(model%laws)
-      is_used = .false.
-      do j = 1, size(model%joints)
-        is_used = is_used .or. model%joints(j)%law == model%laws(i)%law%name
-      end do
+      is_used = any([(law_of_joint(model, j) == i, j=1, size(model%joints))])
       if (is_used) cycle
       associate (place => model%cards(model%laws(i)%spot%card))
         call place%warn(faults, "nothing uses joint law '"//place%text('NAME')//"'")

@@ -20,6 +20,7 @@ module model_draft
   private
   public :: draft, add_guest, add_law, add_load, origin
   public :: section_request, law_request, joint_request, tie_request, interface_request
+  public :: interaction_request, law_of_joint
   public :: material_request, find_material_request, has_request
 
   !> Place of a definition: a card of the deck and one of its data lines (0: the keyword line).
@@ -39,17 +40,34 @@ module model_draft
     class(traction_law), allocatable :: law
     character(:), allocatable :: uplift, tail_water !< names of reservoirs, '' for none
     character(:), allocatable :: profile !< of the water: 'LINEAR' or 'OPEN'
+    logical :: is_of_contact = .false. !< of one *CONTACT PAIR: no *JOINT finds it by name
     type(origin) :: spot
   end type law_request
 
-  !> *JOINT: of JOINT8 elements or between two surfaces.
+  !> *SURFACE INTERACTION with the cards below it.
+  type :: interaction_request
+    character(:), allocatable :: name !< upper case
+    logical :: is_tied = .false. !< never opens and never slides
+    real(rk) :: stiffness = 0.0_rk !< normal [Pa/m]; 0: from the solids
+    real(rk) :: friction = 0.0_rk
+    real(rk) :: stick_slope = 0.0_rk !< along the surface [Pa/m]; 0: from the normal one
+    integer :: behavior_card = 0, friction_card = 0 !< 0 for none
+    integer :: last_card = 0 !< last card of the interaction so far
+    type(origin) :: spot
+  end type interaction_request
+
+  !> *JOINT: of JOINT8 elements or between two surfaces. *CONTACT PAIR: between two surfaces.
   type :: joint_request
     character(:), allocatable :: name, law !< upper case
+    integer :: contact_law = 0 !< law of a *CONTACT PAIR, position in `laws`; 0: found by name
     integer, allocatable :: elements(:) !< positions of JOINT8 elements
     integer :: slave = 0, master = 0 !< surfaces, 0 for none
     logical :: is_nodal = .true. !< points are at nodes, else Gauss points
     logical :: is_measured = .false. !< the distance of the surfaces is a gap
-    type(origin) :: spot
+    logical :: is_adjusted = .false. !< overlaps are no pressure, gaps up to `adjust` are closed
+    real(rk) :: adjust = 0.0_rk !< [m]
+    integer, allocatable :: adjusted_nodes(:) !< positions; where allocated, only these are adjusted
+    type(origin) :: spot !< line 0 for *JOINT
   end type joint_request
 
   !> A data line of *TIE.
@@ -97,6 +115,8 @@ module model_draft
     type(section_request), allocatable :: sections(:)
     type(law_request), allocatable :: laws(:)
     type(joint_request), allocatable :: joints(:)
+    type(interaction_request), allocatable :: interactions(:)
+    type(origin), allocatable :: clearances(:) !< cards *CLEARANCE
     type(tie_request), allocatable :: ties(:)
     type(interface_request), allocatable :: interfaces(:)
     type(request_slot), allocatable :: material_requests(:)
@@ -202,6 +222,19 @@ contains
     longer(size(longer)) = new
     call move_alloc(longer, model%laws)
   end subroutine add_law
+
+  !> Position of the law of a joint in `laws`, 0 for a name that no law has.
+  pure integer function law_of_joint(model, joint) result(found)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: joint !< position in `joints`
+    found = model%joints(joint)%contact_law
+    if (found > 0) return
+    do found = 1, size(model%laws)
+      if (model%laws(found)%is_of_contact) cycle
+      if (model%laws(found)%law%name == model%joints(joint)%law) return
+    end do
+    found = 0
+  end function law_of_joint
 
   !> Adds a load to the list of the problem, which grows by doubling, at position `num_loads`.
   subroutine add_load(model, item, name, family, target)

@@ -1,5 +1,6 @@
 !> Builds the joints after the whole deck is read: completes their laws and places their points.
 module finish_joints
+  use contact_clearance, only: set_clearance
   use contact_defaults, only: softest_layer
   use coupling_joint, only: lay_gauss_points, lay_node_points
   use cover_checks, only: claim_facets, claims, keep_cover, open_claims, report_bare
@@ -13,7 +14,7 @@ module finish_joints
   use joint_law, only: solid_behind, traction_law
   use joint_points, only: dam_joint
   use kinds, only: rk
-  use model_draft, only: draft
+  use model_draft, only: draft, law_of_joint
   use named_things, only: longest_name
   use nearest_words, only: nearest_word
   use surface_facets, only: list_surface_facets, mark_corners
@@ -87,13 +88,15 @@ contains
     logical, intent(out) :: is_found
     character(longest_name) :: known(size(model%laws))
     integer :: i
+    i = law_of_joint(model, number)
+    is_found = i > 0
+    if (is_found) then
+      allocate (law, source=model%laws(i)%law)
+      return
+    end if
     do i = 1, size(known)
       known(i) = model%laws(i)%law%name
-      if (model%laws(i)%law%name /= model%joints(number)%law) cycle
-      if (.not. allocated(law)) allocate (law, source=model%laws(i)%law)
     end do
-    is_found = allocated(law)
-    if (is_found) return
     associate (place => model%cards(model%joints(number)%spot%card))
       call place%fault_parameter(faults, 'LAW', "there is no joint law '"//place%text('LAW')// &
                                  "'", 'the name of a *JOINT LAW', &
@@ -148,6 +151,8 @@ contains
     type(segment_set) :: segments
     type(surface_cover) :: cover
     logical, allocatable :: is_bare(:)
+    integer :: line
+    line = max(1, model%joints(number)%spot%line)
     associate (request => model%joints(number), mesh => model%problem%mesh, &
                place => model%cards(model%joints(number)%spot%card))
       call list_surface_facets(mesh, model%problem%surfaces(request%slave), slave)
@@ -168,11 +173,12 @@ contains
       else
         call lay_gauss_points(mesh%x, slave, master, segments, request%is_measured, new)
       end if
+      if (request%contact_law > 0) call set_clearance(request, mesh%x, new)
       if (new%num_points == 0 .and. segments%num_segments > 0) then
-        call place%fault_at(faults, 1, 1, 'the joint has no points: its surfaces share their '// &
-                            'nodes', 'faces with nodes of their own')
+        call place%fault_at(faults, line, 1, 'the joint has no points: its surfaces share '// &
+                            'their nodes', 'faces with nodes of their own')
       else if (new%num_points == 0) then
-        call place%fault_at(faults, 1, 1, 'the two surfaces do not lie on each other', &
+        call place%fault_at(faults, line, 1, 'the two surfaces do not lie on each other', &
                             'opposite faces at a distance of less than '// &
                             trim(merge('4 facets    ', 'half a facet', request%is_measured)))
       else
@@ -203,6 +209,15 @@ contains
     end do
   end function followers
 
+  !> Where the stiffnesses of a joint or of a contact pair are given.
+  pure function remedy(place) result(text)
+    type(card), intent(in) :: place !< of the joint
+    character(:), allocatable :: text
+    text = 'KN and KT in the *JOINT LAW'
+    if (place%keyword /= 'JOINT') text = 'stiffness and stick slope in *SURFACE BEHAVIOR and '// &
+                                         '*FRICTION'
+  end function remedy
+
   !> Reports a face that is a slave of two joints.
   subroutine check_claims(number, slave, cover, model, taken, faults)
     integer, intent(in) :: number
@@ -211,11 +226,12 @@ contains
     type(draft), intent(in) :: model
     type(claims), intent(inout) :: taken
     type(diagnostic_list), intent(inout) :: faults
-    integer :: facet, earlier
+    integer :: facet, earlier, line
     call claim_facets(taken, number, slave, cover, facet, earlier)
     if (facet == 0) return
     associate (place => model%cards(model%joints(number)%spot%card))
-      call place%fault_at(faults, 1, 1, 'a face of element '// &
+      line = max(1, model%joints(number)%spot%line)
+      call place%fault_at(faults, line, 1, 'a face of element '// &
                           as_text(model%problem%mesh%element_id(slave%element(facet)))// &
                           " is a slave of joint '"//model%joints(earlier)%name//"' already", &
                           'faces that joints cover once', &
@@ -238,12 +254,12 @@ contains
     materials = model%problem%mesh%material_of_element(solids)
     if (size(materials) == 0) then
       call place%fault(faults, 'there is no solid behind the joint to derive KN and KT from', &
-                       'KN and KT in the *JOINT LAW')
+                       remedy(place))
       return
     else if (model%problem%materials(materials(1))%young <= 0.0_rk) then
       call place%fault(faults, "the material of the slave side, '"// &
                        model%problem%materials(materials(1))%name//"', has no E (a UMAT) to "// &
-                       'derive KN and KT from', 'KN and KT in the *JOINT LAW')
+                       'derive KN and KT from', remedy(place))
       return
     else if (any(materials /= materials(1))) then
       call place%warn(faults, 'the slave side has several materials; KN and KT '// &

@@ -95,7 +95,7 @@ contains
         pairs(used)%name = "joint '"//model%joints(j)%name//"'"
         pairs(used)%surfaces = [model%joints(j)%slave, model%joints(j)%master]
         if (model%joints(j)%is_measured) pairs(used)%farthest = farthest_gap
-        pairs(used)%spot = origin(model%joints(j)%spot%card, 1)
+        pairs(used)%spot = origin(model%joints(j)%spot%card, max(1, model%joints(j)%spot%line))
         j = j + 1
       end if
     end do

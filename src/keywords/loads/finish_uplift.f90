@@ -11,7 +11,7 @@ module finish_uplift
   use load_reservoir, only: reservoir_load
   use load_uplift, only: fill_linear, fill_open, uplift_load
   use mesh_faces, only: face_nodes
-  use model_draft, only: add_load, draft, law_request
+  use model_draft, only: add_load, draft, law_of_joint, law_request
   use named_things, only: longest_name
   use nearest_words, only: nearest_word
   use problem_definition, only: problem
@@ -34,11 +34,9 @@ contains
     end do
     if (faults%has_errors()) return
     do j = 1, size(model%joints)
-      do i = 1, size(model%laws)
-        if (model%laws(i)%law%name /= model%joints(j)%law) cycle
-        call fill_joint(model, j, model%laws(i), model%laws(i)%uplift, .false., faults)
-        call fill_joint(model, j, model%laws(i), model%laws(i)%tail_water, .true., faults)
-      end do
+      i = law_of_joint(model, j)
+      call fill_joint(model, j, model%laws(i), model%laws(i)%uplift, .false., faults)
+      call fill_joint(model, j, model%laws(i), model%laws(i)%tail_water, .true., faults)
     end do
   end subroutine complete_uplift
 

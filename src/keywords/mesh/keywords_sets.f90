@@ -1,5 +1,6 @@
 !> *NSET, *ELSET, *SURFACE.
 module keywords_sets
+  use card_check, only: check_lines
   use dam_mesh, only: surface
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
@@ -11,6 +12,7 @@ module keywords_sets
   use mesh_faces, only: count_corners, face_nodes
   use model_draft, only: draft, origin
   use named_things, only: elements_at, find_surface_name, nodes_at
+  use surface_of_nodes, only: find_faces
   use write_text, only: as_text
   implicit none
   private
@@ -158,13 +160,16 @@ contains
     spec%family = 'mesh'
     spec%place = 'model'
     spec%meaning = 'A surface made of faces of solid elements. S1 has the corners 1-2-3-4, S2 '// &
-                   '5-8-7-6, S3 1-5-6-2, S4 2-6-7-3, S5 3-7-8-4, S6 4-8-5-1.'
+                   '5-8-7-6, S3 1-5-6-2, S4 2-6-7-3, S5 3-7-8-4, S6 4-8-5-1. TYPE=NODE: the '// &
+                   'outer faces of the solids all of whose corners are among the nodes of the '// &
+                   'card; a node without such a face is an error.'
     spec%example = '*SURFACE, NAME=UPSTREAM, TYPE=ELEMENT'//nl//'UPSTREAM_ELEMENTS, S3'
     spec%fewest_lines = 1
+    spec%checks_own_data = .true.
     allocate (spec%parameters, source=[ &
               field('NAME', kind_word, 'name of the surface', is_required=.true.), &
               field('TYPE', kind_choice, 'what it is made of', default='ELEMENT', &
-                    choices='ELEMENT'), &
+                    choices='ELEMENT | NODE'), &
               field('INTERNAL', kind_flag, 'a surface that Abaqus/CAE has named')])
     allocate (spec%columns, source=[ &
               field('element', kind_reference, 'the elements', &
@@ -178,8 +183,7 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(surface) :: new
-    integer, allocatable :: members(:), seen(:)
-    integer :: line, face, i, used, earlier
+    integer :: earlier
     earlier = find_surface_name(model, this%word('NAME'))
     if (earlier > 0) then
       call this%fault_parameter(faults, 'NAME', "surface '"//this%text('NAME')// &
@@ -188,11 +192,30 @@ contains
       return
     end if
     new%name = this%word('NAME')
+    if (this%word('TYPE') == 'NODE') then
+      call find_faces(this, model, faults, new)
+    else
+      call list_faces(this, model, faults, new)
+    end if
+    model%problem%surfaces = [model%problem%surfaces, new]
+    model%surface_origin = [model%surface_origin, model%here(0)]
+  end subroutine read_surface
+
+  !> The faces of a card with elements and faces.
+  subroutine list_faces(this, model, faults, new)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    type(surface), intent(inout) :: new
+    integer, allocatable :: members(:), seen(:)
+    integer :: line, face, i, used, num_before
+    num_before = faults%num_errors
+    call check_lines(this, faults)
     allocate (seen(model%problem%mesh%num_elements), source=0)
     used = 0
     call make_room(new%element, used, 0)
     call make_room(new%face, used, 0)
-    do line = 1, this%num_lines
+    do line = 1, merge(this%num_lines, 0, faults%num_errors == num_before)
       call elements_at(this, line, 1, model, faults, members)
       face = index('S1S2S3S4S5S6', this%word_at(line, 2))/2 + 1
       call check_faces(this, line, members, face, model, faults)
@@ -203,9 +226,7 @@ contains
     end do
     new%element = new%element(:used)
     new%face = new%face(:used)
-    model%problem%surfaces = [model%problem%surfaces, new]
-    model%surface_origin = [model%surface_origin, model%here(0)]
-  end subroutine read_surface
+  end subroutine list_faces
 
   !> Removes repeated faces, since a face counts once.
   subroutine drop_repeats(this, line, face, model, seen, members, faults)

@@ -1,11 +1,11 @@
-!> Keywords and parameters of other programs that are not available yet, each an error at its place
-!> in the deck, or that have no effect here, each noted as ignored input.
+!> Keywords and parameters of other programs that are not available, each an error at its place in
+!> the deck, or that have no effect here, each noted as ignored input.
 module keywords_other
   use keyword_handler, only: keyword_list
-  use keyword_spec, only: field, keyword, kind_text, later, without_effect
+  use keyword_spec, only: field, keyword, kind_text, later, refused, without_effect
   implicit none
   private
-  public :: add_later_keywords, add_ignored_keywords, add_idle_parameters
+  public :: add_later_keywords, add_refused_keywords, add_ignored_keywords, add_idle_parameters
 
 contains
 
@@ -13,21 +13,50 @@ contains
   subroutine add_later_keywords(list)
     type(keyword_list), intent(inout) :: list
     character(*), parameter :: family = 'other programs'
+    call add_later(list, 'MPC', family, 'model', 'Constraints between nodes.')
     call add_later(list, 'EQUATION', family, 'model', 'Linear equations between displacements.')
-    call add_later(list, 'CONTACT PAIR', family, 'model', 'Contact of two surfaces, as a joint.')
-    call add_later(list, 'SURFACE INTERACTION', family, 'model', 'Names a law of contact.')
-    call add_later(list, 'SURFACE BEHAVIOR', family, 'model', 'Normal law of contact.')
-    call add_later(list, 'FRICTION', family, 'model', 'Friction of contact.')
     call add_later(list, 'PLASTIC', family, 'material', 'Metal plasticity.')
     call add_later(list, 'EXPANSION', family, 'material', 'Thermal expansion.')
     call add_later(list, 'TEMPERATURE', family, 'step', 'Temperatures of nodes [K].')
     call add_later(list, 'PARAMETER', family, 'model', 'Names for numbers of the deck.')
-    call add_later(list, 'RIGID BODY', family, 'model', 'Makes a part rigid.')
-    call add_later(list, 'MPC', family, 'model', 'Constraints between nodes.')
-    call add_later(list, 'COUPLING', family, 'model', 'Couples a surface to a node.')
     call add_later(list, 'TRANSFORM', family, 'model', 'Axes of nodes.')
     call add_later(list, 'ORIENTATION', family, 'model', 'Axes of a material.')
   end subroutine add_later_keywords
+
+  !> Keywords of Abaqus and CalculiX that are refused, with what to take instead.
+  subroutine add_refused_keywords(list)
+    type(keyword_list), intent(inout) :: list
+    character(*), parameter :: pairs = '*CONTACT PAIR of each two surfaces'
+    character(*), parameter :: stiff = 'solids 1000 times as stiff, or *EQUATION'
+    call add_refused(list, 'CONTACT', 'General contact.', pairs)
+    call add_refused(list, 'CONTACT INCLUSIONS', 'Surfaces of general contact.', pairs)
+    call add_refused(list, 'CONTACT EXCLUSIONS', 'Surfaces of general contact.', pairs)
+    call add_refused(list, 'CONTACT PROPERTY ASSIGNMENT', 'Laws of general contact.', pairs)
+    call add_refused(list, 'CONTACT INTERFERENCE', 'Overlap that goes in a step.', &
+                     'the overlap in the mesh')
+    call add_refused(list, 'CHANGE FRICTION', 'Friction from a step on.', &
+                     'one *FRICTION for all steps')
+    call add_refused(list, 'CHANGE SURFACE BEHAVIOR', 'Normal law from a step on.', &
+                     'one *SURFACE BEHAVIOR for all steps')
+    call add_refused(list, 'RIGID BODY', 'Makes a part rigid.', stiff)
+    call add_refused(list, 'COUPLING', 'Couples a surface to a node.', &
+                     '*DSLOAD or *DLOAD on the surface, or *EQUATION')
+    call add_refused(list, 'KINEMATIC COUPLING', 'Couples nodes to a node.', '*EQUATION')
+    call add_refused(list, 'KINEMATIC', 'Couples a surface to a node.', '*EQUATION')
+    call add_refused(list, 'DISTRIBUTING COUPLING', 'Distributes the load of a node.', &
+                     '*DSLOAD or *DLOAD on the surface')
+    call add_refused(list, 'DISTRIBUTING', 'Distributes the load of a node.', &
+                     '*DSLOAD or *DLOAD on the surface')
+  end subroutine add_refused_keywords
+
+  subroutine add_refused(list, name, meaning, way_out)
+    type(keyword_list), intent(inout) :: list
+    character(*), intent(in) :: name, meaning, way_out
+    call add_later(list, name, 'other programs', 'anywhere', &
+                   meaning//' Take instead: '//way_out//'.')
+    list%specs(list%num_keywords)%status = refused
+    list%specs(list%num_keywords)%way_out = way_out
+  end subroutine add_refused
 
   !> Adds a keyword without a handler.
   subroutine add_later(list, name, family, place, meaning)
@@ -49,6 +78,7 @@ contains
   subroutine add_ignored_keywords(list)
     type(keyword_list), intent(inout) :: list
     call add_ignored(list, 'CONTACT OUTPUT', 'Contact results. Joints: *JOINT PRINT, OPENING.')
+    call add_ignored(list, 'CONTACT CONTROLS', 'Controls of the iteration of contact.')
     call add_ignored(list, 'CONTACT FILE', 'Contact results. Joints: *JOINT PRINT, OPENING.')
     call add_ignored(list, 'CONTACT PRINT', 'Contact results. Joints: *JOINT PRINT, OPENING.')
     call add_ignored(list, 'ENERGY OUTPUT', 'Energies. They are always in job_energy.csv.')
