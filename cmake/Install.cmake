@@ -43,7 +43,6 @@ install(FILES "${CMAKE_BINARY_DIR}/keywayConfig.cmake"
 
 install(FILES packaging/keyway.bash DESTINATION
         "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" RENAME keyway)
-install(FILES packaging/keyway.1 DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(FILES packaging/ABA_PARAM.INC DESTINATION "${KEYWAY_MODULES_DIR}")
 install(FILES tools/keyway/job-1.schema.json DESTINATION "${KEYWAY_SHARE_DIR}")
@@ -61,9 +60,13 @@ if(Python3_FOUND)
     execute_process(COMMAND \"${Python3_EXECUTABLE}\" \"${CMAKE_SOURCE_DIR}/tools/make_syntax.py\"
                     --program \"$<TARGET_FILE:keyway>\" --vim \"\${share}/keyway/vim\"
                     --vscode \"\${share}/keyway/vscode\"
+                    COMMAND_ERROR_IS_FATAL ANY)
+    set(manual \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1/keyway.1\")
+    execute_process(COMMAND \"${Python3_EXECUTABLE}\" \"${CMAKE_SOURCE_DIR}/tools/make_manual.py\"
+                    --program \"$<TARGET_FILE:keyway>\" -o \"\${manual}\"
                     COMMAND_ERROR_IS_FATAL ANY)")
 else()
-  message(STATUS "No Python: syntax highlighting for editors will not be installed")
+  message(STATUS "No Python: manual page and syntax of editors will not be installed")
 endif()
 
 # cpack in the build folder writes a package of Debian.

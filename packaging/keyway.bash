@@ -1,7 +1,7 @@
 # Completion of bash for keyway: options, keywords and fields come from the program itself.
 
 _keyway_options() {
-  "$1" --help 2>/dev/null | sed -n 's/^  \(-[-a-z]*\).*/\1/p'
+  "$1" --help 2>/dev/null | sed -n 's/^  \(-[-a-z0-9]*\).*/\1/p'
 }
 
 # Keywords with a backslash before each blank, so that they stay one word each.
