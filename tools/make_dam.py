@@ -265,6 +265,7 @@ def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
         duration=chosen.duration,
         increment=chosen.increment,
         damping=tuple(chosen.damping),
+        damping_base=chosen.damping_base,
         num_modes=chosen.modes,
         picture_frequency=chosen.picture_every,
         construction=construction_of(chosen),

@@ -39,6 +39,12 @@ def add_arch_options(parser: argparse.ArgumentParser) -> None:
         "--concrete-cards", type=Path, metavar="FILE", help="cards that follow *ELASTIC of the dam"
     )
     group.add_argument(
+        "--damping-base",
+        choices=("INITIAL", "CURRENT"),
+        default="INITIAL",
+        help="stiffness of the Rayleigh damping: undamaged, or with its damage (INITIAL)",
+    )
+    group.add_argument(
         "--histories",
         action="store_true",
         help="openings in time at crest, mid-height and base of the joints, not at the crest alone",

@@ -35,6 +35,7 @@ class DeckOptions:
     increment: float = 0.01  # [s]
     alpha: float = -0.05
     damping: tuple[float, float, float] = (0.05, 2.0, 10.0)  # ratio at two frequencies [Hz]
+    damping_base: str = "INITIAL"  # or CURRENT: the stiffness with its damage
     num_modes: int = 0  # > 0: a *FREQUENCY step between the static and the dynamic one
     picture_frequency: int = 10  # increments between two states of the VTK series
     construction: Construction | None = None  # None: the dam is there at once
@@ -168,7 +169,8 @@ def _dynamic_step(mesh: BrickMesh, options: DeckOptions) -> list[str]:
         parts += [f"{times}, {1e-4 * options.increment:g}, {options.increment:g}"]
     else:
         parts += [f"*DYNAMIC, DIRECT, ALPHA={options.alpha:g}", times]
-    parts += [f"*DAMPING, RATIO={ratio:g}, F1={f1:g}, F2={f2:g}"]
+    base = "" if options.damping_base == "INITIAL" else f", BASE={options.damping_base}"
+    parts += [f"*DAMPING, RATIO={ratio:g}, F1={f1:g}, F2={f2:g}{base}"]
     for dof, name in enumerate(
         ("MOTION_X", "MOTION_Y", "MOTION_Z")[: len(options.motions)], start=1
     ):

@@ -44,6 +44,8 @@ FIELDS = {
     "S3": Field(
         "Largest principal compression", "MPa", 1.0e-6, "cividis", -1.0, may_be_singular=True
     ),
+    "S1_POINT": Field("Largest tension at integration points", "MPa", 1.0e-6, "magma_r"),
+    "S3_POINT": Field("Largest compression at integration points", "MPa", 1.0e-6, "cividis", -1.0),
     "OPENING": Field("Largest joint opening", "mm", 1.0e3, "viridis_r"),
     "SLIP": Field("Slip", "mm", 1.0e3, "cividis_r"),
     "U": Field("Largest displacement", "mm", 1.0e3, "viridis_r"),
@@ -76,6 +78,7 @@ class Scales:
 
     given: dict[str, float] = field(default_factory=dict)  # by field, in its unit, without sign
     is_full: bool = False  # to the extreme, whatever it is
+    levels: dict[str, float] = field(default_factory=dict)  # lines of equal values, by field
 
     def limits(self, name: str, values: np.ndarray) -> Limits:
         """Bands for values in SI units."""
@@ -130,11 +133,23 @@ def parse_ranges(words: Iterable[str]) -> tuple[Scales, bool]:
     return Scales(given, is_full), is_shared
 
 
+def parse_levels(words: Iterable[str]) -> dict[str, float]:
+    """Values of lines from words such as 'S1=2.48', in the units of the fields."""
+    found = {}
+    for word in words:
+        name, _, value = word.partition("=")
+        if name.upper() not in FIELDS:
+            raise ValueError(f"line '{word}': expected FIELD=VALUE with one of {', '.join(FIELDS)}")
+        shown = FIELDS[name.upper()]
+        found[name.upper()] = shown.sign * _positive(value, word)
+    return found
+
+
 def _positive(text: str, word: str) -> float:
     try:
         value = abs(float(text))
     except ValueError:
         value = 0.0
     if not 0.0 < value < np.inf:
-        raise ValueError(f"range '{word}': expected a number other than zero behind '='")
+        raise ValueError(f"'{word}': expected a number other than zero behind '='")
     return value

@@ -73,10 +73,12 @@ class Faces:
         """Lines where the joints meet the faces; given values of all nodes become 'value'."""
         x = self.results.x if shift is None else self.results.x + shift
         parts = []
+        # interface quads have nodes that no solid has: they are there as the joint is
+        absent = np.setdiff1d(self.results.connectivity[self.results.solids], self.nodes)
         for name in self.results.joint_names():
             joint = self.results.joint_faces(name)
             facets = joint.facets if joint is not None else np.empty((0, 4), dtype=int)
-            facets = facets[np.isin(facets, self.nodes).all(axis=1)]
+            facets = facets[~np.isin(facets, absent).any(axis=1)]
             if len(facets):
                 parts.append(border_of(facets, x, values))
         return pv.merge(parts) if parts else None

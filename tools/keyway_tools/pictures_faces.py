@@ -13,7 +13,7 @@ from matplotlib.ticker import MaxNLocator
 from .colour_scale import FIELDS, Field, Limits, Scales
 from .dam_views import Faces
 from .picture_style import GREY, Sheet, headline, hide_frame, new_figure, plt
-from .render_dam import Paint, Picture, render_views
+from .render_dam import Paint, Picture, View, render_views
 from .results import Step
 
 MARK = "#0091B2"
@@ -45,17 +45,27 @@ def place_of(x: np.ndarray) -> str:
     return "(" + ", ".join(f"{0.0 if abs(v) < 5e-3 else v:.5g}" for v in x) + ") m"
 
 
-def plot_envelope(faces: Faces, step: Step, name: str, scales: Scales, sheet: Sheet) -> list[Path]:
-    """One field's envelope over a step, on every view."""
+def plot_envelope(
+    faces: Faces,
+    step: Step,
+    name: str,
+    scales: Scales,
+    sheet: Sheet,
+    views: dict[str, View] | None = None,
+) -> list[Path]:
+    """One field's envelope over a step, on every view, with the line of a given value."""
     shown = FIELDS[name]
     values = shown.scale * step.envelopes[name]
     limits = scales.limits(name, step.envelopes[name][faces.nodes])
-    paint = Paint(values, limits.ends, shown.colours, limits.bands)
-    pictures = render_views(faces.views, faces.grid(), paint, faces.joint_lines())
+    level = scales.levels.get(name)
+    paint = Paint(values, limits.ends, shown.colours, limits.bands, level)
+    pictures = render_views(views or faces.views, faces.grid(), paint, faces.joint_lines())
     heading = f"{shown.label} over step {step.name.title()}\n"
     heading += _extreme_in_words(faces, step, name)
     marks = _marks(faces, values, shown)
     label = shown.label.lower() + (f" [{shown.unit}]" if shown.unit else "")
+    if level is not None:
+        label += f"; blue line: {shown.with_unit(level)}"
     return compose(Drawing(pictures, limits, shown.colours, label, heading, marks), sheet)
 
 

@@ -16,6 +16,7 @@ vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)  # no warnings about a mis
 
 PIXELS = (1500, 1000)
 MARGIN = 1.06
+LEVEL = "#00C8E6"  # of lines of equal values, apart from all scales
 WEDGE = (
     0,
     2,
@@ -57,6 +58,7 @@ class Paint:
     ends: tuple[float, float]
     colours: str
     bands: int = 64
+    level: float | None = None  # of a line of equal values on nodes
 
 
 @dataclass(frozen=True)
@@ -158,6 +160,10 @@ def _add_body(plotter, surface: pv.PolyData, paint: Paint) -> None:
         surface, scalars="value", cmap=paint.colours, clim=paint.ends, n_colors=paint.bands,
         show_scalar_bar=False, nan_color="#E6E6E6", **look,
     )  # fmt: skip
+    if paint.level is not None and paint.values is not None:
+        line = surface.contour([paint.level], scalars="value")
+        if line.n_points:
+            plotter.add_mesh(line, color=LEVEL, line_width=4.0, lighting=False)
 
 
 def _add_outline(plotter, outline: pv.PolyData, view: View, paint: Paint) -> None:

@@ -20,6 +20,8 @@ from .result_files import Table, as_array, read_table
 ENVELOPE_NAMES = {
     "S1": "S1_MAX",
     "S3": "S3_MIN",
+    "S1_POINT": "S1_POINT_MAX",
+    "S3_POINT": "S3_POINT_MIN",
     "U": "U_MAX",
     "OPENING": "OPENING_MAX",
     "DAMAGET": "DAMAGET_MAX",

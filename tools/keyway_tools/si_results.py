@@ -19,7 +19,7 @@ LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "km": 1e3, "ft": 0.3048, "in": 0.02
 STRESSES = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "psi": 6894.757293}  # [Pa]
 
 _LENGTH = re.compile(r"(?:[xyzUVA]|[UVA][123]|opening|slip[12]?|clearance|PENETRATION)$")
-_STRESS = re.compile(r"(?:t[n12]|S[123][123]|SP[123]|S[13]|pressure|water)$")
+_STRESS = re.compile(r"(?:t[n12]|S[123][123]|SP[123]|S[13](?:_POINT)?|pressure|water)$")
 _ENERGY = re.compile(
     r"(?:external|kinetic|strain|damping|friction|fracture|crushing|numerical|cracking|created)$"
 )

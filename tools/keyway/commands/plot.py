@@ -13,7 +13,7 @@ the pictures are printed.
 
 The colours of stresses end where 99 % of the nodes do if the extreme is far beyond (a corner), and
 the picture says so. --range full: to the extreme; --range S1=3: to 3 MPa; --range shared: one range
-for all RESULTS.
+for all RESULTS. --line S1=2.48 draws the line where S1 is 2.48 MPa.
 
 `material` draws the curves of `keyway --material` (job_material_NAME.csv), several in one picture:
 stress against strain, damage, energies, beside measured points (strain, stress a line) if given.
@@ -28,7 +28,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from keyway_tools.colour_scale import FIELDS, Scales, parse_ranges
+from keyway_tools.colour_scale import FIELDS, Scales, parse_levels, parse_ranges
 from keyway_tools.picture_style import FORMATS, Sheet
 from keyway_tools.pictures_curves import (
     plot_damage_growth,
@@ -120,6 +120,8 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument("--job", help="only this job")
     what = "end of a scale: full, shared, FIELD=END; may be repeated"
     parser.add_argument("--range", action="append", default=[], metavar="WHAT", help=what)
+    line = "draw the line of a value; may be repeated"
+    parser.add_argument("--line", action="append", default=[], metavar="FIELD=VALUE", help=line)
     parser.add_argument("--format", default="png", help="png, svg, pdf, or several with commas")
     parser.add_argument("--animate", choices=("mp4", "gif"), help="only a film of the dam")
     parser.add_argument("--units", default="m,Pa", help="of the deck, as in mm,MPa (m,Pa)")
@@ -129,6 +131,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         parser.error(f"--format: expected some of {', '.join(FORMATS)}")
     try:
         chosen.range, chosen.is_shared = parse_ranges(chosen.range)
+        chosen.range = replace(chosen.range, levels=parse_levels(chosen.line))
         chosen.units = Units.parse(chosen.units)
     except ValueError as error:
         parser.error(str(error))

@@ -1,0 +1,116 @@
+"""The numbers of a run that the page compares, in SI units."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..mesh_data import BrickMesh
+from ..mesh_quality import volumes
+from ..si_results import SiResults
+from .runner import Outcome
+
+FACES = ("upstream", "downstream")
+DAMAGED = 0.1  # mean of an element
+UPPER = 0.6  # of the height
+
+
+@dataclass
+class Facts:
+    """Numbers of one case; extremes are those of the last step."""
+
+    name: str
+    title: str
+    status: str
+    wall_s: float | None = None
+    processor_s: float | None = None
+    unknowns: int = 0
+    increments: int = 0
+    cutbacks: int = 0
+    energy_error: float = 0.0
+    # by field and place (anywhere, upstream, downstream): value, time, x
+    extremes: dict[str, dict[str, Any]] = field(default_factory=dict)
+    openings: dict[str, dict[str, float]] = field(default_factory=dict)  # by joint and face [m]
+    places: dict[str, list[float]] = field(default_factory=dict)  # of the largest, by joint [m]
+    hz: list[float] = field(default_factory=list)
+    # [m3]: all damaged, of it above UPPER of the height, and downstream of the middle surface
+    damaged: dict[str, float] = field(default_factory=dict)
+    dissipated: float = 0.0  # by cracking [J]
+    created: float = 0.0  # by the recovery of stiffness [J]
+    height: float = 0.0  # of the dam [m]
+
+    def value(self, name: str, place: str = "anywhere") -> float | None:
+        """An extreme, None where there is none."""
+        return self.extremes.get(name, {}).get(place, {}).get("value")
+
+    def as_data(self) -> dict[str, Any]:
+        """For JSON."""
+        return asdict(self)
+
+
+def facts_of(outcome: Outcome) -> Facts:
+    """The numbers of a case; of one that has not finished only how it went."""
+    case, record = outcome.case, outcome.record
+    facts = Facts(case.name, case.title, record.status, record.wall_s, record.processor_s)
+    if not outcome.is_finished:
+        facts.status += f": {record.message}" if record.message else ""
+        return facts
+    results = SiResults(outcome.folder, case.name)
+    summary = results.si_summary
+    facts.unknowns = summary["model"]["unknowns"]
+    facts.increments = sum(step["increments"] for step in summary["steps"])
+    facts.cutbacks = sum(step["cutbacks"] for step in summary["steps"])
+    facts.energy_error = max(abs(step["energy"]["error"]) for step in summary["steps"])
+    facts.hz = [mode["hz"] for step in summary["steps"] for mode in step.get("frequencies", [])]
+    facts.extremes = summary["envelopes"]
+    for name, joint in summary["joints"].items():
+        opening = joint["opening"]
+        facts.openings[name] = {face: opening.get(face, {}).get("value", 0.0) for face in FACES}
+        facts.places[name] = opening["anywhere"].get("x", [])
+    nodes = np.unique(results.connectivity[results.dam])
+    facts.height = float(np.ptp(results.x[nodes, 2]))
+    damage = summary.get("damage") or {}
+    facts.dissipated = (damage.get("dissipated") or {}).get("cracking", 0.0)
+    facts.created = damage.get("created") or 0.0
+    facts.damaged = _damaged(results)
+    return facts
+
+
+def _damaged(results: SiResults) -> dict[str, float]:
+    """Damaged volumes [m3] by the largest mean damage of elements over the last step."""
+    means = [
+        (step.procedure, step.means["DAMAGET"])
+        for step in results.steps()
+        if "DAMAGET" in step.means
+    ]
+    if not means:
+        return {}
+    dam = results.dam
+    cells = results.connectivity[dam]
+    mesh = BrickMesh(results.x, cells, np.zeros((0, 8), dtype=int))
+    whole = volumes(mesh)
+    volume = whole * (np.nan_to_num(means[-1][1][dam]) >= DAMAGED)
+    static = [damage for procedure, damage in means if procedure == "static"]
+    at_rest = np.nan_to_num(static[-1][dam]) >= DAMAGED if static else np.zeros(len(dam), bool)
+    centre = results.x[cells].mean(axis=1)
+    low, high = centre[:, 2].min(), centre[:, 2].max()
+    is_upper = centre[:, 2] > low + UPPER * (high - low)
+    down, up = (_distance(centre, results.x[results.face_flags(f)]) for f in FACES[::-1])
+    is_down = down < up
+    return {
+        "all": float(volume.sum()),
+        "upper": float(volume[is_upper].sum()),
+        "upper downstream": float(volume[is_upper & is_down].sum()),
+        "lower": float(volume[~is_upper].sum()),
+        "lower, before the motion": float(whole[~is_upper & at_rest].sum()),
+        "volume of the dam": float(whole.sum()),
+    }
+
+
+def _distance(points: np.ndarray, face: np.ndarray) -> np.ndarray:
+    """Distance of points from the nearest node of a face [m]."""
+    from scipy.spatial import cKDTree
+
+    return cKDTree(face).query(points)[0] if len(face) else np.full(len(points), np.inf)
