@@ -1,4 +1,5 @@
 set(sources
+  heat/warming.f90
   integrators/dynamic_step.f90
   integrators/frequency_integrator.f90
   integrators/hht_increment.f90
@@ -57,4 +58,5 @@ set(sources
   system/step_equilibrium.f90
   system/step_loads.f90
   system/step_system.f90
+  system/thermal_work.f90
 )

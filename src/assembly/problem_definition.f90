@@ -5,6 +5,7 @@ module problem_definition
   use instance_list, only: mesh_instance
   use dam_mesh, only: fe_mesh, named_set, surface
   use amplitudes, only: amplitude
+  use heat_plan, only: heating
   use stage_plan, only: stages
   use step_plan, only: step, initial_value
   use material_law, only: material
@@ -41,6 +42,7 @@ module problem_definition
     type(initial_value), allocatable :: initial_values(:)
     type(step), allocatable :: steps(:)
     type(stages) :: stages !< elements that come and go, joints that are grouted
+    type(heating) :: heat !< temperatures
     type(user_library), pointer :: umat => null() !< loaded library of the user, null for none
     integer :: upstream_surface = 0 !< surface of the first reservoir, 0 for none
   end type problem

@@ -1,6 +1,7 @@
 set(sources
   assemble_elements.f90
   assemble_forces.f90
+  assemble_heat.f90
   constraint_elimination.f90
   damping_rayleigh.f90
   element_blocks.f90
@@ -8,4 +9,5 @@ set(sources
   inelastic_blocks.f90
   pattern_builder.f90
   problem_definition.f90
+  thermal_strains.f90
 )

@@ -59,15 +59,18 @@ contains
                             digest_of_file(input_of(this)))
   end function digest_of
 
-  !> Path of the file that INPUT names, '' for none.
+  !> Path of the file that INPUT names (of *TEMPERATURE FILE too), '' for none.
   function input_of(this) result(path)
     type(card), intent(in) :: this
     character(:), allocatable :: path
+    character(:), allocatable :: name
     type(place) :: spot
     path = ''
-    if (.not. this%has('INPUT')) return
-    spot = this%place_of('INPUT')
-    path = path_beside(spot%file, this%text('INPUT'))
+    name = 'INPUT'
+    if (this%keyword == 'TEMPERATURE' .and. this%has('FILE')) name = 'FILE'
+    if (.not. this%has(name)) return
+    spot = this%place_of(name)
+    path = path_beside(spot%file, this%text(name))
   end function input_of
 
   !> All files that the cards come from or name.

@@ -4,6 +4,7 @@
 !> f = sum w B^T sigma, eps = B u. One call handles a block of elements.
 module element_formulation
   use kinds, only: rk
+  use shape_hex8, only: gradient_at, point_derivative, point_shape
   implicit none
   private
   public :: solid_element
@@ -14,6 +15,7 @@ module element_formulation
   contains
     procedure(strain_operator), deferred :: strain_operator
     procedure :: add_stabilisation
+    procedure :: thermal_strain => mean_expansion
   end type solid_element
 
   abstract interface
@@ -39,4 +41,29 @@ contains
     real(rk), intent(in) :: d(6, 6) !< elastic stiffness [Pa]
     real(rk), contiguous, intent(inout) :: ke(:, :, :) !< (24, 24, elements) [N/m]
   end subroutine add_stabilisation
+
+  !> Thermal strains at the points from the expansions of the nodes. Default: the mean over the
+  !> element, as in Abaqus and CalculiX; strains that vary in the element cannot follow B u.
+  subroutine mean_expansion(self, x, d, nodal, expansion, strain)
+    class(solid_element), intent(in) :: self
+    real(rk), contiguous, intent(in) :: x(:, :, :) !< (3, 8, elements) [m]
+    real(rk), intent(in) :: d(6, 6) !< elastic stiffness [Pa]
+    real(rk), contiguous, intent(in) :: nodal(:, :) !< (8, elements) expansion in all directions
+    real(rk), contiguous, intent(out) :: expansion(:, :) !< (points, elements)
+    real(rk), contiguous, intent(out) :: strain(:, :, :) !< (6, points, elements) taken from B u
+    real(rk) :: gradient(3, 8), volume(8)
+    integer :: e, q
+    strain = 0.0_rk
+    do e = 1, size(x, 3)
+      do q = 1, 8
+        call gradient_at(x(:, :, e), point_derivative(:, q, :), gradient, volume(q))
+      end do
+      ! Sums of differences: equal expansions of all nodes have exactly this mean.
+      expansion(:, e) = nodal(1, e) + dot_product(matmul(nodal(:, e) - nodal(1, e), point_shape), &
+                                                  volume)/sum(volume)
+      do q = 1, self%num_points
+        strain(1:3, q, e) = expansion(q, e)
+      end do
+    end do
+  end subroutine mean_expansion
 end module element_formulation

@@ -9,7 +9,7 @@ module element_hex8_incompatible
   use element_formulation, only: solid_element
   use element_hex8, only: hex8_gradients
   use gauss_rules, only: hex_point
-  use shape_hex8, only: derivative_at, hex8_dofs, strain_rows
+  use shape_hex8, only: derivative_at, hex8_dofs, point_shape, strain_rows
   use small_matrix, only: invert3
   implicit none
   private
@@ -18,6 +18,7 @@ module element_hex8_incompatible
   type, extends(solid_element) :: incompatible_hexahedron
   contains
     procedure :: strain_operator
+    procedure :: thermal_strain
   end type incompatible_hexahedron
 
 contains
@@ -45,6 +46,35 @@ contains
       end do
     end do
   end subroutine strain_operator
+
+  !> The expansion at each point, and that less the strains of the modes that follow it: a free
+  !> element whose temperature is linear has no stress.
+  subroutine thermal_strain(self, x, d, nodal, expansion, strain)
+    class(incompatible_hexahedron), intent(in) :: self
+    real(rk), contiguous, intent(in) :: x(:, :, :)
+    real(rk), intent(in) :: d(6, 6)
+    real(rk), contiguous, intent(in) :: nodal(:, :)
+    real(rk), contiguous, intent(out) :: expansion(:, :)
+    real(rk), contiguous, intent(out) :: strain(:, :, :)
+    real(rk) :: gradient(3, 8, 8), weight(8), mode(6, 9, 8), amplitude(9, hex8_dofs)
+    real(rk) :: operator(6, hex8_dofs, 8)
+    integer :: e, q, status
+    do e = 1, size(x, 3)
+      expansion(:, e) = nodal(1, e) + matmul(nodal(:, e) - nodal(1, e), point_shape)
+      strain(1:3, :, e) = spread(expansion(:, e), 1, 3)
+      strain(4:6, :, e) = 0.0_rk
+      if (all(abs(nodal(2:, e) - nodal(1, e)) <= 0.0_rk)) cycle
+      call hex8_gradients(x(:, :, e), gradient, weight, status)
+      if (status /= 0) cycle
+      call mode_strains(x(:, :, e), weight, mode)
+      operator = 0.0_rk
+      operator(:, 1, :) = strain(:, :, e)
+      call mode_amplitudes(mode, operator, d, weight, amplitude)
+      do q = 1, self%num_points
+        strain(:, q, e) = strain(:, q, e) + matmul(mode(:, :, q), amplitude(:, 1))
+      end do
+    end do
+  end subroutine thermal_strain
 
   !> Strains of the nine modes at the points.
   pure subroutine mode_strains(x, weight, mode)

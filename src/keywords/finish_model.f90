@@ -5,6 +5,7 @@ module finish_model
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use finish_contact, only: complete_clearances
+  use finish_heat, only: complete_heat
   use finish_interfaces, only: complete_interfaces
   use finish_joints, only: complete_joints
   use finish_materials, only: complete_materials
@@ -39,6 +40,7 @@ contains
     call complete_joints(model, faults)
     if (.not. faults%has_errors()) call complete_uplift(model, faults)
     call complete_stages(model, faults)
+    call complete_heat(model)
     call trim_loads(model)
   end subroutine complete_model
 

@@ -13,6 +13,7 @@ module keyword_catalogue
   use keywords_controls, only: describe_controls, describe_step_damping, read_controls, &
                                read_step_damping
   use keywords_elements, only: describe_element, read_elements
+  use keywords_expansion, only: describe_expansion, read_expansion
   use keywords_initial, only: describe_initial_conditions, read_initial_conditions
   use keywords_interface, only: describe_interface, read_interface
   use keywords_joint, only: describe_joint, describe_joint_law, read_joint, read_joint_law
@@ -38,6 +39,7 @@ module keyword_catalogue
   use keywords_step, only: describe_dynamic, describe_end_step, describe_frequency, &
                            describe_static, describe_step, read_dynamic, read_end_step, &
                            read_frequency, read_static, read_step
+  use keywords_temperature, only: describe_temperature, read_temperature
   use keywords_tie, only: describe_tie, read_tie
   use material_catalogue, only: add_material_laws
   implicit none
@@ -79,6 +81,7 @@ contains
     call list%add(describe_material, read_material, pass_definitions)
     call list%add(describe_density, read_density, pass_definitions)
     call list%add(describe_material_damping, read_material_damping, pass_definitions)
+    call list%add(describe_expansion, read_expansion, pass_definitions)
     call add_material_laws(list)
     call list%add(describe_material_test, read_material_test, pass_rest)
     call list%add(describe_solid_section, read_solid_section, pass_rest)
@@ -110,6 +113,7 @@ contains
     call list%add(describe_dsload, read_dsload, pass_rest)
     call list%add(describe_reservoir, read_reservoir, pass_rest)
     call list%add(describe_base_motion, read_base_motion, pass_rest)
+    call list%add(describe_temperature, read_temperature, pass_rest)
     call list%add(describe_model_change, read_model_change, pass_rest)
     call list%add(describe_grout, read_grout, pass_rest)
   end subroutine add_step_keywords

@@ -18,6 +18,7 @@ module read_deck
   use deck_lexer, only: read_cards
   use deck_options, only: reading_options
   use diagnostics, only: diagnostic_list, place, severity_error
+  use finish_heat, only: warn_of_heat
   use finish_model, only: complete_model
   use finish_tests, only: complete_tests
   use flatten_assembly, only: flatten
@@ -88,6 +89,7 @@ contains
     call warn_of_mesh(model, faults)
     call warn_of_unused(model, faults)
     call warn_of_loads(model, faults)
+    call warn_of_heat(model, faults)
     call warn_of_water(model, faults)
     call warn_of_nodes(model, faults)
     call warn_of_histories(model, faults)

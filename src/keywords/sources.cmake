@@ -25,6 +25,10 @@ set(sources
   draft/model_draft.f90
   draft/named_things.f90
   finish_model.f90
+  heat/finish_heat.f90
+  heat/keywords_expansion.f90
+  heat/keywords_temperature.f90
+  heat/temperature_file.f90
   joints/contact_clearance.f90
   joints/contact_defaults.f90
   joints/cover_checks.f90

@@ -23,6 +23,10 @@ contains
         if (model%problem%stages%is_there_any()) then
           call refuse(model, s, 'the model is built in stages (*MODEL CHANGE, *GROUT)', faults)
         end if
+        if (model%problem%heat%has_expansion .and. model%problem%heat%is_there_any()) then
+          call refuse(model, s, 'the model has temperatures (*TEMPERATURE) and materials that '// &
+                      'expand', faults)
+        end if
         if (any(plan%fixities%amplitude > 0)) then
           call refuse(model, s, 'a support of the step moves, and a reduced model holds its '// &
                       'supports', faults)

@@ -20,6 +20,7 @@ set(sources
   law/material_elastic.f90
   law/material_law.f90
   law/material_points.f90
+  law/thermal_expansion.f90
   umat/material_user.f90
   umat/umat_bridge.c
   umat/umat_command.c

@@ -14,6 +14,7 @@ set(sources
   mesh/set_lists.f90
   steps/amplitudes.f90
   steps/dof_tables.f90
+  steps/heat_plan.f90
   steps/load_books.f90
   steps/material_tests.f90
   steps/print_kinds.f90

@@ -11,6 +11,7 @@ set(sources
   fields/motion_fields.f90
   fields/solid_fields.f90
   fields/stage_fields.f90
+  fields/thermal_fields.f90
   input_files.f90
   quantities/covered_faces.f90
   quantities/dam_faces.f90
@@ -26,6 +27,7 @@ set(sources
   quantities/stress_fields.f90
   quantities/stress_operator.f90
   quantities/stress_recovery.f90
+  quantities/thermal_recovery.f90
   record/goal_errors.f90
   record/record_archive.f90
   record/requested_fields.f90

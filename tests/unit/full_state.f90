@@ -7,6 +7,7 @@ module full_state
   use step_control, only: increment_control
   use joint_law, only: joint_state
   use material_points, only: point_state
+  use thermal_strains, only: heat_field
   implicit none
   private
   public :: make_full_state
@@ -36,6 +37,7 @@ contains
     call fill(now%support_start, n)
     allocate (now%origin(24, 2))
     call fill(now%origin, n)
+    call fill_heat(now%heat, n)
     call fill_matrix(now%matrix, n)
     call fill_motion(now%motion, n)
     allocate (now%joints(2), now%points(1), now%guests(2))
@@ -46,6 +48,15 @@ contains
     call fill_points(points, n)
     allocate (now%guests(2)%item, source=points)
   end subroutine make_full_state
+
+  !> Temperatures.
+  subroutine fill_heat(heat, n)
+    type(heat_field), intent(inout) :: heat
+    integer, intent(inout) :: n
+    allocate (heat%temperature(3), heat%reference(8, 2))
+    call fill(heat%temperature, n)
+    call fill(heat%reference, n)
+  end subroutine fill_heat
 
   !> Where the analysis is.
   subroutine fill_status(status, n)
@@ -86,6 +97,7 @@ contains
     call fill(energy%crushing, n)
     call fill(energy%numerical, n)
     call fill(energy%stages, n)
+    call fill(energy%temperature, n)
     call fill(energy%initial, n)
     call fill(energy%error, n)
     call fill(energy%largest, n)
@@ -137,7 +149,7 @@ contains
               own%contact(4), own%balanced(4), &
               own%viscous(4), own%viscous_rate(4), own%lost_damping(4), own%correction(4), &
               own%carried_correction(4), own%momentum(4), own%inertia(4), own%carried(3, 4), &
-              own%jump_rate(3, 4), own%slope(4), own%bend(4), own%release(4))
+              own%jump_rate(3, 4), own%slope(4), own%bend(4), own%release(4), own%thermal(4))
     call fill(own%q, n)
     call fill(own%v, n)
     call fill(own%a, n)
@@ -156,6 +168,8 @@ contains
     call fill(own%slope, n)
     call fill(own%bend, n)
     call fill(own%release, n)
+    call fill(own%thermal, n)
+    call fill(own%thermal_energy, n)
     call fill(own%carried, n)
     call fill(own%jump_rate, n)
     call fill_modal(own%modal, n)
@@ -233,13 +247,16 @@ contains
     type(point_state), intent(inout) :: points
     integer, intent(inout) :: n
     allocate (points%strain(6, 5), points%stress(6, 5), points%internal(7, 5), &
-              points%energy(3, 5), points%gradient(3, 3, 5), points%is_elastic(5))
+              points%energy(3, 5), points%gradient(3, 3, 5), points%is_elastic(5), &
+              points%temperature(5), points%thermal(6, 5))
     call fill(points%strain, n)
     call fill(points%stress, n)
     call fill(points%internal, n)
     call fill(points%energy, n)
     call fill(points%gradient, n)
     call fill(points%is_elastic, n)
+    call fill(points%temperature, n)
+    call fill(points%thermal, n)
   end subroutine fill_points
 
   !> n + 1/3.

@@ -34,6 +34,8 @@ contains
     call compare(log, what//'reaction', a%reaction, b%reaction)
     call compare(log, what//'support_start', a%support_start, b%support_start)
     call compare(log, what//'origin', a%origin, b%origin)
+    call compare(log, what//'heat%temperature', a%heat%temperature, b%heat%temperature)
+    call compare(log, what//'heat%reference', a%heat%reference, b%heat%reference)
     call compare_matrix(log, what//'matrix%', a%matrix, b%matrix)
     call compare_motion(log, what//'motion%', a%motion, b%motion)
     do i = 1, size(a%joints)
@@ -104,6 +106,7 @@ contains
     call compare(log, what//'crushing', a%crushing, b%crushing)
     call compare(log, what//'numerical', a%numerical, b%numerical)
     call compare(log, what//'stages', a%stages, b%stages)
+    call compare(log, what//'temperature', a%temperature, b%temperature)
     call compare(log, what//'initial', a%initial, b%initial)
     call compare(log, what//'error', a%error, b%error)
     call compare(log, what//'largest', a%largest, b%largest)
@@ -172,6 +175,8 @@ contains
     call compare(log, what//'slope', a%slope, b%slope)
     call compare(log, what//'bend', a%bend, b%bend)
     call compare(log, what//'release', a%release, b%release)
+    call compare(log, what//'thermal', a%thermal, b%thermal)
+    call compare(log, what//'thermal_energy', a%thermal_energy, b%thermal_energy)
     call compare(log, what//'carried', a%carried, b%carried)
     call compare(log, what//'jump_rate', a%jump_rate, b%jump_rate)
     call compare_modal(log, what//'modal%', a%modal, b%modal)
@@ -251,6 +256,8 @@ contains
     call compare(log, what//'energy', a%energy, b%energy)
     call compare(log, what//'gradient', a%gradient, b%gradient)
     call compare(log, what//'is_elastic', a%is_elastic, b%is_elastic)
+    call compare(log, what//'temperature', a%temperature, b%temperature)
+    call compare(log, what//'thermal', a%thermal, b%thermal)
   end subroutine compare_points
 
   !> A real, bit by bit.

@@ -44,7 +44,7 @@ contains
       if (.not. allocated(error)) call build_inertia(model, plan, system, costs, error)
       if (.not. allocated(error)) call build_damping(model, plan, system, costs, error)
       if (.not. allocated(error)) call build_modal_damping(model, plan, system, costs, error)
-      if (.not. allocated(error)) call build_origins(model, now%origin, system, costs, error)
+      if (.not. allocated(error)) call build_origins(model, now, system, costs, error)
       if (allocated(error)) return
       call build_loads(model, plan, now%u, system, costs)
     end associate

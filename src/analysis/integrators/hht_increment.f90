@@ -100,6 +100,7 @@ contains
             + scheme%acceleration_of_x*(dt*before%momentum + half*before%inertia) &
             - bulk*(before%viscous + (1.0_rk - scheme%gamma)*dt*before%viscous_rate) &
             + bulk*scheme%velocity_of_x*(dt*before%viscous + half*before%viscous_rate)
+      call system%add_warming(before, bulk, rhs)
       if (allocated(before%carried_correction)) then
         rhs = rhs + (1.0_rk - scheme%gamma)/scheme%gamma*before%carried_correction
       end if

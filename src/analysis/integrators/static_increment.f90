@@ -75,6 +75,7 @@ contains
       call prescribed_values(system%supports, model%amplitudes, when, new%q)
       moved = new%q - old%q
       task%balance%rhs = new%external(:n) - old%elastic(:n)
+      call system%add_warming(old, 1.0_rk, task%balance%rhs)
       call add_moving_supports(system, system%stiffness, moved, task%balance%rhs)
       task%balance%reference_force = norm(task%balance%rhs)
       call task%balance%set_jumps(system%operator, new%q, before%joints)

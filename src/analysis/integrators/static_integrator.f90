@@ -55,7 +55,7 @@ contains
     type(tangent), allocatable :: choices(:)
     call build_structure(model, plan, self%system, results%costs, error)
     if (allocated(error)) return
-    call build_origins(model, now%origin, self%system, results%costs, error)
+    call build_origins(model, now, self%system, results%costs, error)
     if (allocated(error)) return
     call build_loads(model, plan, now%u, self%system, results%costs)
     call press_grout(plan, self%system%operator, self%system%matrix%num_total, now%joints, &
@@ -167,6 +167,7 @@ contains
     call store_motion(self%system%numbers, now)
     if (.not. now%is_last_of_step) return
     if (self%solids%has_inelastic() .or. allocated(now%origin)) return
+    if (allocated(now%heat%reference)) return
     associate (controls => model%steps(now%step)%controls)
       if (.not. (controls%estimates_errors .and. is_affordable(model, controls))) return
     end associate

@@ -141,6 +141,7 @@ contains
     associate (law => model%materials(part%material)%law)
       call part%find_strains(moved, new%strain)
       if (law%wants_gradient) call find_gradients(model%mesh%x, model%mesh%nodes, part, moved, new)
+      if (allocated(new%thermal)) new%strain = new%strain - new%thermal
       call law%update(part%points, time, old, new, answer%tangent, answer%report)
     end associate
     call sum_block(part, new, answer)

@@ -79,6 +79,7 @@ contains
     self%stops_early = plan%procedure%has_inertia .and. .not. plan%is_direct
     self%choices = choose_tangents(model, plan)
     self%chosen = self%choices(1)
+    call system%set_thermal(now%motion)
     call system%find_elastic(now%motion%q, now%motion%elastic)
     if (size(now%points) > 0 .or. has_histories(now%guests)) then
       if (.not. has_histories(now%guests)) self%mixer%rows = find_active(model, system%numbers)

@@ -18,6 +18,7 @@ module stage_entry
   use shape_hex8, only: hex8_dofs
   use step_plan, only: step
   use tie_motion, only: follow_ties
+  use warming, only: heat_points, take_references
   implicit none
   private
   public :: enter_stage, show_stage
@@ -125,6 +126,8 @@ contains
       end if
     end do
     call renew_points(model, was_absent, now)
+    call take_references(model, was_absent, now)
+    call heat_points(model, now)
   end subroutine move_elements
 
   !> Displacements of nodes that come.

@@ -11,6 +11,7 @@ module analysis_state
   use joint_law, only: joint_state
   use material_points, only: point_state
   use step_control, only: increment_control
+  use thermal_strains, only: heat_field
   implicit none
   private
   public :: state, increment_status, last_matrix, motion, modal_motion, energy_balance
@@ -27,6 +28,7 @@ module analysis_state
     !> Work of elements that come and go, and of grout: their energy, and the forces that the change
     !> of a stage leaves without balance
     real(rk) :: stages = 0.0_rk
+    real(rk) :: temperature = 0.0_rk !< work of the thermal strain: less the stress times its change
     real(rk) :: initial = 0.0_rk !< kinetic and strain energy at the start of the analysis
     real(rk) :: error = 0.0_rk, largest = 0.0_rk
   end type energy_balance
@@ -93,8 +95,12 @@ module analysis_state
     real(rk), allocatable :: q(:) !< (num_total) unknowns [m]
     real(rk), allocatable :: v(:), a(:) !< (num_total) their rates [m/s], [m/s2]
     real(rk), allocatable :: external(:) !< (num_total) f, forces of the loads [N]
-    !> (num_total) force of the undamaged elements: K q, less that of their origins [N]
+    !> (num_total) force of the undamaged elements: K q, less that of their origins and of their
+    !> thermal strain [N]
     real(rk), allocatable :: elastic(:)
+    !> (num_total) force of the thermal strain; where a material expands [N]
+    real(rk), allocatable :: thermal(:)
+    real(rk) :: thermal_energy = 0.0_rk !< of elements whose nodes are held [J]
     real(rk), allocatable :: internal(:) !< (num_total) sum of B^T sigma over the elements [N]
     real(rk), allocatable :: contact(:) !< (num_total) B^T (area t), the joints by their laws [N]
     real(rk), allocatable :: balanced(:) !< (num_total) M a as the balance of forces gives it [N]
@@ -135,6 +141,7 @@ module analysis_state
     !> (24, elements) displacement of the nodes at which an element has no stress, since it appeared
     !> there; in models with *MODEL CHANGE only [m]
     real(rk), allocatable :: origin(:, :)
+    type(heat_field) :: heat !< temperatures
     type(last_matrix) :: matrix
     type(motion) :: motion !< the same in the unknowns of the step, with the forces
     type(joint_state), allocatable :: joints(:) !< (joints of the problem)

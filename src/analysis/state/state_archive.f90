@@ -8,6 +8,7 @@ module state_archive
   use analysis_state, only: state, increment_status, energy_balance, last_matrix, &
                             reduction_status, time_accuracy
   use motion_archive, only: save_motion, load_motion
+  use thermal_strains, only: heat_field
   use write_text, only: as_text
   implicit none
   private
@@ -31,6 +32,9 @@ contains
     call file%put('reaction', now%reaction)
     call file%put('support_start', now%support_start)
     call file%put('origin', now%origin)
+    call file%open_group('heat')
+    call save_heat(now%heat, file)
+    call file%close_group()
     call file%open_group('matrix')
     call save_matrix(now%matrix, file)
     call file%close_group()
@@ -53,6 +57,9 @@ contains
     call load_status(now%increment_status, file)
     call file%close_group()
     call load_fields(now, file)
+    call file%open_group('heat')
+    call load_heat(now%heat, file)
+    call file%close_group()
     call file%open_group('matrix')
     call load_matrix(now%matrix, file)
     call file%close_group()
@@ -122,6 +129,22 @@ contains
     if (allocated(now%origin)) deallocate (now%origin)
     call file%get('origin', now%origin)
   end subroutine load_fields
+
+  !> Writes the temperatures, where there are any.
+  subroutine save_heat(heat, file)
+    type(heat_field), intent(in) :: heat
+    class(archive), intent(inout) :: file
+    call file%put('temperature', heat%temperature)
+    call file%put('reference', heat%reference)
+  end subroutine save_heat
+
+  !> Reads the temperatures; those of the start fix the sizes.
+  subroutine load_heat(heat, file)
+    type(heat_field), intent(inout) :: heat
+    class(archive), intent(inout) :: file
+    call file%get('temperature', heat%temperature)
+    call file%get('reference', heat%reference)
+  end subroutine load_heat
 
   !> Writes the last matrix.
   subroutine save_matrix(matrix, file)
@@ -227,6 +250,7 @@ contains
     call file%put('crushing', energy%crushing)
     call file%put('numerical', energy%numerical)
     call file%put('stages', energy%stages)
+    call file%put('temperature', energy%temperature)
     call file%put('initial', energy%initial)
     call file%put('error', energy%error)
     call file%put('largest', energy%largest)
@@ -245,6 +269,7 @@ contains
     call file%get('crushing', energy%crushing)
     call file%get('numerical', energy%numerical)
     call file%get('stages', energy%stages)
+    call file%get('temperature', energy%temperature)
     call file%get('initial', energy%initial)
     call file%get('error', energy%error)
     call file%get('largest', energy%largest)

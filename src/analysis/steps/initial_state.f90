@@ -17,6 +17,7 @@ module initial_state
   use material_points, only: time_increment, point_state, no_tangent
   use analysis_state, only: state
   use tie_motion, only: follow_ties
+  use warming, only: start_heat
   implicit none
   private
   public :: start_analysis
@@ -39,6 +40,7 @@ contains
     now%reaction = zero_vectors(n)
     call start_joints(model%joints, now%joints)
     call start_points_of_solids(model, now)
+    call start_heat(model, now)
     call start_histories(model, now%guests)
     if (.not. allocated(model%initial_values)) return
     do i = 1, size(model%initial_values)

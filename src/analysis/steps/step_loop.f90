@@ -17,6 +17,7 @@ module step_loop
   use integrator_catalogue, only: make_integrator
   use step_report, only: close_increment, count_increment, report_failure
   use user_increments, only: begin_user_increment
+  use warming, only: warm
   implicit none
   private
   public :: run_all_steps
@@ -200,6 +201,7 @@ contains
     call method%solids%open_increment(now, size)
     method%solids%solver%controls%may_be_dropped = may_be_dropped(model, now)
     next%trial%increment_status = now%increment_status
+    call warm(model, plan, next%when, now, next%trial, method%system, results%costs)
     call method%advance(model, next%when, now, next%trial, results, next%outcome, error)
   end subroutine try_increment
 

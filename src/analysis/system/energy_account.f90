@@ -12,6 +12,7 @@ module energy_account
   use guest_histories, only: sum_work
   use analysis_state, only: energy_balance, motion, state
   use step_system, only: dam_system
+  use thermal_work, only: add_thermal_work
   implicit none
   private
   public :: open_account, add_static_work, add_dynamic_work, find_error
@@ -72,6 +73,7 @@ contains
                                + inelastic_work(du, old, new) &
                                - change_of_stores(model, before, guests)
     end associate
+    call add_thermal_work(model, before, after)
     call set_stored(guests, system, after)
   end subroutine add_static_work
 
@@ -107,6 +109,7 @@ contains
               - change_of_stores(model, before, guests) - excess + lost
     end associate
     after%energy%numerical = after%energy%numerical + taken
+    call add_thermal_work(model, before, after)
     call set_stored(guests, system, after)
   end subroutine add_dynamic_work
 
@@ -171,11 +174,12 @@ contains
   pure subroutine find_error(energy)
     type(energy_balance), intent(inout) :: energy
     real(rk) :: imbalance
-    imbalance = energy%external + energy%initial + energy%stages - energy%kinetic - energy%strain &
-                - energy%damping - energy%friction - energy%fracture - energy%numerical
+    imbalance = energy%external + energy%initial + energy%stages + energy%temperature &
+                - energy%kinetic - energy%strain - energy%damping - energy%friction &
+                - energy%fracture - energy%numerical
     energy%largest = max(energy%largest, abs(energy%external), energy%kinetic, energy%strain, &
                          abs(energy%damping), energy%friction, energy%fracture, energy%initial, &
-                         abs(energy%stages))
+                         abs(energy%stages), abs(energy%temperature))
     energy%error = abs(imbalance)/max(energy%largest, tiny(1.0_rk))
   end subroutine find_error
 end module energy_account

@@ -3,6 +3,8 @@ module step_system
   use kinds, only: rk
   use errors, only: error_type
   use problem_definition, only: problem
+  use analysis_state, only: motion, state
+  use assemble_heat, only: assemble_thermal_force
   use row_tables, only: row_table
   use step_plan, only: step
   use dof_numbering, only: numbering
@@ -22,6 +24,7 @@ module step_system
   implicit none
   private
   public :: dam_system, build_structure, build_inertia, build_damping, build_loads, build_origins
+  public :: build_thermal_force
 
   type :: dam_system
     type(numbering) :: numbers
@@ -32,6 +35,10 @@ module step_system
     !> stress; in models with *MODEL CHANGE only [N]
     real(rk), allocatable :: origin_force(:)
     real(rk) :: origin_energy = 0.0_rk !< sum of 1/2 u_0 K_e u_0 [J]
+    !> (num_total) force of the thermal strain at the end of the increment; where a material expands
+    !> [N]
+    real(rk), allocatable :: thermal_force(:)
+    real(rk) :: thermal_energy = 0.0_rk !< of elements that are held at their origins [J]
     real(rk), allocatable :: mass(:) !< values of M, added mass included; size 0 in a static step
     type(pattern) :: mass_pattern !< of the entries of M that are not zero, for products
     real(rk), allocatable :: mass_entries(:) !< their values [kg]
@@ -43,6 +50,7 @@ module step_system
     type(support), allocatable :: supports(:)
   contains
     procedure :: find_damping_force, add_damping, find_elastic, stored_energy
+    procedure :: add_warming, set_thermal
   end type dam_system
 
 contains
@@ -65,14 +73,37 @@ contains
     end do
   end subroutine find_damping_force
 
-  !> The force of the undamaged elements: K q, less that of their origins.
+  !> The force of the undamaged elements: K q, less that of their origins and thermal strains.
   subroutine find_elastic(self, q, force)
     class(dam_system), intent(in) :: self
     real(rk), intent(in) :: q(:) !< (num_total) [m]
     real(rk), intent(out) :: force(:) !< (num_total) [N]
     call multiply(self%matrix, self%stiffness, q, force)
     if (allocated(self%origin_force)) force = force - self%origin_force
+    if (allocated(self%thermal_force)) force = force - self%thermal_force
   end subroutine find_elastic
+
+  !> Adds the change of the thermal force over the increment to forces that have the elastic force
+  !> of its start.
+  subroutine add_warming(self, before, factor, force)
+    class(dam_system), intent(in) :: self
+    type(motion), intent(in) :: before
+    real(rk), intent(in) :: factor
+    real(rk), intent(inout) :: force(:) !< (num_free or num_total) [N]
+    integer :: n
+    n = size(force)
+    if (.not. allocated(self%thermal_force)) return
+    force = force + factor*(self%thermal_force(:n) - before%thermal(:n))
+  end subroutine add_warming
+
+  !> Gives the thermal force to a motion.
+  subroutine set_thermal(self, own)
+    class(dam_system), intent(in) :: self
+    type(motion), intent(inout) :: own
+    if (.not. allocated(self%thermal_force)) return
+    own%thermal = self%thermal_force
+    own%thermal_energy = self%thermal_energy
+  end subroutine set_thermal
 
   !> The energy of the undamaged elements.
   real(rk) function stored_energy(self, q, elastic) result(energy)
@@ -80,8 +111,12 @@ contains
     real(rk), intent(in) :: q(:) !< (num_total) [m]
     real(rk), intent(in) :: elastic(:) !< (num_total) from find_elastic [N]
     energy = 0.5_rk*dot(q, elastic)
-    if (.not. allocated(self%origin_force)) return
-    energy = energy - 0.5_rk*dot(q, self%origin_force) + self%origin_energy
+    if (allocated(self%origin_force)) then
+      energy = energy - 0.5_rk*dot(q, self%origin_force) + self%origin_energy
+    end if
+    if (allocated(self%thermal_force)) then
+      energy = energy - 0.5_rk*dot(q, self%thermal_force) + self%thermal_energy
+    end if
   end function stored_energy
 
   !> Adds a multiple of C, without modal damping, to the values of a matrix.
@@ -120,20 +155,39 @@ contains
     call costs%stop('assemble structure')
   end subroutine build_structure
 
-  !> The forces of elements at their origins, where the model has any.
-  subroutine build_origins(model, origin, system, costs, error)
+  !> The forces of elements at their origins and of their thermal strains, where the model has any.
+  subroutine build_origins(model, now, system, costs, error)
     type(problem), intent(in) :: model
-    real(rk), allocatable, intent(in) :: origin(:, :) !< (24, elements) [m]
+    type(state), intent(in) :: now
     type(dam_system), intent(inout) :: system
     type(ledger), intent(in) :: costs
     type(error_type), allocatable, intent(out) :: error
-    if (.not. allocated(origin)) return
-    call costs%start('assemble', 'stages', 'stages')
-    allocate (system%origin_force(system%matrix%num_total))
-    call assemble_origins(model, system%numbers, origin, system%origin_force, &
-                          system%origin_energy, error)
-    call costs%stop()
+    if (allocated(now%origin)) then
+      call costs%start('assemble', 'stages', 'stages')
+      allocate (system%origin_force(system%matrix%num_total))
+      call assemble_origins(model, system%numbers, now%origin, system%origin_force, &
+                            system%origin_energy, error)
+      call costs%stop()
+      if (allocated(error)) return
+    end if
+    call build_thermal_force(model, now, system, costs)
   end subroutine build_origins
+
+  !> The force of the thermal strains of a state, where a material expands.
+  subroutine build_thermal_force(model, now, system, costs)
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    type(dam_system), intent(inout) :: system
+    type(ledger), intent(in) :: costs
+    if (.not. allocated(now%heat%reference)) return
+    call costs%start('assemble', 'temperature', 'temperature')
+    if (.not. allocated(system%thermal_force)) then
+      allocate (system%thermal_force(system%matrix%num_total))
+    end if
+    call assemble_thermal_force(model, system%numbers, now%heat, now%origin, &
+                                system%thermal_force, system%thermal_energy)
+    call costs%stop()
+  end subroutine build_thermal_force
 
   !> Mass of the solids and of the guests.
   subroutine build_inertia(model, plan, system, costs, error)

@@ -148,7 +148,7 @@ contains
     if (i > size(model%problem%initial_values)) return
     do place = size(model%cards), 1, -1
       if (.not. is_keyword(model%cards(place), 'INITIAL CONDITIONS')) cycle
-      if ((model%cards(place)%word('TYPE') == 'VELOCITY') .eqv. (k == 1)) exit
+      if (model%cards(place)%word('TYPE') == merge('VELOCITY    ', 'DISPLACEMENT', k == 1)) exit
     end do
     associate (given => model%problem%initial_values(i))
       call model%cards(place)%warn( &

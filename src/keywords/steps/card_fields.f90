@@ -28,7 +28,8 @@ module card_fields
                               synonym('S33', 'S'), synonym('S12', 'S'), synonym('S13', 'S'), &
                               synonym('S23', 'S'), synonym('LE', 'E'), synonym('NE', 'E'), &
                               synonym('MAXPS', 'SP'), synonym('COPEN', 'OPENING'), &
-                              synonym('CDIS', 'OPENING'), synonym('CDISP', 'OPENING')]
+                              synonym('CDIS', 'OPENING'), synonym('CDISP', 'OPENING'), &
+                              synonym('NT', 'TEMP'), synonym('NT11', 'TEMP')]
 
 contains
 

@@ -4,7 +4,7 @@ module check_requests
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use field_table, only: ending_of_points, find_field, list_fields
-  use field_type, only: at_joints, by_law, result_field
+  use field_type, only: at_joints, by_heat, by_law, result_field
   use model_draft, only: draft
   implicit none
   private
@@ -66,6 +66,8 @@ contains
       reason = 'the model has no joints; '//item%name//' is not written'
     else if (item%provider == by_law) then
       reason = 'no material of the model has '//item%name//'; it is not written'
+    else if (item%provider == by_heat) then
+      reason = 'the model has no '//item%meaning//'; '//item%name//' is not written'
     end if
   end function why_missing
 end module check_requests

@@ -1,5 +1,6 @@
 !> Opens a step with the settings of the previous one, and closes it.
 module finish_step
+  use keywords_temperature, only: keep_heats
   use kinds, only: rk
   use load_point, only: point_load
   use model_draft, only: draft, add_load
@@ -32,6 +33,7 @@ contains
       end associate
     end if
     model%now = new
+    call keep_heats(model)
     model%step_origin = model%here(0)
     model%is_in_step = .true.
     model%supports%is_new = .false.

@@ -16,8 +16,6 @@ contains
     call add_later(list, 'MPC', family, 'model', 'Constraints between nodes.')
     call add_later(list, 'EQUATION', family, 'model', 'Linear equations between displacements.')
     call add_later(list, 'PLASTIC', family, 'material', 'Metal plasticity.')
-    call add_later(list, 'EXPANSION', family, 'material', 'Thermal expansion.')
-    call add_later(list, 'TEMPERATURE', family, 'step', 'Temperatures of nodes [K].')
     call add_later(list, 'PARAMETER', family, 'model', 'Names for numbers of the deck.')
     call add_later(list, 'TRANSFORM', family, 'model', 'Axes of nodes.')
     call add_later(list, 'ORIENTATION', family, 'model', 'Axes of a material.')

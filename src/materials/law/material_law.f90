@@ -2,6 +2,7 @@
 module material_law
   use kinds, only: rk
   use material_points, only: point_set, point_state, time_increment, update_report, num_energies
+  use thermal_expansion, only: expansion_table
   implicit none
   private
   public :: stress_law, material, start_points
@@ -56,6 +57,7 @@ module material_law
     real(rk) :: poisson = 0.0_rk
     real(rk) :: alpha = 0.0_rk, beta = 0.0_rk !< Rayleigh damping [1/s], [s]
     logical :: damps_current = .false. !< beta acts on the damaged stiffness
+    type(expansion_table), allocatable :: expansion !< thermal, where the material expands
     class(stress_law), allocatable :: law
     character(:), allocatable :: remark !< further text in the summary of the model, if any
   end type material

@@ -36,7 +36,8 @@ module material_points
   !> The state of the points of a block, converged or trial. A new component gets a line in save and
   !> load.
   type, extends(history) :: point_state
-    real(rk), allocatable :: strain(:, :) !< (6, points) 11 22 33 12 13 23, engineering shear
+    !> (6, points) 11 22 33 12 13 23, engineering shear; without the thermal strain
+    real(rk), allocatable :: strain(:, :)
     real(rk), allocatable :: stress(:, :) !< (6, points) [Pa]
     real(rk), allocatable :: internal(:, :) !< (law%num_state, points)
     real(rk), allocatable :: energy(:, :) !< (num_energies, points) [J/m3]
@@ -44,6 +45,10 @@ module material_points
     real(rk), allocatable :: gradient(:, :, :)
     !> (points) the stress is D strain and the tangent is D, the undamaged stiffness.
     logical, allocatable :: is_elastic(:)
+    !> (points) temperature; in models with *TEMPERATURE only [K]
+    real(rk), allocatable :: temperature(:)
+    !> (6, points) thermal strain, which `strain` does not hold; where the material expands
+    real(rk), allocatable :: thermal(:, :)
   contains
     procedure :: save => save_points
     procedure :: load => load_points
@@ -81,6 +86,8 @@ contains
     call file%put('energy', self%energy)
     call file%put('gradient', self%gradient)
     call file%put('is_elastic', self%is_elastic)
+    call file%put('temperature', self%temperature)
+    call file%put('thermal', self%thermal)
   end subroutine save_points
 
   !> Reads the points of one block from the present group. The points must be in their initial
@@ -94,5 +101,8 @@ contains
     call file%get('energy', self%energy)
     call file%get('gradient', self%gradient)
     call file%get('is_elastic', self%is_elastic)
+    if (.not. allocated(self%is_elastic)) return
+    call file%get('temperature', self%temperature, shape(self%is_elastic))
+    call file%get('thermal', self%thermal, [6, size(self%is_elastic)])
   end subroutine load_points
 end module material_points

@@ -191,6 +191,10 @@ contains
     now%dtime = time%size
     now%dfgrd0 = unit_matrix + old%gradient(:, :, p)
     now%dfgrd1 = unit_matrix + new%gradient(:, :, p)
+    if (allocated(old%temperature)) then
+      now%temp = old%temperature(p)
+      now%dtemp = new%temperature(p) - old%temperature(p)
+    end if
     now%kstep(1) = int(time%step, c_int)
     now%kinc = int(time%increment, c_int)
     now%pnewdt = no_request

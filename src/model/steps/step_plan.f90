@@ -1,6 +1,7 @@
 !> The steps of the deck: procedure, loads, supports, requests. Plain data, filled by the keywords,
 !> read by the solvers.
 module step_plan
+  use heat_plan, only: heat_rule
   use kinds, only: rk
   implicit none
   private
@@ -128,6 +129,9 @@ module step_plan
     type(step_controls) :: controls
     integer :: checkpoint_frequency = 0 !< *RESTART: every so many increments, 0 for none
     type(grouting), allocatable :: grouts(:) !< *GROUT in this step
+    type(heat_rule), allocatable :: heats(:) !< *TEMPERATURE, if any; also those that go on
+    !> *TEMPERATURE, OP=NEW: nodes without a rule return to their initial temperature
+    logical :: restores_temperature = .false.
     logical :: changes_stage = .false. !< elements come or go, or joints are grouted, at its start
   contains
     procedure :: default_smallest, follows_accuracy

@@ -22,8 +22,8 @@ module checkpoint_identity
   !> Definitions that may be added: later steps can need them.
   character(*), parameter :: addable_cards = ' AMPLITUDE | NSET | ELSET | SURFACE '
   !> Cards that act on the state before their own step: they say what a joint is before it is
-  !> grouted, and which elements come and go together.
-  character(*), parameter :: early_cards = ' MODEL CHANGE | GROUT '
+  !> grouted, which elements come and go together, and that there are temperatures.
+  character(*), parameter :: early_cards = ' MODEL CHANGE | GROUT | TEMPERATURE '
 
 contains
 

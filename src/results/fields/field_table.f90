@@ -4,8 +4,8 @@
 !> Files with several fields keep the order of the table.
 module field_table
   use field_type, only: result_field, at_nodes, at_points, at_joints, on_faces, &
-                        at_elements, by_solver, by_recovery, by_law, by_joint, scalar, vector, &
-                        tensor, counted
+                        at_elements, by_solver, by_recovery, by_law, by_joint, by_heat, &
+                        scalar, vector, tensor, counted
   use motion_fields, only: displacement, velocity, acceleration, reaction, has_motion, &
                            has_reactions
   use solid_fields, only: stress_on_nodes, stress_of_solids, stress_of_block, strain_on_nodes, &
@@ -19,6 +19,8 @@ module field_table
                           water_of_joint, phase_of_joint
   use stage_fields, only: stage_of_elements, stage_on_nodes, width_in_stages
   use json_writer, only: lower
+  use thermal_fields, only: temperature, width_of_heat, width_of_expansion, expansion_on_nodes, &
+                            expansion_of_solids
   implicit none
   private
   public :: list_fields, find_field, choices_of, fields_in_words, columns_of_joints
@@ -71,6 +73,11 @@ contains
                remark='Zero where no degree of freedom is prescribed.', &
                provider=by_solver, requests='NODE PRINT | NODE FILE', on_nodes=reaction, &
                is_there=has_reactions))
+    call enter(rows, last, result_field( &
+               name='TEMP', meaning='temperature', endings=scalar, unit='K', place=at_nodes, &
+               remark='Only in models with temperatures (*TEMPERATURE, *INITIAL CONDITIONS).', &
+               provider=by_heat, requests='NODE PRINT | NODE FILE', count=width_of_heat, &
+               on_nodes=temperature))
   end subroutine list_motion
 
   !> Strains and stresses of solids.
@@ -87,6 +94,13 @@ contains
                remark='Shear components are engineering strains.', &
                provider=by_recovery, requests='EL PRINT | EL FILE', on_nodes=strain_on_nodes, &
                of_solids=strain_of_solids, of_block=strain_of_block))
+    call enter(rows, last, result_field( &
+               name='THE', meaning='thermal strain', endings=tensor, unit='1', place=at_points, &
+               remark='Since the initial temperature, or since the element has appeared; E '// &
+               'includes the thermal strain. Only in models with temperatures and *EXPANSION.', &
+               provider=by_heat, requests='EL PRINT | EL FILE', &
+               count=width_of_expansion, on_nodes=expansion_on_nodes, &
+               of_solids=expansion_of_solids))
     call enter(rows, last, result_field( &
                name='SP', meaning='principal stresses', endings=vector, unit='Pa', &
                place=at_points, remark='SP1 is the largest. On nodes those of the mean tensor.', &

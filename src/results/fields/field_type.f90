@@ -9,7 +9,7 @@ module field_type
   private
   public :: result_field
   public :: at_nodes, at_points, at_joints, on_faces, at_elements, place_names
-  public :: by_solver, by_recovery, by_law, by_joint, by_guest
+  public :: by_solver, by_recovery, by_law, by_joint, by_guest, by_heat
   public :: scalar, vector, tensor, counted
   public :: values_on_nodes, values_at_points, values_of_block, values_of_joint
   public :: values_of_elements, width_of, presence
@@ -29,6 +29,7 @@ module field_type
   character(*), parameter :: by_law = 'material law'
   character(*), parameter :: by_joint = 'joint law'
   character(*), parameter :: by_guest = 'guest'
+  character(*), parameter :: by_heat = 'temperature'
 
   !> Endings of the names of components.
   character(*), parameter :: scalar = ''

@@ -7,6 +7,7 @@ module solid_fields
   use stress_fields, only: principals, recovered_fields
   use tensor6, only: principal_values
   use field_type, only: result_field
+  use thermal_recovery, only: add_expansion, has_expansion
   implicit none
   private
   public :: stress_on_nodes, stress_of_solids, stress_of_block
@@ -80,7 +81,14 @@ contains
     type(state), intent(in) :: now
     integer, intent(in) :: block
     real(rk), allocatable, intent(out) :: values(:, :) !< (6, points)
+    real(rk), allocatable :: total(:, :, :)
     values = now%points(block)%strain
+    associate (part => model%inelastic(block))
+      if (.not. has_expansion(model, now, part%elements)) return
+      total = reshape(values, [6, part%points_of_element, size(part%elements)])
+      call add_expansion(model, now, part%elements, total)
+      values = reshape(total, shape(values))
+    end associate
   end subroutine strain_of_block
 
   !> SP on nodes.

@@ -9,12 +9,13 @@ module energy_readings
 
 contains
 
-  !> Names of the columns of `energy_row`; models with stages have one more.
+  !> Names of the columns of `energy_row`; models with stages or temperatures have more.
   pure function energy_columns(model) result(names)
     type(problem), intent(in) :: model
     character(:), allocatable :: names
     names = 'external,kinetic,strain,damping,friction,fracture,crushing,numerical,'
     if (model%stages%is_there_any()) names = names//'stages,'
+    if (model%heat%is_there_any()) names = names//'temperature,'
     names = names//'error'
   end function energy_columns
 
@@ -26,6 +27,7 @@ contains
     row = [balance%external, balance%kinetic, balance%strain, balance%damping, balance%friction, &
            balance%fracture, balance%crushing, balance%numerical]
     if (model%stages%is_there_any()) row = [row, balance%stages]
+    if (model%heat%is_there_any()) row = [row, balance%temperature]
     row = [row, balance%error]
   end function energy_row
 end module energy_readings

@@ -5,7 +5,7 @@ module stress_fields
   use analysis_state, only: state
   use tensor6, only: principal_values
   use stress_recovery, only: recovery_plan, make_recovery_plan, recover_points, copy_solid, &
-                             max_points, few_nodes
+                             max_points, few_nodes, recover_expansions
   use node_means, only: average_at_nodes, average_at
   use law_fields, only: field_at_points, find_inelastic_solids, nodes_of_solids, &
                         is_zero_while_elastic
@@ -51,6 +51,8 @@ module stress_fields
     procedure :: need_error
     procedure :: field_on_nodes
     procedure :: points_on_nodes
+    procedure :: find_expansions
+    procedure :: expansion_on_nodes
     procedure, private :: correct_inelastic
   end type recovered_fields
 
@@ -145,7 +147,7 @@ contains
     self%num_recoveries = self%num_recoveries + 1
     if (.not. allocated(self%node_stress)) allocate (self%node_stress(6, model%mesh%num_nodes))
     call self%need_inelastic(model, now)
-    if (self%had_operator .and. .not. (self%has_operator .or. allocated(now%origin))) then
+    if (self%had_operator .and. .not. self%has_operator .and. is_linear(now)) then
       call make_nodal_operator(model, self%plan, self%operator)
       self%has_operator = .true.
     end if
@@ -156,11 +158,17 @@ contains
     end if
     call self%need_points(model, now)
     call average_at_nodes(self%plan, self%point_stress, self%is_inelastic, self%node_stress)
-    if (self%num_recoveries < recoveries_before_operator .or. allocated(now%origin)) return
+    if (self%num_recoveries < recoveries_before_operator .or. .not. is_linear(now)) return
     if (2*size(self%inelastic_nodes) > model%mesh%num_nodes) return
     call make_nodal_operator(model, self%plan, self%operator)
     self%has_operator = .true.
   end subroutine need_node_stress
+
+  !> Whether elastic stresses are linear in the displacements: no strains without stress.
+  pure logical function is_linear(now)
+    type(state), intent(in) :: now
+    is_linear = .not. (allocated(now%origin) .or. allocated(now%heat%reference))
+  end function is_linear
 
   !> Replaces the stress on the nodes where a solid has left elasticity. All solids in such a mean
   !> belong to one section, so all have states.
@@ -227,6 +235,31 @@ contains
     allocate (is_bounded(self%plan%num_solids), source=.true.)
     call average_at_nodes(self%plan, at_points, is_bounded, values)
   end subroutine points_on_nodes
+
+  !> The thermal strains at the points of all solids.
+  subroutine find_expansions(self, model, now, values)
+    class(recovered_fields), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    real(rk), allocatable, intent(out) :: values(:, :, :) !< (6, max_points, solids)
+    call self%need_plan(model)
+    allocate (values(6, max_points, self%plan%num_solids))
+    call recover_expansions(model, self%plan, now, values)
+  end subroutine find_expansions
+
+  !> The thermal strains on the nodes, within the range of the values at the points.
+  subroutine expansion_on_nodes(self, model, now, values)
+    class(recovered_fields), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    real(rk), allocatable, intent(out) :: values(:, :) !< (6, nodes)
+    real(rk), allocatable :: at_points(:, :, :)
+    logical, allocatable :: is_bounded(:)
+    call self%find_expansions(model, now, at_points)
+    allocate (values(6, model%mesh%num_nodes), source=0.0_rk)
+    allocate (is_bounded(self%plan%num_solids), source=.true.)
+    call average_at_nodes(self%plan, at_points, is_bounded, values)
+  end subroutine expansion_on_nodes
 
   !> Computes the principal stresses on the nodes from the mean tensor, once an increment.
   subroutine need_principals(self, model, now)

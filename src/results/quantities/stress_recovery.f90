@@ -1,7 +1,8 @@
 !> Strains and stresses at the points of the solid elements, and the corners in the mean of a node.
 !>
-!> Elastic solids: eps = B u with the element's own operator, sigma = D eps. Solids of inelastic
-!> blocks: strain and stress of their states. A wedge is a hexahedron with repeated nodes.
+!> Elastic solids: eps = B u with the element's own operator, sigma = D eps less the thermal strain.
+!> Solids of inelastic blocks: strain and stress of their states. A wedge is a hexahedron with
+!> repeated nodes.
 module stress_recovery
   use dam_mesh, only: element_is_there
   use kinds, only: rk
@@ -12,9 +13,11 @@ module stress_recovery
   use problem_definition, only: problem
   use shape_hex8, only: hex8_dofs
   use analysis_state, only: state
+  use thermal_recovery, only: add_expansion, take_thermal
   implicit none
   private
   public :: recovery_plan, make_recovery_plan, recover_points, copy_solid, max_points
+  public :: recover_expansions
   public :: operators_of_block, motion_of_element, few_nodes
 
   integer, parameter :: max_points = 8 !< most integration points of an element
@@ -181,6 +184,7 @@ contains
         do k = 1, size(plan%blocks(i)%solids)
           call copy_solid(plan, now, plan%blocks(i)%solids(k), strain, stress)
         end do
+        call add_expansions(model, plan, plan%blocks(i), now, strain)
       else
         call recover_block(model, plan, plan%blocks(i), now, strain, stress)
       end if
@@ -203,6 +207,38 @@ contains
     end associate
   end subroutine copy_solid
 
+  !> Adds the expansions to the strains of one block.
+  subroutine add_expansions(model, plan, part, now, strain)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    type(element_block), intent(in) :: part
+    type(state), intent(in) :: now
+    real(rk), intent(inout) :: strain(:, :, :) !< (6, max_points, solids)
+    real(rk), allocatable :: own(:, :, :)
+    integer :: n
+    if (.not. allocated(now%heat%reference)) return
+    n = plan%formulations(part%formulation)%item%num_points
+    own = strain(:, :n, part%solids)
+    call add_expansion(model, now, plan%element_of_solid(part%solids), own)
+    strain(:, :n, part%solids) = own
+  end subroutine add_expansions
+
+  !> The expansions at the points of all solids.
+  subroutine recover_expansions(model, plan, now, strain)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    type(state), intent(in) :: now
+    real(rk), intent(out) :: strain(:, :, :) !< (6, max_points, solids)
+    integer :: i
+    strain = 0.0_rk
+    !$omp parallel do default(none) shared(model, plan, now, strain) schedule(dynamic, 4) &
+    !$omp if (model%mesh%num_nodes > few_nodes)
+    do i = 1, size(plan%blocks)
+      call add_expansions(model, plan, plan%blocks(i), now, strain)
+    end do
+    !$omp end parallel do
+  end subroutine recover_expansions
+
   !> Strain and stress of one elastic block.
   subroutine recover_block(model, plan, part, now, strain, stress)
     type(problem), intent(in) :: model
@@ -221,12 +257,14 @@ contains
       moved(:, k) = motion_of_element(model, now, plan%element_of_solid(part%solids(k)))
     end do
     call strains_at_points(b, moved, found)
+    call take_thermal(model, now, plan%element_of_solid(part%solids), found)
     do k = 1, n
       strain(:, :points, part%solids(k)) = found(:, :, k)
       do q = 1, points
         stress(:, q, part%solids(k)) = matmul(d, found(:, q, k))
       end do
     end do
+    call add_expansions(model, plan, part, now, strain)
   end subroutine recover_block
 
   !> Displacements of the nodes of an element since it appeared without stress.

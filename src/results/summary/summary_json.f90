@@ -233,7 +233,7 @@ contains
         call json%put_integer(part%iterations, 'iterations')
         call json%put_integer(part%cutbacks, 'cutbacks')
         call put_modes(json, part)
-        call put_energy(json, part, model%stages%is_there_any())
+        call put_energy(json, part, model%stages%is_there_any(), model%heat%is_there_any())
         call json%close_object()
       end associate
     end do
@@ -257,10 +257,10 @@ contains
   end subroutine put_modes
 
   !> Energies at the end of a step; the error is the largest in the step.
-  subroutine put_energy(json, part, has_stages)
+  subroutine put_energy(json, part, has_stages, has_heat)
     type(json_text), intent(inout) :: json
     type(step_summary), intent(in) :: part
-    logical, intent(in) :: has_stages
+    logical, intent(in) :: has_stages, has_heat
     call json%open_object('energy')
     call json%put_real(part%energy%external, 'external')
     call json%put_real(part%energy%kinetic, 'kinetic')
@@ -271,6 +271,7 @@ contains
     call json%put_real(part%energy%crushing, 'crushing')
     call json%put_real(part%energy%numerical, 'numerical')
     if (has_stages) call json%put_real(part%energy%stages, 'stages')
+    if (has_heat) call json%put_real(part%energy%temperature, 'temperature')
     call json%put_real(part%largest_error, 'error')
     call json%close_object()
   end subroutine put_energy

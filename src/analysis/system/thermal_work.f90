@@ -1,0 +1,59 @@
+!> The work of the thermal strains in the energy balance: less the mean stress of an increment times
+!> the change of the thermal strain (theory.md, 16).
+module thermal_work
+  use analysis_state, only: state
+  use global_vectors, only: dot
+  use inelastic_blocks, only: inelastic_block
+  use kinds, only: rk
+  use material_points, only: point_state
+  use problem_definition, only: problem
+  implicit none
+  private
+  public :: add_thermal_work
+
+contains
+
+  !> The elastic stress does its work through the thermal force. What points that are not elastic
+  !> lack of it counts too; without it the balance would take it for numerical dissipation.
+  subroutine add_thermal_work(model, before, after)
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: before
+    type(state), intent(inout) :: after
+    real(rk) :: elastic, lost
+    integer :: i
+    if (.not. allocated(after%motion%thermal)) return
+    associate (old => before%motion, new => after%motion)
+      elastic = new%thermal_energy - old%thermal_energy &
+                - 0.5_rk*dot(old%q + new%q, new%thermal - old%thermal)
+    end associate
+    lost = 0.0_rk
+    do i = 1, size(after%points)
+      if (.not. allocated(after%points(i)%thermal)) cycle
+      lost = lost + lost_work(model%inelastic(i), before%points(i), after%points(i))
+    end do
+    after%energy%temperature = after%energy%temperature + elastic + lost
+    after%energy%numerical = after%energy%numerical + lost
+  end subroutine add_thermal_work
+
+  !> The mean of D eps - sigma times the change of the thermal strain, summed over a block.
+  pure real(rk) function lost_work(part, old, new) result(work)
+    type(inelastic_block), intent(in) :: part
+    type(point_state), intent(in) :: old, new
+    real(rk) :: lost(6)
+    integer :: e, q, p
+    work = 0.0_rk
+    if (all(new%is_elastic)) return
+    do e = 1, size(part%elements)
+      do q = 1, part%points_of_element
+        p = (e - 1)*part%points_of_element + q
+        lost = 0.0_rk
+        if (.not. old%is_elastic(p)) lost = matmul(part%d, old%strain(:, p)) - old%stress(:, p)
+        if (.not. new%is_elastic(p)) then
+          lost = lost + matmul(part%d, new%strain(:, p)) - new%stress(:, p)
+        end if
+        work = work + 0.5_rk*part%weight(q, e)*dot_product(lost, new%thermal(:, p) &
+                                                           - old%thermal(:, p))
+      end do
+    end do
+  end function lost_work
+end module thermal_work
