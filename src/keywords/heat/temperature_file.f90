@@ -213,7 +213,9 @@ contains
       return
     end if
     call find_nodes(reader, 2, model, faults, nodes)
-    if (size(nodes) /= 1) return ! reported
+    if (size(nodes) > 1) call fault(reader, 2, 'a set of '//as_text(size(nodes))//' nodes', &
+                                    'the id of one node', faults)
+    if (size(nodes) /= 1) return ! a node that is not there is reported
     is_same = .false.
     if (size(reader%time) > 0) is_same = abs(time - reader%time(size(reader%time))) <= 0.0_rk
     if (.not. is_same) call next_time(reader, time, faults)
