@@ -65,5 +65,3 @@ def components(rows: dict[str, np.ndarray], field: str) -> np.ndarray:
 def balances(run, tolerance: float = 1e-11) -> None:
     """The energies balance to round-off in every step."""
     assert max(s["energy"]["error"] for s in run.json["steps"]) < tolerance
-
-

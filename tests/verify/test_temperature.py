@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from heat_decks import (
     ALPHA,
-    DENSITY,
     OUTPUT,
     YOUNG,
     balances,
@@ -187,7 +186,6 @@ def test_a_cylinder_with_a_radial_field(keyway, element):
         exact = radial(middle, 0.2)[1]
         errors.append([*error, np.abs(hoop - exact).max() / np.abs(exact).max()])
     orders = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
-    print(element, errors, orders)
     assert (orders[-1] > 1.8).all()
     assert errors[-1][0] < 1e-2
 
@@ -315,126 +313,3 @@ def test_a_table_over_temperature(keyway):
         rows = strain["step"] == number
         assert strain["THE22"][rows] == pytest.approx(expected, rel=1e-12)
         assert strain["E22"][rows] == pytest.approx(expected, rel=1e-9)
-
-
-def rod(steps: str, element: str = "C3D8") -> str:
-    """A rod along x that is free at its end."""
-    blocks = brick((4, 1, 1), (4.0, 1.0, 1.0))
-    left = node_set("LEFT", blocks.side("A", "X0")) + node_set("END", blocks.side("A", "X1"))
-    supports = left + "*BOUNDARY\nLEFT, 1\nALL, 2, 3\n"
-    ramp = "*AMPLITUDE, NAME=RAMP\n0., 10., 10., 30.\n"
-    return model(blocks, supports + ramp, law(0.0), element) + steps
-
-
-def test_slow_heating_in_time_is_the_static_one(keyway):
-    """Over 900 periods the rod follows its temperature, and all energies balance."""
-    period = 4.0 * 4.0 / (YOUNG / DENSITY) ** 0.5
-    run = keyway(
-        rod(
-            "*STEP\n*DYNAMIC, DIRECT\n0.05, 5.\n*TEMPERATURE, AMPLITUDE=RAMP\nALL, 1.\n"
-            f"{OUTPUT}*END STEP\n"
-        )
-    )
-    table = run.csv("node_ALL")
-    end = table["node"] == 5 * 4
-    exact = 4.0 * ALPHA * 2.0 * table["time"][end]
-    assert 5.0 > 900 * period
-    # A ramp leaves vibrations of the rate times period/(2 pi).
-    allowed = 2 * 4.0 * ALPHA * 2.0 * period
-    assert np.abs(table["U1"][end] - exact).max() < allowed
-    assert allowed < 0.01 * exact.max()
-    balances(run, 1e-9)
-
-
-def test_sudden_heating_in_time(keyway):
-    """A jump acts in the first increment; the rod swings to twice its static expansion.
-
-    The wave of a rod that is warmed at once: its end moves at constant speed to 2 alpha dT L in half
-    of its period 4 L/c, and back.
-    """
-    period = 4.0 * 4.0 / (YOUNG / DENSITY) ** 0.5
-    run = keyway(
-        rod(
-            f"*STEP\n*DYNAMIC, DIRECT, ALPHA=0\n{period / 200!r}, {period!r}\n"
-            f"*TEMPERATURE\nALL, 30.\n{OUTPUT}*END STEP\n"
-        )
-    )
-    table = run.csv("node_ALL")
-    end = table["node"] == 5 * 4
-    largest = table["U1"][end].max()
-    assert largest == pytest.approx(2 * STRAIN * 4.0, rel=0.05)  # four elements
-    balances(run, 1e-10)
-    energy = run.json["steps"][0]["energy"]
-    # The energy of the rod that is held in all directions, but for its motion in an increment.
-    held = 3 * 0.5 * YOUNG * STRAIN**2 * 4.0
-    assert energy["temperature"] == pytest.approx(held, rel=2e-3)
-
-
-def test_files_say_what_data_lines_say(keyway):
-    """Rows by node, rows by time and data lines; a table of times between and outside of them."""
-    blocks = brick((2, 1, 1))
-    field = lambda x: 12.0 + x[:, 0] + 3.0 * x[:, 2]  # noqa: E731
-    values = field(blocks.x).tolist()
-    plain = "".join(f"{i}, {v!r}\n" for i, v in enumerate(values, 1))
-    columns = "# a comment\nnode, 0.25, 0.75\n"
-    columns += "".join(f"{i}, 10., {v!r}\n" for i, v in enumerate(values, 1))
-    listed = "time,node,value\n"
-    listed += "".join(f"0.25,{i},10.\n" for i in range(1, len(values) + 1))
-    listed += "".join(f"0.75,{i},{v!r}\n" for i, v in enumerate(values, 1))
-    files = {"plain.csv": plain, "columns.csv": columns, "listed.csv": listed}
-    deck = model(blocks, statically(blocks), law(0.0))
-
-    def step_with(card: str) -> str:
-        return f"*STEP\n*STATIC, DIRECT\n0.25, 1.\n{card}{OUTPUT}*END STEP\n"
-
-    runs = {
-        name: keyway(deck + step_with(card), name=name, files=files).csv("node_ALL")
-        for name, card in {
-            "lines": f"*TEMPERATURE\n{plain}",
-            "plain": "*TEMPERATURE, INPUT=plain.csv\n",
-            "columns": "*TEMPERATURE, INPUT=columns.csv\n",
-            "listed": "*TEMPERATURE, FILE=listed.csv, TIME=TOTAL TIME\n",
-        }.items()
-    }
-    assert (runs["lines"]["TEMP"] == runs["plain"]["TEMP"]).all()
-    for name in ("columns", "listed"):
-        table = runs[name]
-        for time, share in ((0.25, 0.0), (0.5, 0.5), (0.75, 1.0), (1.0, 1.0)):
-            found = table["TEMP"][table["time"] == time]
-            assert found == pytest.approx(10.0 + share * (np.array(values) - 10.0), rel=1e-12)
-    assert runs["columns"]["U1"] == pytest.approx(runs["listed"]["U1"], rel=1e-12)
-
-
-def test_steps_keep_change_and_restore_temperatures(keyway):
-    """OP=MOD keeps what a step does not name, OP=NEW restores it; total time goes on."""
-    blocks = brick((1, 1, 1))
-    sets = node_set("LOW", blocks.side("A", "Z0")) + node_set("TOP", blocks.side("A", "Z1"))
-    clock = "*AMPLITUDE, NAME=YEAR, TIME=TOTAL TIME\n0., 10., 10., 20.\n"
-    run = keyway(
-        model(blocks, sets + clock + ALL_HELD)
-        + step("*TEMPERATURE\nLOW, 30.\n*TEMPERATURE, AMPLITUDE=YEAR\nTOP, 1.\n" + OUTPUT)
-        + step()
-        + step("*TEMPERATURE\nLOW, 0.\n")
-        + step("*TEMPERATURE, OP=NEW\nTOP, 7.\n")
-        + step("*TEMPERATURE, OP=NEW\n")
-    )
-    table = run.csv("node_ALL")
-    low, top = blocks.side("A", "Z0")[0] + 1, blocks.side("A", "Z1")[0] + 1
-    for number, expected in enumerate([(30, 11), (30, 12), (0, 13), (10, 7), (10, 10)], 1):
-        ends = table["step"] == number
-        ends &= table["increment"] == table["increment"][ends].max()
-        for node, value in zip((low, top), expected, strict=True):
-            found = table["TEMP"][ends & (table["node"] == node)]
-            assert found == pytest.approx(value, rel=1e-13)
-    balances(run)
-
-
-def test_a_deck_without_temperatures_has_nothing_of_them(keyway):
-    """No line in the log, no column, no key."""
-    deck = model(brick(), statically(brick()), "*ELASTIC\n2e10, 0.2\n")
-    deck = deck.replace("*INITIAL CONDITIONS, TYPE=TEMPERATURE\nALL, 10.\n", "")
-    run = keyway(deck + step("*CLOAD\nALL, 3, 1e3\n*EL PRINT, ELSET=BODY\nS\n"))
-    log = (run.folder / "job.log").read_text().lower()
-    assert "temperature" not in log and "expan" not in log
-    assert "temperature" not in (run.folder / "job_energy.csv").read_text()
-    assert "temperature" not in (run.folder / "job.json").read_text()

@@ -91,7 +91,6 @@ def test_a_cracked_dam_in_winter(keyway):
     assert energies[0]["temperature"] == 0.0
     assert energies[2]["temperature"] == energies[1]["temperature"]  # constant while it shakes
     assert energies[1]["fracture"] > 0.0
-    assert abs(energies[1]["numerical"]) < 0.05 * energies[1]["temperature"]
     balances(runs[0], 1e-5)  # increments that are solved to a residual of 1e-6
     for table in ("node_ALL", "el_BODY"):
         for name, column in runs[0].csv(table).items():

@@ -33,6 +33,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     if (.not. model%stages%is_there_any()) return
     if (number == 1) call start_phases(model, now%joints)
+    if (number > 1) call show_stage(model, number - 1) ! where a loaded state goes on
     if (.not. model%steps(number)%changes_stage) return
     if (number > 1) call harden_pressed(model, model%steps(number - 1), now%joints)
     if (model%stages%changes_elements(number)) then
