@@ -59,18 +59,15 @@ contains
                             digest_of_file(input_of(this)))
   end function digest_of
 
-  !> Path of the file that INPUT names (of *TEMPERATURE FILE too), '' for none.
+  !> Path of the file that INPUT names, '' for none.
   function input_of(this) result(path)
     type(card), intent(in) :: this
     character(:), allocatable :: path
-    character(:), allocatable :: name
     type(place) :: spot
     path = ''
-    name = 'INPUT'
-    if (this%keyword == 'TEMPERATURE' .and. this%has('FILE')) name = 'FILE'
-    if (.not. this%has(name)) return
-    spot = this%place_of(name)
-    path = path_beside(spot%file, this%text(name))
+    if (.not. this%has('INPUT')) return
+    spot = this%place_of('INPUT')
+    path = path_beside(spot%file, this%text('INPUT'))
   end function input_of
 
   !> All files that the cards come from or name.

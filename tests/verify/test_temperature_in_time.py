@@ -77,17 +77,14 @@ def test_sudden_heating_in_time(keyway):
 
 
 def test_files_say_what_data_lines_say(keyway):
-    """Rows by node, rows by time and data lines; a table of times between and outside of them."""
+    """Rows and data lines; a table of times between and outside of them."""
     blocks = brick((2, 1, 1))
     field = lambda x: 12.0 + x[:, 0] + 3.0 * x[:, 2]  # noqa: E731
     values = field(blocks.x).tolist()
     plain = "".join(f"{i}, {v!r}\n" for i, v in enumerate(values, 1))
     columns = "# a comment\nnode, 0.25, 0.75\n"
     columns += "".join(f"{i}, 10., {v!r}\n" for i, v in enumerate(values, 1))
-    listed = "time,node,value\n"
-    listed += "".join(f"0.25,{i},10.\n" for i in range(1, len(values) + 1))
-    listed += "".join(f"0.75,{i},{v!r}\n" for i, v in enumerate(values, 1))
-    files = {"plain.csv": plain, "columns.csv": columns, "listed.csv": listed}
+    files = {"plain.csv": plain, "columns.csv": columns}
     deck = model(blocks, statically(blocks), law(0.0))
 
     def step_with(card: str) -> str:
@@ -99,16 +96,16 @@ def test_files_say_what_data_lines_say(keyway):
             "lines": f"*TEMPERATURE\n{plain}",
             "plain": "*TEMPERATURE, INPUT=plain.csv\n",
             "columns": "*TEMPERATURE, INPUT=columns.csv\n",
-            "listed": "*TEMPERATURE, FILE=listed.csv, TIME=TOTAL TIME\n",
+            "total": "*TEMPERATURE, INPUT=columns.csv, TIME=TOTAL TIME\n",
         }.items()
     }
     assert (runs["lines"]["TEMP"] == runs["plain"]["TEMP"]).all()
-    for name in ("columns", "listed"):
+    for name in ("columns", "total"):
         table = runs[name]
         for time, share in ((0.25, 0.0), (0.5, 0.5), (0.75, 1.0), (1.0, 1.0)):
             found = table["TEMP"][table["time"] == time]
             assert found == pytest.approx(10.0 + share * (np.array(values) - 10.0), rel=1e-12)
-    assert runs["columns"]["U1"] == pytest.approx(runs["listed"]["U1"], rel=1e-12)
+    assert (runs["columns"]["U1"] == runs["total"]["U1"]).all()
 
 
 def test_steps_keep_change_and_restore_temperatures(keyway):

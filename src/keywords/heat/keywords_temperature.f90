@@ -9,7 +9,7 @@ module keywords_temperature
   use kinds, only: rk
   use model_draft, only: draft
   use named_things, only: find_amplitude, nodes_at
-  use temperature_file, only: name_of_file, read_temperature_file
+  use temperature_file, only: read_temperature_file
   implicit none
   private
   public :: describe_temperature, read_temperature, read_initial_temperatures
@@ -30,8 +30,7 @@ contains
                    'values of a node the last one acts. Nodes that a step does not name keep '// &
                    'their temperature; histories over total time go on. INPUT names a file '// &
                    'with a row for each node or set and a column for each time of its header '// &
-                   'line, "node, time, time, ..", or with rows "time, node, value" below this '// &
-                   'header; linear between the times, constant outside.'
+                   'line, "node, time, time, ..", linear between the times, constant outside.'
     spec%example = '*TEMPERATURE'//nl//'ALL, 4.'//nl//'CREST, -2.'//nl// &
                    '*TEMPERATURE, INPUT=winter.csv, TIME=TOTAL TIME'
     spec%new_clears = .true.
@@ -41,7 +40,6 @@ contains
                     default='MOD', choices='MOD | NEW'), &
               field('AMPLITUDE', kind_word, 'history that the temperatures are multiplied with'), &
               field('INPUT', kind_text, 'file with the temperatures, relative to the deck'), &
-              field('FILE', kind_text, 'the same as INPUT'), &
               field('TIME', kind_choice, 'clock of the times of a file', default='STEP TIME', &
                     choices='STEP TIME | TOTAL TIME')])
     allocate (spec%columns, source=[ &
@@ -58,33 +56,27 @@ contains
     call find_amplitude(this, model, faults, rule%amplitude)
     if (.not. allocated(model%now%heats)) allocate (model%now%heats(0))
     if (this%word('OP') == 'NEW') call clear_heats(model)
-    if (.not. has_file(this) .and. this%num_lines == 0) then
+    if (.not. this%has('INPUT') .and. this%num_lines == 0) then
       if (this%word('OP') == 'NEW') return
       call this%fault(faults, 'the card has no temperatures', &
                       'data lines (node, temperature) or a file (INPUT)')
       return
     end if
     rule%uses_total_time = this%word('TIME') == 'TOTAL TIME'
-    if (has_file(this)) then
+    if (this%has('INPUT')) then
       call read_temperature_file(this, model, faults, rule)
       if (.not. allocated(rule%time)) return ! its faults are reported
       call check_clock(this, rule, faults)
       model%now%heats = [model%now%heats, rule]
     end if
     if (this%num_lines == 0) return
-    if (this%has('TIME') .and. .not. has_file(this)) then
+    if (this%has('TIME') .and. .not. this%has('INPUT')) then
       call this%fault_parameter(faults, 'TIME', 'TIME without a file', &
                                 'INPUT, or an AMPLITUDE with a clock of its own')
     end if
     call read_lines(this, 1, 2, model, faults, rule)
     model%now%heats = [model%now%heats, rule]
   end subroutine read_temperature
-
-  !> Whether the card names a file.
-  logical function has_file(this)
-    type(card), intent(in) :: this
-    has_file = this%has(name_of_file(this))
-  end function has_file
 
   !> Forgets the rules of earlier steps that go on; those of this step stay.
   subroutine clear_heats(model)

@@ -1,10 +1,10 @@
-!> Files of temperatures that *TEMPERATURE names (deck.md): a row for each node or node set and a
-!> column for each time, or rows of time, node and value, ordered by time.
+!> Files of temperatures that *TEMPERATURE names (deck.md): a row for each node or node set, a
+!> column for each time.
 module temperature_file
   use deck_card, only: card
   use deck_file, only: load_file, path_beside
   use diagnostics, only: diagnostic_list, place, severity_error
-  use growing_lists, only: append, make_room
+  use growing_lists, only: make_room
   use heat_plan, only: heat_rule
   use kinds, only: rk
   use model_draft, only: draft
@@ -12,7 +12,7 @@ module temperature_file
   use write_text, only: as_text
   implicit none
   private
-  public :: name_of_file, read_temperature_file
+  public :: read_temperature_file
 
   character, parameter :: nl = new_line('a'), tab = achar(9), return = achar(13)
 
@@ -27,21 +27,9 @@ module temperature_file
     real(rk), allocatable :: value(:, :) !< (times, nodes) [K]
     real(rk), allocatable :: time(:) !< of the columns [s]
     integer :: num_columns = 1 !< with temperatures; 0 after a fault of the header
-    logical :: is_list = .false. !< rows of time, node, value
-    integer :: at = 0 !< node of the last row of a list
-    integer :: num_values = 0 !< of a list so far
-    real(rk), allocatable :: listed(:) !< its values [K]
   end type table_reader
 
 contains
-
-  !> The parameter that names the file.
-  pure function name_of_file(this) result(name)
-    type(card), intent(in) :: this
-    character(:), allocatable :: name
-    name = 'INPUT'
-    if (this%has('FILE') .and. .not. this%has('INPUT')) name = 'FILE'
-  end function name_of_file
 
   !> Reads the file of INPUT into a rule.
   subroutine read_temperature_file(this, model, faults, rule)
@@ -52,15 +40,15 @@ contains
     type(table_reader) :: reader
     character(:), allocatable :: text, reason
     integer :: first, length
-    reader%spot = this%place_of(name_of_file(this))
-    reader%spot%file = path_beside(reader%spot%file, this%text(name_of_file(this)))
+    reader%spot = this%place_of('INPUT')
+    reader%spot%file = path_beside(reader%spot%file, this%text('INPUT'))
     call load_file(reader%spot%file, text, reason)
     if (len(reason) > 0) then
-      call this%fault_parameter(faults, name_of_file(this), &
+      call this%fault_parameter(faults, 'INPUT', &
                                 "cannot read '"//reader%spot%file//"': "//reason)
       return
     end if
-    allocate (reader%nodes(0), reader%value(1, 0), reader%time(0), reader%listed(0))
+    allocate (reader%nodes(0), reader%value(1, 0), reader%time(0))
     reader%spot%line = 0
     first = 1
     do while (first <= len(text))
@@ -73,14 +61,12 @@ contains
       if (reader%num_columns == 0) return ! without a header that is right no row is
     end do
     if (reader%used == 0 .and. .not. reader%has_rows) then
-      call this%fault_parameter(faults, name_of_file(this), 'the file has no temperatures', &
+      call this%fault_parameter(faults, 'INPUT', 'the file has no temperatures', &
                                 'rows: node or node set, temperature')
     end if
-    if (reader%is_list) call close_list(reader, faults)
     rule%nodes = reader%nodes(:reader%used)
     rule%value = reader%value(:, :reader%used)
     rule%time = reader%time
-    if (size(rule%time) == 1) rule%time = rule%time(2:) ! one time is none
   end subroutine read_temperature_file
 
   !> One line: a comment, the header or a row.
@@ -94,11 +80,6 @@ contains
     call split_words(reader)
     if (.not. reader%has_rows .and. upper_case(word(reader, 1)) == 'NODE') then
       call take_header(reader, faults)
-    else if (.not. reader%has_rows .and. upper_case(word(reader, 1)) == 'TIME') then
-      reader%is_list = .true.
-      reader%has_rows = .true.
-    else if (reader%is_list) then
-      call take_entry(reader, model, faults)
     else
       call take_row(reader, model, faults)
     end if
@@ -172,7 +153,7 @@ contains
     logical :: is_number
     integer :: i
     reader%has_rows = .true.
-    call find_nodes(reader, 1, model, faults, nodes)
+    call find_nodes(reader, model, faults, nodes)
     if (size(reader%first) /= reader%num_columns + 1) then
       call fault(reader, min(size(reader%first), reader%num_columns + 2), &
                  'found '//as_text(size(reader%first) - 1)//' temperatures', &
@@ -191,109 +172,28 @@ contains
     end do
   end subroutine take_row
 
-  !> 'time, node, value': each time has the nodes of the first one, in their order.
-  subroutine take_entry(reader, model, faults)
-    type(table_reader), intent(inout) :: reader
-    type(draft), intent(in) :: model
-    type(diagnostic_list), intent(inout) :: faults
-    integer, allocatable :: nodes(:)
-    real(rk) :: time, value
-    logical :: are_numbers(2), is_same
-    if (size(reader%first) /= 3) then
-      call fault(reader, size(reader%first), 'found '//as_text(size(reader%first))//' words', &
-                 '3: time, node, temperature', faults)
-      return
-    end if
-    call parse_real(word(reader, 1), time, are_numbers(1))
-    call parse_real(word(reader, 3), value, are_numbers(2))
-    are_numbers(2) = are_numbers(2) .and. abs(value) <= largest_number
-    if (.not. all(are_numbers)) then
-      call fault(reader, merge(3, 1, are_numbers(1)), 'not a number', &
-                 'time [s], node, temperature [K]', faults)
-      return
-    end if
-    call find_nodes(reader, 2, model, faults, nodes)
-    if (size(nodes) > 1) call fault(reader, 2, 'a set of '//as_text(size(nodes))//' nodes', &
-                                    'the id of one node', faults)
-    if (size(nodes) /= 1) return ! a node that is not there is reported
-    is_same = .false.
-    if (size(reader%time) > 0) is_same = abs(time - reader%time(size(reader%time))) <= 0.0_rk
-    if (.not. is_same) call next_time(reader, time, faults)
-    reader%at = reader%at + 1
-    if (size(reader%time) == 1) then
-      call append(reader%nodes, reader%used, nodes(1))
-    else if (reader%at > reader%used .or. &
-             nodes(1) /= reader%nodes(min(reader%at, reader%used))) then
-      call fault(reader, 2, 'node '//word(reader, 2)//' stands elsewhere at the first time', &
-                 'the same nodes in the same order at all times', faults)
-      return
-    end if
-    call append(reader%listed, reader%num_values, value)
-  end subroutine take_entry
-
-  !> Opens the rows of a further time of a list.
-  subroutine next_time(reader, time, faults)
-    type(table_reader), intent(inout) :: reader
-    real(rk), intent(in) :: time !< [s]
-    type(diagnostic_list), intent(inout) :: faults
-    integer :: n
-    n = size(reader%time)
-    if (n > 0) then
-      if (time < reader%time(n)) then
-        call fault(reader, 1, 'time '//as_text(time)//' after '//as_text(reader%time(n)), &
-                   'times that ascend', faults)
-      end if
-      if (reader%at < reader%used) call fault_missing(reader, faults)
-    end if
-    reader%time = [reader%time, time]
-    reader%at = 0
-  end subroutine next_time
-
-  !> A time of a list that ends before its nodes do.
-  subroutine fault_missing(reader, faults)
+  !> The node, or the nodes of the set, that the first word names; empty after a fault.
+  subroutine find_nodes(reader, model, faults, nodes)
     type(table_reader), intent(in) :: reader
-    type(diagnostic_list), intent(inout) :: faults
-    call fault(reader, 1, 'time '//as_text(reader%time(size(reader%time)))//' has '// &
-               as_text(reader%at)//' nodes', as_text(reader%used)//', those of the first time', &
-               faults)
-  end subroutine fault_missing
-
-  !> The values of a list by times and nodes.
-  subroutine close_list(reader, faults)
-    type(table_reader), intent(inout) :: reader
-    type(diagnostic_list), intent(inout) :: faults
-    if (reader%at < reader%used) call fault_missing(reader, faults)
-    if (reader%num_values == reader%used*size(reader%time)) then
-      reader%value = transpose(reshape(reader%listed(:reader%num_values), &
-                                       [reader%used, size(reader%time)]))
-    else ! its faults are reported
-      reader%used = 0
-    end if
-  end subroutine close_list
-
-  !> The node, or the nodes of the set, that a word names; empty after a fault.
-  subroutine find_nodes(reader, number, model, faults, nodes)
-    type(table_reader), intent(in) :: reader
-    integer, intent(in) :: number !< of the word
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable, intent(out) :: nodes(:)
     integer :: id, found
     logical :: is_integer
-    call parse_integer(word(reader, number), id, is_integer)
+    call parse_integer(word(reader, 1), id, is_integer)
     if (is_integer) then
       found = model%node_position%find(id)
       nodes = pack([found], [found > 0])
-      if (found == 0) call fault(reader, number, 'node '//word(reader, number)//' does not exist', &
+      if (found == 0) call fault(reader, 1, 'node '//word(reader, 1)//' does not exist', &
                                  'a node of the model', faults)
       return
     end if
-    found = model%node_sets%find(upper_case(word(reader, number)))
+    found = model%node_sets%find(upper_case(word(reader, 1)))
     if (found > 0) then
       nodes = model%node_sets%sets(found)%members
     else
       allocate (nodes(0))
-      call fault(reader, number, "there is no node set '"//word(reader, number)//"' so far", &
+      call fault(reader, 1, "there is no node set '"//word(reader, 1)//"' so far", &
                  'the id of one node or the name of a set defined above', faults)
     end if
   end subroutine find_nodes
