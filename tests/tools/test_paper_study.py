@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from keyway_tools.colour_scale import parse_levels
 from keyway_tools.paper_study.cases import SIZES, Case, choose, list_cases
 from keyway_tools.paper_study.facts import Facts
 from keyway_tools.paper_study.openings import by_height
@@ -79,6 +80,7 @@ def test_cases_have_names_of_their_own_and_commands():
     command = choose(cases, ["s_kn_1e11"])[0].command(Path("a.inp"))
     assert command.startswith("tools/make_jinping.py a.inp --duration 20")
     assert "--kn 1.25e11" in command
+    assert "--lifts 4 --grouting 4" in choose(cases, ["s_stages"])[0].command(Path("a.inp"))
     with pytest.raises(ValueError, match="no case fits 'nothing'"):
         choose(cases, ["nothing"])
 
@@ -141,6 +143,13 @@ def test_differences_stand_beside_those_of_the_paper():
     assert [row.paper for row in rows] == [0.065, None, None, None, None, 0.01, 0.065]
     kinds = [one.kind for one in joint_verdicts(run("a", 1.0), run("b", 1.03))]
     assert kinds == ["good", "fair", "good"]
+
+
+def test_lines_of_values_have_the_sign_of_their_field():
+    assert parse_levels(["S1=2.48", "s3=20"]) == {"S1": 2.48, "S3": -20.0}
+    for word, message in (("S9=1", "expected FIELD=VALUE"), ("S1=0", "other than zero")):
+        with pytest.raises(ValueError, match=message):
+            parse_levels([word])
 
 
 def test_histories_are_sorted_by_height_and_face():

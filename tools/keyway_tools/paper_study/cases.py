@@ -167,6 +167,9 @@ def _sensitivity(size: Size) -> list[Case]:
         ("mesh_twice", "mesh", f"{twice} unknowns", f"{common} --unknowns {twice}"),
         ("recovery_sign", "recovery", "SIGN", f"{base} --recovery SIGN"),
         ("recovery_energy", "recovery", "ENERGY", f"{base} --recovery ENERGY"),
+        # *MODEL CHANGE takes no chains: joints on surfaces, also for the comparison
+        ("at_once", "stages", "at once, surfaces", f"{base} --join auto"),
+        ("stages", "stages", "lifts, grouted", f"{base} --join auto --lifts 4 --grouting 4"),
     ]
     found = [
         Case(f"s_{name}", "sensitivity", f"{factor}: {value}", "make_jinping", options,

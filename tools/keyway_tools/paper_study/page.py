@@ -19,7 +19,7 @@ from .runner import Outcome
 from .verdicts import dam_verdicts, differences, joint_verdicts, robust
 
 HERE = Path(__file__).parent
-MISSING = "construction in stages, temperature, and many records with a reduced model"
+MISSING = "temperature, uplift, and many records with a reduced model"
 CLASSICAL = "xingbiling_classical"
 
 
