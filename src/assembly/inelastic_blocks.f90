@@ -2,6 +2,7 @@
 !> one material. Laws are called and histories are stored by block. Models of elastic solids have no
 !> such block.
 module inelastic_blocks
+  use crack_band, only: extreme_widths
   use kinds, only: rk
   use dam_mesh, only: fe_mesh
   use element_catalogue, only: is_solid, make_solid
@@ -182,13 +183,13 @@ contains
     integer, intent(in) :: id(:) !< user's numbers of the elements
     real(rk), intent(in) :: x(:, :, :) !< (3, 8, elements) [m]
     type(inelastic_block), intent(inout) :: part
-    real(rk) :: xi(3)
+    real(rk) :: xi(3), smallest
     integer :: e, q, p, n
     n = part%points_of_element*size(id)
     associate (points => part%points)
       points%num_points = n
       allocate (points%element(n), points%number(n), points%x(3, n), points%edges(3, 3, n), &
-                points%length(n))
+                points%widest(n), points%length(n))
       do e = 1, size(id)
         do q = 1, part%points_of_element
           p = (e - 1)*part%points_of_element + q
@@ -198,6 +199,7 @@ contains
           points%number(p) = q
           points%x(:, p) = matmul(x(:, :, e), shape_at(xi))
           points%edges(:, :, p) = edges_at(x(:, :, e), xi)
+          call extreme_widths(points%edges(:, :, p), smallest, points%widest(p))
           points%length(p) = sum(part%weight(:, e))**(1.0_rk/3.0_rk)
         end do
       end do

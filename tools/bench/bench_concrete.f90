@@ -81,6 +81,7 @@ contains
     allocate (points%element(block), points%number(block), source=1)
     allocate (points%x(3, block), points%edges(3, 3, block), source=0.0_rk)
     allocate (points%length(block), source=0.5_rk)
+    allocate (points%widest(block), source=0.5_rk)
     do i = 1, 3
       points%edges(i, i, :) = 0.5_rk
     end do

@@ -69,6 +69,7 @@ contains
       points%element = [1]
       points%number = [1]
       points%length = [test%length]
+      points%widest = [test%length]
       allocate (points%x(3, 1), points%edges(3, 3, 1), source=0.0_rk)
       do i = 1, 3
         points%edges(i, i, 1) = test%length

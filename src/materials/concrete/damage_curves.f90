@@ -38,6 +38,8 @@ module damage_curves
     real(rk), allocatable :: strength(:) !< nominal [Pa]
     real(rk), allocatable :: damage(:)
     real(rk) :: longest = huge(1.0_rk) !< widest admissible band [m]
+    !> Widest band in which the plastic strain increases from knot to knot, by more than least [m]
+    real(rk) :: widest_regular = 0.0_rk
     integer :: steepest = 0 !< the row that limits the band
     logical :: turns_back = .false. !< in a wider band the strain would decrease
   end type strength_curve
@@ -93,10 +95,12 @@ contains
       curve%damage = [(value_of_table(damage, curve%abscissa(i)), i=1, size(curve%abscissa))]
     end if
     call find_recoverable(curve, young)
-    if (.not. has_openings) return
-    call limit_band(curve, young)
-    if (allocated(damage)) call add_knots(curve)
-    call find_recoverable(curve, young)
+    if (has_openings) then
+      call limit_band(curve, young)
+      if (allocated(damage)) call add_knots(curve)
+      call find_recoverable(curve, young)
+    end if
+    call find_regular(curve)
   end subroutine unite_rows
 
   !> c_i.
@@ -105,6 +109,21 @@ contains
     real(rk), intent(in) :: young !< E_0 [Pa]
     curve%recoverable = curve%damage/(1.0_rk - curve%damage)*curve%strength/young
   end subroutine find_recoverable
+
+  !> Finds `widest_regular`, for the final knots.
+  pure subroutine find_regular(curve)
+    type(strength_curve), intent(inout) :: curve
+    real(rk) :: opening, returned
+    integer :: i
+    curve%widest_regular = huge(1.0_rk)
+    do i = 2, size(curve%abscissa)
+      opening = curve%abscissa(i) - curve%abscissa(i - 1)
+      returned = curve%recoverable(i) - curve%recoverable(i - 1)
+      if (returned <= 0.0_rk) cycle
+      curve%widest_regular = min(curve%widest_regular, &
+                                 (1.0_rk - 2.0_rk*smallest_plastic_share)*opening/returned)
+    end do
+  end subroutine find_regular
 
   !> Adds new abscissae to an ascending list.
   pure subroutine merge_abscissae(new, list)
@@ -210,8 +229,12 @@ contains
     if (length > curve%longest) factor = sqrt(curve%longest/length)
     width = min(length, curve%longest)
     scale = factor/width
-    least = smallest_plastic_share*scale
     knots = scale*curve%abscissa - factor*curve%recoverable
+    if (width <= curve%widest_regular) then
+      knots(1) = 0.0_rk
+      return
+    end if
+    least = smallest_plastic_share*scale
     do i = size(knots) - 1, 1, -1
       knots(i) = min(knots(i), knots(i + 1))
     end do
@@ -230,14 +253,7 @@ contains
     integer, intent(inout) :: row !< of the knot below; on entry a guess, at least 1
     type(curve_value), intent(out) :: value
     real(rk) :: strength, strength_slope, step, inverse
-    do while (row > 1)
-      if (knots(row) <= plastic) exit
-      row = row - 1
-    end do
-    do while (row < size(knots))
-      if (knots(row + 1) > plastic) exit
-      row = row + 1
-    end do
+    row = row_below(knots, plastic, row)
     strength = curve%strength(row)
     value%damage = curve%damage(row)
     strength_slope = 0.0_rk
@@ -252,4 +268,28 @@ contains
     value%strength = strength*factor*inverse
     value%strength_slope = (strength_slope + strength*inverse*value%damage_slope)*factor*inverse
   end subroutine value_of_curve
+
+  !> The last row with a knot at or below a plastic strain, the first one if there is none: the
+  !> guess, the next one, or by bisection.
+  pure integer function row_below(knots, plastic, guess) result(row)
+    real(rk), intent(in) :: knots(:) !< ascending
+    real(rk), intent(in) :: plastic
+    integer, intent(in) :: guess
+    integer :: high, middle
+    row = 1
+    if (knots(guess) <= plastic) row = guess
+    high = size(knots) + 1
+    if (row < size(knots)) then
+      if (knots(row + 1) > plastic) high = row + 1
+    end if
+    if (row /= guess) high = min(high, guess)
+    do while (high - row > 1)
+      middle = (row + high)/2
+      if (knots(middle) <= plastic) then
+        row = middle
+      else
+        high = middle
+      end if
+    end do
+  end function row_below
 end module damage_curves

@@ -15,7 +15,8 @@ contains
   !> Elastic stress and energy of virgin points, and whether they are certainly elastic.
   pure subroutine screen_points(model, factor, strain, stress, energy, is_within)
     type(concrete_model), intent(in) :: model
-    real(rk), intent(in) :: factor !< the least one of the strength in tension (see place_knots)
+    !> (points) The least one of the strength in tension, that of the widest band (see place_knots)
+    real(rk), intent(in) :: factor(:)
     real(rk), intent(in), contiguous :: strain(:, :) !< (6, points)
     real(rk), intent(inout), contiguous :: stress(:, :) !< (6, points) [Pa]
     real(rk), intent(out) :: energy(:) !< (points) stored [J/m3]
@@ -26,9 +27,7 @@ contains
     lame = model%bulk - 2.0_rk/3.0_rk*model%shear
     shear = model%shear
     limit = (1.0_rk - model%alpha)*model%compression%strength(1)
-    ! beta of Eq. 23, not negative by the checks of the tables.
-    slope = limit/(factor*model%tension%strength(1)) - (1.0_rk + model%alpha)
-    !$omp simd private(volume, p, s1, s2, s3, square, third, q, largest, excess)
+    !$omp simd private(volume, p, s1, s2, s3, square, third, q, largest, excess, slope)
     do i = 1, size(strain, 2)
       volume = strain(1, i) + strain(2, i) + strain(3, i)
       stress(1, i) = lame*volume + 2.0_rk*shear*strain(1, i)
@@ -49,6 +48,8 @@ contains
       q = sqrt(3.0_rk*square)
       excess = max(0.0_rk, 1.0_rk + 13.5_rk*third/(q**3 + tiny(q)))
       largest = 2.0_rk/3.0_rk*q*min(1.0_rk, 0.5_rk + sqrt(excess/6.0_rk)) - p
+      ! beta of Eq. 23, not negative by the checks of the tables.
+      slope = limit/(factor(i)*model%tension%strength(1)) - (1.0_rk + model%alpha)
       is_within(i) = q - 3.0_rk*model%alpha*p + slope*max(0.0_rk, largest) &
                      - model%gamma*max(0.0_rk, -largest) <= limit
     end do

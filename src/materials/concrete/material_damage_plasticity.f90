@@ -77,11 +77,15 @@ contains
     type(point_motion) :: motion
     type(point_answer) :: answer
     type(placed_curves) :: placed
-    real(rk) :: d(6, 6), stored(points%num_points)
+    real(rk), dimension(points%num_points) :: factor, stored
+    real(rk) :: d(6, 6)
     logical :: is_plain
     integer :: i
-    call screen_points(self%model, least_factor(self%model, points), new%strain, new%stress, &
-                       stored, new%is_elastic)
+    factor = 1.0_rk
+    if (self%model%tension%longest < huge(1.0_rk)) then
+      factor = min(1.0_rk, sqrt(self%model%tension%longest/points%widest))
+    end if
+    call screen_points(self%model, factor, new%strain, new%stress, stored, new%is_elastic)
     call self%elastic_stiffness(d)
     motion%time = time%size
     motion%wants_tangent = time%tangent /= no_tangent
@@ -116,22 +120,6 @@ contains
       end if
     end do
   end subroutine update
-
-  !> The least factor of the strength in tension of all bands in the block. It is 1 where the norm
-  !> of the edges, an upper bound of the width, is within the widest band.
-  pure real(rk) function least_factor(model, points) result(factor)
-    type(concrete_model), intent(in) :: model
-    type(point_set), intent(in) :: points
-    real(rk) :: widest
-    integer :: i
-    factor = 1.0_rk
-    if (.not. model%tension%longest < huge(widest)) return
-    widest = 0.0_rk
-    do i = 1, points%num_points
-      widest = max(widest, sum(points%edges(:, :, i)**2))
-    end do
-    if (sqrt(widest) > model%tension%longest) factor = sqrt(model%tension%longest/sqrt(widest))
-  end function least_factor
 
   !> Updates a point that may yield or has yielded.
   pure subroutine yield_point(model, motion, i, old, placed, new, answer)

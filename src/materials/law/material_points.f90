@@ -30,6 +30,7 @@ module material_points
     !> (3, 3, points) columns are the edge vectors of the element at the point, 2 dx/dxi_i [m].
     !> Their projections on the normal of a crack give the width of the crack band.
     real(rk), allocatable :: edges(:, :, :)
+    real(rk), allocatable :: widest(:) !< (points) width of the widest crack band [m]
     real(rk), allocatable :: length(:) !< (points) cube root of the element's volume [m]
   end type point_set
 

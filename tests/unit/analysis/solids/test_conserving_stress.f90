@@ -45,6 +45,7 @@ contains
     do i = 1, 3
       points%edges(i, i, 1) = 1.0_rk
     end do
+    points%widest = [1.0_rk]
     points%length = [1.0_rk]
   end subroutine make_law
 

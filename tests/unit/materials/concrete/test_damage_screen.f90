@@ -33,7 +33,8 @@ contains
     call random_number(strain)
     strain = (strain - 0.5_rk)*6.0e-4_rk
     strain(:3, :) = strain(:3, :) - 0.7e-4_rk
-    call screen_points(model, 1.0_rk, strain, stress, energy, is_within)
+    call screen_points(model, spread(1.0_rk, 1, size(energy)), strain, stress, energy, &
+                       is_within)
     num_elastic = 0
     num_missed = 0
     worst = 0.0_rk
@@ -69,7 +70,8 @@ contains
       strain(i, :) = -model%poisson*strain(1, :)
     end do
     strain(2:3, 5) = strain(1, 5)
-    call screen_points(model, 1.0_rk, strain, stress, energy, is_within)
+    call screen_points(model, spread(1.0_rk, 1, size(energy)), strain, stress, energy, &
+                       is_within)
     call check(log, all(is_within .eqv. [.true., .false., .true., .false., .true., .true.]), &
                'limits')
   end subroutine uniaxial_limits

@@ -82,6 +82,7 @@ contains
     allocate (points%element(num_points), points%number(num_points), source=1)
     allocate (points%edges(3, 3, num_points), points%x(3, num_points), source=0.0_rk)
     allocate (points%length(num_points), source=0.4_rk)
+    allocate (points%widest(num_points), source=0.6_rk)
     do i = 1, 3
       points%edges(i, i, :) = 0.2_rk*i
     end do

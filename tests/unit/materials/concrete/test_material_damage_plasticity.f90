@@ -65,6 +65,7 @@ contains
       do i = 1, 3
         points%edges(i, i, 1) = edges(i)
       end do
+      points%widest = [maxval(edges)]
       points%length = [product(edges)**(1.0_rk/3.0_rk)]
     end associate
     call start_points(body%law, body%points, body%state)
