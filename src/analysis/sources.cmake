@@ -26,7 +26,9 @@ set(sources
   reduced/reduced_scheme.f90
   reduced/reduced_shapes.f90
   solids/active_unknowns.f90
+  solids/changing_elements.f90
   solids/conserving_stress.f90
+  solids/force_iteration.f90
   solids/guest_forces.f90
   solids/increment_balance.f90
   solids/inelastic_forces.f90

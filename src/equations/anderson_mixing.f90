@@ -74,6 +74,9 @@ contains
     type(mixer), intent(inout) :: self
     real(rk), intent(in) :: f(:), s(:)
     integer :: k
+    if (allocated(self%ds)) then
+      if (size(self%ds, 1) /= size(s)) deallocate (self%ds, self%df)
+    end if
     if (.not. allocated(self%ds)) then
       allocate (self%ds(size(s), most_pairs), self%df(size(s), most_pairs))
     end if

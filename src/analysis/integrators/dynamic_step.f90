@@ -11,7 +11,6 @@ module dynamic_step
   use modal_damping, only: build_modal_damping
   use joint_water, only: update_uplift
   use step_equilibrium, only: make_equilibrium
-  use active_unknowns, only: find_active
   use guest_forces, only: has_histories
   use step_system, only: dam_system, build_structure, build_inertia, build_damping, &
                          build_loads, build_origins
@@ -78,13 +77,12 @@ contains
       call results%increment_done(model, now, error)
       if (allocated(error)) return
     end if
-    call make_step_solver(model, plan, system, solids%has_inelastic() .and. &
+    call make_step_solver(plan, system, solids%has_inelastic() .and. &
                           .not. has_histories(now%guests), solids, results, error)
   end subroutine open_dynamic_step
 
   !> Makes a solver and plans its factor.
-  subroutine make_step_solver(model, plan, system, has_active_part, solids, results, error)
-    type(problem), intent(in) :: model
+  subroutine make_step_solver(plan, system, has_active_part, solids, results, error)
     type(step), intent(in) :: plan
     type(dam_system), intent(in) :: system
     logical, intent(in) :: has_active_part !< solves are repeated for unknowns of inelastic solids
@@ -97,8 +95,7 @@ contains
     if (allocated(error)) return
     solids%solver%costs = results%costs
     ! Refined solves are complete ones.
-    if (.not. has_active_part .or. plan%controls%keeps_single) return
-    call solids%solver%repeated%open(solids%solver%factor, find_active(model, system%numbers))
+    solids%solver%may_repeat = has_active_part .and. .not. plan%controls%keeps_single
   end subroutine make_step_solver
 
   !> Forces at the start of the step and the acceleration that balances them. Supports that follow

@@ -170,7 +170,7 @@ contains
     if (self%solids%matrix%is_elastic) call self%shelf%put(self%scheme%dt, self%solids%solver)
     if (is_kept) call move_alloc(next, self%solids%solver)
     if (allocated(self%solids%solver)) return
-    call make_step_solver(model, plan, self%system, self%has_active_part, self%solids, results, &
+    call make_step_solver(plan, self%system, self%has_active_part, self%solids, results, &
                           error)
     if (.not. allocated(error)) self%solids%solver%condition = condition
   end subroutine change_solver

@@ -10,18 +10,24 @@ module active_unknowns
 
 contains
 
-  !> The free ones, in ascending order.
-  function find_active(model, numbers) result(active)
+  !> The free ones, in ascending order; of some elements or of all inelastic ones.
+  function find_active(model, numbers, takes_part) result(active)
     type(problem), intent(in) :: model
     type(numbering), intent(in) :: numbers
+    logical, intent(in), optional :: takes_part(:) !< (elements of the mesh)
     integer, allocatable :: active(:)
     logical :: is_active(numbers%num_total)
     integer :: i, e, k
     is_active = .false.
     do i = 1, size(model%inelastic)
-      do e = 1, size(model%inelastic(i)%elements)
-        call mark_element(model%mesh%nodes(:, model%inelastic(i)%elements(e)), numbers, is_active)
-      end do
+      associate (elements => model%inelastic(i)%elements)
+        do e = 1, size(elements)
+          if (present(takes_part)) then
+            if (.not. takes_part(elements(e))) cycle
+          end if
+          call mark_element(model%mesh%nodes(:, elements(e)), numbers, is_active)
+        end do
+      end associate
     end do
     is_active(numbers%num_free - numbers%num_last + 1:numbers%num_free) = .true.
     active = pack([(k, k=1, numbers%num_free)], is_active(:numbers%num_free))

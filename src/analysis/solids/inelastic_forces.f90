@@ -29,6 +29,8 @@ module inelastic_forces
     real(rk), allocatable :: force(:, :) !< (24, elements) sum w B^T (D eps - sigma) [N]
     real(rk), allocatable :: tangent(:, :, :) !< (6, 6, points) [Pa], or (6, 6, 0)
     logical, allocatable :: has_excess(:) !< (elements) with a point that is not elastic
+    !> (elements) Whether an update moves them; the others stay elastic, at their last strain
+    logical, allocatable :: takes_part(:)
     real(rk), allocatable :: lost(:, :) !< (24, elements) lost damping force [N], if any
     real(rk), allocatable :: correction(:, :) !< (24, elements) of the work [N], if any
     type(update_report) :: report
@@ -45,6 +47,7 @@ contains
     do i = 1, size(blocks)
       allocate (answers(i)%force(hex8_dofs, size(blocks(i)%elements)), &
                 answers(i)%has_excess(size(blocks(i)%elements)), answers(i)%tangent(6, 6, 0))
+      allocate (answers(i)%takes_part(size(blocks(i)%elements)), source=.true.)
     end do
   end subroutine open_answers
 
@@ -125,6 +128,7 @@ contains
     type(block_answer), intent(inout) :: answer
     real(rk) :: moved(hex8_dofs, size(part%elements))
     integer :: e, num_tangents
+    if (.not. any(answer%takes_part)) return
     num_tangents = merge(0, part%points%num_points, time%tangent == no_tangent)
     if (size(answer%tangent, 3) /= num_tangents) then
       deallocate (answer%tangent)
@@ -142,10 +146,27 @@ contains
       call part%find_strains(moved, new%strain)
       if (law%wants_gradient) call find_gradients(model%mesh%x, model%mesh%nodes, part, moved, new)
       if (allocated(new%thermal)) new%strain = new%strain - new%thermal
+      call keep_strains(part, answer%takes_part, old, new)
       call law%update(part%points, time, old, new, answer%tangent, answer%report)
     end associate
     call sum_block(part, new, answer)
   end subroutine update_block
+
+  !> Sets the strains of elements that take no part to those at the start of the increment.
+  pure subroutine keep_strains(part, takes_part, old, new)
+    type(inelastic_block), intent(in) :: part
+    logical, intent(in) :: takes_part(:) !< (elements)
+    type(point_state), intent(in) :: old
+    type(point_state), intent(inout) :: new
+    integer :: e, last
+    do e = 1, size(takes_part)
+      if (takes_part(e)) cycle
+      last = e*part%points_of_element
+      associate (first => last - part%points_of_element + 1)
+        new%strain(:, first:last) = old%strain(:, first:last)
+      end associate
+    end do
+  end subroutine keep_strains
 
   !> du_i/dx_j: rotation from the shape functions, strain from the element.
   subroutine find_gradients(x, nodes, part, moved, new)

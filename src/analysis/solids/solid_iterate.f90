@@ -19,7 +19,9 @@ module solid_iterate
     integer :: tries = 0 !< iterations with the present matrix
     real(rk) :: moved = 0.0_rk !< norm of the last change of the displacements [m]
     logical :: is_lost = .false. !< the tangent is singular
-    logical :: has_solved = .false. !< with the present matrix
+    logical :: has_solved = .false. !< with the present matrix and active unknowns
+    logical :: has_further = .false. !< further elements take part from now on
+    integer :: first = 1 !< residual of the iteration with these elements
   contains
     procedure :: is_slow, has_grown
   end type iterate_state

@@ -13,6 +13,7 @@ module solid_iteration
   use errors, only: error_type, analysis_failed
   use problem_definition, only: problem
   use active_unknowns, only: find_active
+  use changing_elements, only: element_choice
   use analysis_state, only: state, motion
   use global_vectors, only: norm
   use material_points, only: time_increment
@@ -46,6 +47,8 @@ module solid_iteration
     type(time_increment) :: time
     type(tangent_matrix) :: matrix
     type(block_answer), allocatable :: answers(:) !< (blocks)
+    type(element_choice) :: elements !< that take part in the iteration
+    logical :: may_choose = .false. !< elements; else all take part
     real(rk), allocatable :: guest_excess(:, :) !< (3, nodes) of guests with a history [N]
     real(rk), allocatable :: excess(:) !< (num_total) initial-stress force of the last iterate [N]
     type(damping_loss) :: loss !< its force is part of `excess`
@@ -55,16 +58,25 @@ module solid_iteration
     procedure :: open => open_solids
     procedure :: open_increment, solve_increment, effort, set_internal
     procedure :: has_inelastic, start_lost_damping
-    procedure, private :: iterate_on_forces, start_iteration, solve_iterate, measure_iterate
-    procedure, private :: choose_guess, linearise, evaluate
   end type solid_solver
 
   !> Iterations without factorisation are cheap: the limit is this many times higher.
   integer, parameter :: cheap_iterations = 5
-  !> Floor of the increment of displacement, as a fraction of the displacements.
-  real(rk), parameter :: smallest_increment = 1.0e-3_rk
-  !> A residual below this is round-off; the correction is then not checked.
-  real(rk), parameter :: roundoff = 1.0e-12_rk
+
+  interface
+    !> Iterates until residual and correction are within the tolerances.
+    module subroutine iterate_on_forces(self, model, system, task, before, after, outcome, error)
+      implicit none
+      class(solid_solver), intent(inout) :: self
+      type(problem), intent(in) :: model
+      type(dam_system), intent(in) :: system
+      type(increment_task), intent(inout) :: task
+      type(state), intent(in) :: before
+      type(state), intent(inout) :: after
+      type(balance_outcome), intent(out) :: outcome
+      type(error_type), allocatable, intent(out) :: error
+    end subroutine iterate_on_forces
+  end interface
 
 contains
 
@@ -79,6 +91,7 @@ contains
     self%stops_early = plan%procedure%has_inertia .and. .not. plan%is_direct
     self%choices = choose_tangents(model, plan)
     self%chosen = self%choices(1)
+    self%may_choose = plan%procedure%has_inertia .and. .not. has_histories(now%guests)
     call system%set_thermal(now%motion)
     call system%find_elastic(now%motion%q, now%motion%elastic)
     if (size(now%points) > 0 .or. has_histories(now%guests)) then
@@ -173,7 +186,7 @@ contains
       self%chosen = self%choices(i)
       self%time%tangent = self%chosen%kind
       self%time%holds_switches = self%chosen%holds_switches
-      call self%iterate_on_forces(model, system, task, before, after, outcome, error)
+      call iterate_on_forces(self, model, system, task, before, after, outcome, error)
       outcome%has_held_switches = self%chosen%holds_switches
       if (allocated(error) .or. outcome%has_converged .or. is_dropped(self%solver%controls)) return
       if (.not. self%matrix%is_elastic) then
@@ -183,217 +196,4 @@ contains
       if (outcome%size_ratio < 1.0_rk) return
     end do
   end subroutine solve_increment
-
-  !> Iterates until residual and correction are within the tolerances.
-  subroutine iterate_on_forces(self, model, system, task, before, after, outcome, error)
-    class(solid_solver), intent(inout) :: self
-    type(problem), intent(in) :: model
-    type(dam_system), intent(in) :: system
-    type(increment_task), intent(inout) :: task
-    type(state), intent(in) :: before
-    type(state), intent(inout) :: after
-    type(balance_outcome), intent(out) :: outcome
-    type(error_type), allocatable, intent(out) :: error
-    type(iterate_state) :: now
-    integer :: most_iterations
-    most_iterations = self%solver%controls%max_iterations
-    if (self%chosen%patience > 0) most_iterations = cheap_iterations*most_iterations
-    now%task = task
-    allocate (outcome%history(0))
-    self%time%wants_energy = self%correction%is_active()
-    call self%start_iteration(model, system, before, after, now)
-    do while (outcome%iterations < most_iterations)
-      if (is_dropped(self%solver%controls)) exit
-      call self%solve_iterate(model, system, now, before, after, outcome, error)
-      if (allocated(error) .or. now%is_lost) return
-      call self%measure_iterate(system, before, now, outcome)
-      if (outcome%has_converged) exit
-      if (self%stops_early) then
-        if (falls_too_slowly(outcome%history, self%solver%controls%residual_tolerance, &
-                             most_iterations - outcome%iterations)) exit
-      end if
-      call self%choose_guess(model, system, after, now, error)
-      if (allocated(error) .or. now%is_lost) return
-    end do
-    if (outcome%has_converged .and. .not. self%time%wants_energy) then
-      self%time%wants_energy = .true.
-      call self%solver%costs%start('recover', 'inelastic solids', 'inelastic')
-      call complete_energies(model, self%time, before%points, after%points, self%answers)
-      call self%solver%costs%stop()
-    end if
-    if (now%task%balance%is_partial) call self%solver%complete_solution(now%task%x, error)
-    task%x = now%task%x
-  end subroutine iterate_on_forces
-
-  !> The first guess of s, with the last matrix. In a dynamic step where laws have an initial stress
-  !> it is that of displacements that go on with their velocity: 10 % fewer iterations.
-  subroutine start_iteration(self, model, system, before, after, now)
-    class(solid_solver), intent(inout) :: self
-    type(problem), intent(in) :: model
-    type(dam_system), intent(in) :: system
-    type(state), intent(in) :: before
-    type(state), intent(inout) :: after
-    type(iterate_state), intent(inout) :: now
-    real(rk) :: product(size(before%motion%q))
-    integer :: n
-    n = system%matrix%num_free
-    call self%mixer%forget()
-    now%rhs = now%task%balance%rhs
-    if (now%task%is_refined) then
-      call self%matrix%multiply_lost(system%matrix, now%task%x, product)
-      now%guess = self%excess(:n) - product(:n)
-      now%moved = norm(now%task%start + now%task%x - before%motion%q)
-      return
-    end if
-    now%task%x = 0.0_rk
-    call self%matrix%multiply_lost(system%matrix, now%task%start - before%motion%q, product)
-    now%guess = before%motion%elastic(:n) - before%motion%internal(:n) + product(:n)
-    if (allocated(now%task%velocity) .and. any(abs(now%guess) > 0.0_rk)) then
-      now%task%x(:n) = self%time%size*before%motion%v(:n)
-      call self%evaluate(model, system, now%task, before, after)
-      call self%matrix%multiply_lost(system%matrix, now%task%x, product)
-      now%guess = self%excess(:n) - product(:n)
-    end if
-    now%force = norm(now%rhs + self%weight*now%guess)
-    now%moved = norm(now%task%start - before%motion%q)
-  end subroutine start_iteration
-
-  !> Solves with the guess and evaluates the laws; `now%is_lost` if the iteration must stop.
-  subroutine solve_iterate(self, model, system, now, before, after, outcome, error)
-    class(solid_solver), intent(inout) :: self
-    type(problem), intent(in) :: model
-    type(dam_system), intent(in) :: system
-    type(iterate_state), intent(inout) :: now
-    type(state), intent(in) :: before
-    type(state), intent(inout) :: after
-    type(balance_outcome), intent(inout) :: outcome
-    type(error_type), allocatable, intent(out) :: error
-    type(balance_outcome) :: inner
-    real(rk), dimension(system%matrix%num_total) :: product, last_x
-    associate (task => now%task)
-      last_x = task%x
-      task%balance%rhs = now%rhs + self%weight*now%guess
-      task%balance%is_repeated = now%has_solved
-      task%balance%is_partial = now%has_solved .and. .not. task%counts_reactions
-      if (outcome%iterations > 0) call task%balance%start_from(system%operator, after%joints)
-      call self%solver%solve_balance(task%balance, model%joints, before%joints, after%joints, &
-                                     task%x, inner, error)
-      now%has_solved = .true.
-      outcome%iterations = max(outcome%iterations + 1, inner%own_iterations())
-      outcome%augmentations = outcome%augmentations + inner%augmentations
-      outcome%penetration = inner%penetration
-      outcome%gives_up = inner%gives_up
-      outcome%worst_point = inner%worst_point
-      outcome%residual = inner%residual
-      now%is_lost = .not. inner%has_converged
-      if (allocated(error) .or. now%is_lost) return
-      call self%evaluate(model, system, task, before, after)
-      call find_failure(model, self%answers, outcome%size_ratio, outcome%failure)
-      now%is_lost = allocated(outcome%failure)
-      call self%matrix%multiply_lost(system%matrix, task%x, product)
-      now%answer = self%excess(:size(now%guess)) - product(:size(now%guess))
-      now%moved = norm(task%x - last_x)
-    end associate
-  end subroutine solve_iterate
-
-  !> Evaluates the laws at `task%start + task%x`.
-  subroutine evaluate(self, model, system, task, before, after)
-    class(solid_solver), intent(inout) :: self
-    type(problem), intent(in) :: model
-    type(dam_system), intent(in) :: system
-    type(increment_task), intent(in) :: task
-    type(state), intent(in) :: before
-    type(state), intent(inout) :: after
-    real(rk) :: u(3, model%mesh%num_nodes)
-    call system%numbers%expand(task%start + task%x, u)
-    call self%solver%costs%start('update', 'inelastic solids', 'inelastic')
-    call update_points(model, u, before%origin, self%time, before%points, after%points, &
-                       self%answers)
-    call update_guests(model, u, self%time%size, before%guests, after%guests, self%guest_excess)
-    call sum_excess(model, system%numbers, self%answers, self%guest_excess, self%excess)
-    call self%correction%add_force(model, system%numbers, self%time, before%points, after%points, &
-                                   self%answers, self%excess)
-    call self%loss%add_force(model, system%numbers, task, before%points, self%answers, self%excess)
-    call self%solver%costs%stop()
-  end subroutine evaluate
-
-  !> Residual, and an estimate of the next correction from the last one.
-  subroutine measure_iterate(self, system, before, now, outcome)
-    class(solid_solver), intent(in) :: self
-    type(dam_system), intent(in) :: system
-    type(state), intent(in) :: before
-    type(iterate_state), intent(inout) :: now
-    type(balance_outcome), intent(inout) :: outcome
-    real(rk) :: reference, increment, q(size(before%motion%q)), product(size(before%motion%q))
-    now%last_force = now%force
-    now%force = self%weight*norm(now%answer - now%guess)
-    q = now%task%start + now%task%x
-    reference = now%task%reference_force
-    if (now%task%counts_reactions) then
-      call system%find_elastic(q, product)
-      reference = max(reference, norm(product - self%excess))
-    end if
-    outcome%residual = now%force/max(reference, tiny(1.0_rk))
-    outcome%history = [outcome%history, outcome%residual]
-    outcome%worst_point = 0
-    outcome%worst_unknown = maxloc(abs(now%answer - now%guess), 1)
-    increment = max(norm(q - before%motion%q), smallest_increment*norm(q), tiny(1.0_rk))
-    outcome%correction = now%moved/increment*min(1.0_rk, now%force/max(now%last_force, &
-                                                                       tiny(1.0_rk)))
-    associate (controls => self%solver%controls)
-      outcome%has_converged = outcome%residual <= roundoff .or. &
-                              (outcome%residual <= controls%residual_tolerance .and. &
-                               outcome%correction <= controls%increment_tolerance)
-    end associate
-  end subroutine measure_iterate
-
-  !> Chooses the next guess of s.
-  subroutine choose_guess(self, model, system, after, now, error)
-    class(solid_solver), intent(inout) :: self
-    type(problem), intent(in) :: model
-    type(dam_system), intent(in) :: system
-    type(state), intent(in) :: after
-    type(iterate_state), intent(inout) :: now
-    type(error_type), allocatable, intent(out) :: error
-    now%tries = now%tries + 1
-    if (self%chosen%patience > 0 .and. .not. now%is_slow(self%chosen%patience)) then
-      if (now%tries == 1) now%base_force = now%force
-      call self%mixer%advance(now%answer - now%guess, now%guess)
-    else if (self%chosen%patience == 0 .and. now%has_grown()) then
-      now%share = 0.5_rk*now%share
-      now%guess = now%base - (1.0_rk - now%share)*now%unbalance
-    else
-      call self%linearise(model, system, after, now, error)
-    end if
-  end subroutine choose_guess
-
-  !> Takes the tangent at the present iterate.
-  subroutine linearise(self, model, system, after, now, error)
-    class(solid_solver), intent(inout) :: self
-    type(problem), intent(in) :: model
-    type(dam_system), intent(in) :: system
-    type(state), intent(in) :: after
-    type(iterate_state), intent(inout) :: now
-    type(error_type), allocatable, intent(out) :: error
-    real(rk) :: product(size(after%motion%q))
-    integer :: n
-    n = size(now%guess)
-    now%unbalance = now%answer - now%guess
-    now%base_force = now%force
-    now%share = 1.0_rk
-    now%tries = 0
-    now%has_solved = .false.
-    call self%mixer%forget()
-    self%matrix%is_symmetric = self%chosen%is_symmetric()
-    call self%matrix%factorise(model, system, self%answers, self%values, self%weight, self%solver, &
-                               error)
-    if (allocated(error)) then
-      now%is_lost = error%exit_code == analysis_failed
-      if (now%is_lost) deallocate (error)
-      return
-    end if
-    call self%matrix%multiply_lost(system%matrix, now%task%x, product)
-    now%base = self%excess(:n) - product(:n)
-    now%guess = now%base
-  end subroutine linearise
 end module solid_iteration

@@ -16,10 +16,10 @@ module active_solve
     real(rk), allocatable, private :: first_rhs(:) !< (free unknowns)
     real(rk), allocatable, private :: reduced(:) !< (free unknowns) first_rhs after the lower part
     real(rk), allocatable, private :: half(:) !< (free unknowns) of the last solution
-    real(rk), allocatable, private :: last_x(:) !< (free unknowns) the last complete solution
+    real(rk), allocatable, private :: others(:) !< (free unknowns) of an incomplete solution
     logical, private :: is_partial = .false. !< the last solution holds active unknowns alone
   contains
-    procedure :: open => open_repeated
+    procedure :: choose => choose_repeated
     procedure :: is_there, start => start_repeated
     procedure :: forward, backward, complete
   end type repeated_solve
@@ -29,17 +29,22 @@ module active_solve
 
 contains
 
-  !> Chooses the active unknowns of a factor that is planned; without effect where its upper part
-  !> is nearly the whole, or where it has no parts.
-  subroutine open_repeated(self, factor, active)
+  !> Chooses the active unknowns of a factor that is planned. Where its upper part is nearly the
+  !> whole, or where it has no parts, none are chosen: solves are then whole ones.
+  subroutine choose_repeated(self, factor, active, others)
     class(repeated_solve), intent(inout) :: self
     class(equation_solver), intent(inout) :: factor
     integer, intent(in) :: active(:)
+    real(rk), intent(in) :: others(:) !< (free unknowns) what solutions have until they are complete
     real(rk) :: share
+    self%is_partial = .false.
+    if (allocated(self%active)) deallocate (self%active)
     if (.not. allocated(factor%order) .or. size(active) == 0) return
     call factor%choose_active(active, share)
-    if (share < largest_share) self%active = active
-  end subroutine open_repeated
+    if (share >= largest_share) return
+    self%active = active
+    self%others = others
+  end subroutine choose_repeated
 
   !> Whether solves can be repeated with a factor.
   pure logical function is_there(self, factor)
@@ -84,7 +89,7 @@ contains
     call factor%substitute(upper_part, .false., self%half, error)
     if (is_partial) then
       answer(factor%order) = self%half
-      x = self%last_x
+      x = self%others
       x(self%active) = answer(self%active)
     else
       call self%complete(factor, x, error)
@@ -100,7 +105,7 @@ contains
     if (.not. self%is_partial) return
     call factor%substitute(lower_part, .false., self%half, error)
     x(factor%order) = self%half
-    self%last_x = x
+    self%others = x
     self%is_partial = .false.
   end subroutine complete
 end module active_solve

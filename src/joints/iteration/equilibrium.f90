@@ -68,6 +68,7 @@ module equilibrium
 
   type, abstract :: equilibrium_solver
     class(equation_solver), allocatable :: factor !< of the symmetric, positive definite matrix
+    logical :: may_repeat = .false. !< solves may be repeated for active unknowns alone
     type(repeated_solve) :: repeated !< solves between two full ones
     type(exact_matrix) :: exact !< where the factor is in single precision
     type(step_controls) :: controls

@@ -30,10 +30,10 @@ contains
     call make_box(matrix, values, 0)
     call solver%analyse(matrix, error)
     active = [(k, k=1, matrix%num_free/20)]
-    call repeated%open(solver, active)
+    rhs = [(cos(real(k, rk)), k=1, matrix%num_free)]
+    call repeated%choose(solver, active, 0.0_rk*rhs)
     call check(log, repeated%is_there(solver), 'a corner is less than the whole')
     call solver%factorise(matrix, values, error)
-    rhs = [(cos(real(k, rk)), k=1, matrix%num_free)]
     allocate (x(size(rhs)))
     call repeated%start(solver, rhs, error)
     do pass = 1, 3
@@ -63,7 +63,7 @@ contains
     integer :: k
     call make_box(matrix, values, 0)
     call solver%analyse(matrix, error)
-    call repeated%open(solver, [(k, k=1, matrix%num_free)])
+    call repeated%choose(solver, [(k, k=1, matrix%num_free)], 0.0_rk*values(:matrix%num_free))
     call check(log, repeated%is_there(solver) .eqv. .false., 'all unknowns are active')
   end subroutine all_active
 end program test_active_solve
