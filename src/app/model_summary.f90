@@ -132,6 +132,7 @@ contains
                              ' kg/m3, damping ALPHA '//as_text(now%alpha)//' 1/s, BETA '// &
                              as_text(now%beta)//' s, BASE '// &
                              name_of_base(now%damps_current)//elements_of(model, i))
+        if (allocated(now%expansion)) text = text//nl//row('', expansion_text(now))
         if (allocated(now%remark)) text = text//nl//row('', now%remark)
       end associate
     end do
@@ -144,6 +145,17 @@ contains
     text = 'E '//as_text(now%young)//' Pa, nu '//as_text(now%poisson)
     if (now%young <= 0.0_rk) text = 'a UMAT'
   end function elastic_text
+
+  !> 'expansion 1e-5 1/K', of a table the first and the last coefficient.
+  pure function expansion_text(now) result(text)
+    type(material), intent(in) :: now
+    character(:), allocatable :: text
+    associate (alpha => now%expansion%alpha)
+      text = 'expansion '//as_text(alpha(1))
+      if (size(alpha) > 1) text = text//' to '//as_text(alpha(size(alpha)))
+    end associate
+    text = text//' 1/K'
+  end function expansion_text
 
   !> '; 12 elements', '' without elements.
   pure function elements_of(model, material) result(text)

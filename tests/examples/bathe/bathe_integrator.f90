@@ -14,7 +14,7 @@
 !> increment.
 module bathe_integrator
   use kinds, only: rk
-  use errors, only: error_type
+  use errors, only: deck_is_wrong, error_type, raise
   use global_vectors, only: length, multiply, work
   use problem_definition, only: problem
   use step_plan, only: step
@@ -61,6 +61,11 @@ contains
     type(state), intent(inout) :: now
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
+    if (allocated(now%origin) .or. allocated(now%heat%reference)) then
+      call raise(error, 'SCHEME=BATHE has no strains without stress: no *MODEL CHANGE and no '// &
+                 '*TEMPERATURE with *EXPANSION', deck_is_wrong)
+      return
+    end if
     call open_dynamic_step(model, plan, self%system, self%solids, now, results, error)
     if (allocated(error)) return
     allocate (self%middle, source=now)
