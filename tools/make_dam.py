@@ -27,18 +27,16 @@ from functools import partial
 from pathlib import Path
 
 from keyway_tools.arch_blocks import JOINS, build_block_dam
-from keyway_tools.arch_command import (
-    add_arch_options,
-    block_options_of,
-    construction_of,
-)
+from keyway_tools.arch_command import add_arch_options, block_options_of
 from keyway_tools.arch_dam import DamOptions, build_arch_dam
 from keyway_tools.arch_deck import DeckOptions, arch_dam_deck
 from keyway_tools.arch_header import header
 from keyway_tools.arch_rock import RockOptions
 from keyway_tools.arch_shape import ArchShape
 from keyway_tools.arch_size import sized_dam, unknowns_of
+from keyway_tools.construction.heat import name_campaigns
 from keyway_tools.construction.lifts import name_lifts
+from keyway_tools.construction.options import construction_of, temperatures_of
 from keyway_tools.deck_text import mesh_deck
 from keyway_tools.joint_points import name_joint_points
 from keyway_tools.mesh_data import BrickMesh
@@ -269,6 +267,7 @@ def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
         num_modes=chosen.modes,
         picture_frequency=chosen.picture_every,
         construction=construction_of(chosen),
+        heat=temperatures_of(chosen),
     )
 
 
@@ -293,6 +292,7 @@ def main(arguments: list[str] | None = None) -> int:
         mesh, blocks = build(mesh_options), block_options_of(chosen, mesh_options)
         if options.construction:
             name_lifts(mesh, mesh_options.num_height, options.construction.num_lifts)
+            name_campaigns(mesh, options.construction)
     except ValueError as fault:
         print(f"make_dam: {fault}", file=sys.stderr)
         return 2
@@ -303,7 +303,8 @@ def main(arguments: list[str] | None = None) -> int:
         print("make_dam: the mesh has faults:\n  " + "\n  ".join(faults), file=sys.stderr)
         return 1
     notes = tuple(chosen.note)
-    heading = header(mesh, shape, mesh_options, options.title, notes, blocks, options.construction)
+    building = (options.construction, options.heat)
+    heading = header(mesh, shape, mesh_options, options.title, notes, blocks, *building)
     mesh_file = write_deck(chosen, mesh, heading, options)
     show(chosen, mesh, mesh_file)
     return 0

@@ -9,7 +9,7 @@ from .arch_blocks import BlockOptions
 from .arch_curves import CURVES
 from .arch_dam import DamOptions
 from .arch_lattice import PartMesh
-from .construction.lifts import Construction
+from .construction.options import add_construction_options
 from .outlets.options import add_outlet_options, outlet_options_of
 
 
@@ -51,26 +51,6 @@ def add_arch_options(parser: argparse.ArgumentParser) -> None:
     )
     add_outlet_options(parser)
     add_construction_options(parser)
-
-
-def add_construction_options(parser: argparse.ArgumentParser) -> None:
-    """Options that become a Construction."""
-    group = parser.add_argument_group("construction")
-    group.add_argument("--lifts", type=int, help="build the dam in so many lifts (at once)")
-    text = "grout the joints after these lifts (never: they have their law from the start)"
-    group.add_argument("--grouting", type=int, nargs="+", default=[], metavar="LIFT", help=text)
-    group.add_argument("--grout-pressure", type=float, default=0.0, help="[Pa] (0)")
-
-
-def construction_of(chosen: argparse.Namespace) -> Construction | None:
-    """Construction from the command line; None for a dam that is there at once."""
-    if chosen.lifts is None:
-        if chosen.grouting or chosen.grout_pressure:
-            raise ValueError("--grouting and --grout-pressure need --lifts")
-        return None
-    if chosen.grout_pressure and not chosen.grouting:
-        raise ValueError("--grout-pressure needs --grouting")
-    return Construction(chosen.lifts, tuple(chosen.grouting), chosen.grout_pressure)
 
 
 def fine_blocks(

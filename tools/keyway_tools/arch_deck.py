@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from .construction.heat import Temperatures
 from .construction.lifts import Construction, construction_steps
 from .deck_text import comment
 from .mesh_data import BrickMesh
@@ -39,12 +40,14 @@ class DeckOptions:
     num_modes: int = 0  # > 0: a *FREQUENCY step between the static and the dynamic one
     picture_frequency: int = 10  # increments between two states of the VTK series
     construction: Construction | None = None  # None: the dam is there at once
+    heat: Temperatures | None = None  # with construction only
 
 
 def arch_dam_deck(mesh: BrickMesh, heading: str, mesh_file: str, options: DeckOptions) -> str:
     """Main file of the deck, which includes the mesh by *INCLUDE."""
     parts = [comment(heading), "*HEADING", options.title, f"*INCLUDE, INPUT={mesh_file}"]
     parts += _materials(mesh, options) + _joints(mesh, options) + _couplings(mesh, options)
+    parts += options.heat.initial_cards() if options.heat else []
     parts += ["*BOUNDARY", "FIXED, 1, 3", *_amplitudes(options), *_static_steps(mesh, options)]
     if options.num_modes > 0:
         parts += ["**", "** Natural modes: joints closed, added mass of the water included"]
@@ -63,6 +66,7 @@ def _materials(mesh: BrickMesh, options: DeckOptions) -> list[str]:
         "*ELASTIC",
         f"{modulus:g}, {poisson}",
         *options.concrete_cards,
+        *(options.heat.material_cards() if options.heat else []),
     ]
     parts += ["*SOLID SECTION, ELSET=DAM, MATERIAL=CONCRETE"]
     if "ROCK" in mesh.brick_sets:
@@ -140,9 +144,12 @@ def _static_steps(mesh: BrickMesh, options: DeckOptions) -> list[str]:
         about = ["**", "** Weight of the dam and water"]
         return about + _static_step("WEIGHT", weight + _reservoir(options), mesh, options)
     fields = ["*NODE FILE", "U, OPENING" if mesh.joint_names else "U", "*EL FILE", "SP, STAGE"]
-    parts = construction_steps(building, mesh.joint_names, fields)
-    about = ["**", "** Water" if options.water_depth else "** Histories from here on"]
-    return parts + about + _static_step("WATER", _reservoir(options), mesh, options)
+    heat = options.heat
+    cooling = heat.cooling_step if heat else None
+    parts = construction_steps(building, mesh.joint_names, fields, cooling)
+    parts += ["**", "** Water" if options.water_depth else "** Histories from here on"]
+    parts += _static_step("WATER", _reservoir(options), mesh, options)
+    return parts + (heat.season_step() if heat else [])
 
 
 def _static_step(name: str, loads: list[str], mesh: BrickMesh, options: DeckOptions) -> list[str]:

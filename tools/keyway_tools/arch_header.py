@@ -7,6 +7,7 @@ import textwrap
 from .arch_blocks import BlockOptions
 from .arch_dam import DamOptions
 from .arch_shape import ArchShape
+from .construction.heat import Temperatures, temperatures_in_words
 from .construction.lifts import Construction, construction_in_words
 from .mesh_data import BrickMesh
 from .mesh_quality import report
@@ -28,6 +29,7 @@ def header(
     notes: tuple[str, ...],
     blocks: BlockOptions | None = None,
     building: Construction | None = None,
+    heat: Temperatures | None = None,
 ) -> str:
     """Title, axes, shape, mesh, rock, joints, notes and the report on the mesh."""
     lines = [title, ""]
@@ -61,6 +63,8 @@ def header(
         )
     at_once = "acts on the finished dam at once: no stages of building, no grouting (assumed)"
     lines += paragraph("Weight", construction_in_words(building) if building else at_once)
+    if heat:
+        lines += paragraph("Temperature", temperatures_in_words(heat))
     for note in notes:
         lines += paragraph(*note.split(": ", 1))
     lines += ["", report(mesh)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -53,10 +54,16 @@ def name_lifts(mesh: BrickMesh, num_levels: int, num_lifts: int) -> None:
         mesh.element_sets[f"LIFT{lift + 1}"] = members
 
 
-def construction_steps(building: Construction, joints: list[str], requests: list[str]) -> list[str]:
+def construction_steps(
+    building: Construction,
+    joints: list[str],
+    requests: list[str],
+    cooling: Callable[[int], list[str]] | None = None,
+) -> list[str]:
     """Cards of the steps from the first lift to the last grouting; the weight stays in all others.
 
-    `requests` are cards of output that the first step opens for all.
+    `requests` are cards of output that the first step opens for all; `cooling` gives the cards of
+    the step before a campaign of grouting.
     """
     later = [f"LIFT{k}" for k in range(2, building.num_lifts + 1)]
     first = ["*DLOAD", "DAM, GRAV, 9.81, 0., 0., -1.", *requests]
@@ -68,6 +75,7 @@ def construction_steps(building: Construction, joints: list[str], requests: list
         parts += static_step(f"LIFT{lift}", first if lift == 1 else added)
         if lift in building.grouted_after:
             number = building.grouted_after.index(lift) + 1
+            parts += cooling(number) if cooling else []
             pressure = f", PRESSURE={building.pressure:g}" if building.pressure else ""
             cards = [f"*GROUT, JOINT={name}{pressure}" for name in joints]
             parts += static_step(f"GROUT{number}", cards)
