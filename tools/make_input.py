@@ -50,7 +50,7 @@ DIFFERENT_MESH += " --fine 2 --fine-refine 3 --fine-thick 3"
 
 BUILT_MESH = "--arc 20 --levels 8 --bottom 4 --thick 3 --joints 4"
 BUILT = "--lifts 8 --grouting 4 8 --temperatures 1e-5 16 10 --seasons seasons.csv 16.5 0.5"
-BUILT_SHAKEN = "--duration 6 --picture-every 50 --histories"
+BUILT_SHAKEN = "--duration 5 --picture-every 50 --histories"
 SEASONS = "--air 10 14 --water 12 10 6 --level 105 --year 12 --start 9 --linear --no-picture"
 BUILT_NOTES = (
     "Shows: a dam that is built in eight lifts of free cantilevers, cooled and grouted in two "
@@ -61,7 +61,7 @@ BUILT_NOTES = (
     "Seasons (assumed): tools/make_temperature.py with air 10 degrees, amplitude 14, water of "
     "Zhu's formula with 12 and 10 at the surface, 6 at the bottom; straight through the thickness. "
     "Time of static steps: months in SEASONS, without a meaning in all others",
-    "Motion (assumed): the first 6 s of that of input/xingbiling_matching",
+    "Motion (assumed): the first 5 s of that of input/xingbiling_matching",
     "Damping (assumed): 5 % at 2 and 10 Hz, Rayleigh on the elastic stiffness",
     "Left out: creep, heat of hydration, uplift, water in winter lower than in summer",
     "Expect: README.md",

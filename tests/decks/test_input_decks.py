@@ -11,7 +11,7 @@ from keyway_tools.results import Results
 # User materials need --umat: tests/umat runs them. The meshes of Jinping are not kept.
 OTHERS = {"umat", "jinping"}
 # Decks that take longer than a minute.
-LONG = {"xingbiling", "xingbiling_matching", "xingbiling_different"}
+LONG = {"xingbiling", "xingbiling_matching", "xingbiling_different", "built_in_lifts"}
 DECKS = {
     p.stem: p
     for p in sorted((ROOT / "input").rglob("*.inp"))

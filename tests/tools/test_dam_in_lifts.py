@@ -9,6 +9,8 @@ from keyway_tools.results import Results
 from keyway_tools.study.deck_cards import read_deck
 from keyway_tools.study.mesh_sets import read_sets
 
+GROUTED = ["--lifts", "3", "--grouting", "1", "3"]
+WARM = [*GROUTED, "--temperatures", "1e-5", "16", "9"]
 SMALL = ["--arc", "14", "--levels", "6", "--bottom", "2", "--thick", "2"]
 
 
@@ -42,6 +44,24 @@ def test_steps_of_the_construction(tmp_path):
     assert [card.keyword for card in steps[5] if card.keyword == "RESERVOIR"]
 
 
+def test_steps_with_temperatures(tmp_path):
+    """Concrete is cooled before each campaign; the seasons come after the water."""
+    deck = make(tmp_path, *WARM, "--seasons", "field.csv", "12", "0.5")
+    steps = deck.steps()
+    names = [step[0].value("NAME") for step in steps]
+    assert names == [
+        "LIFT1", "COOL1", "GROUT1", "LIFT2", "LIFT3", "COOL2", "GROUT2", "WATER", "SEASONS"
+    ]  # fmt: skip
+    assert steps[1][-1].lines == ["UP_TO_GROUT1, 9"]
+    assert steps[8][1].lines == ["0.5, 12, , 0.5"]
+    assert steps[8][2].value("INPUT").endswith("FIELD.CSV")
+    assert [card.lines for card in deck.of("INITIAL CONDITIONS")] == [["UP_TO_CREST, 16"]]
+    assert [card.lines for card in deck.of("EXPANSION")] == [["1e-05"]]
+    sets = read_sets(deck)
+    assert sets.node_sets["UP_TO_GROUT1"] < sets.node_sets["UP_TO_GROUT2"]
+    assert sets.node_sets["UP_TO_GROUT2"] == sets.node_sets["UP_TO_CREST"]
+
+
 def test_the_header_says_how_the_dam_is_built(tmp_path):
     make(tmp_path, "--lifts", "3", "--grouting", "3")
     head = (tmp_path / "dam.inp").read_text().replace("\n**  ", "")
@@ -60,6 +80,11 @@ def test_the_header_says_how_the_dam_is_built(tmp_path):
         (["--grouting", "2"], "--grouting and --grout-pressure need --lifts"),
         (["--lifts", "3", "--grout-pressure", "1e5"], "--grout-pressure needs --grouting"),
         (["--lifts", "3", "--grouting", "3", "--grout-pressure", "-1"], "expected >= 0"),
+        (["--temperatures", "1e-5", "16", "9"], "--temperatures needs --lifts and --grouting"),
+        (["--seasons", "x.csv", "12", "1"], "--seasons needs --temperatures"),
+        ([*GROUTED, "--temperatures", "0", "16", "9"], "expansion: 0 1/K; expected > 0"),
+        ([*WARM, "--seasons", "x.csv", "12", "m"], "expected a file and two numbers"),
+        ([*WARM, "--seasons", "x.csv", "1", "2"], "expected 0 < increment <= duration"),
     ],
 )
 def test_constructions_that_cannot_be(tmp_path, capsys, options, message):
