@@ -197,11 +197,31 @@ contains
     do line = 1, min(the_card%num_lines, the_card%spec%most_lines)
       num_fields = the_card%num_fields(line)
       if (num_fields > num_columns .and. .not. the_card%spec%repeats_columns) then
-        call fault_further_columns(the_card, line, faults)
+        if (.not. has_one_temperature(the_card, line)) then
+          call fault_further_columns(the_card, line, faults)
+        else if (line == 1) then
+          call the_card%ignore(faults, 'the temperature has no effect')
+        end if
       end if
       call check_columns(the_card, line, faults)
     end do
   end subroutine check_lines
+
+  !> Whether the further fields are one temperature, the same in all lines.
+  pure logical function has_one_temperature(the_card, line) result(is_one)
+    type(card), intent(in) :: the_card
+    integer, intent(in) :: line !< data line
+    integer :: column, i
+    column = the_card%spec%temperature_column
+    is_one = the_card%num_fields(line) == column .and. the_card%is_real_at(line, column)
+    do i = size(the_card%spec%columns) + 1, column - 1
+      is_one = is_one .and. abs(the_card%real_at(line, i)) <= 0.0_rk
+    end do
+    do i = 1, the_card%num_lines
+      is_one = is_one .and. the_card%num_fields(i) == column .and. &
+               abs(the_card%real_at(i, column) - the_card%real_at(line, column)) <= 0.0_rk
+    end do
+  end function has_one_temperature
 
   !> Reports a line with more fields than columns, with the reason if the specification has one.
   subroutine fault_further_columns(the_card, line, faults)

@@ -61,6 +61,7 @@ module keyword_spec
     type(field), allocatable :: columns(:) !< of one data line
     logical :: repeats_columns = .false. !< a line may hold the columns several times
     character(:), allocatable :: no_further !< why further columns of other programs are refused
+    integer :: temperature_column = 0 !< of Abaqus, beyond the columns; one temperature is accepted
     logical :: checks_own_data = .false. !< the handler checks the data lines
     integer :: fewest_lines = 0, most_lines = huge(1) !< of data
     logical :: new_clears = .false. !< OP=NEW without data clears earlier data

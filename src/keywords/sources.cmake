@@ -21,7 +21,9 @@ set(sources
   contact/keywords_contact_law.f90
   contact/keywords_contact_pair.f90
   deck_echo.f90
+  draft/enter_load.f90
   draft/keyword_handler.f90
+  draft/keywords_other.f90
   draft/model_draft.f90
   draft/named_things.f90
   finish_model.f90
@@ -41,7 +43,6 @@ set(sources
   joints/keywords_tie.f90
   keyword_catalogue.f90
   loads/dload_labels.f90
-  loads/enter_load.f90
   loads/finish_uplift.f90
   loads/keywords_base_motion.f90
   loads/keywords_loads.f90
@@ -79,10 +80,10 @@ set(sources
   steps/keywords_controls.f90
   steps/keywords_initial.f90
   steps/keywords_restart.f90
-  steps/keywords_other.f90
   steps/keywords_output.f90
   steps/keywords_print.f90
   steps/keywords_step.f90
+  steps/moved_supports.f90
   steps/record_units.f90
   verify_blocks.f90
   verify_model.f90

@@ -4,7 +4,7 @@ module assembly_structure
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use instance_placement, only: placement, read_placement
-  use keyword_spec, only: find_spec, keyword
+  use keyword_spec, only: available, find_spec, keyword
   use nearest_words, only: nearest_word
   use parse_text, only: without_blanks
   implicit none
@@ -79,9 +79,9 @@ contains
         call check_card(cards(i), specs(find_spec(specs, cards(i)%keyword)), faults, is_right)
         if (is_right) call read_structural(cards, i, structure, faults)
       else if (structure%part > 0) then
-        call check_part_card(cards(i), 'a part', faults)
+        call check_part_card(cards(i), specs, 'a part', faults)
       else
-        if (structure%instance > 0) call check_part_card(cards(i), 'an instance', faults)
+        if (structure%instance > 0) call check_part_card(cards(i), specs, 'an instance', faults)
         call append_card(structure, i, merge(size(structure%instances), 1, &
                                              structure%instance > 0), .false.)
       end if
@@ -90,10 +90,15 @@ contains
   end subroutine find_structure
 
   !> Parts and instances hold meshes and sections only.
-  subroutine check_part_card(this, where_it_stands, faults)
+  subroutine check_part_card(this, specs, where_it_stands, faults)
     type(card), intent(in) :: this
+    type(keyword), intent(in) :: specs(:)
     character(*), intent(in) :: where_it_stands
     type(diagnostic_list), intent(inout) :: faults
+    integer :: found
+    found = find_spec(specs, this%keyword)
+    if (found == 0) return ! reported when the card is checked
+    if (specs(found)%status /= available) return
     if (index(in_parts, ' | '//without_blanks(this%keyword)//' | ') > 0) return
     call this%fault(faults, 'the keyword is in '//where_it_stands, '*NODE, *ELEMENT, *NSET, '// &
                     '*ELSET, *SURFACE or *SOLID SECTION there; the others after *END ASSEMBLY')

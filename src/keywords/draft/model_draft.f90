@@ -21,6 +21,7 @@ module model_draft
   public :: draft, add_guest, add_law, add_load, origin
   public :: section_request, law_request, joint_request, tie_request, interface_request
   public :: interaction_request, law_of_joint
+  public :: moved_direction
   public :: material_request, find_material_request, has_request
 
   !> Place of a definition: a card of the deck and one of its data lines (0: the keyword line).
@@ -88,6 +89,14 @@ module model_draft
     type(origin) :: spot
   end type interface_request
 
+  !> *BOUNDARY, TYPE=ACCELERATION in one direction.
+  type :: moved_direction
+    logical, allocatable :: moves(:) !< (nodes) has the acceleration
+    real(rk) :: value = 0.0_rk !< factor of the amplitude
+    integer :: history = 0 !< amplitude
+    type(origin) :: spot
+  end type moved_direction
+
   !> What the keywords of one law say of a material, for a law that is made when the whole deck is
   !> read. A family of keywords extends the type by what it collects.
   type, abstract :: material_request
@@ -137,6 +146,7 @@ module model_draft
     integer, allocatable :: procedure_card(:) !< card of the procedure of each step
     integer :: current_procedure = 0 !< card of the procedure of the step being read
     real(rk) :: total_time = 0.0_rk !< at the start of the step [s]
+    type(moved_direction) :: moved(3) !< accelerations of supports in this step
     logical :: has_new_output = .false. !< *NODE FILE or a similar keyword in this step
     integer :: output_frequency = 1 !< of the last *OUTPUT
     logical :: output_is_history = .false. !< the last *OUTPUT opened histories

@@ -16,7 +16,7 @@ module dload_labels
   implicit none
   private
   public :: dload_label, num_labels, list_labels, find_label, choices_of_labels, labels_in_words, &
-            meaning_of_labels, elements_in_words
+            meaning_of_labels, elements_in_words, pattern_of
 
   type :: dload_label
     character(:), allocatable :: name !< without the number of a face

@@ -4,7 +4,7 @@ module keywords_loads
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use dload_labels, only: choices_of_labels, dload_label, find_label, labels_in_words, &
-                          list_labels, meaning_of_labels, num_labels
+                          list_labels, meaning_of_labels, num_labels, pattern_of
   use element_catalogue, only: is_solid
   use enter_load, only: put_load
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real, kind_reference, &
@@ -182,12 +182,16 @@ contains
     type(keyword), intent(out) :: spec
     call add_load_parameters(spec)
     spec%name = 'DSLOAD'
-    spec%meaning = 'Pressure on a surface, positive towards the solid.'
-    spec%example = '*DSLOAD, AMPLITUDE=FILLING'//nl//'UPSTREAM, P, 1e5'
+    spec%meaning = 'Pressure on a surface, positive towards the solid: P, uniform; HP, p, '// &
+                   'z_top, z_ref: hydrostatic along axis 3, zero at z_top and above, p at z_ref.'
+    spec%example = '*DSLOAD, AMPLITUDE=FILLING'//nl//'UPSTREAM, P, 1e5'//nl// &
+                   'UPSTREAM, HP, 1.03e6, 105., 0.'
     allocate (spec%columns, source=[ &
               field('surface', kind_word, 'name of a surface', is_required=.true.), &
-              field('label', kind_choice, 'what acts', is_required=.true., choices='P'), &
-              field('magnitude', kind_real, 'pressure', 'Pa', is_required=.true.)])
+              field('label', kind_choice, 'what acts', is_required=.true., choices='P | HP'), &
+              field('magnitude', kind_real, 'pressure', 'Pa', is_required=.true.), &
+              field('z_top', kind_real, 'HP: height of pressure zero', 'm'), &
+              field('z_ref', kind_real, 'HP: height of the pressure given', 'm')])
   end subroutine describe_dsload
 
   subroutine read_dsload(this, model, faults)
@@ -205,9 +209,36 @@ contains
       call find_surface_at(this, line, model, faults, found)
       if (found == 0) cycle
       push%faces = model%problem%surfaces(found)
+      call read_variation(this, line, push, faults)
       allocate (item, source=push)
       call put_load(model, item, 'pressure '//this%word_at(line, 1), 'DSLOAD', &
-                    this%word_at(line, 1), '', this%real_at(line, 3), history)
+                    this%word_at(line, 1)//trim(merge(' HP', '   ', push%is_hydrostatic)), &
+                    pattern_of([push%top, push%reference]), this%real_at(line, 3), history)
     end do
   end subroutine read_dsload
+
+  !> Heights of a hydrostatic pressure.
+  subroutine read_variation(this, line, push, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line
+    type(pressure_load), intent(inout) :: push
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i
+    push%is_hydrostatic = this%word_at(line, 2) == 'HP'
+    push%top = this%real_at(line, 4)
+    push%reference = this%real_at(line, 5)
+    if (.not. push%is_hydrostatic) then
+      if (this%num_fields(line) > 3) call this%fault_at(faults, line, 4, 'too many numbers', &
+                                                        'surface, P, a pressure [Pa]')
+      return
+    end if
+    do i = 4, 5
+      if (.not. this%is_empty_at(line, i)) cycle
+      call this%fault_at(faults, line, i, 'a height is missing', 'p [Pa], z_top, z_ref [m]')
+      return
+    end do
+    if (push%reference >= push%top) call this%fault_at(faults, line, 5, "found '"// &
+                                                       this%text_at(line, 5)//"'", &
+                                                       'z_ref below z_top')
+  end subroutine read_variation
 end module keywords_loads

@@ -40,6 +40,7 @@ contains
     spec%fewest_lines = 1
     spec%most_lines = 1
     spec%no_further = no_dependencies
+    spec%temperature_column = 6
     allocate (spec%parameters, source=[ &
               field('RECOVERY', kind_choice, 'fraction of tension in a stress state (r of Eq. '// &
                     '17): the continuous weight of Lee and Fenves, '// &

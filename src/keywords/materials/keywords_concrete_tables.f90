@@ -37,6 +37,7 @@ contains
     spec%place = 'material'
     spec%fewest_lines = 1
     spec%no_further = no_dependencies
+    spec%temperature_column = 3
     allocate (spec%columns, source=[ordinate, abscissa])
   end subroutine describe_table
 
@@ -64,6 +65,7 @@ contains
                                     lowest=0.0_rk), &
                         field('strain', kind_real, 'inelastic strain eps - sigma/E', &
                               is_required=.true., lowest=0.0_rk))
+    spec%temperature_column = 4 ! below a rate
     allocate (spec%parameters(0))
   end subroutine describe_hardening
 
@@ -105,6 +107,7 @@ contains
                         field('abscissa', kind_real, 'cracking strain eps - sigma/E, opening '// &
                               '[m] with DISPLACEMENT, G_f [N/m] with GFI', &
                               is_required=.true., lowest=0.0_rk))
+    spec%temperature_column = 4 ! below a rate
   end subroutine describe_stiffening
 
   subroutine read_stiffening(this, model, faults)

@@ -29,6 +29,7 @@ contains
     spec%example = '*ELASTIC'//nl//'22e9, 0.167'
     spec%fewest_lines = 1
     spec%most_lines = 1
+    spec%temperature_column = 3
     allocate (spec%parameters, source=[ &
               field('TYPE', kind_choice, 'kind of elasticity', default='ISOTROPIC', &
                     choices='ISOTROPIC | ISO')])

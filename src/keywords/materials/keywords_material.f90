@@ -60,6 +60,7 @@ contains
     spec%example = '*DENSITY'//nl//'2400.'
     spec%fewest_lines = 1
     spec%most_lines = 1
+    spec%temperature_column = 2
     allocate (spec%columns, source=[ &
               field('density', kind_real, 'mass per volume', 'kg/m3', is_required=.true., &
                     lowest=0.0_rk)])

@@ -30,7 +30,8 @@ contains
               field('ELSET', kind_word, 'the elements', is_required=.true.), &
               field('MATERIAL', kind_word, 'their material', is_required=.true.), &
               field('MASS', kind_choice, 'mass matrix', default='CONSISTENT', &
-                    choices='CONSISTENT | LUMPED')])
+                    choices='CONSISTENT | LUMPED'), &
+              field('CONTROLS', kind_word, 'of Abaqus', has_no_effect=.true.)])
     allocate (spec%columns, source=[ &
               field('thickness', kind_real, 'thickness, not used for solids')])
   end subroutine describe_solid_section

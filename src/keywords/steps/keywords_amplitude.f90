@@ -41,7 +41,9 @@ contains
               field('UNIT', kind_choice, 'unit of a record of acceleration, which is turned '// &
                     'into m/s2; without UNIT values stay as they are, but an AT2 file is '// &
                     'turned by the unit that its header names', choices=choices_of_units), &
-              field('SCALE', kind_real, 'factor of all values', '', '1')])
+              field('SCALE', kind_real, 'factor of all values', '', '1'), &
+              field('DEFINITION', kind_choice, 'of Abaqus', default='TABULAR', choices='TABULAR'), &
+              field('VALUE', kind_choice, 'of Abaqus', default='RELATIVE', choices='RELATIVE')])
     allocate (spec%columns, source=[ &
               field('time', kind_real, 'time (or, with VALUES, a value)', 's'), &
               field('value', kind_real, 'value at that time')])

@@ -7,6 +7,7 @@ module keywords_boundary
   use kinds, only: rk
   use model_draft, only: draft
   use named_things, only: find_amplitude, nodes_at
+  use moved_supports, only: note_acceleration
   use nearest_words, only: nearest_choice
   use write_text, only: as_text
   implicit none
@@ -34,7 +35,10 @@ contains
     allocate (spec%parameters, source=[ &
               field('OP', kind_choice, 'keep supports of earlier steps, or remove them', &
                     default='MOD', choices='MOD | NEW'), &
-              field('AMPLITUDE', kind_word, 'history of the values')])
+              field('AMPLITUDE', kind_word, 'history of the values'), &
+              field('TYPE', kind_choice, 'what is prescribed; ACCELERATION of all supports of '// &
+                    'a direction is the motion of the base, results are relative to it', &
+                    default='DISPLACEMENT', choices='DISPLACEMENT | ACCELERATION')])
     allocate (spec%columns, source=[ &
               field('node', kind_reference, 'the nodes', &
                     is_required=.true.), &
@@ -53,17 +57,37 @@ contains
     integer :: line, dof, first, last, history
     real(rk) :: value
     call find_amplitude(this, model, faults, history)
+    if (this%word('TYPE') == 'ACCELERATION') call check_acceleration(this, model, faults)
     if (this%word('OP') == 'NEW') call model%supports%clear_old()
     do line = 1, this%num_lines
       call nodes_at(this, line, 1, model, faults, nodes)
       call read_dofs(this, line, faults, first, last)
       call read_value(this, line, model%is_in_step, faults, value)
+      if (this%word('TYPE') == 'ACCELERATION') then
+        do dof = first, last
+          call note_acceleration(this, line, nodes, dof, value, history, model, faults)
+        end do
+        cycle
+      end if
       call warn_of_second_value(this, line, nodes, [first, last], value, history, model, faults)
       do dof = first, last
         call model%supports%put(nodes, dof, value, history)
       end do
     end do
   end subroutine read_boundary
+
+  !> An acceleration has a history and belongs to a step.
+  subroutine check_acceleration(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    if (.not. this%has('AMPLITUDE')) then
+      call this%fault_parameter(faults, 'TYPE', 'an acceleration without a history', 'AMPLITUDE')
+    else if (.not. model%is_in_step) then
+      call this%fault_parameter(faults, 'TYPE', 'an acceleration before the first step', &
+                                'a step *DYNAMIC')
+    end if
+  end subroutine check_acceleration
 
   !> Of two displacements of a degree of freedom in one step the last acts.
   subroutine warn_of_second_value(this, line, nodes, dofs, value, history, model, faults)
@@ -98,7 +122,7 @@ contains
     integer, intent(in) :: line
     type(diagnostic_list), intent(inout) :: faults
     integer, intent(out) :: first, last
-    integer :: i
+    integer :: i, highest
     first = 1
     last = 0
     if (this%num_fields(line) > 4) then
@@ -108,9 +132,11 @@ contains
       call read_support_name(this, line, faults, first, last)
       return
     end if
+    highest = 3
+    if (abs(this%real_at(line, 4)) <= 0.0_rk .and. this%integer_at(line, 3) > 3) highest = 6
     do i = 2, 3
       if (i == 3 .and. this%is_empty_at(line, i)) cycle
-      if (this%integer_at(line, i) >= 1 .and. this%integer_at(line, i) <= 3) cycle
+      if (this%integer_at(line, i) >= 1 .and. this%integer_at(line, i) <= highest) cycle
       call this%fault_at(faults, line, i, "found '"//this%text_at(line, i)//"'", &
                          'a degree of freedom, 1 to 3 (solids have no rotations)')
       return
@@ -122,6 +148,8 @@ contains
       call this%fault_at(faults, line, 3, 'the last dof is below the first', &
                          'first dof <= last dof')
     end if
+    if (last > 3) call this%ignore(faults, 'dof 4 to 6 have no effect: solids have no rotations')
+    last = min(last, 3)
   end subroutine read_dofs
 
   subroutine read_support_name(this, line, faults, first, last)

@@ -7,7 +7,9 @@ module keywords_step
   use finish_step, only: close_step, open_step
   use integrator_catalogue, only: list_procedures, list_schemes, procedure_named
   use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, kind_real, kind_word
+  use keywords_other, only: add_idle_parameters
   use kinds, only: rk
+  use moved_supports, only: close_accelerations
   use model_draft, only: draft
   use step_plan, only: step_procedure
   use write_text, only: as_text
@@ -34,9 +36,12 @@ contains
     allocate (spec%parameters, source=[ &
               field('NAME', kind_word, 'name of the step', default='STEP-<number>'), &
               field('INC', kind_integer, 'largest number of increments', default='100000'), &
-              field('NLGEOM', kind_choice, 'geometric nonlinearity: strains and '// &
-                    'rotations are small', choices='NO')])
+              field('NLGEOM', kind_choice, 'geometric nonlinearity: strains and rotations are '// &
+                    'small; YES needs --small-strain', choices='NO | YES', may_be_bare=.true.), &
+              field('PERTURBATION', kind_flag, 'of Abaqus: a step *FREQUENCY')])
     spec%parameters(2)%lowest = 1
+    call add_idle_parameters(spec, [character(13) :: 'UNSYMM', 'SOLVER', 'EXTRAPOLATION', &
+                                    'CONVERT SDI'])
   end subroutine describe_step
 
   subroutine read_step(this, model, faults)
@@ -54,7 +59,24 @@ contains
     end if
     if (this%has('NAME')) model%now%name = this%word('NAME')
     model%now%max_increments = this%integer('INC')
+    if (this%has('NLGEOM') .and. this%word('NLGEOM') /= 'NO') then
+      call judge_large_strain(this, model, faults)
+    end if
   end subroutine read_step
+
+  !> NLGEOM=YES: large strains are not available; the user may ask for small strains.
+  subroutine judge_large_strain(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    if (model%options%takes_small_strain) then
+      call this%warn(faults, 'strains and rotations are small (--small-strain): NLGEOM=YES has '// &
+                     'no effect')
+    else
+      call this%fault_parameter(faults, 'NLGEOM', 'large strains and rotations are not available', &
+                                'NLGEOM=NO, or the option --small-strain if they are small')
+    end if
+  end subroutine judge_large_strain
 
   subroutine describe_end_step(spec)
     type(keyword), intent(out) :: spec
@@ -74,10 +96,23 @@ contains
       call this%fault(faults, 'the step has no procedure', list_procedures()//' in the step')
     end if
     call check_base_motion(model, faults)
+    call check_perturbation(model, faults)
+    call close_accelerations(model, faults)
     call check_joint_forces(model, faults)
     call set_accuracy_limits(model, faults)
     call close_step(model)
   end subroutine read_end_step
+
+  !> Linear perturbations about a state are *FREQUENCY alone.
+  subroutine check_perturbation(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    associate (opened => model%cards(model%step_origin%card), name => model%now%procedure%name)
+      if (.not. opened%has('PERTURBATION') .or. name == 'FREQUENCY' .or. name == '') return
+      call opened%fault_parameter(faults, 'PERTURBATION', 'PERTURBATION goes with *FREQUENCY', &
+                                  'a step without PERTURBATION for *'//trim(name))
+    end associate
+  end subroutine check_perturbation
 
   !> Only a dynamic step has the inertia that the motion of the base acts on.
   subroutine check_base_motion(model, faults)
@@ -123,7 +158,8 @@ contains
               field('smallest', kind_real, 'smallest increment', 's', &
                     '1e-5 of the duration, at most 1e-3 of the first increment'), &
               field('largest', kind_real, 'largest increment', 's', 'the duration')])
-    call want_positive(spec)
+    spec%columns%lowest = 0.0_rk ! 0 is the default, as in CalculiX
+    call add_idle_parameters(spec, ['SOLVER'])
   end subroutine describe_static
 
   subroutine want_positive(spec)
@@ -182,6 +218,8 @@ contains
                     '1e-3 of the increment'), &
               field('largest', kind_real, 'largest increment', 's', 'the increment')])
     call want_positive(spec)
+    call add_idle_parameters(spec, [character(20) :: 'SOLVER', 'NOHAF', 'HAFTOL', &
+                                    'HALFINC SCALE FACTOR'])
   end subroutine describe_dynamic
 
   subroutine read_dynamic(this, model, faults)
@@ -241,7 +279,14 @@ contains
     spec%most_lines = 1
     allocate (spec%columns, source=[ &
               field('modes', kind_integer, 'number of modes', is_required=.true., &
-                    lowest=1.0_rk)])
+                    lowest=1.0_rk), &
+              field('lower bound', kind_real, 'of other programs, no effect', 'Hz'), &
+              field('upper bound', kind_real, 'of other programs, no effect', 'Hz'), &
+              field('shift', kind_real, 'of other programs, no effect'), &
+              field('block size', kind_real, 'of other programs, no effect'), &
+              field('block steps', kind_real, 'of other programs, no effect')])
+    call add_idle_parameters(spec, [character(17) :: 'SOLVER', 'STORAGE', 'EIGENSOLVER', 'SIM', &
+                                    'NORMALIZATION', 'ACOUSTIC COUPLING'])
   end subroutine describe_frequency
 
   subroutine read_frequency(this, model, faults)
@@ -250,6 +295,10 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     call begin_procedure(this, 'FREQUENCY', model, faults)
     model%now%num_modes = this%integer_at(1, 1)
+    if (this%num_fields(1) > 1) then
+      call this%warn_at(faults, 1, 2, 'bounds and further numbers have no effect: the lowest '// &
+                        'modes are computed')
+    end if
     model%now%duration = 0.0_rk
   end subroutine read_frequency
 
@@ -277,7 +326,7 @@ contains
     type(card), intent(in) :: this
     integer, intent(in) :: field
     is_given = .false.
-    if (this%num_lines > 0) is_given = .not. this%is_empty_at(1, field)
+    if (this%num_lines > 0) is_given = this%real_at(1, field) > 0.0_rk
   end function is_given
 
   !> Smallest and largest increment, and whether all sizes agree.

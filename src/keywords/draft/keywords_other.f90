@@ -15,10 +15,6 @@ contains
     character(*), parameter :: family = 'other programs'
     call add_later(list, 'MPC', family, 'model', 'Constraints between nodes.')
     call add_later(list, 'EQUATION', family, 'model', 'Linear equations between displacements.')
-    call add_later(list, 'PLASTIC', family, 'material', 'Metal plasticity.')
-    call add_later(list, 'PARAMETER', family, 'model', 'Names for numbers of the deck.')
-    call add_later(list, 'TRANSFORM', family, 'model', 'Axes of nodes.')
-    call add_later(list, 'ORIENTATION', family, 'model', 'Axes of a material.')
   end subroutine add_later_keywords
 
   !> Keywords of Abaqus and CalculiX that are refused, with what to take instead.
@@ -45,6 +41,13 @@ contains
                      '*DSLOAD or *DLOAD on the surface')
     call add_refused(list, 'DISTRIBUTING', 'Distributes the load of a node.', &
                      '*DSLOAD or *DLOAD on the surface')
+    call add_refused(list, 'PLASTIC', 'Metal plasticity.', 'a UMAT, *USER MATERIAL, for metals')
+    call add_refused(list, 'PARAMETER', 'Names for numbers of the deck.', &
+                     'numbers in place of the names')
+    call add_refused(list, 'TRANSFORM', 'Axes of nodes.', 'supports and forces along the '// &
+                     'global axes; an *INSTANCE can turn the model')
+    call add_refused(list, 'ORIENTATION', 'Axes of a material.', 'a deck without it: '// &
+                     'materials are the same in all directions')
   end subroutine add_refused_keywords
 
   subroutine add_refused(list, name, meaning, way_out)
@@ -87,6 +90,7 @@ contains
     call add_ignored(list, 'INCREMENTATION OUTPUT', 'Data of increments. They are in job.log.')
     call add_ignored(list, 'MODAL OUTPUT', 'Data of modes. They are in job.json.')
     call add_ignored(list, 'MODAL FILE', 'Data of modes. They are in job.json.')
+    call add_ignored(list, 'SECTION CONTROLS', 'Hourglass control of Abaqus; C3D8R has its own.')
     call add_ignored(list, 'MONITOR', 'Watches one degree of freedom.')
     call add_ignored(list, 'PRINT', 'Chooses what Abaqus prints while it runs.')
     call add_ignored(list, 'FILE FORMAT', 'Format of the results file of Abaqus.')
