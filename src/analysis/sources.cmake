@@ -15,6 +15,7 @@ set(sources
   integrators/static_integrator.f90
   modes/eigen_modes.f90
   modes/modal_damping.f90
+  modes/opening_error.f90
   modes/time_error.f90
   reduced/reduced_basis.f90
   reduced/reduced_energy.f90
@@ -43,6 +44,7 @@ set(sources
   state/dual_solutions.f90
   state/guest_histories.f90
   state/increment_listener.f90
+  state/modal_errors.f90
   state/motion_archive.f90
   state/state_archive.f90
   state/state_transfer.f90

@@ -12,7 +12,7 @@ module result_files
   use analysis_state, only: state, vibration_mode
   use increment_listener, only: listener
   use run_progress, only: progress_clock
-  use dual_solutions, only: of_displacement
+  use dual_solutions, only: of_displacement, of_opening
   use goal_errors, only: note_duals, note_time_error
   use run_records, only: run_record
   use run_summaries, only: run_summary
@@ -160,6 +160,7 @@ contains
     call self%costs%start('recover', 'extremes', 'output')
     call self%record%note(model, now, self%costs)
     call note_time_error(self%time_error, self%record%goals(of_displacement))
+    call note_time_error(self%opening_error, self%record%goals(of_opening))
     call note_duals(model, now, self%costs, self%duals, self%record%stresses, self%record%goals)
     self%has_unwritten_envelopes = size(self%record%active) > 0
     call self%summary%note(now)

@@ -11,6 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 STATE = "src/analysis/state/analysis_state.f90"
+MODAL_ERRORS = "src/analysis/state/modal_errors.f90"
 STATE_ARCHIVE = "src/analysis/state/state_archive.f90"
 MOTION_ARCHIVE = "src/analysis/state/motion_archive.f90"
 RECORD_ARCHIVE = "src/results/record/record_archive.f90"
@@ -69,6 +70,7 @@ TYPES = (
     of_state("modal_motion", STATE, "modal", MOTION_ARCHIVE),
     of_state("reduction_status", STATE, "reduction"),
     of_state("time_accuracy", STATE, "accuracy"),
+    of_state("modal_error", MODAL_ERRORS, "timing", MODAL_ERRORS),
     of_state("last_matrix", STATE, "matrix"),
     of_state("increment_control", "src/analysis/state/step_control.f90", "control"),
     of_state(

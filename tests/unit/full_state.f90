@@ -8,6 +8,7 @@ module full_state
   use joint_law, only: joint_state
   use material_points, only: point_state
   use thermal_strains, only: heat_field
+  use modal_errors, only: modal_error
   implicit none
   private
   public :: make_full_state
@@ -82,6 +83,7 @@ contains
     call fill_control(status%control, n)
     call fill_reduction(status%reduction, n)
     call fill_accuracy(status%accuracy, n)
+    call fill_timing(status%timing, n)
   end subroutine fill_status
 
   !> Energies.
@@ -102,6 +104,26 @@ contains
     call fill(energy%error, n)
     call fill(energy%largest, n)
   end subroutine fill_energy
+
+  !> Error in time as modes show it.
+  subroutine fill_timing(timing, n)
+    type(modal_error), intent(inout) :: timing
+    integer, intent(inout) :: n
+    allocate (timing%exact(2), timing%rate(2), timing%drive(2), timing%error(2))
+    allocate (timing%square(2, 2), timing%product(2), timing%at_most(2))
+    call fill(timing%exact, n)
+    call fill(timing%rate, n)
+    call fill(timing%drive, n)
+    call fill(timing%error, n)
+    call fill(timing%most, n)
+    call fill(timing%motion, n)
+    call fill(timing%largest, n)
+    call fill(timing%at_largest, n)
+    call fill(timing%square, n)
+    call fill(timing%product, n)
+    call fill(timing%at_most, n)
+    call fill(timing%opening, n)
+  end subroutine fill_timing
 
   !> Error in time.
   subroutine fill_accuracy(accuracy, n)

@@ -8,6 +8,7 @@ module same_states
   use guest_history, only: history_slot
   use joint_law, only: joint_state
   use material_points, only: point_state
+  use modal_errors, only: modal_error
   use testing, only: test_log, check
   implicit none
   private
@@ -90,6 +91,7 @@ contains
     call compare_control(log, what//'control%', a%control, b%control)
     call compare_reduction(log, what//'reduction%', a%reduction, b%reduction)
     call compare_accuracy(log, what//'accuracy%', a%accuracy, b%accuracy)
+    call compare_timing(log, what//'timing%', a%timing, b%timing)
   end subroutine compare_status
 
   !> Energies.
@@ -111,6 +113,25 @@ contains
     call compare(log, what//'error', a%error, b%error)
     call compare(log, what//'largest', a%largest, b%largest)
   end subroutine compare_energy
+
+  !> Error in time as modes show it.
+  subroutine compare_timing(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    type(modal_error), intent(in) :: a, b
+    call compare(log, what//'exact', a%exact, b%exact)
+    call compare(log, what//'rate', a%rate, b%rate)
+    call compare(log, what//'drive', a%drive, b%drive)
+    call compare(log, what//'error', a%error, b%error)
+    call compare(log, what//'most', a%most, b%most)
+    call compare(log, what//'motion', a%motion, b%motion)
+    call compare(log, what//'largest', a%largest, b%largest)
+    call compare(log, what//'at_largest', a%at_largest, b%at_largest)
+    call compare(log, what//'square', a%square, b%square)
+    call compare(log, what//'product', a%product, b%product)
+    call compare(log, what//'at_most', a%at_most, b%at_most)
+    call compare(log, what//'opening', a%opening, b%opening)
+  end subroutine compare_timing
 
   !> Error in time.
   subroutine compare_accuracy(log, what, a, b)

@@ -22,8 +22,9 @@ module hht_integrator
   use energy_account, only: add_dynamic_work
   use solid_iteration, only: solid_solver
   use state_transfer, only: store_motion
-  use time_error, only: error_modes, is_worth_its_cost, make_error_modes, modal_error, &
-                        note_largest, start_modal_error, take_modal_error
+  use opening_error, only: error_of_opening, note_opening
+  use time_error, only: error_modes, is_worth_its_cost, make_error_modes, note_largest, &
+                        start_modal_error, take_modal_error
   use integrator_type, only: integrator
   implicit none
   private
@@ -34,7 +35,6 @@ module hht_integrator
     type(solver_shelf) :: shelf !< solvers of other sizes, with *CONTROLS, ACCURACY
     logical :: has_active_part = .false. !< solves are repeated for the unknowns of inelastic solids
     type(error_modes) :: modes !< of the estimate of the error in time; empty without it
-    type(modal_error) :: time_error !< of the last converged increment
   contains
     procedure :: open_step
     procedure :: start_increment
@@ -76,13 +76,12 @@ contains
     if (allocated(error)) return
     call start_rates(self%system, now)
     self%has_active_part = self%solids%has_inelastic() .and. .not. has_histories(now%guests)
-    ! A run that goes on within the step has lost the exact motion: it makes no estimate.
-    if (now%increment > 0 .or. .not. is_worth_its_cost(plan)) return
     if (self%solids%has_inelastic() .or. .not. plan%controls%estimates_errors) return
+    if (.not. is_worth_its_cost(plan)) return
     call results%costs%start('estimate', 'time', 'output')
     call make_error_modes(model, self%system, self%solids%solver, self%modes)
     if (allocated(self%modes%square)) then
-      call start_modal_error(self%modes, now%motion, self%time_error)
+      call start_modal_error(self%modes, now%motion, now%timing)
     end if
     call results%costs%stop()
   end subroutine open_step
@@ -95,15 +94,18 @@ contains
     type(state), intent(inout) :: now
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
-    type(modal_error) :: next
+    real(rk), allocatable :: moved(:)
     call store_motion(self%system%numbers, now)
     if (.not. allocated(self%modes%square)) return
     call results%costs%start('estimate', 'time', 'output')
-    call take_modal_error(self%modes, self%scheme%dt, now%motion, self%time_error, next)
-    call note_largest(self%system%numbers, self%modes, now%u, next)
-    self%time_error = next
-    associate (own => self%time_error)
+    associate (own => now%timing)
+      call take_modal_error(self%modes, self%scheme%dt, now%motion, own, moved)
+      call note_largest(self%system%numbers, self%modes, now%u, own)
       results%time_error = [own%largest, own%at_largest, own%most/max(tiny(1.0_rk), own%motion)]
+      if (size(now%joints) > 0) then
+        call note_opening(now%joints, now%motion%jump_rate, self%scheme%dt, moved, own)
+        results%opening_error = error_of_opening(own)
+      end if
     end associate
     call results%costs%stop()
   end subroutine store_state

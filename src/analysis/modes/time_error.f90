@@ -9,13 +9,14 @@ module time_error
   use global_vectors, only: multiply
   use joint_forces, only: reference_stiffness
   use joint_iteration, only: closed_tangent
+  use modal_errors, only: modal_error
   use problem_definition, only: problem
   use dof_numbering, only: numbering
   use step_plan, only: step
   use step_system, only: dam_system
   implicit none
   private
-  public :: error_modes, modal_error, make_error_modes, start_modal_error, take_modal_error
+  public :: error_modes, make_error_modes, start_modal_error, take_modal_error
   public :: note_largest, is_worth_its_cost
 
   integer, parameter :: most_modes = 10
@@ -32,17 +33,6 @@ module time_error
     real(rk), allocatable :: square(:) !< (modes) squared circular frequencies [1/s2]
     real(rk), allocatable :: damping(:) !< (modes) 2 zeta omega [1/s]
   end type error_modes
-
-  !> The motion of the modes as exact integration gives it, and the error of the run.
-  type :: modal_error
-    real(rk), allocatable :: exact(:), rate(:) !< (modes) displacement and velocity now
-    real(rk), allocatable :: drive(:) !< (modes) force per mass now
-    real(rk), allocatable :: error(:) !< (modes) displacement of the run less the exact one
-    real(rk) :: most = 0.0_rk !< largest norm of the errors so far
-    real(rk) :: motion = 0.0_rk !< largest norm of the modal displacements so far
-    real(rk) :: largest = 0.0_rk !< displacement so far [m]
-    real(rk) :: at_largest = 0.0_rk !< its error [m]
-  end type modal_error
 
 contains
 
@@ -75,6 +65,7 @@ contains
       if (allocated(modes%square)) deallocate (modes%square)
       return
     end if
+    call point_upwards(modes%shape)
     modes%own = modes%shape(modes%massive, :)
     allocate (modes%inertia, mold=modes%own)
     allocate (modes%damping(num_modes))
@@ -90,6 +81,17 @@ contains
       end do
     end associate
   end subroutine make_error_modes
+
+  !> Gives the largest entry of each mode a positive sign: a continued run finds the same modes.
+  pure subroutine point_upwards(shape)
+    real(rk), intent(inout) :: shape(:, :) !< (num_free, modes)
+    integer :: k
+    do k = 1, size(shape, 2)
+      associate (own => shape(:, k))
+        own = sign(1.0_rk, own(maxloc(abs(own), dim=1)))*own
+      end associate
+    end do
+  end subroutine point_upwards
 
   !> The exact motion starts with that of the run.
   subroutine start_modal_error(modes, moving, own)
@@ -127,25 +129,25 @@ contains
   end subroutine drive_modes
 
   !> The exact motion over an increment in which the forces change linearly.
-  subroutine take_modal_error(modes, dt, after, old, new)
+  subroutine take_modal_error(modes, dt, after, own, moved)
     type(error_modes), intent(in) :: modes
     real(rk), intent(in) :: dt !< [s]
     type(motion), intent(in) :: after !< at the end of the increment
-    type(modal_error), intent(in) :: old
-    type(modal_error), intent(out) :: new
-    real(rk), allocatable :: q(:), rate(:)
+    type(modal_error), intent(inout) :: own
+    real(rk), allocatable, intent(out) :: moved(:) !< (modes) displacement of the increment
+    real(rk), dimension(size(modes%square)) :: q, rate, drive
     integer :: k
-    new = old
-    allocate (rate(size(modes%square)))
     q = displacement_of(modes, after)
-    call drive_modes(modes, after, q, rate, new%drive)
+    moved = q - own%exact - own%error
+    call drive_modes(modes, after, q, rate, drive)
     do k = 1, size(q)
-      call advance_oscillator(modes%square(k), modes%damping(k), dt, &
-                              [old%drive(k), new%drive(k)], new%exact(k), new%rate(k))
+      call advance_oscillator(modes%square(k), modes%damping(k), dt, [own%drive(k), drive(k)], &
+                              own%exact(k), own%rate(k))
     end do
-    new%error = q - new%exact
-    new%motion = max(new%motion, norm2(q))
-    new%most = max(new%most, norm2(new%error))
+    own%drive = drive
+    own%error = q - own%exact
+    own%motion = max(own%motion, norm2(q))
+    own%most = max(own%most, norm2(own%error))
   end subroutine take_modal_error
 
   !> x'' + c x' + w2 x = p0 + (p1 - p0) t/dt from 0 to dt, exactly: a + b t and a free vibration.

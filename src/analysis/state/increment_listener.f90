@@ -19,6 +19,9 @@ module increment_listener
     !> Largest displacement of a dynamic step so far [m], its error in time [m], and the error of
     !> histories over the largest motion; zero where the step makes no estimate
     real(rk) :: time_error(3) = 0.0_rk
+    !> Largest opening of a dynamic step so far [m], the error in time of openings [m], and their
+    !> quotient; zero where the step makes no estimate
+    real(rk) :: opening_error(3) = 0.0_rk
     !> Of the end of a linear static step; allocated until the results have taken them
     type(dual_solution), allocatable :: duals(:)
   contains

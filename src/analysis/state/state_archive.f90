@@ -7,6 +7,7 @@ module state_archive
   use step_control, only: increment_control
   use analysis_state, only: state, increment_status, energy_balance, last_matrix, &
                             reduction_status, time_accuracy
+  use modal_errors, only: load_timing, save_timing
   use motion_archive, only: save_motion, load_motion
   use thermal_strains, only: heat_field
   use write_text, only: as_text
@@ -201,6 +202,9 @@ contains
     call file%open_group('accuracy')
     call save_accuracy(status%accuracy, file)
     call file%close_group()
+    call file%open_group('timing')
+    call save_timing(status%timing, file)
+    call file%close_group()
   end subroutine save_status
 
   !> Reads where the analysis is.
@@ -234,6 +238,9 @@ contains
     call file%close_group()
     call file%open_group('accuracy')
     call load_accuracy(status%accuracy, file)
+    call file%close_group()
+    call file%open_group('timing')
+    call load_timing(status%timing, file)
     call file%close_group()
   end subroutine load_status
 

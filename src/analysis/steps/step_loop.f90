@@ -12,6 +12,7 @@ module step_loop
   use equilibrium, only: balance_outcome, is_dropped
   use step_loads, only: step_time
   use joint_water, only: record_uplift
+  use modal_errors, only: modal_error
   use integrator_type, only: integrator
   use stage_entry, only: enter_stage, show_stage
   use integrator_catalogue, only: make_integrator
@@ -86,6 +87,7 @@ contains
     now%matrix = last_matrix()
     now%reduction = reduction_status()
     now%accuracy = time_accuracy()
+    now%timing = modal_error()
     associate (fixed => plan%fixities)
       now%support_start = [(now%u(fixed(k)%dof, fixed(k)%node), k=1, size(fixed))]
     end associate

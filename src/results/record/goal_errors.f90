@@ -16,7 +16,7 @@ module goal_errors
   type :: goal_error
     real(rk) :: at_time = 0.0_rk !< result whose error in time is known [m]
     real(rk) :: time = 0.0_rk !< error of the time integration [m]
-    real(rk) :: history = -1.0_rk !< of histories, over the largest displacement; -1: not known
+    real(rk) :: history = -1.0_rk !< of histories, over the largest result; -1: not known
     real(rk) :: at_dual = 0.0_rk !< result that the other errors belong to [m]
     real(rk) :: mesh = -1.0_rk !< error of the mesh; -1: not known [m]
     real(rk) :: joints = -1.0_rk !< error by the springs of closed joints; -1: not known [m]
@@ -78,7 +78,7 @@ contains
 
   !> Takes over the estimate of the present step, unless an earlier result was larger.
   subroutine note_time_error(found, record)
-    real(rk), intent(in) :: found(3) !< displacement [m], its error [m], relative error of histories
+    real(rk), intent(in) :: found(3) !< result [m], its error [m], relative error of histories
     type(goal_error), intent(inout) :: record
     if (found(1) <= 0.0_rk .or. found(1) < record%at_time) return
     record%at_time = found(1)

@@ -157,7 +157,6 @@ contains
     call file%get('at_dual', record%at_dual)
     call file%get('joints', record%joints)
     call file%get('iteration', record%iteration)
-    record%history = -1.0_rk ! of the increments before the checkpoint alone
   end subroutine load_goal_error
 
   !> Writes the maxima of one joint.

@@ -15,6 +15,8 @@ from ..si_results import SiResults
 
 WHERE = ("anywhere", "upstream", "downstream")
 _JOINT_VALUES = (("opening", 1e3, "mm"), ("slip", 1e3, "mm"), ("pressure", 1e-6, "MPa"))
+# Estimates in job.json by the names of envelopes
+ESTIMATE_OF = {"U": "displacement", "OPENING": "opening"}
 
 
 def header(results: SiResults) -> list[tuple[str, str]]:
@@ -125,7 +127,7 @@ def _known_estimates(results: SiResults) -> dict[str, Any]:
 
 def _estimate(results: SiResults, name: str) -> str:
     """The estimate of the error of an envelope in the units of the deck, where there is one."""
-    found = _known_estimates(results).get(name)
+    found = _known_estimates(results).get(ESTIMATE_OF.get(name, name))
     return "" if found is None else _estimate_in_words(found)
 
 

@@ -61,7 +61,7 @@ contains
     record%space%sampled = 7.7_rk
     record%goals(2)%at_time = 7.9_rk
     record%goals(2)%time = 8.8_rk
-    record%goals(2)%history = -1.0_rk
+    record%goals(2)%history = 9.9_rk
     record%goals(2)%mesh = 10.1_rk
     record%goals(2)%at_dual = 11.1_rk
     record%goals(2)%joints = 12.1_rk

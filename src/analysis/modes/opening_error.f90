@@ -1,0 +1,97 @@
+!> The error of the time integration in the largest opening, as far as modes show it (theory.md,
+!> 14.4). The modes with closed joints do not open them; how the opening follows the modes while
+!> joints are open is found from the run itself, by least squares.
+module opening_error
+  use kinds, only: rk
+  use joint_law, only: joint_state
+  use joint_opening, only: opening_of
+  use modal_errors, only: modal_error
+  use small_matrix, only: solve_dense
+  implicit none
+  private
+  public :: note_opening, error_of_opening
+
+  !> Added to the diagonal of the sums, over its mean: modes that hardly move explain nothing.
+  real(rk), parameter :: share = 1.0e-3_rk
+
+  !> For what is left out: further modes, and the change of joint forces by the error itself.
+  !> Measured on the problems of verification.md: 1.1 to 2.7.
+  real(rk), parameter :: left_out = 1.5_rk
+
+contains
+
+  !> Includes an increment in which the largest opening was open from its start to its end.
+  subroutine note_opening(joints, jump_rate, dt, moved, own)
+    type(joint_state), intent(in) :: joints(:) !< at the end
+    real(rk), intent(in) :: jump_rate(:, :) !< (3, points) in the increment [m/s]
+    real(rk), intent(in) :: dt !< [s]
+    real(rk), intent(in) :: moved(:) !< (modes) displacements of the increment
+    type(modal_error), intent(inout) :: own
+    real(rk) :: opening, change, follows(size(moved))
+    integer :: n
+    n = size(moved)
+    if (.not. allocated(own%square)) then
+      allocate (own%square(n, n), own%product(n), own%at_most(n), source=0.0_rk)
+    end if
+    call find_largest(joints, jump_rate, opening, change)
+    change = dt*change
+    own%opening = max(own%opening, opening)
+    if (opening <= max(0.0_rk, change)) return
+    own%square = own%square + opening*spread(moved, 2, n)*spread(moved, 1, n)
+    own%product = own%product + opening*change*moved
+    follows = trend(own)
+    if (abs(dot_product(follows, own%error)) > abs(dot_product(follows, own%at_most))) then
+      own%at_most = own%error
+    end if
+  end subroutine note_opening
+
+  !> The largest opening and its rate.
+  pure subroutine find_largest(joints, jump_rate, opening, rate)
+    type(joint_state), intent(in) :: joints(:)
+    real(rk), intent(in) :: jump_rate(:, :) !< (3, points) in the increment [m/s]
+    real(rk), intent(out) :: opening !< 0 where all are closed [m]
+    real(rk), intent(out) :: rate !< [m/s]
+    real(rk) :: own
+    integer :: j, p, before
+    opening = 0.0_rk
+    rate = 0.0_rk
+    before = 0
+    do j = 1, size(joints)
+      do p = 1, size(joints(j)%gap)
+        own = opening_of(joints(j)%jump(1, p), joints(j)%gap(p))
+        if (own <= opening) cycle
+        opening = own
+        rate = jump_rate(1, before + p)
+      end do
+      before = before + size(joints(j)%gap)
+    end do
+  end subroutine find_largest
+
+  !> How the opening follows the modes [m] per unit of the modes.
+  function trend(own) result(follows)
+    type(modal_error), intent(in) :: own
+    real(rk) :: follows(size(own%product))
+    real(rk) :: a(size(follows), size(follows)), x(size(follows), 1), mean
+    logical :: is_singular
+    integer :: k
+    a = own%square
+    mean = sum([(a(k, k), k=1, size(follows))])/size(follows)
+    do k = 1, size(follows)
+      a(k, k) = a(k, k) + share*mean
+    end do
+    call solve_dense(a, reshape(own%product, [size(follows), 1]), x, is_singular)
+    follows = x(:, 1)
+    if (is_singular) follows = 0.0_rk
+  end function trend
+
+  !> The largest opening so far [m], the largest error of openings [m], and their quotient.
+  function error_of_opening(own) result(found)
+    type(modal_error), intent(in) :: own
+    real(rk) :: found(3)
+    found = 0.0_rk
+    if (.not. own%opening > 0.0_rk) return
+    found(1) = own%opening
+    found(2) = left_out*abs(dot_product(trend(own), own%at_most))
+    found(3) = found(2)/own%opening
+  end function error_of_opening
+end module opening_error

@@ -1,0 +1,78 @@
+"""The estimated error in time of the openings of joints: the largest at any time, against runs with
+much finer increments."""
+
+import numpy as np
+import pytest
+from harness import ROOT
+from joint_decks import Block, amplitude, dynamic, static, weight
+
+GRID = 0.02  # s, between the corners of the motion
+DURATION = 5.2  # s; the modes take part in steps of more than 500 increments
+FINE = 0.000625  # s
+# Bending columns of 2 m x 8 m whose feet open: E [Pa], frequency [Hz] and size of the motion.
+COLUMNS = {"slow": (2e8, 0.6, 1.5), "near resonance": (2e8, 1.1, 1.5)}
+
+
+def shaken(kind: str, dt: float, meshes=None, controls: str = "", printed: bool = True) -> str:
+    """A column on a joint whose base moves sideways, first at rest under its weight."""
+    young, frequency, peak = COLUMNS[kind]
+    law = "KN=1e10, KT=1e10, FRICTION=2.0"
+    block = Block((2.0, 1.0, 8.0), (2, 1, 8), young, 0.2, law=law, element="C3D8I", meshes=meshes)
+    times = np.arange(0.0, DURATION + GRID, GRID)
+    motion = peak * np.sin(2.0 * np.pi * frequency * times) * np.minimum(1.0, times)
+    motion *= 1.0 + 0.4 * np.sin(7.0 * times)
+    content = "*DAMPING, RATIO=0.03, F1=1, F2=8\n*BASE MOTION, DOF=1, AMPLITUDE=MOVE\n"
+    content += "*JOINT PRINT, JOINT=BED\n" if printed else ""
+    deck = block.deck(static(weight()) + dynamic(controls + content, dt, DURATION))
+    return deck.replace("*STEP", amplitude("MOVE", times, motion) + "*STEP", 1)
+
+
+def openings(run, joint: str = "BED") -> np.ndarray:
+    """(times, points) of a step, 0 where closed."""
+    table = run.csv(f"joint_{joint}")
+    points = int(table["point"].max())
+    return np.maximum(0.0, np.asarray(table["opening"])).reshape(-1, points)
+
+
+def estimate(run) -> dict[str, float]:
+    return run.json["accuracy"]["estimates"]["opening"]
+
+
+@pytest.mark.parametrize("kind", COLUMNS)
+def test_histories(keyway, documented, kind):
+    """The error at any point and time, once at each increment of the coarse run."""
+    fine = openings(keyway(shaken(kind, FINE)))
+    for dt in (0.01, 0.005):
+        run = keyway(shaken(kind, dt))
+        found, own = estimate(run), openings(run)
+        every, count = round(dt / FINE), round(DURATION / dt)
+        true = fine[::-1][::every][:count][::-1]  # at the times of the coarse run, from the last on
+        effectivity = found["time"] / np.abs(own[-count:] - true).max()
+        assert 0.5 < effectivity < 2.0
+        documented("error of openings in time", kind, f"{dt}", effectivity)
+        assert found["history"] == pytest.approx(found["time"] / found["value"])
+
+
+def test_arch(keyway, documented):
+    """input/gmsh_arch, six seconds; the truth has an eighth of the increment."""
+    source = (ROOT / "input/gmsh_arch/gmsh_arch.inp").read_text(encoding="utf-8")
+    source = source.replace("gmsh_arch_mesh.inp", str(ROOT / "input/gmsh_arch/gmsh_arch_mesh.inp"))
+
+    def run(dt: float):
+        return keyway(source.replace("0.01, 1.", f"{dt!r}, 6."))
+
+    found = {}
+    histories = {}
+    for dt in (0.00125, 0.01, 0.005):
+        done = run(dt)
+        found[dt] = estimate(done)
+        histories[dt] = [openings(done, name) for name in ("JOINT1", "JOINT2")]
+    for dt in (0.01, 0.005):
+        every, count = round(dt / 0.00125), round(6.0 / dt)
+        error = max(
+            np.abs(own[-count:] - true[::-1][::every][:count][::-1]).max()
+            for own, true in zip(histories[dt], histories[0.00125], strict=True)
+        )
+        effectivity = found[dt]["time"] / error
+        assert 0.5 < effectivity < 2.0
+        documented("error of openings in time", "arch", f"{dt}", effectivity)
