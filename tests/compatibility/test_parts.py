@@ -137,3 +137,52 @@ def test_c3d8_of_flat_decks_can_be_chosen(keyway):
     named = keyway(deck, name="named")
     chosen = keyway(deck.replace("C3D8B", "C3D8"), "--c3d8=bbar", name="chosen")
     assert np.array_equal(last_field(named, "U"), last_field(chosen, "U"))
+
+
+CONCRETE = """\
+*Concrete Damaged Plasticity
+36., 0.1, 1.16, 0.667, 0.
+*Concrete Compression Hardening
+2e7, 0.
+3e7, 0.001
+*Concrete Tension Stiffening, type=DISPLACEMENT
+50000., 0.
+500., 0.0003
+*Concrete Tension Damage, type=DISPLACEMENT, compression recovery=1.
+0., 0.
+0.9, 0.0003
+"""
+CRACKING = """\
+*Step, name=Water, nlgeom=NO, inc=1000
+*Static
+0.1, 1., 1e-05, 0.1
+*Dload
+, GRAV, 9.81, 0., 0., -1.
+*Dsload
+Side, HP, 500000., 1., 0.
+*Restart, write, frequency=0
+*Output, field, variable=PRESELECT
+*Output, history, variable=PRESELECT
+*El File
+DAMAGET
+*Node File
+U
+*End Step
+"""
+
+
+def test_cracking_assembly_equals_its_flat_twin(keyway):
+    side = id_lines(range(1, len(BLOCK.solids) + 1, 2))
+    surface = "*Surface, type=ELEMENT, name=Side\n_Side_S6, S6\n"
+    law = ("0.2\n", "0.2\n" + CONCRETE)
+    parts = assembly(90.0).replace(STEP, CRACKING).replace(*law)
+    parts = parts.replace(
+        "*Tie,", f"*Elset, elset=_Side_S6, internal, instance=Block-1\n{side}\n{surface}*Tie,"
+    )
+    twin = flat(90.0).replace(STEP, CRACKING).replace(*law)
+    twin = twin.replace("*TIE,", f"*ELSET, ELSET=_Side_S6\n{side}\n{surface}*TIE,")
+    of_parts, of_flat = keyway(parts, name="parts"), keyway(twin, name="flat")
+    assert last_field(of_parts, "DAMAGET").max() > 0.001
+    a, b = last_field(of_parts, "U"), last_field(of_flat, "U")
+    # Twins differ by the round-off of the rotated coordinates alone.
+    assert np.abs(a - b).max() <= 1e-12 * np.abs(b).max()
