@@ -79,6 +79,7 @@ contains
         tie%is_tied = tie%is_tied(:, rows)
         tie%item = tie%item(items)
         tie%weight = tie%weight(items)
+        if (allocated(tie%item_direction)) tie%item_direction = tie%item_direction(items)
         call move_alloc(first, tie%first)
       end associate
     end do

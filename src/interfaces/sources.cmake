@@ -1,4 +1,5 @@
 set(sources
+  couplings/coupling_equation.f90
   couplings/coupling_joint.f90
   couplings/coupling_tie.f90
   couplings/surface_coupling.f90

@@ -6,6 +6,7 @@ module finish_model
   use element_catalogue, only: is_solid
   use finish_contact, only: complete_clearances
   use finish_heat, only: complete_heat
+  use finish_equations, only: complete_equations
   use finish_interfaces, only: complete_interfaces
   use finish_joints, only: complete_joints
   use finish_materials, only: complete_materials
@@ -37,6 +38,7 @@ contains
     call complete_clearances(model, faults)
     if (.not. faults%has_errors()) call refuse_joined_twice(model, faults)
     if (.not. faults%has_errors()) call complete_ties(model, faults)
+    if (.not. faults%has_errors()) call complete_equations(model, faults)
     call complete_joints(model, faults)
     if (.not. faults%has_errors()) call complete_uplift(model, faults)
     call complete_stages(model, faults)

@@ -14,10 +14,11 @@ module keyword_catalogue
                                read_step_damping
   use keywords_elements, only: describe_element, read_elements
   use keywords_expansion, only: describe_expansion, read_expansion
+  use keywords_equation, only: describe_equation, describe_mpc, read_equation, read_mpc
   use keywords_initial, only: describe_initial_conditions, read_initial_conditions
   use keywords_interface, only: describe_interface, read_interface
   use keywords_joint, only: describe_joint, describe_joint_law, read_joint, read_joint_law
-  use keywords_other, only: add_ignored_keywords, add_later_keywords, add_refused_keywords
+  use keywords_other, only: add_ignored_keywords, add_refused_keywords
   use keywords_loads, only: describe_cload, describe_dload, describe_dsload, read_cload, &
                             read_dload, read_dsload
   use keywords_material, only: describe_density, describe_material, describe_material_damping, &
@@ -57,7 +58,6 @@ contains
     call add_model_keywords(list)
     call add_step_keywords(list)
     call add_output_keywords(list)
-    call add_later_keywords(list)
     call add_refused_keywords(list)
     call add_ignored_keywords(list)
     call list%trim()
@@ -88,6 +88,8 @@ contains
     call list%add(describe_joint_law, read_joint_law, pass_definitions)
     call list%add(describe_joint, read_joint, pass_rest)
     call list%add(describe_tie, read_tie, pass_rest)
+    call list%add(describe_equation, read_equation, pass_rest)
+    call list%add(describe_mpc, read_mpc, pass_rest)
     call list%add(describe_interface, read_interface, pass_rest)
     call list%add(describe_interaction, read_interaction, pass_definitions)
     call list%add(describe_behavior, read_behavior, pass_definitions)

@@ -22,6 +22,7 @@ set(sources
   contact/keywords_contact_pair.f90
   deck_echo.f90
   draft/enter_load.f90
+  draft/equation_lists.f90
   draft/keyword_handler.f90
   draft/keywords_other.f90
   draft/model_draft.f90
@@ -34,10 +35,12 @@ set(sources
   joints/contact_clearance.f90
   joints/contact_defaults.f90
   joints/cover_checks.f90
+  joints/finish_equations.f90
   joints/finish_interfaces.f90
   joints/finish_joints.f90
   joints/finish_ties.f90
   joints/joined_twice.f90
+  joints/keywords_equation.f90
   joints/keywords_interface.f90
   joints/keywords_joint.f90
   joints/keywords_tie.f90

@@ -174,7 +174,7 @@ contains
         call supports_of_step(model%problem, step, node, direction)
         if (size(node) == 0) then
           call place%fault(faults, 'the model has no supports in this step', '*BOUNDARY')
-        else
+        else if (model%equations%num == 0) then ! equations may hold what no support holds
           do b = 1, size(example)
             call verify_body(model, i, pack(node, body(node) == b), &
                              pack(direction, body(node) == b), example(b), faults)

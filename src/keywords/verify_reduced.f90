@@ -20,6 +20,9 @@ contains
         if (plan%procedure%scheme /= 'REDUCED') cycle
         call refuse_solids(model, s, faults)
         call refuse_water(model, s, faults)
+        if (model%equations%num > 0) then
+          call refuse(model, s, 'the model has equations (*EQUATION, *MPC)', faults)
+        end if
         if (model%problem%stages%is_there_any()) then
           call refuse(model, s, 'the model is built in stages (*MODEL CHANGE, *GROUT)', faults)
         end if

@@ -5,17 +5,9 @@ module keywords_other
   use keyword_spec, only: field, keyword, kind_text, later, refused, without_effect
   implicit none
   private
-  public :: add_later_keywords, add_refused_keywords, add_ignored_keywords, add_idle_parameters
+  public :: add_refused_keywords, add_ignored_keywords, add_idle_parameters
 
 contains
-
-  !> Keywords of Abaqus and CalculiX.
-  subroutine add_later_keywords(list)
-    type(keyword_list), intent(inout) :: list
-    character(*), parameter :: family = 'other programs'
-    call add_later(list, 'MPC', family, 'model', 'Constraints between nodes.')
-    call add_later(list, 'EQUATION', family, 'model', 'Linear equations between displacements.')
-  end subroutine add_later_keywords
 
   !> Keywords of Abaqus and CalculiX that are refused, with what to take instead.
   subroutine add_refused_keywords(list)

@@ -7,6 +7,7 @@ module model_draft
   use deck_options, only: reading_options
   use diagnostics, only: diagnostic_list
   use dof_tables, only: dof_table
+  use equation_lists, only: equation_list
   use guest_type, only: guest, guest_slot
   use joint_law, only: traction_law
   use id_map, only: position_table
@@ -77,6 +78,7 @@ module model_draft
     integer :: slave = 0, master = 0 !< positions of surfaces
     real(rk) :: stiffness = 0.0_rk !< of springs, 0 for an exact tie [Pa/m]
     logical :: adjusts = .false. !< slave nodes are moved onto the master face
+    real(rk) :: tolerance = huge(1.0_rk) !< POSITION TOLERANCE [m]
     type(origin) :: spot
   end type tie_request
 
@@ -128,6 +130,7 @@ module model_draft
     type(origin), allocatable :: clearances(:) !< cards *CLEARANCE
     type(tie_request), allocatable :: ties(:)
     type(interface_request), allocatable :: interfaces(:)
+    type(equation_list) :: equations
     type(request_slot), allocatable :: material_requests(:)
     integer, allocatable :: joint_of_element(:) !< position in `joints`, 0 for none
     integer, allocatable :: interface_of_element(:) !< position in `interfaces`, 0 for none

@@ -200,6 +200,7 @@ contains
     is_there = mark_corners(model%problem%mesh%num_nodes, face)
     call ties_of(model%problem%guests, ties)
     do i = 1, size(ties)
+      if (allocated(ties(i)%item_direction)) cycle ! an equation leaves other directions free
       associate (tie => ties(i))
         do k = 1, size(tie%node)
           is_tied(tie%node(k)) = is_tied(tie%node(k)) .or. &

@@ -122,6 +122,10 @@ contains
         return
       end if
       call keep_cover(place, request%name, 'TIE', cover, .false., model, faults)
+      if (cover%largest_gap > request%tolerance) then
+        call place%warn(faults, 'the faces lie up to '//as_text(cover%largest_gap)// &
+                        ' m apart and are tied there too', 'at most the POSITION TOLERANCE')
+      end if
       if (request%stiffness > 0.0_rk) return
       tie%name = request%name
       tie%kind = 'tie'

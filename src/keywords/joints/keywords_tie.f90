@@ -2,7 +2,8 @@
 module keywords_tie
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
-  use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_word
+  use keyword_spec, only: field, keyword, kind_choice, kind_real, kind_word
+  use keywords_other, only: add_idle_parameters
   use kinds, only: rk
   use model_draft, only: draft, tie_request
   use named_things, only: find_surface_name, surface_names
@@ -36,11 +37,18 @@ contains
                     lowest=0.0_rk, excludes_lowest=.true.), &
               field('ADJUST', kind_choice, 'moves slave nodes onto the master surface before '// &
                     'the analysis: between faces with gaps (curved ones) a rotation then '// &
-                    'causes no stress', default='NO', choices='YES | NO')])
+                    'causes no stress', default='NO', choices='YES | NO'), &
+              field('POSITION TOLERANCE', kind_real, 'a warning where the faces lie further '// &
+                    'apart; they are tied all the same', 'm', lowest=0.0_rk), &
+              field('TYPE', kind_choice, 'discretisation: here both are the mortar method', &
+                    default='SURFACE TO SURFACE', &
+                    choices='SURFACE TO SURFACE | NODE TO SURFACE')])
     allocate (spec%columns, source=[ &
               field('slave', kind_word, 'slave surface, usually the finer one', &
                     is_required=.true.), &
               field('master', kind_word, 'master surface', is_required=.true.)])
+    call add_idle_parameters(spec, [character(16) :: 'NO ROTATION', 'NO THICKNESS', &
+                                    'CONSTRAINT RATIO'])
   end subroutine describe_tie
 
   subroutine read_tie(this, model, faults)
@@ -52,6 +60,7 @@ contains
     new%name = this%word('NAME')
     new%stiffness = this%real('STIFFNESS')
     new%adjusts = this%word('ADJUST') == 'YES'
+    if (this%has('POSITION TOLERANCE')) new%tolerance = this%real('POSITION TOLERANCE')
     if (new%adjusts .and. this%has('STIFFNESS')) then
       call this%fault_parameter(faults, 'ADJUST', 'ADJUST has no effect on springs', &
                                 'ADJUST without STIFFNESS')

@@ -1,9 +1,9 @@
 !> The numbering of unknowns: every dof is a combination of unknowns, u = T q.
 !>
-!> Most dofs are unknowns themselves. A dependent dof (the slave side of a joint or of a tie, later
-!> equations) is a combination of others and of jumps. Free unknowns come first, prescribed ones
-!> after them. The last free unknowns are those of the joints: dofs at points without a jump, then
-!> the jumps. Nodes without any element have no unknowns.
+!> Most dofs are unknowns themselves. A dependent dof (the slave side of a joint or of a tie, the
+!> first of an equation) is a combination of others and of jumps. Free unknowns come first,
+!> prescribed ones after them. The last free unknowns are those of the joints: dofs at points
+!> without a jump, then the jumps. Nodes without any element have unknowns only where other dofs depend on them.
 module dof_numbering
   use kinds, only: rk
   use errors, only: error_type, raise
@@ -89,7 +89,7 @@ contains
     type(linear_links), intent(in) :: links
     type(numbering), intent(inout) :: numbers
     integer, allocatable, intent(out) :: own(:) !< (dofs) unknown of each dof, 0 for none
-    logical, allocatable :: is_last(:), is_held(:)
+    logical, allocatable :: is_last(:), is_held(:), is_there(:)
     integer :: k, first, first_last
     allocate (own(size(link)), numbers%node(size(link) + links%num_jumps))
     allocate (numbers%direction(size(link) + links%num_jumps))
@@ -101,9 +101,13 @@ contains
     do k = 1, size(link)
       is_held(k) = is_fixed(numbers%dofs%component_of(k), numbers%dofs%node(k))
     end do
-    call number_where(is_used,.not. (is_held .or. is_last), link, numbers, own)
+    is_there = is_used(numbers%dofs%node)
+    do k = 1, links%num_terms
+      if (links%term(k) > 0) is_there(links%term(k)) = .true.
+    end do
+    call number_where(is_there,.not. (is_held .or. is_last), link, numbers, own)
     first_last = numbers%num_total
-    call number_where(is_used, is_last .and. .not. is_held, link, numbers, own)
+    call number_where(is_there, is_last .and. .not. is_held, link, numbers, own)
     first = numbers%num_total
     do k = 1, links%num_jumps
       numbers%node(first + k) = links%jump_node(k)
@@ -116,7 +120,7 @@ contains
     if (allocated(links%first_jump)) then
       numbers%first_jump = merge(links%first_jump + first, 0, links%first_jump > 0)
     end if
-    call number_where(is_used, is_held, link, numbers, own)
+    call number_where(is_there, is_held, link, numbers, own)
     numbers%node = numbers%node(:numbers%num_total)
     numbers%direction = numbers%direction(:numbers%num_total)
   end subroutine number_own
@@ -138,16 +142,16 @@ contains
     end do
   end subroutine find_last
 
-  !> Numbers the independent dofs of used nodes where `wanted` holds, node by node.
-  pure subroutine number_where(is_used, wanted, link, numbers, own)
-    logical, intent(in) :: is_used(:)
+  !> Numbers the independent dofs that are there, where `wanted` holds, node by node.
+  pure subroutine number_where(is_there, wanted, link, numbers, own)
+    logical, intent(in) :: is_there(:) !< (dofs)
     logical, intent(in) :: wanted(:) !< (dofs)
     integer, intent(in) :: link(:)
     type(numbering), intent(inout) :: numbers
     integer, intent(inout) :: own(:)
     integer :: dof
     do dof = 1, size(wanted)
-      if (.not. (is_used(numbers%dofs%node(dof)) .and. wanted(dof)) .or. link(dof) > 0) cycle
+      if (.not. (is_there(dof) .and. wanted(dof)) .or. link(dof) > 0) cycle
       numbers%num_total = numbers%num_total + 1
       numbers%node(numbers%num_total) = numbers%dofs%node(dof)
       numbers%direction(numbers%num_total) = numbers%dofs%component_of(dof)

@@ -114,14 +114,19 @@ contains
     type(node_tie), intent(in) :: tie
     type(dependence), intent(inout) :: graph
     type(linear_links), intent(inout) :: links
+    integer, allocatable :: term(:)
     integer :: k, i
     do k = 1, size(tie%node)
       associate (first => tie%first(k), last => tie%first(k + 1) - 1)
         call graph%add_row(tie%node(k), tie%item(first:last))
         do i = 1, num_directions
           if (.not. tie%is_tied(i, k)) cycle
-          call add_link(dofs%dof_of(tie%node(k), i), dofs%dof_of(tie%item(first:last), i), &
-                        tie%weight(first:last), links)
+          if (allocated(tie%item_direction)) then
+            term = dofs%dof_of(tie%item(first:last), tie%item_direction(first:last))
+          else
+            term = dofs%dof_of(tie%item(first:last), i)
+          end if
+          call add_link(dofs%dof_of(tie%node(k), i), term, tie%weight(first:last), links)
         end do
       end associate
     end do

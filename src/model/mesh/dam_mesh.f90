@@ -40,13 +40,17 @@ module dam_mesh
     integer, allocatable :: face(:) !< 1..6
   end type surface
 
-  !> One *TIE with an exact constraint: row i gives u(node(i)) from the nodes that node(i) follows,
-  !> on either face, in the directions that are tied; the weights add up to 1. A node may have
-  !> several rows, in different directions, if supports differ by direction.
+  !> One *TIE with an exact constraint, or the equations of the deck: row i gives u(node(i)) from
+  !> the nodes that node(i) follows, on either face, in the directions that are tied; the weights
+  !> add up to 1. A node may have several rows, in different directions, if supports differ by
+  !> direction.
   type, extends(weighted_rows) :: node_tie
     character(:), allocatable :: name !< upper case
     integer, allocatable :: node(:) !< (ties) the node that follows
     logical, allocatable :: is_tied(:, :) !< (3, ties) the tied directions
+    !> (items) of equations: the displacement of each item; not allocated: the tied direction. The
+    !> weights then add up to any number.
+    integer, allocatable :: item_direction(:)
   end type node_tie
 
 contains
