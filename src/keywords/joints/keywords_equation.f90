@@ -32,10 +32,12 @@ contains
     spec%meaning = 'Linear equations between displacements: the sum of coefficient times '// &
                    'displacement is zero in all steps. For each equation a line with the '// &
                    'number of its terms, then the terms, any number a line. The '// &
-                   'first term depends on the others: no support, tie or other equation may hold it. Other terms may '// &
+                   'first term depends on the others: no support, tie or other equation '// &
+                   'may hold it. Other terms may '// &
                    'be supported or depend on further ones. Node sets of one size stand for '// &
                    'one equation for each node, in the order of the ids; a single node '// &
-                   'goes with all of them. A node without elements is an unknown of its own in the '// &
+                   'goes with all of them. A node without elements is an unknown '// &
+                   'of its own in the '// &
                    'directions of its terms (different_meshes.md, 13.10).'
     spec%example = '*EQUATION'//nl//'3'//nl//'12, 1, 1., 47, 1, -0.5, 53, 1, -0.5'
     spec%fewest_lines = 2

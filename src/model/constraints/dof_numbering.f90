@@ -3,7 +3,8 @@
 !> Most dofs are unknowns themselves. A dependent dof (the slave side of a joint or of a tie, the
 !> first of an equation) is a combination of others and of jumps. Free unknowns come first,
 !> prescribed ones after them. The last free unknowns are those of the joints: dofs at points
-!> without a jump, then the jumps. Nodes without any element have unknowns only where other dofs depend on them.
+!> without a jump, then the jumps. Nodes without any element have unknowns only where
+!> other dofs depend on them.
 module dof_numbering
   use kinds, only: rk
   use errors, only: error_type, raise
