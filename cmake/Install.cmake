@@ -46,6 +46,8 @@ install(FILES packaging/keyway.bash DESTINATION
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(FILES packaging/ABA_PARAM.INC DESTINATION "${KEYWAY_MODULES_DIR}")
 install(FILES tools/keyway/job-1.schema.json DESTINATION "${KEYWAY_SHARE_DIR}")
+install(DIRECTORY input/ DESTINATION "${KEYWAY_SHARE_DIR}/examples"
+        PATTERN "xingbiling*" EXCLUDE PATTERN "jinping*" EXCLUDE)
 install(DIRECTORY input/umat DESTINATION "${KEYWAY_SHARE_DIR}")
 
 # What is made of the sources and of the program itself.

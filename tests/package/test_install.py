@@ -27,21 +27,6 @@ def call(*words: Path | str, folder: Path, environment: dict[str, str] | None = 
     return done.stdout
 
 
-@pytest.fixture(scope="module")
-def build(program_path) -> Path:
-    folder = program_path.parent
-    if not (folder / "cmake_install.cmake").exists():
-        pytest.skip("the program does not stand in its build folder")
-    return folder
-
-
-@pytest.fixture(scope="module")
-def prefix(build, tmp_path_factory) -> Path:
-    place = tmp_path_factory.mktemp("prefix")
-    call("cmake", "--install", build, "--prefix", place, folder=place)
-    return place
-
-
 def test_the_installed_program_runs(prefix, tmp_path):
     shutil.copy(ROOT / "input/cantilever.inp", tmp_path)
     program = prefix / "bin/keyway"
