@@ -5,6 +5,7 @@ from pathlib import Path
 import make_input
 import pytest
 from harness import ROOT
+from keyway.batch.cases import has_step
 from keyway.commands import batch, compare
 from keyway_tools.results import Results
 
@@ -15,7 +16,7 @@ LONG = {"xingbiling", "xingbiling_matching", "xingbiling_different", "built_in_l
 DECKS = {
     p.stem: p
     for p in sorted((ROOT / "input").rglob("*.inp"))
-    if batch.has_step(p) and p.parent.name not in OTHERS
+    if has_step(p) and p.parent.name not in OTHERS
 }
 SHORT = [name for name in DECKS if name not in LONG]
 

@@ -181,7 +181,7 @@ def test_estimates_of_errors_are_shown_where_there_are_some(block, tmp_path):
             (tmp_path / file.name).write_bytes(file.read_bytes())
     path = tmp_path / "block_on_joint.json"
     summary = json.loads(path.read_text())
-    summary["accuracy"]["estimates"] = {"U": {"value": 9.0, "error": 1.2, "mesh": 1.1}}
+    summary["accuracy"]["estimates"] = {"displacement": {"value": 9.0, "error": 1.2, "mesh": 1.1}}
     path.write_text(json.dumps(summary))
     text = page_of(tmp_path).read_text()
     assert text.count("error 1.2, mesh 1.1") == 2  # beside the envelope, and among the estimates

@@ -35,7 +35,7 @@ class BlockOptions:
     fine: tuple[int, ...] = ()  # blocks with a separate mesh, from 1 at the left end
     fine_mesh: PartMesh = FINE
     # of single blocks: meshes other than fine_mesh
-    own_meshes: dict[int, PartMesh] = field(default_factory=dict)
+    own_meshes: dict[int, PartMesh] = field(default_factory=dict, hash=False)
     outlets: OutletOptions | None = None  # in one of the fine blocks
     fine_above: float = 0.0  # share of the height above which they are finer
     # auto: JOINT8 between equal meshes, surfaces between different ones (auto-chain: the chain)

@@ -194,7 +194,7 @@ contains
     type(force_balance) :: balance
     type(balance_outcome) :: outcome
     type(error_type), allocatable :: failure
-    real(rk) :: tolerance
+    type(step_controls) :: kept
     associate (n => system%matrix%num_free)
       balance%rhs = load(:n) + now%motion%external(:n) - now%motion%internal(:n)
     end associate
@@ -203,11 +203,12 @@ contains
     call balance%set_jumps(system%operator, now%motion%q, now%joints)
     allocate (found%x(size(load)))
     found%joints = now%joints
-    tolerance = solver%controls%residual_tolerance
-    solver%controls%residual_tolerance = tighter*tolerance
+    kept = solver%controls
+    solver%controls%residual_tolerance = tighter*kept%residual_tolerance
+    solver%controls%most_unsaved = huge(1)
     call solver%solve_balance(balance, model%joints, now%joints, found%joints, found%x, outcome, &
                               failure)
-    solver%controls%residual_tolerance = tolerance
+    solver%controls = kept
     found%is_found = outcome%has_converged .and. .not. allocated(failure)
   end subroutine respond
 

@@ -37,7 +37,7 @@ contains
                    item%name//' can be stored in a request')
       end associate
     end do
-    call check(log, find_field(table, 'TEMP') == 0, 'an unknown field')
+    call check(log, find_field(table, 'HUMIDITY') == 0, 'an unknown field')
   end subroutine test_rows
 
   !> Every writer can write each field that a deck may ask of it.
@@ -98,7 +98,8 @@ contains
     call check_text(log, choices_of('JOINT PRINT'), &
                     'OPENING | SLIP | TRACTION | STATE | SLIP1 | SLIP2 | TN | T1 | T2', 'choices')
     call check_text(log, fields_in_words('NODE PRINT'), &
-                    'U displacement, V velocity, A acceleration, RF reaction', 'in words')
+                    'U displacement, V velocity, A acceleration, RF reaction, TEMP temperature', &
+                    'in words')
     call check_text(log, columns_of_joints(), &
                     'opening [m], slip1, slip2 [m], tn, t1, t2 [Pa], state', 'columns of joints')
   end subroutine test_names
