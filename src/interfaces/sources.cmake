@@ -2,6 +2,7 @@ set(sources
   couplings/coupling_equation.f90
   couplings/coupling_joint.f90
   couplings/coupling_tie.f90
+  couplings/eliminated_rows.f90
   couplings/surface_coupling.f90
   facets/facet_clip.f90
   facets/facet_plane.f90

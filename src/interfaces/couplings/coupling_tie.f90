@@ -9,11 +9,10 @@
 !> function of such a node is added to those of its neighbours on each facet.
 module coupling_tie
   use dam_mesh, only: node_tie
-  use guest_type, only: guest
+  use eliminated_rows, only: row_guest
   use kinds, only: rk
   use mortar_projection, only: project
   use mortar_balance, only: mortar_rows
-  use row_tables, only: row_table
   use surface_facets, only: mark_corners
   use surface_segments, only: facet_set, segment_set
   use write_text, only: as_text
@@ -22,33 +21,12 @@ module coupling_tie
   public :: exact_tie, build_tie_rows, find_bound
 
   !> A tie without springs: slave nodes follow the master face.
-  type, extends(guest) :: exact_tie
-    type(node_tie) :: rows
+  type, extends(row_guest) :: exact_tie
   contains
-    procedure :: add_bonds
-    procedure :: add_ties
     procedure :: describe
   end type exact_tie
 
 contains
-
-  !> Each slave node with the nodes that it follows.
-  subroutine add_bonds(self, groups)
-    class(exact_tie), intent(in) :: self
-    type(row_table), intent(inout) :: groups
-    integer :: k
-    associate (rows => self%rows)
-      do k = 1, size(rows%node)
-        call groups%append([rows%node(k), rows%item(rows%first(k):rows%first(k + 1) - 1)])
-      end do
-    end associate
-  end subroutine add_bonds
-
-  subroutine add_ties(self, ties)
-    class(exact_tie), intent(in) :: self
-    type(node_tie), allocatable, intent(inout) :: ties(:)
-    ties = [ties, self%rows]
-  end subroutine add_ties
 
   function describe(self) result(text)
     class(exact_tie), intent(in) :: self
