@@ -1,4 +1,4 @@
-# Completion of bash for keyway: options, keywords and fields come from the program itself.
+# Completion of bash for keyway: options, keywords, fields and messages come from the program.
 
 _keyway_options() {
   "$1" --help 2>/dev/null | sed -n 's/^  \(-[-a-z0-9]*\).*/\1/p'
@@ -12,6 +12,10 @@ _keyway_keywords() {
 
 _keyway_fields() {
   "$1" --fields 2>/dev/null | sed -n '2,$s/^\([A-Z][A-Z0-9_]*\) .*/\1/p'
+}
+
+_keyway_messages() {
+  "$1" --explain 2>/dev/null | sed -n '/^$/q; s/^\([a-z][-a-z0-9]*\) .*/\1/p'
 }
 
 _keyway_files() {
@@ -42,6 +46,10 @@ _keyway() {
       ;;
     --fields)
       mapfile -t COMPREPLY < <(compgen -W "$(_keyway_fields "$program")" -- "${word^^}")
+      return
+      ;;
+    --explain)
+      mapfile -t COMPREPLY < <(compgen -W "$(_keyway_messages "$program")" -- "$word")
       return
       ;;
     --umat | --umat-library)

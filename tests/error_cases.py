@@ -17,6 +17,7 @@ else:
 ERRORS = Path(__file__).resolve().parent / "errors"
 DECK = "deck.inp"
 KEYS = {"base", "deck", "edit", "files", "options", "says"}
+NAME = re.compile(r" \[([a-z][a-z0-9-]*)\]$", re.MULTILINE)  # of the kind of a message, at its end
 PLACE = "    "  # begins the line of `says` that quotes the deck
 EARLIER = "  "  # begins a line such as 'first defined here:', which ends with its place
 
@@ -47,6 +48,17 @@ class Case:
             (folder / name).write_text(text, encoding="utf-8")
         command = [str(program.resolve()), "--check", *self.options, DECK]
         return subprocess.run(command, cwd=folder, capture_output=True, text=True)
+
+
+def without_names(stderr: str) -> str:
+    """The messages without the names of their kinds, which the tables leave out."""
+    return NAME.sub("", stderr)
+
+
+def headlines(stderr: str) -> list[str]:
+    """The first line of each message, without quoted lines, carets, places and sums."""
+    quoted = re.compile(r" *\d* \| |  \S|and \d+ more ")
+    return [line for line in stderr.splitlines() if not quoted.match(line)]
 
 
 def base_decks() -> list[Path]:

@@ -22,6 +22,7 @@ ROOMS = (
     "base/math",
     "base/system",
     "base/files",
+    "base/messages",
     "base/report",
     "equations/elimination",
     "equations",

@@ -36,10 +36,12 @@ contains
     if (allocated(error)) return
     call read_problem(given%deck, model, faults, echo, given%reading, umat)
     if (faults%num_warnings > 0 .and. .not. given%is_quiet) then
-      write (error_unit, '(a)') text_of_warnings(faults)
+      write (error_unit, '(a)') text_of_warnings(faults, is_named=.true.)
     end if
     if (associated(umat) .and. (given%is_check .or. faults%has_errors())) call umat%close(note)
-    if (faults%has_errors()) call raise(error, text_of_errors(faults), deck_is_wrong)
+    if (faults%has_errors()) then
+      call raise(error, text_of_errors(faults, is_named=.true.), deck_is_wrong)
+    end if
     if (allocated(error)) return
     do i = 1, size(model%steps)
       model%steps(i)%controls%most_unsaved = given%most_unsaved

@@ -7,6 +7,7 @@ module cli
   use keyword_catalogue, only: list_all => list_keywords
   use keyword_handler, only: keyword_list
   use keyword_help, only: describe_keyword, list_keywords
+  use message_help, only: explain_message, message_lines
   use nearest_words, only: nearest_choice
   use parse_text, only: parse_integer, upper_case
   use process_limits, only: print_text
@@ -26,6 +27,7 @@ module cli
     character(:), allocatable :: folder !< folder of the results
     character(:), allocatable :: keyword !< argument of --keywords, '' for all
     character(:), allocatable :: field !< argument of --fields, '' for all
+    character(:), allocatable :: message !< argument of --explain, '' for all
     type(reading_options) :: reading !< what the deck means
     type(umat_request) :: umat !< --umat and the options that go with it
     integer :: num_threads = 0 !< 0: as many as the system has
@@ -34,15 +36,16 @@ module cli
     logical :: is_material = .false. !< run the tests of materials, not the analysis
     logical :: is_quiet = .false.
     logical :: is_continued = .false. !< go on from the last checkpoint
-    logical :: wants_keywords = .false., wants_fields = .false.
+    logical :: wants_keywords = .false., wants_fields = .false., wants_explanation = .false.
     logical :: wants_version = .false., wants_help = .false.
     logical :: is_empty = .false. !< no argument at all
   end type command_line
 
   character(*), parameter :: options = '-o | -j | -q | --check | --keywords | --fields | '// &
-                             '--version | --help | -h | --continue | --umat | --umat-flags | '// &
-                             '--umat-library | --umat-threadsafe | --umat-check | --material | '// &
-                             '--save-joint-problems | --c3d8=full | --c3d8=bbar | --small-strain'
+                             '--explain | --version | --help | -h | --continue | --umat | '// &
+                             '--umat-flags | --umat-library | --umat-threadsafe | '// &
+                             '--umat-check | --material | --save-joint-problems | '// &
+                             '--c3d8=full | --c3d8=bbar | --small-strain'
 
 contains
 
@@ -68,6 +71,7 @@ contains
            '  --small-strain     analyse steps with NLGEOM=YES with small strains'//nl// &
            '  --keywords [NAME]  the reference of all keywords, or of one'//nl// &
            '  --fields [NAME]    the fields of results: components, place, unit, meaning'//nl// &
+           '  --explain [NAME]   the kinds of messages, or what one means and what to do'//nl// &
            '  -q                 print errors only'//nl// &
            '  --version          compiler, flags, libraries'//nl// &
            '  --help             this page'//nl// &
@@ -84,6 +88,7 @@ contains
     given%folder = '.'
     given%keyword = ''
     given%field = ''
+    given%message = ''
     given%umat%flags = ''
     given%umat%target = ''
     allocate (given%umat%files(0))
@@ -101,7 +106,8 @@ contains
                  '--material'//nl//usage(), deck_is_wrong)
       return
     end if
-    if (given%wants_keywords .or. given%wants_fields .or. len(given%deck) > 0) return
+    if (given%wants_keywords .or. given%wants_fields .or. given%wants_explanation) return
+    if (len(given%deck) > 0) return
     if (size(given%umat%files) > 0 .and. len(given%umat%target) > 0) return
     call raise(error, 'keyway: no deck is named'//nl//usage(), deck_is_wrong)
   end subroutine parse_command_line
@@ -151,10 +157,10 @@ contains
       end do
     case ('--fields')
       given%wants_fields = .true.
-      if (i > command_argument_count()) return
-      if (index(argument(i), '-') == 1) return
-      given%field = argument(i)
-      i = i + 1
+      call read_name(i, given%field)
+    case ('--explain')
+      given%wants_explanation = .true.
+      call read_name(i, given%message)
     case ('--umat-threadsafe')
       given%umat%is_threadsafe = .true.
     case ('--umat-check')
@@ -166,6 +172,16 @@ contains
       call read_deck_name(word, given, error)
     end select
   end subroutine read_argument
+
+  !> A name that may follow an option; steps over it.
+  subroutine read_name(i, name)
+    integer, intent(inout) :: i
+    character(:), allocatable, intent(inout) :: name !< unchanged where none follows
+    if (i > command_argument_count()) return
+    if (index(argument(i), '-') == 1) return
+    name = argument(i)
+    i = i + 1
+  end subroutine read_name
 
   !> The options for UMATs need --umat.
   subroutine check_umat_options(given, error)
@@ -254,7 +270,7 @@ contains
     call get_command_argument(number, text)
   end function argument
 
-  !> Prints what needs no deck: usage, help, version, keywords, fields.
+  !> Prints what needs no deck: usage, help, version, keywords, fields, messages.
   subroutine print_answer(given, is_answered, error)
     type(command_line), intent(in) :: given
     logical, intent(out) :: is_answered
@@ -272,6 +288,8 @@ contains
       call print_keywords(given%keyword, error)
     else if (given%wants_fields) then
       call print_fields(given%field, error)
+    else if (given%wants_explanation) then
+      call print_explanation(given%message, error)
     else
       is_answered = .false.
     end if
@@ -306,4 +324,18 @@ contains
     if (is_known) call print_text(text, error)
     if (.not. is_known) call raise(error, 'keyway: '//text, deck_is_wrong)
   end subroutine print_fields
+
+  subroutine print_explanation(name, error)
+    character(*), intent(in) :: name !< '' for all
+    type(error_type), allocatable, intent(out) :: error
+    character(:), allocatable :: text
+    logical :: is_known
+    if (name == '') then
+      call print_text(message_lines(), error)
+      return
+    end if
+    call explain_message(name, text, is_known)
+    if (is_known) call print_text(text, error)
+    if (.not. is_known) call raise(error, 'keyway: '//text, deck_is_wrong)
+  end subroutine print_explanation
 end module cli

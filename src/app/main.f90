@@ -9,6 +9,7 @@ program keyway
   use earlier_results, only: mark_earlier_results
   use errors, only: error_type
   use kinds, only: rk
+  use message_help, only: named_message
   use omp_lib, only: omp_get_max_threads, omp_set_num_threads
   use problem_definition, only: problem
   use process_limits, only: end_trial, prepare_process, try_memory
@@ -83,7 +84,7 @@ contains
     type(error_type), allocatable, intent(in) :: error
     if (.not. allocated(error)) return
     call lock%give_back()
-    if (len(error%message) > 0) write (error_unit, '(a)') error%message
+    if (len(error%message) > 0) write (error_unit, '(a)') named_message(error%message)
     flush (output_unit)
     flush (error_unit)
     call exit_program(int(error%exit_code, c_int))

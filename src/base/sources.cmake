@@ -26,6 +26,13 @@ set(sources
   math/sorted_lists.f90
   math/symmetric_modes.f90
   math/tensor6.f90
+  messages/message_catalogue.f90
+  messages/message_help.f90
+  messages/message_pages.f90
+  messages/pages_of_decks.f90
+  messages/pages_of_models.f90
+  messages/pages_of_runs.f90
+  messages/pages_of_values.f90
   report/diagnostic_text.f90
   report/diagnostics.f90
   report/fault_kinds.f90
@@ -46,5 +53,6 @@ set(sources
   text/sha256.f90
   text/text_buffers.f90
   text/text_table.f90
+  text/wrap_text.f90
   text/write_text.f90
 )

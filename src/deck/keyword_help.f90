@@ -4,14 +4,14 @@ module keyword_help
   use keyword_spec, only: field, find_spec, keyword, kind_flag, later, refused, without_effect
   use nearest_words, only: nearest_word
   use parse_text, only: single_blanks, upper_case, without_blanks
+  use wrap_text, only: hanging, wrapped
   use write_text, only: as_text
   implicit none
   private
-  public :: list_keywords, describe_keyword, hanging
+  public :: list_keywords, describe_keyword
 
   integer, parameter :: name_width = 34 !< room for the name of a keyword in the list
   integer, parameter :: field_width = 20 !< room for the name of a field
-  integer, parameter :: page_width = 96 !< letters of a line
   character, parameter :: nl = new_line('a')
 
 contains
@@ -197,39 +197,6 @@ contains
     character(:), allocatable :: wide
     wide = text//repeat(' ', max(width - len(text), 0))
   end function padded
-
-  !> Paragraphs, every line indented.
-  pure function wrapped(text, indent) result(lines)
-    character(*), intent(in) :: text !< new_line between paragraphs
-    integer, intent(in) :: indent
-    character(:), allocatable :: lines
-    integer :: first, last
-    lines = ''
-    first = 1
-    do while (first <= len(text))
-      last = index(text(first:)//nl, nl) + first - 2
-      if (first > 1) lines = lines//nl
-      lines = lines//repeat(' ', indent)//hanging(text(first:last), indent)
-      first = last + 2
-    end do
-  end function wrapped
-
-  !> A paragraph whose later lines are indented.
-  pure function hanging(text, indent) result(lines)
-    character(*), intent(in) :: text
-    integer, intent(in) :: indent
-    character(:), allocatable :: lines
-    integer :: first, last
-    lines = ''
-    first = 1
-    do while (len(text) - first + 1 > page_width - indent)
-      last = index(text(first:first + page_width - indent), ' ', back=.true.)
-      if (last <= 1) exit
-      lines = lines//text(first:first + last - 2)//nl//repeat(' ', indent)
-      first = first + last
-    end do
-    lines = lines//text(first:)
-  end function hanging
 
   !> Lines, each indented by two blanks.
   pure function indented(text) result(lines)

@@ -86,6 +86,7 @@ def test_completion(prefix, tmp_path):
     assert complete(prefix, tmp_path, "da", "-o") == ["data"]
     assert complete(prefix, tmp_path, "base", "--keywords") == ["BASE\\ MOTION"]
     assert complete(prefix, tmp_path, "OPEN", "--fields") == ["OPENING"]
+    assert complete(prefix, tmp_path, "no-s", "--explain") == ["no-support"]
     assert complete(prefix, tmp_path, "--che") == ["--check"]
 
 

@@ -1,11 +1,12 @@
 !> The text of diagnostics: messages on faults of the deck.
 !>
-!>     dam.inp:12: *ELASTIC: found '31 GPa'; expected Young's modulus, a number > 0 [Pa]
-!>        12 | 31 GPa, 0.2
-!>           | ^^^^^^
+!>     dam.inp:12: *ELASTIC: found '31 GPa'; expected Poisson's ratio, a number < 0.5 [wrong-value]
+!>        12 | 31e9, 31 GPa
+!>           |       ^^^^^^
 module diagnostic_text
   use diagnostics, only: diagnostic, diagnostic_list, place, severity_error
   use fault_kinds, only: fault_kind
+  use message_catalogue, only: label_of_fault
   use write_text, only: as_text
   implicit none
   private
@@ -20,8 +21,9 @@ contains
 
   !> The errors kept, and how many more there are of each kind. Things that do not exist come after
   !> the other errors, of which they may be consequences; many of one kind are one error.
-  pure function text_of_errors(list) result(text)
+  function text_of_errors(list, is_named) result(text)
     type(diagnostic_list), intent(in) :: list
+    logical, intent(in), optional :: is_named !< each message ends with the name of its kind
     character(:), allocatable :: text !< lines separated by new_line; '' without errors
     integer :: order(list%num_kept), i
     integer :: num_shown(list%kinds%num_kinds)
@@ -32,7 +34,7 @@ contains
       associate (fault => list%errors(order(i)))
         if (is_many(list, fault%kind) .and. num_shown(fault%kind) == 1) cycle
         num_shown(fault%kind) = num_shown(fault%kind) + 1
-        text = text//new_line('a')//text_of_diagnostic(fault)
+        text = text//new_line('a')//text_of_diagnostic(fault, is_named)
       end associate
     end do
     do i = 1, size(num_shown)
@@ -88,27 +90,39 @@ contains
   end function order_by_place
 
   !> All warnings and notes on ignored input, without the deck lines; '' without any.
-  pure function text_of_warnings(list) result(text)
+  function text_of_warnings(list, is_named) result(text)
     type(diagnostic_list), intent(in) :: list
+    logical, intent(in), optional :: is_named !< each message ends with the name of its kind
     character(:), allocatable :: text !< lines with new_line between them, none at the end
     integer :: i
     text = ''
     do i = 1, list%num_warnings
       if (i > 1) text = text//new_line('a')
-      text = text//headline(list%warnings(i))
+      text = text//named_headline(list%warnings(i), is_named)
     end do
   end function text_of_warnings
 
   !> One fault: the headline, the line of the deck, carets, and the place of an earlier definition.
-  pure function text_of_diagnostic(fault) result(text)
+  function text_of_diagnostic(fault, is_named) result(text)
     type(diagnostic), intent(in) :: fault
+    logical, intent(in), optional :: is_named
     character(:), allocatable :: text
-    text = headline(fault)//excerpt(fault%spot)
+    text = named_headline(fault, is_named)//excerpt(fault%spot)
     if (allocated(fault%first%file)) then
       text = text//new_line('a')//'  first defined here: '//fault%first%file//':'// &
              as_text(fault%first%line)//excerpt(fault%first)
     end if
   end function text_of_diagnostic
+
+  !> The headline and, if `is_named`, the short name of its kind, as [wrong-value].
+  function named_headline(fault, is_named) result(text)
+    type(diagnostic), intent(in) :: fault
+    logical, intent(in), optional :: is_named
+    character(:), allocatable :: text
+    text = headline(fault)
+    if (.not. present(is_named)) return
+    if (is_named) text = text//label_of_fault(fault%problem, fault%expected)
+  end function named_headline
 
   !> file:line: *KEYWORD: what is wrong; what was expected.
   pure function headline(fault) result(text)

@@ -7,6 +7,7 @@ module logging
   use, intrinsic :: iso_fortran_env, only: error_unit
   use errors, only: error_type, raise_unwritten
   use kinds, only: long
+  use message_catalogue, only: label_of_run
   use raw_files, only: raw_file
   implicit none
   private
@@ -77,8 +78,11 @@ contains
   subroutine say(self, line)
     class(run_log), intent(inout) :: self
     character(*), intent(in) :: line !< may hold several lines
-    call self%note(line)
-    if (.not. self%is_quiet) call show(self, line)
+    character(:), allocatable :: label
+    label = ''
+    if (index(line, 'warning: ') == 1) label = label_of_run(line)
+    call self%note(line//label)
+    if (.not. self%is_quiet) call show(self, line//label)
   end subroutine say
 
   !> Writes a line to the file only.

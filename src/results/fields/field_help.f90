@@ -2,10 +2,10 @@
 module field_help
   use field_table, only: find_field, list_fields
   use field_type, only: at_joints, counted, place_names, result_field
-  use keyword_help, only: hanging
   use nearest_words, only: nearest_word
   use parse_text, only: single_blanks, upper_case
   use print_kinds, only: file_pattern, kinds_of_prints
+  use wrap_text, only: hanging
   implicit none
   private
   public :: field_lines, field_page

@@ -50,6 +50,12 @@ contains
     call check_text(log, text_of_errors(list), 'dam.inp:12: *ELASTIC: unknown parameter '// &
                     "'TIPE'; expected TYPE; did you mean 'TYPE'?"//lf// &
                     '   12 |  TIPE = x'//lf//'      |  ^^^^', 'fault')
+    call check_text(log, text_of_warnings(list, is_named=.true.), &
+                    'dam.inp:1: *ELASTIC: warning: odd'//lf// &
+                    'dam.inp:2: *ELASTIC: warning: has no effect here [no-effect]', 'named')
+    call check_text(log, text_of_errors(list, is_named=.true.), 'dam.inp:12: *ELASTIC: unknown '// &
+                    "parameter 'TIPE'; expected TYPE; did you mean 'TYPE'? [unknown-parameter]"// &
+                    lf//'   12 |  TIPE = x'//lf//'      |  ^^^^', 'named fault')
   end subroutine plain_fault
 
   !> Two places that clash are both shown.
