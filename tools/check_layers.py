@@ -59,6 +59,7 @@ ROOMS = (
     "analysis/integrators",
     "analysis/steps",
     "results/quantities",
+    "results/errors",
     "results/fields",
     "results/record",
     "results/summary",

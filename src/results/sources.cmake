@@ -2,6 +2,10 @@ set(sources
   checkpoints/checkpoint_files.f90
   checkpoints/checkpoint_identity.f90
   checkpoints/run_checkpoint.f90
+  errors/dual_weighting.f90
+  errors/fitted_stress.f90
+  errors/goal_errors.f90
+  errors/space_errors.f90
   fields/error_fields.f90
   fields/field_help.f90
   fields/field_table.f90
@@ -28,11 +32,9 @@ set(sources
   quantities/stress_operator.f90
   quantities/stress_recovery.f90
   quantities/thermal_recovery.f90
-  record/goal_errors.f90
   record/record_archive.f90
   record/requested_fields.f90
   record/result_writer.f90
-  record/space_errors.f90
   record/run_records.f90
   result_files.f90
   summary/run_closing.f90

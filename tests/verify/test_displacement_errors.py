@@ -18,19 +18,19 @@ def of_displacement(run) -> dict[str, float]:
     return run.json["accuracy"]["estimates"]["displacement"]
 
 
-# C3D8I is a factor of 3: bubbles make its displacements better than its stresses say.
-FACTOR = {"C3D8": 2.0, "C3D8B": 2.0, "C3D8I": 3.5}
+# The displacement of the bore (Lame).
+LAME = (1.0 + POISSON) * BORE**2 / (MODULUS * (OUTSIDE**2 - BORE**2))
+LAME *= (1.0 - 2.0 * POISSON) * BORE + OUTSIDE**2 / BORE
+ELEMENTS = ("C3D8", "C3D8B", "C3D8I")
 
 
-@pytest.mark.parametrize("element", FACTOR)
+@pytest.mark.parametrize("element", ELEMENTS)
 def test_mesh_in_a_cylinder(keyway, documented, element):
     """Exact: Lame. The element's largest displacement is at the bore."""
-    factor = (1.0 + POISSON) * BORE**2 / (MODULUS * (OUTSIDE**2 - BORE**2))
-    exact = factor * ((1.0 - 2.0 * POISSON) * BORE + OUTSIDE**2 / BORE)
     for count in (8, 16):
         found = of_displacement(keyway(cylinder(count, element)[0]))
-        effectivity = found["mesh"] / abs(exact - found["value"])
-        assert 1.0 / FACTOR[element] < effectivity < FACTOR[element]
+        effectivity = found["mesh"] / abs(LAME - found["value"])
+        assert 0.5 < effectivity < 2.0
         documented("error of a displacement", ("cylinder", element), str(count), effectivity)
 
 
@@ -38,19 +38,21 @@ def test_mesh_in_a_cylinder(keyway, documented, element):
 def test_mesh_in_bending(keyway, documented, make, name):
     counts, fine = ((8, 16), 64) if make is cook else ((2, 4), 8)
     limit = keyway(make(fine, "C3D8I")).json["displacement"]["anywhere"]["value"]
-    for element, factor in FACTOR.items():
+    for element in (*ELEMENTS, "C3D8R"):
         for count, column in zip(counts, ("8", "16"), strict=True):
             found = of_displacement(keyway(make(count, element)))
             effectivity = found["mesh"] / abs(limit - found["value"])
-            assert 1.0 / factor < effectivity < factor
+            if (element, name, count) == ("C3D8R", "membrane", 16):
+                continue  # the error passes through zero between two signs
+            assert 0.5 < effectivity < 2.0
             documented("error of a displacement", (name, element), column, effectivity)
 
 
-def test_no_estimate_that_misleads(keyway):
-    """For C3D8R the estimate was up to 118 times the error."""
-    found = keyway(cook(8, "C3D8R")).json["accuracy"]["estimates"]["displacement"]
-    assert "mesh" not in found
-    assert found["error"] == found["iteration"]
+def test_one_point_in_a_cylinder(keyway):
+    """C3D8R is exact to 0.2 % and less here; the estimate does not see this, but is no smaller."""
+    for count in (8, 16):
+        found = of_displacement(keyway(cylinder(count, "C3D8R")[0]))
+        assert abs(LAME - found["value"]) < found["mesh"] < 0.03 * LAME
 
 
 def test_switched_off(keyway):

@@ -48,6 +48,7 @@ module stress_fields
     procedure :: need_node_strain
     procedure :: need_node_stress
     procedure :: need_principals
+    procedure :: need_smoothing
     procedure :: need_error
     procedure :: field_on_nodes
     procedure :: points_on_nodes
@@ -272,6 +273,16 @@ contains
     self%has_principals = .true.
   end subroutine need_principals
 
+  !> Makes the plan of smooth stresses unless it exists.
+  subroutine need_smoothing(self, model)
+    class(recovered_fields), intent(inout) :: self
+    type(problem), intent(in) :: model
+    call self%need_plan(model)
+    if (self%has_smoothing) return
+    call make_smoothing_plan(model, self%plan, self%smoothing)
+    self%has_smoothing = .true.
+  end subroutine need_smoothing
+
   !> Computes the error of the stresses of each solid, once an increment (theory.md, 14.1).
   subroutine need_error(self, model, now)
     class(recovered_fields), intent(inout) :: self
@@ -279,8 +290,7 @@ contains
     type(state), intent(in) :: now
     if (self%has_error) return
     call self%need_points(model, now)
-    if (.not. self%has_smoothing) call make_smoothing_plan(model, self%plan, self%smoothing)
-    self%has_smoothing = .true.
+    call self%need_smoothing(model)
     if (.not. allocated(self%defect)) then
       allocate (self%defect(6, max_points, self%plan%num_solids))
       allocate (self%error_energy(self%plan%num_solids), self%stress_energy(self%plan%num_solids))

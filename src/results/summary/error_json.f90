@@ -91,6 +91,7 @@ contains
     if (found%has_time(value)) call json%put_real(found%time, 'time')
     if (found%has_mesh(value)) call json%put_real(found%mesh, 'mesh')
     if (found%has_joints(value)) call json%put_real(found%joints, 'joints')
+    if (found%is_soft(value)) call json%put_real(found%joints, 'springs')
     if (found%has_iteration(value)) call json%put_real(found%iteration, 'iteration')
     if (found%history >= 0.0_rk) call json%put_real(found%history, 'history')
     call json%close_object()

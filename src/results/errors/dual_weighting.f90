@@ -1,0 +1,202 @@
+!> What the mesh changes in a result: the defects of the stresses, weighted by those under the unit
+!> force of the result (theory.md, 14.2). Elastic solids without temperatures.
+module dual_weighting
+  use dam_mesh, only: element_is_there
+  use element_hex8, only: hex8_gradients
+  use element_matrices, only: strains_at_points
+  use kinds, only: rk
+  use node_dofs, only: gather_vectors
+  use problem_definition, only: problem
+  use shape_hex8, only: hex8_dofs, strain_rows
+  use fitted_stress, only: fitted_defect, make_patch_fit, patch_fit
+  use stress_error, only: smoothing_plan, stress_defect
+  use stress_recovery, only: recovery_plan, operators_of_block, max_points, few_nodes
+  implicit none
+  private
+  public :: weigh_defects
+
+  !> What one field of displacements gives at 2 x 2 x 2 points of the solids.
+  type :: point_fields
+    real(rk), allocatable :: stress(:, :, :) !< (6, max_points, solids) [Pa]
+    !> (6, max_points, solids) strain of the element less that of its displacements: incompatible
+    !> modes, and what mean strains leave out
+    real(rk), allocatable :: added(:, :, :)
+    real(rk), allocatable :: averaged(:, :, :) !< means of corners less own stress [Pa]
+    real(rk), allocatable :: fitted(:, :, :) !< fitted less own stress, where fits are wanted [Pa]
+  end type point_fields
+
+contains
+
+  !> The change of each result by the mesh: the true result less the computed one, as far as smooth
+  !> stresses show it.
+  subroutine weigh_defects(model, plan, smoothing, u, wants_fit, change)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    type(smoothing_plan), intent(in) :: smoothing
+    !> (3, nodes, 1 + results) displacements [m], then those under each unit force [m/N]
+    real(rk), intent(in) :: u(:, :, :)
+    logical, intent(in) :: wants_fit(:) !< (results) fitted stresses in elements that need them
+    real(rk), intent(out) :: change(:) !< (results) [m]
+    type(point_fields) :: own(size(u, 3))
+    logical :: is_fitted(plan%num_solids)
+    integer :: i, k
+    do k = 1, size(own)
+      allocate (own(k)%stress(6, max_points, plan%num_solids), source=0.0_rk)
+      allocate (own(k)%added, source=own(k)%stress)
+    end do
+    !$omp parallel do default(none) shared(model, plan, u, own) schedule(dynamic, 4) &
+    !$omp if (model%mesh%num_nodes > few_nodes)
+    do i = 1, size(plan%blocks)
+      call recover_block(model, plan, i, u, own)
+    end do
+    !$omp end parallel do
+    call find_fitted(plan, is_fitted)
+    call smooth_stresses(model, plan, smoothing, &
+                         [any(wants_fit), wants_fit] .and. any(is_fitted), own)
+    do k = 1, size(change)
+      change(k) = sum(products(model, plan, smoothing, is_fitted .and. wants_fit(k), own(1), &
+                               own(k + 1))) &
+                  + hourglass_work(model, plan, u(:, :, 1), u(:, :, k + 1))
+    end do
+  end subroutine weigh_defects
+
+  !> The solids whose stresses hardly jump at their corners, for all their error: incompatible modes
+  !> follow bending, one point shows nothing of it.
+  subroutine find_fitted(plan, is_fitted)
+    type(recovery_plan), intent(in) :: plan
+    logical, intent(out) :: is_fitted(:) !< (solids)
+    integer :: i
+    is_fitted = .false.
+    do i = 1, size(plan%blocks)
+      associate (kind => plan%formulations(plan%blocks(i)%formulation)%item)
+        is_fitted(plan%blocks(i)%solids) = kind%name == 'C3D8I' .or. kind%name == 'C3D8R'
+      end associate
+    end do
+  end subroutine find_fitted
+
+  !> Smooth stresses less those of the elements.
+  subroutine smooth_stresses(model, plan, smoothing, wants_fit, own)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    type(smoothing_plan), intent(in) :: smoothing
+    logical, intent(in) :: wants_fit(:) !< (fields)
+    type(point_fields), intent(inout) :: own(:)
+    type(patch_fit) :: fit
+    integer :: k
+    if (any(wants_fit)) call make_patch_fit(model%mesh, plan, smoothing, fit)
+    do k = 1, size(own)
+      allocate (own(k)%averaged, mold=own(k)%stress)
+      call stress_defect(plan, smoothing, own(k)%stress, spread(.false., 1, plan%num_solids), &
+                         own(k)%averaged)
+      if (.not. wants_fit(k)) cycle
+      allocate (own(k)%fitted, mold=own(k)%stress)
+      call fitted_defect(model%mesh, plan, smoothing, fit, own(k)%stress, own(k)%fitted)
+    end do
+  end subroutine smooth_stresses
+
+  !> Stresses and added strains of the elements of one block, from all displacements.
+  subroutine recover_block(model, plan, block, u, own)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    integer, intent(in) :: block
+    real(rk), intent(in) :: u(:, :, :) !< (3, nodes, fields)
+    type(point_fields), intent(inout) :: own(:)
+    real(rk), allocatable :: b(:, :, :, :), moved(:, :), strain(:, :, :)
+    real(rk) :: d(6, 6)
+    integer :: e, i, k, q, s, points
+    associate (part => plan%blocks(block))
+      call operators_of_block(model, plan, part, b, d)
+      points = size(b, 3)
+      allocate (moved(hex8_dofs, size(part%solids)), strain(6, points, size(part%solids)))
+      do k = 1, size(own)
+        do i = 1, size(part%solids)
+          e = plan%element_of_solid(part%solids(i))
+          moved(:, i) = gather_vectors(u(:, :, k), model%mesh%nodes(:, e))
+        end do
+        call strains_at_points(b, moved, strain)
+        do i = 1, size(part%solids)
+          s = part%solids(i)
+          do q = 1, max_points
+            own(k)%added(:, q, s) = strain(:, min(q, points), i)
+            own(k)%stress(:, q, s) = matmul(d, own(k)%added(:, q, s))
+          end do
+          call take_compatible(model%mesh%x(:, model%mesh%nodes(:, plan%element_of_solid(s))), &
+                               moved(:, i), own(k)%added(:, :, s))
+        end do
+      end do
+    end associate
+  end subroutine recover_block
+
+  !> Takes the strains of the displacements of an element from its strains.
+  pure subroutine take_compatible(x, moved, strain)
+    real(rk), intent(in) :: x(3, 8) !< [m]
+    real(rk), intent(in) :: moved(hex8_dofs) !< [m]
+    real(rk), intent(inout) :: strain(6, max_points)
+    real(rk) :: gradient(3, 8, 8), volume(8), b(6, hex8_dofs)
+    integer :: q, status
+    call hex8_gradients(x, gradient, volume, status)
+    do q = 1, max_points
+      call strain_rows(gradient(:, :, q), b)
+      strain(:, q) = strain(:, q) - matmul(b, moved)
+    end do
+  end subroutine take_compatible
+
+  !> The products of the defects of two fields in each solid, and of the added strains of each with
+  !> the defect of the other [J].
+  function products(model, plan, smoothing, is_fitted, first, second) result(work)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    type(smoothing_plan), intent(in) :: smoothing
+    logical, intent(in) :: is_fitted(:) !< (solids)
+    type(point_fields), intent(in) :: first, second
+    real(rk) :: work(plan%num_solids)
+    integer :: s, m
+    work = 0.0_rk
+    do s = 1, plan%num_solids
+      m = model%mesh%material_of_element(plan%element_of_solid(s))
+      if (m == 0 .or. .not. element_is_there(model%mesh, plan%element_of_solid(s))) cycle
+      if (is_fitted(s)) then
+        call add_products(first%fitted(:, :, s), second%fitted(:, :, s))
+      else
+        call add_products(first%averaged(:, :, s), second%averaged(:, :, s))
+      end if
+    end do
+  contains
+    !> Sums over the points of a solid.
+    subroutine add_products(a, b)
+      real(rk), intent(in) :: a(:, :), b(:, :) !< (6, max_points) defects [Pa]
+      integer :: q
+      do q = 1, max_points
+        work(s) = work(s) + smoothing%volume(q, s) &
+                  *(dot_product(a(:, q), matmul(smoothing%compliance(:, :, m), b(:, q))) &
+                    + dot_product(first%added(:, q, s), b(:, q)) &
+                    + dot_product(second%added(:, q, s), a(:, q)))
+      end do
+    end subroutine add_products
+  end function products
+
+  !> The work of the hourglass forces of one field along the other [J].
+  real(rk) function hourglass_work(model, plan, first, second) result(work)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    real(rk), intent(in) :: first(:, :), second(:, :) !< (3, nodes)
+    real(rk) :: d(6, 6), ke(hex8_dofs, hex8_dofs, 1), x(3, 8, 1)
+    integer :: i, k
+    work = 0.0_rk
+    do i = 1, size(plan%blocks)
+      associate (part => plan%blocks(i), kinds => plan%formulations)
+        if (kinds(part%formulation)%item%num_points > 1) cycle
+        call model%materials(part%material)%law%elastic_stiffness(d)
+        do k = 1, size(part%solids)
+          associate (nodes => model%mesh%nodes(:, plan%element_of_solid(part%solids(k))))
+            x(:, :, 1) = model%mesh%x(:, nodes)
+            ke = 0.0_rk
+            call kinds(part%formulation)%item%add_stabilisation(x, d, ke)
+            work = work + dot_product(gather_vectors(first, nodes), &
+                                      matmul(ke(:, :, 1), gather_vectors(second, nodes)))
+          end associate
+        end do
+      end associate
+    end do
+  end function hourglass_work
+end module dual_weighting
