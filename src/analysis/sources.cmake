@@ -40,6 +40,7 @@ set(sources
   solids/solid_tangent.f90
   solids/tangent_choice.f90
   stages/stage_entry.f90
+  stages/stage_joints.f90
   state/analysis_state.f90
   state/dual_solutions.f90
   state/guest_histories.f90

@@ -34,5 +34,6 @@ set(sources
   law/slip_dissipation.f90
   points/admissible_slip.f90
   points/element_joint8.f90
+  points/joint_parts.f90
   points/joint_points.f90
 )

@@ -1,5 +1,6 @@
 !> Reads a deck into the problem, in passes over its cards; all faults are collected.
 module read_deck
+  use problem_definition, only: problem ! first: gfortran 12 fails to write the module otherwise
   use card_check, only: check_card, match_card
   use check_histories, only: warn_of_histories
   use check_idle_steps, only: warn_of_idle_steps
@@ -29,7 +30,6 @@ module read_deck
   use keywords_elements, only: make_room_for_elements, trim_mesh
   use keywords_nodes, only: make_room_for_nodes
   use model_draft, only: draft
-  use problem_definition, only: problem
   use umat_loader, only: user_library
   use verify_model, only: verify
   implicit none

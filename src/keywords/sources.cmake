@@ -73,6 +73,7 @@ set(sources
   read_deck.f90
   stages/finish_stages.f90
   stages/keywords_stages.f90
+  stages/stage_faces.f90
   steps/card_fields.f90
   steps/check_accuracy.f90
   steps/check_requests.f90

@@ -1,7 +1,11 @@
 !> Checks of *DYNAMIC, REDUCED: what a reduced model cannot hold (theory.md, 7.4).
 module verify_reduced
+  use amplitudes, only: amplitude
   use diagnostics, only: diagnostic_list
+  use heat_plan, only: heat_rule
+  use kinds, only: rk
   use model_draft, only: draft
+  use step_plan, only: step
   implicit none
   private
   public :: verify_reduced_steps
@@ -23,12 +27,10 @@ contains
         if (model%equations%num > 0) then
           call refuse(model, s, 'the model has equations (*EQUATION, *MPC)', faults)
         end if
-        if (model%problem%stages%is_there_any()) then
-          call refuse(model, s, 'the model is built in stages (*MODEL CHANGE, *GROUT)', faults)
-        end if
-        if (model%problem%heat%has_expansion .and. model%problem%heat%is_there_any()) then
-          call refuse(model, s, 'the model has temperatures (*TEMPERATURE) and materials that '// &
-                      'expand', faults)
+        call refuse_stages(model, s, faults)
+        if (model%problem%heat%has_expansion .and. changes_temperature(model, s)) then
+          call refuse(model, s, 'the step changes temperatures of materials that expand '// &
+                      '(*TEMPERATURE), and a reduced model holds those that it starts with', faults)
         end if
         if (any(plan%fixities%amplitude > 0)) then
           call refuse(model, s, 'a support of the step moves, and a reduced model holds its '// &
@@ -57,6 +59,54 @@ contains
       end associate
     end do
   end subroutine refuse_solids
+
+  !> Elements that are not there yet.
+  subroutine refuse_stages(model, s, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: s !< step
+    type(diagnostic_list), intent(inout) :: faults
+    if (.not. allocated(model%problem%stages%is_absent)) return
+    if (.not. any(model%problem%stages%is_absent(:, s))) return
+    call refuse(model, s, 'elements are absent in the step (*MODEL CHANGE), and a reduced '// &
+                'model holds a complete dam', faults)
+  end subroutine refuse_stages
+
+  !> Whether a step may change temperatures. Histories over the total time that have ended before
+  !> the step do not.
+  pure logical function changes_temperature(model, s) result(changes)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: s !< step
+    real(rk) :: start
+    integer :: r
+    associate (plan => model%problem%steps(s))
+      changes = plan%restores_temperature
+      if (.not. allocated(plan%heats)) return
+      start = sum([(passed(model%problem%steps(r)), r=1, s - 1)])
+      do r = 1, size(plan%heats)
+        changes = changes .or. end_of(plan%heats(r), model%problem%amplitudes) > start
+      end do
+    end associate
+  end function changes_temperature
+
+  !> The total time from which on the temperatures of a rule stay as they are; infinite where the
+  !> rule belongs to its step.
+  pure real(rk) function end_of(rule, histories)
+    type(heat_rule), intent(in) :: rule
+    type(amplitude), intent(in) :: histories(:)
+    end_of = huge(end_of)
+    if (.not. rule%goes_on(histories)) return
+    if (rule%amplitude > 0) then
+      end_of = maxval(histories(rule%amplitude)%time)
+    else
+      end_of = maxval(rule%time)
+    end if
+  end function end_of
+
+  !> Time that a step takes [s].
+  pure real(rk) function passed(plan)
+    type(step), intent(in) :: plan
+    passed = merge(0.0_rk, plan%duration, plan%procedure%finds_modes)
+  end function passed
 
   !> Water that follows the open points of a joint.
   subroutine refuse_water(model, s, faults)

@@ -1,7 +1,9 @@
 !> The contract of loads, an extension of guests. A load is a constant pattern; its factor in time
 !> belongs to the step.
 module applied_load
+  use dam_mesh, only: fe_mesh
   use guest_type, only: guest
+  use joint_points, only: dam_joint
   use kinds, only: rk
   implicit none
   private
@@ -14,6 +16,7 @@ module applied_load
     logical :: follows_opening = .false. !< its forces depend on the open points
   contains
     procedure :: joint_pressure
+    procedure :: follow_joint
   end type load
 
   type :: load_slot
@@ -28,4 +31,11 @@ contains
     real(rk), intent(out) :: pressure(:) !< (points) [Pa]
     pressure = 0.0_rk
   end subroutine joint_pressure
+
+  !> Areas and nodes of the points of `wet_joint` have changed, or some points have come or gone.
+  subroutine follow_joint(self, mesh, joint)
+    class(load), intent(inout) :: self
+    type(fe_mesh), intent(in) :: mesh
+    type(dam_joint), intent(in) :: joint
+  end subroutine follow_joint
 end module applied_load

@@ -7,6 +7,7 @@
 module load_uplift
   use applied_load, only: load
   use dam_mesh, only: fe_mesh
+  use joint_parts, only: point_is_there
   use joint_points, only: dam_joint
   use joint_rim, only: distance_to_edges, face_rim
   use kinds, only: rk
@@ -24,6 +25,7 @@ module load_uplift
   contains
     procedure :: add_force
     procedure :: joint_pressure
+    procedure :: follow_joint
   end type uplift_load
 
 contains
@@ -59,7 +61,7 @@ contains
         self%pressure(p) = self%pressure(p)*b/(a + b)
       end if
     end do
-    call list_forces(joint, self)
+    call self%follow_joint(mesh, joint)
   end subroutine fill_linear
 
   !> Full head, and the paths of the water.
@@ -81,19 +83,24 @@ contains
     call build_paths(mesh%num_nodes, joint, facets, distance, self%paths)
   end subroutine fill_open
 
-  !> Forces area*pressure along the normal on the slave face, and opposite on the master face.
-  subroutine list_forces(joint, self)
+  !> Forces area*pressure along the normal on the slave face, and opposite on the master face, at
+  !> the points that are there.
+  subroutine follow_joint(self, mesh, joint)
+    class(uplift_load), intent(inout) :: self
+    type(fe_mesh), intent(in) :: mesh
     type(dam_joint), intent(in) :: joint
-    type(uplift_load), intent(inout) :: self
     integer :: p, k
+    if (self%follows_opening) return
     self%node = joint%node
-    allocate (self%force(3, size(joint%node)))
+    if (allocated(self%force)) deallocate (self%force)
+    allocate (self%force(3, size(joint%node)), source=0.0_rk)
     do p = 1, joint%num_points
+      if (.not. point_is_there(mesh, joint, p)) cycle
       do k = joint%first(p), joint%first(p + 1) - 1
         self%force(:, k) = joint%weight(k)*joint%area(p)*self%pressure(p)*joint%rotation(1, :, p)
       end do
     end do
-  end subroutine list_forces
+  end subroutine follow_joint
 
   !> Adds the forces of a constant profile; does nothing for profile OPEN.
   subroutine add_force(self, mesh, density, force)

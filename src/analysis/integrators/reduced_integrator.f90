@@ -93,7 +93,7 @@ contains
     call find_followed(plan, self%system, self%basis, now%motion%modal%start, self%solids%solver, &
                        self%followed, error)
     if (allocated(error) .or. now%increment > 0) return
-    call open_account(model, self%system, now, now%total_time <= 0.0_rk, .false.)
+    call open_account(model, self%system, now, now%total_time <= 0.0_rk, plan%changes_stage)
     call store_motion(self%system%numbers, now)
     call results%increment_done(model, now, error)
   end subroutine open_step
@@ -148,7 +148,7 @@ contains
         end associate
       end if
       call external_force(system%groups, model%amplitudes, when, own%external)
-      call multiply(system%matrix, system%stiffness, modal%start, own%elastic)
+      call system%find_elastic(modal%start, own%elastic)
       self%basis%start_traction = modal%start_traction
       contact = 0.0_rk
       call system%operator%add_forces(modal%start_traction, contact)

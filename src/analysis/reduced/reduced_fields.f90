@@ -38,7 +38,7 @@ contains
       own%a = 0.0_rk
       own%a(:n) = x(:, 3) + matmul(basis%mode, modal%acceleration)
       call external_force(system%groups, amplitudes, when, own%external)
-      call multiply(system%matrix, system%stiffness, own%q, own%elastic)
+      call system%find_elastic(own%q, own%elastic)
       own%internal = own%elastic
       call multiply(system%mass_pattern, system%mass_entries, own%v, own%momentum)
       call multiply(system%mass_pattern, system%mass_entries, own%a, own%inertia)

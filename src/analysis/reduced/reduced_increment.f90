@@ -11,7 +11,7 @@ module reduced_increment
   use dense_products, only: symmetric_times, times_vector, transposed_times_vector
   use equilibrium, only: balance_outcome, force_balance
   use hht_scheme, only: hht
-  use joint_forces, only: gather_jumps, gather_tractions
+  use joint_forces, only: gather_jumps, gather_tractions, take_origins
   use joint_operator, only: jump_operator
   use kinds, only: rk
   use problem_definition, only: problem
@@ -90,6 +90,7 @@ contains
         outcome%iterations = 1
       else
         call operator%jumps(before%motion%modal%start, jump)
+        call take_origins(operator, before%joints, jump)
         moved = times_vector(basis%path, new%y) + symmetric_times(basis%residual, new%port)
         jump = jump + reshape(moved(:size(jump)) + matrices%held_jump, shape(jump))
         call solve_with_joints(matrices, model, controls, jump, before, after, traction, outcome)

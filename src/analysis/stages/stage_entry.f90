@@ -1,22 +1,21 @@
 !> The start of a step in a model that is built in stages (theory.md, 15): elements that come and
-!> go, and joints that are grouted.
+!> go, and joints that are grouted (stage_joints).
 !>
 !> The mesh says which elements there are; state%origin the displacements at which an element has no
-!> stress. A joint keeps the relative displacement of its nodes at the zero of its law.
+!> stress.
 module stage_entry
   use constraint_elimination, only: keep_present
-  use dam_mesh, only: fe_mesh, node_tie, are_there, element_is_there
+  use dam_mesh, only: fe_mesh, node_tie, element_is_there
   use errors, only: error_type
   use guest_list, only: ties_of
-  use joint_law, only: joint_state, phase_absent, phase_contact, phase_full, takes_grout
-  use joint_points, only: dam_joint, relative_displacement
+  use joint_parts, only: show_parts
   use kinds, only: rk
   use material_law, only: start_points
   use analysis_state, only: state
   use node_dofs, only: gather_vectors
   use problem_definition, only: problem
   use shape_hex8, only: hex8_dofs
-  use step_plan, only: step
+  use stage_joints, only: harden_joints, harden_pressed, move_points, start_phases
   use tie_motion, only: follow_ties
   use warming, only: heat_points, take_references
   implicit none
@@ -43,11 +42,11 @@ contains
     call harden_joints(model, model%steps(number), now%joints)
   end subroutine enter_stage
 
-  !> Sets the elements of the mesh to those of a step.
+  !> Sets the elements of the mesh and the parts of joints to those of a step.
   subroutine show_stage(model, number)
     type(problem), intent(inout) :: model
     integer, intent(in) :: number !< of the step
-    integer :: s, e
+    integer :: s, e, j
     if (.not. allocated(model%stages%is_absent)) return
     associate (mesh => model%mesh, plan => model%stages)
       mesh%is_absent = plan%is_absent(:, number)
@@ -62,6 +61,14 @@ contains
         if (mesh%material_of_element(e) > 0) mesh%is_node_absent(nodes_of(mesh, e)) = .false.
       end do
     end associate
+    do j = 1, size(model%joints)
+      call show_parts(model%joints(j), number)
+    end do
+    do j = 1, size(model%loads)
+      associate (item => model%loads(j)%item)
+        if (item%wet_joint > 0) call item%follow_joint(model%mesh, model%joints(item%wet_joint))
+      end associate
+    end do
   end subroutine show_stage
 
   !> The nodes of an element.
@@ -72,29 +79,6 @@ contains
     nodes = pack(mesh%nodes(:, element), mesh%nodes(:, element) > 0)
   end function nodes_of
 
-  !> Phases and origins of the joints of the complete model; joints to be grouted are in contact.
-  subroutine start_phases(model, joints)
-    type(problem), intent(in) :: model
-    type(joint_state), intent(inout) :: joints(:)
-    integer :: j
-    do j = 1, size(joints)
-      if (.not. allocated(model%stages%is_absent) .and. first_phase(model, j) == phase_full) cycle
-      allocate (joints(j)%origin(3, model%joints(j)%num_points), source=0.0_rk)
-      allocate (joints(j)%phase(model%joints(j)%num_points), source=first_phase(model, j))
-      if (first_phase(model, j) == phase_contact) joints(j)%is_broken = .true.
-    end do
-  end subroutine start_phases
-
-  !> The phase of points that appear.
-  pure integer function first_phase(model, joint) result(phase)
-    type(problem), intent(in) :: model
-    integer, intent(in) :: joint
-    phase = phase_full
-    if (allocated(model%stages%is_grouted)) then
-      if (model%stages%is_grouted(joint)) phase = phase_contact
-    end if
-  end function first_phase
-
   !> Elements that come have no stress in the geometry of this moment, and a new history. Nodes that
   !> come start without displacement, tied ones from the nodes that they follow.
   subroutine move_elements(model, number, now, error)
@@ -103,7 +87,7 @@ contains
     type(state), intent(inout) :: now
     type(error_type), allocatable, intent(out) :: error
     logical :: was_absent(model%mesh%num_elements), was_node_absent(model%mesh%num_nodes)
-    integer :: e, j
+    integer :: e
     was_absent = .false.
     was_node_absent = .false.
     if (allocated(model%mesh%is_absent)) then
@@ -113,9 +97,7 @@ contains
     call show_stage(model, number)
     call place_nodes(model, was_node_absent, now%u, error)
     if (allocated(error)) return
-    do j = 1, size(model%joints)
-      call move_points(model, j, now%u, now%joints(j))
-    end do
+    call move_points(model, number, now%u, now%joints)
     if (.not. allocated(now%origin)) then
       allocate (now%origin(hex8_dofs, model%mesh%num_elements), source=0.0_rk)
     end if
@@ -152,47 +134,6 @@ contains
     end do
   end subroutine place_nodes
 
-  !> Points of a joint that come or go start anew; their energies dissipated so far remain.
-  subroutine move_points(model, number, u, own)
-    type(problem), intent(in) :: model
-    integer, intent(in) :: number !< of the joint
-    real(rk), intent(in) :: u(:, :) !< (3, nodes) [m]
-    type(joint_state), intent(inout) :: own
-    type(joint_state) :: fresh
-    logical :: is_there
-    integer :: p
-    associate (joint => model%joints(number))
-      call joint%law%start_state(joint%clearance, fresh)
-      do p = 1, joint%num_points
-        is_there = are_there(model%mesh, joint%node(joint%first(p):joint%first(p + 1) - 1))
-        if (is_there .eqv. own%phase(p) /= phase_absent) cycle
-        call renew_point(fresh, p, own)
-        own%phase(p) = phase_absent
-        own%origin(:, p) = 0.0_rk
-        if (.not. is_there) cycle
-        own%phase(p) = first_phase(model, number)
-        own%is_broken(p) = own%is_broken(p) .or. own%phase(p) == phase_contact
-        own%origin(:, p) = matmul(joint%rotation(:, :, p), relative_displacement(joint, p, u))
-      end do
-    end associate
-  end subroutine move_points
-
-  !> Copies what a point is at the start, but for the energies dissipated.
-  pure subroutine renew_point(fresh, p, own)
-    type(joint_state), intent(in) :: fresh
-    integer, intent(in) :: p
-    type(joint_state), intent(inout) :: own
-    own%gap(p) = fresh%gap(p)
-    own%shift(p) = fresh%shift(p)
-    own%jump(:, p) = fresh%jump(:, p)
-    own%traction(:, p) = fresh%traction(:, p)
-    own%slip(:, p) = fresh%slip(:, p)
-    own%is_broken(p) = fresh%is_broken(p)
-    own%status(p) = fresh%status(p)
-    own%num_openings(p) = 0
-    own%internal(:, p) = fresh%internal(:, p)
-  end subroutine renew_point
-
   !> The points of inelastic elements that come or go start anew.
   subroutine renew_points(model, was_absent, now)
     type(problem), intent(in) :: model
@@ -208,60 +149,4 @@ contains
     end do
   end subroutine renew_points
 
-  !> Grout without pressure hardens at the start of its step.
-  subroutine harden_joints(model, plan, joints)
-    type(problem), intent(in) :: model
-    type(step), intent(in) :: plan
-    type(joint_state), intent(inout) :: joints(:)
-    integer :: g
-    if (.not. allocated(plan%grouts)) return
-    do g = 1, size(plan%grouts)
-      associate (grout => plan%grouts(g))
-        if (grout%pressure > 0.0_rk) cycle
-        call harden(model%joints(grout%joint), 0.0_rk, joints(grout%joint))
-      end associate
-    end do
-  end subroutine harden_joints
-
-  !> Grout with pressure hardens at the end of its step.
-  subroutine harden_pressed(model, plan, joints)
-    type(problem), intent(in) :: model
-    type(step), intent(in) :: plan !< the step before
-    type(joint_state), intent(inout) :: joints(:)
-    integer :: g
-    if (.not. allocated(plan%grouts)) return
-    do g = 1, size(plan%grouts)
-      associate (grout => plan%grouts(g))
-        if (grout%pressure <= 0.0_rk) cycle
-        call harden(model%joints(grout%joint), grout%pressure, joints(grout%joint))
-      end associate
-    end do
-  end subroutine harden_pressed
-
-  !> The zero of the law moves so that the springs of the law carry what faces and grout carry now:
-  !> an open point without pressure has its zero where it is.
-  subroutine harden(joint, pressure, own)
-    type(dam_joint), intent(in) :: joint
-    real(rk), intent(in) :: pressure !< of the grout [Pa]
-    type(joint_state), intent(inout) :: own
-    type(joint_state) :: old, fresh
-    real(rk) :: tangent(3, 3, joint%num_points), jump(3, joint%num_points), k(3)
-    logical :: takes(joint%num_points)
-    integer :: p
-    takes = takes_grout(own)
-    call joint%law%start_state(spread(-joint%law%gap, 1, joint%num_points), old)
-    old%phase = own%phase
-    where (takes) old%phase = phase_full
-    call joint%law%reference_stiffness(k)
-    jump = spread(1.0_rk/k, 2, joint%num_points)*own%traction
-    jump(1, :) = jump(1, :) - pressure/k(1)
-    fresh = old
-    call joint%law%update(jump, old, fresh, tangent)
-    do p = 1, joint%num_points
-      if (.not. takes(p)) cycle
-      own%origin(:, p) = own%origin(:, p) + own%jump(:, p) - jump(:, p)
-      call renew_point(fresh, p, own)
-      own%phase(p) = phase_full
-    end do
-  end subroutine harden
 end module stage_entry

@@ -1,5 +1,7 @@
 !> The work of the thermal strains in the energy balance: less the mean stress of an increment times
-!> the change of the thermal strain (theory.md, 16).
+!> the change of the thermal strain (theory.md, 16). The thermal force of a body that is free does
+!> work, which the strain of the body stores, although no stress does any: the balance is measured
+!> against this work, too.
 module thermal_work
   use analysis_state, only: state
   use global_vectors, only: dot
@@ -33,6 +35,7 @@ contains
     end do
     after%energy%temperature = after%energy%temperature + elastic + lost
     after%energy%numerical = after%energy%numerical + lost
+    after%energy%largest = max(after%energy%largest, abs(after%motion%thermal_energy))
   end subroutine add_thermal_work
 
   !> The mean of D eps - sigma times the change of the thermal strain, summed over a block.

@@ -1,8 +1,9 @@
 !> All joints as one operator on the unknowns: jumps v = B q in local axes, three rows per point,
 !> and forces B^T (area t). At a point with jump unknowns d the rows of B are those of v = d.
 module joint_operator
-  use dam_mesh, only: fe_mesh, are_there
+  use dam_mesh, only: fe_mesh
   use kinds, only: rk
+  use joint_parts, only: point_is_there
   use joint_points, only: dam_joint
   use node_dofs, only: num_directions
   use joint_rows, only: num_axes, num_rows, row_of
@@ -56,13 +57,11 @@ contains
         point = operator%first_point(j) + p - 1
         operator%area(point) = joints(j)%area(p)
         operator%x(:, point) = joints(j)%x(:, p)
-        associate (nodes => joints(j)%node(joints(j)%first(p):joints(j)%first(p + 1) - 1))
-          if (.not. are_there(mesh, nodes)) then
-            operator%row_start(row_of(point, 1) + 1:row_of(point, num_axes) + 1) = &
-              operator%row_start(row_of(point, 1))
-            cycle
-          end if
-        end associate
+        if (.not. point_is_there(mesh, joints(j), p)) then
+          operator%row_start(row_of(point, 1) + 1:row_of(point, num_axes) + 1) = &
+            operator%row_start(row_of(point, 1))
+          cycle
+        end if
         call add_rows(joints(j), p, merge(pair, 0, joints(j)%is_nodal), numbers, point, place, &
                       operator)
       end do

@@ -45,6 +45,9 @@ module joint_history
     !> appeared, or was grouted [m]; in models with stages only
     real(rk), allocatable :: origin(:, :)
     integer, allocatable :: phase(:) !< (points) in models with stages only
+    !> (3, parts, points) the origin of each part, whose mean over the area is `origin`; where parts
+    !> of points come and go [m]
+    real(rk), allocatable :: part_origin(:, :, :)
   contains
     procedure :: save => save_joint
     procedure :: load => load_joint
@@ -70,6 +73,7 @@ contains
     call file%put('water', self%water)
     call file%put('origin', self%origin)
     call file%put('phase', self%phase)
+    call file%put('part_origin', self%part_origin)
   end subroutine save_joint
 
   !> Reads the history of one joint from the present group. The history must be in its initial
@@ -92,6 +96,7 @@ contains
     call file%get('water', self%water, shape(self%gap))
     call file%get('origin', self%origin, [3, size(self%gap)])
     call file%get('phase', self%phase, shape(self%gap))
+    call file%get('part_origin', self%part_origin)
   end subroutine load_joint
 
   !> Whether a point has contact and friction alone: a joint before it is grouted.

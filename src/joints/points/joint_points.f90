@@ -18,8 +18,8 @@ module joint_points
   use small_matrix, only: cross_product
   implicit none
   private
-  public :: dam_joint, joint_cells, list_faces, relative_displacement, draw_elements, local_axes, &
-            share_a_plane
+  public :: dam_joint, joint_cells, point_rows, stage_parts, list_faces, relative_displacement, &
+            draw_elements, local_axes, share_a_plane
 
   !> Facets with a common node share its point unless their normals differ by more than 30 degrees.
   real(rk), parameter :: same_plane = 0.5_rk*sqrt(3.0_rk)
@@ -38,6 +38,20 @@ module joint_points
     real(rk), allocatable :: weight(:) !< they add up to 1 at each corner
   end type joint_cells
 
+  !> The nodes of all points, as in dam_joint.
+  type :: point_rows
+    integer, allocatable :: first(:), first_master(:), node(:)
+    real(rk), allocatable :: weight(:)
+  end type point_rows
+
+  !> Parts of a joint that come and go, each with faces whose solids are there in the same steps.
+  type :: stage_parts
+    real(rk), allocatable :: area(:, :) !< (parts, points) share of the area of each point [m2]
+    logical, allocatable :: is_there(:, :) !< (parts, steps)
+    type(point_rows), allocatable :: rows(:) !< only where the nodes of points change, too
+    integer, allocatable :: rows_of_step(:) !< (steps) position in `rows`
+  end type stage_parts
+
   type, extends(guest) :: dam_joint
     class(traction_law), allocatable :: law
     logical :: is_nodal = .true. !< points at the slave nodes, else at Gauss points
@@ -52,6 +66,8 @@ module joint_points
     real(rk), allocatable :: area(:) !< tributary area of each point [m2]
     real(rk), allocatable :: clearance(:) !< (points) as meshed, beside the law's gap [m]
     real(rk), allocatable :: admissible_slip(:) !< (points) limit of small sliding [m]
+    type(stage_parts), allocatable :: parts !< only where parts of points come and go
+    logical, allocatable :: is_idle(:) !< (points) all parts are absent in the present step
     type(joint_cells) :: cells
   contains
     procedure :: add_cells

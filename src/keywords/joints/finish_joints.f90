@@ -22,7 +22,7 @@ module finish_joints
   use write_text, only: as_text
   implicit none
   private
-  public :: complete_joints, farthest_gap, farthest_contact
+  public :: complete_joints, farthest_gap, farthest_contact, followers
 
   !> Largest distance of facets that a joint connects, in diagonals of a facet: of faces that count
   !> as touching, and of faces with a gap that may close.

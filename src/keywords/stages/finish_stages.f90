@@ -3,6 +3,7 @@ module finish_stages
   use deck_scan, only: is_keyword
   use diagnostics, only: diagnostic_list
   use model_draft, only: draft
+  use stage_faces, only: complete_parts
   implicit none
   private
   public :: complete_stages
@@ -24,6 +25,7 @@ contains
     end do
     if (.not. allocated(model%problem%stages%is_absent)) return
     model%problem%stages%material = model%problem%mesh%material_of_element
+    if (.not. faults%has_errors()) call complete_parts(model)
   end subroutine complete_stages
 
   !> Stages change in static steps; models with *INTERFACE have none.
