@@ -16,6 +16,8 @@ from keyway_tools.report import __main__ as report
 from keyway_tools.report.browser import find_browser, opened, print_pdf
 from keyway_tools.report.values import deck_of, title_of, verdict
 from keyway_tools.si_results import SiResults
+from stage_decks import build
+from stage_decks import lifts as column
 
 NEEDS = "no Chromium, Chrome or Edge; tools/test installs chromium on Debian"
 needs_browser = pytest.mark.skipif(find_browser() is None, reason=NEEDS)
@@ -132,6 +134,39 @@ def test_modes_move_and_fields_change(modes):
         assert "mode 2" in page.inner_text("#caption-0")
     assert errors == []
     assert float(hz) == pytest.approx(summary_of(modes)["steps"][0]["frequencies"][1]["hz"], 1e-3)
+
+
+@pytest.fixture(scope="module")
+def lifts(tmp_path_factory, program_path):
+    """Results of a column that is built in three lifts of 1 m."""
+    folder = tmp_path_factory.mktemp("lifts")
+    steps = build(3).replace("*NODE PRINT", "*NODE FILE\nU\n*NODE PRINT")
+    (folder / "job.inp").write_text(column(3) + steps)
+    command = [str(program_path), "-q", "-j", "1", "-o", str(folder), str(folder / "job.inp")]
+    assert subprocess.run(command, timeout=300).returncode == 0
+    return folder
+
+
+@needs_browser
+def test_absent_elements_are_not_drawn(lifts):
+    """Triangles reach up to the lift of the step; envelopes and modes show the whole dam."""
+    errors = []
+    with opened(page_of(lifts), errors) as page:
+        page.select_option("#field", "displacement")
+        page.eval_on_selector("#factor", MOVE, 0)
+        heights = []
+        for k in range(3):
+            page.eval_on_selector("#time", MOVE, k)
+            page.wait_for_timeout(500)
+            heights.append(page.evaluate(TOP))
+    assert errors == []
+    assert heights == pytest.approx([1.0, 2.0, 3.0], rel=1e-6)
+
+
+TOP = """(() => {
+  const body = document.getElementById('space-0').data[0];
+  return Math.max(...[body.i, body.j, body.k].flatMap(all => Array.from(all, n => body.z[n])));
+})()"""
 
 
 @needs_browser

@@ -33,7 +33,7 @@
       this.image = element(`image-${number}`);
       this.key = element(`legend-${number}`);
       this.x = unpack(scene.x);
-      this.edges = unpack(scene.edges);
+      this.skins = scene.skins.map(one => ({ corners: corners(unpack(one.triangles)), edges: unpack(one.edges) }));
       this.fields = scene.fields.map(one => ({ ...one, values: unpack(one.values) }));
       this.states = scene.states && { ...scene.states, u: unpack(scene.states.u) };
       this.modes = scene.modes && { ...scene.modes, shapes: unpack(scene.modes.shapes) };
@@ -56,13 +56,15 @@
         const k = Math.min(Number(choice.show.slice(5)), this.modes.hz.length - 1);
         const shape = this.at(this.modes.shapes, k);
         const by = this.modes.amplitude * choice.factor * Math.sin(choice.phase);
-        return { u: shape, by, text: `mode ${k + 1}: ${words(this.modes.hz[k])} Hz` };
+        return { u: shape, by, text: `mode ${k + 1}: ${words(this.modes.hz[k])} Hz`, skin: 0 };
       }
-      if (!this.states) return { u: null, by: 0, text: "" };
+      if (!this.states) return { u: null, by: 0, text: "", skin: 0 };
       const k = this.nearest(choice.time);
       const by = this.states.factor * choice.factor;
       const text = `t = ${words(this.states.times[k], 6)} s, displacements drawn ${words(by, 3)} times`;
-      return { u: this.at(this.states.u, k), by, text };
+      // Envelopes and joints are those of the last step: the whole dam.
+      const skin = choice.show === "displacement" ? this.states.skins[k] : 0;
+      return { u: this.at(this.states.u, k), by, text, skin };
     }
 
     colours(choice, shift) {
@@ -83,7 +85,7 @@
       const shift = this.shift(choice), paint = this.colours(choice, shift);
       const x = new Float32Array(this.x);
       if (shift.u) for (let i = 0; i < x.length; i++) x[i] += shift.by * shift.u[i];
-      const [i, j, k] = this.triangles ||= corners(unpack(this.scene.triangles));
+      const { corners: [i, j, k], edges } = this.skins[shift.skin];
       const largest = paint.values.reduce((a, b) => Math.abs(b) > Math.abs(a) ? b : a, 0);
       this.text = [paint.label, shift.text].filter(Boolean).join("; ");
       this.caption.dataset.largest = largest;
@@ -91,16 +93,16 @@
       const body = { type: "mesh3d", x: column(x, 0), y: column(x, 1), z: column(x, 2), i, j, k, flatshading: true, lighting: { ambient: .85, diffuse: .3, specular: 0 }, hovertemplate: "(%{x:.4g}, %{y:.4g}, %{z:.4g}) m<br>%{text}<extra></extra>" };
       if (paint.none) Object.assign(body, { intensity: paint.values, cmin: 0, cmax: 1, colorscale: [[0, "#c9c4bc"], [1, "#c9c4bc"]], showscale: false, opacity: choice.show === "joints" ? .35 : 1, text: "" });
       else Object.assign(body, { intensity: paint.values, cmin: paint.ends[0], cmax: paint.ends[1], colorscale: paint.scale, showscale: false, text: Array.from(paint.values, v => `${words(v, 3)} ${paint.unit}`) });
-      const found = [body, this.wire(x)], isOfJoints = choice.show === "joints" && this.joints;
+      const found = [body, this.wire(x, edges)], isOfJoints = choice.show === "joints" && this.joints;
       if (isOfJoints) found.push(this.joint());
       this.legend(isOfJoints ? { ends: this.joints.ends, scale: this.joints.colours, unit: "mm" } : paint);
       return found;
     }
 
-    wire(x) {
+    wire(x, edges) {
       const line = [[], [], []];
-      for (let n = 0; n < this.edges.length; n += 2) {
-        for (let k = 0; k < 3; k++) line[k].push(x[3 * this.edges[n] + k], x[3 * this.edges[n + 1] + k], null);
+      for (let n = 0; n < edges.length; n += 2) {
+        for (let k = 0; k < 3; k++) line[k].push(x[3 * edges[n] + k], x[3 * edges[n + 1] + k], null);
       }
       return { type: "scatter3d", mode: "lines", x: line[0], y: line[1], z: line[2], line: { color: "#444", width: 2 }, hoverinfo: "skip", showlegend: false };
     }

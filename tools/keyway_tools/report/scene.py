@@ -6,6 +6,7 @@ import base64
 from typing import Any
 
 import numpy as np
+import pyvista as pv
 from matplotlib import colormaps
 from matplotlib.colors import to_hex
 
@@ -22,16 +23,15 @@ MOST_STATES = 200
 def scene(results: SiResults, scales: Scales) -> dict[str, Any]:
     """All that the view in space needs."""
     faces = Faces(results)
-    skin = faces.surface().triangulate()
-    nodes = np.asarray(skin.point_data["vtkOriginalPointIds"])
-    triangles = skin.faces.reshape(-1, 4)[:, 1:]
+    stages, stage_of_step = _stages(results, faces)
+    skins = [one.surface() for one in stages]
+    nodes = np.unique(np.concatenate([_nodes_of(skin) for skin in skins]))
     return {
         "x": packed(results.x[nodes]),
-        "triangles": packed(triangles, "i4"),
-        "edges": _edges(faces, nodes),
+        "skins": [_skin(skin, nodes) for skin in skins],
         "eye": _eye(faces),
         "fields": _fields(results, faces, nodes, scales),
-        "states": _states(results, nodes, faces.size, scales),
+        "states": _states(results, nodes, faces.size, scales, stage_of_step),
         "modes": _modes(results, nodes, faces.size),
         "joints": _joints(results, scales),
     }
@@ -59,15 +59,39 @@ def packed_short(values: np.ndarray) -> dict[str, Any]:
     return packed(np.rint(values / scale), "i2") | {"scale": scale}
 
 
-def _edges(faces: Faces, nodes: np.ndarray) -> dict[str, Any]:
-    """Sharp edges of the skin as pairs of its points."""
-    sharp = faces.surface().extract_feature_edges(feature_angle=40.0)
-    if sharp.n_points == 0:
-        return packed(np.zeros((0, 2)), "i4")
-    place = {int(node): k for k, node in enumerate(nodes)}
-    old = sharp.point_data["vtkOriginalPointIds"]
-    pairs = sharp.lines.reshape(-1, 3)[:, 1:]
-    return packed(np.vectorize(lambda k: place[int(old[k])])(pairs), "i4")
+def _stages(results: SiResults, faces: Faces) -> tuple[list[Faces], dict[int, int]]:
+    """The complete dam, then the dams with absent elements; which of them each step has."""
+    stages, of_mask, of_step = [faces], {}, {}
+    for step in results.steps():
+        added = results.stage(step.number)
+        if added is None or (added[faces.elements] > 0).all():
+            of_step[step.number] = 0
+            continue
+        mask = (added > 0).tobytes()
+        if mask not in of_mask:
+            of_mask[mask] = len(stages)
+            stages.append(Faces(results, step.number))
+        of_step[step.number] = of_mask[mask]
+    return stages, of_step
+
+
+def _nodes_of(skin: pv.PolyData) -> np.ndarray:
+    """The nodes of the points of a skin."""
+    return np.asarray(skin.point_data["vtkOriginalPointIds"])
+
+
+def _skin(skin: pv.PolyData, nodes: np.ndarray) -> dict[str, Any]:
+    """Triangles and sharp edges, both by places in the ascending list of nodes."""
+    flat = skin.triangulate()
+    triangles = _nodes_of(flat)[flat.faces.reshape(-1, 4)[:, 1:]]
+    sharp = skin.extract_feature_edges(feature_angle=40.0)
+    pairs = np.zeros((0, 2), dtype=int)
+    if sharp.n_points > 0:
+        pairs = _nodes_of(sharp)[sharp.lines.reshape(-1, 3)[:, 1:]]
+    return {
+        "triangles": packed(np.searchsorted(nodes, triangles), "i4"),
+        "edges": packed(np.searchsorted(nodes, pairs), "i4"),
+    }
 
 
 def _fields(
@@ -107,7 +131,11 @@ def colours_of(name: str, bands: int) -> list[list[Any]]:
 
 
 def _states(
-    results: SiResults, nodes: np.ndarray, size: float, scales: Scales
+    results: SiResults,
+    nodes: np.ndarray,
+    size: float,
+    scales: Scales,
+    stage_of_step: dict[int, int],
 ) -> dict[str, Any] | None:
     """Saved displacements, as many as there is room for."""
     saved = sorted(results.displacements(), key=lambda one: one[1])
@@ -121,6 +149,7 @@ def _states(
     limits = scales.limits("U", sizes)
     return {
         "times": [float(f"{time:.9g}") for _, time in chosen],
+        "skins": [stage_of_step[int(place.split("/")[2])] for place, _ in chosen],
         "u": packed_short(u),
         "factor": round_factor(size, largest),
         "ends": limits.ends,
