@@ -55,21 +55,22 @@ set(sources
   materials/concrete_widths.f90
   materials/finish_concrete.f90
   materials/finish_materials.f90
-  materials/finish_tests.f90
   materials/finish_user_materials.f90
   materials/keywords_concrete.f90
   materials/keywords_concrete_tables.f90
   materials/keywords_elastic.f90
   materials/keywords_material.f90
-  materials/keywords_material_test.f90
+  materials/keywords_plastic.f90
   materials/keywords_user_material.f90
   materials/material_catalogue.f90
-  materials/material_test_legs.f90
   mesh/keywords_elements.f90
   mesh/keywords_nodes.f90
   mesh/keywords_section.f90
   mesh/keywords_sets.f90
   mesh/surface_of_nodes.f90
+  point/finish_tests.f90
+  point/keywords_material_test.f90
+  point/material_test_legs.f90
   read_deck.f90
   stages/finish_stages.f90
   stages/keywords_stages.f90

@@ -21,6 +21,8 @@ set(sources
   law/material_law.f90
   law/material_points.f90
   law/thermal_expansion.f90
+  metal/material_metal.f90
+  metal/yield_curve.f90
   umat/material_user.f90
   umat/umat_bridge.c
   umat/umat_command.c

@@ -6,6 +6,7 @@ set(sources
   errors/fitted_stress.f90
   errors/goal_errors.f90
   errors/space_errors.f90
+  fields/derived_fields.f90
   fields/error_fields.f90
   fields/field_help.f90
   fields/field_table.f90

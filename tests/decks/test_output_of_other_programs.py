@@ -16,7 +16,7 @@ CARDS = """\
 *Node Output, nset=TOP
 CF, RF, U, U1
 *Element Output, directions=YES
-LE, PEEQ, PEMAG, S
+LE, PEEQ, PEMAG, CTSHR, S
 *Contact Output
 CDISP, CSTRESS
 *Output, history, variable=PRESELECT
@@ -56,7 +56,7 @@ def test_known_fields_are_written_and_the_rest_is_named(tmp_path, keyway):
     assert ("SECTION PRINT", "has no effect here") in noted
     unwritten = {keyword: why for keyword, why in noted if why.startswith("not written")}
     assert unwritten["NODE OUTPUT"].startswith("not written: CF; expected U, V, A, RF")
-    assert unwritten["ELEMENT OUTPUT"].startswith("not written: PEEQ, PEMAG; expected S, E")
+    assert unwritten["ELEMENT OUTPUT"].startswith("not written: CTSHR; expected S, E")
     assert {"U", "RF", "S", "E"} <= fields_of_last_step(run)
 
 

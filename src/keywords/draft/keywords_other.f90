@@ -33,7 +33,6 @@ contains
                      '*DSLOAD or *DLOAD on the surface')
     call add_refused(list, 'DISTRIBUTING', 'Distributes the load of a node.', &
                      '*DSLOAD or *DLOAD on the surface')
-    call add_refused(list, 'PLASTIC', 'Metal plasticity.', 'a UMAT, *USER MATERIAL, for metals')
     call add_refused(list, 'PARAMETER', 'Names for numbers of the deck.', &
                      'numbers in place of the names')
     call add_refused(list, 'TRANSFORM', 'Axes of nodes.', 'supports and forces along the '// &

@@ -5,6 +5,7 @@ module material_catalogue
   use keyword_handler, only: keyword_list
   use keywords_concrete_tables, only: add_concrete
   use keywords_elastic, only: add_elastic
+  use keywords_plastic, only: add_plastic
   use keywords_user_material, only: add_user_material
   implicit none
   private
@@ -34,6 +35,7 @@ contains
     integer, intent(out) :: num_laws
     num_laws = 0
     call add('ELASTIC', add_elastic)
+    call add('PLASTIC', add_plastic)
     call add('USER MATERIAL', add_user_material)
     call add('CONCRETE DAMAGED PLASTICITY', add_concrete)
   contains

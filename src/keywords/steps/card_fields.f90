@@ -29,7 +29,8 @@ module card_fields
                               synonym('S23', 'S'), synonym('LE', 'E'), synonym('NE', 'E'), &
                               synonym('MAXPS', 'SP'), synonym('COPEN', 'OPENING'), &
                               synonym('CDIS', 'OPENING'), synonym('CDISP', 'OPENING'), &
-                              synonym('NT', 'TEMP'), synonym('NT11', 'TEMP')]
+                              synonym('NT', 'TEMP'), synonym('NT11', 'TEMP'), &
+                              synonym('SENER', 'ENER')]
 
 contains
 

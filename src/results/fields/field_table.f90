@@ -13,6 +13,7 @@ module field_table
                           principals_of_solids, extreme_on_nodes, extreme_near_nodes, &
                           extreme_of_block, width_in_blocks, law_width, law_on_nodes, &
                           law_of_solids, law_of_block
+  use derived_fields, only: energy_of_solids, energy_on_nodes, mises_of_solids, mises_on_nodes
   use error_fields, only: error_of_elements, error_on_nodes
   use joint_fields, only: has_joints, opening_on_nodes, opening_of_joint, slip_of_joint, &
                           traction_of_joint, state_of_joint, used_slip_of_joint, &
@@ -106,6 +107,7 @@ contains
                place=at_points, remark='SP1 is the largest. On nodes those of the mean tensor.', &
                provider=by_recovery, requests='EL PRINT | EL FILE', &
                on_nodes=principals_on_nodes, of_solids=principals_of_solids))
+    call list_scalars(rows, last)
     call enter(rows, last, result_field( &
                name='S1', meaning='largest tension', endings=scalar, unit='Pa', place=at_nodes, &
                remark='Largest principal stress of the mean tensor at a node.', &
@@ -126,6 +128,23 @@ contains
                of_elements=error_of_elements))
     call list_stresses_of_laws(rows, last)
   end subroutine list_stresses
+
+  !> Scalars that follow from the stresses.
+  subroutine list_scalars(rows, last)
+    type(result_field), intent(inout) :: rows(:)
+    integer, intent(inout) :: last !< number of fields so far
+    call enter(rows, last, result_field( &
+               name='MISES', meaning='equivalent stress of von Mises', endings=scalar, unit='Pa', &
+               place=at_points, remark='On nodes that of the mean tensor.', &
+               provider=by_recovery, requests='EL PRINT | EL FILE', on_nodes=mises_on_nodes, &
+               of_solids=mises_of_solids))
+    call enter(rows, last, result_field( &
+               name='ENER', meaning='elastic energy per volume', endings=scalar, unit='J/m3', &
+               place=at_points, remark='Recovered by unloading; what is dissipated is in the '// &
+               'energy balance. On nodes the mean of the nearest points.', &
+               provider=by_recovery, requests='EL PRINT | EL FILE', on_nodes=energy_on_nodes, &
+               of_solids=energy_of_solids))
+  end subroutine list_scalars
 
   !> Stresses at the points of materials with a law.
   subroutine list_stresses_of_laws(rows, last)
@@ -213,7 +232,17 @@ contains
     integer, intent(inout) :: last !< number of fields so far
     call enter(rows, last, result_field( &
                name='PE', meaning='plastic strain', endings=tensor, unit='1', place=at_points, &
-               remark='Of concrete. Shear components are engineering strains.', &
+               remark='Of concrete and metals. Shear components are engineering strains.', &
+               provider=by_law, requests='EL PRINT | EL FILE', count=law_width, &
+               on_nodes=law_on_nodes, of_solids=law_of_solids, of_block=law_of_block))
+    call enter(rows, last, result_field( &
+               name='PEEQ', meaning='equivalent plastic strain', endings=scalar, unit='1', &
+               place=at_points, remark='Of metals (*PLASTIC): the sum of its increments.', &
+               provider=by_law, requests='EL PRINT | EL FILE', count=law_width, &
+               on_nodes=law_on_nodes, of_solids=law_of_solids, of_block=law_of_block))
+    call enter(rows, last, result_field( &
+               name='PEMAG', meaning='size of the plastic strain', endings=scalar, unit='1', &
+               place=at_points, remark='sqrt(2/3 e:e) of the present plastic strain e.', &
                provider=by_law, requests='EL PRINT | EL FILE', count=law_width, &
                on_nodes=law_on_nodes, of_solids=law_of_solids, of_block=law_of_block))
     call enter(rows, last, result_field( &

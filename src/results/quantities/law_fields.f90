@@ -2,6 +2,7 @@
 !> does not have the field, the field is zero.
 module law_fields
   use kinds, only: rk
+  use material_law, only: stress_law
   use material_points, only: point_state
   use problem_definition, only: problem
   use analysis_state, only: state
@@ -30,11 +31,28 @@ contains
       associate (law => model%materials(last)%law)
         if (allocated(nobody%internal)) deallocate (nobody%internal)
         allocate (nobody%internal(law%num_state, 0))
-        call law%read_field(name, nobody, values)
+        call read_law(law, name, nobody, values)
       end associate
       if (allocated(values)) width = max(width, size(values, 1))
     end do
   end function width_of_field
+
+  !> A field of a law. PEMAG follows from its plastic strain.
+  subroutine read_law(law, name, points, values)
+    class(stress_law), intent(in) :: law
+    character(*), intent(in) :: name
+    type(point_state), intent(in) :: points
+    real(rk), allocatable, intent(out) :: values(:, :) !< (components, points), or unallocated
+    real(rk), allocatable :: plastic(:, :)
+    if (name /= 'PEMAG') then
+      call law%read_field(name, points, values)
+      return
+    end if
+    call law%read_field('PE', points, plastic)
+    if (.not. allocated(plastic)) return
+    allocate (values(1, size(plastic, 2)))
+    values(1, :) = sqrt((2.0_rk*sum(plastic(:3, :)**2, 1) + sum(plastic(4:, :)**2, 1))/3.0_rk)
+  end subroutine read_law
 
   !> False for state variables: a law may change them while a point is elastic.
   pure logical function is_zero_while_elastic(name)
@@ -52,7 +70,7 @@ contains
     real(rk), allocatable, intent(out) :: values(:, :) !< (components, points)
     if (is_zero_while_elastic(name) .and. all(now%points(block)%is_elastic)) return
     associate (law => model%materials(model%inelastic(block)%material)%law)
-      call law%read_field(name, now%points(block), values)
+      call read_law(law, name, now%points(block), values)
     end associate
   end subroutine field_of_block
 
