@@ -10,7 +10,7 @@ module joint_forces
   private
   public :: joint_field, tresca_limits, start_joints, reference_stiffness
   public :: evaluate_joints, gather_tractions, gather_jumps, gather_gaps, linear_tractions
-  public :: take_origins
+  public :: take_origins, size_of_origins
 
   !> Friction with given limits in place of that of the laws.
   type :: tresca_limits
@@ -39,6 +39,8 @@ module joint_forces
     real(rk) :: drift = 0.0_rk
     real(rk), allocatable :: start_jump(:, :) !< (3, points) of the last converged state [m]
     real(rk), allocatable :: start_spring(:, :) !< (3, points) traction there over k_ref [m]
+    !> 2-norm of the jumps that grout has made the zero of the laws: their round-off stays [m]
+    real(rk) :: origin_size = 0.0_rk
     real(rk) :: start_force = 0.0_rk !< 2-norm of area*traction in the last converged state [N]
     real(rk) :: bulk_force = 0.0_rk !< reference force of the bulk [N]
     logical :: is_static = .false. !< no inertia in the equilibrium
@@ -136,6 +138,16 @@ contains
       end associate
     end do
   end subroutine take_origins
+
+  !> 2-norm of the relative displacements where those of the laws are zero; 0 without stages [m].
+  pure real(rk) function size_of_origins(states) result(size_of_all)
+    type(joint_state), intent(in) :: states(:)
+    integer :: j
+    size_of_all = 0.0_rk
+    do j = 1, size(states)
+      if (allocated(states(j)%origin)) size_of_all = norm2([size_of_all, norm2(states(j)%origin)])
+    end do
+  end function size_of_origins
 
   !> Tractions of the laws at all points.
   subroutine gather_tractions(operator, states, traction)

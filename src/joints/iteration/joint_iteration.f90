@@ -6,7 +6,8 @@ module joint_iteration
   use joint_law, only: joint_state
   use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
-  use joint_forces, only: joint_field, evaluate_joints, gather_tractions, gather_jumps, gather_gaps
+  use joint_forces, only: joint_field, evaluate_joints, gather_tractions, gather_jumps
+  use joint_forces, only: gather_gaps, size_of_origins
   use contact_scaling, only: contact_scale
   use contact_augmentation, only: start_multiplier, measure_contact, update_multiplier
   use equilibrium, only: force_balance, balance_outcome
@@ -78,6 +79,7 @@ contains
     field%response = balance%guess
     call gather_tractions(operator, old, field%traction)
     call gather_jumps(operator, old, field%start_jump)
+    field%origin_size = size_of_origins(old)
     field%start_spring = field%traction/k_ref
     call start_multiplier(joints, old, new, field%contact)
     call gather_gaps(operator, new, field%gap)
@@ -270,8 +272,9 @@ contains
   end function smallest_force
 
   !> Remaining correction of the jumps over their increment; decides convergence. Where contact
-  !> prevents jumps, the increment of traction/k_ref is the measure. A residual of round-off always
-  !> counts as converged: where nothing resists, round-off gives a large correction.
+  !> prevents jumps, the increment of traction/k_ref is the measure. Jumps that count from a grouted
+  !> opening have the round-off of that opening. A residual of round-off always counts as converged:
+  !> where nothing resists, round-off gives a large correction.
   subroutine measure_correction(field, k_ref, correction, tolerance, outcome)
     type(joint_field), intent(in) :: field
     real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
@@ -282,7 +285,7 @@ contains
     spring = field%traction/k_ref
     increment = max(distance(field%jump, field%start_jump), smallest_increment*norm(field%jump), &
                     distance(spring, field%start_spring), smallest_increment*norm(spring), &
-                    tiny(1.0_rk))
+                    smallest_increment*field%origin_size, tiny(1.0_rk))
     outcome%correction = norm(correction)/increment
     outcome%has_converged = outcome%correction <= tolerance .or. &
                             outcome%residual <= smallest_residual
