@@ -264,6 +264,8 @@ def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
         increment=chosen.increment,
         damping=tuple(chosen.damping),
         damping_base=chosen.damping_base,
+        uplift=chosen.uplift,
+        reduced=chosen.reduced,
         num_modes=chosen.modes,
         picture_frequency=chosen.picture_every,
         construction=construction_of(chosen),

@@ -54,6 +54,29 @@ def test_motion_makes_a_dynamic_step(tmp_path):
     assert "0.01, 3\n" in deck
 
 
+def test_reduced_model_and_water_in_joints(tmp_path, keyway):
+    """The deck runs with both; fields and stresses are not asked for."""
+    motion = tmp_path / "x.txt"
+    motion.write_text("".join(f"{0.1 * (-1) ** (k // 10)}\n" for k in range(200)))
+    options = [
+        "--motion",
+        str(motion),
+        "--duration",
+        "1",
+        "--reduced",
+        "0.05",
+        "--uplift",
+        "LINEAR",
+    ]
+    deck, _ = write_deck(tmp_path, *options)
+    assert "*DYNAMIC, REDUCED, ACCURACY=0.05, DIRECT" in deck
+    assert "   UPLIFT=LAKE, PROFILE=LINEAR" in deck
+    assert " FILE" not in deck
+    run = keyway(tmp_path / "dam.inp")
+    reduced = run.json["accuracy"]["reduced"]
+    assert all(0.0 < one["estimated_error"] <= 0.05 for one in reduced.values())
+
+
 def test_bad_shape_is_refused_with_a_message(tmp_path, capsys):
     assert make_dam.main(["-o", str(tmp_path / "x.inp"), "--levels", "40"]) == 2
     assert "elements along the arc" in capsys.readouterr().err
@@ -65,6 +88,9 @@ def test_bad_shape_is_refused_with_a_message(tmp_path, capsys):
         (["--water", "200"], "water must lie in 0..135.5"),
         (["--water", "-1"], "water must lie in"),
         (["--motion", "nowhere.txt"], "there is no motion file 'nowhere.txt'"),
+        (["--uplift", "OPEN", "--water", "0"], "--uplift needs water"),
+        (["--reduced", "2"], "--reduced: 2; expected an error between 0 and 1"),
+        (["--reduced", "0.1", "--uplift", "OPEN"], "--reduced takes --uplift LINEAR"),
     ],
 )
 def test_options_out_of_range_are_reported(tmp_path, capsys, options, message):

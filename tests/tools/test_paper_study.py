@@ -11,10 +11,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from keyway_tools.colour_scale import parse_levels
-from keyway_tools.paper_study.cases import SIZES, Case, choose, list_cases
+from keyway_tools.paper_study.case_table import list_cases
+from keyway_tools.paper_study.cases import Case, choose
 from keyway_tools.paper_study.facts import Facts
 from keyway_tools.paper_study.openings import by_height
 from keyway_tools.paper_study.runner import Study
+from keyway_tools.paper_study.sizes import SIZES
 from keyway_tools.paper_study.verdicts import dam_verdicts, differences, joint_verdicts, robust
 
 TOOL = Path(__file__).resolve().parents[2] / "tools" / "paper_study.py"
@@ -77,10 +79,15 @@ def test_cases_have_names_of_their_own_and_commands():
     assert len(set(names)) == len(names)
     assert len(choose(cases, ["s_*"])) == len(choose(cases, ["sensitivity"]))
     assert [case.name for case in choose(cases, ["jinping"])] == ["jinping"]
-    command = choose(cases, ["s_kn_1e11"])[0].command(Path("a.inp"))
+    (command,) = choose(cases, ["s_kn_1e11"])[0].commands(Path("a.inp"), Path("m"))
     assert command.startswith("tools/make_jinping.py a.inp --duration 20")
     assert "--kn 1.25e11" in command
-    assert "--lifts 4 --grouting 4" in choose(cases, ["s_stages"])[0].command(Path("a.inp"))
+    winter = choose(cases, ["s_winter"])[0].commands(Path("a.inp"), Path("m"))
+    assert "--lifts 4 --grouting 2 4 --temperatures 1e-5 16 10" in winter[0]
+    assert winter[1].startswith("tools/make_temperature.py a.inp")
+    motion, deck = choose(cases, ["s_motion_5"])[0].commands(Path("a.inp"), Path("m"))
+    assert "--seed 5" in motion
+    assert "--motion-of m/seed_5" in deck
     with pytest.raises(ValueError, match="no case fits 'nothing'"):
         choose(cases, ["nothing"])
 

@@ -45,6 +45,19 @@ def add_arch_options(parser: argparse.ArgumentParser) -> None:
         help="stiffness of the Rayleigh damping: undamaged, or with its damage (INITIAL)",
     )
     group.add_argument(
+        "--uplift",
+        choices=("OPEN", "LINEAR"),
+        help="water in the joints: full head where they are open from upstream on, or falling from "
+        "the upstream to the downstream edge (none)",
+    )
+    group.add_argument(
+        "--reduced",
+        type=float,
+        metavar="ERROR",
+        help="reduced model in the dynamic step, with this error of openings, and without fields "
+        "and stresses in any step",
+    )
+    group.add_argument(
         "--histories",
         action="store_true",
         help="openings in time at crest, mid-height and base of the joints, not at the crest alone",

@@ -37,10 +37,24 @@ class DeckOptions:
     alpha: float = -0.05
     damping: tuple[float, float, float] = (0.05, 2.0, 10.0)  # ratio at two frequencies [Hz]
     damping_base: str = "INITIAL"  # or CURRENT: the stiffness with its damage
+    uplift: str | None = None  # profile of the water in the joints: OPEN or LINEAR; None: no water
+    reduced: float | None = None  # error of openings for a reduced model in the dynamic step
     num_modes: int = 0  # > 0: a *FREQUENCY step between the static and the dynamic one
     picture_frequency: int = 10  # increments between two states of the VTK series
     construction: Construction | None = None  # None: the dam is there at once
     heat: Temperatures | None = None  # with construction only
+
+    def __post_init__(self) -> None:
+        if self.uplift and self.water_depth is None:
+            raise ValueError("--uplift needs water")
+        if self.reduced is None:
+            return
+        if not 0.0 < self.reduced < 1.0:
+            raise ValueError(f"--reduced: {self.reduced:g}; expected an error between 0 and 1")
+        if self.concrete_cards:
+            raise ValueError("--reduced takes linear elastic concrete, not --concrete-cards")
+        if self.uplift == "OPEN":
+            raise ValueError("--reduced takes --uplift LINEAR, not OPEN")
 
 
 def arch_dam_deck(mesh: BrickMesh, heading: str, mesh_file: str, options: DeckOptions) -> str:
@@ -93,6 +107,8 @@ def _joints(mesh: BrickMesh, options: DeckOptions) -> list[str]:
     law += f", TENSILE STRENGTH={strength:g}"
     law += f", FRICTION={options.friction:g}, COHESION={options.cohesion:g}"
     parts = [law]
+    if options.uplift:
+        parts = [f"{law},", f"   UPLIFT=LAKE, PROFILE={options.uplift}"]
     for name in mesh.joint_names:
         if name in mesh.joint_sets:
             parts += [f"*JOINT, NAME={name}, LAW=CONTRACTION, ELSET={name}"]
@@ -122,10 +138,13 @@ def _amplitudes(options: DeckOptions) -> list[str]:
 
 
 def _requests(mesh: BrickMesh, options: DeckOptions) -> list[str]:
-    parts = ["*NODE PRINT, NSET=CROWN_CREST", "U, A"]
+    is_reduced = options.reduced is not None
+    parts = ["*NODE PRINT, NSET=CROWN_CREST", "U" if is_reduced else "U, A"]
     for name in mesh.joint_names:
         points = f"{name}_HISTORY" if f"{name}_HISTORY" in mesh.node_sets else f"{name}_CREST"
         parts += [f"*JOINT PRINT, JOINT={name}, NSET={points}"]
+    if is_reduced:
+        return [*parts, "*ENVELOPE", "OPENING"]
     fields = "U, OPENING" if mesh.joint_names else "U"
     parts += [f"*NODE FILE, FREQUENCY={options.picture_frequency}", fields]
     has_law = bool(options.concrete_cards)
@@ -175,7 +194,8 @@ def _dynamic_step(mesh: BrickMesh, options: DeckOptions) -> list[str]:
         parts += [f"*DYNAMIC, ALPHA={options.alpha:g}"]
         parts += [f"{times}, {1e-4 * options.increment:g}, {options.increment:g}"]
     else:
-        parts += [f"*DYNAMIC, DIRECT, ALPHA={options.alpha:g}", times]
+        reduced = f", REDUCED, ACCURACY={options.reduced:g}" if options.reduced else ""
+        parts += [f"*DYNAMIC{reduced}, DIRECT, ALPHA={options.alpha:g}", times]
     base = "" if options.damping_base == "INITIAL" else f", BASE={options.damping_base}"
     parts += [f"*DAMPING, RATIO={ratio:g}, F1={f1:g}, F2={f2:g}{base}"]
     for dof, name in enumerate(

@@ -22,9 +22,11 @@ from pathlib import Path
 from ..deck_runs import DeckRunner
 from ..pictures_material import plot_material, read_curve
 from ..study.__main__ import seconds
-from .cases import SIZES, choose, list_cases
+from .case_table import list_cases
+from .cases import choose
 from .page import write_page
 from .runner import Study
+from .sizes import SIZES
 
 ROOT = Path(__file__).resolve().parents[3]
 EXIT_INTERRUPTED = 130
@@ -65,7 +67,8 @@ def main(arguments: list[str] | None = None) -> int:
     given = parse(arguments)
     if given.list:
         for case in given.chosen:
-            print(f"{case.name}: {case.title}\n    {case.command(Path(case.name + '.inp'))}")
+            commands = case.commands(Path(case.name + ".inp"), Path("motions"))
+            print("\n    ".join([f"{case.name}: {case.title}", *commands]))
         return 0
     given.o.mkdir(parents=True, exist_ok=True)
     runner = DeckRunner(given.program, ["-j", str(given.threads)])
@@ -100,7 +103,8 @@ def header_of(given: argparse.Namespace, runner: DeckRunner) -> list[list[str]]:
     size = SIZES[given.size]
     return [
         ["Size", f"{given.size}: {size.duration:g} s of motion, Jinping with at least "
-                 f"{size.jinping} unknowns, sensitivity with {size.sensitivity}"],
+                 f"{size.jinping} unknowns, sensitivity with {size.sensitivity}, "
+                 f"{size.num_records} records"],
         ["Date", datetime.now().strftime("%Y-%m-%d %H:%M")],
         ["Program", runner.version.splitlines()[0]],
         ["Threads", f"{given.threads} a run, {given.j} runs at a time"],

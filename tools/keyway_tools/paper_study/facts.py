@@ -40,6 +40,8 @@ class Facts:
     dissipated: float = 0.0  # by cracking [J]
     created: float = 0.0  # by the recovery of stiffness [J]
     height: float = 0.0  # of the dam [m]
+    largest_fall: float = 0.0  # of the dissipation in one increment, over its last value
+    reduced_error: float | None = None  # that the reduced model estimates
 
     def value(self, name: str, place: str = "anywhere") -> float | None:
         """An extreme, None where there is none."""
@@ -75,7 +77,20 @@ def facts_of(outcome: Outcome) -> Facts:
     facts.dissipated = (damage.get("dissipated") or {}).get("cracking", 0.0)
     facts.created = damage.get("created") or 0.0
     facts.damaged = _damaged(results)
+    facts.largest_fall = _largest_fall(results)
+    reduced = summary["accuracy"].get("reduced") or {}
+    errors = [one["estimated_error"] for one in reduced.values()]
+    facts.reduced_error = max(errors) if errors else None
     return facts
+
+
+def _largest_fall(results: SiResults) -> float:
+    """Largest fall of the dissipated energy (cracks, joints) over its last value; 0 for none."""
+    energy = results.table("energy")
+    spent = energy["fracture"] + energy["friction"]
+    if len(spent) < 2 or spent[-1] <= 0.0:
+        return 0.0
+    return float(max(0.0, -np.diff(spent).min()) / spent[-1])
 
 
 def _damaged(results: SiResults) -> dict[str, float]:

@@ -12,15 +12,19 @@ from markupsafe import Markup
 from ..picture_style import Sheet
 from ..report.templates import render
 from ..si_results import SiResults
-from .cases import Case, motion_of
+from .cases import Case
+from .checks import check_verdicts, run_verdicts
 from .facts import Facts, facts_of
+from .openings import plot_profiles
 from .pictures import jinping_pictures, plot_factor, xingbiling_pictures
+from .records import plot_fractiles, sentences
 from .runner import Outcome
 from .verdicts import dam_verdicts, differences, joint_verdicts, robust
 
 HERE = Path(__file__).parent
-MISSING = "temperature, uplift, and many records with a reduced model"
 CLASSICAL = "xingbiling_classical"
+MODELS = ("chain", "one_step", "classical_fine")
+BUILT = ("at_once", "stages", "summer", "winter")
 
 
 def write_page(
@@ -40,17 +44,18 @@ def write_page(
         **_xingbiling(facts, runs, pictures),
         "dams": _jinping(outcomes, facts, runs, pictures),
         **_sensitivity([o.case for o in outcomes], facts, pictures),
+        **_records(outcomes, facts, pictures),
+        "checks": check_verdicts(facts),
     }
     page = folder / "paper_study.html"
     html = render(
         HERE / "paper_study.html",
         title="Two arch dams of Xu, Chen, Li and Yue (2014)",
         header=header,
-        facts=list(facts.values()),
+        facts=[facts[o.case.name] for o in outcomes if o.case.group != "records"],
         concrete=embed(concrete),
-        commands=[(o.case.name, _command(o.case, folder)) for o in outcomes],
+        commands=[line for o in outcomes for line in _commands(o.case, folder)],
         data=Markup(text.replace("</", "<\\/")),
-        missing=MISSING,
         **content,
     )
     page.write_text(html, encoding="utf-8")
@@ -64,19 +69,21 @@ def embed(files: list[Path]) -> list[dict[str, str]]:
     ]
 
 
-def _command(case: Case, folder: Path) -> str:
+def _commands(case: Case, folder: Path) -> list[str]:
     deck = folder / "decks" / case.name / f"{case.name}.inp"
-    return case.command(deck, motion_of(case.seed, folder))
+    return case.commands(deck, folder / "motions")
 
 
 def _xingbiling(
     facts: dict[str, Facts], runs: dict[str, SiResults], folder: Path
 ) -> dict[str, Any]:
     """Tables against the classical joint, and their pictures."""
-    chosen = {name: run for name, run in runs.items() if name.startswith("xingbiling")}
+    all_models = (CLASSICAL, *(f"xingbiling_{one}" for one in MODELS))
+    chosen = {name: runs[name] for name in all_models if name in runs}
+    built = _built(facts, runs, folder)
     others = [name for name in chosen if name != CLASSICAL]
     if CLASSICAL not in chosen or not others:
-        return {"tables": [], "joint_verdicts": [], "xingbiling": {}}
+        return {"tables": [], "joint_verdicts": [], "xingbiling": {}, "built": built}
     first = facts[CLASSICAL]
     tables = [
         {"title": facts[name].title, "first": "classical", "second": facts[name].title,
@@ -91,7 +98,32 @@ def _xingbiling(
         "tables": tables,
         "joint_verdicts": said,
         "xingbiling": {key: embed(files) for key, files in pictures.items()},
+        "built": built,
     }
+
+
+def _built(facts: dict[str, Facts], runs: dict[str, SiResults], folder: Path) -> dict[str, Any]:
+    """Xingbiling with weight at once, built in lifts, in summer and in winter."""
+    chosen = {name: runs[name] for name in (f"xingbiling_{one}" for one in BUILT) if name in runs}
+    if len(chosen) < 2:
+        return {}
+    labelled = {facts[name].title: run for name, run in chosen.items()}
+    sheet = Sheet(folder / "xingbiling_built")
+    numbers = [facts[name] for name in chosen]
+    names = [one.title for one in numbers]
+    bars = plot_factor("building and season", numbers, names, Sheet(folder / "xingbiling_bars"))
+    return {"pictures": embed(bars + plot_profiles(labelled, sheet))}
+
+
+def _records(
+    outcomes: list[Outcome], facts: dict[str, Facts], folder: Path
+) -> dict[str, list[Any]]:
+    """Fractiles of the largest opening."""
+    numbers = [facts[o.case.name] for o in outcomes if o.case.group == "records" and o.is_finished]
+    if len(numbers) < 2:
+        return {"records": [], "record_sentences": []}
+    pictures = plot_fractiles(numbers, Sheet(folder / "records"))
+    return {"records": embed(pictures), "record_sentences": sentences(numbers)}
 
 
 def _jinping(
@@ -106,7 +138,8 @@ def _jinping(
         has_outlets = "--no-outlets" not in outcome.case.options
         pictures = jinping_pictures(runs[name], folder, has_outlets)
         found.append(
-            {"title": outcome.case.title, "verdicts": dam_verdicts(facts[name]),
+            {"title": outcome.case.title,
+             "verdicts": dam_verdicts(facts[name]) + run_verdicts(facts[name]),
              "pictures": {key: embed(files) for key, files in pictures.items()}}
         )  # fmt: skip
     return found

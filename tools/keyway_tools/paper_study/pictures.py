@@ -104,14 +104,17 @@ def near_outlets(faces: Faces) -> Faces:
 
 def plot_factor(factor: str, cases: list[Facts], values: list[str], sheet: Sheet) -> list[Path]:
     """What one factor changes: openings, stresses at points, damaged volume."""
+    stress = "at points" if cases[0].value("S1_POINT") is not None else "at nodes"
+    tension, compression = ("S1_POINT", "S3_POINT") if stress == "at points" else ("S1", "S3")
     bars = {
         "largest opening [mm]": [1e3 * (one.value("OPENING") or 0.0) for one in cases],
-        "tension at points [MPa]": [1e-6 * (one.value("S1_POINT") or 0.0) for one in cases],
-        "compression at points [MPa]": [-1e-6 * (one.value("S3_POINT") or 0.0) for one in cases],
-        "damaged volume [1000 m³]": [1e-3 * one.damaged.get("all", 0.0) for one in cases],
+        f"tension {stress} [MPa]": [1e-6 * (one.value(tension) or 0.0) for one in cases],
+        f"compression {stress} [MPa]": [-1e-6 * (one.value(compression) or 0.0) for one in cases],
     }
-    figure, axes = new_figure(1, width=13.0, row_height=0.45 * len(cases) + 1.6, columns=4,
-                              sharey=True)  # fmt: skip
+    if any(one.damaged for one in cases):
+        bars["damaged volume [1000 m³]"] = [1e-3 * one.damaged.get("all", 0.0) for one in cases]
+    figure, axes = new_figure(1, width=13.0, row_height=0.45 * len(cases) + 1.6,
+                              columns=len(bars), sharey=True)  # fmt: skip
     for axis, (label, sizes) in zip(axes, bars.items(), strict=True):
         colours = [COLOURS[1] if value == "as it is" else COLOURS[0] for value in values]
         drawn = axis.barh(values, sizes, color=colours)

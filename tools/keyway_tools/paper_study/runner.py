@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..deck_runs import DeckRunner, Record
-from .cases import Case, Log, motion_of
+from .cases import Case, Log
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class Study:
         """The deck of a case, made anew: the same options give the same bytes."""
         deck = self.folder / "decks" / case.name / f"{case.name}.inp"
         with self._making, contextlib.redirect_stdout(io.StringIO()):
-            case.make(deck, motion_of(case.seed, self.folder))
+            case.make(deck, self.folder / "motions")
         return deck
 
     def _run(self, case: Case) -> Record:
