@@ -43,6 +43,22 @@ BEGIN = "<!-- studies: written by tools/make_accuracy.py -->"
 END = "<!-- end of studies -->"
 
 
+def rows_of_check(check: dict[str, Any]) -> list[str]:
+    """Errors that were said and those that the finer run shows, variant by variant."""
+    known = list(dict.fromkeys(row["quantity"] for row in check["rows"]))
+    names = list(dict.fromkeys(row["name"] for row in check["rows"]))
+    found = {(row["name"], row["quantity"]): row for row in check["rows"]}
+    lines = ["| error said, found |" + "".join(f" {SHORT[one]} |" for one in known)]
+    lines += ["|---|" + "---|" * len(known)]
+    for name in names:
+        cells = (found.get((name, one)) for one in known)
+        texts = (
+            "" if c is None else f"{percent(c['promised'])}, {percent(c['found'])}" for c in cells
+        )
+        lines += [f"| {name} |" + "".join(f" {text} |" for text in texts)]
+    return lines
+
+
 def studies() -> list[dict[str, Any]]:
     """The data of all studies, by the names of their decks."""
     return [json.loads(path.read_text(encoding="utf-8")) for path in sorted(DATA.glob("*.json"))]
@@ -70,7 +86,7 @@ def section(facts: dict[str, Any]) -> str:
     ]
     if check := facts["verified"]:
         text = sentence_of_check(check)
-        lines += ["", wrapped(text[0].upper() + text[1:])]
+        lines += ["", wrapped(text[0].upper() + text[1:]), "", *rows_of_check(check)]
     if place := facts["singular"]:
         lines += ["", wrapped(sentence_of_place(place))]
     if facts["changes"]:

@@ -336,3 +336,22 @@ def test_rungs_fit_the_deck():
     assert axes == {"base", "mesh", "element"}
     dam = base_deck(read_deck(INPUT / "xingbiling_matching/xingbiling_matching.inp"))
     assert len(list_rungs(dam)) == 17
+
+
+def test_a_dynamic_deck_is_verified_to_its_end(program_path, tmp_path):
+    """A joint that opens in motion: what was said is not less than what a finer run shows.
+
+    The first half of the motion of input/opening_base.inp in increments twice as large.
+    """
+    text = (INPUT / "opening_base.inp").read_text()
+    short = text.replace("\n0.01, 1\n", "\n0.02, 0.5\n")
+    assert short != text
+    (tmp_path / "short.inp").write_text(short)
+    command = [ROOT / "tools/accuracy", tmp_path / "short.inp", "--verify", "--threads", "1"]
+    command += ["--budget", "10m", "--program", program_path.resolve(), "-o", tmp_path / "study"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=900)
+    assert done.returncode == 0, done.stderr
+    check = json.loads((tmp_path / "study/accuracy.json").read_text())["verified"]
+    quantities = {row["quantity"] for row in check["rows"]}
+    assert quantities >= {"displacement", "opening"}
+    assert check["kept"] == len(check["rows"]) >= 12
