@@ -57,6 +57,7 @@ contains
     select case (name)
     case ('C3D8')
       allocate (full_hexahedron :: element)
+      element%has_plain_strain = .true.
     case ('C3D8B')
       allocate (bbar_hexahedron :: element)
     case ('C3D8I')

@@ -12,6 +12,9 @@ module element_formulation
   type, abstract :: solid_element
     character(8) :: name = '' !< as in the deck: 'C3D8', ...
     integer :: num_points = 8 !< integration points
+    !> The strain is the symmetric gradient at each of the 2 x 2 x 2 points, and there is no
+    !> hourglass control: hex8_slopes has faster ways to strains and stiffness
+    logical :: has_plain_strain = .false.
   contains
     procedure(strain_operator), deferred :: strain_operator
     procedure :: add_stabilisation

@@ -2,8 +2,8 @@
 module element_hex8
   use kinds, only: rk
   use element_formulation, only: solid_element
-  use shape_hex8, only: corner_fault, corner_of_point, gradient_at, point_derivative, &
-                        strain_rows
+  use hex8_slopes, only: slopes_at_points
+  use shape_hex8, only: strain_rows
   implicit none
   private
   public :: full_hexahedron, hex8_gradients
@@ -39,13 +39,11 @@ contains
     real(rk), intent(out) :: gradient(3, 8, 8) !< (direction, node, point) [1/m]
     real(rk), intent(out) :: weight(8) !< [m3]
     integer, intent(out) :: status !< 0, or the worst corner when a point's Jacobian is <= 0
+    real(rk) :: slope(8, 3, 8)
     integer :: q
+    call slopes_at_points(x, slope, weight, status)
     do q = 1, 8
-      call gradient_at(x, point_derivative(:, q, :), gradient(:, :, q), weight(q))
+      gradient(:, :, q) = slope(q, :, :)
     end do
-    status = 0
-    if (minval(weight) > 0.0_rk) return
-    status = corner_fault(x)
-    if (status == 0) status = corner_of_point(minloc(weight, 1))
   end subroutine hex8_gradients
 end module element_hex8

@@ -4,7 +4,8 @@
 module element_matrices
   use kinds, only: rk
   use element_formulation, only: solid_element
-  use shape_hex8, only: gradient_at, hex8_dofs, point_derivative, point_shape
+  use hex8_slopes, only: slopes_at_points, stiffness_of_slopes
+  use shape_hex8, only: hex8_dofs, point_shape
   implicit none
   private
   public :: stiffness_matrices, consistent_masses, nodal_volumes, strains_at_points, stress_forces
@@ -21,6 +22,38 @@ contains
     real(rk), intent(in) :: d(6, 6) !< elastic stiffness [Pa]
     real(rk), contiguous, intent(out) :: ke(:, :, :) !< (24, 24, elements), symmetric [N/m]
     integer, intent(out) :: status(:) !< (elements) 0, or the worst corner when a Jacobian is <= 0
+    integer :: e
+    if (element%has_plain_strain) then
+      call plain_stiffness(x, d, ke, status)
+    else
+      call general_stiffness(element, x, d, ke, status)
+    end if
+    do e = 1, size(x, 3)
+      if (status(e) /= 0) ke(:, :, e) = 0.0_rk
+    end do
+  end subroutine stiffness_matrices
+
+  !> K of elements whose strain is the symmetric gradient.
+  pure subroutine plain_stiffness(x, d, ke, status)
+    real(rk), contiguous, intent(in) :: x(:, :, :) !< (3, 8, elements) [m]
+    real(rk), intent(in) :: d(6, 6) !< [Pa]
+    real(rk), contiguous, intent(out) :: ke(:, :, :) !< (24, 24, elements) [N/m]
+    integer, intent(out) :: status(:)
+    real(rk) :: slope(8, 3, 8), weight(8)
+    integer :: e
+    do e = 1, size(x, 3)
+      call slopes_at_points(x(:, :, e), slope, weight, status(e))
+      call stiffness_of_slopes(slope, weight, d, ke(:, :, e))
+    end do
+  end subroutine plain_stiffness
+
+  !> K from the strain operators.
+  subroutine general_stiffness(element, x, d, ke, status)
+    class(solid_element), intent(in) :: element
+    real(rk), contiguous, intent(in) :: x(:, :, :) !< (3, 8, elements) [m]
+    real(rk), intent(in) :: d(6, 6) !< [Pa]
+    real(rk), contiguous, intent(out) :: ke(:, :, :) !< (24, 24, elements) [N/m]
+    integer, intent(out) :: status(:)
     real(rk), allocatable :: b(:, :, :, :), weight(:, :)
     integer :: e, i, n
     allocate (b(6, hex8_dofs, element%num_points, chunk), weight(element%num_points, chunk))
@@ -34,10 +67,7 @@ contains
       end do
     end do
     call element%add_stabilisation(x, d, ke)
-    do e = 1, size(x, 3)
-      if (status(e) /= 0) ke(:, :, e) = 0.0_rk
-    end do
-  end subroutine stiffness_matrices
+  end subroutine general_stiffness
 
   !> K of one element as one product of 24 x 6p and 6p x 24, columns in groups of eight below the
   !> diagonal.
@@ -91,15 +121,15 @@ contains
     real(rk), contiguous, intent(in) :: x(:, :, :) !< (3, 8, elements) [m]
     real(rk), intent(in) :: density !< [kg/m3]
     real(rk), contiguous, intent(out) :: mass(:, :, :) !< (8, 8, elements) [kg]
-    real(rk) :: weight, n(8)
-    integer :: e, q, a
+    real(rk) :: slope(8, 3, 8), weight(8), n(8)
+    integer :: e, q, a, status
     mass = 0.0_rk
     do e = 1, size(x, 3)
+      call slopes_at_points(x(:, :, e), slope, weight, status)
       do q = 1, 8
         n = point_shape(:, q)
-        weight = density*determinant_at(x(:, :, e), q)
         do a = 1, 8
-          mass(:, a, e) = mass(:, a, e) + (weight*n(a))*n
+          mass(:, a, e) = mass(:, a, e) + (density*weight(q)*n(a))*n
         end do
       end do
     end do
@@ -110,22 +140,16 @@ contains
   pure subroutine nodal_volumes(x, volume)
     real(rk), contiguous, intent(in) :: x(:, :, :) !< (3, 8, elements) [m]
     real(rk), contiguous, intent(out) :: volume(:, :) !< (8, elements) [m3]
-    integer :: e, q
+    real(rk) :: slope(8, 3, 8), weight(8)
+    integer :: e, q, status
     volume = 0.0_rk
     do e = 1, size(x, 3)
+      call slopes_at_points(x(:, :, e), slope, weight, status)
       do q = 1, 8
-        volume(:, e) = volume(:, e) + determinant_at(x(:, :, e), q)*point_shape(:, q)
+        volume(:, e) = volume(:, e) + weight(q)*point_shape(:, q)
       end do
     end do
   end subroutine nodal_volumes
-
-  !> Determinant of the Jacobian at a Gauss point [m3].
-  pure real(rk) function determinant_at(x, q) result(determinant)
-    real(rk), intent(in) :: x(3, 8)
-    integer, intent(in) :: q
-    real(rk) :: gradient(3, 8)
-    call gradient_at(x, point_derivative(:, q, :), gradient, determinant)
-  end function determinant_at
 
   !> eps = B u at the points of each element.
   pure subroutine strains_at_points(b, u, strain)

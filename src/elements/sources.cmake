@@ -8,6 +8,7 @@ set(sources
   element_matrices.f90
   element_sizes.f90
   gauss_rules.f90
+  hex8_slopes.f90
   shape_hex8.f90
   shape_quad4.f90
 )

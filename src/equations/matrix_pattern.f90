@@ -6,8 +6,8 @@ module matrix_pattern
   use kinds, only: rk
   implicit none
   private
-  public :: pattern, position_of, add_block, multiply, diagonal, full_pattern, spread_values
-  public :: drop_zeros
+  public :: pattern, position_of, add_block, add_triples, multiply, diagonal, full_pattern
+  public :: spread_values, drop_zeros
 
   type :: pattern
     integer :: num_free = 0 !< free unknowns come first
@@ -68,6 +68,50 @@ contains
       end do
     end do
   end subroutine add_block
+
+  !> Adds a symmetric matrix of triples of unknowns to a symmetric pattern. The three columns of a
+  !> triple are alike, so that one search serves nine entries.
+  pure subroutine add_triples(matrix, first, place, block, values)
+    type(pattern), intent(in) :: matrix !< symmetric; `alike` is 3 or more at each first unknown
+    integer, intent(in) :: first(:) !< first unknown of each triple, ascending
+    integer, intent(in) :: place(:) !< of the triple in the block: 1, 2, ...
+    real(rk), intent(in) :: block(:, :) !< (3 triples, 3 triples)
+    real(rk), intent(inout) :: values(:)
+    integer :: a, b, i, j, k(3)
+    do b = 1, size(first)
+      j = 3*place(b) - 2
+      k = matrix%column_start(first(b):first(b) + 2)
+      values(k(1):k(1) + 2) = values(k(1):k(1) + 2) + block(j:j + 2, j)
+      values(k(2):k(2) + 1) = values(k(2):k(2) + 1) + block(j + 1:j + 2, j + 1)
+      values(k(3)) = values(k(3)) + block(j + 2, j + 2)
+      do a = b + 1, size(first)
+        i = 3*place(a) - 2
+        k(1) = next_position(matrix%row, k(1) + 1, matrix%column_start(first(b) + 1) - 1, first(a))
+        k(2) = matrix%column_start(first(b) + 1) + k(1) - matrix%column_start(first(b)) - 1
+        k(3) = matrix%column_start(first(b) + 2) + k(1) - matrix%column_start(first(b)) - 2
+        values(k(1):k(1) + 2) = values(k(1):k(1) + 2) + block(i:i + 2, j)
+        values(k(2):k(2) + 2) = values(k(2):k(2) + 2) + block(i:i + 2, j + 1)
+        values(k(3):k(3) + 2) = values(k(3):k(3) + 2) + block(i:i + 2, j + 2)
+      end do
+    end do
+  end subroutine add_triples
+
+  !> Position of a row that stands between two positions of a list in ascending order.
+  pure integer function next_position(rows, first, last, row) result(low)
+    integer, intent(in) :: rows(:)
+    integer, intent(in) :: first, last, row
+    integer :: high, middle
+    low = first
+    high = last
+    do while (low < high)
+      middle = (low + high)/2
+      if (rows(middle) < row) then
+        low = middle + 1
+      else
+        high = middle
+      end if
+    end do
+  end function next_position
 
   !> y = A q over all unknowns, prescribed ones included.
   pure subroutine multiply(matrix, values, q, y)

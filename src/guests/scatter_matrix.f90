@@ -3,7 +3,7 @@ module scatter_matrix
   use kinds, only: rk
   use node_dofs, only: num_directions
   use dof_numbering, only: numbering
-  use matrix_pattern, only: pattern, add_block
+  use matrix_pattern, only: pattern, add_block, add_triples
   use sorted_lists, only: sorted_unique, place_in
   implicit none
   private
@@ -19,7 +19,13 @@ contains
     type(pattern), intent(in) :: matrix
     real(rk), intent(inout) :: values(:)
     integer, dimension(num_directions*size(nodes)) :: dof, unknown, place
-    logical :: is_independent
+    integer, dimension(size(nodes)) :: first, order
+    logical :: is_independent, has_triples
+    call find_triples(numbers, nodes, matrix, first, order, has_triples)
+    if (has_triples) then
+      call add_triples(matrix, first, order, k, values)
+      return
+    end if
     dof = numbers%dofs%displacements_of(nodes)
     call find_independent(numbers, dof, unknown, place, is_independent)
     if (is_independent) then
@@ -43,7 +49,40 @@ contains
     end do
   end subroutine scatter_blocks
 
-  !> The usual case: every dof is an independent unknown, each once. Sorts the unknowns.
+  !> The usual case: the displacements of each node are three unknowns that follow each other, and
+  !> no node repeats. Sorts the nodes by their unknowns.
+  pure subroutine find_triples(numbers, nodes, matrix, first, order, has_triples)
+    type(numbering), intent(in) :: numbers
+    integer, intent(in) :: nodes(:)
+    type(pattern), intent(in) :: matrix
+    integer, intent(out) :: first(:) !< first unknown of each node, ascending
+    integer, intent(out) :: order(:) !< position of each node in `nodes`
+    logical, intent(out) :: has_triples
+    integer :: a, k, row, dof
+    has_triples = matrix%is_symmetric .and. allocated(matrix%alike)
+    if (.not. has_triples) return
+    do a = 1, size(nodes)
+      dof = numbers%dofs%dof_of(nodes(a), 1)
+      row = numbers%row_start(dof)
+      has_triples = all(numbers%row_start(dof + 1:dof + num_directions) - row == [1, 2, 3])
+      if (.not. has_triples) return
+      has_triples = all(numbers%unknown(row:row + 2) - numbers%unknown(row) == [0, 1, 2]) &
+                    .and. all(abs(numbers%coefficient(row:row + 2) - 1.0_rk) < epsilon(1.0_rk))
+      if (.not. has_triples) return
+      has_triples = matrix%alike(numbers%unknown(row)) >= num_directions
+      if (.not. has_triples) return
+      do k = a - 1, 1, -1
+        if (first(k) <= numbers%unknown(row)) exit
+        first(k + 1) = first(k)
+        order(k + 1) = order(k)
+      end do
+      first(k + 1) = numbers%unknown(row)
+      order(k + 1) = a
+    end do
+    has_triples = all(first(2:) > first(:size(first) - 1))
+  end subroutine find_triples
+
+  !> Every dof is an independent unknown, each once. Sorts the unknowns.
   pure subroutine find_independent(numbers, dof, unknown, place, is_independent)
     type(numbering), intent(in) :: numbers
     integer, intent(in) :: dof(:)

@@ -48,7 +48,7 @@ contains
     real(rk) :: n(4), area(3)
     integer :: q, a
     if (self%is_hydrostatic) then
-      call integrate_wet_part(x, water_body(level=self%top), wet)
+      call integrate_wet_part(x, water_body(level=self%top), wet, needs_root=.false.)
       share = -self%pressure/(self%top - self%reference)*wet%head
       return
     end if

@@ -50,7 +50,7 @@ contains
     do i = 1, size(self%faces%element)
       if (.not. element_is_there(mesh, self%faces%element(i))) cycle
       nodes = face_nodes(mesh, self%faces%element(i), self%faces%face(i))
-      call integrate_wet_part(mesh%x(:, nodes), self%water, wet)
+      call integrate_wet_part(mesh%x(:, nodes), self%water, wet, needs_root=.false.)
       do a = 1, 4
         force(:, nodes(a)) = force(:, nodes(a)) - self%density*self%gravity*wet%head(:, a)
       end do
@@ -130,7 +130,7 @@ contains
     area = 0.0_rk
     do i = 1, size(self%faces%element)
       nodes = face_nodes(mesh, self%faces%element(i), self%faces%face(i))
-      call integrate_wet_part(mesh%x(:, nodes), self%water, wet)
+      call integrate_wet_part(mesh%x(:, nodes), self%water, wet, needs_root=.false.)
       area = area + norm2(sum(wet%area, 2))
     end do
   end function wetted_area

@@ -32,14 +32,23 @@ module wetted_facet
 contains
 
   !> Integrals over the part of a facet under water.
-  pure subroutine integrate_wet_part(x, water, wet)
+  pure subroutine integrate_wet_part(x, water, wet, needs_root)
     real(rk), intent(in) :: x(3, 4) !< corners [m]; two may be equal
     type(water_body), intent(in) :: water
     type(wet_facet), intent(out) :: wet
+    logical, intent(in), optional :: needs_root !< .false. saves time: `wet%root` may be zero
     real(rk) :: depth(4), centre(3), polygon(3, most_corners)
     integer :: a, i, num
+    logical :: is_submerged
     depth = water%level - x(water%up, :)
     if (all(depth <= 0.0_rk) .or. all(x(water%up, :) < water%bed)) return
+    is_submerged = all(depth >= 0.0_rk) .and. all(x(water%up, :) >= water%bed)
+    if (is_submerged .and. present(needs_root)) then
+      if (.not. needs_root) then
+        call submerge(x, water, wet)
+        return
+      end if
+    end if
     centre = sum(x, dim=2)/4.0_rk
     do a = 1, 4
       polygon(:, 1) = centre
@@ -52,7 +61,7 @@ contains
         call add_triangle(x, water, polygon(:, [1, i - 1, i]), wet)
       end do
     end do
-    if (all(depth >= 0.0_rk) .and. all(x(water%up, :) >= water%bed)) call submerge(x, water, wet)
+    if (is_submerged) call submerge(x, water, wet)
   end subroutine integrate_wet_part
 
   !> A facet completely under water: the bilinear surface by 2 x 2 points, exact.

@@ -2,6 +2,7 @@
 module start_acceleration
   use kinds, only: rk
   use errors, only: error_type, raise
+  use global_vectors, only: norm
   use problem_definition, only: problem
   use joint_law, only: joint_state, state_open
   use joint_forces, only: reference_stiffness
@@ -12,6 +13,10 @@ module start_acceleration
   implicit none
   private
   public :: find_start
+
+  !> Forces that do not balance, over the loads: less is the remainder of the static step before,
+  !> and not worth a factor.
+  real(rk), parameter :: remainder = 1.0e-9_rk
 
 contains
 
@@ -30,6 +35,10 @@ contains
     integer :: worst
     call find_acceleration(system%matrix, system%mass, r, a, is_definite)
     if (is_definite) return
+    if (is_balanced(system%matrix%num_free, load, r)) then
+      a = 0.0_rk
+      return
+    end if
     leaves_open = .true.
     do
       call add_small_stiffness(model, system, joints, leaves_open, values)
@@ -42,6 +51,17 @@ contains
     end do
     call name_place(system%numbers%describe(worst, model%mesh%node_id), error)
   end subroutine find_start
+
+  !> Whether the loads are balanced where a step starts. Without loads massless parts that nothing
+  !> holds would not be found.
+  logical function is_balanced(num_free, load, r)
+    integer, intent(in) :: num_free
+    real(rk), intent(in) :: load(:), r(:) !< (num_total) [N]
+    real(rk) :: size_of_load
+    size_of_load = norm(load(:num_free))
+    is_balanced = size_of_load > 0.0_rk &
+                  .and. norm(r(:num_free)) <= remainder*size_of_load
+  end function is_balanced
 
   !> Error: a massless part that nothing holds, or an iteration that does not converge.
   subroutine name_place(place, error)

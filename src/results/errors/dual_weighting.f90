@@ -4,6 +4,7 @@ module dual_weighting
   use dam_mesh, only: element_is_there
   use element_hex8, only: hex8_gradients
   use element_matrices, only: strains_at_points
+  use hex8_slopes, only: slopes_at_points, strains_of_slopes
   use kinds, only: rk
   use node_dofs, only: gather_vectors
   use problem_definition, only: problem
@@ -47,7 +48,11 @@ contains
     !$omp parallel do default(none) shared(model, plan, u, own) schedule(dynamic, 4) &
     !$omp if (model%mesh%num_nodes > few_nodes)
     do i = 1, size(plan%blocks)
-      call recover_block(model, plan, i, u, own)
+      if (plan%formulations(plan%blocks(i)%formulation)%item%has_plain_strain) then
+        call recover_plain_block(model, plan, i, u, own)
+      else
+        call recover_block(model, plan, i, u, own)
+      end if
     end do
     !$omp end parallel do
     call find_fitted(plan, is_fitted)
@@ -93,6 +98,31 @@ contains
       call fitted_defect(model%mesh, plan, smoothing, fit, own(k)%stress, own(k)%fitted)
     end do
   end subroutine smooth_stresses
+
+  !> Stresses of the elements of one block whose strain is that of their displacements.
+  subroutine recover_plain_block(model, plan, block, u, own)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    integer, intent(in) :: block
+    real(rk), intent(in) :: u(:, :, :) !< (3, nodes, fields)
+    type(point_fields), intent(inout) :: own(:)
+    real(rk) :: d(6, 6), slope(8, 3, 8), weight(8), strain(6, max_points), moved(hex8_dofs)
+    integer :: i, k, s, status
+    associate (part => plan%blocks(block))
+      call model%materials(part%material)%law%elastic_stiffness(d)
+      do i = 1, size(part%solids)
+        s = part%solids(i)
+        associate (nodes => model%mesh%nodes(:, plan%element_of_solid(s)))
+          call slopes_at_points(model%mesh%x(:, nodes), slope, weight, status)
+          do k = 1, size(own)
+            moved = gather_vectors(u(:, :, k), nodes)
+            call strains_of_slopes(slope, moved, strain)
+            own(k)%stress(:, :, s) = matmul(d, strain)
+          end do
+        end associate
+      end do
+    end associate
+  end subroutine recover_plain_block
 
   !> Stresses and added strains of the elements of one block, from all displacements.
   subroutine recover_block(model, plan, block, u, own)
@@ -151,29 +181,42 @@ contains
     type(point_fields), intent(in) :: first, second
     real(rk) :: work(plan%num_solids)
     integer :: s, m
-    work = 0.0_rk
+    !$omp parallel do default(none) private(m) schedule(static) if (plan%num_solids > few_nodes) &
+    !$omp shared(model, plan, smoothing, is_fitted, first, second, work)
     do s = 1, plan%num_solids
+      work(s) = 0.0_rk
       m = model%mesh%material_of_element(plan%element_of_solid(s))
       if (m == 0 .or. .not. element_is_there(model%mesh, plan%element_of_solid(s))) cycle
       if (is_fitted(s)) then
-        call add_products(first%fitted(:, :, s), second%fitted(:, :, s))
+        work(s) = product_of(smoothing%compliance(:, :, m), smoothing%volume(:, s), &
+                             first%fitted(:, :, s), second%fitted(:, :, s), &
+                             first%added(:, :, s), second%added(:, :, s))
       else
-        call add_products(first%averaged(:, :, s), second%averaged(:, :, s))
+        work(s) = product_of(smoothing%compliance(:, :, m), smoothing%volume(:, s), &
+                             first%averaged(:, :, s), second%averaged(:, :, s), &
+                             first%added(:, :, s), second%added(:, :, s))
       end if
     end do
-  contains
-    !> Sums over the points of a solid.
-    subroutine add_products(a, b)
-      real(rk), intent(in) :: a(:, :), b(:, :) !< (6, max_points) defects [Pa]
-      integer :: q
-      do q = 1, max_points
-        work(s) = work(s) + smoothing%volume(q, s) &
-                  *(dot_product(a(:, q), matmul(smoothing%compliance(:, :, m), b(:, q))) &
-                    + dot_product(first%added(:, q, s), b(:, q)) &
-                    + dot_product(second%added(:, q, s), a(:, q)))
-      end do
-    end subroutine add_products
+    !$omp end parallel do
   end function products
+
+  !> The same of one solid, summed over its points.
+  pure real(rk) function product_of(compliance, volume, a, b, added_a, added_b) result(work)
+    real(rk), intent(in) :: compliance(6, 6) !< [1/Pa]
+    real(rk), intent(in) :: volume(max_points) !< [m3]
+    real(rk), intent(in) :: a(6, max_points), b(6, max_points) !< defects [Pa]
+    real(rk), intent(in) :: added_a(6, max_points), added_b(6, max_points) !< strains
+    real(rk) :: strain(6)
+    integer :: q, j
+    work = 0.0_rk
+    do q = 1, max_points
+      strain = added_b(:, q)
+      do j = 1, 6
+        strain = strain + compliance(:, j)*b(j, q)
+      end do
+      work = work + volume(q)*(sum(a(:, q)*strain) + sum(added_a(:, q)*b(:, q)))
+    end do
+  end function product_of
 
   !> The work of the hourglass forces of one field along the other [J].
   real(rk) function hourglass_work(model, plan, first, second) result(work)

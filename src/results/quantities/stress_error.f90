@@ -6,7 +6,7 @@
 module stress_error
   use kinds, only: rk
   use dam_mesh, only: fe_mesh
-  use element_hex8, only: hex8_gradients
+  use hex8_slopes, only: slopes_at_points
   use problem_definition, only: problem
   use shape_hex8, only: corners_from_points, corner_of_point, hex8_dofs, point_shape
   use small_matrix, only: solve_dense
@@ -32,15 +32,17 @@ contains
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(smoothing_plan), intent(out) :: smoothing
-    real(rk) :: gradient(3, 8, 8)
+    real(rk) :: slope(8, 3, 8), x(3, 8)
     integer :: s, status
     call number_patches(model%mesh, plan, smoothing)
     allocate (smoothing%volume(max_points, plan%num_solids))
+    !$omp parallel do default(none) shared(model, plan, smoothing) private(slope, x, status) &
+    !$omp schedule(static) if (plan%num_solids > few_nodes)
     do s = 1, plan%num_solids
-      associate (nodes => model%mesh%nodes(:, plan%element_of_solid(s)))
-        call hex8_gradients(model%mesh%x(:, nodes), gradient, smoothing%volume(:, s), status)
-      end associate
+      x = model%mesh%x(:, model%mesh%nodes(:, plan%element_of_solid(s)))
+      call slopes_at_points(x, slope, smoothing%volume(:, s), status)
     end do
+    !$omp end parallel do
     call invert_stiffness(model, smoothing%compliance)
   end subroutine make_smoothing_plan
 
@@ -167,17 +169,21 @@ contains
     type(smoothing_plan), intent(in) :: smoothing
     real(rk), intent(in) :: first(:, :, :), second(:, :, :) !< (6, max_points, solids) [Pa]
     real(rk), intent(out) :: energy(:) !< (solids) [J]
-    integer :: s, q, m
+    real(rk) :: compliance(6, 6), strain(6)
+    integer :: s, q, m, j
     !$omp parallel do default(none) shared(model, plan, smoothing, first, second, energy) &
-    !$omp private(q, m) schedule(static) if (plan%num_solids > few_nodes)
+    !$omp private(compliance, strain, q, m, j) schedule(static) if (plan%num_solids > few_nodes)
     do s = 1, plan%num_solids
       m = model%mesh%material_of_element(plan%element_of_solid(s))
       energy(s) = 0.0_rk
       if (m == 0) cycle
+      compliance = smoothing%compliance(:, :, m)
       do q = 1, max_points
-        energy(s) = energy(s) + smoothing%volume(q, s) &
-                    *dot_product(first(:, q, s), matmul(smoothing%compliance(:, :, m), &
-                                                        second(:, q, s)))
+        strain = 0.0_rk
+        do j = 1, 6
+          strain = strain + compliance(:, j)*second(j, q, s)
+        end do
+        energy(s) = energy(s) + smoothing%volume(q, s)*sum(first(:, q, s)*strain)
       end do
     end do
     !$omp end parallel do

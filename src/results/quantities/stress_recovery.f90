@@ -9,6 +9,7 @@ module stress_recovery
   use element_formulation, only: solid_element
   use element_catalogue, only: is_solid, make_solid
   use element_matrices, only: strains_at_points
+  use hex8_slopes, only: slopes_at_points, strains_of_slopes
   use node_dofs, only: gather_vectors
   use problem_definition, only: problem
   use shape_hex8, only: hex8_dofs
@@ -246,17 +247,18 @@ contains
     type(element_block), intent(in) :: part
     type(state), intent(in) :: now
     real(rk), intent(inout) :: strain(:, :, :), stress(:, :, :)
-    real(rk), allocatable :: b(:, :, :, :), moved(:, :), found(:, :, :)
+    real(rk), allocatable :: found(:, :, :)
     real(rk) :: d(6, 6)
     integer :: k, q, n, points
     n = size(part%solids)
-    call operators_of_block(model, plan, part, b, d)
-    points = size(b, 3)
-    allocate (found(6, points, n), moved(hex8_dofs, n))
-    do k = 1, n
-      moved(:, k) = motion_of_element(model, now, plan%element_of_solid(part%solids(k)))
-    end do
-    call strains_at_points(b, moved, found)
+    points = plan%formulations(part%formulation)%item%num_points
+    allocate (found(6, points, n))
+    call model%materials(part%material)%law%elastic_stiffness(d)
+    if (plan%formulations(part%formulation)%item%has_plain_strain) then
+      call find_plain_strains(model, plan, part, now, found)
+    else
+      call find_general_strains(model, plan, part, now, found)
+    end if
     call take_thermal(model, now, plan%element_of_solid(part%solids), found)
     do k = 1, n
       strain(:, :points, part%solids(k)) = found(:, :, k)
@@ -266,6 +268,39 @@ contains
     end do
     call add_expansions(model, plan, part, now, strain)
   end subroutine recover_block
+
+  !> Strains of elements whose strain is the symmetric gradient.
+  subroutine find_plain_strains(model, plan, part, now, strain)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    type(element_block), intent(in) :: part
+    type(state), intent(in) :: now
+    real(rk), intent(out) :: strain(:, :, :) !< (6, points, solids of the block)
+    real(rk) :: slope(8, 3, 8), weight(8)
+    integer :: k, e, status
+    do k = 1, size(part%solids)
+      e = plan%element_of_solid(part%solids(k))
+      call slopes_at_points(model%mesh%x(:, model%mesh%nodes(:, e)), slope, weight, status)
+      call strains_of_slopes(slope, motion_of_element(model, now, e), strain(:, :, k))
+    end do
+  end subroutine find_plain_strains
+
+  !> Strains by the strain operators.
+  subroutine find_general_strains(model, plan, part, now, strain)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    type(element_block), intent(in) :: part
+    type(state), intent(in) :: now
+    real(rk), contiguous, intent(out) :: strain(:, :, :) !< (6, points, solids of the block)
+    real(rk), allocatable :: b(:, :, :, :)
+    real(rk) :: d(6, 6), moved(hex8_dofs, size(part%solids))
+    integer :: k
+    call operators_of_block(model, plan, part, b, d)
+    do k = 1, size(part%solids)
+      moved(:, k) = motion_of_element(model, now, plan%element_of_solid(part%solids(k)))
+    end do
+    call strains_at_points(b, moved, strain)
+  end subroutine find_general_strains
 
   !> Displacements of the nodes of an element since it appeared without stress.
   pure function motion_of_element(model, now, element) result(moved)

@@ -4,6 +4,7 @@ program test_element_matrices
   use element_formulation, only: solid_element
   use element_matrices, only: consistent_masses, nodal_volumes, stiffness_matrices, &
                               strains_at_points, stress_forces
+  use hex8_slopes, only: slopes_at_points, strains_of_slopes
   use kinds, only: rk
   use material_elastic, only: elastic_law
   use shape_hex8, only: corner, corners_from_points
@@ -38,6 +39,7 @@ program test_element_matrices
     end do
     call patch_of_seven(trim(solids(i)), log)
   end do
+  call ways_to_the_plain_element(log)
   call bending_of_a_cube(log)
   call volume_locking(log)
   call volumes_and_masses(log)
@@ -108,6 +110,43 @@ contains
     call check_close(log, maxval(abs(ke(:, :, 1) - transpose(ke(:, :, 1)))), 0.0_rk, 0.0_rk, &
                      name//': symmetric')
   end subroutine constant_strain_is_exact
+
+  !> Stiffness and strains of C3D8 from slopes equal those from the strain operator, with a
+  !> stiffness that couples all strains; a cube with a wedge behind it.
+  subroutine ways_to_the_plain_element(log)
+    type(test_log), intent(inout) :: log
+    class(solid_element), allocatable :: element
+    real(rk) :: x(3, 8, 2), d(6, 6), fast(24, 24, 2), general(24, 24, 2), u(24, 2)
+    real(rk) :: b(6, 24, 8, 2), weight(8, 2), strain(6, 8, 2)
+    real(rk) :: slope(8, 3, 8), found(6, 8), volume(8)
+    integer :: status(2), i, j, e
+    do j = 1, 6
+      do i = 1, 6
+        d(i, j) = 0.1_rk*cos(real(i*j, rk)) + merge(2.0_rk + 0.1_rk*i, 0.0_rk, i == j)
+      end do
+    end do
+    x(:, :, 1:1) = distorted(shapes(:, 1))
+    x(:, :, 2:2) = distorted(shapes(:, 2))
+    do e = 1, 2
+      u(:, e) = [(sin(3.0_rk*i + e), i=1, 24)]
+    end do
+    call make_solid('C3D8', element)
+    call check(log, element%has_plain_strain, 'C3D8 has the plain strain')
+    call stiffness_matrices(element, x, d, fast, status)
+    element%has_plain_strain = .false.
+    call stiffness_matrices(element, x, d, general, status)
+    call check_close(log, maxval(abs(fast - general)), 0.0_rk, 1.0e-14_rk*maxval(abs(general)), &
+                     'stiffness from slopes')
+    call element%strain_operator(x, d, b, weight, status)
+    call strains_at_points(b, u, strain)
+    do e = 1, 2
+      call slopes_at_points(x(:, :, e), slope, volume, status(e))
+      call strains_of_slopes(slope, u(:, e), found)
+      call check_close(log, maxval(abs(found - strain(:, :, e))), 0.0_rk, &
+                       1.0e-13_rk*maxval(abs(strain)), 'strains from slopes')
+      call check_close(log, maxval(abs(volume - weight(:, e))), 0.0_rk, 0.0_rk, 'volumes')
+    end do
+  end subroutine ways_to_the_plain_element
 
   !> Six zero eigenvalues and no more, all others positive; repeated nodes are folded.
   subroutine six_motions_are_free(name, nodes, log)

@@ -12,6 +12,7 @@ program test_matrix_pattern
                             spread_values, drop_zeros
   use pattern_builder, only: build_pattern
   use joint_stiffness, only: add_joint_stiffness
+  use scatter_matrix, only: scatter_nodes
   implicit none
   type(test_log) :: log
   type(numbering) :: numbers
@@ -21,6 +22,7 @@ program test_matrix_pattern
   call entries()
   call products()
   call joints()
+  call triples()
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
 contains
@@ -141,4 +143,31 @@ contains
       f = f + area(p)*matmul(matmul(d(:, :, p), matmul(b(:, :, p), q)), b(:, :, p))
     end do
   end function product_of
+
+  !> Matrices of nodes in any order, in the lower triangle and in the full pattern: the first takes
+  !> the way of three unknowns a node where no dof is fixed or dependent.
+  subroutine triples()
+    integer, parameter :: cells(3, 5) = reshape([3, 2, 1, 2, 3, 1, 6, 5, 4, 2, 6, 5, 1, 6, 2], &
+                                                [3, 5])
+    real(rk), allocatable :: half(:), whole(:), spread_half(:)
+    real(rk) :: k(9, 9)
+    integer :: c, i, j
+    allocate (half(size(lower%row)), whole(size(full%row)), source=0.0_rk)
+    allocate (spread_half(size(full%row)))
+    do c = 1, size(cells, 2)
+      do j = 1, 9
+        do i = 1, 9
+          k(i, j) = sin(real(c + i*j, rk)) + cos(real(c*(i + j), rk))
+        end do
+      end do
+      call scatter_nodes(numbers, cells(:, c), k, lower, half)
+      call scatter_nodes(numbers, cells(:, c), k, full, whole)
+      call scatter_nodes(numbers, cells(1:1, c), k(:3, :3), lower, half)
+      call scatter_nodes(numbers, cells(1:1, c), k(:3, :3), full, whole)
+    end do
+    call spread_values(lower, half, full, spread_half)
+    ! Sums of up to 20 terms of size 2.
+    call check_close(log, maxval(abs(spread_half - whole)), 0.0_rk, 1.0e-14_rk, 'nodes')
+    call check(log, maxval(abs(whole)) > 1.0_rk, 'entries')
+  end subroutine triples
 end program test_matrix_pattern
