@@ -5,7 +5,15 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+sys.path.insert(0, str(ROOT / "tools/bench"))
+
+from cost_of_scale import LINEAR, Growth, ScaleBench, ScaleOptions  # noqa: E402
+from kept_rows import Row  # noqa: E402
+from measured_run import Program  # noqa: E402
 
 
 def test_bench_measures_a_small_dam(program_path: Path, tmp_path: Path):
@@ -26,3 +34,33 @@ def test_bench_measures_a_small_dam(program_path: Path, tmp_path: Path):
     }
     assert all(value > 0.0 for value in found.values())
     assert found["linear increment / solve"] > 1.0
+
+
+def test_scale_keeps_its_rows(tmp_path: Path):
+    program, keep = tmp_path / "program", tmp_path / "rows.json"
+    program.write_text("one")
+    calls = []
+
+    def measure(name: int, _growth: Growth) -> Row:
+        calls.append(name)
+        return Row(3 * name, [2.0 * name, 8.0 * name**2])
+
+    def grow(names: list[int]) -> Growth:
+        bench = ScaleBench(Program(program, 1), tmp_path, ScaleOptions([], [], keep=keep))
+        return bench.grow(Growth("size", ("a", "b")), names, measure)
+
+    assert grow([1, 2]).size == [3, 6]
+    assert grow([1, 2, 4]).exponents() == pytest.approx([1.0, 2.0])
+    assert calls == [1, 2, 4]
+    program.write_text("two")  # times of another program do not count
+    grow([1])
+    assert calls == [1, 2, 4, 1]
+
+
+def test_scale_leaves_out_what_finds_no_memory(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    program = tmp_path / "program"
+    program.write_text("one")
+    bench = ScaleBench(Program(program), tmp_path, ScaleOptions([], [], memory=500.0))
+    growth = Growth("unknowns", LINEAR, [50_000], [[0.3, 1.9, 0.04, 0.05, 8.0, 400.0]])
+    assert bench.linear_row(100_000, growth) is None
+    assert capsys.readouterr().out.startswith("100000 unknowns: left out, needs about 1056 MB, 500")

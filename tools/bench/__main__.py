@@ -2,7 +2,7 @@
 
 usage: .venv/bin/python tools/bench [run] [accuracy] [joints] [cracks] [reduced] [scale]
            [estimates] [peers] [forecast]
-           [--sizes 48000 145000] [--json FILE]
+           [--sizes N ...] [--json FILE]
 
 run (default): ratios of times taken in one process, which hardly depend on the machine:
   static    the whole program, from deck to results, over analyse + factor + solve
@@ -24,8 +24,11 @@ solves, iterations, share of the laws. --refine divides its elements.
 reduced: a dam with the first of --joints joints, with the full and with the reduced model: time of
 an increment, error of the openings and its estimate.
 
-scale: growth of time and memory with the unknowns (--sizes) of a linear dam, and with the points of
---joints joints; exponents are printed, and --picture FILE draws them.
+scale: growth of time and memory with the unknowns of a linear dam (10 000 to 400 000, or --sizes),
+and with the points of joints in a strong motion (1 to 50 --joints, 160 to 11 000 points); exponents
+are printed, and --picture FILE draws them. With --keep FILE each size is kept as soon as it is
+measured, and a second call goes on. A size that would need more than --memory MB (what is free) is
+left out with a line.
 
 estimates: the share of the estimates of errors in the time of each deck of input/ (or --decks).
 
@@ -47,6 +50,7 @@ import tempfile
 from dataclasses import asdict
 from pathlib import Path
 
+SIZES = [48_000, 145_000]  # unknowns of the models of `run`
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
 
@@ -57,7 +61,7 @@ from cost_of_estimates import HEAD, decks_of_input, measure_estimates  # noqa: E
 from cost_of_joints import DAMS, measure_joints  # noqa: E402
 from cost_of_reduced import measure_reduced  # noqa: E402
 from cost_of_run import Figure, measure_all  # noqa: E402
-from cost_of_scale import draw_growth, measure_scale  # noqa: E402
+from cost_of_scale import ScaleOptions, draw_growth, measure_scale  # noqa: E402
 from measured_run import Program  # noqa: E402
 from peers.comparison_of_peers import PeerOptions, compare_peers  # noqa: E402
 
@@ -68,14 +72,17 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     )
     add = parser.add_argument
     add("what", nargs="*", metavar="run|accuracy|joints|...", help="what to measure (run)")
-    add("--sizes", type=int, nargs="+", default=[48_000, 145_000], help="unknowns of the models")
+    add("--sizes", type=int, nargs="+", help="unknowns of the models (48000 145000)")
     add("--increments", type=int, default=60, help="dynamic increments (60)")
-    add("--joints", type=int, nargs="+", default=[2, 12], choices=DAMS, help="of the dams (2 12)")
+    add("--joints", type=int, nargs="+", choices=DAMS, help="of the dams (2 12)")
     add("--refine", type=int, default=1, help="of the dam that cracks (1)")
     add("--threads", type=int, default=2, help="of the program (2)")
     add("--program", type=Path, default=ROOT / "build/release/keyway", help="the program")
     add("--decks", type=Path, nargs="+", help="of estimates and forecast (all of input/)")
     add("--json", type=Path, metavar="FILE", help="write the figures as JSON too")
+    add("--limit", type=float, default=200.0, help="of a run of peers (200) [s]")
+    add("--memory", type=float, help="that a run of scale may take (what is free) [MB]")
+    add("--keep", type=Path, metavar="FILE", help="of the sizes of scale that are measured")
     add("--opensees-python", metavar="PYTHON", help="a Python that has openseespy")
     add("--picture", type=Path, metavar="FILE", help="draw time against accuracy")
     options = parser.parse_args(arguments)
@@ -104,12 +111,19 @@ def peer_options(options: argparse.Namespace) -> PeerOptions:
         calculix=shutil.which("ccx"),
         opensees_python=options.opensees_python,
         threads=options.threads,
-        unknowns=options.sizes[0],
+        unknowns=(options.sizes or [20_000])[0],
+        limit=options.limit,
     )
 
 
 def report_scale(program: Program, folder: Path, options: argparse.Namespace) -> None:
-    growths = measure_scale(program, folder, options.sizes, options.joints)
+    wanted = ScaleOptions(
+        sizes=options.sizes or [10_000, 25_000, 50_000, 100_000, 200_000, 400_000],
+        joints=options.joints or list(DAMS),
+        memory=options.memory,
+        keep=options.keep,
+    )
+    growths = measure_scale(program, folder, wanted)
     print("\n\n".join(growth.table() for growth in growths))
     if options.picture:
         draw_growth(growths, options.picture)
@@ -127,7 +141,7 @@ def report_others(program: Program, folder: Path, options: argparse.Namespace) -
         decks = options.decks or decks_of(ROOT / "input")
         print(measure_forecasts(program, folder, decks))
     if "peers" in options.what:
-        print(compare_peers(peer_options(options), folder))
+        compare_peers(peer_options(options), folder)
 
 
 def main(arguments: list[str]) -> int:
@@ -137,20 +151,20 @@ def main(arguments: list[str]) -> int:
     with tempfile.TemporaryDirectory(prefix="keyway_bench_") as name:
         program, folder = Program(options.program.resolve(), options.threads), Path(name)
         if "run" in options.what:
-            figures = measure_all(program, folder, options.sizes, options.increments)
+            figures = measure_all(program, folder, options.sizes or SIZES, options.increments)
             print(table(figures))
         if "accuracy" in options.what:
             rows = measure_accuracy(Program(program.path, 1), folder)
             print(tables(rows))
         if "joints" in options.what:
             duration = 0.01 * options.increments  # of 0.01 s each
-            print(measure_joints(program, folder, options.joints, duration))
+            print(measure_joints(program, folder, options.joints or [2, 12], duration))
         if "cracks" in options.what:
             duration = 0.04 * options.increments  # strong motion has begun after 0.4 s
             print(measure_cracks(program, folder, options.refine, duration))
         if "reduced" in options.what:
             duration = 0.01 * options.increments
-            print(measure_reduced(program, folder, options.joints[0], duration))
+            print(measure_reduced(program, folder, (options.joints or [2])[0], duration))
         report_others(program, folder, options)
     if options.picture and rows:
         draw(rows, options.picture)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from measured_run import Program, Run
@@ -12,17 +13,18 @@ TOOLS = Path(__file__).resolve().parent.parent
 SHAPE = ["--height", "200", "--crest-arc", "500", "--refine", "2"]
 MESH = ["--arc", "44", "--levels", "16", "--bottom", "12", "--thick", "4"]
 FINE = ["--arc", "104", "--levels", "40", "--bottom", "24", "--thick", "10", "--refine", "1"]
-DAMS = {2: MESH, 6: MESH, 12: MESH, 25: FINE, 50: FINE}  # joints: options of the mesh
+DAMS = {1: MESH, 2: MESH, 6: MESH, 12: MESH, 25: FINE, 50: FINE}  # joints: options of the mesh
 PEAK = "0.35"  # of the motion [g]
 
 
-def write_dam(folder: Path, joints: int, duration: float) -> Path:
-    """The deck of a dam and its motion of three components."""
+def write_dam(folder: Path, joints: int, duration: float, more: Sequence[str] = ()) -> Path:
+    """The deck of a dam and its motion of three components; `more` options of the mesh."""
     deck, motion = folder / f"joints_{joints}.inp", folder / "motion"
     make = [sys.executable, str(TOOLS / "make_motion.py"), "-o", str(motion), "--pga", PEAK]
     run_quietly([*make, "--duration", "4", "--no-pictures"])
     records = [f"{motion}_{axis}.txt" for axis in "xyz"]
-    make = [sys.executable, str(TOOLS / "make_dam.py"), "-o", str(deck), *SHAPE, *DAMS[joints]]
+    mesh = [*SHAPE, *DAMS[joints], *more]
+    make = [sys.executable, str(TOOLS / "make_dam.py"), "-o", str(deck), *mesh]
     run_quietly([*make, "--joints", str(joints), "--duration", str(duration), "--motion", *records])
     return deck
 

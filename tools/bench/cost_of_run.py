@@ -12,7 +12,7 @@ STATIC_LIMIT = 1.6  # whole program over analyse + factor + solve
 STEP_LIMIT = 2.0  # linear increment over solve
 SOUND_LIMIT = 1.5  # increment of undamaged concrete over the same without its laws
 MEMORY_LIMIT_MB = {145_000: 1600.0}  # of a static run
-READING_LIMIT = 2.0  # [s] for 150 000 nodes and elements
+READING_LIMIT = 2.0  # [s] for 200 000 nodes and elements
 
 # Parts of the ledger that occur once in a step, not in its increments.
 ONCE = (
@@ -95,8 +95,11 @@ def ratio_of_increment(run: Run, solving: str, what: str, limit: float | None) -
 
 
 def measure_reading(program: Program, folder: Path) -> Figure:
-    """An arch dam of some 150 000 nodes and elements, read and verified (processor seconds)."""
-    mesh = scaled_dam(41, 0, 0)
+    """An arch dam of some 200 000 nodes and elements, read and verified (processor seconds).
+
+    It is too large for --check to plan its factor for the forecast, which would be measured too.
+    """
+    mesh = scaled_dam(46, 0, 0)
     deck = write_deck(folder, "reading", mesh)
     seconds = program.check(deck)
     size = (folder / "reading_mesh.inp").stat().st_size / 1.0e6

@@ -33,7 +33,8 @@ def unknowns_of(mesh: BrickMesh) -> int:
 def dam_of_size(unknowns: int, num_joints: int = 0) -> BrickMesh:
     """The arch dam whose number of unknowns is nearest to the given one."""
     meshes: list[BrickMesh] = []
-    for levels in range(6, 60):
+    smallest = int(0.8 * (unknowns / 3.4) ** (1.0 / 3.0))  # 2.5 to 3.4 levels**3 unknowns
+    for levels in range(max(6, smallest), 80):
         meshes += [scaled_dam(levels, more, num_joints) for more in (0, 2, 4)]
         if unknowns_of(meshes[-3]) > unknowns:
             break

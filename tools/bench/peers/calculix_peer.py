@@ -21,6 +21,7 @@ from .peer_case import (
     PeerCase,
     PeerRun,
     brick_lines,
+    stopped_after,
     write_text,
 )
 from .timed_process import run_timed
@@ -34,7 +35,9 @@ def run_calculix(case: PeerCase, folder: Path, program: str, threads: int, limit
     )
     rows = read_displacements(folder / "case.dat")[-max(case.num_increments, 1) :]
     if code == -9:
-        return PeerRun("CalculiX", wall, memory, rows, f"stopped after {limit:g} s")
+        # Rows of the weight cannot be told from those of the history after it.
+        known = rows[:0] if case.has_weight and case.num_increments else rows
+        return PeerRun("CalculiX", wall, memory, known, stopped_after(limit, known))
     if code or len(rows) < max(case.num_increments, 1):
         return PeerRun("CalculiX", wall, memory, rows, f"exit code {code}, {len(rows)} increments")
     return PeerRun("CalculiX", wall, memory, rows)

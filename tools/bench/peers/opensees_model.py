@@ -99,6 +99,7 @@ def main(case_file, answer_file):
             if code:
                 break
             rows.append(ops.nodeDisp(control))
+            np.save(answer_file, np.array(rows).reshape(-1, 3))  # what there is when it is stopped
     np.save(answer_file, np.array(rows).reshape(-1, 3))
     return 0 if code == 0 else 1
 

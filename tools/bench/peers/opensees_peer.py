@@ -17,6 +17,7 @@ from .peer_case import (
     SHEAR_STIFFNESS,
     PeerCase,
     PeerRun,
+    stopped_after,
 )
 from .timed_process import run_timed
 
@@ -54,7 +55,7 @@ def run_opensees(case: PeerCase, folder: Path, python: str, threads: int, limit:
     answer = folder / "answer.npy"
     rows = np.load(answer) if answer.exists() else np.zeros((0, 3))
     if code == -9:
-        return PeerRun("OpenSees", wall, memory, rows, f"stopped after {limit:g} s")
+        return PeerRun("OpenSees", wall, memory, rows, stopped_after(limit, rows))
     if code:
         return PeerRun("OpenSees", wall, memory, rows, f"exit code {code}, {len(rows)} increments")
     return PeerRun("OpenSees", wall, memory, rows)

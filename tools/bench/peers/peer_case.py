@@ -84,6 +84,12 @@ class PeerRun:
         return float(np.abs(self.displacement).max(initial=0.0))
 
 
+def stopped_after(limit: float, rows: np.ndarray) -> str:
+    """What is said of a run that took too long."""
+    done = f", {len(rows)} increments" if len(rows) else ""
+    return f"stopped after {limit:g} s{done}"
+
+
 def brick_lines(mesh: BrickMesh, members: np.ndarray, name: str, kind: str) -> list[str]:
     """Elements of a set for programs that have wedges of their own (C3D6)."""
     lines, wedges = [f"*ELEMENT, TYPE={kind}, ELSET={name}"], []
