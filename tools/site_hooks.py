@@ -1,7 +1,8 @@
 """Hooks of MkDocs (mkdocs.yml): what the pages of docs/ need to become a site.
 
 Formulas become MathML, which browsers draw without scripts. README.md is the first page; CHANGELOG
-and CONTRIBUTING are pages, too. Links to files outside of docs/ become the path of the file.
+and CONTRIBUTING are pages, too. Links to files outside of docs/ become the path of the file. The
+gallery is made here, by runs of the program.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+import make_gallery
 from latex2mathml.converter import convert
 from mkdocs.structure.files import File
 
@@ -26,11 +28,16 @@ _FORMULA = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1
 
 
 def on_files(files: Any, config: Any) -> Any:
-    """Add the pages that stand beside docs/."""
+    """Add the pages that stand beside docs/ and the gallery."""
     for name, page in BESIDE.items():
         text = (ROOT / name).read_text(encoding="utf-8")
         text = re.sub(r"(\]\()docs/", r"\1", text)
         files.append(File.generated(config, page, content=text))
+    pictures = make_gallery.make_gallery()
+    page = (make_gallery.FOLDER / "gallery.md").read_text(encoding="utf-8")
+    files.append(File.generated(config, "gallery.md", content=page))
+    for name, path in pictures.items():
+        files.append(File.generated(config, name, content=path.read_bytes()))
     return files
 
 

@@ -1,8 +1,10 @@
 !> Anderson acceleration of an iteration s <- g(s): the next s is the combination of the last
-!> iterates with the smallest change g(s) - s. For a linear g this is GMRES on s = g(s).
+!> iterates with the smallest change g(s) - s. For a linear g this is GMRES on s = g(s). Where g has
+!> kinks and the change grows, g is no longer what it was at the earlier iterates: the acceleration
+!> may then start afresh.
 module anderson_mixing
   use kinds, only: rk
-  use global_vectors, only: dot
+  use global_vectors, only: dot, norm
   use small_matrix, only: solve_dense
   implicit none
   private
@@ -12,14 +14,20 @@ module anderson_mixing
   !> Differences are left out if they are linearly dependent to this fraction.
   real(rk), parameter :: least_angle = 1.0e-10_rk
 
+  !> Iterations after a fresh start that may increase the change: each adds a direction in which a
+  !> plain iteration diverges.
+  integer, parameter :: first_iterations = 4
+
   type :: mixer
     integer, allocatable :: rows(:) !< unknowns that change; not allocated: all
+    logical :: starts_afresh = .false. !< where the change grows
     integer :: num_pairs = 0
     !> (rows, pairs) differences of s and of g(s) - s
     real(rk), allocatable :: ds(:, :), df(:, :)
     real(rk), allocatable :: last_s(:), last_f(:) !< (rows)
     real(rk), private :: gram(most_pairs, most_pairs) = 0.0_rk !< products of df
     integer, private :: next = 1 !< column that the next pair overwrites
+    integer, private :: age = huge(1) !< iterations since a fresh start, if there was one
   contains
     procedure :: forget
     procedure :: advance => mix_iterates
@@ -32,6 +40,7 @@ contains
     class(mixer), intent(inout) :: self
     self%num_pairs = 0
     self%next = 1
+    self%age = huge(1)
     if (allocated(self%last_s)) deallocate (self%last_s, self%last_f)
   end subroutine forget
 
@@ -58,6 +67,11 @@ contains
     real(rk) :: weight(most_pairs)
     real(rk), allocatable :: here(:)
     integer :: k
+    if (self%age > first_iterations) then
+      call start_afresh(self, f)
+    else
+      self%age = self%age + 1
+    end if
     if (allocated(self%last_s)) call keep_pair(self, f, s)
     here = s
     call find_weights(self, f, weight)
@@ -68,6 +82,16 @@ contains
     self%last_s = here
     self%last_f = f
   end subroutine mix_rows
+
+  !> Discards all pairs if the change has grown.
+  subroutine start_afresh(self, f)
+    type(mixer), intent(inout) :: self
+    real(rk), intent(in) :: f(:) !< the present change
+    if (.not. (self%starts_afresh .and. allocated(self%last_f))) return
+    if (norm(f) <= norm(self%last_f)) return
+    call self%forget()
+    self%age = 0
+  end subroutine start_afresh
 
   !> Stores the difference to the last iterate in place of the oldest difference.
   subroutine keep_pair(self, f, s)

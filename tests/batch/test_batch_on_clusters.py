@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
+from dask_cluster import Cluster
 from harness import ROOT
 from keyway.batch.on_slurm import ranges_of
 from keyway.commands import batch
@@ -94,43 +93,6 @@ def test_no_sbatch_is_named(place, monkeypatch, capsys):
     monkeypatch.setenv("PATH", str(place))
     assert batch.main([*words, "--on", "slurm", "--minutes", "1", "--memory", "100"]) == 2
     assert "there is no sbatch in the PATH" in capsys.readouterr().err
-
-
-class Cluster:
-    """A scheduler of Dask and two workers, each a process."""
-
-    def __init__(self, place: Path):
-        self.place = place
-        self.environment = {**os.environ, "PYTHONPATH": str(ROOT / "tools")}
-        self.processes: list[subprocess.Popen[bytes]] = []
-        self.start("scheduler", "--port", "0", "--host", "127.0.0.1", "--no-dashboard")
-        self.file = place / "scheduler.json"
-        self.wait_for(self.file.exists)
-        self.address = json.loads(self.file.read_text())["address"]
-        self.workers = [self.start("worker", "--no-nanny", "--nthreads", "1", "--no-dashboard")
-                        for _ in range(2)]  # fmt: skip
-
-    def start(self, *words: str) -> subprocess.Popen[bytes]:
-        command = [sys.executable, "-m", "dask", *words, "--scheduler-file", "scheduler.json"]
-        if words[0] == "worker":
-            command += ["--local-directory", str(self.place)]
-        process = subprocess.Popen(
-            command, cwd=self.place, env=self.environment, stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-        )  # fmt: skip
-        self.processes.append(process)
-        return process
-
-    def wait_for(self, condition, seconds: float = 60.0) -> None:
-        until = time.monotonic() + seconds
-        while not condition():
-            assert time.monotonic() < until, "the cluster does not start"
-            time.sleep(0.1)
-
-    def end(self) -> None:
-        for process in reversed(self.processes):
-            process.kill()
-            process.wait()
 
 
 @pytest.fixture

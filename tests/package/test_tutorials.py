@@ -35,7 +35,7 @@ class Tutorial:
         }
 
     def follow(self, page: str, changed: Callable[[str], str] = str) -> str:
-        """Run a page, its files after a change; its output."""
+        """Run a page, its files and commands after a change; its output."""
         text = (PAGES / page).read_text(encoding="utf-8")
         commands = []
         for kind, title, content in BLOCK.findall(text):
@@ -43,7 +43,7 @@ class Tutorial:
                 (self.folder / title).parent.mkdir(exist_ok=True)
                 (self.folder / title).write_text(changed(content), encoding="utf-8")
             elif kind == "sh":
-                commands.append(content.replace("/opt/keyway", str(self.prefix)))
+                commands.append(changed(content).replace("/opt/keyway", str(self.prefix)))
         script = "set -e\n" + "".join(commands).replace("mkdir ", "mkdir -p ")
         done = subprocess.run(
             ["bash", "-c", script], cwd=self.folder, env=self.environment, text=True,
@@ -87,6 +87,14 @@ def test_many_records(tutorial):
     assert (tutorial.folder / "records/fractiles.png").stat().st_size > 1000
     rows = (tutorial.folder / "records/results/batch.csv").read_text().splitlines()
     assert len(rows) == 6
+
+
+def test_fragility(tutorial):
+    text = tutorial.follow("fragility.md", lambda text: text.replace("py 200", "py 4"))
+    assert "records; mean misfit of their spectra" in text
+    rows = (tutorial.folder / "fragility/results/batch.csv").read_text().splitlines()
+    assert len(rows) == 5
+    assert (tutorial.folder / "fragility/fragility.png").stat().st_size > 10_000
 
 
 @pytest.mark.full

@@ -25,6 +25,7 @@ contains
     if (self%chosen%patience > 0) most_iterations = cheap_iterations*most_iterations
     now%task = task
     allocate (outcome%history(0))
+    self%has_stopped = .false.
     self%time%wants_energy = self%correction%is_active()
     call start_iteration(self, model, system, before, after, now)
     do while (outcome%iterations < most_iterations)
@@ -39,8 +40,10 @@ contains
       outcome%history = [outcome%history, outcome%residual]
       if (outcome%has_converged) exit
       if (self%stops_early) then
-        if (falls_too_slowly(outcome%history(now%first:), self%solver%controls%residual_tolerance, &
-                             most_iterations - outcome%iterations)) exit
+        self%has_stopped = falls_too_slowly(outcome%history(now%first:), &
+                                            self%solver%controls%residual_tolerance, &
+                                            most_iterations - outcome%iterations)
+        if (self%has_stopped) exit
       end if
       call choose_elements(self, model, system, before, now)
       call choose_guess(self, model, system, after, now, error)

@@ -42,6 +42,8 @@ module solid_iteration
     real(rk) :: weight = 1.0_rk !< of the forces of the solids
     real(rk) :: tolerance = 0.0_rk !< of the balance of all forces, over the reference force
     logical :: stops_early = .false. !< where the residual falls too slowly
+    logical :: may_cut = .false. !< the present increment
+    logical :: has_stopped = .false. !< early, in the last iteration
     type(tangent), allocatable :: choices(:) !< tried one after the other
     type(tangent) :: chosen !< the present one
     type(time_increment) :: time
@@ -91,6 +93,7 @@ contains
     self%stops_early = plan%procedure%has_inertia .and. .not. plan%is_direct
     self%choices = choose_tangents(model, plan)
     self%chosen = self%choices(1)
+    self%mixer%starts_afresh = self%stops_early
     self%may_choose = plan%procedure%has_inertia .and. .not. has_histories(now%guests)
     call system%set_thermal(now%motion)
     call system%find_elastic(now%motion%q, now%motion%elastic)
@@ -151,6 +154,7 @@ contains
     self%time%step_time = now%step_time
     self%time%total_time = now%total_time
     self%time%size = increment
+    self%may_cut = now%control%may_cut(increment)
   end subroutine open_increment
 
   !> Iterations for the control of the increment size; cheap ones count less.
@@ -163,7 +167,8 @@ contains
   end function effort
 
   !> Solves for `task%x`, joints and points of `after`. No convergence is not an error.
-  !> If a law requests a smaller increment, no other tangent is tried.
+  !> If a law requests a smaller increment, no other tangent is tried, nor where the residual falls
+  !> too slowly in an increment that can be cut; held switches are another problem.
   subroutine solve_increment(self, model, system, task, before, after, outcome, error)
     class(solid_solver), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -193,7 +198,8 @@ contains
         call self%matrix%factorise_elastic(model, system, self%values, self%solver, error)
         if (allocated(error)) return
       end if
-      if (outcome%size_ratio < 1.0_rk) return
+      if (outcome%size_ratio < 1.0_rk .or. i == size(self%choices)) return
+      if (self%has_stopped .and. self%may_cut .and. .not. self%choices(i + 1)%holds_switches) return
     end do
   end subroutine solve_increment
 end module solid_iteration

@@ -33,7 +33,7 @@ module step_control
     logical :: is_direct = .false.
     integer :: easy_so_far = 0, cuts_in_a_row = 0, cutbacks = 0
   contains
-    procedure :: next_size, accept, cut, least_size, follow_error
+    procedure :: next_size, accept, may_cut, cut, least_size, follow_error
     procedure, private :: on_grid
   end type increment_control
 
@@ -129,6 +129,14 @@ contains
     class(increment_control), intent(in) :: self
     size = max(self%smallest, self%size*cut_factor**(most_cuts_in_a_row - self%cuts_in_a_row))
   end function least_size
+
+  !> Whether an increment without convergence can be cut at all.
+  pure logical function may_cut(self, size)
+    class(increment_control), intent(in) :: self
+    real(rk), intent(in) :: size !< of the increment [s]
+    may_cut = .not. self%is_direct .and. self%cuts_in_a_row < most_cuts_in_a_row &
+              .and. cut_factor*size >= self%smallest
+  end function may_cut
 
   !> An increment has not converged: halves its size, or reduces it further if a material requests
   !> that, or gives up.
