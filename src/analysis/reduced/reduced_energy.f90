@@ -13,7 +13,7 @@ module reduced_energy
   use kinds, only: rk
   use problem_definition, only: problem
   use reduced_basis, only: reduced_model
-  use reduced_increment, only: find_rates, modal_forces, port_forces
+  use reduced_increment, only: find_rates, port_forces
   implicit none
   private
   public :: add_reduced_work
@@ -31,16 +31,18 @@ contains
     type(state), intent(inout) :: after
     type(stored_work) :: old_stores, stores
     real(rk) :: external, damping, strain, inertial
+    real(rk) :: viscous(basis%num_modes, 2) ! at both ends
     call sum_work(model, before, old_stores)
     call sum_work(model, after, stores)
     associate (old => before%motion%modal, new => after%motion%modal, energy => after%energy)
       call find_response(basis, scheme, old, new)
       external = external_work(basis, old, new, factors)
-      damping = work(new%y - old%y, matmul(basis%damping, old%rate), &
-                     matmul(basis%damping, new%rate)) &
+      viscous(:, 1) = times_vector(basis%damping, old%rate)
+      viscous(:, 2) = times_vector(basis%damping, new%rate)
+      damping = work(new%y - old%y, viscous(:, 1), viscous(:, 2)) &
                 + basis%residual_damping*work(new%rest - old%rest, old%port_rate, new%port_rate)
       strain = stored_strain(basis, new) - stored_strain(basis, old)
-      inertial = inertial_work(basis, operator, scheme, factors, before, after, new%rest - old%rest)
+      inertial = inertial_work(basis, operator, scheme, factors, before, after, viscous)
       energy%external = energy%external + external
       energy%damping = energy%damping + damping
       energy%strain = energy%strain + strain + stores%stored - old_stores%stored
@@ -72,14 +74,19 @@ contains
     type(reduced_model), intent(in) :: basis
     type(modal_motion), intent(in) :: old, new
     real(rk), intent(in) :: factors(:, :) !< (loads, 2) beyond the start
-    real(rk) :: mean(size(factors, 1)), path(size(old%rest))
-    integer :: n
+    real(rk) :: mean(size(factors, 1)), step(basis%num_modes)
+    integer :: n, k, row
     n = size(old%start_factor)
     mean = 0.5_rk*(factors(:, 1) + factors(:, 2))
     mean(:n) = mean(:n) + old%start_factor
     mean(n + 1:) = 0.0_rk
-    path = new%rest - old%rest + times_vector(basis%path, new%y - old%y)
-    external_work = sum(mean*path(size(path) - size(mean) + 1:))
+    step = new%y - old%y
+    external_work = 0.0_rk
+    do k = 1, size(mean)
+      row = size(old%rest) - size(mean) + k
+      external_work = external_work + mean(k)*(new%rest(row) - old%rest(row) &
+                                               + dot_product(basis%path(row, :), step))
+    end do
   end function external_work
 
   !> Strain energy of the solids beyond that at the start of the step. The last load is the internal
@@ -102,22 +109,23 @@ contains
 
   !> Work of the inertia forces as the balance gives them, joints by their laws. At the start they
   !> are those of the motion, which satisfied its balance.
-  real(rk) function inertial_work(basis, operator, scheme, factors, before, after, moved)
+  real(rk) function inertial_work(basis, operator, scheme, factors, before, after, viscous)
     type(reduced_model), intent(in) :: basis
     type(jump_operator), intent(in) :: operator
     type(hht), intent(in) :: scheme
     real(rk), intent(in) :: factors(:, :) !< (loads, 2)
     type(state), intent(in) :: before, after
-    real(rk), intent(in) :: moved(:) !< (ports) by the rest [m]
-    real(rk) :: traction(3, operator%num_points), force(size(moved))
+    real(rk), intent(in) :: viscous(:, :) !< (modes, 2) damping forces at both ends
+    real(rk) :: traction(3, operator%num_points), force(size(basis%residual, 1))
     call gather_tractions(operator, after%joints, traction)
     force = port_forces(operator, scheme, factors, before%motion, traction)
     associate (old => before%motion%modal, new => after%motion%modal, &
                bulk => 1.0_rk + scheme%alpha, beta => basis%residual_damping)
       inertial_work = work(new%y - old%y, old%acceleration, &
-                           bulk*modal_forces(basis, new) - scheme%alpha*modal_forces(basis, old) &
+                           scheme%alpha*(basis%lambda*old%y + viscous(:, 1)) &
+                           - bulk*(basis%lambda*new%y + viscous(:, 2)) &
                            + transposed_times_vector(basis%path, force)) &
-                      + work(moved, basis%residual_mass*old%port_acceleration, &
+                      + work(new%rest - old%rest, basis%residual_mass*old%port_acceleration, &
                              force - bulk*(new%port + beta*new%port_rate) &
                              + scheme%alpha*(old%port + beta*old%port_rate))
     end associate

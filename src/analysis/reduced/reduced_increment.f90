@@ -121,8 +121,8 @@ contains
     real(rk), dimension(size(rest)) :: port, port_rate
     associate (scheme => matrices%scheme, bulk => 1.0_rk + matrices%scheme%alpha)
       call predict(scheme, old%y, old%rate, old%acceleration, predicted, rate)
-      known = scheme%acceleration_of_x*predicted - bulk*matmul(basis%damping, rate) &
-              - scheme%alpha*modal_forces(basis, old)
+      known = scheme%acceleration_of_x*predicted + scheme%alpha*basis%lambda*old%y &
+              - times_vector(basis%damping, bulk*rate - scheme%alpha*old%rate)
       call predict(scheme, old%port, old%port_rate, old%port_acceleration, port, port_rate)
       rest = basis%residual_mass*scheme%acceleration_of_x*port &
              - bulk*basis%residual_damping*port_rate &

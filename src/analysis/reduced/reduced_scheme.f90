@@ -29,6 +29,9 @@ module reduced_scheme
   private
   public :: reduced_matrices, force_of
 
+  !> Coupling of the blocks of G that are kept, and error of these blocks.
+  real(rk), parameter :: allowed_error = 5.0e-10_rk
+
   type :: reduced_matrices
     type(hht) :: scheme
     type(jump_operator) :: operator
@@ -112,7 +115,7 @@ contains
       call solve_factored(factor, closed)
       closed = 0.5_rk*(closed + transpose(closed))
       call group_points(operator%first_point, operator%x, groups)
-      call take_blocks(closed, spring, groups, 0.0_rk, own%blocks)
+      call take_blocks(closed, spring, groups, allowed_error, own%blocks)
       call find_contact_scale(own%blocks, operator, own%k_ref, weight, own%scale, own%opened)
       own%tangent = no_tangent
     end associate

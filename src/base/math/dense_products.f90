@@ -5,7 +5,8 @@ module dense_products
   implicit none
   private
   public :: times, transposed_times, times_vector, transposed_times_vector, &
-            symmetric_times, single_times_vector, transposed_single_times_vector
+            symmetric_times, single_times_vector, transposed_single_times_vector, &
+            add_times_vector, add_single_times_vector
 
   ! The arguments are those of the BLAS.
   ! allow(assumed-size)
@@ -81,6 +82,22 @@ contains
     if (size(a) == 0) return
     call dgemv('N', size(a, 1), size(a, 2), 1.0_rk, a, size(a, 1), x, 1, 0.0_rk, product, 1)
   end function times_vector
+
+  !> y = y + A x.
+  subroutine add_times_vector(a, x, y)
+    real(rk), intent(in), contiguous :: a(:, :), x(:)
+    real(rk), intent(inout), contiguous :: y(:)
+    if (size(a) > 0) call dgemv('N', size(a, 1), size(a, 2), 1.0_rk, a, size(a, 1), x, 1, 1.0_rk, &
+                                y, 1)
+  end subroutine add_times_vector
+
+  !> y = y + A x in single precision.
+  subroutine add_single_times_vector(a, x, y)
+    real(single), intent(in), contiguous :: a(:, :), x(:)
+    real(single), intent(inout), contiguous :: y(:)
+    if (size(a) > 0) call sgemv('N', size(a, 1), size(a, 2), 1.0_single, a, size(a, 1), x, 1, &
+                                1.0_single, y, 1)
+  end subroutine add_single_times_vector
 
   !> A^T x.
   function transposed_times_vector(a, x) result(product)

@@ -20,7 +20,7 @@ module block_compliance
     !> Largest coupling that is left out, in blocks or in their accuracy; huge if it is not known
     real(rk) :: left_out = 0.0_rk
   contains
-    procedure :: start, put, put_coupling, product, num_entries, as_dense
+    procedure :: start, put, put_coupling, product, couple, num_entries, as_dense
   end type compliance_blocks
 
 contains
@@ -144,6 +144,24 @@ contains
     y(self%groups%row) = sorted_y
   end subroutine product
 
+  !> y = G x roughly, without the own blocks of some groups.
+  subroutine couple(self, without_own, x, y)
+    class(compliance_blocks), intent(in) :: self
+    logical, intent(in) :: without_own(:) !< (groups)
+    real(rk), intent(in) :: x(:) !< (rows) [N]
+    real(rk), intent(out) :: y(:) !< (rows) [m]
+    real(rk) :: sorted_x(size(x)), sorted_y(size(y))
+    integer :: j
+    sorted_x = x(self%groups%row)
+    !$omp parallel do schedule(dynamic) default(none) &
+    !$omp shared(self, without_own, sorted_x, sorted_y) if (self%groups%num_groups > 1)
+    do j = 1, self%groups%num_groups
+      call move_roughly(self, j, without_own(j), sorted_x, sorted_y)
+    end do
+    !$omp end parallel do
+    y(self%groups%row) = sorted_y
+  end subroutine couple
+
   !> Rows of G x of one group; x and y group by group.
   subroutine move_group(self, group, x, y)
     class(compliance_blocks), intent(in) :: self
@@ -160,6 +178,25 @@ contains
       end associate
     end associate
   end subroutine move_group
+
+  !> Rows of G x of one group, roughly.
+  subroutine move_roughly(self, group, without_own, x, y)
+    class(compliance_blocks), intent(in) :: self
+    integer, intent(in) :: group
+    logical, intent(in) :: without_own
+    real(rk), intent(in) :: x(:) !< (rows) [N]
+    real(rk), intent(inout) :: y(:) !< (rows) [m]
+    integer :: k
+    associate (first => self%groups%first_row)
+      associate (moved => y(first(group):first(group + 1) - 1))
+        moved = 0.0_rk
+        do k = 1, self%groups%num_groups
+          if (k == group .and. without_own) cycle
+          call self%block(group, k)%add_roughly(x(first(k):first(k + 1) - 1), moved)
+        end do
+      end associate
+    end associate
+  end subroutine move_roughly
 
   !> G with zeros for the blocks that are left out.
   pure function as_dense(self) result(dense)

@@ -8,8 +8,8 @@
 !> some hundred rows has the rank of some ten to any accuracy that counts.
 module coupling_block
   use, intrinsic :: iso_fortran_env, only: single => real32
-  use dense_products, only: single_times_vector, times_vector, transposed_single_times_vector, &
-                            transposed_times_vector
+  use dense_products, only: add_single_times_vector, add_times_vector, single_times_vector, &
+                            transposed_single_times_vector, transposed_times_vector
   use kinds, only: rk, long
   implicit none
   private
@@ -20,20 +20,24 @@ module coupling_block
     !> One of these is allocated, or none where the block is left out [m/N]
     real(rk), allocatable :: values(:, :)
     real(single), allocatable :: rounded(:, :)
-    !> (rows, rank) and (columns, rank): the block is left*transpose(right)
+    !> (rows, rank) and (columns, rank): the block is left*transpose(right). Beside values it is so
+    !> roughly.
     real(single), allocatable :: left(:, :), right(:, :)
+    integer :: rough_rank = 0 !< of so many columns it is so roughly
   contains
-    procedure :: is_there, add_to, as_values, num_entries
+    procedure :: is_there, add_to, add_roughly, as_values, num_entries
   end type dense_block
 
-  !> From this share of columns with forces on, a product with the whole block is quicker.
-  real(rk), parameter :: most_columns = 0.6_rk
+  !> Columns without forces between others that a product takes along.
+  integer, parameter :: longest_gap = 4
   !> Blocks of stronger coupling are those of neighbours, whose rank is high.
   real(rk), parameter :: most_coupling = 1.0e-2_rk
   integer, parameter :: few_steps = 8 !< until lengths that were updated are computed again
   !> What rounding to single precision changes of a block, over its norm: measured 2e-8, with two
   !> narrow matrices 3e-8.
   real(rk), parameter :: rounding = 2.0e-8_rk
+  !> Error of a rough block, over its norm: equations are solved with it to three digits.
+  real(rk), parameter :: rough_error = 1.0e-4_rk
   !> Most entries of the two narrow matrices, over those of the block.
   real(rk), parameter :: most_entries = 0.6_rk
 
@@ -55,20 +59,32 @@ contains
     real(rk), intent(in) :: coupling
     real(rk), intent(in) :: allowed !< Frobenius norm of the error; 0 keeps all values [m/N]
     type(dense_block), intent(out) :: block
+    real(rk) :: length
+    logical :: may_be_rounded, is_narrow
     block%coupling = coupling
-    if (allowed <= 0.0_rk .or. rounding*norm2(values) > allowed) then
-      block%values = values
-      return
+    length = norm2(values)
+    may_be_rounded = allowed > 0.0_rk .and. rounding*length <= allowed
+    is_narrow = .false.
+    if (allowed > 0.0_rk) then
+      call narrow(values, merge(allowed, 0.0_rk, may_be_rounded .and. coupling < most_coupling), &
+                  rough_error*length, block, is_narrow)
     end if
-    if (coupling < most_coupling) call narrow(values, allowed, block)
-    if (.not. allocated(block%left)) block%rounded = real(values, single)
+    if (is_narrow) return
+    if (may_be_rounded) then
+      block%rounded = real(values, single)
+    else
+      block%values = values
+    end if
   end subroutine make_block
 
   !> Gram-Schmidt's orthogonalisation of the columns, the longest first, until what is left of all
   !> columns is small. Without result where it needs too many.
-  subroutine narrow(values, allowed, block)
-    real(rk), intent(in) :: values(:, :), allowed ! [m/N]
+  subroutine narrow(values, allowed, rough, block, is_exact)
+    real(rk), intent(in) :: values(:, :) !< [m/N]
+    real(rk), intent(in) :: allowed !< norm of the error; 0: a rough block is enough [m/N]
+    real(rk), intent(in) :: rough !< norm of the error of a rough block [m/N]
     type(dense_block), intent(inout) :: block
+    logical, intent(out) :: is_exact !< to `allowed`
     real(rk), allocatable :: rest(:, :), left(:, :), right(:, :)
     real(rk) :: square(size(values, 2)) ! of the lengths of the columns
     integer :: rank, most, c, m, n
@@ -77,17 +93,22 @@ contains
     most = int(most_entries*real(m, rk)*real(n, rk)/real(max(m + n, 1), rk))
     allocate (rest, source=values)
     allocate (left(m, most), right(n, most))
+    is_exact = .false.
     do rank = 0, most
       if (mod(rank, few_steps) == 0) square = sum(rest**2, 1)
-      if (sum(square) <= allowed**2) square = sum(rest**2, 1)
-      if (sum(square) <= allowed**2) exit
-      if (rank == most) return
+      if (sum(square) <= max(allowed, rough)**2) square = sum(rest**2, 1)
+      if (block%rough_rank == 0 .and. sum(square) <= rough**2) block%rough_rank = rank
+      is_exact = allowed > 0.0_rk .and. sum(square) <= allowed**2
+      if (is_exact .or. rank == most) exit
+      if (block%rough_rank > 0 .and. allowed <= 0.0_rk) exit
       c = maxloc(square, 1)
       left(:, rank + 1) = rest(:, c)/norm2(rest(:, c))
       right(:, rank + 1) = transposed_times_vector(rest, left(:, rank + 1))
       call dger(m, n, -1.0_rk, left(:, rank + 1), 1, right(:, rank + 1), 1, rest, m)
       square = square - right(:, rank + 1)**2
     end do
+    if (.not. is_exact) rank = block%rough_rank
+    if (.not. is_exact .and. rank == 0) return
     block%left = real(left(:, :rank), single)
     block%right = real(right(:, :rank), single)
   end subroutine narrow
@@ -107,6 +128,7 @@ contains
     if (.not. allocated(block%left)) return
     turned%left = block%right
     turned%right = block%left
+    turned%rough_rank = block%rough_rank
   end subroutine transpose_block
 
   !> y = y + A x.
@@ -122,6 +144,20 @@ contains
       y = y + single_times_vector(self%left, transposed_single_times_vector(self%right, x))
     end if
   end subroutine add_to
+
+  !> y = y + A x to some digits, in the shortest time.
+  subroutine add_roughly(self, x, y)
+    class(dense_block), intent(in) :: self
+    real(rk), intent(in), contiguous :: x(:) ! [N]
+    real(rk), intent(inout), contiguous :: y(:) ! [m]
+    if (.not. allocated(self%left)) then
+      call self%add_to(x, y)
+      return
+    end if
+    associate (left => self%left(:, :self%rough_rank), right => self%right(:, :self%rough_rank))
+      y = y + single_times_vector(left, transposed_single_times_vector(right, x))
+    end associate
+  end subroutine add_roughly
 
   pure function as_values(self) result(values)
     class(dense_block), intent(in) :: self
@@ -140,7 +176,8 @@ contains
     num_entries = 0
     if (allocated(self%values)) num_entries = size(self%values, kind=long)
     if (allocated(self%rounded)) num_entries = size(self%rounded, kind=long)
-    if (allocated(self%left)) num_entries = size(self%left, kind=long) + size(self%right, kind=long)
+    if (.not. allocated(self%left)) return
+    num_entries = num_entries + size(self%left, kind=long) + size(self%right, kind=long)
   end function num_entries
 
   !> y = y + A x with the columns whose x is not zero: most points of a joint are often closed.
@@ -148,52 +185,47 @@ contains
     real(rk), intent(in), contiguous :: a(:, :)
     real(rk), intent(in), contiguous :: x(:)
     real(rk), intent(inout), contiguous :: y(:)
-    integer :: column(size(x)), num_columns, c, last
-    call list_columns(x, column, num_columns)
-    if (num_columns == 0) return
-    if (num_columns > most_columns*size(x)) then
-      y = y + times_vector(a, x)
-      return
-    end if
-    last = num_columns - mod(num_columns, 4)
-    do c = 1, last, 4
-      associate (k => column(c:c + 3))
-        y = y + (x(k(1))*a(:, k(1)) + x(k(2))*a(:, k(2))) &
-            + (x(k(3))*a(:, k(3)) + x(k(4))*a(:, k(4)))
-      end associate
-    end do
-    do c = last + 1, num_columns
-      y = y + x(column(c))*a(:, column(c))
+    integer :: first, last
+    last = 0
+    do
+      call find_columns(x, last, first)
+      if (first > last) exit
+      call add_times_vector(a(:, first:last), x(first:last), y)
     end do
   end subroutine add_product
 
-  !> The same with A in single precision.
+  !> The same with A and the sums in single precision.
   subroutine add_rounded(a, x, y)
     real(single), intent(in), contiguous :: a(:, :)
-    real(rk), intent(in) :: x(:)
-    real(rk), intent(inout) :: y(:)
-    integer :: column(size(x)), num_columns, c
-    call list_columns(x, column, num_columns)
-    if (num_columns > most_columns*size(x)) then
-      y = y + single_times_vector(a, x)
-      return
-    end if
-    do c = 1, num_columns
-      y = y + x(column(c))*real(a(:, column(c)), rk)
+    real(rk), intent(in), contiguous :: x(:)
+    real(rk), intent(inout), contiguous :: y(:)
+    real(single) :: forces(size(x)), sums(size(y))
+    integer :: first, last
+    forces = real(x, single)
+    sums = 0.0_single
+    last = 0
+    do
+      call find_columns(x, last, first)
+      if (first > last) exit
+      call add_single_times_vector(a(:, first:last), forces(first:last), sums)
     end do
+    y = y + real(sums, rk)
   end subroutine add_rounded
 
-  !> Columns that x is not zero for.
-  pure subroutine list_columns(x, column, num_columns)
+  !> The next columns with x not zero and without long gaps; none where first > last.
+  pure subroutine find_columns(x, last, first)
     real(rk), intent(in) :: x(:)
-    integer, intent(out) :: column(:)
-    integer, intent(out) :: num_columns
+    integer, intent(inout) :: last !< of the columns before, 0 at the beginning
+    integer, intent(out) :: first
     integer :: c
-    num_columns = 0
-    do c = 1, size(x)
-      if (.not. abs(x(c)) > 0.0_rk) cycle
-      num_columns = num_columns + 1
-      column(num_columns) = c
+    do first = last + 1, size(x)
+      if (abs(x(first)) > 0.0_rk) exit
     end do
-  end subroutine list_columns
+    if (first > size(x)) return
+    last = first
+    do c = first + 1, size(x)
+      if (c - last > longest_gap) exit
+      if (abs(x(c)) > 0.0_rk) last = c
+    end do
+  end subroutine find_columns
 end module coupling_block

@@ -12,6 +12,7 @@ module tangent_factors
 
   type :: group_factor
     logical :: is_there = .false.
+    logical :: is_exact = .false. !< D is that of the factor
     integer, allocatable :: row(:) !< rows of the group with D not zero
     real(rk), allocatable :: change(:, :, :) !< (3, 3, points) D at the factor [N/m]
     type(lu_factor) :: factor
@@ -34,8 +35,11 @@ contains
     change = all_changes(:, :, blocks%groups%members(group))
     call list_rows(change, row)
     if (self%is_there) then
+      self%is_exact = is_near(self, row, change, 0.0_rk)
+      if (self%is_exact) return
       if (is_near(self, row, change, share)) return
     end if
+    self%is_exact = .true.
     self%row = row
     self%change = change
     call form_matrix(blocks%block(group, group)%values, row, change, matrix)

@@ -34,6 +34,11 @@ program test_coupling_block
   call turned%add_to(y, z)
   call check(log, norm2(z - matmul(y, smooth)) <= 2.0_rk*allowed*norm2(y), &
              'transposed product')
+  call check_rough_product('narrow')
+  call make_block(smooth, 0.1_rk, allowed, block)
+  call check(log, allocated(block%rounded) .and. allocated(block%left), 'strong: both')
+  call check(log, norm2(block%as_values() - smooth) <= allowed, 'strong: accurate')
+  call check_rough_product('strong')
   allowed = 6.0e-8_rk*norm2(rough)
   call make_block(rough, 1.0e-3_rk, allowed, block)
   call check(log, allocated(block%rounded), 'rough: dense, in single precision')
@@ -47,6 +52,18 @@ program test_coupling_block
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
 contains
+  !> A rough product takes fewer columns; its error is 1e-4 of the norm of the block, as it says,
+  !> and what single precision adds.
+  subroutine check_rough_product(name)
+    character(*), intent(in) :: name
+    real(rk) :: change(m)
+    change = 0.0_rk
+    call block%add_roughly(x, change)
+    call check(log, norm2(change - matmul(smooth, x)) <= 1.01e-4_rk*norm2(smooth)*norm2(x), &
+               name//': rough product')
+    call check(log, block%rough_rank < 6, name//': rough rank')
+  end subroutine check_rough_product
+
   !> Products with many and with few forces.
   subroutine check_products(values, allowed)
     real(rk), intent(in) :: values(:, :), allowed

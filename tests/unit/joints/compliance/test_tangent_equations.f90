@@ -22,6 +22,7 @@ program test_tangent_equations
   call make_structure(groups, dense)
   call products_agree(log)
   call solutions_agree(log)
+  call rough_blocks_serve(log)
   call kept_factors_serve(log)
   call small_blocks_are_left_out(log)
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
@@ -173,6 +174,29 @@ contains
     call check_close(log, norm2(rough - response - moved)/norm2(rough), 0.0_rk, 1.0e-12_rk, &
                      'the structure is in equilibrium')
   end subroutine solutions_agree
+
+  !> Blocks with rough products: what the equations leave is as small as asked for, and stated.
+  subroutine rough_blocks_serve(log)
+    type(test_log), intent(inout) :: log
+    type(compliance_blocks) :: blocks
+    type(joint_tangent) :: tangent
+    real(rk) :: response(n), d(n), rest(n), excess(n), moved(n), tolerance
+    integer :: i, digits
+    call take_blocks(dense, spread(1.0_rk/k, 1, n), groups, 5.0e-10_rk, blocks)
+    response = [(1.0e-3_rk*cos(0.3_rk*i), i=1, n)]
+    call tangent%set_tangent(blocks, spread([k, k, k], 2, points), spread(1.0_rk, 1, points), &
+                             tangents(0))
+    do digits = 2, 8, 3
+      tolerance = 10.0_rk**(-digits)
+      call tangent%solve(blocks, response, tolerance, 0.0_rk, d, rest)
+      ! 1.5 is what tangent_equations admits; |D r| <= 1.2 k |r| by friction.
+      call check(log, norm2(rest) <= 1.8_rk*tolerance*k*norm2(response), 'rough: tolerance')
+      excess = closed_excess(d) - rest
+      call blocks%product(excess, moved)
+      call check_close(log, norm2(d - response - moved)/norm2(d), 0.0_rk, 1.0e-6_rk, &
+                       'rough: equilibrium')
+    end do
+  end subroutine rough_blocks_serve
 
   !> D d for the first tangents.
   pure function closed_excess(d) result(excess)
