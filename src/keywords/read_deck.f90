@@ -23,6 +23,8 @@ module read_deck
   use finish_model, only: complete_model
   use finish_tests, only: complete_tests
   use flatten_assembly, only: flatten
+  use leave_out_faces, only: leave_out
+  use plain_labels, only: drop_inner_quotes
   use inelastic_blocks, only: list_inelastic_blocks
   use stage_plan, only: classes_of
   use keyword_catalogue, only: list_keywords
@@ -126,11 +128,13 @@ contains
     allocate (model%interfaces(0), model%interactions(0), model%clearances(0))
   end subroutine open_draft
 
-  !> Cards of a model without parts, with the meaning of C3D8.
+  !> Cards of a model without parts, without elements of lines and faces, with the meaning of C3D8.
   subroutine make_flat(list, model, faults)
     type(keyword_list), intent(in) :: list
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
+    call drop_inner_quotes(model%cards)
+    call leave_out(model%cards, faults)
     call flatten(model%cards, list%specs, model%problem%instances, faults)
     call choose_element(model%cards, model%options%c3d8, size(model%problem%instances) > 0, faults)
   end subroutine make_flat

@@ -7,6 +7,8 @@ set(sources
   assembly/instance_placement.f90
   assembly/instance_words.f90
   assembly/keywords_assembly.f90
+  assembly/leave_out_faces.f90
+  assembly/plain_labels.f90
   checks/check_histories.f90
   checks/check_idle_steps.f90
   checks/check_loads.f90

@@ -164,9 +164,17 @@ contains
     type(row_table) :: groups
     integer, allocatable :: body(:), example(:), node(:), direction(:)
     integer :: i, b
+    logical, allocatable :: is_in_equation(:) !< (bodies)
     integer :: num_before
     call bonds_of_model(model%problem, groups)
     call find_bodies(model%problem%mesh, groups, body, example)
+    allocate (is_in_equation(size(example)), source=.false.)
+    if (model%equations%num > 0) then
+      do i = 1, model%equations%first(model%equations%num + 1) - 1
+        b = body(model%equations%node(i))
+        if (b > 0) is_in_equation(b) = .true.
+      end do
+    end if
     num_before = faults%num_errors
     do i = 1, size(model%problem%steps)
       associate (step => model%problem%steps(i), place => model%cards(model%procedure_card(i)))
@@ -174,8 +182,9 @@ contains
         call supports_of_step(model%problem, step, node, direction)
         if (size(node) == 0) then
           call place%fault(faults, 'the model has no supports in this step', '*BOUNDARY')
-        else if (model%equations%num == 0) then ! equations may hold what no support holds
+        else
           do b = 1, size(example)
+            if (is_in_equation(b)) cycle ! equations may hold what no support holds
             call verify_body(model, i, pack(node, body(node) == b), &
                              pack(direction, body(node) == b), example(b), faults)
           end do

@@ -171,18 +171,36 @@ U
 """
 
 
-def test_cracking_assembly_equals_its_flat_twin(keyway):
+PULLED = "*Boundary\n{top}, 3, 3, 0.0003\n*Dload\n"
+
+
+@pytest.mark.parametrize(("angle", "least"), [(90.0, 0.001), (0.0, 0.3)])
+def test_cracking_assembly_equals_its_flat_twin(keyway, angle, least):
+    """Water cracks the rotated blocks a little; a crown that is lifted by 0.3 mm cracks them
+    through: the strength is gone at this opening."""
     side = id_lines(range(1, len(BLOCK.solids) + 1, 2))
     surface = "*Surface, type=ELEMENT, name=Side\n_Side_S6, S6\n"
     law = ("0.2\n", "0.2\n" + CONCRETE)
-    parts = assembly(90.0).replace(STEP, CRACKING).replace(*law)
+    parts = assembly(angle).replace(STEP, CRACKING).replace(*law)
     parts = parts.replace(
         "*Tie,", f"*Elset, elset=_Side_S6, internal, instance=Block-1\n{side}\n{surface}*Tie,"
     )
-    twin = flat(90.0).replace(STEP, CRACKING).replace(*law)
+    twin = flat(angle).replace(STEP, CRACKING).replace(*law)
     twin = twin.replace("*TIE,", f"*ELSET, ELSET=_Side_S6\n{side}\n{surface}*TIE,")
+    if least > 0.1:
+        crown = BLOCK.nodes_at(2, BLOCK.size[2])
+        parts = parts.replace(
+            "*Elset, elset=All", f"*Nset, nset=Top\n{id_lines(crown)}\n*Elset, elset=All"
+        )
+        crown = id_lines(k + 100 for k in crown)
+        twin = twin.replace("*ELSET, ELSET=LOWER", f"*NSET, NSET=TOP\n{crown}\n*ELSET, ELSET=LOWER")
+        parts = parts.replace("*Dload\n", PULLED.format(top="Block-2.Top")).replace(
+            "500000.", "5000."
+        )
+        twin = twin.replace("*Dload\n", PULLED.format(top="TOP")).replace("500000.", "5000.")
     of_parts, of_flat = keyway(parts, name="parts"), keyway(twin, name="flat")
-    assert last_field(of_parts, "DAMAGET").max() > 0.001
-    a, b = last_field(of_parts, "U"), last_field(of_flat, "U")
+    assert last_field(of_parts, "DAMAGET").max() > least
     # Twins differ by the round-off of the rotated coordinates alone.
-    assert np.abs(a - b).max() <= 1e-12 * np.abs(b).max()
+    for name in ("U", "DAMAGET"):
+        a, b = last_field(of_parts, name), last_field(of_flat, name)
+        assert np.abs(a - b).max() <= 1e-12 * np.abs(b).max()

@@ -35,8 +35,8 @@ contains
                      '*DSLOAD or *DLOAD on the surface')
     call add_refused(list, 'PARAMETER', 'Names for numbers of the deck.', &
                      'numbers in place of the names')
-    call add_refused(list, 'TRANSFORM', 'Axes of nodes.', 'supports and forces along the '// &
-                     'global axes; an *INSTANCE can turn the model')
+    call add_refused(list, 'TRANSFORM', 'Axes of nodes.', 'forces in global components; for '// &
+                     'a support along an axis n, *EQUATION n1 u1 + n2 u2 + n3 u3 = 0')
     call add_refused(list, 'ORIENTATION', 'Axes of a material.', 'a deck without it: '// &
                      'materials are the same in all directions')
   end subroutine add_refused_keywords

@@ -38,7 +38,7 @@ contains
       kinds = kinds//' | '//trim(element_kinds(i)%name)
     end do
     allocate (spec%parameters, source=[ &
-              field('TYPE', kind_choice, '8-node solid, joint or interface; for C3D6: '// &
+              field('TYPE', kind_choice, 'linear hexahedron, joint or interface; for C3D6: '// &
                     'C3D8 with nodes 1,2,3,3,4,5,6,6', choices=kinds, &
                     is_required=.true.), &
               field('ELSET', kind_word, 'an element set to which these elements are added')])

@@ -5,12 +5,16 @@ module keywords_controls
   use equilibrium_catalogue, only: names_of_joint_solvers
   use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, kind_real
   use keywords_material, only: base_of_damping
+  use keywords_other, only: add_idle_parameters
   use kinds, only: rk
   use model_draft, only: draft
   use step_plan, only: step_damping
   implicit none
   private
   public :: describe_controls, describe_step_damping, read_controls, read_step_damping
+
+  !> Of Abaqus and CalculiX; data lines go with PARAMETERS.
+  character(10), parameter :: idle(3) = ['PARAMETERS', 'ANALYSIS  ', 'RESET     ']
 
 contains
 
@@ -27,7 +31,6 @@ contains
                    'names the smallest and the largest.'
     spec%example = '*CONTROLS, RESIDUAL=1e-8, ITERATIONS=25'//new_line('a')// &
                    '*CONTROLS, ACCURACY=0.02'
-    spec%most_lines = 0
     allocate (spec%parameters, source=[ &
               field('RESIDUAL', kind_real, 'residual over the reference force', '', &
                     '1e-6', lowest=0.0_rk, highest=1.0_rk, excludes_lowest=.true.), &
@@ -58,6 +61,7 @@ contains
                     '(unsymmetric), secant, or elastic with many cheap '// &
                     'iterations', default='AUTO', &
                     choices='AUTO | CONSISTENT | SECANT | ELASTIC')])
+    call add_idle_parameters(spec, idle)
   end subroutine describe_controls
 
   subroutine read_controls(this, model, faults)
@@ -66,6 +70,9 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     if (size(this%parameters) == 0) then
       call this%warn(faults, 'the keyword has no parameter and no effect', 'at least one parameter')
+    end if
+    if (this%num_lines > 0 .and. .not. this%has('PARAMETERS')) then
+      call this%fault_at(faults, 1, 0, 'found a data line', 'parameters of the keyword only')
     end if
     associate (controls => model%now%controls)
       if (this%has('RESIDUAL')) controls%residual_tolerance = this%real('RESIDUAL')

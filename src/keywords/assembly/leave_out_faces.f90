@@ -1,0 +1,138 @@
+!> Elements of lines and faces, as meshes from Gmsh hold them beside the solids: they are left out,
+!> with a note, and so are their numbers in element sets.
+module leave_out_faces
+  use card_rewrite, only: card_rewriter
+  use deck_card, only: card
+  use diagnostics, only: diagnostic_list
+  use growing_lists, only: append
+  use sorted_lists, only: contains_position, sorted_unique
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: leave_out
+
+  !> Types that Gmsh gives to lines, triangles and quadrilaterals.
+  character(4), parameter :: types(*) = ['T3D2', 'T3D3', 'CPS3', 'CPS4', 'CPS6', 'CPS8', 'S3  ', &
+                                         'S4  ', 'S6  ', 'S8  ', 'S8R ', 'S4R ', 'M3D3', 'M3D4', &
+                                         'B31 ']
+
+contains
+
+  !> Leaves the elements out of a deck without parts. A deck that gives them a section keeps them:
+  !> then they carry loads, and *ELEMENT reports them.
+  subroutine leave_out(cards, faults)
+    type(card), allocatable, intent(inout) :: cards(:)
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable :: ids(:)
+    logical, allocatable :: is_kept(:)
+    integer :: i
+    if (any([(is_structure(cards(i)), i=1, size(cards))])) return
+    if (.not. any([(is_left_out(cards(i)), i=1, size(cards))])) return
+    if (.not. any([(has_solids(cards(i)), i=1, size(cards))])) return
+    allocate (is_kept(size(cards)), source=.true.)
+    call find_ids(cards, is_kept, ids, faults)
+    do i = 1, size(cards)
+      if (cards(i)%keyword == 'ELSET' .and. .not. cards(i)%has('GENERATE')) then
+        call shorten_set(cards(i), ids, is_kept(i))
+      end if
+    end do
+    cards = pack_cards(cards, is_kept)
+  end subroutine leave_out
+
+  !> Parts, or a section that only shells, beams, membranes or trusses have.
+  logical function is_structure(this)
+    type(card), intent(in) :: this
+    is_structure = this%keyword == 'PART' .or. this%keyword == 'ASSEMBLY' .or. &
+                   this%keyword == 'SHELL SECTION' .or. this%keyword == 'BEAM SECTION' .or. &
+                   this%keyword == 'MEMBRANE SECTION'
+  end function is_structure
+
+  logical function is_left_out(this)
+    type(card), intent(in) :: this
+    is_left_out = this%keyword == 'ELEMENT'
+    if (is_left_out) is_left_out = any(types == this%word('TYPE'))
+  end function is_left_out
+
+  logical function has_solids(this)
+    type(card), intent(in) :: this
+    has_solids = this%keyword == 'ELEMENT'
+    if (has_solids) has_solids = index(this%word('TYPE'), 'C3D') == 1
+  end function has_solids
+
+  !> Numbers of the elements, sorted; notes each card.
+  subroutine find_ids(cards, is_kept, ids, faults)
+    type(card), intent(in) :: cards(:)
+    logical, intent(inout) :: is_kept(:)
+    integer, allocatable, intent(out) :: ids(:)
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i, line, num
+    allocate (ids(0))
+    num = 0
+    do i = 1, size(cards)
+      if (.not. is_left_out(cards(i))) cycle
+      is_kept(i) = .false.
+      do line = 1, cards(i)%num_lines
+        if (cards(i)%is_integer_at(line, 1)) call append(ids, num, [cards(i)%integer_at(line, 1)])
+      end do
+      call cards(i)%ignore(faults, 'elements '//cards(i)%word('TYPE')//' ('// &
+                           as_text(cards(i)%num_lines)//') have no effect and are left out: '// &
+                           'only solids carry loads')
+    end do
+    ids = sorted_unique(ids(:num))
+  end subroutine find_ids
+
+  !> Puts another member of a set in place of such a number. A set without other members is not
+  !> kept.
+  subroutine shorten_set(this, ids, is_kept)
+    type(card), intent(inout) :: this
+    integer, intent(in) :: ids(:)
+    logical, intent(inout) :: is_kept
+    type(card_rewriter) :: words
+    character(:), allocatable :: other
+    integer :: line, field, num_out
+    num_out = 0
+    other = ''
+    do line = 1, this%num_lines
+      do field = 1, this%num_fields(line)
+        if (this%is_empty_at(line, field)) cycle
+        if (is_out(this, line, field, ids)) then
+          num_out = num_out + 1
+        else
+          other = this%text_at(line, field)
+        end if
+      end do
+    end do
+    is_kept = num_out == 0 .or. other /= ''
+    if (num_out == 0 .or. .not. is_kept) return
+    call words%begin(this)
+    do line = 1, this%num_lines
+      do field = 1, this%num_fields(line)
+        if (is_out(this, line, field, ids)) call words%put_field(this, line, field, other)
+      end do
+    end do
+    call words%finish(this)
+  end subroutine shorten_set
+
+  !> Whether a field is the number of an element that is left out.
+  logical function is_out(this, line, field, ids)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line, field, ids(:)
+    is_out = this%is_integer_at(line, field)
+    if (is_out) is_out = contains_position(ids, this%integer_at(line, field))
+  end function is_out
+
+  !> The cards that are kept.
+  function pack_cards(cards, is_kept) result(kept)
+    type(card), intent(in) :: cards(:)
+    logical, intent(in) :: is_kept(:)
+    type(card), allocatable :: kept(:)
+    integer :: i, n
+    allocate (kept(count(is_kept)))
+    n = 0
+    do i = 1, size(cards)
+      if (.not. is_kept(i)) cycle
+      n = n + 1
+      kept(n) = cards(i)
+    end do
+  end function pack_cards
+end module leave_out_faces
