@@ -136,7 +136,7 @@ def test_hollow_sphere(keyway):
         yields = flow["element"][last][flow["PEEQ"][last] > 0.0].astype(int) - 1
         reach.append(np.linalg.norm(x[solids[yields]].mean(axis=1), axis=1).max())
     assert np.log2(error[0] / error[1]) > 1.5
-    assert error[1] < 0.015  # 0.0112 measured
+    assert error[1] < 0.01  # 0.0074 measured, 0.042 with elements of twice the size
     # The front lies within the layer of elements that the closed form gives.
     layer = 2.0 ** (1 / 12)
     assert FRONT / layer < reach[1] < FRONT * layer
