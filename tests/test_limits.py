@@ -47,7 +47,7 @@ def test_deck_that_is_no_file(program_path, tmp_path, name) -> None:
     done = run(program_path, tmp_path, "--check", name)
     assert done.returncode == DECK_IS_WRONG
     expected = "it is a folder" if name == "folder" else "it is a device or a pipe, not a file"
-    assert done.stderr.strip() == f"{name}: cannot read '{name}': {expected}"
+    assert done.stderr.strip() == f"{name}: cannot read '{name}': {expected} [unreadable-file]"
 
 
 def test_record_that_is_no_file(program_path, tmp_path) -> None:

@@ -65,7 +65,7 @@ def test_full_disk(command, library, case, whole, tmp_path, name):
     if name != "input and output error":  # then job.json is removed: it cannot be written over
         summary = json.loads(path.read_text())
         assert summary["status"] == "stopped"
-        assert summary["message"] == done.stderr.strip()
+        assert summary["message"] + " [disk-full]" == done.stderr.strip()
     assert rows_in_h5(out) > 0
     if name in WITHOUT_CHECKPOINT:
         assert not list(out.glob("*.ckpt*"))

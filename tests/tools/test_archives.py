@@ -102,9 +102,9 @@ TYPES = (
         is_upstream="of the model",
         is_downstream="of the model",
     ),
-    of_record("goal_error", "src/results/record/goal_errors.f90", "goal_error", "compare_records"),
+    of_record("goal_error", "src/results/errors/goal_errors.f90", "goal_error", "compare_records"),
     of_record(
-        "space_error", "src/results/record/space_errors.f90", "space_error", "compare_records"
+        "space_error", "src/results/errors/space_errors.f90", "space_error", "compare_records"
     ),
     of_record(
         "damage_record",
