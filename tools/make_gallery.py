@@ -3,8 +3,8 @@
 
 usage: make_gallery.py [-o FOLDER]
 
-Writes the page of the gallery into FOLDER and the pictures beside it. Runs and pictures that are newer than the
-program and their deck are kept. `mkdocs build` calls this tool (site_hooks.py).
+Writes the page of the gallery into FOLDER and the pictures beside it. Runs and pictures that are
+newer than the program and their deck are kept. `mkdocs build` calls this tool (site_hooks.py).
 """
 
 from __future__ import annotations

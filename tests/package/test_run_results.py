@@ -114,6 +114,9 @@ def test_errors_have_the_message_and_the_exit_code(program_path, tmp_path, monke
     with pytest.raises(package.RunError, match=r"bad\.inp:3: \*ELASTIC: found '31 GPa'") as caught:
         package.run(deck, results=tmp_path, program=program_path)
     assert caught.value.code == 2
+    (fault,) = caught.value.faults
+    assert (fault.file, fault.line, fault.kind) == (str(deck), 3, "wrong-value")
+    assert str(fault).startswith(f"{deck}:3: *ELASTIC: found '31 GPa'; expected Young's modulus")
     assert caught.value.run is None
     with pytest.raises(FileNotFoundError, match="there is no deck"):
         package.run(tmp_path / "none.inp", program=program_path)

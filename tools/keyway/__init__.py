@@ -17,7 +17,7 @@ from keyway_tools.program import find_program
 from .deck import Card, Deck, DeckError
 from .job_schema import job_schema
 from .run_results import RunResults, open_run
-from .running import RunError, run
+from .running import Fault, RunError, run
 
 open = open_run
 
@@ -25,6 +25,7 @@ __all__ = [
     "Card",
     "Deck",
     "DeckError",
+    "Fault",
     "RunError",
     "RunResults",
     "find_program",

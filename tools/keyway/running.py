@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from keyway_tools.program import given_program
@@ -12,21 +14,38 @@ from keyway_tools.program import given_program
 from .deck import Deck
 from .run_results import RunResults, open_run
 
+_FAULT = re.compile(r"^(?! |keyway: )(.+?):(?:(\d+):)? (.*) \[([a-z][a-z0-9-]*)\]$", re.MULTILINE)
+_WARNING = re.compile(r"(\*[A-Z -]+: )?warning: ")
+_DECK_IS_WRONG = 2  # exit code
 _GRACE = 30.0  # seconds from the request to end until the program is killed
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A message on a place of a deck; `str` gives 'dam.inp:12: text'."""
+
+    file: str  # as the deck or the call names it
+    line: int  # from 1; 0: the file as a whole
+    text: str  # keyword, what was found and what was expected
+    kind: str  # name for `keyway --explain`
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}: {self.text}" if self.line else f"{self.file}: {self.text}"
 
 
 class RunError(RuntimeError):
     """A run that did not finish.
 
     `code` is the exit code (1 stopped, 2 wrong deck or usage, 3 fault of the system, negative: a
-    signal), `message` what the program wrote to its standard error, `run` the results up to there,
-    None where there are none.
+    signal), `message` what the program wrote to its standard error, `faults` the faults of the deck
+    in it with file and line, `run` the results up to there, None where there are none.
     """
 
     def __init__(self, code: int, message: str, run: RunResults | None = None):
         super().__init__(f"{message}\n(exit code {code})" if message else f"exit code {code}")
         self.code = code
         self.message = message
+        self.faults = _faults(message) if code == _DECK_IS_WRONG else []
         self.run = run
 
 
@@ -64,6 +83,15 @@ def run(
     if code != 0 or opened is None:
         raise RunError(code, message or "the program left no results", opened)
     return opened
+
+
+def _faults(message: str) -> list[Fault]:
+    """The faults of a deck in what the program wrote: first lines with a place, no warnings."""
+    return [
+        Fault(file, int(line or 0), text, kind)
+        for file, line, text, kind in _FAULT.findall(message)
+        if not _WARNING.match(text)
+    ]
 
 
 def _written(deck: Deck, folder: Path) -> Path:

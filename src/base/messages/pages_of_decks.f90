@@ -80,8 +80,8 @@ contains
                   'not understood is never passed over.', &
                   'Take what the message offers in its place, or leave the card out. '// &
                   'docs/compatibility.md lists what is not there.', &
-                  '*PLASTIC', &
-                  'a UMAT with *USER MATERIAL')
+                  '*TRANSFORM', &
+                  'supports and forces along the global axes')
     call list%add('reduced-model', &
                   'reduced model|without REDUCED|*DYNAMIC, REDUCED', &
                   'A step with *DYNAMIC, REDUCED holds linear elastic solids with joints on '// &

@@ -87,9 +87,14 @@ def cases_of_table(template: Path, table: Path, top: Path) -> list[Case]:
         cases.append(Case(deck.resolve(), top / name, row))
     _check_cases(table, cases)
     for case in cases:
-        filled = _PLACE.sub(lambda found, c=case: c.values.get(found[1], found[0]), text)
+        filled = _filled(text, case.values)
         Deck.from_text(filled, template).write(case.deck)
     return cases
+
+
+def _filled(text: str, values: dict[str, str]) -> str:
+    """The template with the values of a case in place of their names."""
+    return _PLACE.sub(lambda found: values.get(found[1], found[0]), text)
 
 
 def read_values(table: Path) -> tuple[list[str], list[dict[str, str]]]:

@@ -20,7 +20,7 @@ def cell(value: float | None, form: str) -> str:
 
 def table_of(records: list[Record]) -> str:
     """One line for each run."""
-    rows = [("deck", "status", "time [s]", "memory [MB]", *EXTREMES)]
+    rows: list[tuple[str, ...]] = [("deck", "status", "time [s]", "memory [MB]", *EXTREMES)]
     for record in records:
         rows.append(
             (

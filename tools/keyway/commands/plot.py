@@ -23,9 +23,10 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from keyway_tools.colour_scale import FIELDS, Scales, parse_levels, parse_ranges
@@ -39,8 +40,11 @@ from keyway_tools.pictures_curves import (
 from keyway_tools.pictures_joints import plot_joint_areas, plot_joint_slips, plot_joint_states
 from keyway_tools.pictures_material import COMPONENTS, plot_material, read_curve
 from keyway_tools.program import command_name
-from keyway_tools.results import find_jobs, why_incomplete
+from keyway_tools.results import Step, find_jobs, why_incomplete
 from keyway_tools.si_results import SiResults, Units
+
+if TYPE_CHECKING:
+    from keyway_tools.dam_views import Faces
 
 
 def draw_job(results: SiResults, sheet: Sheet, scales: Scales) -> Iterator[list[Path]]:
@@ -70,7 +74,9 @@ def draw_job(results: SiResults, sheet: Sheet, scales: Scales) -> Iterator[list[
     yield plot_damage_growth(results, on("damage_growth"))
 
 
-def _draw_envelopes(faces, step, on, scales: Scales) -> Iterator[list[Path]]:
+def _draw_envelopes(
+    faces: Faces, step: Step, on: Callable[[str], Sheet], scales: Scales
+) -> Iterator[list[Path]]:
     """The pictures of the envelopes of a step."""
     from keyway_tools.pictures_damage import plot_mean_envelope
     from keyway_tools.pictures_faces import plot_envelope, plot_face_openings

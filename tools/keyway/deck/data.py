@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, MutableSequence
+from collections.abc import Iterable, Iterator, MutableSequence
 from typing import overload
 
 import numpy as np
@@ -32,21 +32,26 @@ class Row(MutableSequence[str]):
     def __len__(self) -> int:
         return len(self._spans())
 
-    def __getitem__(self, index):
+    @overload
+    def __getitem__(self, index: int) -> str: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[str]: ...
+    def __getitem__(self, index: int | slice) -> str | list[str]:
         line = self._lines[self._place]
-        spans = self._spans()[index]
+        spans = self._spans()
         if isinstance(index, slice):
-            return [unquoted(line[start:end]) for start, end in spans]
-        return unquoted(line[spans[0] : spans[1]])
+            return [unquoted(line[start:end]) for start, end in spans[index]]
+        start, end = spans[index]
+        return unquoted(line[start:end])
 
-    def __setitem__(self, index, value: Value) -> None:
+    def __setitem__(self, index: int | slice, value: Value) -> None:  # type: ignore[override]
         if isinstance(index, slice):
             raise TypeError("set the values of a row one by one")
         line = self._lines[self._place]
         start, end = self._spans()[index]
         self._lines[self._place] = line[:start] + as_text(value) + line[end:]
 
-    def __delitem__(self, index) -> None:
+    def __delitem__(self, index: int | slice) -> None:
         values = list(self)
         del values[index]
         self._replace(values)
@@ -89,24 +94,27 @@ class Data(MutableSequence[Row]):
     def __getitem__(self, index: int) -> Row: ...
     @overload
     def __getitem__(self, index: slice) -> list[Row]: ...
-    def __getitem__(self, index):
-        places = self._places()[index]
+    def __getitem__(self, index: int | slice) -> Row | list[Row]:
+        places = self._places()
         if isinstance(index, slice):
-            return [Row(self._lines, place) for place in places]
-        return Row(self._lines, places)
+            return [Row(self._lines, place) for place in places[index]]
+        return Row(self._lines, places[index])
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[Row]:
         return (Row(self._lines, place) for place in self._places())
 
-    def __setitem__(self, index, values: Iterable[Value]) -> None:
+    def __setitem__(  # type: ignore[override]
+        self, index: int | slice, values: Iterable[Value]
+    ) -> None:
         """Replace a line. Raises TypeError for a slice."""
         if isinstance(index, slice):
             raise TypeError("set the rows one by one")
         self._lines[self._places()[index]] = self._line(values)
 
-    def __delitem__(self, index) -> None:
-        chosen = self._places()[index]
-        for place in sorted(chosen if isinstance(index, slice) else [chosen], reverse=True):
+    def __delitem__(self, index: int | slice) -> None:
+        places = self._places()
+        chosen = places[index] if isinstance(index, slice) else [places[index]]
+        for place in sorted(chosen, reverse=True):
             del self._lines[place]
 
     def insert(self, index: int, values: Iterable[Value]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from functools import partial
 from pathlib import Path
 
 from .card import Card
@@ -25,7 +26,7 @@ def write_files(main: DeckFile, files: dict[Path, DeckFile], path: Path | None) 
         others = files.keys() | {f for f in map(included_file, file.cards) if f}
         if place in others:
             raise DeckError(f"{place}: the deck {main.path} reads this file; expected a new name")
-        file.write(place, file.text(lambda card, p=place: _elsewhere(card, p, files, targets)))
+        file.write(place, file.text(partial(_elsewhere, place=place, files=files, targets=targets)))
     return [*targets.values()]
 
 
