@@ -28,7 +28,7 @@ contains
     if (.not. faults%has_errors()) call complete_parts(model)
   end subroutine complete_stages
 
-  !> Stages change in static steps; models with *INTERFACE have none.
+  !> Stages change in static steps; models with *INTERFACE or with springs of ties have none.
   subroutine check_places(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
@@ -45,9 +45,20 @@ contains
       else if (is_keyword(model%cards(i), 'MODEL CHANGE') .and. size(model%interfaces) > 0) then
         call model%cards(i)%fault(faults, 'the model has an *INTERFACE, whose quadrilaterals '// &
                                   'would stay without a solid', '*TIE or *JOINT between surfaces')
+      else if (is_keyword(model%cards(i), 'MODEL CHANGE') .and. has_springs(model)) then
+        call model%cards(i)%fault(faults, 'the model has a *TIE with STIFFNESS, whose springs '// &
+                                  'would be strained when they appear between settled faces', &
+                                  '*TIE without STIFFNESS, or *JOINT')
       end if
     end do
   end subroutine check_places
+
+  !> Whether a tie is made of springs.
+  pure logical function has_springs(model)
+    type(draft), intent(in) :: model
+    has_springs = .false.
+    if (allocated(model%ties)) has_springs = any(model%ties%stiffness > 0.0)
+  end function has_springs
 
   !> The joints that some step grouts.
   subroutine note_grouted(model)
