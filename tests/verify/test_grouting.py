@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import signal
 import subprocess
+import time
 
 import numpy as np
 import pytest
@@ -257,5 +258,6 @@ def stop_after(program, folder, deck, increments: int) -> bool:
         if table.exists() and table.read_text().count("\n") > increments:
             process.send_signal(signal.SIGTERM)
             break
+        time.sleep(0.001)  # leaves the processor to the run
     process.wait()
     return json.loads((folder / "job.json").read_text())["status"] == "stopped"

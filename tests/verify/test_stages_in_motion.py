@@ -14,7 +14,7 @@ QUARTER = "0.25, 1., 0.25, 0.25\n"
 LOAD = f"*DLOAD\nBODY, GRAV, {GRAVITY!r}, 0, 0, -1\n"
 TABLES = OUTPUT.replace("S, E", "S, DAMAGET")
 SHAKE = (
-    "*STEP, INC=100000\n*DYNAMIC, DIRECT\n2e-4, 0.02\n"
+    "*STEP, INC=100000\n*DYNAMIC, DIRECT\n4e-4, 0.02\n"
     "*BASE MOTION, DOF=3, AMPLITUDE=SHAKE\n*END STEP\n"
 )
 HISTORY = "*AMPLITUDE, NAME=SHAKE\n0., 0., 0.002, -60., 0.006, 60., 0.01, -40., 0.014, 0.\n"
@@ -61,7 +61,7 @@ def test_a_column_that_cracks_in_motion(keyway):
 
 
 def test_a_run_goes_on_within_a_stage_and_in_motion(program_path, tmp_path):
-    """A run that is stopped in any step and continued ends with the same tables."""
+    """Stopped within the second stage and within the motion, a run ends with the same tables."""
     deck = tmp_path / "job.inp"
     deck.write_text(column())
 
@@ -72,7 +72,7 @@ def test_a_run_goes_on_within_a_stage_and_in_motion(program_path, tmp_path):
 
     whole = results("whole")
     stopped = 0
-    for increment in (5, 10, 60):
+    for increment in (6, 40):
         name = f"stop{increment}"
         stopped += stop_after(program_path, tmp_path / name, deck, increment)
         assert results(name, "--continue") == whole
