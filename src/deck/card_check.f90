@@ -14,6 +14,7 @@ module card_check
   public :: check_card, check_lines, match_card, longest_name
 
   integer, parameter :: longest_name = 80 !< letters of a name, as in Abaqus
+  integer, parameter :: shortest_name = 3 !< letters of an abbreviated parameter
 
 contains
 
@@ -75,12 +76,34 @@ contains
     if (allocated(spec%variants)) then
       the_card%spec = spec_of_variant(spec, single_blanks(the_card%word(spec%chooser)))
     end if
+    if (spec%asks_for_output) call complete_names(the_card)
     call check_given_parameters(the_card, faults)
     call check_required_parameters(the_card, faults)
     call check_line_count(the_card, faults)
     if (.not. spec%checks_own_data) call check_lines(the_card, faults)
     is_right = faults%num_errors == num_before
   end subroutine check_card
+
+  !> Writes abbreviated names of parameters in full. Where several names begin alike, those with an
+  !> effect come first.
+  subroutine complete_names(the_card)
+    type(card), intent(inout) :: the_card
+    integer :: i, j, num_effects, whole
+    do i = 1, size(the_card%parameters)
+      associate (given => the_card%parameters(i), wanted => the_card%spec%parameters)
+        if (len(given%name) < shortest_name .or. position_of(the_card%spec, given%name) > 0) cycle
+        whole = 0
+        num_effects = 0
+        do j = 1, size(wanted)
+          if (index(wanted(j)%name, given%name) /= 1) cycle
+          if (.not. wanted(j)%has_no_effect) num_effects = num_effects + 1
+          if (whole == 0 .or. .not. wanted(j)%has_no_effect) whole = j
+        end do
+        if (whole == 0 .or. num_effects > 1) cycle
+        if (.not. the_card%has(wanted(whole)%name)) given%name = wanted(whole)%name
+      end associate
+    end do
+  end subroutine complete_names
 
   !> Checks that every given parameter is known and has a valid value.
   subroutine check_given_parameters(the_card, faults)
@@ -105,7 +128,7 @@ contains
             if (wanted%may_be_bare) cycle
             call the_card%fault_parameter(faults, given%name, given%name//' has no value', &
                                           expected_in(wanted))
-          else
+          else if (.not. wanted%is_checked_later) then
             call check_word(the_card%text(given%name), wanted, problem, nearest)
             if (len(problem) > 0) call the_card%fault_parameter( &
               faults, given%name, given%name//': '//problem, expected_in(wanted), nearest)
@@ -115,13 +138,14 @@ contains
     end do
   end subroutine check_given_parameters
 
-  !> Reports an unknown parameter at the place of its name.
+  !> Reports an unknown parameter at the place of its name; a card that asks for output is read
+  !> without it.
   subroutine fault_unknown_parameter(the_card, i, faults)
     type(card), intent(in) :: the_card
     integer, intent(in) :: i !< position of the parameter in the card
     type(diagnostic_list), intent(inout) :: faults
     character(longest_name), allocatable :: names(:)
-    character(:), allocatable :: list
+    character(:), allocatable :: list, nearest
     type(place) :: spot
     integer :: j
     list = ''
@@ -134,6 +158,12 @@ contains
     if (size(names) == 0) list = 'no parameters'
     if (size(names) > 1) list = 'one of '//list
     associate (given => the_card%parameters(i))
+      if (the_card%spec%asks_for_output) then
+        nearest = nearest_word(given%name, names)
+        if (len(nearest) > 0) nearest = "; did you mean '"//nearest//"'?"
+        call the_card%ignore(faults, given%name//' has no effect here'//nearest)
+        return
+      end if
       spot = the_card%lines%spot(given%row, given%first, given%last, the_card%keyword)
       call faults%add(severity_error, spot, "unknown parameter '"//given%name//"'", list, &
                       nearest_word(given%name, names))

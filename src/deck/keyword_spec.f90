@@ -35,6 +35,7 @@ module keyword_spec
     real(rk) :: lowest = -huge(1.0_rk), highest = huge(1.0_rk) !< allowed range
     logical :: excludes_lowest = .false., excludes_highest = .false. !< open range
     logical :: may_be_bare = .false. !< a parameter that may stand without a value
+    logical :: is_checked_later = .false. !< the handler checks the value
     logical :: has_no_effect = .false. !< of other programs, with any value; noted as ignored input
   end type field
 
@@ -65,6 +66,8 @@ module keyword_spec
     logical :: checks_own_data = .false. !< the handler checks the data lines
     integer :: fewest_lines = 0, most_lines = huge(1) !< of data
     logical :: new_clears = .false. !< OP=NEW without data clears earlier data
+    logical :: asks_for_output = .false. !< of other programs: parameters may be short,
+    !< unknown ones are noted as ignored input
   end type keyword
 
 contains

@@ -65,6 +65,7 @@ set(sources
   materials/keywords_plastic.f90
   materials/keywords_user_material.f90
   materials/material_catalogue.f90
+  mesh/element_advice.f90
   mesh/keywords_elements.f90
   mesh/keywords_nodes.f90
   mesh/keywords_section.f90

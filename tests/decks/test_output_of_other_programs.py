@@ -82,3 +82,80 @@ def test_times_of_output(tmp_path, keyway, card, frames):
     pictures = (run.folder / "asked.pvd").read_text().count("<DataSet")
     assert pictures in (frames, frames + 1)
     assert {"U", "RF", "S"} <= fields_of_last_step(run)
+
+
+# Cards as manuals, models of users and preprocessors have them; abbreviated and misspelt ones too.
+ASKED = [
+    "*Output, field, freq=5\n*Node output\nU,",
+    "*Output, history, freq=2\n*Node Output, nset=TOP\nU1",
+    "*Output, field, num=4, time marks=YES\n*Node Output, var=PRESELECT",
+    "*Output, field, op=NEW, number interval=20, time marks=NO",
+    "*Output, field, name=F, mode list\n*Element Output, elset=DAM, directions=NO, position=NODES",
+    "*Output, frequencyf=3",
+    "*Output, field, timepoints=T\n*Time Points, name=T\n0.1, 0.2",
+    "*Output, field, frequncy=5",
+    "*Output, fild, filter=ANTIALIASING, sensor",
+    "*Node Output, nset=TOP, exterior\nU, UR, CF, RM, PHILSM",
+    "*Element Output, elset=DAM, rebar, directions=YES, sectionpoints\n1, 3, 5\nS, LE, STATUSXFEM",
+    "*Contact Output, nset=TOP, master=A, slave=B, variable=ALL\nCSTRESS, CDISP",
+    "*Energy Output, elset=DAM, variable=PRESELECT\nALLAE",
+    "*Modal Output\nGU",
+    "*Incrementation Output, variable=PRESELECT",
+    "*Integrated Output, section=SEC, variable=PRESELECT\nSOF",
+    "*Surface Output\nCSTRESS",
+    "*Node file, nset=TOP, global=YES, output=3D, last iterations, freq=2\nU, PU, KEQ",
+    "*Node file, output all, contact elements=2, totals=YES, frequencyf=1\nRF",
+    "*El file, elset=DAM, internal=NO, position=AVERAGED AT NODES, mode=3, last mode=5\nS, ME, ZZS",
+    "*Elfile\nNOE, PEEQ, ENER, ERR",
+    "*Contact file, freq=3, timepoints=T\nCDIS, CSTR, PCON",
+    "*Contact print, totals=ONLY, slave=A, master=B\nCDIS, CF",
+    "*Node print, nset=TOP, freq=2, totals=ONLY, global=NO, summary=NO, last mode=2\nU, RF, MF",
+    "*Node print, nset=TOP, fequency=3\nU",
+    "*Node print\nU",
+    "*El print, elset=DAM, position=CENTROIDAL, summary=YES, freq=999\nS11, MISES, EVOL",
+    "*Section print, surface=UPSTREAM, name=SP1, frequency=2, totals=YES, axes=LOCAL\nSOF, SOM",
+    "*Section file, surface=UPSTREAM, name=SP2\nSOF",
+    "*Energy print, elset=DAM, freq=0",
+    "*Energy file",
+    "*File format, ascii\n*File output, number interval=4",
+    "*Monitor, dof=1, node=5, frequency=1",
+    "*Print, contact=YES, frequency=1, plasticity=NO",
+    "*Preprint, echo=YES, model=NO, history=NO, contact=NO",
+    "*Diagnostics, contact=YES",
+    "*Restart, write, frequency=0, overlay",
+    "*Restart, write, freq=2, number interval=10, time marks=NO",
+    "*Restart, frequency=10",
+]
+
+
+@pytest.mark.parametrize("cards", ASKED)
+def test_no_request_stops_a_run(tmp_path, keyway, cards):
+    keyway(deck_with(tmp_path, cards + "\n"))
+
+
+@pytest.mark.parametrize(
+    ("cards", "frames"),
+    [
+        ("*Output, field, freq=5\n*Node output\nU", 4),
+        ("*Output, field, NUM=4\n*Node output\nU", 4),
+        ("*Node file, FREQ=10\nU", 2),
+    ],
+)
+def test_abbreviated_parameters(tmp_path, keyway, cards, frames):
+    """The first letters of a parameter stand for it, as in Abaqus; 20 increments."""
+    run = keyway(deck_with(tmp_path, cards + "\n", "*DYNAMIC, DIRECT\n0.01, 0.2"))
+    assert (run.folder / "asked.pvd").read_text().count("<DataSet") in (frames, frames + 1)
+
+
+def test_unknown_parameters_are_named(tmp_path, keyway):
+    noted = keyway(deck_with(tmp_path, "*Node print, nset=TOP, fequency=3\nU\n")).json
+    why = [item["why"] for item in noted["ignored_input"]]
+    assert why == ["FEQUENCY has no effect here; did you mean 'FREQUENCY'?"]
+
+
+def test_restart_of_another_run_is_refused(tmp_path, keyway):
+    path = deck_with(tmp_path, "")
+    path.write_text("*RESTART, READ, STEP=2\n" + path.read_text())
+    run = keyway(path, code=2)
+    assert "*RESTART: READ: a run goes on from its own checkpoint; expected" in run.stderr
+    assert "--continue" in run.stderr

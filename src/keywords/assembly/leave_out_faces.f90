@@ -18,8 +18,8 @@ module leave_out_faces
 
 contains
 
-  !> Leaves the elements out of a deck without parts. A deck that gives them a section keeps them:
-  !> then they carry loads, and *ELEMENT reports them.
+  !> Leaves the elements out of a deck without parts. A deck that gives them a section of their own
+  !> keeps them: then they carry loads, and *ELEMENT reports them.
   subroutine leave_out(cards, faults)
     type(card), allocatable, intent(inout) :: cards(:)
     type(diagnostic_list), intent(inout) :: faults
@@ -30,9 +30,14 @@ contains
     if (.not. any([(is_left_out(cards(i)), i=1, size(cards))])) return
     if (.not. any([(has_solids(cards(i)), i=1, size(cards))])) return
     allocate (is_kept(size(cards)), source=.true.)
-    call find_ids(cards, is_kept, ids, faults)
+    call find_ids(cards, is_kept, ids)
+    if (has_own_section(cards, is_kept, ids)) return
     do i = 1, size(cards)
-      if (cards(i)%keyword == 'ELSET' .and. .not. cards(i)%has('GENERATE')) then
+      if (.not. is_kept(i)) then
+        call cards(i)%ignore(faults, 'elements '//cards(i)%word('TYPE')//' ('// &
+                             as_text(cards(i)%num_lines)//') have no effect and are left out: '// &
+                             'only solids carry loads')
+      else if (is_listed_set(cards(i))) then
         call shorten_set(cards(i), ids, is_kept(i))
       end if
     end do
@@ -59,12 +64,43 @@ contains
     if (has_solids) has_solids = index(this%word('TYPE'), 'C3D') == 1
   end function has_solids
 
-  !> Numbers of the elements, sorted; notes each card.
-  subroutine find_ids(cards, is_kept, ids, faults)
+  !> Whether a *SOLID SECTION belongs to a set that holds none but such elements.
+  logical function has_own_section(cards, is_kept, ids) result(has_one)
+    type(card), intent(in) :: cards(:)
+    logical, intent(in) :: is_kept(:)
+    integer, intent(in) :: ids(:) !< of these elements, sorted
+    logical :: is_of_them, is_of_others, stays
+    integer :: i, j
+    has_one = .true.
+    do i = 1, size(cards)
+      if (cards(i)%keyword /= 'SOLID SECTION') cycle
+      is_of_them = .false.
+      is_of_others = .false.
+      do j = 1, size(cards)
+        if (cards(j)%keyword /= 'ELEMENT' .and. cards(j)%keyword /= 'ELSET') cycle
+        if (cards(j)%word('ELSET') /= cards(i)%word('ELSET')) cycle
+        stays = is_kept(j)
+        if (is_listed_set(cards(j))) then
+          stays = len(another_member(cards(j), ids)) > 0 .or. .not. names_any(cards(j), ids)
+        end if
+        is_of_them = is_of_them .or. .not. stays
+        is_of_others = is_of_others .or. stays
+      end do
+      if (is_of_them .and. .not. is_of_others) return
+    end do
+    has_one = .false.
+  end function has_own_section
+
+  logical function is_listed_set(this)
+    type(card), intent(in) :: this
+    is_listed_set = this%keyword == 'ELSET' .and. .not. this%has('GENERATE')
+  end function is_listed_set
+
+  !> Numbers of the elements, sorted.
+  subroutine find_ids(cards, is_kept, ids)
     type(card), intent(in) :: cards(:)
     logical, intent(inout) :: is_kept(:)
     integer, allocatable, intent(out) :: ids(:)
-    type(diagnostic_list), intent(inout) :: faults
     integer :: i, line, num
     allocate (ids(0))
     num = 0
@@ -74,9 +110,6 @@ contains
       do line = 1, cards(i)%num_lines
         if (cards(i)%is_integer_at(line, 1)) call append(ids, num, [cards(i)%integer_at(line, 1)])
       end do
-      call cards(i)%ignore(faults, 'elements '//cards(i)%word('TYPE')//' ('// &
-                           as_text(cards(i)%num_lines)//') have no effect and are left out: '// &
-                           'only solids carry loads')
     end do
     ids = sorted_unique(ids(:num))
   end subroutine find_ids
@@ -89,21 +122,11 @@ contains
     logical, intent(inout) :: is_kept
     type(card_rewriter) :: words
     character(:), allocatable :: other
-    integer :: line, field, num_out
-    num_out = 0
-    other = ''
-    do line = 1, this%num_lines
-      do field = 1, this%num_fields(line)
-        if (this%is_empty_at(line, field)) cycle
-        if (is_out(this, line, field, ids)) then
-          num_out = num_out + 1
-        else
-          other = this%text_at(line, field)
-        end if
-      end do
-    end do
-    is_kept = num_out == 0 .or. other /= ''
-    if (num_out == 0 .or. .not. is_kept) return
+    integer :: line, field
+    if (.not. names_any(this, ids)) return
+    other = another_member(this, ids)
+    is_kept = len(other) > 0
+    if (.not. is_kept) return
     call words%begin(this)
     do line = 1, this%num_lines
       do field = 1, this%num_fields(line)
@@ -112,6 +135,33 @@ contains
     end do
     call words%finish(this)
   end subroutine shorten_set
+
+  !> Whether a set holds the number of such an element.
+  logical function names_any(this, ids)
+    type(card), intent(in) :: this
+    integer, intent(in) :: ids(:)
+    integer :: line, field
+    names_any = .false.
+    do line = 1, this%num_lines
+      names_any = names_any .or. &
+                  any([(is_out(this, line, field, ids), field=1, this%num_fields(line))])
+    end do
+  end function names_any
+
+  !> The last member of a set that is not the number of such an element; '' where none is left.
+  function another_member(this, ids) result(other)
+    type(card), intent(in) :: this
+    integer, intent(in) :: ids(:)
+    character(:), allocatable :: other
+    integer :: line, field
+    other = ''
+    do line = 1, this%num_lines
+      do field = 1, this%num_fields(line)
+        if (this%is_empty_at(line, field)) cycle
+        if (.not. is_out(this, line, field, ids)) other = this%text_at(line, field)
+      end do
+    end do
+  end function another_member
 
   !> Whether a field is the number of an element that is left out.
   logical function is_out(this, line, field, ids)

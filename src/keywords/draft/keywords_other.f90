@@ -86,6 +86,13 @@ contains
     call add_ignored(list, 'PRINT', 'Chooses what Abaqus prints while it runs.')
     call add_ignored(list, 'FILE FORMAT', 'Format of the results file of Abaqus.')
     call add_ignored(list, 'TIME POINTS', 'Times of output.')
+    call add_ignored(list, 'FILE OUTPUT', 'Opens requests for the results file of Abaqus.')
+    call add_ignored(list, 'SURFACE OUTPUT', 'Results of surfaces.')
+    call add_ignored(list, 'INTEGRATED OUTPUT', 'Forces of a section.')
+    call add_ignored(list, 'INTEGRATED OUTPUT SECTION', 'The section of *INTEGRATED OUTPUT.')
+    call add_ignored(list, 'RADIATION OUTPUT', 'Results of radiation.')
+    call add_ignored(list, 'DIAGNOSTICS', 'Messages of Abaqus.')
+    call add_ignored(list, 'PHYSICAL CONSTANTS', 'Constants of radiation and gravitation.')
   end subroutine add_ignored_keywords
 
   !> Adds a keyword without effect.

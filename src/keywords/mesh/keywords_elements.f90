@@ -2,10 +2,12 @@
 module keywords_elements
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
+  use element_advice, only: advise, num_nodes_of_type
   use element_catalogue, only: element_kinds, find_element_kind
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_word
   use keywords_nodes, only: fault_twice, positions
   use kinds, only: rk
+  use nearest_words, only: nearest_word
   use model_draft, only: draft
   use write_text, only: as_text
   implicit none
@@ -14,6 +16,7 @@ module keywords_elements
 
   character, parameter :: nl = new_line('a')
   integer, parameter :: most_nodes = 8 !< of an element
+  integer, parameter :: no_section_needed = -1 !< elements of an unknown type
 
 contains
 
@@ -38,9 +41,8 @@ contains
       kinds = kinds//' | '//trim(element_kinds(i)%name)
     end do
     allocate (spec%parameters, source=[ &
-              field('TYPE', kind_choice, 'linear hexahedron, joint or interface; for C3D6: '// &
-                    'C3D8 with nodes 1,2,3,3,4,5,6,6', choices=kinds, &
-                    is_required=.true.), &
+              field('TYPE', kind_choice, 'linear hexahedron, joint or interface', choices=kinds, &
+                    is_required=.true., is_checked_later=.true.), &
               field('ELSET', kind_word, 'an element set to which these elements are added')])
     allocate (spec%columns, source=[ &
               field('id', kind_integer, 'number of the element', is_required=.true., &
@@ -86,11 +88,48 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    integer :: line, first, next, element, kind, wanted, nodes(most_nodes)
-    logical :: is_right
+    type(diagnostic_list) :: dropped
+    integer :: kind
     kind = find_element_kind(this%word('TYPE'))
-    wanted = most_nodes
-    if (kind > 0) wanted = element_kinds(kind)%num_nodes
+    if (kind > 0) then
+      call read_lines(this, element_kinds(kind)%num_nodes, model, faults)
+    else
+      if (this%has('TYPE')) call fault_type(this, faults)
+      ! Their numbers and sets exist, so that no other fault follows from this one.
+      call read_lines(this, num_nodes_of_type(this%word('TYPE'), this%num_fields(1) - 1), model, &
+                      dropped)
+    end if
+  end subroutine read_elements
+
+  !> Says what an element of other programs is and what to mesh instead.
+  subroutine fault_type(this, faults)
+    type(card), intent(in) :: this
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: what, instead
+    integer :: i
+    call advise(this%word('TYPE'), what, instead)
+    if (what /= '') then
+      call this%fault_parameter(faults, 'TYPE', "TYPE: found '"//this%text('TYPE')// &
+                                "', "//what, instead)
+      return
+    end if
+    instead = trim(element_kinds(1)%name)
+    do i = 2, size(element_kinds)
+      instead = instead//', '//trim(element_kinds(i)%name)
+    end do
+    call this%fault_parameter(faults, 'TYPE', "TYPE: found '"//this%text('TYPE')//"'", &
+                              'linear hexahedron, joint or interface, one of '//instead, &
+                              nearest_word(this%text('TYPE'), element_kinds%name))
+  end subroutine fault_type
+
+  !> The elements of the data lines, and their set.
+  subroutine read_lines(this, wanted, model, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: wanted !< nodes of an element
+    type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: line, first, next, element, nodes(most_nodes)
+    logical :: is_right
     first = model%problem%mesh%num_elements + 1
     line = 1
     do while (line <= this%num_lines)
@@ -102,7 +141,7 @@ contains
       call model%element_sets%add(this%word('ELSET'), &
                                   positions(first, model%problem%mesh%num_elements))
     end if
-  end subroutine read_elements
+  end subroutine read_lines
 
   !> Collects the nodes of the element whose data begin at `line`.
   subroutine read_nodes_of_element(this, line, wanted, model, faults, nodes, next, is_right)
@@ -111,10 +150,10 @@ contains
     integer, intent(in) :: wanted !< nodes of the element
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    integer, intent(out) :: nodes(most_nodes) !< positions, then zeros
+    integer, intent(out) :: nodes(most_nodes) !< positions, then zeros; the first ones of more
     integer, intent(out) :: next !< the line after the element
     logical, intent(out) :: is_right
-    integer :: found, field
+    integer :: found, field, node
     found = 0
     nodes = 0
     field = 2
@@ -125,7 +164,8 @@ contains
       do field = field, this%num_fields(next)
         found = found + 1
         if (found > wanted) exit
-        call read_node_of_element(this, next, field, model, faults, nodes(found), is_right)
+        call read_node_of_element(this, next, field, model, faults, node, is_right)
+        if (found <= most_nodes) nodes(found) = node
       end do
       if (found > wanted) exit
       next = next + 1
@@ -190,6 +230,7 @@ contains
     model%problem%mesh%element_type(element) = this%word('TYPE')
     if (find_element_kind(this%word('TYPE')) == 0) then ! reported; a solid avoids more faults
       model%problem%mesh%element_type(element) = element_kinds(1)%name
+      model%problem%mesh%section_of_element(element) = no_section_needed
     end if
     model%problem%mesh%nodes(:, element) = nodes
     model%element_origin(element) = model%here(line)

@@ -24,15 +24,16 @@ module keywords_output
                              'job.h5. The request stays for the next steps until a '// &
                              'step has its own.'
   !> Of *NODE FILE and *EL FILE in CalculiX, of *NODE OUTPUT and *ELEMENT OUTPUT in Abaqus.
-  character(16), parameter :: idle_of_files(11) = [ &
+  character(16), parameter :: idle_of_files(14) = [ &
                               'NSET            ', 'ELSET           ', 'GLOBAL          ', &
                               'OUTPUT          ', 'OUTPUT ALL      ', 'TOTALS          ', &
                               'TIME POINTS     ', 'LAST ITERATIONS ', 'CONTACT ELEMENTS', &
-                              'POSITION        ', 'DIRECTIONS      ']
-  character(16), parameter :: idle_of_output(7) = [ &
+                              'POSITION        ', 'DIRECTIONS      ', 'FREQUENCYF      ', &
+                              'LAST MODE       ', 'MODE            ']
+  character(16), parameter :: idle_of_output(8) = [ &
                               'OP              ', 'NAME            ', 'MODE LIST       ', &
                               'TIME MARKS      ', 'FILTER          ', 'SENSOR          ', &
-                              'TIME POINTS     ']
+                              'TIME POINTS     ', 'FREQUENCYF      ']
 
 contains
 
@@ -44,6 +45,7 @@ contains
     call add_frequency(spec, choices_of('NODE FILE'))
     call add_idle_parameters(spec, idle_of_files)
     spec%checks_own_data = .true.
+    spec%asks_for_output = .true.
   end subroutine describe_node_file
 
   subroutine describe_el_file(spec)
@@ -55,6 +57,7 @@ contains
     call add_frequency(spec, choices_of('EL FILE'))
     call add_idle_parameters(spec, idle_of_files)
     spec%checks_own_data = .true.
+    spec%asks_for_output = .true.
   end subroutine describe_el_file
 
   subroutine describe_output(spec)
@@ -77,6 +80,7 @@ contains
                        field('TIME INTERVAL', kind_real, 'time between outputs, in place of '// &
                              'FREQUENCY', 's', lowest=0.0_rk, excludes_lowest=.true.)]
     call add_idle_parameters(spec, idle_of_output)
+    spec%asks_for_output = .true.
   end subroutine describe_output
 
   subroutine read_output(this, model, faults)

@@ -88,8 +88,10 @@ contains
     allocate (spec%parameters, source=[ &
               field('NSET', kind_word, 'the nodes; without it nothing is printed')])
     call add_frequency(spec, choices_of(spec%name))
-    call add_idle_parameters(spec, ['GLOBAL     ', 'TOTALS     ', 'SUMMARY    ', 'TIME POINTS'])
+    call add_idle_parameters(spec, ['GLOBAL     ', 'TOTALS     ', 'SUMMARY    ', 'TIME POINTS', &
+                                    'FREQUENCYF '])
     spec%checks_own_data = .true.
+    spec%asks_for_output = .true.
   end subroutine describe_node_print
 
   subroutine read_node_print(this, model, faults)
@@ -139,8 +141,9 @@ contains
               field('ELSET', kind_word, 'the elements; without it nothing is printed')])
     call add_frequency(spec, choices_of(spec%name))
     call add_idle_parameters(spec, ['POSITION   ', 'TOTALS     ', 'SUMMARY    ', 'GLOBAL     ', &
-                                    'TIME POINTS'])
+                                    'TIME POINTS', 'FREQUENCYF '])
     spec%checks_own_data = .true.
+    spec%asks_for_output = .true.
   end subroutine describe_el_print
 
   subroutine read_el_print(this, model, faults)
