@@ -45,6 +45,31 @@ def test_a_free_body_has_no_stress(keyway, element):
     assert (nodes["TEMP"] == 30.0).all()
 
 
+@pytest.mark.parametrize("holds_planes", [True, False], ids=["planes", "corners"])
+def test_a_large_free_body_has_no_stress(keyway, holds_planes):
+    """20 elements a side: 1e-12 of E alpha dT, but for two elements next to single supports.
+
+    The supports at three corners carry the round-off of the forces of all nodes (theory.md, 16.3).
+    """
+    n = 20
+    blocks = brick((n, n, n), (2.0, 2.0, 2.0))
+    inner = ~((blocks.x == 0.0) | (blocks.x == blocks.x.max(axis=0))).any(axis=1)
+    blocks.x[inner] += np.random.default_rng(7).uniform(-0.01, 0.01, (inner.sum(), 3))
+    held = statically(blocks)
+    if holds_planes:
+        held = "".join(node_set(f"{a}0", blocks.side("A", f"{a}0")) for a in "XYZ")
+        held += "*BOUNDARY\nX0, 1\nY0, 2\nZ0, 3\n"
+    run = keyway(model(blocks, held) + warm(30.0))
+    stress = np.abs(components(last_rows(run, "el_BODY"), "S")).reshape(n, n, n, -1).max(axis=-1)
+    if not holds_planes:
+        low, high = slice(None, 2), slice(-2, None)
+        corners = [(low, low, low), (high, low, low), (low, high, low)]
+        assert max(stress[c].max() for c in corners) < 1e-11 * YOUNG * STRAIN
+        for c in corners:
+            stress[c] = 0.0
+    assert stress.max() < 1e-12 * YOUNG * STRAIN
+
+
 @FORMULATIONS
 def test_a_body_that_is_held(keyway, element):
     """-E alpha dT/(1 - 2 nu) in all directions; its energy is the work of the temperature."""
