@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 from harness import ROOT
 from keyway.batch.cases import BatchError, cases_of_table
+from keyway.batch.lock import lock_of
 from keyway.commands import batch
 
 TEMPLATE = """** A block, friction {FRICTION}, unknown {here}
@@ -52,10 +53,16 @@ def test_a_column_names_the_cases(place):
     [
         ("FRICTION\n0.6\n", r"dam\.inp:4: \{RECORD\} is no column of .*one of FRICTION"),
         ("FRICTION,RECORD,E\n1,a,2\n", r"no line of .*dam\.inp has \{E\}"),
-        ("FRICTION,RECORD\n0.6\n", r"values\.csv: row 1: 1 values, expected 2"),
-        ("FRICTION,RECORD\n0.6,\n", r"values\.csv: row 1: 1 values, expected 2"),
-        ("FRICTION,FRICTION\n1,2\n", r"values\.csv:1: expected different names"),
+        ("FRICTION,RECORD\n0.6\n", r"values\.csv:2: 1 values; expected 2: FRICTION, RECORD"),
+        ("FRICTION,RECORD\n0.6,\n", r"values\.csv:2: 1 values; expected 2: FRICTION, RECORD"),
+        (
+            "FRICTION,FRICTION\n1,2\n",
+            r"values\.csv:1: found 'FRICTION,FRICTION'; expected",
+        ),
+        ("FRICTION;RECORD\n1;a\n", r"values\.csv:1: found 'FRICTION;RECORD'; expected .* commas"),
+        ("FRICTION,RECORD\n\n1,a\n2,\n", r"values\.csv:4: 1 values"),
         ("FRICTION,RECORD\n", "expected a header line and a line for each case"),
+        ("\0", r"values\.csv' is no CSV file|expected a header line"),
         ("case,FRICTION,RECORD\na,1,x\na,2,x\n", "the case 'a' is there twice"),
         ("case,FRICTION,RECORD\n../a,1,x\n", r"'\.\./a' is no name of a case"),
     ],
@@ -101,3 +108,28 @@ def test_usage(tmp_path, capsys, program_path):
     words = [path, "--table", str(tmp_path / "v.csv"), "-o", str(tmp_path / "o")]
     assert batch.main([*words, "--program", str(program_path)]) == 2
     assert "no line of" in capsys.readouterr().err
+
+
+def test_a_column_of_numbers_and_words(program_path, tmp_path, monkeypatch, capsys):
+    """One case has a word where a number belongs: it fails alone, and both tables hold it."""
+    monkeypatch.chdir(tmp_path)
+    deck = (ROOT / "input/block_on_joint.inp").read_text()
+    (tmp_path / "block.inp").write_text(deck.replace("FRICTION=0.6", "FRICTION={FRICTION}"))
+    (tmp_path / "values.csv").write_text("FRICTION\r\nnone\r\n0.6\r\n")
+    words = ["block.inp", "--table", "values.csv", "-o", "out", "--program", str(program_path)]
+    assert batch.main([*words, "--", "-q"]) == 1
+    for table in (pd.read_csv("out/batch.csv"), pd.read_parquet("out/batch.parquet")):
+        assert list(table["status"]) == ["bad deck", "finished"]
+        assert list(table["FRICTION"]) == ["none", "0.6"]
+    text = capsys.readouterr()
+    assert "block_001.inp:" in text.out
+    assert "wrote out/batch.csv" in text.err
+
+
+def test_two_batches_in_one_folder(tmp_path, capsys):
+    with lock_of(tmp_path / "out"):
+        assert batch.main([str(tmp_path / "a.inp"), "-o", str(tmp_path / "out")]) == 2
+        assert "another batch runs in" in capsys.readouterr().err
+    batch.main([str(tmp_path / "a.inp"), "-o", str(tmp_path / "out")])
+    assert "there is no deck" in capsys.readouterr().err
+    assert list((tmp_path / "out").iterdir()) == []

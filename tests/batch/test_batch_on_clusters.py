@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import dask
 import pytest
 from dask_cluster import Cluster
 from harness import ROOT
@@ -133,5 +134,6 @@ def test_a_worker_of_dask_is_lost(place, cluster):
 
 def test_no_scheduler_is_named(place, capsys):
     words = template(place, "ok {VALUE}", ["1"])
-    assert batch.main([*words, "--on", "dask://127.0.0.1:9"]) == 2
+    with dask.config.set({"distributed.comm.timeouts.connect": "1s"}):
+        assert batch.main([*words, "--on", "dask://127.0.0.1:9"]) == 2
     assert "127.0.0.1:9" in capsys.readouterr().err

@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 import re
 import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from harness import ROOT
+from installation import Installed
 
 PAGES = ROOT / "docs"
 BLOCK = re.compile(r"^```(\w+)(?: title=\"([^\"]+)\")?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -19,20 +19,14 @@ BLOCK = re.compile(r"^```(\w+)(?: title=\"([^\"]+)\")?\n(.*?)^```$", re.MULTILIN
 class Tutorial:
     """A page that is followed in a folder: files first, commands in their order."""
 
-    def __init__(self, folder: Path, prefix: Path, site: Path):
+    def __init__(self, folder: Path, prefix: Path, installed: Installed):
         self.folder = folder
-        self.prefix = prefix
-        scripts = folder / "scripts"
-        scripts.mkdir()
-        (scripts / "python").write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
-        (scripts / "python").chmod(0o755)
-        places = [prefix / "bin", site / "bin", scripts]
+        self.prefix = folder / "opt"  # the names of both places hold blanks
+        self.prefix.symlink_to(prefix)
+        places = [f"{prefix}/bin", str(installed.scripts), "/usr/bin", "/bin"]
         self.environment = {
-            "PATH": os.pathsep.join([*map(str, places), "/usr/bin", "/bin"]),
-            "PYTHONPATH": str(site),
-            "HOME": str(folder),
-            "MPLBACKEND": "Agg",
-        }
+            **installed.environment, "PATH": os.pathsep.join(places), "HOME": str(folder)
+        }  # fmt: skip
 
     def follow(self, page: str, changed: Callable[[str], str] = str) -> str:
         """Run a page, its files and commands after a change; its output."""
@@ -55,7 +49,7 @@ class Tutorial:
 
 @pytest.fixture
 def tutorial(prefix, installed, tmp_path) -> Tutorial:
-    return Tutorial(tmp_path, prefix, installed.place)
+    return Tutorial(tmp_path, prefix, installed)
 
 
 def test_first_dam(tutorial):
@@ -97,7 +91,6 @@ def test_fragility(tutorial):
     assert (tutorial.folder / "fragility/fragility.png").stat().st_size > 10_000
 
 
-@pytest.mark.full
 def test_cracking_dam(tutorial):
     text = tutorial.follow("tutorials/cracking_dam.md")
     error = float(re.search(r"^error of the balance (\S+)", text, re.M)[1])

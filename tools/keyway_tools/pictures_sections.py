@@ -28,7 +28,7 @@ def plot_section(faces: Faces, step: Step, name: str, scales: Scales, sheet: She
     body = faces.grid()
     body.point_data["value"] = np.nan_to_num(shown.scale * values)
     view = _view_of_section(faces, place)
-    cut = _cut(body, view, faces.results.x[place], 1e-4 * faces.size)
+    cut = _cut(body, view, faces.results.x[place], faces.size)
     if cut is None:
         return []
     limits = scales.limits(name, values[faces.nodes])
@@ -42,22 +42,25 @@ def plot_section(faces: Faces, step: Step, name: str, scales: Scales, sheet: She
     return compose(Drawing({"": picture}, limits, shown.colours, label, heading, marks), sheet)
 
 
-def _cut(body: pv.UnstructuredGrid, view: View, x: np.ndarray, aside: float) -> pv.PolyData | None:
+def _cut(body: pv.UnstructuredGrid, view: View, x: np.ndarray, size: float) -> pv.PolyData | None:
     """The body's section at x; a little beside, as a plane on faces of elements cuts nothing.
 
+    At an end of the dam this is a sliver of a corner: then the section lies further inside.
     Blocks between joints are separate parts. What is further away than the dam is high is another
     place of a curved dam.
     """
     found = []
-    for side in (aside, -aside):
-        cut = body.slice(normal=view.towards, origin=x + side * view.towards)
+    for aside in (1e-4 * size, -1e-4 * size, 0.02 * size, -0.02 * size):
+        cut = body.slice(normal=view.towards, origin=x + aside * view.towards)
         if cut.n_cells:
             near = np.abs((cut.cell_centers().points - x) @ view.right) < np.ptp(body.points[:, 2])
             if not near.any():
                 continue
             cut = cut.extract_cells(near).extract_surface(algorithm="dataset_surface")
             found.append((float(np.linalg.norm(cut.points - x, axis=1).min()), cut))
-    return min(found, key=lambda pair: pair[0])[1] if found else None
+    whole = max((cut.area for _, cut in found), default=0.0)
+    enough = [pair for pair in found if pair[1].area >= 0.5 * whole]
+    return min(enough, key=lambda pair: pair[0])[1] if enough else None
 
 
 def _view_of_section(faces: Faces, place: int) -> View:

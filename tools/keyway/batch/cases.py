@@ -98,20 +98,33 @@ def _filled(text: str, values: dict[str, str]) -> str:
 
 
 def read_values(table: Path) -> tuple[list[str], list[dict[str, str]]]:
-    """Columns and rows of a table. Raises OSError and BatchError."""
-    with table.open(newline="", encoding="utf-8-sig") as file:
-        lines = [[cell.strip() for cell in line] for line in csv.reader(file)]
-    lines = [line for line in lines if any(line)]
+    """Columns and rows of a table. Raises BatchError, with file and line."""
+    lines = _lines_of(table)
     if len(lines) < 2:
         raise BatchError(f"{table}: expected a header line and a line for each case")
-    header = lines[0]
+    number, header = lines[0]
     if len(set(header)) < len(header) or not all(re.fullmatch(r"\w+", name) for name in header):
-        raise BatchError(f"{table}:1: expected different names of letters, digits and _")
-    for number, line in enumerate(lines[1:], 2):
+        fault = f"found '{','.join(header)}'; expected the names of the columns, with commas in "
+        fault += "between, each once, of letters, digits and _"
+        raise BatchError(f"{table}:{number}: {fault}")
+    for number, line in lines[1:]:
         if len(line) != len(header) or not all(line):
-            fault = f"{len([cell for cell in line if cell])} values, expected {len(header)}"
-            raise BatchError(f"{table}: row {number - 1}: {fault}")
-    return header, [dict(zip(header, line, strict=True)) for line in lines[1:]]
+            fault = f"{len([cell for cell in line if cell])} values; expected {len(header)}"
+            raise BatchError(f"{table}:{number}: {fault}: {', '.join(header)}")
+    return header, [dict(zip(header, line, strict=True)) for _, line in lines[1:]]
+
+
+def _lines_of(table: Path) -> list[tuple[int, list[str]]]:
+    """The lines of a CSV file that are not blank, with their numbers from 1."""
+    try:
+        with table.open(newline="", encoding="utf-8-sig") as file:
+            reader = csv.reader(file)
+            lines = [(reader.line_num, [cell.strip() for cell in line]) for line in reader]
+    except OSError as error:
+        raise BatchError(f"cannot read '{table}': {error.strerror}") from error
+    except (ValueError, csv.Error) as error:
+        raise BatchError(f"'{table}' is no CSV file in UTF-8: {error}") from error
+    return [(number, line) for number, line in lines if any(line)]
 
 
 def _places(text: str) -> Iterator[tuple[int, str]]:

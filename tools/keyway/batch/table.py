@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,8 +20,9 @@ def cell(value: float | None, form: str) -> str:
 
 
 def table_of(records: list[Record]) -> str:
-    """One line for each run."""
-    rows: list[tuple[str, ...]] = [("deck", "status", "time [s]", "memory [MB]", *EXTREMES)]
+    """One line for each run; extremes that a run has."""
+    shown = [name for name in EXTREMES if any(r.extremes.get(name) is not None for r in records)]
+    rows: list[tuple[str, ...]] = [("deck", "status", "time [s]", "memory [MB]", *shown)]
     for record in records:
         rows.append(
             (
@@ -28,7 +30,7 @@ def table_of(records: list[Record]) -> str:
                 record.status + (" (kept)" if record.was_kept else ""),
                 cell(record.wall_s, ".1f"),
                 cell(record.peak_memory_mb, ".0f"),
-                *(cell(record.extremes.get(name), ".4g") for name in EXTREMES),
+                *(cell(record.extremes.get(name), ".4g") for name in shown),
             )
         )
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
@@ -76,8 +78,8 @@ def result_table(cases: list[Case], records: list[Record]) -> ResultTable:
     smallest, anywhere), `displacement`, `opening_NAME` and `slip_NAME` of each joint.
     """
     found = []
-    for case, record in zip(cases, records, strict=True):
-        values = {name: _number(text) for name, text in case.values.items() if name != NAME}
+    given = _values([case.values for case in cases])
+    for case, record, values in zip(cases, records, given, strict=True):
         run = {
             "status": record.status, "exit_code": record.exit_code, "wall_s": record.wall_s,
             "processor_s": record.processor_s, "peak_memory_mb": record.peak_memory_mb,
@@ -108,9 +110,18 @@ def _anywhere(places: Any) -> float | None:
     return None if value is None else float(value)
 
 
-def _number(text: str) -> float | str:
-    """A value of the table: a number where it is one."""
+def _values(rows: list[dict[str, str]]) -> list[dict[str, Any]]:
+    """The values of the table of cases: a column is numbers where all its values are."""
+    names = [name for name in (rows[0] if rows else {}) if name != NAME]
+    columns: dict[str, Sequence[float | str]] = {}
+    for name in names:
+        texts = [row[name] for row in rows]
+        columns[name] = _numbers(texts) or texts
+    return [{name: columns[name][k] for name in names} for k in range(len(rows))]
+
+
+def _numbers(column: list[str]) -> list[float] | None:
     try:
-        return float(text)
+        return [float(text) for text in column]
     except ValueError:
-        return text
+        return None

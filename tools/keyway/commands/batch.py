@@ -28,6 +28,7 @@ from keyway_tools.deck_runs import Record
 from keyway_tools.program import given_program
 
 from keyway.batch.cases import BatchError, Case, cases_of_decks, cases_of_table
+from keyway.batch.lock import lock_of
 from keyway.batch.on_dask import run_on_dask
 from keyway.batch.on_local import run_locally
 from keyway.batch.on_slurm import request_for, run_on_slurm, script_of
@@ -128,19 +129,26 @@ def find_cases(options: argparse.Namespace) -> list[Case]:
     return cases_of_decks(options.decks, options.o)
 
 
+def run_batch(options: argparse.Namespace) -> int:
+    """Run the cases and write their tables; the exit code."""
+    cases = find_cases(options)
+    program = given_program(options.program)
+    plan = Plan.of(program, options.options, options.timeout, options.again, cases)
+    records, is_interrupted = run_plan(plan, options)
+    report(records, options.json)
+    for path in result_table(cases, records).write(options.o):
+        say(f"wrote {path}")
+    if is_interrupted:
+        return EXIT_INTERRUPTED
+    return 0 if all(record.status == "finished" for record in records) else 1
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Run the decks and print the table."""
     options = parse(sys.argv[1:] if arguments is None else arguments)
     try:
-        cases = find_cases(options)
-        program = given_program(options.program)
-        plan = Plan.of(program, options.options, options.timeout, options.again, cases)
-        records, is_interrupted = run_plan(plan, options)
+        with lock_of(options.o):
+            return run_batch(options)
     except (OSError, ValueError, BatchError) as error:
         print(f"batch: {error}", file=sys.stderr)
         return 2
-    report(records, options.json)
-    result_table(cases, records).write(options.o)
-    if is_interrupted:
-        return EXIT_INTERRUPTED
-    return 0 if all(record.status == "finished" for record in records) else 1
