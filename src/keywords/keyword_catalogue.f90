@@ -47,7 +47,7 @@ module keyword_catalogue
   private
   public :: list_keywords
 
-  integer, parameter :: most_keywords = 150
+  integer, parameter :: most_keywords = 200
 
 contains
 

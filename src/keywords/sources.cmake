@@ -29,6 +29,7 @@ set(sources
   draft/keywords_other.f90
   draft/model_draft.f90
   draft/named_things.f90
+  draft/other_step_words.f90
   finish_model.f90
   heat/finish_heat.f90
   heat/keywords_expansion.f90

@@ -81,3 +81,44 @@ def test_one_temperature_changes_nothing(keyway):
         text = MODEL.replace("*AMPLITUDE", concrete.format(**words) + "*AMPLITUDE")
         fields.append(last_field(keyway(text + step, name=name), "U"))
     assert np.array_equal(*fields)
+
+
+def test_a_record_that_is_equally_spaced(keyway):
+    """Values every 0.05 s from 0.1 s on are the pairs of the same numbers."""
+    values = [0.3, -1.2, 2.0, 0.7, -0.4, 0.0]
+    pairs = ", ".join(f"{0.1 + 0.05 * k}, {v}" for k, v in enumerate(values))
+    spaced = "DEFINITION=EQUALLY SPACED, FIXED INTERVAL=0.05, BEGIN=0.1\n"
+    spaced += ", ".join(map(str, values[:4])) + "\n" + ", ".join(map(str, values[4:]))
+    quake = "DEFINITION=TABULAR\n0., 0., 0.1, 1., 0.25, -2., 0.4, 0."
+    step = "*STEP\n*DYNAMIC, DIRECT, INITIAL=NO, APPLICATION=TRANSIENT FIDELITY\n0.01, 0.5\n"
+    step += "*BASE MOTION, DOF=1, AMPLITUDE=QUAKE\n*NODE PRINT, NSET=TOP\nU\n*END STEP\n"
+    one, other = (
+        keyway(MODEL.replace(quake, new) + step, name=name).csv("node_TOP")["U1"]
+        for name, new in (("pairs", "DEFINITION=TABULAR\n" + pairs), ("spaced", spaced))
+    )
+    assert np.abs(one).max() > 0
+    assert np.allclose(one, other, rtol=0, atol=1e-12 * np.abs(one).max())  # round-off of times
+
+
+def test_reference_length_of_concrete_is_noted(keyway):
+    """Abaqus converts openings of the damage with it, Keyway with the length of the element."""
+    concrete = """\
+*CONCRETE DAMAGED PLASTICITY{}
+36., 0.1, 1.16, 0.667, 0.
+*CONCRETE COMPRESSION HARDENING
+2e7, 0.
+3e7, 1e-3
+*CONCRETE TENSION STIFFENING, TYPE=DISPLACEMENT
+2e5, 0.
+2e3, 2e-4
+"""
+    step = "*STEP\n*STATIC\n0.1, 1.\n*DSLOAD\nUPSTREAM, HP, 6e4, 7., 0.\n*NODE FILE\nU\n*END STEP\n"
+    plain, noted = (
+        keyway(MODEL.replace("*AMPLITUDE", concrete.format(words) + "*AMPLITUDE") + step, name=name)
+        for name, words in (("plain", ""), ("noted", ", REF LENGTH=0.2"))
+    )
+    assert np.array_equal(last_field(plain, "U"), last_field(noted, "U"))
+    assert [note["why"] for note in noted.json["ignored_input"]] == [
+        "REF LENGTH has no effect: the length of each element turns an opening into a strain, "
+        "also for the damage"
+    ]

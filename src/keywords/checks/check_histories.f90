@@ -28,6 +28,7 @@ contains
     integer :: i, a
     step = steps_of_cards(model%cards)
     do i = 1, size(step)
+      if (is_keyword(model%cards(i), 'STEP')) cycle ! RAMP or STEP
       if (.not. model%cards(i)%has('AMPLITUDE')) cycle
       if (is_keyword(model%cards(i), 'BOUNDARY')) then
         if (first_displacement(model%cards(i)) == 0) then

@@ -27,7 +27,7 @@ contains
     type(text_numbers) :: used
     integer :: i, number
     do i = 1, size(model%cards)
-      if (is_keyword(model%cards(i), 'AMPLITUDE')) cycle
+      if (is_keyword(model%cards(i), 'AMPLITUDE') .or. is_keyword(model%cards(i), 'STEP')) cycle
       if (model%cards(i)%has('AMPLITUDE')) then
         call used%find_or_add(model%cards(i)%word('AMPLITUDE'), number)
       end if

@@ -39,7 +39,48 @@ contains
                      'a support along an axis n, *EQUATION n1 u1 + n2 u2 + n3 u3 = 0')
     call add_refused(list, 'ORIENTATION', 'Axes of a material.', 'a deck without it: '// &
                      'materials are the same in all directions')
+    call add_refused_procedures(list)
+    call add_refused_materials(list)
   end subroutine add_refused_keywords
+
+  !> Procedures of other programs.
+  subroutine add_refused_procedures(list)
+    type(keyword_list), intent(inout) :: list
+    character(*), parameter :: heat = '*TEMPERATURE with temperatures from elsewhere'
+    character(*), parameter :: motion = '*DYNAMIC, REDUCED with a history of the motion'
+    call add_refused(list, 'VISCO', 'A static step with creep.', '*STATIC')
+    call add_refused(list, 'GEOSTATIC', 'Equilibrium of initial stresses.', &
+                     '*STATIC with the weight')
+    call add_refused(list, 'BUCKLE', 'Buckling.', '*STATIC with small strains')
+    call add_refused(list, 'HEAT TRANSFER', 'Temperatures by conduction.', heat)
+    call add_refused(list, 'COUPLED TEMPERATURE-DISPLACEMENT', 'Temperatures and stresses.', heat)
+    call add_refused(list, 'UNCOUPLED TEMPERATURE-DISPLACEMENT', 'Temperatures, then stresses.', &
+                     heat)
+    call add_refused(list, 'MODAL DYNAMIC', 'Motion of modes.', motion)
+    call add_refused(list, 'STEADY STATE DYNAMICS', 'Harmonic motion.', motion)
+    call add_refused(list, 'RESPONSE SPECTRUM', 'Peaks of modes.', motion)
+    call add_refused(list, 'RANDOM RESPONSE', 'Motion by its spectrum.', motion)
+  end subroutine add_refused_procedures
+
+  !> Materials of other programs, and elements inside others.
+  subroutine add_refused_materials(list)
+    type(keyword_list), intent(inout) :: list
+    character(*), parameter :: law = '*PLASTIC, *CONCRETE DAMAGED PLASTICITY or *USER MATERIAL'
+    character(*), parameter :: bars = 'solids of a mean stiffness'
+    call add_refused(list, 'MOHR COULOMB', 'Soil and rock that yield.', law)
+    call add_refused(list, 'MOHR COULOMB HARDENING', 'Cohesion of *MOHR COULOMB.', law)
+    call add_refused(list, 'DRUCKER PRAGER', 'Soil and rock that yield.', law)
+    call add_refused(list, 'DRUCKER PRAGER HARDENING', 'Strength of *DRUCKER PRAGER.', law)
+    call add_refused(list, 'CONCRETE', 'Smeared cracks.', law)
+    call add_refused(list, 'BRITTLE CRACKING', 'Smeared cracks.', law)
+    call add_refused(list, 'CREEP', 'Strains that grow in time.', '*USER MATERIAL')
+    call add_refused(list, 'HYPERELASTIC', 'Rubber.', '*ELASTIC for small strains')
+    call add_refused(list, 'EMBEDDED ELEMENT', 'Bars inside solids.', bars)
+    call add_refused(list, 'REBAR', 'Bars inside solids.', bars)
+    call add_refused(list, 'SPRING', 'Stiffness of springs.', '*JOINT LAW with KN and KT')
+    call add_refused(list, 'DASHPOT', 'Damping of dashpots.', '*DAMPING')
+    call add_refused(list, 'MASS', 'Mass of points.', 'solids with a *DENSITY')
+  end subroutine add_refused_materials
 
   subroutine add_refused(list, name, meaning, way_out)
     type(keyword_list), intent(inout) :: list
@@ -86,6 +127,8 @@ contains
     call add_ignored(list, 'PRINT', 'Chooses what Abaqus prints while it runs.')
     call add_ignored(list, 'FILE FORMAT', 'Format of the results file of Abaqus.')
     call add_ignored(list, 'TIME POINTS', 'Times of output.')
+    call add_ignored(list, 'CONDUCTIVITY', 'Property of conduction.')
+    call add_ignored(list, 'SPECIFIC HEAT', 'Property of conduction.')
     call add_ignored(list, 'FILE OUTPUT', 'Opens requests for the results file of Abaqus.')
     call add_ignored(list, 'SURFACE OUTPUT', 'Results of surfaces.')
     call add_ignored(list, 'INTEGRATED OUTPUT', 'Forces of a section.')

@@ -9,6 +9,7 @@ module keywords_loads
   use enter_load, only: put_load
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real, kind_reference, &
                           kind_word
+  use keywords_other, only: add_idle_parameters
   use kinds, only: rk
   use load_pressure, only: pressure_load
   use model_draft, only: draft
@@ -30,6 +31,7 @@ contains
               field('OP', kind_choice, 'keep the loads of earlier steps, or clear them', &
                     default='MOD', choices='MOD | NEW'), &
               field('AMPLITUDE', kind_word, 'history that scales the loads')])
+    call add_idle_parameters(spec, ['FOLLOWER          ', 'CONSTANT RESULTANT'])
     spec%family = 'load'
     spec%place = 'step'
     spec%fewest_lines = 1

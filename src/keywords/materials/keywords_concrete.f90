@@ -46,7 +46,10 @@ contains
                     '17): the continuous weight of Lee and Fenves, '// &
                     'or the discontinuous switch of the paper; or ENERGY: '// &
                     'a split of the stress that creates no energy', &
-                    default='LEE-FENVES', choices='LEE-FENVES | SIGN | ENERGY')])
+                    default='LEE-FENVES', choices='LEE-FENVES | SIGN | ENERGY'), &
+              field('REF LENGTH', kind_real, 'of Abaqus, where it turns openings of the damage '// &
+                    'into strains; here the length of each element does', 'm', lowest=0.0_rk, &
+                    excludes_lowest=.true.)])
     allocate (spec%columns, source=[ &
               field('dilation', kind_real, 'dilation angle psi (Eq. 25); above atan 3/2 a '// &
                     'crack would also open sideways', &
@@ -70,6 +73,10 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer :: i
+    if (this%has('REF LENGTH')) then
+      call this%ignore(faults, 'REF LENGTH has no effect: the length of each element turns an '// &
+                       'opening into a strain, also for the damage')
+    end if
     call find_concrete(model, i)
     select type (one => model%material_requests(i)%item)
     type is (concrete_material)

@@ -6,6 +6,7 @@ module keywords_amplitude
   use deck_file, only: path_beside
   use history_file, only: number_file, read_at2_header, read_numbers
   use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_text, kind_word
+  use keywords_other, only: add_idle_parameters
   use kinds, only: rk
   use model_draft, only: draft
   use record_units, only: choices_of_units, factor_of_unit, find_own_factor
@@ -16,6 +17,7 @@ module keywords_amplitude
 
   character, parameter :: nl = new_line('a')
   integer, parameter :: num_at2_headers = 4 !< lines above the values of a PEER file
+  character(*), parameter :: by_pairs = 'TABULAR', by_interval = 'EQUALLY SPACED'
 
 contains
 
@@ -42,8 +44,14 @@ contains
                     'into m/s2; without UNIT values stay as they are, but an AT2 file is '// &
                     'turned by the unit that its header names', choices=choices_of_units), &
               field('SCALE', kind_real, 'factor of all values', '', '1'), &
-              field('DEFINITION', kind_choice, 'of Abaqus', default='TABULAR', choices='TABULAR'), &
-              field('VALUE', kind_choice, 'of Abaqus', default='RELATIVE', choices='RELATIVE')])
+              field('DEFINITION', kind_choice, 'of Abaqus: pairs, or values every FIXED '// &
+                    'INTERVAL', default='TABULAR', choices=by_pairs//' | '//by_interval), &
+              field('FIXED INTERVAL', kind_real, 'time between values that are EQUALLY SPACED', &
+                    's', lowest=0.0_rk, excludes_lowest=.true.), &
+              field('BEGIN', kind_real, 'time of the first of them', 's', '0'), &
+              field('VALUE', kind_choice, 'of Abaqus: factors of the loads', default='RELATIVE', &
+                    choices='RELATIVE')])
+    call add_idle_parameters(spec, ['SMOOTH'])
     allocate (spec%columns, source=[ &
               field('time', kind_real, 'time (or, with VALUES, a value)', 's'), &
               field('value', kind_real, 'value at that time')])
@@ -115,7 +123,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(amplitude), intent(inout) :: new
     real(rk), intent(inout) :: own_factor !< of the unit that only the file names
-    character(:), allocatable :: unit
+    character(:), allocatable :: unit, format
     real(rk) :: dt
     integer :: i, num_points
     if (size(numbers%values) == 0 .and. this%has('INPUT')) then
@@ -125,19 +133,16 @@ contains
       call this%fault(faults, 'the amplitude is empty', 'data lines or a file with numbers')
       return
     end if
+    call choose_format(this, faults, format, dt)
     if (this%has('DT') .and. this%word('FORMAT') /= 'VALUES') then
       call this%fault_parameter(faults, 'DT', 'DT has no effect with '//this%word('FORMAT'), &
                                 'DT only with FORMAT=VALUES')
     end if
-    select case (this%word('FORMAT'))
+    select case (format)
     case ('PAIRS')
       call shape_pairs(this, numbers, faults, new)
       return
-    case ('VALUES')
-      dt = this%real('DT')
-      if (.not. this%has('DT')) then
-        call this%fault(faults, 'VALUES without DT', 'DT, the time between values [s]')
-      end if
+    case ('VALUES') ! dt is known
     case default
       if (.not. this%has('INPUT')) then
         call this%fault_parameter(faults, 'FORMAT', 'AT2 without a file', 'INPUT=<file>')
@@ -154,8 +159,33 @@ contains
       end if
     end select
     new%value = numbers%values*this%real('SCALE')
-    new%time = [((i - 1)*dt, i=1, size(new%value))]
+    new%time = [(this%real('BEGIN') + (i - 1)*dt, i=1, size(new%value))]
   end subroutine shape_history
+
+  !> FORMAT, or what DEFINITION of Abaqus means by it, and the time between values.
+  subroutine choose_format(this, faults, format, dt)
+    type(card), intent(in) :: this
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable, intent(out) :: format
+    real(rk), intent(out) :: dt !< [s]
+    format = this%word('FORMAT')
+    dt = this%real('DT')
+    if (this%word('DEFINITION') == by_interval) then
+      format = 'VALUES'
+      dt = this%real('FIXED INTERVAL')
+      if (.not. this%has('FIXED INTERVAL')) then
+        call this%fault(faults, by_interval//' without FIXED INTERVAL', &
+                        'FIXED INTERVAL, the time between values [s]')
+      else if (this%has('FORMAT')) then
+        call this%fault_parameter(faults, 'FORMAT', 'FORMAT beside '//by_interval, 'one of them')
+      end if
+    else if (this%has('FIXED INTERVAL') .or. this%has('BEGIN')) then
+      call this%fault(faults, 'FIXED INTERVAL and BEGIN have no effect', &
+                      'DEFINITION='//by_interval//' with them')
+    else if (format == 'VALUES' .and. .not. this%has('DT')) then
+      call this%fault(faults, 'VALUES without DT', 'DT, the time between values [s]')
+    end if
+  end subroutine choose_format
 
   !> time, value, time, value, ...
   subroutine shape_pairs(this, numbers, faults, new)

@@ -15,6 +15,7 @@ module keywords_boundary
   public :: describe_boundary, read_boundary
 
   character, parameter :: nl = new_line('a')
+  character(*), parameter :: types = 'DISPLACEMENT | ACCELERATION'
   character(*), parameter :: support_names = 'ENCASTRE | PINNED | XSYMM | YSYMM | ZSYMM'
 
 contains
@@ -38,7 +39,7 @@ contains
               field('AMPLITUDE', kind_word, 'history of the values'), &
               field('TYPE', kind_choice, 'what is prescribed; ACCELERATION of all supports of '// &
                     'a direction is the motion of the base, results are relative to it', &
-                    default='DISPLACEMENT', choices='DISPLACEMENT | ACCELERATION')])
+                    default='DISPLACEMENT', choices=types, is_checked_later=.true.)])
     allocate (spec%columns, source=[ &
               field('node', kind_reference, 'the nodes', &
                     is_required=.true.), &
@@ -57,7 +58,7 @@ contains
     integer :: line, dof, first, last, history
     real(rk) :: value
     call find_amplitude(this, model, faults, history)
-    if (this%word('TYPE') == 'ACCELERATION') call check_acceleration(this, model, faults)
+    call check_type(this, model, faults)
     if (this%word('OP') == 'NEW') call model%supports%clear_old()
     do line = 1, this%num_lines
       call nodes_at(this, line, 1, model, faults, nodes)
@@ -75,6 +76,23 @@ contains
       end do
     end do
   end subroutine read_boundary
+
+  !> What is prescribed.
+  subroutine check_type(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    select case (this%word('TYPE'))
+    case ('DISPLACEMENT')
+    case ('ACCELERATION')
+      call check_acceleration(this, model, faults)
+    case default
+      call this%fault_parameter(faults, 'TYPE', "TYPE: found '"//this%text('TYPE')//"'", &
+                                'DISPLACEMENT, or ACCELERATION of all supports; for '// &
+                                'velocities DISPLACEMENT with the integral of their history', &
+                                nearest_choice(this%text('TYPE'), types))
+    end select
+  end subroutine check_type
 
   !> An acceleration has a history and belongs to a step.
   subroutine check_acceleration(this, model, faults)

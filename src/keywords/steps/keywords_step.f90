@@ -12,6 +12,8 @@ module keywords_step
   use kinds, only: rk
   use moved_supports, only: close_accelerations
   use model_draft, only: draft
+  use other_step_words, only: add_words_of_dynamic, add_words_of_static, add_words_of_step, &
+                              check_application, check_step_amplitude
   use step_plan, only: step_procedure
   use write_text, only: as_text
   implicit none
@@ -41,8 +43,7 @@ contains
                     'small; YES needs --small-strain', choices='NO | YES', may_be_bare=.true.), &
               field('PERTURBATION', kind_flag, 'of Abaqus: a step *FREQUENCY')])
     spec%parameters(2)%lowest = 1
-    call add_idle_parameters(spec, [character(13) :: 'UNSYMM', 'SOLVER', 'EXTRAPOLATION', &
-                                    'CONVERT SDI'])
+    call add_words_of_step(spec)
   end subroutine describe_step
 
   subroutine read_step(this, model, faults)
@@ -98,6 +99,7 @@ contains
     end if
     call check_base_motion(model, faults)
     call check_perturbation(model, faults)
+    call check_step_amplitude(model, faults)
     call close_accelerations(model, faults)
     call check_joint_forces(model, faults)
     call set_accuracy_limits(model, faults)
@@ -162,7 +164,7 @@ contains
                     '1e-5 of the duration, at most 1e-3 of the first increment'), &
               field('largest', kind_real, 'largest increment', 's', 'the duration')])
     spec%columns%lowest = 0.0_rk ! 0 is the default, as in CalculiX
-    call add_idle_parameters(spec, ['SOLVER'])
+    call add_words_of_static(spec)
   end subroutine describe_static
 
   subroutine want_positive(spec)
@@ -226,8 +228,7 @@ contains
                     '1e-3 of the increment'), &
               field('largest', kind_real, 'largest increment', 's', 'the increment')])
     call want_positive(spec)
-    call add_idle_parameters(spec, [character(20) :: 'SOLVER', 'NOHAF', 'HAFTOL', &
-                                    'HALFINC SCALE FACTOR'])
+    call add_words_of_dynamic(spec)
   end subroutine describe_dynamic
 
   subroutine read_dynamic(this, model, faults)
@@ -237,6 +238,7 @@ contains
     call begin_procedure(this, 'DYNAMIC', model, faults)
     call refuse(this, 'EXPLICIT', 'time integration is implicit', '*DYNAMIC without EXPLICIT, '// &
                 'with an increment of a tenth of the shortest period of interest', faults)
+    call check_application(this, faults)
     call choose_scheme(this, model, faults)
     model%now%alpha = this%real('ALPHA')
     call read_reduction(this, model, faults)
