@@ -25,7 +25,7 @@ contains
     end do
     if (.not. allocated(model%problem%stages%is_absent)) return
     model%problem%stages%material = model%problem%mesh%material_of_element
-    if (.not. faults%has_errors()) call complete_parts(model)
+    if (.not. faults%has_errors()) call complete_parts(model, faults)
   end subroutine complete_stages
 
   !> Stages change in static steps; models with *INTERFACE or with springs of ties have none.

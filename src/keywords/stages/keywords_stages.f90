@@ -68,6 +68,7 @@ contains
           call elements_at(this, line, at, model, faults, elements)
           call check_solids(this, line, at, elements, model, faults)
           call warn_of_no_change(this, line, at, elements, plan%is_absent(:, step), model, faults)
+          call warn_of_return(this, line, at, elements, step, model, faults)
           plan%is_absent(elements, step:) = this%has('REMOVE')
         end do
       end do
@@ -106,6 +107,30 @@ contains
                       as_text(model%problem%mesh%element_id(elements(k)))//' is '// &
                       trim(merge('absent', 'there ', this%has('REMOVE')))//' already')
   end subroutine warn_of_no_change
+
+  !> A set that leaves and comes, or comes and leaves, in one step.
+  subroutine warn_of_return(this, line, at, elements, step, model, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line, at
+    integer, intent(in) :: elements(:) !< positions
+    integer, intent(in) :: step !< number
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    logical :: was_absent(size(elements)), is_absent(size(elements))
+    integer :: k
+    associate (plan => model%problem%stages)
+      was_absent = .false.
+      if (step > 1) was_absent = plan%is_absent(elements, step - 1)
+      is_absent = plan%is_absent(elements, step)
+    end associate
+    k = findloc((was_absent .neqv. is_absent) .and. (is_absent .neqv. this%has('REMOVE')), &
+                .true., dim=1)
+    if (k == 0) return
+    call this%warn_at(faults, line, at, 'element '// &
+                      as_text(model%problem%mesh%element_id(elements(k)))//' leaves and '// &
+                      'comes in one step: that has no effect', &
+                      'two steps, where it is to come without stress')
+  end subroutine warn_of_return
 
   subroutine describe_grout(spec)
     type(keyword), intent(out) :: spec

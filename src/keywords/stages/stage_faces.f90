@@ -4,6 +4,8 @@
 !> joint by their slave node and their normal.
 module stage_faces
   use coupling_joint, only: lay_node_points
+  use deck_scan, only: is_keyword
+  use diagnostics, only: diagnostic_list
   use element_joint8, only: build_joint_points, find_attached_solids
   use errors, only: error_type
   use facet_segments, only: find_segments
@@ -30,22 +32,43 @@ module stage_faces
 contains
 
   !> Gives parts to the joints whose faces do not all come and go together.
-  subroutine complete_parts(model)
+  subroutine complete_parts(model, faults)
     type(draft), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: faults
     type(face_list) :: faces
     type(stage_parts) :: parts
     integer :: j
     if (.not. allocated(model%problem%stages%is_absent)) return
     do j = 1, size(model%problem%joints)
-      if (.not. model%problem%joints(j)%is_nodal) cycle
       call list_faces(model, j, faces)
       call number_parts(model%problem%stages%is_absent, faces, parts)
+      call warn_of_idle_grout(model, j, parts, faults)
+      if (.not. model%problem%joints(j)%is_nodal) cycle
       if (size(parts%is_there, 1) <= 1) cycle
       call share_areas(model, j, faces, parts)
       if (allocated(faces%segments%slave)) call list_rows(model, j, faces, parts)
       model%problem%joints(j)%parts = parts
     end do
   end subroutine complete_parts
+
+  !> Grout in a step in which no point of the joint is there.
+  subroutine warn_of_idle_grout(model, number, parts, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: number !< of the joint
+    type(stage_parts), intent(in) :: parts
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i, s
+    s = 0
+    do i = 1, size(model%cards)
+      if (is_keyword(model%cards(i), 'STEP')) s = s + 1
+      if (.not. is_keyword(model%cards(i), 'GROUT')) cycle
+      if (model%cards(i)%word('JOINT') /= model%joints(number)%name) cycle
+      if (any(parts%is_there(:, s))) cycle
+      call model%cards(i)%warn(faults, 'all points of the joint are absent in this step, '// &
+                               'so that the card has no effect', &
+                               'a *GROUT in a step in which both sides are there')
+    end do
+  end subroutine warn_of_idle_grout
 
   !> The faces of a joint and the solids behind them.
   subroutine list_faces(model, number, faces)
