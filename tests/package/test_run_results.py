@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
+import shutil
 import subprocess
 
 import keyway as package
 import numpy as np
 import pytest
 from harness import ROOT
+from keyway.commands.plot import main as plot
+from keyway_tools.report.__main__ import main as report
 
 INPUT = ROOT / "input"
 
@@ -54,6 +58,26 @@ def test_extremes(dam):
     assert [row.x, row.y, row.z] == given["x"]
     assert set(dam.envelopes["field"]) == {"OPENING", "U"}
     assert list(dam.displacement["field"].unique()) == ["U"]
+
+
+def test_a_run_that_is_not_at_its_end(dam, tmp_path, capsys):
+    """The program holds the lock of job.h5 while it runs: tables can be read, fields cannot."""
+    shutil.copytree(dam.folder, tmp_path / "dam")
+    with (tmp_path / "dam/block_on_joint.h5").open("r+") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        run = package.open(tmp_path / "dam")
+        assert len(run.energies) == len(dam.energies)
+        for ask in (run.fields, run.mesh, lambda: run.openings):
+            with pytest.raises(OSError, match="the run is not at its end yet"):
+                ask()
+        for command in (plot, report):
+            assert command([str(tmp_path / "dam")]) == 2
+            assert "block_on_joint.h5: the run is not at its end yet" in capsys.readouterr().err
+    assert len(run.openings) == len(dam.openings)
+    run.close()
+    (tmp_path / "dam/block_on_joint.h5").write_bytes(b"lost")
+    with pytest.raises(OSError, match=r"block_on_joint\.h5 cannot be read"):
+        package.open(tmp_path / "dam").fields()
 
 
 def test_fields_are_those_that_the_vtk_files_show(dam):

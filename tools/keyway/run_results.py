@@ -74,7 +74,7 @@ class RunResults:
 
     @property
     def file(self) -> h5py.File:
-        """The open file job.h5. Raises OSError where there is none."""
+        """The open file job.h5. Raises OSError where there is none or the run still writes it."""
         return self._results.file
 
     # histories
@@ -199,7 +199,7 @@ class RunResults:
 
         Raises LookupError for a joint that is not there, or without saved openings.
         """
-        saved = [one for one in self._saved if f"{one.path}/joints" in self.file]
+        saved = [one for one in self._saved if f"{one.path}/joints" in self.file] or self._saved
         return meshes.joint_mesh(self._results, meshes.nearest(saved, time, step), name)
 
     def close(self) -> None:

@@ -134,8 +134,17 @@ class Results:
 
     @cached_property
     def file(self) -> h5py.File:
-        """The fields, job.h5."""
-        return h5py.File(self.path(".h5"), "r")
+        """The fields, job.h5. Raises OSError, also while the run writes the file."""
+        path = self.path(".h5")
+        try:
+            return h5py.File(path, "r")
+        except FileNotFoundError:
+            raise
+        except BlockingIOError as error:
+            text = f"{path}: the run is not at its end yet; its fields and histories can be read "
+            raise OSError(f"{text}when it is, its tables (CSV) now") from error
+        except OSError as error:
+            raise OSError(f"{path} cannot be read: {error}") from error
 
     @cached_property
     def x(self) -> np.ndarray:

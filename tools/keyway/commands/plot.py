@@ -161,6 +161,16 @@ def main(arguments: list[str] | None = None) -> int:
             print(f"plot: no {what} in {folder}; give the folder of a run", file=sys.stderr)
             return 2
         found += [SiResults(folder, job, chosen.units) for job in jobs]
+    try:
+        draw(found, chosen)
+    except OSError as error:  # the run is not at its end, or the disk is full
+        print(f"plot: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+def draw(found: list[SiResults], chosen: argparse.Namespace) -> None:
+    """Draw the pictures of the jobs."""
     scales = chosen.range
     if chosen.is_shared:
         from keyway_tools.shared_scales import shared_scales
@@ -173,7 +183,6 @@ def main(arguments: list[str] | None = None) -> int:
         folder = chosen.output or results.folder
         folder.mkdir(parents=True, exist_ok=True)
         print_pictures(results, Sheet(folder, chosen.format, results.note), scales, chosen.animate)
-    return 0
 
 
 def print_pictures(results: SiResults, sheet: Sheet, scales: Scales, film: str | None) -> None:

@@ -56,6 +56,8 @@ def main(arguments: list[str] | None = None) -> int:
         ]
         for results in found:
             results.find("status")
+            if results.path(".h5").exists():
+                results.file.keys()  # a run that is not at its end is an error
     except (OSError, ValueError, KeyError) as error:
         print(f"report: {error}", file=sys.stderr)
         return 2
