@@ -130,6 +130,31 @@ def test_pressure_of_the_grout_stays_when_it_hardens(keyway, facets):
     assert max(e["error"] for e in energy[1:3]) < 1e-10
 
 
+@MESHES
+def test_grout_in_contact_without_penetration(keyway, facets):
+    """-(D E/L) before and after; under pressure p of the grout as well, which then hardens."""
+    p = 1e5
+    run = keyway(
+        bar("FRICTION=0.6, PENETRATION=1e-12", facets)
+        + move(-PUSH)
+        + move(-PUSH, "*GROUT, JOINT=J\n")
+        + move(-PUSH, f"*GROUT, JOINT=J, PRESSURE={p!r}\n")
+        + move(-PUSH)
+        + move(SAWN)
+        + move(SAWN, f"*GROUT, JOINT=J, PRESSURE={p!r}\n")
+        + move(SAWN)
+    )
+    traction, opening = ends_of_steps(run, "tn"), ends_of_steps(run, "opening")
+    pressed = -PUSH * E / L
+    for number, expected in enumerate((pressed, pressed, pressed + p, pressed, 0.0, 0.0, -p)):
+        assert traction[number] == pytest.approx(expected, rel=1e-6, abs=1e-6 * p)
+    assert np.abs(opening[:4]).max() < 2e-12
+    assert opening[4] == pytest.approx(SAWN, rel=1e-6)
+    assert opening[5] == pytest.approx(SAWN + p * L / E, rel=1e-6)
+    assert np.abs(opening[6]).max() < 2e-12
+    assert max(s["energy"]["error"] for s in run.json["steps"]) < 1e-6
+
+
 def test_cohesion_starts_with_the_grout(keyway):
     """Pressed by p and moved along the joint: mu p before, mu p + c after."""
     cohesion, friction = 3e5, 0.5

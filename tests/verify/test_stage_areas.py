@@ -147,6 +147,33 @@ def test_a_weightless_lift_comes_and_goes(keyway, joint):
     assert run.json["steps"][-1]["energy"]["error"] < 1e-9
 
 
+@JOINTS
+def test_lifts_on_contact_without_penetration(keyway, joint):
+    """The tractions are those of springs, and no face penetrates the other by 2 PENETRATION."""
+    both = press(B1=FIRST + SECOND, B2=SECOND)
+    run = keyway(
+        columns(joint, "FRICTION=0.6, PENETRATION=1e-12")
+        + step(
+            remove("A2", "B2") + press(B1=FIRST) + OUTPUT.replace("TRACTION", "OPENING, TRACTION")
+        )
+        + step(add("A2", "B2"))
+        + step(both)
+        + step(remove("A2", "B2"))
+    )
+    for number, (low, middle, high) in {
+        2: (FIRST, FIRST / 2, 0.0),
+        3: (FIRST + SECOND, FIRST / 2 + SECOND, SECOND),
+    }.items():
+        found = levels(run, number)
+        assert found[0.0] == pytest.approx(-low, rel=1e-6)
+        assert found[1.0] == pytest.approx(-middle, rel=1e-6)
+        assert found[2.0] == pytest.approx(-high, rel=1e-6, abs=1e-6 * FIRST)
+    assert low_points(run, 4) == pytest.approx(-FIRST - SECOND, rel=1e-6)
+    for number in (1, 2, 3, 4):
+        assert np.abs(at_end(run, number, "joint_J", "opening")).max() < 2e-12
+    assert max(s["energy"]["error"] for s in run.json["steps"]) < 1e-6
+
+
 @pytest.mark.parametrize("joint", ["elements", "different"])
 def test_grout_presses_on_the_faces_that_are_there(keyway, joint):
     """The pressure of grout on one lift moves it by p/k_n over its own area."""

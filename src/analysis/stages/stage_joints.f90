@@ -117,18 +117,21 @@ contains
     end do
   end subroutine move_parts
 
-  !> The zero of a point becomes the mean of the zeros of its parts over the area.
+  !> The zero of a point becomes the mean of the zeros of its parts over the area. The multiplier of
+  !> contact without penetration stays on the parts that stay.
   subroutine move_zero(joint, number, p, own)
     type(dam_joint), intent(in) :: joint
     integer, intent(in) :: number, p !< step and point
     type(joint_state), intent(inout) :: own
-    real(rk) :: k(3), zero(3), now(3), area, share
+    real(rk) :: k(3), zero(3), now(3), area, share, stays
     logical :: was_there
     integer :: i
     call joint%law%reference_stiffness(k)
     now = own%origin(:, p) + own%traction(:, p)/k
+    if (own%traction(1, p) < 0.0_rk) now(1) = now(1) - own%shift(p)
     zero = 0.0_rk
     area = 0.0_rk
+    stays = 0.0_rk
     do i = 1, size(own%part_origin, 2)
       was_there = .true.
       if (number > 1) was_there = joint%parts%is_there(i, number - 1)
@@ -136,11 +139,13 @@ contains
       if (was_there) area = area + share
       if (.not. joint%parts%is_there(i, number)) cycle
       if (.not. was_there) own%part_origin(:, i, p) = now
+      if (was_there) stays = stays + share
       zero = zero + share*own%part_origin(:, i, p)
     end do
     zero = zero/joint%area(p)
     own%jump(:, p) = own%jump(:, p) + own%origin(:, p) - zero
     own%origin(:, p) = zero
+    own%shift(p) = own%shift(p)*stays/joint%area(p)
     own%friction_work(p) = own%friction_work(p)*area/joint%area(p)
     own%fracture_work(p) = own%fracture_work(p)*area/joint%area(p)
   end subroutine move_zero
@@ -226,7 +231,8 @@ contains
   end subroutine harden_pressed
 
   !> The zero of the law moves so that the springs of the law carry what faces and grout carry now:
-  !> an open point without pressure has its zero where it is.
+  !> an open point without pressure has its zero where it is. Contact without penetration carries
+  !> the pressure by its multiplier.
   subroutine harden(joint, pressure, own)
     type(dam_joint), intent(in) :: joint
     real(rk), intent(in) :: pressure !< of the grout [Pa]
@@ -242,6 +248,10 @@ contains
     call joint%law%reference_stiffness(k)
     jump = spread(1.0_rk/k, 2, joint%num_points)*own%traction
     jump(1, :) = jump(1, :) - pressure/k(1)
+    if (joint%law%penetration > 0.0_rk) then
+      where (old%is_broken) old%shift = min(0.0_rk, jump(1, :))
+      jump(1, :) = jump(1, :) - old%shift
+    end if
     fresh = old
     call joint%law%update(jump, old, fresh, tangent)
     do p = 1, joint%num_points
