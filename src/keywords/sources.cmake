@@ -71,6 +71,7 @@ set(sources
   mesh/keywords_nodes.f90
   mesh/keywords_section.f90
   mesh/keywords_sets.f90
+  mesh/surface_of_faces.f90
   mesh/surface_of_nodes.f90
   point/finish_tests.f90
   point/keywords_material_test.f90

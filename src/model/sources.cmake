@@ -7,6 +7,7 @@ set(sources
   constraints/tie_motion.f90
   mesh/body_parts.f90
   mesh/dam_mesh.f90
+  mesh/face_elements.f90
   mesh/id_map.f90
   mesh/instance_list.f90
   mesh/mesh_faces.f90

@@ -23,6 +23,20 @@ def test_column(keyway, program):
     assert force == pytest.approx([0.0, 0.0, total], abs=1e-9 * total)
 
 
+@pytest.mark.parametrize("kind", ["NODES", "NODE", "ELEMENT SET"])
+def test_surfaces_of_groups_in_the_deck(keyway, kind):
+    """The pressure on the surface of a physical group is that on faces of elements."""
+    deck = styles.gmsh()
+    one = keyway(deck, name="faces")
+    load = f"CAP, P2, {styles.PRESSURE}\n"
+    assert load in deck
+    deck = deck.replace(load, f"*DSLOAD\nCROWN, P, {styles.PRESSURE}\n")
+    deck = deck.replace("*BOUNDARY\n", f"*SURFACE, NAME=CROWN, TYPE={kind}\nTOP\n*BOUNDARY\n", 1)
+    other = keyway(deck, name="surface")
+    a, b = last_field(one, "U"), last_field(other, "U")
+    assert np.abs(a - b).max() <= 1e-13 * np.abs(a).max()  # round-off of sums in another order
+
+
 def test_what_gmsh_adds_is_named(keyway):
     """Elements of lines and faces are left out, each card with its own note."""
     noted = [n["why"] for n in keyway(styles.gmsh()).json["ignored_input"]]

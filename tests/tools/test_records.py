@@ -138,6 +138,14 @@ def test_columns_with_names_and_a_unit(write):
     assert up.acceleration == pytest.approx(0.02 * VALUES, rel=1e-12)
 
 
+@pytest.mark.parametrize("between", ["; ", ";", "\t", "  "])
+def test_decimal_commas(write, between):
+    rows = (f"{0.02 * k:.2f}{between}{v:.6f}\n" for k, v in enumerate(VALUES))
+    (record,) = read_record(write("Zeit Beschleunigung [g]\n" + "".join(rows).replace(".", ",")))
+    assert record.dt == pytest.approx(0.02, rel=1e-9)
+    assert record.acceleration == pytest.approx(9.81 * VALUES, rel=1e-9)
+
+
 @pytest.mark.parametrize(
     ("text", "unit"),
     [

@@ -4,6 +4,7 @@ module leave_out_faces
   use card_rewrite, only: card_rewriter
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
+  use face_elements, only: face_element_list
   use growing_lists, only: append
   use sorted_lists, only: contains_position, sorted_unique
   use write_text, only: as_text
@@ -15,13 +16,15 @@ module leave_out_faces
   character(4), parameter :: types(*) = ['T3D2', 'T3D3', 'CPS3', 'CPS4', 'CPS6', 'CPS8', 'S3  ', &
                                          'S4  ', 'S6  ', 'S8  ', 'S8R ', 'S4R ', 'M3D3', 'M3D4', &
                                          'B31 ']
+  character(4), parameter :: triangles(*) = ['CPS3', 'CPS6', 'S3  ', 'S6  ', 'M3D3']
 
 contains
 
   !> Leaves the elements out of a deck without parts. A deck that gives them a section of their own
   !> keeps them: then they carry loads, and *ELEMENT reports them.
-  subroutine leave_out(cards, faults)
+  subroutine leave_out(cards, faces, faults)
     type(card), allocatable, intent(inout) :: cards(:)
+    type(face_element_list), intent(inout) :: faces !< what is left out
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable :: ids(:)
     logical, allocatable :: is_kept(:)
@@ -32,6 +35,7 @@ contains
     allocate (is_kept(size(cards)), source=.true.)
     call find_ids(cards, is_kept, ids)
     if (has_own_section(cards, is_kept, ids)) return
+    call keep_faces(cards, is_kept, faces)
     do i = 1, size(cards)
       if (.not. is_kept(i)) then
         call cards(i)%ignore(faults, 'elements '//cards(i)%word('TYPE')//' ('// &
@@ -63,6 +67,49 @@ contains
     has_solids = this%keyword == 'ELEMENT'
     if (has_solids) has_solids = index(this%word('TYPE'), 'C3D') == 1
   end function has_solids
+
+  !> Keeps the nodes of faces and their sets, for *SURFACE.
+  subroutine keep_faces(cards, is_kept, faces)
+    type(card), intent(in) :: cards(:)
+    logical, intent(in) :: is_kept(:)
+    type(face_element_list), intent(inout) :: faces
+    integer :: i, line, num_corners, nodes(4), first, k
+    do i = 1, size(cards)
+      if (is_kept(i)) cycle
+      num_corners = 4
+      if (any(triangles == cards(i)%word('TYPE'))) num_corners = 3
+      if (scan(cards(i)%word('TYPE'), 'TB') == 1) cycle ! lines
+      first = faces%num_faces + 1
+      do line = 1, cards(i)%num_lines
+        nodes = [(cards(i)%integer_at(line, 1 + min(k, num_corners)), k=1, 4)]
+        call faces%add(cards(i)%integer_at(line, 1), nodes)
+      end do
+      if (cards(i)%has('ELSET')) then
+        call faces%sets%add(cards(i)%word('ELSET'), [(k, k=first, faces%num_faces)])
+      end if
+    end do
+    do i = 1, size(cards)
+      if (is_listed_set(cards(i))) call keep_set(cards(i), faces)
+    end do
+  end subroutine keep_faces
+
+  !> Keeps the faces of a set.
+  subroutine keep_set(this, faces)
+    type(card), intent(in) :: this
+    type(face_element_list), intent(inout) :: faces
+    integer, allocatable :: members(:)
+    integer :: line, field, position, num
+    allocate (members(0))
+    num = 0
+    do line = 1, this%num_lines
+      do field = 1, this%num_fields(line)
+        if (.not. this%is_integer_at(line, field)) cycle
+        position = faces%position%find(this%integer_at(line, field))
+        if (position > 0) call append(members, num, [position])
+      end do
+    end do
+    if (num > 0) call faces%sets%add(this%word('ELSET'), members(:num))
+  end subroutine keep_set
 
   !> Whether a *SOLID SECTION belongs to a set that holds none but such elements.
   logical function has_own_section(cards, is_kept, ids) result(has_one)

@@ -8,6 +8,7 @@ module model_draft
   use diagnostics, only: diagnostic_list
   use dof_tables, only: dof_table
   use equation_lists, only: equation_list
+  use face_elements, only: face_element_list
   use guest_type, only: guest, guest_slot
   use joint_law, only: traction_law
   use id_map, only: position_table
@@ -118,6 +119,7 @@ module model_draft
     type(position_table) :: node_position, element_position !< by the user's ids
     type(origin), allocatable :: node_origin(:), element_origin(:)
     type(set_list) :: node_sets, element_sets
+    type(face_element_list) :: faces !< elements of faces beside the solids
     type(origin), allocatable :: surface_origin(:), material_origin(:), test_origin(:)
     real(rk), allocatable :: record_factor(:) !< (amplitudes) of a unit that only the file names
     logical :: is_from_cae = .false. !< a comment names Abaqus/CAE

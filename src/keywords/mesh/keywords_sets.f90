@@ -12,6 +12,7 @@ module keywords_sets
   use mesh_faces, only: count_corners, face_nodes
   use model_draft, only: draft, origin
   use named_things, only: elements_at, find_surface_name, nodes_at
+  use surface_of_faces, only: find_set_faces
   use surface_of_nodes, only: find_faces
   use write_text, only: as_text
   implicit none
@@ -160,16 +161,18 @@ contains
     spec%family = 'mesh'
     spec%place = 'model'
     spec%meaning = 'A surface made of faces of solid elements. S1 has the corners 1-2-3-4, S2 '// &
-                   '5-8-7-6, S3 1-5-6-2, S4 2-6-7-3, S5 3-7-8-4, S6 4-8-5-1. TYPE=NODE: the '// &
-                   'outer faces of the solids all of whose corners are among the nodes of the '// &
-                   'card; a node without such a face is an error.'
+                   '5-8-7-6, S3 1-5-6-2, S4 2-6-7-3, S5 3-7-8-4, S6 4-8-5-1. TYPE=NODE or '// &
+                   'NODES: the outer faces of the solids all of whose corners are among the '// &
+                   'nodes of the card; a node without such a face is an error. TYPE=ELEMENT '// &
+                   'SET: the outer faces of solids on which the elements of a set lie, quads '// &
+                   'and triangles beside the solids (CPS4, S4, CPS3), one set a line.'
     spec%example = '*SURFACE, NAME=UPSTREAM, TYPE=ELEMENT'//nl//'UPSTREAM_ELEMENTS, S3'
     spec%fewest_lines = 1
     spec%checks_own_data = .true.
     allocate (spec%parameters, source=[ &
               field('NAME', kind_word, 'name of the surface', is_required=.true.), &
               field('TYPE', kind_choice, 'what it is made of', default='ELEMENT', &
-                    choices='ELEMENT | NODE'), &
+                    choices='ELEMENT | NODE | NODES | ELEMENT SET'), &
               field('INTERNAL', kind_flag, 'a surface that Abaqus/CAE has named')])
     allocate (spec%columns, source=[ &
               field('element', kind_reference, 'the elements', &
@@ -192,11 +195,14 @@ contains
       return
     end if
     new%name = this%word('NAME')
-    if (this%word('TYPE') == 'NODE') then
+    select case (this%word('TYPE'))
+    case ('NODE', 'NODES')
       call find_faces(this, model, faults, new)
-    else
+    case ('ELEMENT SET')
+      call find_set_faces(this, model, faults, new)
+    case default
       call list_faces(this, model, faults, new)
-    end if
+    end select
     model%problem%surfaces = [model%problem%surfaces, new]
     model%surface_origin = [model%surface_origin, model%here(0)]
   end subroutine read_surface

@@ -11,6 +11,7 @@ from .record import FACTORS, Record, RecordError, choose_unit, unit_named_in
 
 MOST_COMPONENTS = 3
 _SEPARATORS = re.compile(r"[,;\s]+")
+_DECIMAL_COMMA = re.compile(r"[+-]?\d+(,\d*)?([eEdD][+-]?\d+)?")  # 1,5 or 2
 EVEN = 1.0e-3  # admissible scatter of the time between values, over its mean
 
 
@@ -62,8 +63,14 @@ def _split_heading(path: Path, lines: list[str]) -> tuple[list[str], list[list[f
 
 
 def _numbers(text: str) -> list[float] | None:
-    """The numbers of a line, or None where a word is no number."""
-    words = [word for word in _SEPARATORS.split(text) if word]
+    """The numbers of a line, or None where a word is no number.
+
+    A comma is the decimal mark where other separators part the words (0,02; 1,5)."""
+    words = [word for word in re.split(r"[;\s]+", text) if word]
+    if len(words) > 1 and "," in text and all(map(_DECIMAL_COMMA.fullmatch, words)):
+        words = [word.replace(",", ".") for word in words]
+    else:
+        words = [word for word in _SEPARATORS.split(text) if word]
     try:
         return [float(re.sub("[dD]", "e", word)) for word in words]
     except ValueError:
