@@ -46,11 +46,12 @@ def request_for(plan: Plan, numbers: list[int], threads: int, minutes: int | Non
 def script_of(plan_file: Path, numbers: list[int], at_a_time: int, request: Request,
               more: list[str]) -> str:  # fmt: skip
     """The script of the array: a task of the plan for each index."""
+    folder = plan_file.parent.resolve()
     lines = [
         "#!/bin/sh",
-        f"#SBATCH --job-name={plan_file.parent.resolve().name}",
+        f"#SBATCH --job-name={_word(folder.name)}",
         f"#SBATCH --array={ranges_of(numbers)}%{at_a_time}",
-        f"#SBATCH --output={plan_file.parent.resolve()}/slurm_%A_%a.out",
+        f"#SBATCH --output={_word(str(folder / 'slurm_%A_%a.out'))}",
         "#SBATCH --ntasks=1",
         f"#SBATCH --cpus-per-task={request.threads}",
         *([] if request.minutes is None else [f"#SBATCH --time={request.minutes}"]),
@@ -65,6 +66,11 @@ def script_of(plan_file: Path, numbers: list[int], at_a_time: int, request: Requ
         f'exec {" ".join(map(shlex.quote, words))} "$SLURM_ARRAY_TASK_ID"',
     ]
     return "\n".join(lines) + "\n"
+
+
+def _word(text: str) -> str:
+    """A value for a line of #SBATCH: quoted where it holds blanks."""
+    return f'"{text}"' if " " in text else text
 
 
 def ranges_of(numbers: list[int]) -> str:
