@@ -4,7 +4,9 @@ module deck_file
   use process_limits, only: why_no_file
   implicit none
   private
-  public :: load_file, path_beside
+  public :: load_file, path_beside, first_letter
+
+  character(*), parameter :: byte_order_mark = char(239)//char(187)//char(191) !< UTF-8
 
 contains
 
@@ -36,6 +38,13 @@ contains
     end if
     close (unit)
   end subroutine load_file
+
+  !> Where the text of a file begins: after the byte order mark, if there is one.
+  pure integer function first_letter(text)
+    character(*), intent(in) :: text
+    first_letter = 1
+    if (index(text(:min(3, len(text))), byte_order_mark) == 1) first_letter = 4
+  end function first_letter
 
   !> The message of the run-time library without the name of the file.
   pure function cause(message) result(reason)

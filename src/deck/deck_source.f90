@@ -1,6 +1,6 @@
 !> The lines of a deck with all included files, without blank lines and comments.
 module deck_source
-  use deck_file, only: load_file, path_beside
+  use deck_file, only: first_letter, load_file, path_beside
   use deck_words, only: is_blank, next_word, split_parameter
   use diagnostics, only: diagnostic_list, place, severity_error
   use parse_text, only: upper_case, without_blanks
@@ -10,7 +10,6 @@ module deck_source
   public :: names_abaqus
 
   character, parameter :: line_feed = achar(10), return = achar(13)
-  character(*), parameter :: byte_order_mark = char(239)//char(187)//char(191) !< UTF-8
   integer, parameter :: letters_of_head = 2000 !< of a file, where programs name themselves
   integer, parameter :: deepest = 100 !< levels of *INCLUDE
 
@@ -135,8 +134,7 @@ contains
     type(source_line), allocatable, intent(out) :: lines(:)
     integer :: first, last, number, num_used, begin
     allocate (lines(count_lines(text)))
-    first = 1
-    if (index(text(:min(3, len(text))), byte_order_mark) == 1) first = 4
+    first = first_letter(text)
     num_used = 0
     number = 0
     do while (first <= len(text))

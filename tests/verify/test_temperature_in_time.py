@@ -84,7 +84,8 @@ def test_files_say_what_data_lines_say(keyway):
     plain = "".join(f"{i}, {v!r}\n" for i, v in enumerate(values, 1))
     columns = "# a comment\nnode, 0.25, 0.75\n"
     columns += "".join(f"{i}, 10., {v!r}\n" for i, v in enumerate(values, 1))
-    files = {"plain.csv": plain, "columns.csv": columns}
+    sheet = "\ufeff" + plain.replace("\n", "\r\n")  # as spreadsheets write UTF-8
+    files = {"plain.csv": plain, "columns.csv": columns, "sheet.csv": sheet}
     deck = model(blocks, statically(blocks), law(0.0))
 
     def step_with(card: str) -> str:
@@ -95,17 +96,36 @@ def test_files_say_what_data_lines_say(keyway):
         for name, card in {
             "lines": f"*TEMPERATURE\n{plain}",
             "plain": "*TEMPERATURE, INPUT=plain.csv\n",
+            "sheet": "*TEMPERATURE, INPUT=sheet.csv\n",
             "columns": "*TEMPERATURE, INPUT=columns.csv\n",
             "total": "*TEMPERATURE, INPUT=columns.csv, TIME=TOTAL TIME\n",
         }.items()
     }
-    assert (runs["lines"]["TEMP"] == runs["plain"]["TEMP"]).all()
+    for name in ("plain", "sheet"):
+        assert (runs["lines"]["TEMP"] == runs[name]["TEMP"]).all()
     for name in ("columns", "total"):
         table = runs[name]
         for time, share in ((0.25, 0.0), (0.5, 0.5), (0.75, 1.0), (1.0, 1.0)):
             found = table["TEMP"][table["time"] == time]
             assert found == pytest.approx(10.0 + share * (np.array(values) - 10.0), rel=1e-12)
     assert (runs["columns"]["U1"] == runs["total"]["U1"]).all()
+
+
+def test_a_history_from_a_spreadsheet(keyway):
+    """A file of *AMPLITUDE with a byte order mark and CRLF says what data lines say."""
+    blocks = brick((1, 1, 1))
+    text = model(blocks, statically(blocks), law(0.0))
+    pairs = "0., 10.\n1., 40.\n"
+    warmed = "*STEP\n*STATIC, DIRECT\n0.25, 1.\n*TEMPERATURE, AMPLITUDE=YEAR\nALL, 1.\n"
+    tables = [
+        keyway(
+            text + f"*AMPLITUDE, NAME=YEAR{card}" + warmed + OUTPUT + "*END STEP\n",
+            name=name,
+            files={"year.csv": "\ufeff" + pairs.replace("\n", "\r\n")},
+        ).csv("node_ALL")["TEMP"]
+        for name, card in {"lines": f"\n{pairs}", "file": ", INPUT=year.csv\n"}.items()
+    ]
+    assert (tables[0] == tables[1]).all() and tables[0].max() == 40.0
 
 
 def test_steps_keep_change_and_restore_temperatures(keyway):

@@ -2,7 +2,7 @@
 !> column for each time.
 module temperature_file
   use deck_card, only: card
-  use deck_file, only: load_file, path_beside
+  use deck_file, only: first_letter, load_file, path_beside
   use diagnostics, only: diagnostic_list, place, severity_error
   use growing_lists, only: make_room
   use heat_plan, only: heat_rule
@@ -50,7 +50,7 @@ contains
     end if
     allocate (reader%nodes(0), reader%value(1, 0), reader%time(0))
     reader%spot%line = 0
-    first = 1
+    first = first_letter(text)
     do while (first <= len(text))
       length = index(text(first:), nl) - 1
       if (length < 0) length = len(text) - first + 1

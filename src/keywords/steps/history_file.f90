@@ -1,6 +1,7 @@
 !> Files of numbers that *AMPLITUDE names: plain numbers, or the records of PEER (AT2).
 module history_file
   use, intrinsic :: iso_fortran_env, only: iostat_end
+  use deck_file, only: first_letter
   use diagnostics, only: diagnostic_list, place, severity_error
   use growing_lists, only: make_room
   use kinds, only: rk
@@ -51,6 +52,7 @@ contains
         call read_line(unit, line, status)
         if (status /= 0 .and. len(line) == 0) exit
         number = number + 1
+        if (number == 1) line = line(first_letter(line):)
         if (number > num_headers) call add_line(line, number, spot, faults, numbers, used)
         if (status /= 0) exit
       end do
