@@ -9,8 +9,11 @@ import pandas as pd
 import pytest
 from harness import ROOT
 from keyway.batch.cases import BatchError, cases_of_table
+from keyway.batch.fractiles import write_fractiles
 from keyway.batch.lock import lock_of
+from keyway.batch.table import ResultTable, result_table
 from keyway.commands import batch
+from keyway_tools.deck_runs import Record
 
 TEMPLATE = """** A block, friction {FRICTION}, unknown {here}
 *INCLUDE, INPUT=parts/mesh.inp
@@ -124,6 +127,39 @@ def test_a_column_of_numbers_and_words(program_path, tmp_path, monkeypatch, caps
     text = capsys.readouterr()
     assert "block_001.inp:" in text.out
     assert "wrote out/batch.csv" in text.err
+
+
+def test_fractiles_of_the_finished_cases(tmp_path):
+    """0, 1, .. 10 of the cases that finished: fractiles are those of a uniform distribution."""
+    rows = [[f"c{k}", "finished", float(k), 1.0] for k in range(11)] + [
+        ["c11", "stopped", 99.0, 1.0]
+    ]
+    table = ResultTable(["case", "status", "U", "same"], rows, ["U", "same"])
+    files = write_fractiles(table, tmp_path)
+    assert [file.name for file in files] == ["batch_fractiles.csv", "batch_fractiles.png"]
+    found = pd.read_csv(files[0]).set_index("result")
+    wanted = [11, 0.0, 1.6, 5.0, 8.4, 10.0]
+    assert found.loc["U"].tolist() == pytest.approx(wanted, rel=1e-12)
+    assert found.loc["same"].tolist()[1:] == [1.0] * 5
+    assert files[1].stat().st_size > 5000
+    assert write_fractiles(ResultTable(table.columns, rows[:3], ["U"]), tmp_path) == []
+
+
+def test_values_with_names_of_results_have_their_own_columns(place):
+    (place / "dam.inp").write_text("*STEP, NAME={status}{U}\n")
+    found = cases(place, "status,U\na,1\nb,2\n")
+    records = [Record(str(c.deck), str(c.folder), "not run") for c in found]
+    found[0].folder.mkdir(exist_ok=True)
+    summary = {
+        "program": {},
+        "status": "finished",
+        "envelopes": {"U": {"anywhere": {"value": 7.0}}},
+    }
+    (found[0].folder / f"{found[0].name}.json").write_text(json.dumps(summary))
+    table = result_table(found, records)
+    assert table.columns[:4] == ["case", "status_given", "U_given", "status"]
+    assert table.rows[0][1:3] == ["a", 1.0]
+    assert [row[table.columns.index("U")] for row in table.rows] == [7.0, None]
 
 
 def test_two_batches_in_one_folder(tmp_path, capsys):

@@ -45,6 +45,7 @@ def test_records_on_a_cluster_that_loses_a_worker(cluster, program_path, tmp_pat
     assert list(table["status"]) == ["finished"] * count
     assert list(table["PGA"]) == [PEAKS[n * len(PEAKS) // count] for n in range(count)]
     assert table["OPENING"].iloc[0] < table["OPENING"].iloc[-1]
+    assert (tmp_path / "results/batch_fractiles.png").stat().st_size > 10_000
     numbers = pd.read_csv(tmp_path / "results/batch.csv")
     assert list(numbers["OPENING"]) == pytest.approx(list(table["OPENING"]), rel=1e-12)
     subprocess.run([sys.executable, "fragility.py", "results/batch.parquet"], **call)

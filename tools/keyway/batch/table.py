@@ -50,6 +50,7 @@ class ResultTable:
 
     columns: list[str]
     rows: list[list[Any]]  # None where there is no value
+    results: list[str]  # the columns with extremes
 
     def write(self, folder: Path) -> list[Path]:
         """Write batch.csv, and batch.parquet where pyarrow is installed; their paths."""
@@ -77,17 +78,23 @@ def result_table(cases: list[Case], records: list[Record]) -> ResultTable:
     Extremes are those of job.json: S1, S3, OPENING, U, DAMAGET, .. of *ENVELOPE (largest, of S3
     smallest, anywhere), `displacement`, `opening_NAME` and `slip_NAME` of each joint.
     """
+    runs = [_run(record) for record in records]
+    extremes = [_extremes(case) for case in cases]
+    results = [*dict.fromkeys(name for one in extremes for name in one)]
+    taken = {name for row in [*runs, *extremes] for name in row}
     found = []
-    given = _values([case.values for case in cases])
-    for case, record, values in zip(cases, records, given, strict=True):
-        run = {
-            "status": record.status, "exit_code": record.exit_code, "wall_s": record.wall_s,
-            "processor_s": record.processor_s, "peak_memory_mb": record.peak_memory_mb,
-            "message": record.message,
-        }  # fmt: skip
-        found.append({NAME: case.name, **values, **run, **_extremes(case)})
+    for k, values in enumerate(_values([case.values for case in cases])):
+        # a value with the name of a result has a column of its own
+        named = {f"{name}_given" if name in taken else name: v for name, v in values.items()}
+        found.append({NAME: cases[k].name, **named, **runs[k], **extremes[k]})
     columns = list(dict.fromkeys(name for row in found for name in row))
-    return ResultTable(columns, [[row.get(name) for name in columns] for row in found])
+    return ResultTable(columns, [[row.get(name) for name in columns] for row in found], results)
+
+
+def _run(record: Record) -> dict[str, Any]:
+    """How a run went, by columns."""
+    names = ("status", "exit_code", "wall_s", "processor_s", "peak_memory_mb", "message")
+    return {name: getattr(record, name) for name in names}
 
 
 def _extremes(case: Case) -> dict[str, float | None]:

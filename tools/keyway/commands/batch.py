@@ -12,7 +12,8 @@ goes on after an interruption. Options of keyway follow a `--`, as in: keyway-ba
 
 With --table each row of the CSV file is a case: the template has the names of its columns in
 braces, as in *JOINT LAW, FRICTION={FRICTION}; a column `case` names the cases. DIR/batch.csv, and
-batch.parquet where pyarrow is installed, has values, costs and extremes of all cases.
+batch.parquet where pyarrow is installed, has values, costs and extremes of all cases;
+batch_fractiles.csv and .png show the fractiles of four finished cases or more.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ from keyway_tools.deck_runs import Record
 from keyway_tools.program import given_program
 
 from keyway.batch.cases import BatchError, Case, cases_of_decks, cases_of_table
+from keyway.batch.fractiles import write_fractiles
 from keyway.batch.lock import lock_of
 from keyway.batch.on_dask import run_on_dask
 from keyway.batch.on_local import run_locally
@@ -136,7 +138,10 @@ def run_batch(options: argparse.Namespace) -> int:
     plan = Plan.of(program, options.options, options.timeout, options.again, cases)
     records, is_interrupted = run_plan(plan, options)
     report(records, options.json)
-    for path in result_table(cases, records).write(options.o):
+    table = result_table(cases, records)
+    for path in table.write(options.o) + (
+        write_fractiles(table, options.o) if options.table else []
+    ):
         say(f"wrote {path}")
     if is_interrupted:
         return EXIT_INTERRUPTED
