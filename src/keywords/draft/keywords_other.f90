@@ -56,6 +56,11 @@ contains
     call add_refused(list, 'COUPLED TEMPERATURE-DISPLACEMENT', 'Temperatures and stresses.', heat)
     call add_refused(list, 'UNCOUPLED TEMPERATURE-DISPLACEMENT', 'Temperatures, then stresses.', &
                      heat)
+    call add_refused(list, 'GAP CONDUCTANCE', 'Heat across contact.', heat)
+    call add_refused(list, 'DESIGN VARIABLES', 'Sensitivities.', 'decks with changed values')
+    call add_refused(list, 'SENSITIVITY', 'Sensitivities.', 'decks with changed values')
+    call add_refused(list, 'CHANGE CONTACT TYPE', 'Kind of contact from a step on.', &
+                     'one kind of contact for all steps')
     call add_refused(list, 'MODAL DYNAMIC', 'Motion of modes.', motion)
     call add_refused(list, 'STEADY STATE DYNAMICS', 'Harmonic motion.', motion)
     call add_refused(list, 'RESPONSE SPECTRUM', 'Peaks of modes.', motion)

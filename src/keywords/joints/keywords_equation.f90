@@ -40,10 +40,10 @@ contains
                    'of its own in the '// &
                    'directions of its terms (different_meshes.md, 13.10).'
     spec%example = '*EQUATION'//nl//'3'//nl//'12, 1, 1., 47, 1, -0.5, 53, 1, -0.5'
-    spec%fewest_lines = 2
     spec%checks_own_data = .true.
     spec%repeats_columns = .true.
-    allocate (spec%parameters, source=[field('REMOVE', kind_flag, 'refused')])
+    allocate (spec%parameters, source=[field('REMOVE', kind_flag, 'refused'), &
+                                       field('REMOVE ALL', kind_flag, 'refused')])
     allocate (spec%columns, source=[ &
               field('node', kind_text, 'a node or a node set'), &
               field('direction', kind_text, '1 to 3'), &
@@ -56,12 +56,16 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(term), allocatable :: terms(:)
     integer :: line, start, num_terms, num_before
+    if (this%has('REMOVE') .or. this%has('REMOVE ALL')) then
+      call this%fault(faults, 'REMOVE: equations stay in all steps', '*EQUATION without REMOVE')
+      return
+    else if (this%num_lines < 2) then
+      call this%fault(faults, 'found no whole equation', &
+                      'at least 2 data lines: the number of terms, then the terms')
+      return
+    end if
     num_before = faults%num_errors
     call check_step(this, model, faults)
-    if (this%has('REMOVE')) then
-      call this%fault_parameter(faults, 'REMOVE', 'equations stay in all steps', &
-                                '*EQUATION without REMOVE')
-    end if
     line = 1
     do while (line <= this%num_lines .and. faults%num_errors == num_before)
       start = line
