@@ -20,8 +20,11 @@ def write_fractiles(table: ResultTable, folder: Path) -> list[Path]:
     """Write batch_fractiles.csv and batch_fractiles.png of the finished cases; their paths.
 
     Each result has a row: number of cases, smallest, fractiles, largest. The picture shows the
-    first twelve results that differ between the cases. Nothing is written for fewer than four.
+    first twelve results that differ between the cases. Fewer than four cases have neither; files of
+    an earlier call are removed.
     """
+    for name in ("batch_fractiles.csv", "batch_fractiles.png"):
+        (folder / name).unlink(missing_ok=True)
     results = {name: values for name, values in _results(table).items() if len(values) >= FEWEST}
     if not results:
         return []

@@ -5,7 +5,7 @@ from __future__ import annotations
 import fcntl
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TextIO
 
@@ -18,6 +18,7 @@ LOCK = "batch.lock"
 def lock_of(folder: Path) -> Iterator[None]:
     """Hold the folder of the results of a batch; the end of the process gives it back.
 
+    A folder that is still empty at the end is removed.
     Raises BatchError where another batch holds it, OSError where nothing can be written there.
     """
     folder.mkdir(parents=True, exist_ok=True)
@@ -30,6 +31,8 @@ def lock_of(folder: Path) -> Iterator[None]:
             yield
         finally:
             path.unlink(missing_ok=True)
+            with suppress(OSError):  # it holds results
+                folder.rmdir()
 
 
 def _is_ours(file: TextIO, path: Path) -> bool:
