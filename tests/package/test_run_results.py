@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import os
+import re
 import shutil
 import subprocess
 
@@ -78,6 +79,14 @@ def test_a_run_that_is_not_at_its_end(dam, tmp_path, capsys):
     (tmp_path / "dam/block_on_joint.h5").write_bytes(b"lost")
     with pytest.raises(OSError, match=r"block_on_joint\.h5 cannot be read"):
         package.open(tmp_path / "dam").fields()
+
+
+def test_pictures_and_pages_that_cannot_be_written(dam, tmp_path, capsys):
+    (tmp_path / "file").touch()
+    for command, target in ((plot, "file/pictures"), (report, "file/page.html")):
+        assert command([str(dam.folder), "-o", str(tmp_path / target)]) == 2
+        text = capsys.readouterr().err
+        assert re.search(rf"^(plot|report): '{tmp_path}/file.*': (Not a|File exists)", text, re.M)
 
 
 def test_fields_are_those_that_the_vtk_files_show(dam):

@@ -44,6 +44,13 @@ def given_program(path: Path | None) -> Path:
     return path.resolve()
 
 
+def reason_of(error: Exception) -> str:
+    """What a command says of an error: of one of the system the file and the reason."""
+    if isinstance(error, OSError) and error.strerror and error.filename:
+        return f"'{error.filename}': {error.strerror}"
+    return str(error)
+
+
 def command_name(script: str) -> str:
     """Name for the help of a command: that of an entry point (keyway-report), else `script`."""
     name = Path(sys.argv[0]).name

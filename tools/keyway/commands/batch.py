@@ -26,7 +26,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from keyway_tools.deck_runs import Record
-from keyway_tools.program import given_program
+from keyway_tools.program import given_program, reason_of
 
 from keyway.batch.cases import BatchError, Case, cases_of_decks, cases_of_table
 from keyway.batch.fractiles import write_fractiles
@@ -155,5 +155,5 @@ def main(arguments: list[str] | None = None) -> int:
         with lock_of(options.o):
             return run_batch(options)
     except (OSError, ValueError, BatchError) as error:
-        print(f"batch: {error}", file=sys.stderr)
+        print(f"batch: {reason_of(error)}", file=sys.stderr)
         return 2

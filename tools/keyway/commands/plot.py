@@ -39,7 +39,7 @@ from keyway_tools.pictures_curves import (
 )
 from keyway_tools.pictures_joints import plot_joint_areas, plot_joint_slips, plot_joint_states
 from keyway_tools.pictures_material import COMPONENTS, plot_material, read_curve
-from keyway_tools.program import command_name
+from keyway_tools.program import command_name, reason_of
 from keyway_tools.results import Step, find_jobs, why_incomplete
 from keyway_tools.si_results import SiResults, Units
 
@@ -111,7 +111,7 @@ def draw_material(arguments: list[str]) -> int:
         path.parent.mkdir(parents=True, exist_ok=True)
         print(plot_material(curves, chosen.experiment, path))
     except (OSError, ValueError) as error:
-        print(f"plot: {error}", file=sys.stderr)
+        print(f"plot: {reason_of(error)}", file=sys.stderr)
         return 2
     return 0
 
@@ -164,7 +164,7 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         draw(found, chosen)
     except OSError as error:  # the run is not at its end, or the disk is full
-        print(f"plot: {error}", file=sys.stderr)
+        print(f"plot: {reason_of(error)}", file=sys.stderr)
         return 2
     return 0
 

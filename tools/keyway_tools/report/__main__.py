@@ -15,7 +15,7 @@ import sys
 from pathlib import Path
 
 from ..colour_scale import Scales, parse_ranges
-from ..program import command_name
+from ..program import command_name, reason_of
 from ..results import Results
 from ..si_results import SiResults, Units
 
@@ -59,10 +59,14 @@ def main(arguments: list[str] | None = None) -> int:
             if results.path(".h5").exists():
                 results.file.keys()  # a run that is not at its end is an error
     except (OSError, ValueError, KeyError) as error:
-        print(f"report: {error}", file=sys.stderr)
+        print(f"report: {reason_of(error)}", file=sys.stderr)
         return 2
     pages = [found] if len(found) == 2 else [[results] for results in found]
-    return max(write(runs, chosen) for runs in pages)
+    try:
+        return max(write(runs, chosen) for runs in pages)
+    except OSError as error:  # the folder may not be written
+        print(f"report: {reason_of(error)}", file=sys.stderr)
+        return 2
 
 
 def write(runs: list[SiResults], chosen: argparse.Namespace) -> int:
