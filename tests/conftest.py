@@ -12,8 +12,12 @@ from harness import ROOT, Program
 
 LIMIT_OF_LONG_TESTS = 3600  # [s]
 NUMERICAL = {"compatibility", "decks", "points", "results", "verify"}  # folders
-# Compares runs with each other, on one and two threads: one kind of kernels is enough.
-NOT_NUMERICAL = {"test_input_decks.py"}
+# They compare runs with each other, or look at files: one kind of kernels is enough.
+NOT_NUMERICAL = {
+    "test_changed_deck.py", "test_dropped_increment.py", "test_full_disks.py",
+    "test_input_decks.py", "test_interrupted_run.py", "test_little_memory.py",
+    "test_lock_is_given_back.py", "test_moved_and_paused.py", "test_starts_together.py",
+}  # fmt: skip
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -31,7 +35,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """
     for item in items:
         folder = item.path.relative_to(ROOT / "tests").parts[0]
-        if folder in NUMERICAL and item.path.name not in NOT_NUMERICAL:
+        is_picture = item.name.startswith("test_picture")
+        if folder in NUMERICAL and item.path.name not in NOT_NUMERICAL and not is_picture:
             item.add_marker(pytest.mark.numerical)
         if item.get_closest_marker("full") and not item.get_closest_marker("timeout"):
             item.add_marker(pytest.mark.timeout(LIMIT_OF_LONG_TESTS))

@@ -17,7 +17,7 @@ program solve_joint_problems
   use joint_operator, only: joint_springs
   use point_groups, only: group_list, single_group
   use joint_forces, only: joint_field, reference_stiffness
-  use joint_iteration, only: start_iteration
+  use joint_iteration, only: smallest_force, start_iteration
   use joint_law, only: joint_state
   use joint_policy, only: run_passes, run_sweeps, share_of
   use joint_problem, only: load_operator, load_problem, saved_operator, saved_problem
@@ -150,7 +150,7 @@ contains
       exact%response = open_response(condensed, operator%area, problem%closed_jump, exact)
       associate (wrong => share*(exact%response - exact%jump), own => condensed%scale%own)
         residual = hypot(norm2(own(1, :)*wrong(1, :)), norm2(own([2, 2], :)*wrong(2:3, :))) &
-                   /max(norm2(share*field%traction), tiny(1.0_rk))
+                   /max(norm2(share*field%traction), condensed%weight*smallest_force(field))
       end associate
     end associate
   end function measure_laws

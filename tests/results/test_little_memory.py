@@ -42,6 +42,6 @@ def test_just_too_little_memory(program_path, umat, tmp_path, has_umat):
     path.write_text(deck() if has_umat else deck().replace(user, ELASTIC))
     options = ["-j", "1", *(["--umat", str(umat)] if has_umat else [])]
     enough = least_memory(program_path, path, options)
-    for megabytes in range(enough - 24, enough + 8, 2):
+    for megabytes in range(enough - 24, enough + 8, 4):
         end = run_with(program_path, path, options, megabytes)
         assert end.is_good, f"{megabytes} MB: {end}"

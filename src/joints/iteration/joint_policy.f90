@@ -6,7 +6,8 @@
 !> 3. Where that does not converge: the fixed point of Tresca. A pass keeps the limits of friction;
 !>    its equilibrium is that of a convex problem, and gives the limits of the next pass. Newton's
 !>    iteration with the laws follows when the limits hardly change.
-!> 4. Where that does not converge: more sweeps.
+!> 4. Where that does not converge: more sweeps, with the limits of the last pass and then with the
+!>    laws. An equilibrium with given limits counts if it is one of the laws, too.
 !>
 !> In a static increment it ends as soon as Newton's iteration drives a block away without end, from
 !> the guess and from what the sweeps find.
@@ -20,7 +21,7 @@ module joint_policy
   use contact_sweeps, only: gather_points, sweep_contacts, swept_points
   use equilibrium, only: balance_outcome, is_dropped
   use joint_forces, only: joint_field
-  use joint_iteration, only: linearise
+  use joint_iteration, only: linearise, measure_residual
   use joint_law, only: joint_state
   use joint_operator, only: jump_operator
   use joint_points, only: dam_joint
@@ -115,7 +116,33 @@ contains
     if (is_done(process, controls, outcome)) return
     process%num_sweeps = last_sweeps
     call try_sweeps(process, controls, joints, operator, old, field, new, outcome)
+    if (.not. allocated(field%tresca%bound)) return
+    call judge_by_laws(process, controls, joints, operator, old, field, new, outcome)
+    if (is_done(process, controls, outcome)) return
+    call linearise_anew(process, joints, operator, old, field, new, outcome)
+    call try_sweeps(process, controls, joints, operator, old, field, new, outcome)
   end subroutine iterate_joints
+
+  !> Gives up the limits of friction of the last pass. Their equilibrium counts if the laws have the
+  !> same tractions there, within the tolerance of the residual.
+  subroutine judge_by_laws(process, controls, joints, operator, old, field, new, outcome)
+    class(joint_process), intent(in) :: process
+    type(step_controls), intent(in) :: controls
+    type(dam_joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    type(joint_field), intent(inout) :: field
+    type(joint_state), intent(inout) :: new(:)
+    type(balance_outcome), intent(inout) :: outcome
+    real(rk) :: linear(3, operator%num_points) ! tractions of the equilibrium [Pa]
+    linear = field%iterate
+    deallocate (field%tresca%bound)
+    if (.not. outcome%has_converged) return
+    call linearise(joints, operator, old, process%k_ref, field, new)
+    call measure_residual(operator, process%k_ref, field, linear, outcome)
+    outcome%has_converged = outcome%residual <= controls%residual_tolerance
+    if (outcome%has_converged) field%iterate = linear
+  end subroutine judge_by_laws
 
   !> Sweeps and Newton's iteration in turn, until it converges or drives a block away twice.
   subroutine try_sweeps(process, controls, joints, operator, old, field, new, outcome)
