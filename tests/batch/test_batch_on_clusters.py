@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -59,7 +60,9 @@ def statuses(place: Path) -> list[str]:
     return [row.split(",")[column] for row in rows[1:]]
 
 
-def test_an_array_of_slurm_runs_what_is_unfinished(place, monkeypatch):
+@pytest.fixture
+def sbatch(place, monkeypatch) -> None:
+    """A script in place of sbatch in the PATH."""
     folder = place / "bin"
     folder.mkdir()
     (folder / "fake_sbatch.py").write_text(SBATCH)
@@ -67,6 +70,28 @@ def test_an_array_of_slurm_runs_what_is_unfinished(place, monkeypatch):
     (folder / "sbatch").write_text(f"#!/bin/sh\n{start}\n")
     (folder / "sbatch").chmod(0o755)
     monkeypatch.setenv("PATH", str(folder), prepend=os.pathsep)
+
+
+@pytest.mark.usefixtures("sbatch")
+def test_the_forecast_of_the_program_is_asked_for(place, program_path):
+    """Two frictions of a block, run by the program: some MB and less than a second each."""
+    deck = (ROOT / "input/block_on_joint.inp").read_text()
+    (place / "block.inp").write_text(deck.replace("FRICTION=0.6", "FRICTION={FRICTION}"))
+    (place / "values.csv").write_text("FRICTION\n0.6\n0.8\n")
+    words = ["block.inp", "--table", "values.csv", "-o", "out", "--program", str(program_path)]
+    assert batch.main([*words, "--on", "slurm"]) == 0
+    assert statuses(place) == ["finished"] * 2
+    script = (place / "out/batch.sbatch").read_text()
+    assert "#SBATCH --time=11\n" in script  # 10 minutes and three times less than 20 s
+    command = [program_path, "--check", place / "out/block_001/block_001.inp"]
+    text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    memory = float(re.search(r"memory +about (\S+) MB", text)[1])
+    asked = float(re.search(r"--mem=(\d+)M", script)[1])
+    assert asked == pytest.approx(1.5 * memory + 200.0, rel=0.05)  # rounding of the forecast
+
+
+@pytest.mark.usefixtures("sbatch")
+def test_an_array_of_slurm_runs_what_is_unfinished(place):
     words = [*template(place, "ok {VALUE}", ["1", "2", "3", "4"]), "--on", "slurm"]
     words += ["--threads", "4", "--sbatch=--partition=long"]
     assert batch.main(words) == 0
