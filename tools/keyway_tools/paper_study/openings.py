@@ -49,8 +49,7 @@ def plot_profiles(runs: dict[str, SiResults], sheet: Sheet) -> list[Path]:
     for axis, face in zip(axes[:, 0], FACES, strict=True):
         axis.set_ylabel(f"{face} edge\nheight z [m]")
     if len(runs) > 1:
-        handles, labels = axes[0, 0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper right", ncols=len(runs))
+        axes[1, -1].legend(loc="lower right", fontsize=9)
     headline(figure, "Largest joint openings over the height")
     return sheet.save(figure)
 
