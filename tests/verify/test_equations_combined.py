@@ -8,7 +8,7 @@ import subprocess
 import numpy as np
 import pytest
 from keyway_tools.results import Results
-from test_grouting import stop_after
+from stopped_runs import stop_after
 
 LAYERS = 4  # of the column; equations hold layer 3 to layer 2
 CUT = 2

@@ -6,15 +6,11 @@ law): a push of D over an opening of d gives s = -(D - d)/(1/k + L/E).
 
 from __future__ import annotations
 
-import json
-import signal
-import subprocess
-import time
-
 import numpy as np
 import pytest
 from joint_decks import static
 from stage_decks import GRAVITY, WEIGHT, YOUNG, add, remove, step
+from stopped_runs import stops_that_go_on
 from tied_blocks import Blocks, node_set
 
 E, L, KN = 3e12, 10.0, 1e12  # of SSNP143 [Pa], [m], [Pa/m]
@@ -261,28 +257,4 @@ def test_a_run_goes_on_between_and_within_stages(program_path, tmp_path):
         + step(remove("B"), data=quarter)
     )
 
-    def results(name: str, *lines: str) -> dict[str, str]:
-        folder = tmp_path / name
-        subprocess.run([program_path, "-q", "-j", "1", "-o", folder, *lines, deck], check=True)
-        return {p.name: p.read_text() for p in folder.glob("*.csv")}
-
-    whole = results("whole")
-    stopped = 0
-    for increment in (2, 4, 6, 8, 10, 12, 14, 18):
-        name = f"stop{increment}"
-        stopped += stop_after(program_path, tmp_path / name, deck, increment)
-        assert results(name, "--continue") == whole
-    assert stopped >= 4
-
-
-def stop_after(program, folder, deck, increments: int) -> bool:
-    """Stops a run by SIGTERM once its table of energies has so many rows; whether in time."""
-    process = subprocess.Popen([program, "-q", "-j", "1", "-o", folder, deck])
-    table = folder / "job_energy.csv"
-    while process.poll() is None:
-        if table.exists() and table.read_text().count("\n") > increments:
-            process.send_signal(signal.SIGTERM)
-            break
-        time.sleep(0.001)  # leaves the processor to the run
-    process.wait()
-    return json.loads((folder / "job.json").read_text())["status"] == "stopped"
+    assert stops_that_go_on(program_path, tmp_path, deck, (2, 4, 6, 8, 10, 12, 14, 18)) >= 4

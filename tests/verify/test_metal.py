@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from keyway_tools.results import Results
 from metal_decks import Octant, Steel, sphere_growth, sphere_pressure
-from test_grouting import stop_after
+from stopped_runs import stop_after
 
 STEEL = Steel(200e9, 0.3, ((200e6, 0.0), (260e6, 0.002), (280e6, 0.006), (300e6, 0.015)))
 # An increment ends where the residual is below 1e-6 of the force.

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import subprocess
-
 import numpy as np
 import pytest
 from reduced_trials import ACCURACY
 from stage_decks import add, remove, step
-from test_grouting import ARCH_LOAD, PRINT, arch, stop_after
+from stopped_runs import stops_that_go_on
+from test_grouting import ARCH_LOAD, PRINT, arch
 
 SHAKE = "*AMPLITUDE, NAME=SHAKE\n0., 0., 0.02, 300., 0.05, -300., 0.08, 200., 0.1, 0.\n"
 MOTION = (
@@ -66,15 +65,4 @@ def test_a_reduced_step_goes_on_after_stages(program_path, tmp_path):
     text = built("\nALL, 7.\n").replace("*DYNAMIC,", "*DYNAMIC, REDUCED,")
     deck.write_text(text.replace("*STATIC\n", "*STATIC\n*RESTART, WRITE\n", 1))
 
-    def results(name: str, *options: str) -> dict[str, str]:
-        folder = tmp_path / name
-        subprocess.run([program_path, "-q", "-j", "1", "-o", folder, *options, deck], check=True)
-        return {p.name: p.read_text() for p in folder.glob("*.csv")}
-
-    whole = results("whole")
-    stopped = 0
-    for increment in (4, 50):
-        name = f"stop{increment}"
-        stopped += stop_after(program_path, tmp_path / name, deck, increment)
-        assert results(name, "--continue") == whole
-    assert stopped >= 1
+    assert stops_that_go_on(program_path, tmp_path, deck, (4, 50)) >= 1

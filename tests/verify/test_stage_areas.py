@@ -6,13 +6,10 @@ right one is pressed against it; without Poisson's ratio and held across, each l
 
 from __future__ import annotations
 
-import subprocess
-from pathlib import Path
-
 import numpy as np
 import pytest
 from stage_decks import YOUNG, add, remove, step
-from test_grouting import stop_after
+from stopped_runs import stops_that_go_on
 from tied_blocks import CORNERS, Blocks, node_set
 
 KN, FIRST, SECOND = 1e10, 4e5, 1e6  # [Pa/m]; pressures [Pa]
@@ -88,6 +85,19 @@ def low_points(run, number: int) -> np.ndarray:
     return np.concatenate([t for h, t in levels(run, number).items() if h <= 1.0])
 
 
+def assert_pressures(run, rel: float) -> None:
+    """The second lift comes under load (2), the load grows (3), the lift leaves again (4)."""
+    for number, (low, middle, high) in {
+        2: (FIRST, FIRST / 2, 0.0),
+        3: (FIRST + SECOND, FIRST / 2 + SECOND, SECOND),
+    }.items():
+        found = levels(run, number)
+        assert found[0.0] == pytest.approx(-low, rel=rel)
+        assert found[1.0] == pytest.approx(-middle, rel=rel)
+        assert found[2.0] == pytest.approx(-high, rel=rel, abs=rel * FIRST)
+    assert low_points(run, 4) == pytest.approx(-FIRST - SECOND, rel=rel)
+
+
 @JOINTS
 def test_the_top_row_of_an_unfinished_lift(keyway, joint):
     """One lift alone: -p at all its points; it moves by p/k_n, its right side by p L/E more."""
@@ -115,15 +125,7 @@ def test_the_next_lift_brings_its_area_without_stress(keyway, joint):
         + step(add("A2", "B2") + press(B1=FIRST, B2=0.0))
         + step(remove("A2", "B2"))
     )
-    for number, (low, middle, high) in {
-        2: (FIRST, FIRST / 2, 0.0),
-        3: (FIRST + SECOND, FIRST / 2 + SECOND, SECOND),
-    }.items():
-        found = levels(run, number)
-        assert found[0.0] == pytest.approx(-low, rel=1e-9)
-        assert found[1.0] == pytest.approx(-middle, rel=1e-9)
-        assert found[2.0] == pytest.approx(-high, rel=1e-9, abs=1e-9 * FIRST)
-    assert low_points(run, 4) == pytest.approx(-FIRST - SECOND, rel=1e-9)
+    assert_pressures(run, 1e-9)
     assert low_points(run, 6) == pytest.approx(-FIRST, rel=1e-9)
     first, last = (at_end(run, k, "node_FREE", "U1").min() for k in (1, 6))
     assert last == pytest.approx(first, rel=1e-9)
@@ -160,15 +162,7 @@ def test_lifts_on_contact_without_penetration(keyway, joint):
         + step(both)
         + step(remove("A2", "B2"))
     )
-    for number, (low, middle, high) in {
-        2: (FIRST, FIRST / 2, 0.0),
-        3: (FIRST + SECOND, FIRST / 2 + SECOND, SECOND),
-    }.items():
-        found = levels(run, number)
-        assert found[0.0] == pytest.approx(-low, rel=1e-6)
-        assert found[1.0] == pytest.approx(-middle, rel=1e-6)
-        assert found[2.0] == pytest.approx(-high, rel=1e-6, abs=1e-6 * FIRST)
-    assert low_points(run, 4) == pytest.approx(-FIRST - SECOND, rel=1e-6)
+    assert_pressures(run, 1e-6)
     for number in (1, 2, 3, 4):
         assert np.abs(at_end(run, number, "joint_J", "opening")).max() < 2e-12
     assert max(s["energy"]["error"] for s in run.json["steps"]) < 1e-6
@@ -202,15 +196,4 @@ def test_a_run_goes_on_between_lifts(program_path, tmp_path, joint):
         + step(remove("A2", "B2"), data=quarter)
     )
 
-    def results(name: str, *options: str) -> dict[str, str]:
-        folder = tmp_path / name
-        subprocess.run([program_path, "-q", "-j", "1", "-o", folder, *options, deck], check=True)
-        return {p.name: p.read_text() for p in Path(folder).glob("*.csv")}
-
-    whole = results("whole")
-    stopped = 0
-    for increment in (3, 4, 6, 8, 10, 13):
-        name = f"stop{increment}"
-        stopped += stop_after(program_path, tmp_path / name, deck, increment)
-        assert results(name, "--continue") == whole
-    assert stopped >= 2
+    assert stops_that_go_on(program_path, tmp_path, deck, (3, 4, 6, 8, 10, 13)) >= 2

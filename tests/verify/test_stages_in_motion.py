@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import subprocess
-
 import numpy as np
 import pytest
 from stage_decks import GRAVITY, OUTPUT, add, lifts, remove, step
-from test_grouting import stop_after
+from stopped_runs import stops_that_go_on
 from test_stages import CRACKING, WEIGHT
 
 QUARTER = "0.25, 1., 0.25, 0.25\n"
@@ -65,15 +63,4 @@ def test_a_run_goes_on_within_a_stage_and_in_motion(program_path, tmp_path):
     deck = tmp_path / "job.inp"
     deck.write_text(column())
 
-    def results(name: str, *options: str) -> dict[str, str]:
-        folder = tmp_path / name
-        subprocess.run([program_path, "-q", "-j", "1", "-o", folder, *options, deck], check=True)
-        return {p.name: p.read_text() for p in folder.glob("*.csv")}
-
-    whole = results("whole")
-    stopped = 0
-    for increment in (6, 40):
-        name = f"stop{increment}"
-        stopped += stop_after(program_path, tmp_path / name, deck, increment)
-        assert results(name, "--continue") == whole
-    assert stopped >= 1
+    assert stops_that_go_on(program_path, tmp_path, deck, (6, 40)) >= 1

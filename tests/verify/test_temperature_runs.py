@@ -20,7 +20,7 @@ from heat_decks import (
     warm,
 )
 from stage_decks import add, remove, step
-from test_grouting import stop_after
+from stopped_runs import stops_that_go_on
 from tied_blocks import Blocks, node_set
 
 UMAT = Path(__file__).parents[1] / "umat" / "tells_arguments.for"
@@ -124,18 +124,7 @@ def test_a_run_goes_on_between_and_within_steps(program_path, tmp_path):
     deck.write_text(lifts())
     (tmp_path / "top.csv").write_text("node, 0, 0.3, 1\nTOP, 20, 5, 7\n")
 
-    def results(name: str, *options: str) -> dict[str, str]:
-        folder = tmp_path / name
-        subprocess.run([program_path, "-q", "-j", "1", "-o", folder, *options, deck], check=True)
-        return {p.name: p.read_text() for p in folder.glob("*.csv")}
-
-    whole = results("whole")
-    stopped = 0
-    for increment in (2, 4, 6, 8, 10, 13, 16, 20):
-        name = f"stop{increment}"
-        stopped += stop_after(program_path, tmp_path / name, deck, increment)
-        assert results(name, "--continue") == whole
-    assert stopped >= 3
+    assert stops_that_go_on(program_path, tmp_path, deck, (2, 4, 6, 8, 10, 13, 16, 20)) >= 3
 
 
 def test_another_file_of_temperatures_is_another_deck(program_path, tmp_path):

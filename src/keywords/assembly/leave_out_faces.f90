@@ -105,7 +105,7 @@ contains
       do field = 1, this%num_fields(line)
         if (.not. this%is_integer_at(line, field)) cycle
         position = faces%position%find(this%integer_at(line, field))
-        if (position > 0) call append(members, num, [position])
+        if (position > 0) call append(members, num, position)
       end do
     end do
     if (num > 0) call faces%sets%add(this%word('ELSET'), members(:num))
@@ -155,7 +155,7 @@ contains
       if (.not. is_left_out(cards(i))) cycle
       is_kept(i) = .false.
       do line = 1, cards(i)%num_lines
-        if (cards(i)%is_integer_at(line, 1)) call append(ids, num, [cards(i)%integer_at(line, 1)])
+        if (cards(i)%is_integer_at(line, 1)) call append(ids, num, cards(i)%integer_at(line, 1))
       end do
     end do
     ids = sorted_unique(ids(:num))

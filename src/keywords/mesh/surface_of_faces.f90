@@ -37,7 +37,7 @@ contains
       do i = 1, size(members)
         number = face_below(model, members(i), table)
         if (number > 0) then
-          call append(found, num, [number])
+          call append(found, num, number)
         else
           call this%fault_at(faults, line, 1, 'element '// &
                              as_text(model%faces%ids(members(i)))// &
@@ -75,7 +75,7 @@ contains
     type(face_table), intent(in) :: table
     integer :: nodes(4), k
     do k = 1, 4
-      nodes(k) = model%node_position%find(model%faces%nodes(k, member))
+      nodes(k) = model%node_position%find(model%faces%nodes(4*(member - 1) + k))
     end do
     number = 0
     if (all(nodes > 0)) number = find_face(table, nodes)

@@ -1,6 +1,7 @@
 !> Faces that a deck holds as elements beside the solids, as meshes from Gmsh have them. They carry
 !> no loads; *SURFACE may name their sets.
 module face_elements
+  use growing_lists, only: append
   use id_map, only: position_table
   use set_lists, only: set_list
   implicit none
@@ -10,7 +11,7 @@ module face_elements
   type :: face_element_list
     integer :: num_faces = 0
     integer, allocatable :: ids(:) !< of the elements
-    integer, allocatable :: nodes(:, :) !< (4, faces) ids of nodes; a triangle repeats its last one
+    integer, allocatable :: nodes(:) !< (4*faces) ids of nodes; a triangle repeats its last one
     type(position_table) :: position !< of the number of an element
     type(set_list) :: sets !< of positions
   contains
@@ -24,19 +25,11 @@ contains
     class(face_element_list), intent(inout) :: self
     integer, intent(in) :: id !< of the element
     integer, intent(in) :: nodes(4) !< ids
-    integer, allocatable :: longer(:, :)
-    integer :: earlier
-    if (.not. allocated(self%nodes)) allocate (self%nodes(4, 16), self%ids(16))
-    if (self%num_faces == size(self%ids)) then
-      allocate (longer(4, 2*self%num_faces))
-      longer(:, :self%num_faces) = self%nodes
-      call move_alloc(longer, self%nodes)
-      self%ids = [self%ids, self%ids]
-    end if
+    integer :: earlier, num_nodes
     call self%position%insert(id, self%num_faces + 1, earlier)
     if (earlier > 0) return
-    self%num_faces = self%num_faces + 1
-    self%nodes(:, self%num_faces) = nodes
-    self%ids(self%num_faces) = id
+    num_nodes = 4*self%num_faces
+    call append(self%nodes, num_nodes, nodes)
+    call append(self%ids, self%num_faces, id)
   end subroutine add_face
 end module face_elements
