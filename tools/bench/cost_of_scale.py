@@ -139,8 +139,10 @@ class ScaleBench:
         if not self.fits(f"{joints} joints", forecast_memory(self.program, deck)):
             return None
         early, run = self.program.watch(deck, step=2)
-        if early is None:  # too fast to be seen on the way
-            early = self.program.run(write_dam(self.folder, joints, INCREMENT, more))
+        if early is None or 2 * increments_of(early) > increments_of(run):  # seen too late
+            apart = self.folder / "first_increment"  # its results lie beside those of the run
+            apart.mkdir(exist_ok=True)
+            early = self.program.run(write_dam(apart, joints, INCREMENT, more))
         points = sum(joint["points"] for joint in run.results.find("joints").values())
         done = increments_of(run) - increments_of(early)
         solve = run.mean(SOLVES)
