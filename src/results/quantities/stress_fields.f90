@@ -26,6 +26,7 @@ module stress_fields
     logical :: has_inelastic = .false. !< valid for this increment
     logical :: has_points = .false., has_node_strain = .false. !< valid for this increment
     logical :: has_node_stress = .false., has_principals = .false.
+    logical :: has_point_principals = .false. !< valid for this increment
     integer :: num_recoveries = 0 !< number of requests for stresses on the nodes
     logical :: had_operator = .false. !< at the checkpoint that the run goes on from
     type(nodal_operator) :: operator
@@ -34,6 +35,7 @@ module stress_fields
     real(rk), allocatable :: point_strain(:, :, :), point_stress(:, :, :)
     real(rk), allocatable :: node_strain(:, :), node_stress(:, :)
     real(rk), allocatable :: node_principal(:, :) !< (3, nodes), the largest first [Pa]
+    real(rk), allocatable :: point_principal(:, :, :) !< (3, max_points, solids), likewise [Pa]
     logical :: has_smoothing = .false. !< made once for each stage
     logical :: has_error = .false. !< valid for this increment
     type(smoothing_plan) :: smoothing
@@ -48,6 +50,7 @@ module stress_fields
     procedure :: need_node_strain
     procedure :: need_node_stress
     procedure :: need_principals
+    procedure :: need_point_principals
     procedure :: need_smoothing
     procedure :: need_error
     procedure :: field_on_nodes
@@ -67,6 +70,7 @@ contains
     self%has_node_strain = .false.
     self%has_node_stress = .false.
     self%has_principals = .false.
+    self%has_point_principals = .false.
     self%has_error = .false.
   end subroutine invalidate
 
@@ -87,6 +91,7 @@ contains
     self%has_operator = .false.
     self%has_smoothing = .false.
     if (allocated(self%point_strain)) deallocate (self%point_strain, self%point_stress)
+    if (allocated(self%point_principal)) deallocate (self%point_principal)
   end subroutine forget_plan
 
   !> Finds the solids and nodes that have left elasticity, once an increment.
@@ -223,18 +228,11 @@ contains
     type(state), intent(in) :: now
     integer, intent(in) :: number !< 1: the largest, 3: the smallest
     real(rk), allocatable, intent(out) :: values(:, :) !< (1, nodes) [Pa]
-    real(rk), allocatable :: at_points(:, :, :), principal(:, :)
     logical, allocatable :: is_bounded(:)
-    integer :: s
-    call self%need_points(model, now)
-    allocate (at_points(1, max_points, self%plan%num_solids))
-    do s = 1, self%plan%num_solids
-      principal = principals(self%point_stress(:, :, s))
-      at_points(1, :, s) = principal(number, :)
-    end do
+    call self%need_point_principals(model, now)
     allocate (values(1, model%mesh%num_nodes))
     allocate (is_bounded(self%plan%num_solids), source=.true.)
-    call average_at_nodes(self%plan, at_points, is_bounded, values)
+    call average_at_nodes(self%plan, self%point_principal(number:number, :, :), is_bounded, values)
   end subroutine points_on_nodes
 
   !> The thermal strains at the points of all solids.
@@ -272,6 +270,28 @@ contains
     self%node_principal = principals(self%node_stress)
     self%has_principals = .true.
   end subroutine need_principals
+
+  !> Computes the principal stresses at the points, once an increment.
+  subroutine need_point_principals(self, model, now)
+    class(recovered_fields), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    integer :: s, q
+    if (self%has_point_principals) return
+    call self%need_points(model, now)
+    if (.not. allocated(self%point_principal)) then
+      allocate (self%point_principal(3, max_points, self%plan%num_solids))
+    end if
+    !$omp parallel do default(none) shared(self) private(q) schedule(static) &
+    !$omp if (max_points*self%plan%num_solids > few_nodes)
+    do s = 1, self%plan%num_solids
+      do q = 1, max_points
+        self%point_principal(:, q, s) = principal_values(self%point_stress(:, q, s))
+      end do
+    end do
+    !$omp end parallel do
+    self%has_point_principals = .true.
+  end subroutine need_point_principals
 
   !> Makes the plan of smooth stresses unless it exists.
   subroutine need_smoothing(self, model)
