@@ -6,7 +6,6 @@ module inelastic_blocks
   use kinds, only: rk
   use dam_mesh, only: fe_mesh
   use element_catalogue, only: is_solid, make_solid
-  use element_matrices, only: strains_at_points
   use element_formulation, only: solid_element
   use gauss_rules, only: hex_point
   use guest_history, only: history, stored_work
@@ -125,32 +124,36 @@ contains
     end do
   end subroutine find_slopes
 
-  !> eps = B u at the points of all elements.
-  subroutine find_strains(self, u, strain)
+  !> eps = B u at the points of one element.
+  pure subroutine find_strains(self, e, u, strain)
     class(inelastic_block), intent(in) :: self
-    real(rk), intent(in) :: u(:, :) !< (24, elements) [m]
-    real(rk), intent(out) :: strain(6, self%points_of_element, size(self%elements))
+    integer, intent(in) :: e
+    real(rk), intent(in) :: u(hex8_dofs) !< [m]
+    real(rk), intent(out) :: strain(6, self%points_of_element)
     real(rk) :: sum_of(self%points_of_element, 6)
-    integer :: e, a, n
+    integer :: a, n, q, i
     if (.not. allocated(self%slope)) then
-      call strains_at_points(self%b, u, strain)
+      strain = 0.0_rk
+      do q = 1, self%points_of_element
+        do i = 1, hex8_dofs
+          strain(:, q) = strain(:, q) + self%b(:, i, q, e)*u(i)
+        end do
+      end do
       return
     end if
-    do e = 1, size(self%elements)
-      sum_of = 0.0_rk
-      do a = 1, 8
-        n = 3*a - 2
-        associate (g => self%slope(:, :, a, e))
-          sum_of(:, 1) = sum_of(:, 1) + g(:, 1)*u(n, e)
-          sum_of(:, 2) = sum_of(:, 2) + g(:, 2)*u(n + 1, e)
-          sum_of(:, 3) = sum_of(:, 3) + g(:, 3)*u(n + 2, e)
-          sum_of(:, 4) = sum_of(:, 4) + g(:, 2)*u(n, e) + g(:, 1)*u(n + 1, e)
-          sum_of(:, 5) = sum_of(:, 5) + g(:, 3)*u(n, e) + g(:, 1)*u(n + 2, e)
-          sum_of(:, 6) = sum_of(:, 6) + g(:, 3)*u(n + 1, e) + g(:, 2)*u(n + 2, e)
-        end associate
-      end do
-      strain(:, :, e) = transpose(sum_of)
+    sum_of = 0.0_rk
+    do a = 1, 8
+      n = 3*a - 2
+      associate (g => self%slope(:, :, a, e))
+        sum_of(:, 1) = sum_of(:, 1) + g(:, 1)*u(n)
+        sum_of(:, 2) = sum_of(:, 2) + g(:, 2)*u(n + 1)
+        sum_of(:, 3) = sum_of(:, 3) + g(:, 3)*u(n + 2)
+        sum_of(:, 4) = sum_of(:, 4) + g(:, 2)*u(n) + g(:, 1)*u(n + 1)
+        sum_of(:, 5) = sum_of(:, 5) + g(:, 3)*u(n) + g(:, 1)*u(n + 2)
+        sum_of(:, 6) = sum_of(:, 6) + g(:, 3)*u(n + 1) + g(:, 2)*u(n + 2)
+      end associate
     end do
+    strain = transpose(sum_of)
   end subroutine find_strains
 
   !> Adds sum B^T sigma of one element.

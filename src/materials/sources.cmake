@@ -10,10 +10,10 @@ set(sources
   concrete/damage_model.f90
   concrete/damage_point.f90
   concrete/damage_return.f90
-  concrete/damage_screen.f90
   concrete/damage_split.f90
   concrete/damage_stress.f90
   concrete/damage_tangent.f90
+  concrete/damage_trials.f90
   concrete/damage_yield.f90
   concrete/material_damage_plasticity.f90
   law/crack_band.f90

@@ -83,8 +83,10 @@ def test_is_the_law_of_the_program(keyway, library, kind):
     for test in tests:
         expected, found = own.csv(f"material_{test}"), other.csv(f"material_{test}")
         for name in ("E11", "E22", "S11", "S22", "S12", "stored"):
-            # The same operations on the same numbers; strains under stress control are iterated.
-            scale = np.abs(expected[name]).max() + 1e-300
+            # The same operations on the same numbers; strains under stress control are iterated. A
+            # stress that is held at zero is what the iteration leaves: the largest stress counts.
+            names = ("S11", "S22", "S12") if name.startswith("S") else (name,)
+            scale = max(np.abs(expected[n]).max() for n in names) + 1e-300
             assert np.abs(found[name] - expected[name]).max() <= 1e-9 * scale, (test, name)
         assert np.allclose(found["SDV9"], expected["DAMAGET"], atol=1e-9)
         assert np.allclose(found["SDV10"], expected["DAMAGEC"], atol=1e-9)

@@ -118,10 +118,13 @@ def name_held_faces(mesh: BrickMesh, number: np.ndarray) -> None:
     }
 
 
-def pull(path, dt: float | None = None, cards: str = "", controls: str = "") -> str:
+def pull(
+    path, dt: float | None = None, cards: str = "", controls: str = "", largest: float = 0.05
+) -> str:
     """A static step that moves RIGHT along x through the displacements of `path` [m].
 
-    One second from each to the next; `dt` is the size of fixed increments [s], None lets them grow.
+    One second from each to the next; `dt` is the size of fixed increments [s], None lets them grow
+    to `largest`.
     """
     times = np.arange(len(path) + 1)
     pairs = zip(times, [0.0, *path], strict=True)
@@ -131,7 +134,7 @@ def pull(path, dt: float | None = None, cards: str = "", controls: str = "") -> 
         + "*BOUNDARY, AMPLITUDE=PULL\nRIGHT, 1, 1, 1.\n"
         + "*NODE PRINT, NSET=RIGHT\nU, RF\n*EL PRINT, ELSET=WEAK\nS, E, DAMAGET, DAMAGEC\n"
         + cards,
-        f"{dt or 0.01!r}, {float(times[-1])!r}" + ("" if dt else ", 1e-6, 0.05"),
+        f"{dt or 0.01!r}, {float(times[-1])!r}" + ("" if dt else f", 1e-6, {largest!r}"),
     )
     if dt:
         step = step.replace("*STATIC\n", "*STATIC, DIRECT\n")

@@ -19,12 +19,15 @@ DAMAGES = (0.5, 0.9)  # at the end of the softening
 
 
 def broken_bar(keyway, num_rest: int, element: str = "C3D8", weakness: float = 0.97, **constants):
-    """Run of a bar of 1 + num_rest equal elements whose middle one is weaker."""
+    """Run of a bar of 1 + num_rest equal elements whose middle one is weaker.
+
+    With increments of 0.05 s one of C3D8I takes 61 iterations or is cut, as round-off has it.
+    """
     weak = Concrete(young=YOUNG, tension_type="GFI", tension=((STRENGTH, FRACTURE),), **constants)
     rest = replace(weak, tension=((STRENGTH / weakness, FRACTURE),))
     bar = Bar(weak, rest, LENGTH, SIDE, num_rest, weak_at=num_rest // 2, element=element)
     path = [STRENGTH / YOUNG * LENGTH, 1.05 * LAST_OPENING]
-    return keyway(bar.deck(pull(path)), name=f"bar{num_rest}")
+    return keyway(bar.deck(pull(path, largest=0.025)), name=f"bar{num_rest}")
 
 
 def closed_form(displacement: np.ndarray) -> np.ndarray:

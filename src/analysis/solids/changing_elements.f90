@@ -72,14 +72,14 @@ contains
     call self%tell_blocks(model, answers)
   end subroutine choose_elements
 
-  !> The next update is that of all elements in blocks with an element that takes no part.
+  !> The next update is that of the elements that take no part.
   subroutine ask_others(self, answers)
     class(element_choice), intent(in) :: self
     type(block_answer), intent(inout) :: answers(:) !< (blocks)
     integer :: i
     if (.not. self%is_made) return
     do i = 1, size(answers)
-      answers(i)%takes_part(:) = .not. all(answers(i)%takes_part)
+      answers(i)%takes_part(:) = .not. answers(i)%takes_part
     end do
   end subroutine ask_others
 

@@ -29,7 +29,7 @@ module inelastic_forces
     real(rk), allocatable :: force(:, :) !< (24, elements) sum w B^T (D eps - sigma) [N]
     real(rk), allocatable :: tangent(:, :, :) !< (6, 6, points) [Pa], or (6, 6, 0)
     logical, allocatable :: has_excess(:) !< (elements) with a point that is not elastic
-    !> (elements) Whether an update moves them; the others stay elastic, at their last strain
+    !> (elements) Whether an update moves them; the others keep their last strain and stress
     logical, allocatable :: takes_part(:)
     real(rk), allocatable :: lost(:, :) !< (24, elements) lost damping force [N], if any
     real(rk), allocatable :: correction(:, :) !< (24, elements) of the work [N], if any
@@ -112,6 +112,7 @@ contains
     type(block_answer), intent(inout) :: answers(:) !< (blocks)
     integer :: i
     do i = 1, size(answers)
+      answers(i)%takes_part(:) = .true.
       call sum_block(model%inelastic(i), points(i), answers(i))
     end do
   end subroutine recall_points
@@ -126,8 +127,8 @@ contains
     type(point_state), intent(in) :: old
     type(point_state), intent(inout) :: new
     type(block_answer), intent(inout) :: answer
-    real(rk) :: moved(hex8_dofs, size(part%elements))
-    integer :: e, num_tangents
+    type(time_increment) :: moment
+    integer :: num_tangents
     if (.not. any(answer%takes_part)) return
     num_tangents = merge(0, part%points%num_points, time%tangent == no_tangent)
     if (size(answer%tangent, 3) /= num_tangents) then
@@ -138,54 +139,58 @@ contains
       call sum_block(part, new, answer)
       return
     end if
-    do e = 1, size(part%elements)
-      moved(:, e) = gather_vectors(u, model%mesh%nodes(:, part%elements(e)))
-      if (allocated(origin)) moved(:, e) = moved(:, e) - origin(:, part%elements(e))
-    end do
+    call move_points(model, part, u, origin, answer%takes_part, new)
+    moment = time
+    if (num_tangents == 0 .and. .not. all(answer%takes_part)) then
+      moment%stays = reshape(spread(.not. answer%takes_part, 1, part%points_of_element), &
+                             [part%points%num_points])
+    end if
     associate (law => model%materials(part%material)%law)
-      call part%find_strains(moved, new%strain)
-      if (law%wants_gradient) call find_gradients(model%mesh%x, model%mesh%nodes, part, moved, new)
-      if (allocated(new%thermal)) new%strain = new%strain - new%thermal
-      call keep_strains(part, answer%takes_part, old, new)
-      call law%update(part%points, time, old, new, answer%tangent, answer%report)
+      call law%update(part%points, moment, old, new, answer%tangent, answer%report)
     end associate
     call sum_block(part, new, answer)
   end subroutine update_block
 
-  !> Sets the strains of elements that take no part to those at the start of the increment.
-  pure subroutine keep_strains(part, takes_part, old, new)
+  !> Strains, and gradients where the law wants them, of the elements that take part.
+  subroutine move_points(model, part, u, origin, takes_part, new)
+    type(problem), intent(in) :: model
     type(inelastic_block), intent(in) :: part
+    real(rk), intent(in) :: u(:, :) !< (3, nodes) [m]
+    real(rk), allocatable, intent(in) :: origin(:, :) !< (24, elements) without stress, if any [m]
     logical, intent(in) :: takes_part(:) !< (elements)
-    type(point_state), intent(in) :: old
     type(point_state), intent(inout) :: new
-    integer :: e, last
-    do e = 1, size(takes_part)
-      if (takes_part(e)) cycle
-      last = e*part%points_of_element
-      associate (first => last - part%points_of_element + 1)
-        new%strain(:, first:last) = old%strain(:, first:last)
-      end associate
-    end do
-  end subroutine keep_strains
-
-  !> du_i/dx_j: rotation from the shape functions, strain from the element.
-  subroutine find_gradients(x, nodes, part, moved, new)
-    real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
-    integer, intent(in) :: nodes(:, :) !< (8, elements of the mesh)
-    type(inelastic_block), intent(in) :: part
-    real(rk), intent(in) :: moved(:, :) !< (24, elements) [m]
-    type(point_state), intent(inout) :: new
-    real(rk) :: slope(3, 8), plain(3, 3), xi(3), determinant
-    integer :: e, q, p
+    real(rk) :: moved(hex8_dofs)
+    integer :: e, first, last
     do e = 1, size(part%elements)
-      do q = 1, part%points_of_element
-        p = (e - 1)*part%points_of_element + q
-        xi = 0.0_rk
-        if (part%points_of_element > 1) xi = hex_point(:, q)
-        call gradient_at(x(:, nodes(:, part%elements(e))), derivative_at(xi), slope, determinant)
-        plain = matmul(reshape(moved(:, e), [3, 8]), transpose(slope))
-        new%gradient(:, :, p) = 0.5_rk*(plain - transpose(plain)) + tensor_of(new%strain(:, p))
-      end do
+      if (.not. takes_part(e)) cycle
+      moved = gather_vectors(u, model%mesh%nodes(:, part%elements(e)))
+      if (allocated(origin)) moved = moved - origin(:, part%elements(e))
+      last = e*part%points_of_element
+      first = last - part%points_of_element + 1
+      call part%find_strains(e, moved, new%strain(:, first:last))
+      if (size(new%gradient, 3) > 0) then
+        call find_gradients(model%mesh%x(:, model%mesh%nodes(:, part%elements(e))), moved, &
+                            new%strain(:, first:last), new%gradient(:, :, first:last))
+      end if
+      if (allocated(new%thermal)) then
+        new%strain(:, first:last) = new%strain(:, first:last) - new%thermal(:, first:last)
+      end if
+    end do
+  end subroutine move_points
+
+  !> du_i/dx_j of an element: rotation from the shape functions, strain from the element.
+  subroutine find_gradients(x, moved, strain, gradient)
+    real(rk), intent(in) :: x(3, 8), moved(hex8_dofs) !< of the nodes [m]
+    real(rk), intent(in) :: strain(:, :) !< (6, points)
+    real(rk), intent(out) :: gradient(:, :, :) !< (3, 3, points)
+    real(rk) :: slope(3, 8), plain(3, 3), xi(3), determinant
+    integer :: q
+    do q = 1, size(strain, 2)
+      xi = 0.0_rk
+      if (size(strain, 2) > 1) xi = hex_point(:, q)
+      call gradient_at(x, derivative_at(xi), slope, determinant)
+      plain = matmul(reshape(moved, [3, 8]), transpose(slope))
+      gradient(:, :, q) = 0.5_rk*(plain - transpose(plain)) + tensor_of(strain(:, q))
     end do
   end subroutine find_gradients
 
@@ -198,7 +203,7 @@ contains
     end associate
   end function tensor_of
 
-  !> sum w B^T (D eps - sigma) of each element.
+  !> sum w B^T (D eps - sigma) of each element that takes part.
   pure subroutine sum_block(part, new, answer)
     type(inelastic_block), intent(in) :: part
     type(point_state), intent(in) :: new
@@ -206,6 +211,7 @@ contains
     real(rk) :: excess(part%points_of_element, 6)
     integer :: e, q, p
     do e = 1, size(part%elements)
+      if (.not. answer%takes_part(e)) cycle
       answer%has_excess(e) = .false.
       answer%force(:, e) = 0.0_rk
       p = (e - 1)*part%points_of_element

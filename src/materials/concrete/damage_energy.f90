@@ -104,16 +104,18 @@ contains
     real(rk), intent(in) :: from(6), to(6) !< [Pa]
     real(rk), intent(in) :: damage(2) !< d_t, d_c
     type(damage_gradient) :: d(2)
-    real(rk) :: stress(6), energy(2), ends(2)
+    real(rk) :: stress(6), energy(2), share(0:num_parts)
     integer :: i
     work = 0.0_rk
     if (.not. any(abs(to - from) > 0.0_rk)) return
-    ends = [weight_of(model, from), weight_of(model, to)]
-    if (all(ends >= 1.0_rk) .or. all(ends <= 0.0_rk)) return
+    share(0) = weight_of(model, from)
+    share(num_parts) = weight_of(model, to)
+    if (all(share([0, num_parts]) >= 1.0_rk) .or. all(share([0, num_parts]) <= 0.0_rk)) return
     do i = 0, num_parts
       stress = from + (to - from)*i/num_parts
+      if (i > 0 .and. i < num_parts) share(i) = weight_of(model, stress)
       energy(2) = undamaged_energy(model, stress)
-      d(2) = total_damage(model, damage(1), damage(2), weight_of(model, stress))
+      d(2) = total_damage(model, damage(1), damage(2), share(i))
       if (i > 0) work = work - 0.5_rk*sum(energy)*(d(2)%value - d(1)%value)
       energy(1) = energy(2)
       d(1) = d(2)

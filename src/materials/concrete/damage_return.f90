@@ -7,6 +7,9 @@
 !> strengths. F(x) = 0 remains. F(0) > 0, and F < 0 for large x if tan(psi) > 0 and a > 0, because p
 !> increases without limit and q vanishes. A root therefore exists, also at the apex and in
 !> hydrostatic tension. The smallest root is taken: up to it the path stays on the softening branch.
+!>
+!> The unknown of the program is y = x/sqrt(a^2 + q^2), with which x increases:
+!> q = q_tr/(1 + 3 mu y) and x = y sqrt(a^2 + q^2) are explicit.
 module damage_return
   use damage_curves, only: curve_value, value_of_curve
   use damage_model, only: concrete_model, placed_curves
@@ -20,8 +23,7 @@ module damage_return
   real(rk), parameter :: tolerance = 1.0e-13_rk !< |F| over the strength in compression
   real(rk), parameter :: acceptable = 1.0e-9_rk !< the same, where round-off prevents more
   integer, parameter :: max_steps = 400 !< a table of 100 rows, and bisection to roundoff
-  integer, parameter :: max_inner = 60
-  real(rk), parameter :: roundoff = 2.0_rk*epsilon(1.0_rk) !< of the equation for q
+  real(rk), parameter :: largest_bend = 0.5_rk !< of a step, over Newton's
   real(rk), parameter :: overshoot = 1.0e-6_rk !< beyond a knot, onto the next branch
 
   !> Elastic trial state.
@@ -33,7 +35,7 @@ module damage_return
 
   !> The state after flow by x, with derivatives by x (named `_rate`).
   type :: flow_state
-    real(rk) :: x = 0.0_rk
+    real(rk) :: x = 0.0_rk, y = 0.0_rk !< y = x/radius [1/Pa]
     real(rk) :: q = 0.0_rk, q_rate = 0.0_rk, p = 0.0_rk !< p_rate is K tan psi
     real(rk) :: radius = 0.0_rk !< sqrt(a^2 + q^2)
     real(rk) :: stiffening = 1.0_rk !< dq_tr/dq at constant x
@@ -47,22 +49,33 @@ module damage_return
     real(rk) :: f_rate = 0.0_rk
   end type flow_state
 
+  !> A function with the root of F, nearly linear in x, at one x.
+  type :: root_sample
+    real(rk) :: x = 0.0_rk, value = 0.0_rk, slope = 0.0_rk !< slope: dx/dvalue
+    logical :: falls = .false. !< F decreases
+    logical :: is_scaled = .false. !< F t/c in place of F
+    integer :: rows(2) = 0 !< of the curves
+  end type root_sample
+
 contains
 
-  !> The state after flow by x.
-  pure subroutine flow_by(model, placed, trial, x, flow)
+  !> The state after flow by x = y sqrt(a^2 + q^2).
+  pure subroutine flow_by(model, placed, trial, y, flow)
     type(concrete_model), intent(in) :: model
     type(placed_curves), intent(in) :: placed
     type(trial_state), intent(in) :: trial
-    real(rk), intent(in) :: x !< multiplier, >= 0
+    real(rk), intent(in) :: y !< >= 0 [1/Pa]
     type(flow_state), intent(inout) :: flow !< on entry with guesses of its rows
     real(rk) :: inverse, slope, direction, direction_rate, share_rate, smallest, smallest_rate
-    flow%x = x
-    call reduce_deviator(placed%rounding, trial%q, 3.0_rk*model%shear*x, flow)
+    flow%y = y
+    flow%q = trial%q/(1.0_rk + 3.0_rk*model%shear*y)
+    flow%radius = sqrt(placed%rounding**2 + flow%q**2)
     inverse = 1.0_rk/flow%radius
+    flow%x = y*flow%radius
+    flow%stiffening = 1.0_rk + 3.0_rk*model%shear*y*(placed%rounding*inverse)**2
     flow%q_rate = -3.0_rk*model%shear*flow%q*inverse/flow%stiffening
     slope = 1.5_rk*inverse
-    flow%p = trial%p + model%bulk*model%tan_dilation*x
+    flow%p = trial%p + model%bulk*model%tan_dilation*flow%x
     flow%s = flow%q*trial%shape - flow%p
     flow%s_rate = flow%q_rate*trial%shape - model%bulk*model%tan_dilation
     call tension_share(flow%s, flow%share, flow%share_by)
@@ -74,37 +87,14 @@ contains
     smallest = direction*trial%shape(3) + model%tan_dilation/3.0_rk
     smallest_rate = merge(-direction_rate*trial%shape(3), 0.0_rk, smallest < 0.0_rk)
     flow%smallest_flow = max(0.0_rk, -smallest)
-    flow%measures = trial%measures + x*[flow%share*flow%largest_flow, &
-                                        (1.0_rk - flow%share)*flow%smallest_flow]
-    flow%measure_rates = [flow%share*(flow%largest_flow + x*direction_rate*trial%shape(1)), &
-                          (1.0_rk - flow%share)*(flow%smallest_flow + x*smallest_rate)] &
-                         + x*share_rate*[flow%largest_flow, -flow%smallest_flow]
+    flow%measures = trial%measures + flow%x*[flow%share*flow%largest_flow, &
+                                             (1.0_rk - flow%share)*flow%smallest_flow]
+    flow%measure_rates = [flow%share*(flow%largest_flow &
+                                      + flow%x*direction_rate*trial%shape(1)), &
+                          (1.0_rk - flow%share)*(flow%smallest_flow + flow%x*smallest_rate)] &
+                         + flow%x*share_rate*[flow%largest_flow, -flow%smallest_flow]
     call evaluate_residual(model, placed, flow)
   end subroutine flow_by
-
-  !> q after flow by x. The left side of the equation for q is increasing and concave, so Newton's
-  !> iterates increase to the root from below; from above the first step goes below the root. The
-  !> first guess takes q/sqrt(a^2 + q^2) of the last x, which hardly changes unless q is small.
-  pure subroutine reduce_deviator(rounding, q_trial, flow_modulus, flow)
-    real(rk), intent(in) :: rounding, q_trial !< a, q_tr [Pa]
-    real(rk), intent(in) :: flow_modulus !< 3 mu x [Pa]
-    type(flow_state), intent(inout) :: flow !< q, radius and stiffening are set
-    real(rk) :: square, q, excess, inverse, least
-    integer :: i
-    square = rounding**2
-    least = max(q_trial - flow_modulus, q_trial*rounding/(rounding + flow_modulus))
-    q = least
-    if (flow%radius > 0.0_rk) q = max(least, q_trial - flow_modulus*flow%q/flow%radius)
-    do i = 1, max_inner
-      flow%radius = sqrt(square + q**2)
-      inverse = 1.0_rk/flow%radius
-      flow%stiffening = 1.0_rk + flow_modulus*square*inverse*inverse*inverse
-      flow%q = q
-      excess = q_trial - q*(1.0_rk + flow_modulus*inverse)
-      if (excess <= roundoff*q_trial .and. (i > 1 .or. excess >= -roundoff*q_trial)) exit
-      q = max(least, q + excess/flow%stiffening)
-    end do
-  end subroutine reduce_deviator
 
   !> Evaluates F and its derivative by x.
   pure subroutine evaluate_residual(model, placed, flow)
@@ -132,31 +122,35 @@ contains
     type(trial_state), intent(in) :: trial
     type(flow_state), intent(inout) :: flow !< on entry flow_by(0)
     logical, intent(out) :: has_converged
-    real(rk) :: low, high, x, f_before
+    type(root_sample) :: now, last
+    real(rk) :: low, high, y, f_before
     integer :: i
     low = 0.0_rk
     high = -1.0_rk
-    f_before = huge(x)
+    f_before = huge(y)
     do i = 1, max_steps
       has_converged = abs(flow%f%value) <= residual_limit(trial, flow)
       if (has_converged) return
+      last = now
+      now = sample_of(flow)
       if (flow%f%value > 0.0_rk) then
-        low = flow%x
+        low = flow%y
       else
-        high = flow%x
+        high = flow%y
       end if
       if (high < 0.0_rk) then
-        x = next_step(model, placed, flow)
+        y = y_near(placed, flow, next_step(model, placed, flow, now, last))
+        if (y <= low) exit
       else
-        x = low
-        if (flow%f_rate < 0.0_rk .and. abs(flow%f%value) < 0.5_rk*f_before) then
-          x = newton_point(flow)
+        y = low
+        if (now%falls .and. abs(flow%f%value) < 0.5_rk*f_before) then
+          y = y_near(placed, flow, root_near(now, last))
         end if
-        if (x <= low .or. x >= high) x = 0.5_rk*(low + high)
-        if (x <= low .or. x >= high) exit
+        if (y <= low .or. y >= high) y = 0.5_rk*(low + high)
+        if (y <= low .or. y >= high) exit
       end if
       f_before = abs(flow%f%value)
-      call flow_by(model, placed, trial, x, flow)
+      call flow_by(model, placed, trial, y, flow)
     end do
     has_converged = abs(flow%f%value) <= acceptable*flow%compression%strength
   end subroutine find_flow
@@ -172,34 +166,68 @@ contains
   end function residual_limit
 
   !> The next multiplier in the search for a negative F.
-  pure real(rk) function next_step(model, placed, flow) result(x)
+  pure real(rk) function next_step(model, placed, flow, now, last) result(x)
     type(concrete_model), intent(in) :: model
     type(placed_curves), intent(in) :: placed
     type(flow_state), intent(in) :: flow !< with F > 0
+    type(root_sample), intent(in) :: now, last !< of this flow and of that before it
     real(rk) :: knot
     x = huge(x)
-    if (flow%f_rate < 0.0_rk) x = newton_point(flow)
+    if (now%falls) x = root_near(now, last)
     knot = min(step_to_knot(placed%tension, flow, 1), step_to_knot(placed%compression, flow, 2))
     x = min(x, flow%x + knot)
     if (x < huge(x)) return
     x = 2.0_rk*flow%x + flow%f%value/(3.0_rk*model%shear + model%bulk*model%tan_dilation)
   end function next_step
 
-  !> Newton's next multiplier for decreasing F. In tension F is approximately c/t s_1 - c, a
-  !> hyperbola in the decreasing strength t; F t/c is nearly linear and has the same roots.
-  pure real(rk) function newton_point(flow) result(x)
+  !> y of a multiplier, from the derivative of sqrt(a^2 + q^2). The error is of second order in the
+  !> change of x, and small unless q is as small as a.
+  pure real(rk) function y_near(placed, flow, x) result(y)
+    type(placed_curves), intent(in) :: placed
     type(flow_state), intent(in) :: flow
-    real(rk) :: rate, scaled
-    rate = flow%f_rate
-    if (flow%f%by_tension < 0.0_rk) then
-      scaled = rate + flow%f%value &
-               *(flow%tension%strength_slope*flow%measure_rates(1)/flow%tension%strength &
-                 - flow%compression%strength_slope*flow%measure_rates(2) &
-                 /flow%compression%strength)
-      if (scaled < 0.0_rk) rate = scaled
-    end if
-    x = flow%x - flow%f%value/rate
-  end function newton_point
+    real(rk), intent(in) :: x
+    y = x/max(placed%rounding, flow%radius + flow%q*flow%q_rate/flow%radius*(x - flow%x))
+  end function y_near
+
+  !> In tension F is approximately c/t s_1 - c, a hyperbola in the decreasing strength t; F t/c is
+  !> nearly linear and has the same roots.
+  pure function sample_of(flow) result(sample)
+    type(flow_state), intent(in) :: flow
+    type(root_sample) :: sample
+    real(rk) :: scaled, ratio
+    sample%x = flow%x
+    sample%falls = flow%f_rate < 0.0_rk
+    if (.not. sample%falls) return
+    sample%rows = flow%rows
+    sample%value = flow%f%value
+    sample%slope = 1.0_rk/flow%f_rate
+    if (flow%f%by_tension >= 0.0_rk) return
+    scaled = flow%f_rate + flow%f%value &
+             *(flow%tension%strength_slope*flow%measure_rates(1)/flow%tension%strength &
+               - flow%compression%strength_slope*flow%measure_rates(2) &
+               /flow%compression%strength)
+    if (scaled >= 0.0_rk) return
+    sample%is_scaled = .true.
+    ratio = flow%tension%strength/flow%compression%strength
+    sample%value = flow%f%value*ratio
+    sample%slope = 1.0_rk/(scaled*ratio)
+  end function sample_of
+
+  !> Root of the cubic polynomial x(value) through two samples of the same rows of the curves, or
+  !> Newton's step from the present one.
+  pure real(rk) function root_near(now, last) result(x)
+    type(root_sample), intent(in) :: now, last
+    real(rk) :: step, gap, chord, bend
+    step = -now%value*now%slope
+    x = now%x + step
+    if (.not. last%falls .or. any(now%rows /= last%rows)) return
+    gap = last%value - now%value
+    if ((now%is_scaled .neqv. last%is_scaled) .or. .not. abs(gap) > abs(now%value)) return
+    chord = (last%x - now%x)/gap
+    bend = (now%value/gap)**2*((chord - now%slope)*gap &
+                               - (last%slope - 2.0_rk*chord + now%slope)*last%value)
+    if (abs(bend) <= largest_bend*abs(step)) x = x + bend
+  end function root_near
 
   !> Increment of the multiplier to the next knot of a measure; huge without one.
   pure real(rk) function step_to_knot(knots, flow, measure) result(step)

@@ -4,13 +4,13 @@
 module damage_stress
   use crack_band, only: band_width
   use damage_history, only: last_damage, last_measure, last_strain, width_row
-  use damage_increment, only: deviator_of, elastic_stress, yield_tolerance
+  use damage_increment, only: yield_tolerance
   use damage_model, only: concrete_model, place_curves, placed_curves
-  use damage_point, only: point_answer, point_motion
+  use damage_point, only: point_answer
   use damage_return, only: find_flow, flow_by, flow_state, trial_state
   use damage_yield, only: damage_gradient, total_damage
   use kinds, only: rk
-  use tensor6, only: principal_axes, principal_values, second_invariant, trace
+  use tensor6, only: principal_axes
   implicit none
   private
   public :: has_plain_stress, find_stress
@@ -26,28 +26,20 @@ contains
 
   !> Stress and history at the end of an increment, in one part; see integrate_part.
   !> Without convergence more parts are needed.
-  pure subroutine find_stress(model, motion, old, placed, new, answer)
+  pure subroutine find_stress(model, trial, deviator, edges, old, placed, new, answer)
     type(concrete_model), intent(in) :: model
-    type(point_motion), intent(in) :: motion !< its strain at the end, and its edges
+    type(trial_state), intent(in) :: trial
+    real(rk), intent(in) :: deviator(6) !< S_tr/q_tr
+    real(rk), intent(in) :: edges(3, 3) !< of the element at the point, columns [m]
     real(rk), intent(in) :: old(:) !< internal variables
     type(placed_curves), intent(inout) :: placed !< curves, kept by the caller
     real(rk), intent(inout) :: new(:) !< internal variables
     type(point_answer), intent(inout) :: answer !< its stress and its logicals are set
-    type(trial_state) :: trial
     type(flow_state) :: flow
-    real(rk) :: stress(6), deviator(6), width
+    real(rk) :: width
     logical :: has_yielded
-    stress = elastic_stress(model, motion%strain - old(:last_strain))
-    trial%p = -trace(stress)/3.0_rk
-    trial%measures = old(last_strain + 1:last_measure)
-    deviator = deviator_of(stress)
-    trial%q = sqrt(3.0_rk*second_invariant(deviator))
-    if (trial%q > 0.0_rk) then
-      deviator = deviator/trial%q
-      trial%shape = principal_values(deviator)
-    end if
     width = old(width_row)
-    if (width <= 0.0_rk) width = width_at(motion%edges, deviator)
+    if (model%by_opening .and. width <= 0.0_rk) width = width_at(edges, deviator)
     call place_curves(model, width, placed)
     call flow_by(model, placed, trial, 0.0_rk, flow)
     answer%has_converged = abs(flow%f%value) < huge(width) ! not for NaN
@@ -55,6 +47,7 @@ contains
     new = old
     has_yielded = flow%f%value > yield_tolerance*flow%compression%strength
     if (has_yielded) then
+      if (width <= 0.0_rk) width = width_at(edges, deviator)
       call find_flow(model, placed, trial, flow, answer%has_converged)
       call take_flow(model, flow, deviator, width, new)
     end if

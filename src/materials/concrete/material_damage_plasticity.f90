@@ -8,8 +8,9 @@ module material_damage_plasticity
                             unpack_history, width_row
   use damage_model, only: concrete_model, make_concrete_model, placed_curves, stiffness_of
   use damage_point, only: point_answer, point_history, point_motion, update_point
-  use damage_screen, only: screen_points
+  use damage_return, only: trial_state
   use damage_stress, only: find_stress, has_plain_stress
+  use damage_trials, only: find_trials, screen_points, trial_block
   use errors, only: deck_is_wrong, error_type, raise
   use kinds, only: rk
   use material_law, only: stress_law
@@ -65,7 +66,8 @@ contains
     call stiffness_of(self%model, d)
   end subroutine elastic_stiffness
 
-  !> Updates virgin points that are certainly elastic at once, the others one by one.
+  !> Updates virgin points that are certainly elastic at once, the others one by one. Stresses alone
+  !> start from trial states of all others at once.
   subroutine update(self, points, time, old, new, tangent, report)
     class(concrete_law), intent(in) :: self
     type(point_set), intent(in) :: points
@@ -79,47 +81,92 @@ contains
     type(placed_curves) :: placed
     real(rk), dimension(points%num_points) :: factor, stored
     real(rk) :: d(6, 6)
-    logical :: is_plain
+    logical :: is_plain, has_answer(points%num_points)
     integer :: i
     factor = 1.0_rk
     if (self%model%tension%longest < huge(1.0_rk)) then
       factor = min(1.0_rk, sqrt(self%model%tension%longest/points%widest))
     end if
-    call screen_points(self%model, factor, new%strain, new%stress, stored, new%is_elastic)
-    call self%elastic_stiffness(d)
+    has_answer = .false.
+    if (allocated(time%stays)) has_answer = time%stays
+    call screen_runs(self%model,.not. has_answer, factor, new, stored)
     motion%time = time%size
     motion%wants_tangent = time%tangent /= no_tangent
     motion%is_secant = time%tangent == secant_tangent
     motion%holds_switch = time%holds_switches
     motion%wants_energy = time%wants_energy
+    if (motion%wants_tangent) call self%elastic_stiffness(d)
+    do i = 1, points%num_points
+      if (has_answer(i)) cycle
+      has_answer(i) = new%is_elastic(i) .and. old%is_elastic(i)
+      if (.not. has_answer(i)) cycle
+      new%internal(:, i) = old%internal(:, i)
+      new%energy(:, i) = old%energy(:, i)
+      new%energy(stored_energy, i) = stored(i)
+      if (motion%wants_tangent) tangent(:, :, i) = d
+    end do
     is_plain = has_plain_stress(self%model) &
                .and. .not. (motion%wants_tangent .or. motion%wants_energy)
+    if (is_plain) call find_stresses(self%model, points, old, placed, new, has_answer)
     do i = 1, points%num_points
-      if (new%is_elastic(i) .and. old%is_elastic(i)) then
-        new%internal(:, i) = old%internal(:, i)
-        new%energy(:, i) = old%energy(:, i)
-        new%energy(stored_energy, i) = stored(i)
-        if (motion%wants_tangent) tangent(:, :, i) = d
-      else
-        motion%edges = points%edges(:, :, i)
-        if (is_plain) then
-          motion%strain = new%strain(:, i)
-          call find_stress(self%model, motion, old%internal(:, i), placed, new%internal(:, i), &
-                           answer)
-          new%stress(:, i) = answer%stress
-          new%is_elastic(i) = answer%is_elastic
-          if (answer%has_converged) cycle
-        end if
-        call yield_point(self%model, motion, i, old, placed, new, answer)
-        if (motion%wants_tangent) tangent(:, :, i) = answer%tangent
-        if (answer%has_converged .or. report%failed_point > 0) cycle
-        report%failed_point = i
-        report%message = 'no convergence of concrete at a point, for a change of strain of '// &
-                         as_text(maxval(abs(new%strain(:, i) - old%strain(:, i))))// &
-                         ' in the increment'
-      end if
+      if (has_answer(i)) cycle
+      motion%edges = points%edges(:, :, i)
+      call yield_point(self%model, motion, i, old, placed, new, answer)
+      if (motion%wants_tangent) tangent(:, :, i) = answer%tangent
+      if (answer%has_converged .or. report%failed_point > 0) cycle
+      report%failed_point = i
+      report%message = 'no convergence of concrete at a point, for a change of strain of '// &
+                       as_text(maxval(abs(new%strain(:, i) - old%strain(:, i))))// &
+                       ' in the increment'
     end do
   end subroutine update
+
+  !> Screens the points that change, in runs of adjacent ones.
+  pure subroutine screen_runs(model, changes, factor, new, stored)
+    type(concrete_model), intent(in) :: model
+    logical, intent(in) :: changes(:) !< (points)
+    real(rk), intent(in) :: factor(:) !< (points) as in screen_points
+    type(point_state), intent(inout) :: new !< stress and is_elastic are set
+    real(rk), intent(inout) :: stored(:) !< (points) [J/m3]
+    integer :: first, last
+    last = 0
+    do
+      first = last + findloc(changes(last + 1:), .true., 1)
+      if (first == last) return
+      last = findloc(changes(first:), .false., 1)
+      last = merge(size(changes), first + last - 2, last == 0)
+      call screen_points(model, factor(first:last), new%strain(:, first:last), &
+                         new%stress(:, first:last), stored(first:last), new%is_elastic(first:last))
+    end do
+  end subroutine screen_runs
+
+  !> Stresses and histories alone of points that may yield or have yielded.
+  pure subroutine find_stresses(model, points, old, placed, new, has_answer)
+    type(concrete_model), intent(in) :: model
+    type(point_set), intent(in) :: points
+    type(point_state), intent(in) :: old
+    type(placed_curves), intent(inout) :: placed
+    type(point_state), intent(inout) :: new
+    logical, intent(inout) :: has_answer(:) !< (points) true: keep the present answer
+    type(trial_block) :: trials
+    type(trial_state) :: trial
+    type(point_answer) :: answer
+    integer :: i, k, pending(points%num_points), num_pending
+    if (all(has_answer)) return
+    num_pending = count(.not. has_answer)
+    pending(:num_pending) = pack([(i, i=1, points%num_points)],.not. has_answer)
+    call find_trials(model, pending(:num_pending), new%strain, old%internal, trials)
+    do k = 1, num_pending
+      i = pending(k)
+      trial = trial_state(q=trials%q(k), p=trials%p(k), shape=trials%shape(:, k), &
+                          measures=old%internal(last_strain + 1:last_measure, i))
+      call find_stress(model, trial, trials%deviator(:, k), points%edges(:, :, i), &
+                       old%internal(:, i), placed, new%internal(:, i), answer)
+      new%stress(:, i) = answer%stress
+      new%is_elastic(i) = answer%is_elastic
+      has_answer(i) = answer%has_converged
+    end do
+  end subroutine find_stresses
 
   !> Updates a point that may yield or has yielded.
   pure subroutine yield_point(model, motion, i, old, placed, new, answer)

@@ -67,6 +67,9 @@ module material_points
     logical :: holds_switches = .false.
     !> False: laws that defer their energies leave them out.
     logical :: wants_energy = .true.
+    !> (points) Strain and history at the start are those of the last update, whose answer a law may
+    !> keep; not allocated: none
+    logical, allocatable :: stays(:)
   end type time_increment
 
   !> What went wrong in an update.

@@ -1,9 +1,10 @@
 !> The elastic check of virgin concrete never accepts an inelastic point, accepts nearly all elastic
-!> points, and gives their stress and energy.
-program test_damage_screen
+!> points, and gives their stress and energy. Trial states of blocks are those of single points.
+program test_damage_trials
   use concrete_model, only: table_one
   use damage_model, only: concrete_model, make_concrete_model, stiffness_of
-  use damage_screen, only: screen_points
+  use damage_increment, only: deviator_of, elastic_stress
+  use damage_trials, only: find_trials, screen_points, trial_block
   use damage_yield, only: yield_at, yield_value
   use kinds, only: rk
   use tensor6, only: principal_values, trace, von_mises
@@ -11,9 +12,10 @@ program test_damage_screen
   implicit none
   integer, parameter :: num_points = 20000
   type(test_log) :: log
-  log%suite = 'damage_screen'
+  log%suite = 'damage_trials'
   call random_points()
   call uniaxial_limits()
+  call trial_states()
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
 
@@ -75,4 +77,35 @@ contains
     call check(log, all(is_within .eqv. [.true., .false., .true., .false., .true., .true.]), &
                'limits')
   end subroutine uniaxial_limits
-end program test_damage_screen
+
+  !> Random elastic strains and near to them those with two or three equal principal values, against
+  !> the procedures for one tensor.
+  subroutine trial_states()
+    type(concrete_model) :: model
+    type(trial_block) :: trials
+    real(rk) :: strain(6, num_points), internal(11, num_points), s(6), worst
+    integer :: i, points(num_points/2)
+    call make_concrete_model(table_one(), model)
+    call random_number(strain)
+    call random_number(internal)
+    strain = (strain - 0.5_rk)*6.0e-4_rk
+    internal = internal*1.0e-4_rk
+    strain(4:, ::5) = internal(4:6, ::5) ! on the axes
+    strain(2, ::15) = strain(1, ::15) + internal(2, ::15) - internal(1, ::15) ! equal values
+    strain(:, ::100) = internal(:6, ::100) ! without stress
+    points = [(2*i - 1, i=1, size(points))]
+    call find_trials(model, points, strain, internal, trials)
+    worst = 0.0_rk
+    do i = 1, size(points)
+      s = elastic_stress(model, strain(:, points(i)) - internal(:6, points(i)))
+      worst = max(worst, abs(trials%p(i) + trace(s)/3.0_rk)/model%young)
+      s = deviator_of(s)
+      worst = max(worst, abs(trials%q(i) - von_mises(s))/model%young)
+      worst = max(worst, maxval(abs(trials%deviator(:, i)*trials%q(i) - s))/model%young)
+      s(:3) = trials%q(i)*trials%shape(:, i) - principal_values(s)
+      worst = max(worst, maxval(abs(s(:3)))/model%young)
+    end do
+    ! Round-off of stresses up to 1e-3 of E: some ten units of 1e-3*epsilon.
+    call check_close(log, worst, 0.0_rk, 4.0e-18_rk, 'trial states')
+  end subroutine trial_states
+end program test_damage_trials
