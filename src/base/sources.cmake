@@ -21,6 +21,8 @@ set(sources
   math/dense_factor.f90
   math/single_factor.f90
   math/dense_products.f90
+  math/mixed_products.c
+  math/mixed_products.f90
   math/row_tables.f90
   math/small_matrix.f90
   math/sorted_lists.f90

@@ -5,6 +5,7 @@
 !>
 !> Loads f_k and joints are the ports P: only their rows of Phi and R are kept.
 module reduced_basis
+  use, intrinsic :: iso_fortran_env, only: single => real32
   use dense_factor, only: factorise_dense, lu_factor, solve_factored
   use dense_products, only: times, transposed_times
   use equilibrium, only: equilibrium_solver
@@ -13,6 +14,7 @@ module reduced_basis
   use joint_rows, only: num_rows
   use kinds, only: rk
   use matrix_pattern, only: pattern
+  use mixed_products, only: rounded
   use reduced_ports, only: find_port_compliance, forces_of, rows_of, solve_blocks
   use step_system, only: dam_system
   use symmetric_modes, only: find_modes
@@ -31,9 +33,11 @@ module reduced_basis
     real(rk) :: shift = 0.0_rk !< s of the factor of K + s M; it holds free blocks [1/s2]
     real(rk), allocatable :: lambda(:) !< (modes) squared circular frequency [1/s2]
     real(rk), allocatable :: mode(:, :) !< (num_free, modes) Phi
-    real(rk), allocatable :: path(:, :) !< (ports, modes) P Phi
+    !> (ports, modes) P Phi and (ports, ports) P R P^T, rounded to single precision: increments read
+    !> `path_read` and `residual_read`, the same values
+    real(rk), allocatable :: path(:, :), residual(:, :)
+    real(single), allocatable :: path_read(:, :), residual_read(:, :)
     real(rk), allocatable :: damping(:, :) !< (modes, modes) Phi^T C Phi [1/s]
-    real(rk), allocatable :: residual(:, :) !< (ports, ports) P R P^T
     real(rk) :: residual_mass = 0.0_rk !< mass of the rest over its stiffness [s2]
     real(rk) :: residual_damping = 0.0_rk !< damping of the rest over its stiffness [s]
     real(rk), allocatable :: force(:, :) !< (num_total, loads) f_k [N]
@@ -80,7 +84,16 @@ contains
     basis%lambda = max(0.0_rk, basis%lambda - basis%shift)
     call weigh_rest(basis)
     basis%probe = [(maxloc(abs(basis%mode(:, k)), 1), k=1, min(num_probes, basis%num_modes))]
+    call round_ports(basis)
   end subroutine build_basis
+
+  !> Rounds the matrices that increments read, which take their time.
+  subroutine round_ports(basis)
+    type(reduced_model), intent(inout) :: basis
+    basis%path_read = real(basis%path, single)
+    basis%residual_read = real(basis%residual, single)
+    basis%residual = real(basis%residual_read, rk)
+  end subroutine round_ports
 
   !> The same model with its lowest modes alone; the rest responds without mass. Shapes of the modes
   !> are kept at the probes alone.
@@ -118,6 +131,7 @@ contains
     fewer%load_shape = basis%load_shape(basis%probe, :) &
                        + times(probe, transpose(path(size(path, 1) - size(basis%force, 2) + 1:, :)))
     call weigh_rest(fewer)
+    call round_ports(fewer)
   end subroutine keep_modes
 
   !> Makes the shapes orthogonal, with K + s M, to the part of the static response of the ports that
@@ -222,7 +236,7 @@ contains
     associate (free => system%matrix%num_free)
       do k = 1, basis%num_modes
         x(:free) = basis%mode(:, k)
-        basis%path(:, k) = rows_of(system, basis%force, x(:free))
+        basis%path(:, k) = rounded(rows_of(system, basis%force, x(:free)))
         call system%find_damping_force(x, force)
         viscous(:, k) = force(:free)
       end do

@@ -2,7 +2,7 @@
 !> the modes and the ports.
 module reduced_energy
   use analysis_state, only: modal_motion, state
-  use dense_products, only: symmetric_times, times_vector, transposed_times_vector
+  use dense_products, only: times_vector
   use energy_account, only: find_error
   use global_vectors, only: work
   use guest_histories, only: sum_work
@@ -11,6 +11,7 @@ module reduced_energy
   use joint_forces, only: gather_tractions
   use joint_operator, only: jump_operator
   use kinds, only: rk
+  use mixed_products, only: mixed_times, mixed_transposed_times
   use problem_definition, only: problem
   use reduced_basis, only: reduced_model
   use reduced_increment, only: find_rates, port_forces
@@ -64,7 +65,7 @@ contains
     type(hht), intent(in) :: scheme
     type(modal_motion), intent(in) :: old
     type(modal_motion), intent(inout) :: new
-    new%rest = symmetric_times(basis%residual, new%port)
+    new%rest = mixed_times(basis%residual_read, new%port)
     call find_rates(scheme, old%rest, old%rest_rate, old%rest_acceleration, new%rest, &
                     new%rest_rate, new%rest_acceleration)
   end subroutine find_response
@@ -124,7 +125,7 @@ contains
       inertial_work = work(new%y - old%y, old%acceleration, &
                            scheme%alpha*(basis%lambda*old%y + viscous(:, 1)) &
                            - bulk*(basis%lambda*new%y + viscous(:, 2)) &
-                           + transposed_times_vector(basis%path, force)) &
+                           + mixed_transposed_times(basis%path_read, force)) &
                       + work(new%rest - old%rest, basis%residual_mass*old%port_acceleration, &
                              force - bulk*(new%port + beta*new%port_rate) &
                              + scheme%alpha*(old%port + beta*old%port_rate))

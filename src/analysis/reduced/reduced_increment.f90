@@ -8,12 +8,13 @@
 module reduced_increment
   use analysis_state, only: modal_motion, motion, state
   use amplitudes, only: amplitude
-  use dense_products, only: symmetric_times, times_vector, transposed_times_vector
+  use dense_products, only: times_vector
   use equilibrium, only: balance_outcome, force_balance
   use hht_scheme, only: hht
   use joint_forces, only: gather_jumps, gather_tractions, take_origins
   use joint_operator, only: jump_operator
   use kinds, only: rk
+  use mixed_products, only: mixed_times, mixed_transposed_times
   use problem_definition, only: problem
   use reduced_basis, only: reduced_model
   use reduced_scheme, only: force_of, reduced_matrices
@@ -91,7 +92,8 @@ contains
       else
         call operator%jumps(before%motion%modal%start, jump)
         call take_origins(operator, before%joints, jump)
-        moved = times_vector(basis%path, new%y) + symmetric_times(basis%residual, new%port)
+        moved = mixed_times(basis%path_read, new%y) &
+                + mixed_times(basis%residual_read, new%port)
         jump = jump + reshape(moved(:size(jump)) + matrices%held_jump, shape(jump))
         call solve_with_joints(matrices, model, controls, jump, before, after, traction, outcome)
         if (.not. outcome%has_converged) return
@@ -105,7 +107,7 @@ contains
       real(rk) :: force(size(rest))
       force = port_forces(matrices%operator, matrices%scheme, factors, before%motion, traction)
       after%motion%modal%y = times_vector(matrices%inverse, known &
-                                          + transposed_times_vector(basis%path, force))
+                                          + mixed_transposed_times(basis%path_read, force))
       after%motion%modal%port = (rest + force)/matrices%rest
     end subroutine solve_modes
   end subroutine take_reduced_increment

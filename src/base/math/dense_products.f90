@@ -5,7 +5,7 @@ module dense_products
   implicit none
   private
   public :: times, transposed_times, times_vector, transposed_times_vector, &
-            symmetric_times, single_times_vector, transposed_single_times_vector, &
+            single_times_vector, transposed_single_times_vector, &
             add_times_vector, add_single_times_vector
 
   ! The arguments are those of the BLAS.
@@ -40,16 +40,6 @@ module dense_products
       real(single), intent(in) :: a(lda, *), x(*)
       real(single), intent(inout) :: y(*)
     end subroutine sgemv
-
-    subroutine dsymv(uplo, n, alpha, a, lda, x, incx, beta, y, incy)
-      import :: rk
-      implicit none
-      character, intent(in) :: uplo
-      integer, intent(in) :: n, lda, incx, incy
-      real(rk), intent(in) :: alpha, beta
-      real(rk), intent(in) :: a(lda, *), x(n)
-      real(rk), intent(inout) :: y(n)
-    end subroutine dsymv
   end interface
 
 contains
@@ -131,13 +121,4 @@ contains
                                 real(x, single), 1, 0.0_single, rounded, 1)
     product = real(rounded, rk)
   end function transposed_single_times_vector
-
-  !> A x with a symmetric A, from its lower triangle.
-  function symmetric_times(a, x) result(product)
-    real(rk), intent(in), contiguous :: a(:, :), x(:)
-    real(rk) :: product(size(x))
-    product = 0.0_rk
-    if (size(a) == 0) return
-    call dsymv('L', size(a, 1), 1.0_rk, a, size(a, 1), x, 1, 0.0_rk, product, 1)
-  end function symmetric_times
 end module dense_products

@@ -72,7 +72,7 @@ contains
     integer :: j, k
     call blocks%start(groups)
     do j = 1, groups%num_groups
-      associate (rows => rows_of(groups, j))
+      associate (rows => groups%rows(j))
         own(j) = own_size(dense(rows, rows), spring(rows))
         call blocks%put(j, j, 1.0_rk, dense(rows, rows), 0.0_rk)
       end associate
@@ -101,7 +101,7 @@ contains
     type(compliance_blocks), intent(inout) :: blocks
     integer :: k
     do k = 1, j - 1
-      associate (values => dense(rows_of(groups, j), rows_of(groups, k)))
+      associate (values => dense(groups%rows(j), groups%rows(k)))
         call blocks%put_coupling(j, k, sqrt(own(j))*sqrt(own(k)), values, smallest)
       end associate
     end do
@@ -118,14 +118,6 @@ contains
     end do
     own_size = norm2(rest)
   end function own_size
-
-  !> Rows of a group.
-  pure function rows_of(groups, group) result(rows)
-    type(group_list), intent(in) :: groups
-    integer, intent(in) :: group
-    integer :: rows(groups%first_row(group + 1) - groups%first_row(group))
-    rows = groups%row(groups%first_row(group):groups%first_row(group + 1) - 1)
-  end function rows_of
 
   !> y = G x. The sums have a fixed order, whatever the number of threads.
   subroutine product(self, x, y)
@@ -144,19 +136,19 @@ contains
     y(self%groups%row) = sorted_y
   end subroutine product
 
-  !> y = G x roughly, without the own blocks of some groups.
-  subroutine couple(self, without_own, x, y)
+  !> y = G x roughly, with some of the blocks.
+  subroutine couple(self, takes_part, x, y)
     class(compliance_blocks), intent(in) :: self
-    logical, intent(in) :: without_own(:) !< (groups)
+    logical, intent(in) :: takes_part(:, :) !< (groups with jumps, groups with forces)
     real(rk), intent(in) :: x(:) !< (rows) [N]
     real(rk), intent(out) :: y(:) !< (rows) [m]
     real(rk) :: sorted_x(size(x)), sorted_y(size(y))
     integer :: j
     sorted_x = x(self%groups%row)
     !$omp parallel do schedule(dynamic) default(none) &
-    !$omp shared(self, without_own, sorted_x, sorted_y) if (self%groups%num_groups > 1)
+    !$omp shared(self, takes_part, sorted_x, sorted_y) if (self%groups%num_groups > 1)
     do j = 1, self%groups%num_groups
-      call move_roughly(self, j, without_own(j), sorted_x, sorted_y)
+      call move_roughly(self, j, takes_part(j, :), sorted_x, sorted_y)
     end do
     !$omp end parallel do
     y(self%groups%row) = sorted_y
@@ -180,10 +172,10 @@ contains
   end subroutine move_group
 
   !> Rows of G x of one group, roughly.
-  subroutine move_roughly(self, group, without_own, x, y)
+  subroutine move_roughly(self, group, takes_part, x, y)
     class(compliance_blocks), intent(in) :: self
     integer, intent(in) :: group
-    logical, intent(in) :: without_own
+    logical, intent(in) :: takes_part(:) !< (groups with forces)
     real(rk), intent(in) :: x(:) !< (rows) [N]
     real(rk), intent(inout) :: y(:) !< (rows) [m]
     integer :: k
@@ -191,7 +183,7 @@ contains
       associate (moved => y(first(group):first(group + 1) - 1))
         moved = 0.0_rk
         do k = 1, self%groups%num_groups
-          if (k == group .and. without_own) cycle
+          if (.not. takes_part(k)) cycle
           call self%block(group, k)%add_roughly(x(first(k):first(k + 1) - 1), moved)
         end do
       end associate
@@ -207,7 +199,7 @@ contains
     do k = 1, self%groups%num_groups
       do j = 1, self%groups%num_groups
         if (.not. self%block(j, k)%is_there()) cycle
-        dense(rows_of(self%groups, j), rows_of(self%groups, k)) = self%block(j, k)%as_values()
+        dense(self%groups%rows(j), self%groups%rows(k)) = self%block(j, k)%as_values()
       end do
     end do
   end function as_dense

@@ -16,7 +16,7 @@ module point_groups
     integer, allocatable :: row(:) !< rows of these points; those of group g start at first_row(g)
     integer, allocatable :: first_row(:) !< (groups + 1) in `row`
   contains
-    procedure :: members
+    procedure :: members, rows
   end type group_list
 
   !> Joints are one group as long as they have so many points together. Their tangent is then
@@ -69,6 +69,14 @@ contains
     integer :: points(self%first(group + 1) - self%first(group))
     points = self%point(self%first(group):self%first(group + 1) - 1)
   end function members
+
+  !> Rows of a group.
+  pure function rows(self, group)
+    class(group_list), intent(in) :: self
+    integer, intent(in) :: group
+    integer :: rows(self%first_row(group + 1) - self%first_row(group))
+    rows = self%row(self%first_row(group):self%first_row(group + 1) - 1)
+  end function rows
 
   !> Halves a range of points across its longest extent until it is small enough.
   recursive subroutine cut(x, first, last, groups)

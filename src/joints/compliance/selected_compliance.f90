@@ -48,7 +48,7 @@ contains
       call list_unknowns(operator, groups, j, top%num_free, of_group(j))
       call take_block(top, of_group(j), of_group(j), values, absent)
       missing = missing + absent
-      own(j) = own_size(values, spring(groups%row(groups%first_row(j):groups%first_row(j + 1) - 1)))
+      own(j) = own_size(values, spring(groups%rows(j)))
       call blocks%put(j, j, 1.0_rk, values, 0.0_rk)
     end do
     do j = 1, groups%num_groups
@@ -88,7 +88,7 @@ contains
     type(group_unknowns), intent(out) :: answer
     integer, allocatable :: all_unknowns(:)
     integer :: r, k, used, pass
-    associate (rows => groups%row(groups%first_row(group):groups%first_row(group + 1) - 1))
+    associate (rows => groups%rows(group))
       allocate (answer%start(size(rows) + 1))
       do pass = 1, 2
         used = 0

@@ -5,9 +5,10 @@
 !> the factors of the groups as preconditioner.
 module tangent_equations
   use block_compliance, only: compliance_blocks
-  use global_vectors, only: dot, norm
+  use global_vectors, only: norm
   use joint_rows, only: num_axes
   use kinds, only: rk
+  use krylov_spaces, only: krylov_space, most_steps, start_space, add_to_space, solve_triangle
   use tangent_factors, only: group_factor, update_factor, solve_group, apply_change
   implicit none
   private
@@ -16,24 +17,18 @@ module tangent_equations
   type :: joint_tangent
     real(rk), allocatable :: change(:, :, :) !< (3, 3, points) D [N/m]
     type(group_factor), allocatable :: group(:) !< kept factors
+    !> (groups with jumps, groups with forces) the forces are solved for before the jumps
+    logical, allocatable :: is_later(:, :)
     logical :: is_singular = .false.
     !> No factor has been used since the increment began. The first ones depend on its start alone,
     !> so that a run that is continued takes the same ones.
     logical :: is_first = .true.
     logical :: is_single = .false. !< factors of several groups may be in single precision
   contains
-    procedure :: set_tangent, solve
-    procedure, private :: precondition, iterate, multiply_roughly
+    procedure :: set_tangent, solve, estimate
+    procedure, private :: precondition, iterate, step_roughly
   end type joint_tangent
 
-  !> A Krylov space: A p(k) is a combination of v(1..k+1).
-  type :: krylov_space
-    real(rk), allocatable :: v(:, :), p(:, :) !< (rows, steps + 1) and (rows, steps)
-    real(rk), allocatable :: h(:, :) !< (steps + 1, steps) upper triangle after rotations
-    real(rk), allocatable :: cosine(:), sine(:), rest(:)
-  end type krylov_space
-
-  integer, parameter :: most_steps = 100
   !> Solutions with a rough G, and at last one with G; residual that ends them, over the wanted one.
   integer, parameter :: most_passes = 4
   real(rk), parameter :: near_target = 1.5_rk
@@ -59,7 +54,10 @@ contains
       end do
       self%change(:, :, p) = share(p)*self%change(:, :, p)
     end do
-    if (.not. allocated(self%group)) allocate (self%group(blocks%groups%num_groups))
+    if (.not. allocated(self%group)) then
+      allocate (self%group(blocks%groups%num_groups))
+      self%is_later = order_of_groups(blocks)
+    end if
     kept = merge(kept_share, 0.0_rk, size(self%group) > 1 .and. .not. self%is_first)
     self%is_first = .false.
     is_single = self%is_single .and. size(self%group) > 1
@@ -71,6 +69,22 @@ contains
     !$omp end parallel do
     self%is_singular = .not. all(self%group%is_there)
   end subroutine set_tangent
+
+  !> Groups in two halves; those of the second are solved for with the forces of the first. A group
+  !> is in another half than the one before it that it sees most: neighbours alternate.
+  pure function order_of_groups(blocks) result(is_later)
+    type(compliance_blocks), intent(in) :: blocks
+    logical :: is_later(blocks%groups%num_groups, blocks%groups%num_groups)
+    logical :: is_second(blocks%groups%num_groups)
+    integer :: g
+    is_second = .false.
+    do g = 2, size(is_second)
+      is_second(g) = .not. is_second(maxloc(blocks%block(:g - 1, g)%coupling, 1))
+    end do
+    do g = 1, size(is_second)
+      is_later(:, g) = is_second .and. .not. is_second(g)
+    end do
+  end function order_of_groups
 
   !> The correction d of the jumps, and D d - z: what the equations leave.
   subroutine solve(self, blocks, response, tolerance, smallest, correction, rest)
@@ -84,7 +98,7 @@ contains
     real(rk) :: b(size(response))
     b = apply_change(self%change, response)
     if (blocks%groups%num_groups == 1) then
-      call self%precondition(blocks, b)
+      call self%precondition(blocks, [.true.], b)
       call blocks%product(b, correction)
       correction = response + correction
       rest = 0.0_rk
@@ -94,17 +108,35 @@ contains
     end if
   end subroutine solve
 
-  !> Solves with the factors of the groups, in place.
-  subroutine precondition(self, blocks, x)
+  !> The correction of the jumps to a hundredth or so.
+  subroutine estimate(self, blocks, response, tolerance, correction)
     class(joint_tangent), intent(in) :: self
     type(compliance_blocks), intent(in) :: blocks
+    real(rk), intent(in) :: response(:) !< (rows) r [m]
+    real(rk), intent(in) :: tolerance !< of the norm of the residual, over that of D r
+    real(rk), intent(out) :: correction(:) !< (rows) d [m]
+    real(rk), dimension(size(response)) :: b, z
+    b = apply_change(self%change, response)
+    z = 0.0_rk
+    if (norm(b) > 0.0_rk) call add_solution(self, blocks, b, tolerance*norm(b), .true., z)
+    call blocks%couple(spread(spread(.true., 1, size(self%group)), 2, size(self%group)), z, &
+                       correction)
+    correction = response + correction
+  end subroutine estimate
+
+  !> Solves with the factors of some groups, in place.
+  subroutine precondition(self, blocks, takes_part, x)
+    class(joint_tangent), intent(in) :: self
+    type(compliance_blocks), intent(in) :: blocks
+    logical, intent(in) :: takes_part(:) !< (groups)
     real(rk), intent(inout) :: x(:) !< (rows)
     real(rk) :: sorted(size(x))
     integer :: g
     sorted = x(blocks%groups%row)
-    !$omp parallel do schedule(dynamic) default(none) shared(self, blocks, sorted) &
+    !$omp parallel do schedule(dynamic) default(none) shared(self, blocks, takes_part, sorted) &
     !$omp if (size(self%group) > 1)
     do g = 1, size(self%group)
+      if (.not. takes_part(g)) cycle
       call solve_group(self%group(g), sorted(blocks%groups%first_row(g): &
                                              blocks%groups%first_row(g + 1) - 1))
     end do
@@ -149,11 +181,11 @@ contains
     integer :: k
     call start_space(b, space)
     do k = 1, most_steps
-      space%p(:, k) = space%v(:, k)
-      call self%precondition(blocks, space%p(:, k))
       if (is_rough) then
-        call self%multiply_roughly(blocks, space%v(:, k), space%p(:, k), space%v(:, k + 1))
+        call self%step_roughly(blocks, space%v(:, k), space%p(:, k), space%v(:, k + 1))
       else
+        space%p(:, k) = space%v(:, k)
+        call self%precondition(blocks, spread(.true., 1, size(self%group)), space%p(:, k))
         call blocks%product(space%p(:, k), space%v(:, k + 1))
         space%v(:, k + 1) = space%p(:, k) - apply_change(self%change, space%v(:, k + 1))
       end if
@@ -165,75 +197,36 @@ contains
     z = z + matmul(space%p(:, :k), y(:k))
   end subroutine add_solution
 
-  !> (I - D G) p for p that the factors have solved for from v.
-  subroutine multiply_roughly(self, blocks, v, p, product)
+  !> The first half of the groups solves for v, the second half for v and the jumps by the first:
+  !> p, and (I - D G) p. Each block between groups is used once, own blocks where a factor is not
+  !> that of D.
+  subroutine step_roughly(self, blocks, v, p, product)
     class(joint_tangent), intent(in) :: self
     type(compliance_blocks), intent(in) :: blocks
-    real(rk), intent(in) :: v(:), p(:) !< (rows) [N]
-    real(rk), intent(out) :: product(:) !< (rows) [N]
-    real(rk) :: moved(size(v))
+    real(rk), intent(in) :: v(:) !< (rows) [N]
+    real(rk), intent(out) :: p(:), product(:) !< (rows) [N]
+    real(rk), dimension(size(v)) :: early, moved ! jumps by forces of the first half, by the others
+    logical :: is_second(size(self%group)), takes_part(size(self%group), size(self%group))
     integer :: g
-    call blocks%couple(self%group%is_exact, p, moved)
+    is_second = any(self%is_later, 2)
+    p = v
+    call self%precondition(blocks,.not. is_second, p)
+    call blocks%couple(self%is_later, p, early)
+    p = p + apply_change(self%change, early)
+    call self%precondition(blocks, is_second, p)
+    takes_part = .not. self%is_later
+    do g = 1, size(self%group)
+      takes_part(g, g) = .not. self%group(g)%is_exact
+    end do
+    call blocks%couple(takes_part, p, moved)
     product = v
     do g = 1, size(self%group)
       if (self%group(g)%is_exact) cycle
-      associate (row => blocks%groups%row(blocks%groups%first_row(g): &
-                                          blocks%groups%first_row(g + 1) - 1))
+      associate (row => blocks%groups%rows(g))
         product(row) = p(row)
+        moved(row) = moved(row) + early(row)
       end associate
     end do
     product = product - apply_change(self%change, moved)
-  end subroutine multiply_roughly
-
-  !> The space of one vector.
-  subroutine start_space(b, space)
-    real(rk), intent(in) :: b(:)
-    type(krylov_space), intent(out) :: space
-    integer :: n
-    n = size(b)
-    allocate (space%v(n, most_steps + 1), space%p(n, most_steps))
-    allocate (space%h(most_steps + 1, most_steps), space%cosine(most_steps))
-    allocate (space%sine(most_steps), space%rest(most_steps + 1))
-    space%rest(1) = norm(b)
-    space%v(:, 1) = b/space%rest(1)
-  end subroutine start_space
-
-  !> Makes v(k+1) orthonormal to the vectors before it and rotates its column of h into a triangle.
-  subroutine add_to_space(k, space)
-    integer, intent(in) :: k
-    type(krylov_space), intent(inout) :: space
-    real(rk) :: length, first
-    integer :: i
-    associate (v => space%v, h => space%h, c => space%cosine, s => space%sine)
-      do i = 1, k
-        h(i, k) = dot(v(:, i), v(:, k + 1))
-        v(:, k + 1) = v(:, k + 1) - h(i, k)*v(:, i)
-      end do
-      h(k + 1, k) = norm(v(:, k + 1))
-      v(:, k + 1) = v(:, k + 1)/max(h(k + 1, k), tiny(1.0_rk))
-      do i = 1, k - 1
-        first = h(i, k)
-        h(i, k) = c(i)*first + s(i)*h(i + 1, k)
-        h(i + 1, k) = c(i)*h(i + 1, k) - s(i)*first
-      end do
-      length = max(hypot(h(k, k), h(k + 1, k)), tiny(1.0_rk))
-      c(k) = h(k, k)/length
-      s(k) = h(k + 1, k)/length
-      h(k, k) = length
-      space%rest(k + 1) = -s(k)*space%rest(k)
-      space%rest(k) = c(k)*space%rest(k)
-    end associate
-  end subroutine add_to_space
-
-  !> Coefficients of the smallest residual.
-  pure subroutine solve_triangle(k, space, y)
-    integer, intent(in) :: k
-    type(krylov_space), intent(in) :: space
-    real(rk), intent(out) :: y(:)
-    integer :: i
-    y = 0.0_rk
-    do i = k, 1, -1
-      y(i) = (space%rest(i) - dot_product(space%h(i, i + 1:k), y(i + 1:k)))/space%h(i, i)
-    end do
-  end subroutine solve_triangle
+  end subroutine step_roughly
 end module tangent_equations

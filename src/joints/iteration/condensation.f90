@@ -8,6 +8,7 @@ module condensation
   use global_vectors, only: distance, norm
   use joint_law, only: joint_state
   use joint_points, only: dam_joint
+  use joint_rows, only: num_rows
   use joint_operator, only: jump_operator, joint_springs
   use joint_forces, only: joint_field, reference_stiffness, gather_jumps, gather_tractions
   use joint_iteration, only: start_iteration, excess_traction, closed_tangent
@@ -32,6 +33,7 @@ module condensation
     type(condensed_joints) :: condensed
     type(jump_schur_block) :: jumps !< saves one of the two solves of an increment
     integer, private :: num_held = 0 !< prescribed unknowns
+    integer, private :: num_passes = 0 !< beyond the first of a solve, in time, with these blocks
     !> (3, points) excess traction of the last solution [Pa]
     real(rk), allocatable, private :: excess(:, :)
     !> (free unknowns) with a factor in single precision: a vector near the solution, and K_0 times
@@ -50,6 +52,9 @@ module condensation
   real(rk), parameter :: smallest_coupling = 5.0e-10_rk
   !> Most corrections of a solution with a factor in single precision.
   integer, parameter :: most_refinements = 10
+  !> A pass takes as long as so many columns of the blocks that were left out, which are computed
+  !> when passes have taken as long.
+  integer, parameter :: columns_of_a_pass = 16
   !> Most points for which all blocks of G are kept where an increment needs them.
   integer, parameter :: most_completed = 3000
 
@@ -138,6 +143,7 @@ contains
                               condensed%scale, condensed%opened)
       condensed%tangent = no_tangent
     end associate
+    self%num_passes = 0
   end subroutine condense
 
   !> Computes all of G, and keeps the blocks that matter.
@@ -177,6 +183,23 @@ contains
                                                         self%weight), groups, 0.0_rk, error)
   end subroutine complete_blocks
 
+  !> Computes the blocks that were left out where many passes have made up for them.
+  subroutine replace_passes(self, num_free, error)
+    class(condensed_equilibrium), intent(inout) :: self
+    integer, intent(in) :: num_free
+    type(error_type), allocatable, intent(out) :: error
+    type(group_list) :: groups
+    if (self%num_passes <= num_rows(self%operator%num_points)/columns_of_a_pass &
+        .or. self%operator%num_points > most_completed .or. self%exact%is_rounded()) return
+    self%num_passes = -huge(1)
+    groups = self%condensed%blocks%groups
+    call self%costs%start('condense', 'joints', 'joint')
+    call condense_densely(self, num_free, joint_springs(self%operator, self%condensed%k_ref, &
+                                                        self%weight), groups, smallest_coupling, &
+                          error)
+    call self%costs%stop()
+  end subroutine replace_passes
+
   !> Solves the equilibrium; solves again from the jumps found if they have drifted.
   subroutine solve_balance(self, balance, joints, old, new, x, outcome, error)
     class(condensed_equilibrium), intent(inout) :: self
@@ -192,6 +215,8 @@ contains
     logical :: was_complete
     self%admissible = self%admissible_residual(balance)
     if (allocated(self%base)) deallocate (self%base, self%base_force)
+    call replace_passes(self, size(balance%rhs), error)
+    if (allocated(error)) return
     call self%solve_from(balance, joints, old, new, x, outcome, error)
     if (allocated(error)) return
     if (.not. (outcome%has_converged .or. outcome%gives_up)) then

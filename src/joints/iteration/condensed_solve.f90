@@ -97,6 +97,7 @@ contains
     type(joint_field), intent(inout) :: field !< its response is exact
     type(pass_history), intent(inout) :: passes
     real(rk), dimension(size(field%jump)) :: change, last
+    if (.not. field%is_static) self%num_passes = self%num_passes + 1
     self%condensed%keeps_factors = .true.
     self%condensed%rough_share = 0.0_rk
     self%condensed%rough_residual = passes%rough*field%drift

@@ -162,9 +162,7 @@ contains
         exit
       end if
       if (outcome%residual <= controls%residual_tolerance) then
-        call solve_correction(self, excess_jump(field%traction), &
-                              merge(judged_in_statics, judged_in_time, field%is_static), 0.0_rk, &
-                              correction, rest)
+        call judge_correction(self, excess_jump(field%traction), field%is_static, correction)
         call measure_correction(field, self%k_ref, correction, &
                                 controls%increment_tolerance, outcome)
       end if
@@ -198,6 +196,23 @@ contains
       answer = jumps_of(self, operator%area, answer)
     end function excess_jump
   end subroutine run_newton
+
+  !> The correction d of the jumps that decides convergence, to some digits.
+  subroutine judge_correction(self, response, is_static, correction)
+    class(condensed_joints), intent(in) :: self
+    real(rk), intent(in) :: response(:, :) !< (3, points) r [m]
+    logical, intent(in) :: is_static
+    real(rk), intent(out) :: correction(:, :) !< (3, points) d [m]
+    real(rk) :: rest(size(response)), d(size(response))
+    associate (r => reshape(response, [size(response)]))
+      if (is_static .or. self%blocks%groups%num_groups == 1) then
+        call self%tangent%solve(self%blocks, r, judged_in_statics, 0.0_rk, d, rest)
+      else
+        call self%tangent%estimate(self%blocks, r, judged_in_time, d)
+      end if
+    end associate
+    correction = reshape(d, shape(correction))
+  end subroutine judge_correction
 
   !> The correction d of the jumps, and D d - z.
   subroutine solve_correction(self, response, tolerance, smallest, correction, rest)

@@ -1,0 +1,59 @@
+/* Products of matrices in single precision with vectors in double precision, sums in double
+ * precision. Their time is that of reading the matrix: four columns are used at once. */
+#include <stddef.h>
+
+/* The best of these is chosen when the program starts. */
+#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__clang__)
+#define FOR_EACH_PROCESSOR __attribute__((target_clones("avx512f", "arch=haswell", "default")))
+#else
+#define FOR_EACH_PROCESSOR
+#endif
+
+/* y = y + A x, A by columns. */
+FOR_EACH_PROCESSOR
+void keyway_add_product(int rows, int columns, const float *value, const double *x, double *y)
+{
+  int j = 0;
+  for (; j + 4 <= columns; j += 4) {
+    const float *a = value + (size_t)j * (size_t)rows, *b = a + rows, *c = b + rows, *d = c + rows;
+    double p = x[j], q = x[j + 1], r = x[j + 2], s = x[j + 3];
+#pragma omp simd
+    for (int i = 0; i < rows; i++) y[i] += a[i] * p + b[i] * q + (c[i] * r + d[i] * s);
+  }
+  for (; j < columns; j++) {
+    const float *a = value + (size_t)j * (size_t)rows;
+    double p = x[j];
+#pragma omp simd
+    for (int i = 0; i < rows; i++) y[i] += a[i] * p;
+  }
+}
+
+/* y = A^T x. */
+FOR_EACH_PROCESSOR
+void keyway_transposed_product(int rows, int columns, const float *value, const double *x,
+                               double *y)
+{
+  int j = 0;
+  for (; j + 4 <= columns; j += 4) {
+    const float *a = value + (size_t)j * (size_t)rows, *b = a + rows, *c = b + rows, *d = c + rows;
+    double p = 0.0, q = 0.0, r = 0.0, s = 0.0;
+#pragma omp simd reduction(+ : p, q, r, s)
+    for (int i = 0; i < rows; i++) {
+      p += a[i] * x[i];
+      q += b[i] * x[i];
+      r += c[i] * x[i];
+      s += d[i] * x[i];
+    }
+    y[j] = p;
+    y[j + 1] = q;
+    y[j + 2] = r;
+    y[j + 3] = s;
+  }
+  for (; j < columns; j++) {
+    const float *a = value + (size_t)j * (size_t)rows;
+    double p = 0.0;
+#pragma omp simd reduction(+ : p)
+    for (int i = 0; i < rows; i++) p += a[i] * x[i];
+    y[j] = p;
+  }
+}
