@@ -247,6 +247,7 @@ def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
         title=chosen.title,
         element_type=chosen.element,
         concrete_cards=read_cards(chosen.concrete_cards),
+        static_time=chosen.static_time,
         concrete=tuple(chosen.concrete),
         rock=tuple(chosen.rock),
         normal_stiffness=chosen.kn,

@@ -34,7 +34,7 @@ def read_options(arguments: list[str] | None) -> argparse.Namespace:
     add("deck", type=Path, nargs="?", help="deck to write (all of input/jinping)")
     add("--unknowns", type=int, help=f"at least ({FULL}; {SMALL} is a size for trials)")
     add("--law", choices=LAWS, help="of the concrete (table1)")
-    add("--recovery", choices=RECOVERIES, help="of stiffness in compression (LEE-FENVES)")
+    add("--recovery", choices=RECOVERIES, help="of stiffness in compression (ENERGY)")
     add("--no-outlets", action="store_true", help="leave out outlets, piers and corbel")
     add("--duration", type=float, help=f"of the motion [s] ({DURATION:g})")
     add("--motion-of", type=Path, default=INPUT / "xingbiling", help="folder of the motion")

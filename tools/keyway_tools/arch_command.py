@@ -39,6 +39,13 @@ def add_arch_options(parser: argparse.ArgumentParser) -> None:
         "--concrete-cards", type=Path, metavar="FILE", help="cards that follow *ELASTIC of the dam"
     )
     group.add_argument(
+        "--static-time",
+        type=float,
+        default=1.0,
+        metavar="SECONDS",
+        help="time of the static step, for concrete with a viscosity (1)",
+    )
+    group.add_argument(
         "--damping-base",
         choices=("INITIAL", "CURRENT"),
         default="INITIAL",

@@ -37,6 +37,8 @@ class DeckOptions:
     alpha: float = -0.05
     damping: tuple[float, float, float] = (0.05, 2.0, 10.0)  # ratio at two frequencies [Hz]
     damping_base: str = "INITIAL"  # or CURRENT: the stiffness with its damage
+    # of weight and water [s]; it matters to concrete with a viscosity alone
+    static_time: float = 1.0
     uplift: str | None = None  # profile of the water in the joints: OPEN or LINEAR; None: no water
     reduced: float | None = None  # error of openings for a reduced model in the dynamic step
     num_modes: int = 0  # > 0: a *FREQUENCY step between the static and the dynamic one
@@ -47,6 +49,10 @@ class DeckOptions:
     def __post_init__(self) -> None:
         if self.uplift and self.water_depth is None:
             raise ValueError("--uplift needs water")
+        if self.static_time <= 0.0 or (self.construction and self.static_time != 1.0):
+            raise ValueError(
+                f"--static-time: {self.static_time:g}; expected a time above 0, without --lifts"
+            )
         if self.reduced is None:
             return
         if not 0.0 < self.reduced < 1.0:
@@ -172,7 +178,8 @@ def _static_steps(mesh: BrickMesh, options: DeckOptions) -> list[str]:
 
 
 def _static_step(name: str, loads: list[str], mesh: BrickMesh, options: DeckOptions) -> list[str]:
-    parts = [f"*STEP, NAME={name}", "*STATIC", "0.1, 1." if options.concrete_cards else "1., 1."]
+    first = (0.1 if options.concrete_cards else 1.0) * options.static_time
+    parts = [f"*STEP, NAME={name}", "*STATIC", f"{first:g}, {options.static_time:g}"]
     return parts + loads + _requests(mesh, options) + ["*END STEP"]
 
 

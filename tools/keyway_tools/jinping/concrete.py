@@ -14,6 +14,8 @@ TABLE_1 = (
     (0.169, 1.664, 0.964),
 )
 FRACTURE_ENERGY = 400.0  # G_f [N/m]: mass concrete (assumed)
+VISCOSITY = 0.001  # [s] with the fracture energy; cracks in large elements are brittle
+STATIC_TIME = 0.1  # [s] of the static step then, in which the viscosity smooths the jumps of cracks
 DAMAGE_AT_END = 0.964  # of the last row of Table 1, where the crack carries nothing any more
 LAWS = ("table1", "fracture-energy", "elastic")
 RECOVERIES = ("LEE-FENVES", "SIGN", "ENERGY")
@@ -28,9 +30,10 @@ def law_cards(law: str, recovery: str) -> str:
         )
     if law == "elastic":
         return ""
+    viscosity = f", {VISCOSITY:g}" if law == "fracture-energy" else ""
     cards = [
         f"*CONCRETE DAMAGED PLASTICITY, RECOVERY={recovery}",
-        "32.5, 0.01, 1.125, 0.6666666666666667",
+        f"32.5, 0.01, 1.125, 0.6666666666666667{viscosity}",
         "*CONCRETE COMPRESSION HARDENING",
         "30e6, 0.",
     ]

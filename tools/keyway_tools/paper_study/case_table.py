@@ -94,7 +94,7 @@ def _sensitivity(size: Size) -> list[Case]:
         ("mesh_half", "mesh", f"{half} unknowns", f"{common} --unknowns {half}"),
         ("mesh_twice", "mesh", f"{twice} unknowns", f"{common} --unknowns {twice}"),
         ("recovery_sign", "recovery", "SIGN", f"{base} --recovery SIGN"),
-        ("recovery_energy", "recovery", "ENERGY", f"{base} --recovery ENERGY"),
+        ("recovery_lee_fenves", "recovery", "LEE-FENVES", f"{base} --recovery LEE-FENVES"),
         ("no_outlets", "outlets", "none", f"{base} --no-outlets"),
         ("elastic", "concrete", "elastic", f"{base} --law elastic"),
         ("at_once", "building", "at once, surfaces", auto),

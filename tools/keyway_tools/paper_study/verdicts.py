@@ -88,8 +88,8 @@ def _stress_verdicts(facts: Facts) -> list[Verdict]:
     )
     if ratio > 1.0 + STRENGTH_SLACK:
         text += (
-            " Under tension in several directions the law's strength is up to 1.08 f_t "
-            "(docs/theory.md, (11.6a))."
+            " The law allows more than f_t under tension in several directions, and beside "
+            "compression with a recovery other than ENERGY (docs/theory.md, 11.2)."
         )
     found = [Verdict(kind, text)]
     ratio = compression / PAPER_COMPRESSION
