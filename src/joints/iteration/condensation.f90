@@ -190,6 +190,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(group_list) :: groups
     if (self%num_passes <= num_rows(self%operator%num_points)/columns_of_a_pass &
+        .or. self%condensed%blocks%left_out <= smallest_coupling &
         .or. self%operator%num_points > most_completed .or. self%exact%is_rounded()) return
     self%num_passes = -huge(1)
     groups = self%condensed%blocks%groups
