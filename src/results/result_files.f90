@@ -12,14 +12,14 @@ module result_files
   use analysis_state, only: state, vibration_mode
   use increment_listener, only: listener
   use run_progress, only: progress_clock
-  use dual_solutions, only: of_displacement, of_opening
-  use goal_errors, only: note_duals, note_time_error
+  use goal_errors, only: find_stiffening, note_duals, note_motion_errors
   use run_records, only: run_record
   use run_summaries, only: run_summary
   use result_writer, only: is_due, starts_analysis
   use requested_fields, only: needs_nodes
   use writer_catalogue, only: writer_item, list_writers
   use summary_json, only: write_summary
+  use first_failure, only: keep_first
   use input_files, only: inputs_of, refuse_inputs
   use sha256, only: digest_of_file
   use earlier_files, only: mark_summary, remove_earlier_files
@@ -39,8 +39,7 @@ module result_files
     type(run_summary) :: summary
     type(run_record) :: record
     character(:), allocatable :: stem !< folder and name of the job
-    logical, private :: is_open = .false.
-    logical, private :: has_unwritten_envelopes = .false.
+    logical, private :: is_open = .false., has_unwritten_envelopes = .false.
     type(progress_clock) :: clock
     real(rk), private :: summarised_at = 0.0_rk !< wall clock [s]
     integer, private :: num_warnings_printed = 0
@@ -50,7 +49,7 @@ module result_files
   contains
     procedure :: prepare, load, go_on
     procedure :: open => open_results
-    procedure :: increment_done, increment_dropped, wants_motion, modes_found
+    procedure :: increment_done, increment_dropped, wants_motion, modes_found, weigh_modes
     procedure :: finish
     procedure, private :: start_step, keep_or_stop, keep
     procedure, private :: write_increment, write_last, write_envelopes
@@ -159,8 +158,7 @@ contains
     call self%clock%note(model, now)
     call self%costs%start('recover', 'extremes', 'output')
     call self%record%note(model, now, self%costs)
-    call note_time_error(self%time_error, self%record%goals(of_displacement))
-    call note_time_error(self%opening_error, self%record%goals(of_opening))
+    call note_motion_errors(self%time_error, self%opening_error, self%mesh_error, self%record%goals)
     call note_duals(model, now, self%costs, self%duals, self%record%stresses, self%record%goals)
     self%has_unwritten_envelopes = size(self%record%active) > 0
     call self%summary%note(now)
@@ -305,6 +303,15 @@ contains
     end if
   end subroutine modes_found
 
+  !> The error of the mesh in each mode.
+  subroutine weigh_modes(self, model, shape, stiffening)
+    class(result_folder), intent(inout) :: self
+    type(problem), intent(in) :: model
+    real(rk), intent(in) :: shape(:, :, :) !< (3, nodes, modes)
+    real(rk), allocatable, intent(out) :: stiffening(:) !< (modes) [1/s2]
+    call find_stiffening(model, self%record%stresses, shape, stiffening)
+  end subroutine weigh_modes
+
   !> A step begins.
   subroutine start_step(self, model, step)
     class(result_folder), intent(inout) :: self
@@ -369,12 +376,6 @@ contains
       call mark_summary(self%stem//'.json', message)
     end if
   end subroutine finish
-
-  !> Keeps the first of two failures.
-  subroutine keep_first(error, failure)
-    type(error_type), allocatable, intent(inout) :: error, failure
-    if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
-  end subroutine keep_first
 
   !> Prints the new warnings of the run.
   subroutine print_warnings(self)

@@ -11,6 +11,7 @@ module hht_integrator
   use increment_listener, only: listener
   use joint_forces, only: gather_tractions
   use joint_water, only: update_uplift
+  use dual_solutions, only: of_displacement, of_opening
   use equilibrium, only: balance_outcome, equilibrium_solver
   use guest_forces, only: has_histories
   use step_equilibrium, only: prepare_equilibrium, set_modal_damping
@@ -22,9 +23,9 @@ module hht_integrator
   use energy_account, only: add_dynamic_work
   use solid_iteration, only: solid_solver
   use state_transfer, only: store_motion
-  use opening_error, only: error_of_opening, note_opening
+  use opening_error, only: error_of_opening, mesh_error_of_opening, note_opening
   use time_error, only: error_modes, is_worth_its_cost, make_error_modes, note_largest, &
-                        start_modal_error, take_modal_error
+                        start_mesh_error, start_modal_error, take_modal_error
   use integrator_type, only: integrator
   implicit none
   private
@@ -84,7 +85,30 @@ contains
       call start_modal_error(self%modes, now%motion, now%timing)
     end if
     call results%costs%stop()
+    if (allocated(self%modes%square)) call weigh_shapes(self, model, now, results)
   end subroutine open_step
+
+  !> Prepares the estimate of the error of the mesh.
+  subroutine weigh_shapes(self, model, now, results)
+    type(hht_method), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(inout) :: now
+    class(listener), intent(inout) :: results
+    real(rk), allocatable :: shape(:, :, :), q(:), stiffening(:)
+    integer :: k
+    call results%costs%start('estimate', 'mesh', 'output')
+    associate (modes => self%modes, numbers => self%system%numbers)
+      allocate (shape(3, numbers%num_nodes, size(modes%square)))
+      allocate (q(numbers%num_total), source=0.0_rk)
+      do k = 1, size(modes%square)
+        q(:size(modes%shape, 1)) = modes%shape(:, k)
+        call numbers%expand(q, shape(:, :, k))
+      end do
+      call results%weigh_modes(model, shape, stiffening)
+      if (allocated(stiffening)) call start_mesh_error(modes, stiffening, now%timing)
+    end associate
+    call results%costs%stop()
+  end subroutine weigh_shapes
 
   !> Writes the motion of a converged increment to the nodes, and reports its error.
   subroutine store_state(self, model, when, now, results, error)
@@ -102,9 +126,12 @@ contains
       call take_modal_error(self%modes, self%scheme%dt, now%motion, own, moved)
       call note_largest(self%system%numbers, self%modes, now%u, own)
       results%time_error = [own%largest, own%at_largest, own%most/max(tiny(1.0_rk), own%motion)]
-      if (size(now%joints) > 0) then
+      if (size(now%joints) == 0 .and. allocated(own%softer)) then
+        results%mesh_error(of_displacement) = abs(own%mesh_at_largest)
+      else if (size(now%joints) > 0) then
         call note_opening(now%joints, now%motion%jump_rate, self%scheme%dt, moved, own)
         results%opening_error = error_of_opening(own)
+        results%mesh_error(of_opening) = mesh_error_of_opening(own)
       end if
     end associate
     call results%costs%stop()

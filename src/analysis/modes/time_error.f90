@@ -1,5 +1,6 @@
-!> The error of the time integration in the lowest modes of the structure with closed joints
-!> (theory.md, 14.2): the exact motion of the modes under the forces of the run, beside the run.
+!> Errors of the time integration and of the mesh in the lowest modes of the structure with closed
+!> joints (theory.md, 14.3 and 14.5): the exact motion of the modes under the forces of the run,
+!> beside the run, and that of modes which are as soft as those of the structure.
 module time_error
   use kinds, only: rk
   use analysis_state, only: motion
@@ -17,11 +18,14 @@ module time_error
   implicit none
   private
   public :: error_modes, make_error_modes, start_modal_error, take_modal_error
-  public :: note_largest, is_worth_its_cost
+  public :: note_largest, is_worth_its_cost, start_mesh_error
 
   integer, parameter :: most_modes = 10
   !> The modes cost as much as a few dozen increments.
   integer, parameter :: least_increments = 500
+
+  !> Of a squared frequency: a mesh so coarse has no estimate that holds.
+  real(rk), parameter :: most_softening = 0.5_rk
 
   !> Modes with unit modal mass; none where there is no estimate.
   type :: error_modes
@@ -104,6 +108,19 @@ contains
     call drive_modes(modes, moving, own%exact, own%rate, own%drive)
   end subroutine start_modal_error
 
+  !> The motion of the structure, whose modes are softer than those of the mesh, starts in
+  !> equilibrium with the same forces.
+  subroutine start_mesh_error(modes, stiffening, own)
+    type(error_modes), intent(in) :: modes
+    real(rk), intent(in) :: stiffening(:) !< (modes) [1/s2]
+    type(modal_error), intent(inout) :: own
+    own%stiffening = max(-most_softening, min(most_softening, stiffening/modes%square)) &
+                     *modes%square
+    own%softer = own%exact*modes%square/(modes%square - own%stiffening)
+    own%softer_rate = own%rate
+    allocate (own%mesh_at_most(size(stiffening)), source=0.0_rk)
+  end subroutine start_mesh_error
+
   !> Modal displacements.
   function displacement_of(modes, moving) result(q)
     type(error_modes), intent(in) :: modes
@@ -143,6 +160,9 @@ contains
     do k = 1, size(q)
       call advance_oscillator(modes%square(k), modes%damping(k), dt, [own%drive(k), drive(k)], &
                               own%exact(k), own%rate(k))
+      if (.not. allocated(own%softer)) cycle
+      call advance_oscillator(modes%square(k) - own%stiffening(k), modes%damping(k), dt, &
+                              [own%drive(k), drive(k)], own%softer(k), own%softer_rate(k))
     end do
     own%drive = drive
     own%error = q - own%exact
@@ -180,17 +200,23 @@ contains
     type(error_modes), intent(in) :: modes
     real(rk), intent(in) :: u(:, :) !< (3, nodes) [m]
     type(modal_error), intent(inout) :: own
-    real(rk), allocatable :: q(:), error(:, :)
     real(rk) :: largest
     integer :: node
     node = maxloc(norm2(u, dim=1), dim=1)
     largest = norm2(u(:, node))
     if (largest <= own%largest) return
-    allocate (q(numbers%num_total), source=0.0_rk)
-    q(:size(modes%shape, 1)) = matmul(modes%shape, own%error)
-    allocate (error, mold=u)
-    call numbers%expand(q, error)
     own%largest = largest
-    own%at_largest = dot_product(error(:, node), u(:, node))/largest
+    own%at_largest = error_along(own%error)
+    if (allocated(own%softer)) own%mesh_at_largest = error_along(own%softer - own%exact)
+  contains
+    !> The part of an error of the modes along the displacement [m].
+    real(rk) function error_along(of_modes)
+      real(rk), intent(in) :: of_modes(:)
+      real(rk) :: q(numbers%num_total), error(3, size(u, 2))
+      q = 0.0_rk
+      q(:size(modes%shape, 1)) = matmul(modes%shape, of_modes)
+      call numbers%expand(q, error)
+      error_along = dot_product(error(:, node), u(:, node))/largest
+    end function error_along
   end subroutine note_largest
 end module time_error

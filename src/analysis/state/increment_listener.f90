@@ -22,6 +22,9 @@ module increment_listener
     !> Largest opening of a dynamic step so far [m], the error in time of openings [m], and their
     !> quotient; zero where the step makes no estimate
     real(rk) :: opening_error(3) = 0.0_rk
+    !> Errors of the mesh in a dynamic step: of the largest displacement, of openings; -1: not known
+    !> [m]
+    real(rk) :: mesh_error(2) = -1.0_rk
     !> Of the end of a linear static step; allocated until the results have taken them
     type(dual_solution), allocatable :: duals(:)
   contains
@@ -29,6 +32,7 @@ module increment_listener
     procedure :: increment_dropped
     procedure :: wants_motion => always_wants_motion
     procedure(modes_found), deferred :: modes_found
+    procedure :: weigh_modes
   end type listener
 
   abstract interface
@@ -63,6 +67,15 @@ contains
     type(state), intent(in) :: now
     wants = .true.
   end function always_wants_motion
+
+  !> How much stiffer the mesh makes each mode; without results that know stresses: nothing.
+  subroutine weigh_modes(self, model, shape, stiffening)
+    class(listener), intent(inout) :: self
+    type(problem), intent(in) :: model
+    real(rk), intent(in) :: shape(:, :, :) !< (3, nodes, modes) unit modal mass
+    !> (modes) squared circular frequencies of the mesh less those of the structure [1/s2]
+    real(rk), allocatable, intent(out) :: stiffening(:) !< not allocated where it is not known
+  end subroutine weigh_modes
 
   !> A signal has ended the increment after `now`; the error ends the run.
   subroutine increment_dropped(self, model, now, error)

@@ -17,6 +17,11 @@ module modal_errors
     real(rk) :: motion = 0.0_rk !< largest norm of the modal displacements so far
     real(rk) :: largest = 0.0_rk !< displacement so far [m]
     real(rk) :: at_largest = 0.0_rk !< its error [m]
+    !> (modes) squared circular frequencies on the mesh less those of the structure [1/s2], and the
+    !> motion with the latter; where the error of the mesh is estimated
+    real(rk), allocatable :: stiffening(:), softer(:), softer_rate(:)
+    real(rk) :: mesh_at_largest = 0.0_rk !< error of the mesh in the largest displacement [m]
+    real(rk), allocatable :: mesh_at_most(:) !< (modes) when that of the opening was largest
     !> (modes, modes) sum of w w^T, w the displacements of an increment; with joints only
     real(rk), allocatable :: square(:, :)
     real(rk), allocatable :: product(:) !< (modes) sum of w times the increment of the opening
@@ -38,6 +43,11 @@ contains
     call file%put('motion', timing%motion)
     call file%put('largest', timing%largest)
     call file%put('at_largest', timing%at_largest)
+    call file%put('stiffening', timing%stiffening)
+    call file%put('softer', timing%softer)
+    call file%put('softer_rate', timing%softer_rate)
+    call file%put('mesh_at_largest', timing%mesh_at_largest)
+    call file%put('mesh_at_most', timing%mesh_at_most)
     call file%put('square', timing%square)
     call file%put('product', timing%product)
     call file%put('at_most', timing%at_most)
@@ -56,6 +66,11 @@ contains
     call file%get('motion', timing%motion)
     call file%get('largest', timing%largest)
     call file%get('at_largest', timing%at_largest)
+    call file%get('stiffening', timing%stiffening)
+    call file%get('softer', timing%softer)
+    call file%get('softer_rate', timing%softer_rate)
+    call file%get('mesh_at_largest', timing%mesh_at_largest)
+    call file%get('mesh_at_most', timing%mesh_at_most)
     call file%get('square', timing%square)
     call file%get('product', timing%product)
     call file%get('at_most', timing%at_most)

@@ -14,7 +14,7 @@ module dual_weighting
   use stress_recovery, only: recovery_plan, operators_of_block, max_points, few_nodes
   implicit none
   private
-  public :: weigh_defects
+  public :: weigh_defects, weigh_own_defects
 
   !> What one field of displacements gives at 2 x 2 x 2 points of the solids.
   type :: point_fields
@@ -40,6 +40,44 @@ contains
     real(rk), intent(out) :: change(:) !< (results) [m]
     type(point_fields) :: own(size(u, 3))
     logical :: is_fitted(plan%num_solids)
+    integer :: k
+    call find_fitted(plan, is_fitted)
+    call find_fields(model, plan, smoothing, u, [any(wants_fit), wants_fit] .and. any(is_fitted), &
+                     own)
+    do k = 1, size(change)
+      change(k) = sum(products(model, plan, smoothing, is_fitted .and. wants_fit(k), own(1), &
+                               own(k + 1))) &
+                  + hourglass_work(model, plan, u(:, :, 1), u(:, :, k + 1))
+    end do
+  end subroutine weigh_defects
+
+  !> The same where the displacements are those under the forces of the result itself, with fitted
+  !> stresses in all elements.
+  subroutine weigh_own_defects(model, plan, smoothing, u, change)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    type(smoothing_plan), intent(in) :: smoothing
+    real(rk), intent(in) :: u(:, :, :) !< (3, nodes, results) displacements
+    real(rk), intent(out) :: change(:) !< (results) force times displacement
+    type(point_fields) :: own(size(u, 3))
+    logical :: is_fitted(plan%num_solids)
+    integer :: k
+    is_fitted = .true.
+    call find_fields(model, plan, smoothing, u, spread(.true., 1, size(u, 3)), own)
+    do k = 1, size(change)
+      change(k) = sum(products(model, plan, smoothing, is_fitted, own(k), own(k))) &
+                  + hourglass_work(model, plan, u(:, :, k), u(:, :, k))
+    end do
+  end subroutine weigh_own_defects
+
+  !> What fields of displacements give at the points of the solids.
+  subroutine find_fields(model, plan, smoothing, u, wants_fit, own)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    type(smoothing_plan), intent(in) :: smoothing
+    real(rk), intent(in) :: u(:, :, :) !< (3, nodes, fields)
+    logical, intent(in) :: wants_fit(:) !< (fields)
+    type(point_fields), intent(inout) :: own(:) !< (fields)
     integer :: i, k
     do k = 1, size(own)
       allocate (own(k)%stress(6, max_points, plan%num_solids), source=0.0_rk)
@@ -55,15 +93,8 @@ contains
       end if
     end do
     !$omp end parallel do
-    call find_fitted(plan, is_fitted)
-    call smooth_stresses(model, plan, smoothing, &
-                         [any(wants_fit), wants_fit] .and. any(is_fitted), own)
-    do k = 1, size(change)
-      change(k) = sum(products(model, plan, smoothing, is_fitted .and. wants_fit(k), own(1), &
-                               own(k + 1))) &
-                  + hourglass_work(model, plan, u(:, :, 1), u(:, :, k + 1))
-    end do
-  end subroutine weigh_defects
+    call smooth_stresses(model, plan, smoothing, wants_fit, own)
+  end subroutine find_fields
 
   !> The solids whose stresses hardly jump at their corners, for all their error: incompatible modes
   !> follow bending, one point shows nothing of it.

@@ -112,18 +112,22 @@ contains
     type(patch_fit), intent(in) :: fit
     real(rk), intent(in) :: stress(:, :, :) !< (6, max_points, solids) [Pa]
     real(rk), allocatable, intent(out) :: slope(:, :, :) !< (terms, 6, patches) [Pa]
-    real(rk) :: x(3, max_points), own(terms, max_points), found(terms, 6)
+    real(rk) :: x(3, max_points), centre(3), total(6), moment(3, 6), found(terms, 6)
     logical :: is_singular
-    integer :: i, p, q, s
+    integer :: i, k, p, s
     allocate (slope(terms, 6, smoothing%num_patches), source=0.0_rk)
     do s = 1, plan%num_solids
       x = points_of(mesh, plan%element_of_solid(s))
+      centre = sum(x, dim=2)/max_points
+      total = sum(stress(:, :, s), dim=2)
+      moment = matmul(x - spread(centre, 2, max_points), transpose(stress(:, :, s)))
       do i = 1, 8
         p = smoothing%patch(i, s)
-        do q = 1, max_points
-          own(:, q) = terms_at(fit, p, x(:, q))
+        slope(1, :, p) = slope(1, :, p) + total
+        do k = 1, 3
+          slope(k + 1, :, p) = slope(k + 1, :, p) &
+                               + (moment(k, :) + (centre(k) - fit%x(k, p))*total)/fit%size(p)
         end do
-        slope(:, :, p) = slope(:, :, p) + matmul(own, transpose(stress(:, :, s)))
       end do
     end do
     do p = 1, smoothing%num_patches

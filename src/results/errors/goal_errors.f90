@@ -4,20 +4,20 @@ module goal_errors
   use kinds, only: rk
   use analysis_state, only: state
   use dual_solutions, only: dual_solution, of_displacement, of_opening
-  use dual_weighting, only: weigh_defects
+  use dual_weighting, only: weigh_defects, weigh_own_defects
   use problem_definition, only: problem
   use run_ledger, only: ledger
   use stress_fields, only: recovered_fields
   use stress_recovery, only: recovery_plan
   implicit none
   private
-  public :: goal_error, note_time_error, note_duals
+  public :: goal_error, note_motion_errors, note_duals, find_stiffening
 
   type :: goal_error
     real(rk) :: at_time = 0.0_rk !< result whose error in time is known [m]
     real(rk) :: time = 0.0_rk !< error of the time integration [m]
     real(rk) :: history = -1.0_rk !< of histories, over the largest result; -1: not known
-    real(rk) :: at_dual = 0.0_rk !< result that the other errors belong to [m]
+    real(rk) :: at_dual = 0.0_rk !< result whose other errors are known [m]
     real(rk) :: mesh = -1.0_rk !< error of the mesh; -1: not known [m]
     real(rk) :: joints = -1.0_rk !< error by the springs of closed joints; -1: not known [m]
     real(rk) :: iteration = -1.0_rk !< error by the residual of the iteration; -1: not known [m]
@@ -26,6 +26,7 @@ module goal_errors
     procedure, private :: is_of
   end type goal_error
 
+  integer, parameter :: modes_at_once = 5 !< whose stresses are in memory together
   !> Of a result: what springs of joints may contribute as an error.
   real(rk), parameter :: largest_share = 0.25_rk
   real(rk), parameter :: roundoff = 1.0e-9_rk !< of a result that is computed twice
@@ -39,7 +40,7 @@ contains
     has_time = self%at_time > 0.0_rk .and. abs(self%at_time - largest) <= roundoff*largest
   end function has_time
 
-  !> Whether the dual solution belongs to this result.
+  !> Whether the errors other than that in time belong to this result.
   pure logical function is_of(self, largest)
     class(goal_error), intent(in) :: self
     real(rk), intent(in) :: largest !< of the run [m]
@@ -86,15 +87,30 @@ contains
     if (.not. any(is_known)) total = -1.0_rk
   end function total
 
-  !> Takes over the estimate of the present step, unless an earlier result was larger.
-  subroutine note_time_error(found, record)
-    real(rk), intent(in) :: found(3) !< result [m], its error [m], relative error of histories
-    type(goal_error), intent(inout) :: record
-    if (found(1) <= 0.0_rk .or. found(1) < record%at_time) return
-    record%at_time = found(1)
-    record%time = abs(found(2))
-    record%history = found(3)
-  end subroutine note_time_error
+  !> Takes over the estimates of the present dynamic step, unless an earlier result was larger.
+  subroutine note_motion_errors(displacement, opening, mesh, records)
+    !> Result [m], its error in time [m], that of histories over the result
+    real(rk), intent(in) :: displacement(3), opening(3)
+    real(rk), intent(in) :: mesh(:) !< (results) error of the mesh; -1: not known [m]
+    type(goal_error), intent(inout) :: records(:) !< (results)
+    call note(displacement, mesh(of_displacement), records(of_displacement))
+    call note(opening, mesh(of_opening), records(of_opening))
+  contains
+    !> One result.
+    subroutine note(found, of_mesh, record)
+      real(rk), intent(in) :: found(3), of_mesh
+      type(goal_error), intent(inout) :: record
+      if (found(1) <= 0.0_rk .or. found(1) < record%at_time) return
+      record%at_time = found(1)
+      record%time = abs(found(2))
+      record%history = found(3)
+      if (of_mesh < 0.0_rk .or. found(1) < record%at_dual) return
+      record%at_dual = found(1)
+      record%mesh = of_mesh
+      record%joints = -1.0_rk
+      record%iteration = -1.0_rk
+    end subroutine note
+  end subroutine note_motion_errors
 
   !> Takes the dual solutions, if there are any.
   subroutine note_duals(model, now, costs, duals, stresses, records)
@@ -144,6 +160,23 @@ contains
     error = abs(error)
     if (has_reduced(stresses%plan)) where (duals%goal == of_opening) error = -1.0_rk
   end subroutine weigh_duals
+
+  !> How much stiffer the mesh makes each mode (theory.md, 14.5): its squared circular frequency is
+  !> a largest displacement under its own forces.
+  subroutine find_stiffening(model, stresses, shape, stiffening)
+    type(problem), intent(in) :: model
+    type(recovered_fields), intent(inout) :: stresses
+    real(rk), intent(in) :: shape(:, :, :) !< (3, nodes, modes) unit modal mass
+    real(rk), allocatable, intent(out) :: stiffening(:) !< (modes) [1/s2]
+    integer :: k, last
+    call stresses%need_smoothing(model)
+    allocate (stiffening(size(shape, 3)))
+    do k = 1, size(shape, 3), modes_at_once
+      last = min(size(shape, 3), k + modes_at_once - 1)
+      call weigh_own_defects(model, stresses%plan, stresses%smoothing, shape(:, :, k:last), &
+                             stiffening(k:last))
+    end do
+  end subroutine find_stiffening
 
   !> Whether solids have one point: estimates of openings are up to 60 times the error
   !> (verification.md).
