@@ -68,13 +68,18 @@ def name_of(facts: dict[str, Any]) -> str:
     return Path(facts["deck"]).stem
 
 
+def model_of(header: dict[str, str]) -> str:
+    """'1,368 unknowns, 41 increments: the first 0.4 s of each dynamic step'."""
+    return header["Model"] + (f": {header['Duration']}" if "Duration" in header else "")
+
+
 def section(facts: dict[str, Any]) -> str:
     """A study as Markdown."""
     header = dict(facts["header"])
     lines = [
         f"### {name_of(facts)}",
         "",
-        wrapped(f"{header['Model']}. {facts['what_seconds_are']}"),
+        wrapped(f"{model_of(header)}. {facts['what_seconds_are']}"),
         "",
         "| quantity | deck | its error | increment | mesh | iteration | limit |",
         "|---|---|---|---|---|---|---|",
@@ -150,9 +155,13 @@ def main(arguments: list[str]) -> int:
                         help="folders of studies whose data is kept here")  # fmt: skip
     given = parser.parse_args(arguments)
     for folder in given.take:
-        text = (folder / "accuracy.json").read_text(encoding="utf-8")
+        facts = json.loads((folder / "accuracy.json").read_text(encoding="utf-8"))
+        facts["header"] = [
+            [name, Path(text).name if name == "Deck" else text] for name, text in facts["header"]
+        ]
+        text = json.dumps(facts, indent=1) + "\n"
         DATA.mkdir(parents=True, exist_ok=True)
-        (DATA / f"{name_of(json.loads(text))}.json").write_text(text, encoding="utf-8")
+        (DATA / f"{name_of(facts)}.json").write_text(text, encoding="utf-8")
     found = studies()
     page = page_with("\n".join(section(facts) for facts in found))
     if given.check:

@@ -35,6 +35,7 @@ set(sources
   solids/inelastic_forces.f90
   solids/inelastic_stiffness.f90
   solids/lost_damping.f90
+  solids/path_sampling.f90
   solids/solid_iterate.f90
   solids/solid_iteration.f90
   solids/solid_tangent.f90
@@ -46,6 +47,7 @@ set(sources
   state/guest_histories.f90
   state/increment_listener.f90
   state/modal_errors.f90
+  state/path_errors.f90
   state/motion_archive.f90
   state/state_archive.f90
   state/state_transfer.f90

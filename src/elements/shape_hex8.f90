@@ -8,7 +8,7 @@ module shape_hex8
   private
   public :: hex8_dofs, corner, point_shape, point_derivative
   public :: shape_at, derivative_at, edges_at, gradient_at, mean_gradient, strain_rows
-  public :: corner_fault, corner_of_point, corners_from_points
+  public :: corner_fault, corner_of_point, corners_from_points, edge_end
 
   integer, parameter :: num_corners = 8
   !> Number of displacements of an element, the only unknowns of its matrices.

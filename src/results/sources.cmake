@@ -5,6 +5,8 @@ set(sources
   errors/dual_weighting.f90
   errors/fitted_stress.f90
   errors/goal_errors.f90
+  errors/place_errors.f90
+  errors/singular_places.f90
   errors/space_errors.f90
   fields/derived_fields.f90
   fields/error_fields.f90
@@ -42,6 +44,7 @@ set(sources
   summary/run_closing.f90
   summary/damage_json.f90
   summary/error_json.f90
+  summary/error_words.f90
   summary/joint_json.f90
   summary/machine_json.f90
   summary/material_summary.f90

@@ -71,6 +71,12 @@ TYPES = (
     of_state("reduction_status", STATE, "reduction"),
     of_state("time_accuracy", STATE, "accuracy"),
     of_state("modal_error", MODAL_ERRORS, "timing", MODAL_ERRORS),
+    of_state(
+        "path_error",
+        "src/analysis/state/path_errors.f90",
+        "path",
+        "src/analysis/state/path_errors.f90",
+    ),
     of_state("last_matrix", STATE, "matrix"),
     of_state("increment_control", "src/analysis/state/step_control.f90", "control"),
     of_state(
@@ -93,6 +99,7 @@ TYPES = (
         stresses="made anew from the state",
         skin="of the model",
         fields="the same for all runs",
+        path="of the state",
     ),
     of_record(
         "joint_record",

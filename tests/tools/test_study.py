@@ -18,7 +18,7 @@ from keyway_tools.study.ladder import Outcome
 from keyway_tools.study.measured import measure
 from keyway_tools.study.mesh_sets import back_of_slice, read_sets
 from keyway_tools.study.refined_mesh import RefinementError, refine
-from keyway_tools.study.rungs import Rung, as_it_is, base_deck, list_rungs, scaled
+from keyway_tools.study.rungs import Rung, as_it_is, base_deck, list_rungs, scaled, shortened
 
 ROOT = Path(__file__).resolve().parents[2]
 INPUT = ROOT / "input"
@@ -328,6 +328,16 @@ def test_smallest_and_largest_increments_follow(tmp_path):
     (tmp_path / "a.inp").write_text("*STEP\n*DYNAMIC\n0.01, 5., , 2.d-2\n*END STEP\n")
     (card,) = scaled(2.0)(read_deck(tmp_path / "a.inp")).of("DYNAMIC")
     assert card.lines == ["0.02, 5., , 0.04"]
+
+
+def test_a_shorter_study_ends_dynamic_steps_alone(tmp_path):
+    text = "*STEP\n*STATIC\n1., 5.\n*END STEP\n*STEP\n*DYNAMIC\n0.01, 9.\n"
+    (tmp_path / "a.inp").write_text(text)
+    deck = shortened(read_deck(tmp_path / "a.inp"), 0.5)
+    for same in (deck, shortened(deck, 2.0)):
+        (static,), (dynamic,) = same.of("STATIC"), same.of("DYNAMIC")
+        assert static.lines == ["1., 5."]
+        assert [number_of(item) for item in dynamic.lines[0].split(",")] == [0.01, 0.5]
 
 
 def test_rungs_fit_the_deck():

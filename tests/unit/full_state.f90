@@ -9,6 +9,7 @@ module full_state
   use material_points, only: point_state
   use thermal_strains, only: heat_field
   use modal_errors, only: modal_error
+  use path_errors, only: path_error
   implicit none
   private
   public :: make_full_state
@@ -84,6 +85,7 @@ contains
     call fill_reduction(status%reduction, n)
     call fill_accuracy(status%accuracy, n)
     call fill_timing(status%timing, n)
+    call fill_path(status%path, n)
   end subroutine fill_status
 
   !> Energies.
@@ -130,7 +132,20 @@ contains
     call fill(timing%product, n)
     call fill(timing%at_most, n)
     call fill(timing%opening, n)
+    call fill(timing%lost, n)
+    call fill(timing%held, n)
   end subroutine fill_timing
+
+  !> Error of the laws within increments.
+  subroutine fill_path(path, n)
+    type(path_error), intent(inout) :: path
+    integer, intent(inout) :: n
+    call fill(path%num_changes, n)
+    call fill(path%num_points, n)
+    call fill(path%dissipated, n)
+    call fill(path%difference, n)
+    call fill(path%stress, n)
+  end subroutine fill_path
 
   !> Error in time.
   subroutine fill_accuracy(accuracy, n)

@@ -9,6 +9,7 @@ module same_states
   use joint_law, only: joint_state
   use material_points, only: point_state
   use modal_errors, only: modal_error
+  use path_errors, only: path_error
   use testing, only: test_log, check
   implicit none
   private
@@ -92,6 +93,7 @@ contains
     call compare_reduction(log, what//'reduction%', a%reduction, b%reduction)
     call compare_accuracy(log, what//'accuracy%', a%accuracy, b%accuracy)
     call compare_timing(log, what//'timing%', a%timing, b%timing)
+    call compare_path(log, what//'path%', a%path, b%path)
   end subroutine compare_status
 
   !> Energies.
@@ -136,7 +138,21 @@ contains
     call compare(log, what//'product', a%product, b%product)
     call compare(log, what//'at_most', a%at_most, b%at_most)
     call compare(log, what//'opening', a%opening, b%opening)
+    call compare(log, what//'lost', a%lost, b%lost)
+    call compare(log, what//'held', a%held, b%held)
   end subroutine compare_timing
+
+  !> Error of the laws within increments.
+  subroutine compare_path(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    type(path_error), intent(in) :: a, b
+    call compare(log, what//'num_changes', a%num_changes, b%num_changes)
+    call compare(log, what//'num_points', a%num_points, b%num_points)
+    call compare(log, what//'dissipated', a%dissipated, b%dissipated)
+    call compare(log, what//'difference', a%difference, b%difference)
+    call compare(log, what//'stress', a%stress, b%stress)
+  end subroutine compare_path
 
   !> Error in time.
   subroutine compare_accuracy(log, what, a, b)

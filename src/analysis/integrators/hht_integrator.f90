@@ -25,7 +25,7 @@ module hht_integrator
   use state_transfer, only: store_motion
   use opening_error, only: error_of_opening, mesh_error_of_opening, note_opening
   use time_error, only: error_modes, is_worth_its_cost, make_error_modes, note_largest, &
-                        start_mesh_error, start_modal_error, take_modal_error
+                        note_lost_forces, start_mesh_error, start_modal_error, take_modal_error
   use integrator_type, only: integrator
   implicit none
   private
@@ -129,6 +129,7 @@ contains
       if (size(now%joints) == 0 .and. allocated(own%softer)) then
         results%mesh_error(of_displacement) = abs(own%mesh_at_largest)
       else if (size(now%joints) > 0) then
+        call note_lost_forces(self%modes, now%motion, own)
         call note_opening(now%joints, now%motion%jump_rate, self%scheme%dt, moved, own)
         results%opening_error = error_of_opening(own)
         results%mesh_error(of_opening) = mesh_error_of_opening(own)

@@ -13,6 +13,7 @@ module static_integrator
   use state_transfer, only: start_motion, store_motion, sum_contact
   use increment_listener, only: listener
   use equilibrium, only: balance_outcome
+  use guest_forces, only: has_histories
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium
   use step_system, only: build_structure, build_loads, build_origins
   use step_loads, only: step_time, external_force
@@ -166,7 +167,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     call store_motion(self%system%numbers, now)
     if (.not. now%is_last_of_step) return
-    if (self%solids%has_inelastic() .or. allocated(now%origin)) return
+    if (has_left_elasticity(self, now) .or. allocated(now%origin)) return
     if (allocated(now%heat%reference)) return
     associate (controls => model%steps(now%step)%controls)
       if (.not. (controls%estimates_errors .and. is_affordable(model, controls))) return
@@ -175,6 +176,20 @@ contains
     call find_duals(model, self%system, self%solids%solver, now, results%duals)
     call results%costs%stop()
   end subroutine store_state
+
+  !> Whether a solid, or another guest with a history, may not be elastic.
+  pure logical function has_left_elasticity(self, now)
+    class(static_method), intent(in) :: self
+    type(state), intent(in) :: now
+    integer :: i
+    has_left_elasticity = has_histories(now%guests)
+    do i = 1, size(now%points)
+      has_left_elasticity = has_left_elasticity .or. .not. all(now%points(i)%is_elastic)
+    end do
+    if (self%solids%has_inelastic()) then
+      has_left_elasticity = has_left_elasticity .or. .not. self%solids%matrix%is_elastic
+    end if
+  end function has_left_elasticity
 
   !> Whether the loads exceed what the joints can carry.
   logical function is_hopeless(self, model, plan, when, before)

@@ -18,7 +18,7 @@ module time_error
   implicit none
   private
   public :: error_modes, make_error_modes, start_modal_error, take_modal_error
-  public :: note_largest, is_worth_its_cost, start_mesh_error
+  public :: note_largest, note_lost_forces, is_worth_its_cost, start_mesh_error
 
   integer, parameter :: most_modes = 10
   !> The modes cost as much as a few dozen increments.
@@ -169,6 +169,19 @@ contains
     own%motion = max(own%motion, norm2(q))
     own%most = max(own%most, norm2(own%error))
   end subroutine take_modal_error
+
+  !> Sums of the modal forces that the joints have lost by opening and sliding, and of those that
+  !> they would have closed (theory.md, 14.4).
+  subroutine note_lost_forces(modes, after, own)
+    type(error_modes), intent(in) :: modes
+    type(motion), intent(in) :: after
+    type(modal_error), intent(inout) :: own
+    real(rk), dimension(size(modes%square)) :: lost, q
+    lost = own%drive - matmul(after%external(modes%massive), modes%own)
+    q = own%exact + own%error
+    own%lost = own%lost + sum(lost**2/modes%square)
+    own%held = own%held + sum(modes%square*q**2)
+  end subroutine note_lost_forces
 
   !> x'' + c x' + w2 x = p0 + (p1 - p0) t/dt from 0 to dt, exactly: a + b t and a free vibration.
   pure subroutine advance_oscillator(w2, c, dt, p, x, v)

@@ -10,6 +10,7 @@ module analysis_state
   use guest_history, only: history_slot
   use joint_law, only: joint_state
   use modal_errors, only: modal_error
+  use path_errors, only: path_error
   use material_points, only: point_state
   use step_control, only: increment_control
   use thermal_strains, only: heat_field
@@ -79,6 +80,7 @@ module analysis_state
     type(reduction_status) :: reduction
     type(time_accuracy) :: accuracy
     type(modal_error) :: timing !< of the time integration in this step
+    type(path_error) :: path !< of the laws of inelastic solids within increments
   end type increment_status
 
   !> Motion of a reduced model since the start of its step (theory.md, 7.4).

@@ -26,6 +26,9 @@ module modal_errors
     real(rk), allocatable :: square(:, :)
     real(rk), allocatable :: product(:) !< (modes) sum of w times the increment of the opening
     real(rk) :: opening = 0.0_rk !< largest so far [m]
+    !> Sums over the modes and over the increments with open joints: squares of the forces that open
+    !> joints have lost, over the circular frequencies; and of the displacements times these
+    real(rk) :: lost = 0.0_rk, held = 0.0_rk
     real(rk), allocatable :: at_most(:) !< (modes) errors when that of the opening was largest
   end type modal_error
 
@@ -52,6 +55,8 @@ contains
     call file%put('product', timing%product)
     call file%put('at_most', timing%at_most)
     call file%put('opening', timing%opening)
+    call file%put('lost', timing%lost)
+    call file%put('held', timing%held)
   end subroutine save_timing
 
   !> Reads the errors from the present group.
@@ -75,5 +80,7 @@ contains
     call file%get('product', timing%product)
     call file%get('at_most', timing%at_most)
     call file%get('opening', timing%opening)
+    call file%get('lost', timing%lost)
+    call file%get('held', timing%held)
   end subroutine load_timing
 end module modal_errors

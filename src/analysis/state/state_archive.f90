@@ -8,6 +8,7 @@ module state_archive
   use analysis_state, only: state, increment_status, energy_balance, last_matrix, &
                             reduction_status, time_accuracy
   use modal_errors, only: load_timing, save_timing
+  use path_errors, only: load_path, save_path
   use motion_archive, only: save_motion, load_motion
   use thermal_strains, only: heat_field
   use write_text, only: as_text
@@ -205,6 +206,9 @@ contains
     call file%open_group('timing')
     call save_timing(status%timing, file)
     call file%close_group()
+    call file%open_group('path')
+    call save_path(status%path, file)
+    call file%close_group()
   end subroutine save_status
 
   !> Reads where the analysis is.
@@ -241,6 +245,9 @@ contains
     call file%close_group()
     call file%open_group('timing')
     call load_timing(status%timing, file)
+    call file%close_group()
+    call file%open_group('path')
+    call load_path(status%path, file)
     call file%close_group()
   end subroutine load_status
 

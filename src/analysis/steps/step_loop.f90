@@ -13,6 +13,7 @@ module step_loop
   use step_loads, only: step_time
   use joint_water, only: record_uplift
   use modal_errors, only: modal_error
+  use path_sampling, only: sample_paths
   use integrator_type, only: integrator
   use stage_entry, only: enter_stage, show_stage
   use integrator_catalogue, only: make_integrator
@@ -231,6 +232,11 @@ contains
       call method%solids%matrix%store(trial%matrix)
       call trial%control%accept(method%solids%effort(next%outcome%own_iterations()))
       if (allocated(next%weights)) call follow_error(plan, now, next, results)
+      if (method%solids%has_inelastic() .and. plan%controls%estimates_errors) then
+        call results%costs%start('estimate', 'law', 'output')
+        call sample_paths(model, method%solids%time, now%points, trial%points, trial%path)
+        call results%costs%stop()
+      end if
       call count_increment(plan, next%when, next%outcome, trial)
       call method%store_state(model, next%when, trial, results, error)
     end associate

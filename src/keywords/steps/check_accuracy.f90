@@ -21,14 +21,22 @@ contains
   subroutine set_accuracy_limits(model, faults)
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
+    logical :: is_named
     integer :: i
+    is_named = .false.
     do i = model%step_origin%card, model%current
       if (.not. model%cards(i)%keyword == 'CONTROLS') cycle
       if (.not. model%cards(i)%has('ACCURACY')) cycle
+      is_named = .true.
       if (model%cards(i)%real('ACCURACY') > 0.0_rk) call refuse(model, model%cards(i), faults)
     end do
     associate (now => model%now)
-      if (now%procedure%scheme == reduced) now%controls%accuracy = 0.0_rk
+      if (now%procedure%scheme == reduced .and. now%controls%accuracy > 0.0_rk) then
+        if (.not. is_named) call model%cards(model%current_procedure)%warn( &
+          faults, 'ACCURACY of *CONTROLS of an earlier step has no effect on a reduced model, '// &
+          'which is tried with one increment', 'ACCURACY=0 in this step, or no REDUCED')
+        now%controls%accuracy = 0.0_rk
+      end if
       if (.not. now%follows_accuracy()) return
       now%finest_increment = finest_ratio*now%first_increment
       if (is_given(model, 3)) now%finest_increment = now%smallest_increment

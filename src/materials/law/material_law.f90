@@ -17,6 +17,7 @@ module material_law
     logical :: defers_energy = .false. !< updates without energies are faster
     logical :: is_serial = .false. !< one call at a time (user subroutines with saved data)
     logical :: wants_gradient = .false. !< of the displacement, besides the strain
+    logical :: may_be_tried = .true. !< calls beside the analysis change nothing
   contains
     procedure(elastic_stiffness), deferred :: elastic_stiffness
     procedure(update), deferred :: update

@@ -62,6 +62,7 @@ contains
     law%is_nonlinear = .true.
     law%is_serial = .not. library%is_threadsafe
     law%wants_gradient = .true.
+    law%may_be_tried = .false.
   end subroutine make_user_law
 
   !> Initial stiffness, from a call without strain at the first point.

@@ -21,8 +21,9 @@ module goal_errors
     real(rk) :: mesh = -1.0_rk !< error of the mesh; -1: not known [m]
     real(rk) :: joints = -1.0_rk !< error by the springs of closed joints; -1: not known [m]
     real(rk) :: iteration = -1.0_rk !< error by the residual of the iteration; -1: not known [m]
+    real(rk) :: at_stray = 0.0_rk !< result that does not follow the modes of its step [m]
   contains
-    procedure :: has_time, has_mesh, has_joints, has_iteration, is_soft, total
+    procedure :: has_time, has_mesh, has_joints, has_iteration, is_soft, is_stray, total
     procedure, private :: is_of
   end type goal_error
 
@@ -39,6 +40,13 @@ contains
     real(rk), intent(in) :: largest !< of the run [m]
     has_time = self%at_time > 0.0_rk .and. abs(self%at_time - largest) <= roundoff*largest
   end function has_time
+
+  !> Whether this result has no error in time because it does not follow the modes: a body rocks.
+  pure logical function is_stray(self, largest)
+    class(goal_error), intent(in) :: self
+    real(rk), intent(in) :: largest !< of the run [m]
+    is_stray = self%at_stray > 0.0_rk .and. abs(self%at_stray - largest) <= roundoff*largest
+  end function is_stray
 
   !> Whether the errors other than that in time belong to this result.
   pure logical function is_of(self, largest)
@@ -100,7 +108,11 @@ contains
     subroutine note(found, of_mesh, record)
       real(rk), intent(in) :: found(3), of_mesh
       type(goal_error), intent(inout) :: record
-      if (found(1) <= 0.0_rk .or. found(1) < record%at_time) return
+      if (found(1) <= 0.0_rk .or. found(1) < max(record%at_time, record%at_stray)) return
+      record%at_time = 0.0_rk
+      record%history = -1.0_rk
+      record%at_stray = merge(found(1), 0.0_rk, found(2) < 0.0_rk .and. found(3) < 0.0_rk)
+      if (record%at_stray > 0.0_rk) return
       record%at_time = found(1)
       record%time = abs(found(2))
       record%history = found(3)

@@ -19,6 +19,7 @@ module space_errors
     real(rk) :: error = 0.0_rk !< of their error [J^0.5]
     real(rk) :: time = 0.0_rk !< total time [s]
     real(rk) :: sampled = 0.0_rk !< largest strain energy at a sample [J]
+    real(rk) :: elastic = 1.0_rk !< part of the volume that is elastic: the others are left out
   contains
     procedure :: relative
   end type space_error
@@ -50,10 +51,15 @@ contains
     if (now%energy%strain <= round_off*abs(now%motion%thermal_energy)) return
     record%sampled = max(record%sampled, now%energy%strain)
     call stresses%need_error(model, now)
-    norm = sqrt(sum(stresses%stress_energy))
+    norm = sqrt(sum(stresses%stress_energy, mask=.not. stresses%is_inelastic))
     if (norm <= record%stress) return
     record%stress = norm
-    record%error = sqrt(sum(stresses%error_energy))
+    record%error = sqrt(sum(stresses%error_energy, mask=.not. stresses%is_inelastic))
     record%time = now%total_time
+    record%elastic = 1.0_rk
+    if (.not. any(stresses%is_inelastic)) return
+    associate (volume => stresses%smoothing%volume)
+      record%elastic = sum(sum(volume, dim=1), mask=.not. stresses%is_inelastic)/sum(volume)
+    end associate
   end subroutine note_space_error
 end module space_errors

@@ -16,6 +16,7 @@ module envelopes
     real(rk), allocatable :: value(:), time(:) !< (nodes), of this step
     real(rk), allocatable :: mean(:) !< (elements) largest element means, of fields with means
     type(extremes_by_face) :: largest !< of all steps with this envelope
+    real(rk) :: error = -1.0_rk !< of the mesh in the extreme anywhere; < 0: place_errors
   end type envelope
 
 contains

@@ -4,8 +4,8 @@ module stress_fields
   use problem_definition, only: problem
   use analysis_state, only: state
   use tensor6, only: principal_values
-  use stress_recovery, only: recovery_plan, make_recovery_plan, recover_points, copy_solid, &
-                             max_points, few_nodes, recover_expansions
+  use stress_recovery, only: recovery_plan, make_recovery_plan, recover_points, recover_some, &
+                             copy_solid, max_points, few_nodes, recover_expansions
   use node_means, only: average_at_nodes, average_at
   use law_fields, only: field_at_points, find_inelastic_solids, nodes_of_solids, &
                         is_zero_while_elastic
@@ -47,6 +47,7 @@ module stress_fields
     procedure :: need_plan
     procedure :: need_inelastic
     procedure :: need_points
+    procedure :: need_points_of
     procedure :: need_node_strain
     procedure :: need_node_stress
     procedure :: need_principals
@@ -120,6 +121,18 @@ contains
     call recover_points(model, self%plan, now, self%point_strain, self%point_stress)
     self%has_points = .true.
   end subroutine need_points
+
+  !> Computes strains and stresses at the points of some solids; those of others stay outdated.
+  subroutine need_points_of(self, model, now, is_wanted)
+    class(recovered_fields), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    logical, intent(in) :: is_wanted(:) !< (solids)
+    if (self%has_points) return
+    call self%need_inelastic(model, now)
+    call allocate_points(self)
+    call recover_some(model, self%plan, now, is_wanted, self%point_strain, self%point_stress)
+  end subroutine need_points_of
 
   !> Allocates strains and stresses at the points.
   subroutine allocate_points(self)

@@ -17,7 +17,7 @@ module stress_recovery
   use thermal_recovery, only: add_expansion, take_thermal
   implicit none
   private
-  public :: recovery_plan, make_recovery_plan, recover_points, copy_solid, max_points
+  public :: recovery_plan, make_recovery_plan, recover_points, recover_some, copy_solid, max_points
   public :: recover_expansions
   public :: operators_of_block, motion_of_element, few_nodes
 
@@ -192,6 +192,30 @@ contains
     end do
     !$omp end parallel do
   end subroutine recover_points
+
+  !> Strain and stress at the points of some solids; the values of others remain.
+  subroutine recover_some(model, plan, now, is_wanted, strain, stress)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    type(state), intent(in) :: now
+    logical, intent(in) :: is_wanted(:) !< (solids)
+    real(rk), intent(inout) :: strain(:, :, :) !< (6, max_points, solids)
+    real(rk), intent(inout) :: stress(:, :, :) !< (6, max_points, solids) [Pa]
+    type(element_block) :: part
+    integer :: i, k
+    do i = 1, size(plan%blocks)
+      if (.not. any(is_wanted(plan%blocks(i)%solids))) cycle
+      part = plan%blocks(i)
+      part%solids = pack(part%solids, is_wanted(part%solids))
+      if (.not. part%is_inelastic) then
+        call recover_block(model, plan, part, now, strain, stress)
+        cycle
+      end if
+      do k = 1, size(part%solids)
+        call copy_solid(plan, now, part%solids(k), strain, stress)
+      end do
+    end do
+  end subroutine recover_some
 
   !> Strain and stress of one solid with states.
   subroutine copy_solid(plan, now, solid, strain, stress)

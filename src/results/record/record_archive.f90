@@ -121,6 +121,7 @@ contains
     call file%put('error', record%error)
     call file%put('time', record%time)
     call file%put('sampled', record%sampled)
+    call file%put('elastic', record%elastic)
   end subroutine save_space_error
 
   !> Reads the error of the mesh.
@@ -131,6 +132,7 @@ contains
     call file%get('error', record%error)
     call file%get('time', record%time)
     call file%get('sampled', record%sampled)
+    call file%get('elastic', record%elastic)
   end subroutine load_space_error
 
   !> Writes the errors of a result.
@@ -144,6 +146,7 @@ contains
     call file%put('at_dual', record%at_dual)
     call file%put('joints', record%joints)
     call file%put('iteration', record%iteration)
+    call file%put('at_stray', record%at_stray)
   end subroutine save_goal_error
 
   !> Reads the errors of a result.
@@ -157,6 +160,7 @@ contains
     call file%get('at_dual', record%at_dual)
     call file%get('joints', record%joints)
     call file%get('iteration', record%iteration)
+    call file%get('at_stray', record%at_stray)
   end subroutine load_goal_error
 
   !> Writes the maxima of one joint.
@@ -275,6 +279,7 @@ contains
     call file%put('time', item%time)
     call file%put('mean', item%mean)
     call save_extremes('largest', item%largest, file)
+    call file%put('error', item%error)
   end subroutine save_envelope
 
   !> Reads one envelope.
@@ -291,6 +296,7 @@ contains
     call file%get('time', item%time)
     call file%get('mean', item%mean)
     call load_extremes('largest', item%largest, file)
+    call file%get('error', item%error)
   end subroutine load_envelope
 
   !> Writes the extremes anywhere, upstream and downstream.

@@ -7,11 +7,13 @@ module run_records
   use analysis_state, only: state
   use dam_faces, only: dam_skin, find_dam_faces
   use envelopes, only: envelope, open_envelope, note_envelope, note_means
-  use extremes, only: extremes_by_face, note_values
+  use extremes, only: extreme, extremes_by_face, note_values
   use joint_readings, only: joint_record, open_joint_record, note_joint
   use damage_readings, only: damage_record, open_damage_record, note_damage
   use law_fields, only: mean_of_elements
   use goal_errors, only: goal_error
+  use path_errors, only: path_error
+  use place_errors, only: error_at_node, not_known
   use space_errors, only: space_error, note_space_error
   use stress_fields, only: recovered_fields
   use field_table, only: list_fields, find_field
@@ -43,6 +45,7 @@ module run_records
     type(damage_record) :: damage
     type(extremes_by_face) :: displacement !< length of the vector, relative to the base [m]
     type(space_error) :: space !< error that the mesh leaves
+    type(path_error) :: path !< of the laws of solids within increments, as the state has it
     type(goal_error) :: goals(2) !< errors of the largest displacement and of the largest opening
     type(envelope), allocatable :: envelopes(:) !< of all steps so far
     integer, allocatable :: active(:) !< envelopes of the present step
@@ -115,6 +118,7 @@ contains
     type(ledger), intent(in) :: costs
     integer :: j, i
     call self%stresses%invalidate()
+    self%path = now%path
     if (self%damage%is_present) then
       call note_damage(model, now, self%damage)
       call self%check_law(model, now)
@@ -141,7 +145,7 @@ contains
     if (size(self%active) == 0) return
     call costs%start('recover', 'envelopes', 'output')
     do i = 1, size(self%active)
-      call self%update_envelope(model, now, self%envelopes(self%active(i)))
+      call self%update_envelope(model, now, costs, self%envelopes(self%active(i)))
     end do
     call costs%stop()
   end subroutine note
@@ -225,10 +229,11 @@ contains
   end subroutine check_crack_energy
 
   !> Updates one envelope, by the place of its field.
-  subroutine update_envelope(self, model, now, item)
+  subroutine update_envelope(self, model, now, costs, item)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
+    type(ledger), intent(in) :: costs
     type(envelope), intent(inout) :: item
     real(rk), allocatable :: values(:, :), magnitude(:)
     call self%fields(item%row)%on_nodes(model, now, self%stresses, values)
@@ -240,27 +245,39 @@ contains
     case (at_points)
       call self%note_points(model, now, magnitude, item)
     case default
-      call self%note_nodes(model, now, magnitude, item)
+      call self%note_nodes(model, now, costs, magnitude, item)
     end select
   end subroutine update_envelope
 
   !> A field on nodes: the extremes are those of the nodes of solids.
-  subroutine note_nodes(self, model, now, values, item)
+  subroutine note_nodes(self, model, now, costs, values, item)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
+    type(ledger), intent(in) :: costs
     real(rk), intent(in) :: values(:) !< (nodes)
     type(envelope), intent(inout) :: item
     integer, allocatable :: solid_nodes(:)
+    type(extreme) :: before
     integer :: n
     call self%stresses%need_plan(model)
     associate (start => self%stresses%plan%node_start)
       solid_nodes = pack([(n, n=1, size(values))], start(2:) > start(:size(start) - 1))
     end associate
     call note_envelope(item, values, now%total_time)
+    before = item%largest%at(1)
     call note_values(item%largest, values(solid_nodes), model%mesh%x(:, solid_nodes), &
                      self%skin%is_upstream(solid_nodes), self%skin%is_downstream(solid_nodes), &
                      now%total_time, item%wants_smallest)
+    if (.not. (item%name == 'S1' .or. item%name == 'S3')) return
+    if (before%is_found .and. abs(item%largest%at(1)%value - before%value) <= 0.0_rk) return
+    item%error = not_known
+    if (.not. model%steps(now%step)%controls%estimates_errors) return
+    call costs%start('estimate', 'mesh', 'output')
+    n = maxloc(merge(-values(solid_nodes), values(solid_nodes), item%wants_smallest), dim=1)
+    item%error = error_at_node(model, now, self%stresses, solid_nodes(n), &
+                               merge(3, 1, item%wants_smallest))
+    call costs%stop()
   end subroutine note_nodes
 
   !> A field of joints: the extremes are those of the points; closed points count as 0.

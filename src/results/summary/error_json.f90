@@ -3,6 +3,8 @@ module error_json
   use kinds, only: rk
   use dual_solutions, only: of_displacement, of_opening
   use goal_errors, only: goal_error
+  use place_errors, only: left_elasticity, not_known
+  use singular_places, only: why_singular
   use json_writer, only: json_text
   use problem_definition, only: problem
   use run_records, only: run_record
@@ -20,6 +22,8 @@ contains
     type(run_record), intent(in) :: record
     call json%open_object('estimates')
     call put_stress(json, record)
+    call put_extremes(json, model, record)
+    call put_law(json, record)
     call put_displacement(json, record)
     call put_opening(json, model, record)
     call json%close_object()
@@ -83,11 +87,15 @@ contains
     character(*), intent(in) :: name, joint
     real(rk), intent(in) :: value !< [m]
     type(goal_error), intent(in) :: found
-    if (found%total(value) < 0.0_rk .and. found%history < 0.0_rk) return
+    if (found%total(value) < 0.0_rk .and. found%history < 0.0_rk .and. &
+        .not. found%is_stray(value)) return
     call json%open_object(name)
     call json%put_real(value, 'value')
     if (joint /= '') call json%put_text(joint, 'joint')
     if (found%total(value) >= 0.0_rk) call json%put_real(found%total(value), 'error')
+    if (found%is_stray(value)) then
+      call json%put_text('time, mesh: a body rocks', 'not_known')
+    end if
     if (found%has_time(value)) call json%put_real(found%time, 'time')
     if (found%has_mesh(value)) call json%put_real(found%mesh, 'mesh')
     if (found%has_joints(value)) call json%put_real(found%joints, 'joints')
@@ -108,6 +116,46 @@ contains
     call json%put_real(record%space%error, 'mesh')
     call json%put_real(record%space%relative(), 'relative')
     call json%put_real(record%space%time, 'at')
+    call json%put_real(record%space%elastic, 'elastic_volume')
     call json%close_object()
   end subroutine put_stress
+
+  !> What the laws of solids leave open within increments.
+  subroutine put_law(json, record)
+    type(json_text), intent(inout) :: json
+    type(run_record), intent(in) :: record
+    if (record%path%num_points == 0) return
+    call json%open_object('law')
+    call json%put_real(record%damage%cracking + record%damage%crushing, 'value')
+    call json%put_real(record%path%relative(), 'relative')
+    call json%put_real(record%path%stress, 'stress')
+    call json%put_integer(record%path%num_points, 'points')
+    call json%close_object()
+  end subroutine put_law
+
+  !> The largest and the smallest principal stress of *ENVELOPE; a singular place has no error.
+  subroutine put_extremes(json, model, record)
+    type(json_text), intent(inout) :: json
+    type(problem), intent(in) :: model
+    type(run_record), intent(in) :: record
+    character(:), allocatable :: why
+    integer :: i
+    do i = 1, size(record%envelopes)
+      associate (item => record%envelopes(i))
+        if (item%error <= not_known .and. item%error > left_elasticity) cycle
+        call json%open_object(trim(item%name))
+        call json%put_real(item%largest%at(1)%value, 'value')
+        why = why_singular(model, item%largest%at(1)%x)
+        if (item%error <= left_elasticity) then
+          call json%put_text('the solid has left elasticity', 'not_known')
+        else if (why /= '') then
+          call json%put_text(why, 'singular')
+        else
+          call json%put_real(item%error, 'error')
+          call json%put_real(item%error, 'mesh')
+        end if
+        call json%close_object()
+      end associate
+    end do
+  end subroutine put_extremes
 end module error_json

@@ -3,9 +3,10 @@
 module run_closing
   use damage_readings, only: damage_extreme, levels
   use diagnostics, only: severity_ignored
-  use dual_solutions, only: of_displacement, of_opening
+  use dual_solutions, only: of_opening
+  use error_words, only: error_of, error_of_envelope, error_of_motion, line_of_law, &
+                         line_of_mesh
   use extremes, only: extreme
-  use goal_errors, only: goal_error
   use kinds, only: rk
   use problem_definition, only: problem
   use run_ledger, only: ledger, ledger_part
@@ -17,7 +18,6 @@ module run_closing
   public :: closing_lines
 
   integer, parameter :: most_joints = 6, most_effects = 6, most_modes = 6 !< that are listed
-  real(rk), parameter :: smallest_part = 1.0e-3_rk !< of an error that is named, over all of it
   character, parameter :: nl = new_line('a')
 
 contains
@@ -37,52 +37,9 @@ contains
     text = text//lines_of_modes(model, summary)//lines_of_envelopes(model, summary, record)// &
            lines_of_joints(model, summary, record)//lines_of_damage(model, summary, record)// &
            lines_of_accuracy(model, summary)//lines_of_increments(model, summary)// &
-           line_of_mesh(record)// &
+           line_of_mesh(record)//line_of_law(record)// &
            line_of_remarks(summary, record)//line_of_costs(costs)
   end function closing_lines
-
-  !> The error of the largest displacement. With joints that in time is not known within a factor
-  !> of 2 (theory.md, 14.3).
-  function error_of_motion(record) result(text)
-    type(run_record), intent(in) :: record
-    character(:), allocatable :: text
-    type(goal_error) :: found
-    found = record%goals(of_displacement)
-    if (size(record%joints) > 0) found%at_time = 0.0_rk
-    text = error_of(found, record%displacement%at(1)%value)
-  end function error_of_motion
-
-  !> ', +-0.0012 (time 0.0004, mesh 0.0008)': what is known of the error of a result.
-  function error_of(found, value) result(text)
-    type(goal_error), intent(in) :: found
-    real(rk), intent(in) :: value !< [m]
-    character(:), allocatable :: text, parts
-    text = ''
-    parts = ''
-    if (found%has_time(value)) call add('time', found%time)
-    if (found%has_mesh(value)) call add('mesh', found%mesh)
-    if (found%has_joints(value)) call add('joints', found%joints)
-    if (found%has_iteration(value)) call add('iteration', found%iteration)
-    if (parts /= '') then
-      text = ', +-'//as_short_text(found%total(value))//' ('//parts(3:)
-      if (.not. found%has_mesh(value)) text = text//'; mesh not estimated'
-      text = text//')'
-    end if
-    if (found%is_soft(value)) then
-      text = text//', of which springs of joints give '//as_short_text(found%joints)
-    end if
-    if (found%history < 0.0_rk) return
-    text = text//', histories +-'//as_short_text(100.0_rk*found%history)//' % (time)'
-  contains
-    !> Adds a part that matters.
-    subroutine add(name, part)
-      character(*), intent(in) :: name
-      real(rk), intent(in) :: part !< [m]
-      if (part >= smallest_part*found%total(value)) then
-        parts = parts//', '//name//' '//as_short_text(part)
-      end if
-    end subroutine add
-  end function error_of
 
   !> Frequencies of each step that finds them.
   function lines_of_modes(model, summary) result(text)
@@ -116,7 +73,8 @@ contains
         if (item%name == 'OPENING' .or. item%name == 'U') cycle
         if (.not. item%largest%at(1)%is_found) cycle
         text = text//nl//trim(merge('smallest', 'largest ', item%wants_smallest))//' '// &
-               trim(item%name)//' '//described(item%largest%at(1), model, summary)
+               trim(item%name)//' '//described(item%largest%at(1), model, summary)// &
+               error_of_envelope(model, item)
       end associate
     end do
   end function lines_of_envelopes
@@ -227,17 +185,6 @@ contains
       end associate
     end do
   end function lines_of_increments
-
-  !> What the mesh leaves in the stresses (theory.md, 14.1).
-  function line_of_mesh(record) result(text)
-    type(run_record), intent(in) :: record
-    character(:), allocatable :: text
-    text = ''
-    if (record%space%stress <= 0.0_rk) return
-    text = nl//'error of the mesh in the stresses: '// &
-           as_short_text(100.0_rk*record%space%relative())//' % of all stresses together '// &
-           '(energy norm), time '//as_short_text(record%space%time)
-  end function line_of_mesh
 
   !> Numbers of warnings and ignored cards, if any.
   function line_of_remarks(summary, record) result(text)

@@ -134,6 +134,10 @@ def _estimate(results: SiResults, name: str) -> str:
 def _estimate_in_words(found: Any) -> str:
     if not isinstance(found, dict):
         return _in_words(found)
+    if "singular" in found:
+        return f"a singular place ({found['singular']}): it grows with every refinement"
+    if "not_known" in found:
+        return f"not known: {found['not_known']}"
     parts = [f"{key} {_in_words(value)}" for key, value in leaves(found, "") if key != "value"]
     return ", ".join(parts)
 

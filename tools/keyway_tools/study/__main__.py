@@ -33,7 +33,7 @@ from .facts import facts_of, write_table
 from .ladder import JOB, Ladder, Outcome
 from .page import OWN_SECONDS, WALL_SECONDS, accuracy_page, effects_page
 from .pictures import draw
-from .rungs import base_deck, finer_rung, list_rungs
+from .rungs import base_deck, finer_rung, list_rungs, shortened
 from .words import effect_sentences, sentences
 
 # Folders of the deck as it is, in a ladder and among effects
@@ -60,6 +60,8 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         help="time for all runs, as 90s, 20m, 2h (20m)")  # fmt: skip
     add("--effects", action="store_true", help="switch the effects off in turn")
     add("--verify", action="store_true", help="compare with a run finer than the ladder's finest")
+    add("--duration", type=seconds, metavar="TIME",
+        help="study the first so many seconds of each dynamic step alone")  # fmt: skip
     add("-o", type=Path, metavar="DIR", help="folder of the study (DECK's name with _accuracy)")
     add("--threads", type=int, default=os.cpu_count() or 1, help="of each run (all processors)")
     add("--program", type=Path, help="the program (KEYWAY, build/release of the checkout, PATH)")
@@ -120,6 +122,8 @@ def main(arguments: list[str] | None = None) -> int:
 def study(given: argparse.Namespace, runner: DeckRunner) -> int:
     """Runs the variants and writes what they show."""
     deck = base_deck(read_deck(given.deck))
+    if given.duration:
+        deck = shortened(deck, given.duration)
     rungs = list_effects(deck) if given.effects else [*list_rungs(deck), *coupling_rungs(deck)]
     if given.verify and not given.effects:
         rungs.append(finer_rung(deck))
@@ -157,6 +161,7 @@ def header_of(given: argparse.Namespace, runner: DeckRunner, base: Outcome) -> l
     digest = hashlib.sha256(given.deck.read_bytes()).hexdigest()
     machine = Results(given.o / "runs" / ALL[given.effects] / "results", JOB).find("machine")
     assert base.measured
+    part = f"the first {given.duration or 0.0:g} s of each dynamic step"
     return [
         ["Deck", str(given.deck)],
         ["Digest", f"sha256 {digest}"],
@@ -166,6 +171,7 @@ def header_of(given: argparse.Namespace, runner: DeckRunner, base: Outcome) -> l
                     f"{machine['blas_kernels']}, {machine['memory_mb']} MB"],
         ["Threads", str(given.threads)],
         ["Model", f"{base.measured.unknowns:,} unknowns, {base.measured.increments:,} increments"],
+        *([["Duration", part]] if given.duration else []),
     ]  # fmt: skip
 
 

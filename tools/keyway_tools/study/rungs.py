@@ -84,6 +84,17 @@ def scaled(factor: float) -> Callable[[Deck], Deck]:
     return change
 
 
+def shortened(deck: Deck, duration: float) -> Deck:
+    """Dynamic steps that end after this time [s], where they are longer."""
+    new = deck.copy()
+    for card in new.of("DYNAMIC"):
+        items = card.lines[0].split(",")
+        if len(items) > 1 and number_of(items[1]) > duration:
+            items[1] = repr(duration)
+        card.lines[0] = ", ".join(item.strip() for item in items)
+    return new
+
+
 def finer_rung(deck: Deck) -> Rung:
     """Finer than all rungs of the ladder: to check what the ladder promises."""
     factor = 64.0**SLOWEST

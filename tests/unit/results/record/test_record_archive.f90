@@ -59,6 +59,7 @@ contains
     record%space%error = 5.5_rk
     record%space%time = 6.6_rk
     record%space%sampled = 7.7_rk
+    record%space%elastic = 0.77_rk
     record%goals(2)%at_time = 7.9_rk
     record%goals(2)%time = 8.8_rk
     record%goals(2)%history = 9.9_rk
@@ -66,6 +67,7 @@ contains
     record%goals(2)%at_dual = 11.1_rk
     record%goals(2)%joints = 12.1_rk
     record%goals(2)%iteration = 13.1_rk
+    record%goals(2)%at_stray = 14.1_rk
     do i = 1, size(record%joints)
       associate (joint => record%joints(i))
         call fill_extremes(10.0_rk*i, joint%opening)
@@ -95,6 +97,7 @@ contains
       record%envelopes(i)%value = record%envelopes(i)%value + 0.1_rk*i
       record%envelopes(i)%time = record%envelopes(i)%time + 0.2_rk*i
       call fill_extremes(70.0_rk + i, record%envelopes(i)%largest)
+      record%envelopes(i)%error = 79.0_rk + i
     end do
   end subroutine make_record
 
@@ -138,6 +141,7 @@ contains
     call compare(log, 'space error', a%space%error, b%space%error)
     call compare(log, 'space time', a%space%time, b%space%time)
     call compare(log, 'space sampled', a%space%sampled, b%space%sampled)
+    call compare(log, 'space elastic', a%space%elastic, b%space%elastic)
     call compare(log, 'goal at_time', a%goals(2)%at_time, b%goals(2)%at_time)
     call compare(log, 'goal time', a%goals(2)%time, b%goals(2)%time)
     call compare(log, 'goal history', a%goals(2)%history, b%goals(2)%history)
@@ -145,6 +149,7 @@ contains
     call compare(log, 'goal at_dual', a%goals(2)%at_dual, b%goals(2)%at_dual)
     call compare(log, 'goal joints', a%goals(2)%joints, b%goals(2)%joints)
     call compare(log, 'goal iteration', a%goals(2)%iteration, b%goals(2)%iteration)
+    call compare(log, 'goal at_stray', a%goals(2)%at_stray, b%goals(2)%at_stray)
     do i = 1, size(a%joints)
       call compare_extremes(log, 'opening', a%joints(i)%opening, b%joints(i)%opening)
       call compare_extremes(log, 'slip', a%joints(i)%slip, b%joints(i)%slip)
@@ -186,6 +191,7 @@ contains
         call compare(log, 'time', x%time, y%time)
         call compare(log, 'mean', x%mean, y%mean)
         call compare_extremes(log, 'largest', x%largest, y%largest)
+        call compare(log, 'error', x%error, y%error)
       end associate
     end do
     call compare(log, 'number of warnings', size(a%warnings), size(b%warnings))

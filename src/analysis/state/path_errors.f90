@@ -1,0 +1,54 @@
+!> What the laws of inelastic solids leave open within increments: sums over sampled points whose
+!> path was repeated in two halves (theory.md, 14.7). It saves and loads itself; a new component
+!> gets a line in both.
+module path_errors
+  use archive_type, only: archive
+  use kinds, only: rk
+  implicit none
+  private
+  public :: path_error, save_path, load_path
+
+  !> Error over the change by two halves. Laws integrate with first order: it is 2 at one point;
+  !> errors of points cancel in part (verification.md).
+  real(rk), parameter :: left_by_halves = 1.25_rk
+
+  type :: path_error
+    integer :: num_changes = 0 !< points that have dissipated in an increment, since the start
+    integer :: num_points = 0 !< of these that were sampled
+    real(rk) :: dissipated = 0.0_rk !< by the sampled points in their increments [J]
+    real(rk) :: difference = 0.0_rk !< sum of the changes of these energies by two halves [J]
+    real(rk) :: stress = 0.0_rk !< largest difference of a stress [Pa]
+  contains
+    procedure :: relative
+  end type path_error
+
+contains
+
+  !> The error of the dissipated energy over that energy.
+  pure real(rk) function relative(self)
+    class(path_error), intent(in) :: self
+    relative = left_by_halves*self%difference/max(tiny(1.0_rk), self%dissipated)
+  end function relative
+
+  !> Writes the sums into the present group.
+  subroutine save_path(path, file)
+    type(path_error), intent(in) :: path
+    class(archive), intent(inout) :: file
+    call file%put('num_changes', path%num_changes)
+    call file%put('num_points', path%num_points)
+    call file%put('dissipated', path%dissipated)
+    call file%put('difference', path%difference)
+    call file%put('stress', path%stress)
+  end subroutine save_path
+
+  !> Reads the sums from the present group.
+  subroutine load_path(path, file)
+    type(path_error), intent(inout) :: path
+    class(archive), intent(inout) :: file
+    call file%get('num_changes', path%num_changes)
+    call file%get('num_points', path%num_points)
+    call file%get('dissipated', path%dissipated)
+    call file%get('difference', path%difference)
+    call file%get('stress', path%stress)
+  end subroutine load_path
+end module path_errors
