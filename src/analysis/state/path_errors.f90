@@ -8,9 +8,9 @@ module path_errors
   private
   public :: path_error, save_path, load_path
 
-  !> Error over the change by two halves. Laws integrate with first order: it is 2 at one point;
-  !> errors of points cancel in part (verification.md).
-  real(rk), parameter :: left_by_halves = 1.25_rk
+  !> Error over the change by two halves: laws integrate with first order, so that two halves leave
+  !> half of the error. Errors of points that cancel are not seen (verification.md).
+  real(rk), parameter :: left_by_halves = 2.0_rk
 
   type :: path_error
     integer :: num_changes = 0 !< points that have dissipated in an increment, since the start
