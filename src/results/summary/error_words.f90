@@ -77,7 +77,7 @@ contains
     if (item%error < 0.0_rk) return
     why = why_singular(model, item%largest%at(1)%x)
     if (why /= '') then
-      text = ', a singular place ('//why//'): it grows with every refinement'
+      text = ', a singular place ('//why//'): this stress grows with every refinement'
       return
     end if
     text = ', +-'//as_short_text(item%error)//' (mesh'

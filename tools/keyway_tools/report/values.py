@@ -135,7 +135,7 @@ def _estimate_in_words(found: Any) -> str:
     if not isinstance(found, dict):
         return _in_words(found)
     if "singular" in found:
-        return f"a singular place ({found['singular']}): it grows with every refinement"
+        return f"a singular place ({found['singular']}): this stress grows with every refinement"
     if "not_known" in found:
         return f"not known: {found['not_known']}"
     parts = [f"{key} {_in_words(value)}" for key, value in leaves(found, "") if key != "value"]
