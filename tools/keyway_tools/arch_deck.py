@@ -179,8 +179,14 @@ def _static_steps(mesh: BrickMesh, options: DeckOptions) -> list[str]:
 
 def _static_step(name: str, loads: list[str], mesh: BrickMesh, options: DeckOptions) -> list[str]:
     first = (0.1 if options.concrete_cards else 1.0) * options.static_time
-    parts = [f"*STEP, NAME={name}", "*STATIC", f"{first:g}, {options.static_time:g}"]
+    parts = [f"*STEP, NAME={name}", "*STATIC", f"{_real(first)}, {_real(options.static_time)}"]
     return parts + loads + _requests(mesh, options) + ["*END STEP"]
+
+
+def _real(value: float) -> str:
+    """A number with a point, as 1. or 0.1."""
+    text = f"{value:g}"
+    return text if "." in text or "e" in text else f"{text}."
 
 
 def _reservoir(options: DeckOptions) -> list[str]:
