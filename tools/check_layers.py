@@ -24,8 +24,11 @@ ROOMS = (
     "base/files",
     "base/messages",
     "base/report",
+    "base/ranks",
+    "equations/distributed",
     "equations/elimination",
     "equations",
+    "equations/spectrum",
     "equations/low_rank",
     "equations/supernodes",
     "deck",
@@ -47,6 +50,7 @@ ROOMS = (
     "interfaces/couplings",
     "loads",
     "assembly",
+    "assembly/parts",
     "joints/compliance",
     "joints/iteration",
     "analysis/state",
@@ -80,6 +84,7 @@ ROOMS = (
     "keywords/loads",
     "keywords/checks",
     "keywords",
+    "app/forecast",
     "app",
 )
 # The folders right under src; each has one list of sources.

@@ -10,9 +10,11 @@ module cli
   use message_help, only: explain_message, message_lines
   use nearest_words, only: nearest_choice
   use parse_text, only: parse_integer, upper_case
+  use petsc_equations, only: has_petsc
   use process_limits, only: print_text
   use umat_build, only: umat_file
   use umat_loader, only: umat_request
+  use unknown_layout, only: choose_solver, direct_solver, iterative_solver
   use write_text, only: as_text
   implicit none
   private
@@ -31,6 +33,7 @@ module cli
     type(reading_options) :: reading !< what the deck means
     type(umat_request) :: umat !< --umat and the options that go with it
     integer :: num_threads = 0 !< 0: as many as the system has
+    integer :: solver = choose_solver !< --solver: of the equations with several processes
     integer :: most_unsaved = huge(1) !< iterations on joints; --save-joint-problems
     logical :: is_check = .false. !< read and verify only
     logical :: is_material = .false. !< run the tests of materials, not the analysis
@@ -45,7 +48,7 @@ module cli
                              '--explain | --version | --help | -h | --continue | --umat | '// &
                              '--umat-flags | --umat-library | --umat-threadsafe | '// &
                              '--umat-check | --material | --save-joint-problems | '// &
-                             '--c3d8=full | --c3d8=bbar | --small-strain'
+                             '--solver | --c3d8=full | --c3d8=bbar | --small-strain'
 
 contains
 
@@ -66,6 +69,7 @@ contains
            '  --umat-check       compare DDSDDE of the UMAT with differences of STRESS'//nl// &
            '  --save-joint-problems N  save increments with more than N iterations on '// &
            'joints, one HDF5 file each'//nl// &
+           '  --solver NAME      of several processes (mpiexec): AUTO, DIRECT or ITERATIVE'//nl// &
            '  --c3d8=full|bbar   meaning of C3D8: 2 x 2 x 2 points (CalculiX) or B-bar '// &
            '(Abaqus)'//nl// &
            '  --small-strain     analyse steps with NLGEOM=YES with small strains'//nl// &
@@ -121,18 +125,9 @@ contains
     word = argument(i)
     i = i + 1
     select case (word)
-    case ('-o', '-j', '--umat', '--umat-flags', '--umat-library', '--save-joint-problems')
-      if (i > command_argument_count()) then
-        call raise(error, 'keyway: '//word//' needs a value'//nl//usage(), deck_is_wrong)
-        return
-      end if
-      if (word == '-o') given%folder = argument(i)
-      if (word == '-j') call read_threads(argument(i), given, error)
-      if (word == '--save-joint-problems') call read_iterations(argument(i), given, error)
-      if (word == '--umat-flags') given%umat%flags = given%umat%flags//' '//argument(i)
-      if (word == '--umat-library') given%umat%target = argument(i)
-      if (word == '--umat') call read_umat_files(i, given)
-      i = i + 1
+    case ('-o', '-j', '--umat', '--umat-flags', '--umat-library', '--save-joint-problems', &
+          '--solver')
+      call read_value(word, i, given, error)
     case ('--check')
       given%is_check = .true.
     case ('--material')
@@ -183,6 +178,37 @@ contains
     i = i + 1
   end subroutine read_name
 
+  !> Reads argument `i`, the value of an option, and steps over it.
+  subroutine read_value(word, i, given, error)
+    character(*), intent(in) :: word
+    integer, intent(inout) :: i
+    type(command_line), intent(inout) :: given
+    type(error_type), allocatable, intent(out) :: error
+    if (i > command_argument_count()) then
+      call raise(error, 'keyway: '//word//' needs a value'//nl//usage(), deck_is_wrong)
+      return
+    end if
+    select case (word)
+    case ('-o')
+      given%folder = argument(i)
+    case ('-j')
+      call read_threads(argument(i), given, error)
+    case ('--save-joint-problems')
+      call read_iterations(argument(i), given, error)
+    case ('--solver')
+      call read_solver(argument(i), given, error)
+    case ('--umat-flags')
+      given%umat%flags = given%umat%flags//' '//argument(i)
+    case ('--umat-library')
+      given%umat%target = argument(i)
+    case ('--umat')
+      call read_umat_files(i, given)
+    case default
+      error stop 'an option with a value is not read'
+    end select
+    i = i + 1
+  end subroutine read_value
+
   !> The options for UMATs need --umat.
   subroutine check_umat_options(given, error)
     type(command_line), intent(in) :: given
@@ -230,6 +256,29 @@ contains
     call raise(error, "keyway: found '-j "//word//"'; expected a number of threads from 1 to "// &
                as_text(most_threads), deck_is_wrong)
   end subroutine read_threads
+
+  !> Reads the value of --solver.
+  subroutine read_solver(word, given, error)
+    character(*), intent(in) :: word
+    type(command_line), intent(inout) :: given
+    type(error_type), allocatable, intent(out) :: error
+    select case (upper_case(word))
+    case ('AUTO')
+      given%solver = choose_solver
+    case ('DIRECT')
+      given%solver = direct_solver
+    case ('ITERATIVE')
+      given%solver = iterative_solver
+    case default
+      call raise(error, "keyway: found '--solver "//word//"'; expected AUTO, DIRECT or ITERATIVE", &
+                 deck_is_wrong)
+      return
+    end select
+    if (given%solver == choose_solver) return
+    if (has_petsc() /= 0) return
+    call raise(error, 'keyway: --solver '//upper_case(word)//' needs a program that is built '// &
+               'with PETSc (cmake --preset petsc; docs/large_models.md)', deck_is_wrong)
+  end subroutine read_solver
 
   !> Reads the value of --save-joint-problems.
   subroutine read_iterations(word, given, error)

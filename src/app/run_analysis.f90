@@ -9,6 +9,7 @@ module run_analysis
   use run_lock, only: job_lock
   use stop_signals, only: catch_signals
   use ledger_text, only: text_of_ledger
+  use ranks, only: share_error
   use run_ledger, only: ledger
   use timer, only: peak_memory, wall_clock
   use write_text, only: as_text
@@ -47,6 +48,7 @@ contains
     if (.not. allocated(error)) call lock%take(results%stem//'.lock', error)
     if (allocated(error)) then
       call explain_failed_write(error, results%stem, given%is_continued)
+      call share_error(error)
       call close_user_routines(model)
       return
     end if
@@ -67,6 +69,7 @@ contains
     type(state), allocatable :: now
     type(error_type), allocatable :: failure
     call open_run(model, given, echo, earlier, costs, results, now, error)
+    call share_error(error)
     if (allocated(error)) then
       call close_user_routines(model)
       call explain_failed_write(error, results%stem, given%is_continued)

@@ -2,14 +2,15 @@ set(sources
   check_deck.f90
   cli.f90
   disk_advice.f90
+  divided_run.f90
   earlier_results.f90
-  machine_speed.f90
+  forecast/machine_speed.f90
+  forecast/run_file_sizes.f90
+  forecast/run_forecast.f90
   main.f90
   model_summary.f90
   motion_peaks.f90
   run_analysis.f90
-  run_file_sizes.f90
-  run_forecast.f90
   run_material.f90
   shared_costs.f90
   user_routines.f90

@@ -4,7 +4,9 @@
 !> and the order of every sum does not depend on the number of threads.
 module element_blocks
   use kinds, only: long
+  use dam_mesh, only: is_assembled_here
   use problem_definition, only: problem
+  use ranks, only: this_rank
   use element_catalogue, only: element_kinds, find_element_kind
   use dof_numbering, only: numbering
   use row_tables, only: group_by_key, row_table
@@ -51,19 +53,21 @@ contains
     call cut_blocks(colour, key, blocks)
   end subroutine list_blocks
 
-  !> The lowest colour that is free at all unknowns of an element; 0 for other elements.
+  !> The lowest colour that is free at all unknowns of an element; 0 for elements without material
+  !> and for those of other ranks.
   subroutine colour_elements(model, numbers, colour)
     type(problem), intent(in) :: model
     type(numbering), intent(in) :: numbers
     integer, allocatable, intent(out) :: colour(:) !< (elements)
     integer(long), allocatable :: used(:)
     integer(long) :: taken
-    integer :: e
+    integer :: e, rank
+    rank = this_rank()
     allocate (colour(model%mesh%num_elements), used(numbers%num_total))
     colour = 0
     used = 0_long
     do e = 1, model%mesh%num_elements
-      if (model%mesh%material_of_element(e) == 0) cycle
+      if (.not. is_assembled_here(model%mesh, rank, e)) cycle
       taken = colours_around(numbers, used, model%mesh%nodes(:, e))
       colour(e) = trailz(not(taken)) + 1
       if (colour(e) > most_colours) then

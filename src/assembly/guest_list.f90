@@ -6,13 +6,14 @@ module guest_list
   use guest_type, only: guest, guest_reference, guest_slot
   use matrix_pattern, only: pattern
   use problem_definition, only: problem
+  use ranks, only: num_ranks, this_rank
   use row_tables, only: row_table
   use run_ledger, only: ledger
   use step_plan, only: step
   implicit none
   private
   public :: guests_of_model, guests_of_step, list_guest_cells, add_guest_matrices, any_has_matrix
-  public :: supports_of_step, ties_of, bonds_of_model
+  public :: supports_of_step, ties_of, bonds_of_model, is_guest_here
 
 contains
 
@@ -49,13 +50,19 @@ contains
     end do
   end subroutine guests_of_step
 
-  !> Cells of all guests: nodes that a guest couples.
+  !> Whether the matrices of a guest are assembled by this rank. A guest is whole on one rank.
+  logical function is_guest_here(guest)
+    integer, intent(in) :: guest !< position in the list of the step; joints come first
+    is_guest_here = mod(guest - 1, num_ranks()) == this_rank()
+  end function is_guest_here
+
+  !> Cells of the guests of this rank: nodes that a guest couples.
   subroutine list_guest_cells(guests, cells)
     type(guest_reference), intent(in) :: guests(:)
     type(row_table), intent(inout) :: cells
     integer :: i
     do i = 1, size(guests)
-      call guests(i)%item%add_cells(cells)
+      if (is_guest_here(i)) call guests(i)%item%add_cells(cells)
     end do
   end subroutine list_guest_cells
 
@@ -106,7 +113,7 @@ contains
     integer :: i
     do i = 1, size(guests)
       associate (item => guests(i)%item)
-        if (.not. item%has_matrix(kind)) cycle
+        if (.not. (item%has_matrix(kind) .and. is_guest_here(i))) cycle
         call costs%start('assemble', item%name, item%kind)
         call item%add_matrix(kind, model%mesh, numbers, matrix, values)
         call costs%stop()

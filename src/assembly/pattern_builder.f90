@@ -4,11 +4,12 @@
 !> or a segment of springs between faces. Unknowns are handled in groups (those of one node, one
 !> jump), which keeps this fast.
 module pattern_builder
-  use dam_mesh, only: fe_mesh
+  use dam_mesh, only: fe_mesh, is_assembled_here
   use guest_list, only: list_guest_cells
   use guest_type, only: guest_reference
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
+  use ranks, only: this_rank
   use row_tables, only: row_table, transpose_rows
   use sorted_lists, only: sorted_unique
   implicit none
@@ -19,14 +20,15 @@ module pattern_builder
 
 contains
 
-  !> Cells of a model: its solid elements and the cells of its guests.
+  !> Cells of a model: its solid elements and the cells of its guests, those of this rank.
   subroutine list_cells(mesh, guests, cells)
     type(fe_mesh), intent(in) :: mesh
     type(guest_reference), intent(in) :: guests(:)
     type(row_table), intent(out) :: cells
-    integer :: e
+    integer :: e, rank
+    rank = this_rank()
     do e = 1, mesh%num_elements
-      if (mesh%material_of_element(e) == 0) cycle
+      if (.not. is_assembled_here(mesh, rank, e)) cycle
       call cells%append(pack(mesh%nodes(:, e), mesh%nodes(:, e) > 0))
     end do
     call list_guest_cells(guests, cells)

@@ -16,6 +16,7 @@ module problem_definition
   use applied_load, only: load_slot
   use inelastic_blocks, only: inelastic_block
   use umat_loader, only: user_library
+  use unknown_layout, only: choose_solver
   implicit none
   private
   public :: problem
@@ -44,6 +45,7 @@ module problem_definition
     type(stages) :: stages !< elements that come and go, joints that are grouted
     type(heating) :: heat !< temperatures
     type(user_library), pointer :: umat => null() !< loaded library of the user, null for none
+    integer :: equation_solver = choose_solver !< of equations that are divided among ranks
     integer :: upstream_surface = 0 !< surface of the first reservoir, 0 for none
   end type problem
 end module problem_definition

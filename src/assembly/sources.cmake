@@ -7,6 +7,9 @@ set(sources
   element_blocks.f90
   guest_list.f90
   inelastic_blocks.f90
+  parts/element_parts.f90
+  parts/matrix_rows.f90
+  parts/undivided_effects.f90
   pattern_builder.f90
   problem_definition.f90
   thermal_strains.f90

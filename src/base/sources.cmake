@@ -35,6 +35,7 @@ set(sources
   messages/pages_of_models.f90
   messages/pages_of_runs.f90
   messages/pages_of_values.f90
+  ranks/ranks.f90
   report/diagnostic_text.f90
   report/diagnostics.f90
   report/fault_kinds.f90
@@ -58,3 +59,9 @@ set(sources
   text/wrap_text.f90
   text/write_text.f90
 )
+# What stands behind ranks.f90
+if(KEYWAY_PETSC)
+  list(APPEND sources ranks/mpi_ranks.c)
+else()
+  list(APPEND sources ranks/one_rank.c)
+endif()

@@ -1,13 +1,17 @@
 !> Operations that need all entries of a global vector: products, norms, sums, A x.
 !>
 !> A global vector has one entry for each unknown, or three for each point of the joints. All
-!> higher rooms take their scalar products, norms, extremes and matrix products from here, so a
-!> distributed back end replaces this module only: each process adds its own entries, and an
-!> exchange between processes completes the result. Sums and multiples of vectors need no exchange
-!> and are array expressions of the caller. The functions are not pure, because an exchange is not.
+!> higher rooms take their scalar products, norms, extremes and matrix products from here.
+!>
+!> A vector is whole on every rank, a shared matrix is not: products with the matrix are summed over
+!> the ranks (large_models.md, 2). If vectors are divided too, this module is where an exchange
+!> completes products and norms: entries on the border of two parts count once. Sums and multiples
+!> of vectors need no exchange and are array expressions of the caller. The functions are not pure,
+!> because an exchange is not.
 module global_vectors
   use kinds, only: rk
   use matrix_pattern, only: pattern, multiply_local => multiply, diagonal_local => diagonal
+  use ranks, only: add_over_ranks
   implicit none
   private
   public :: dot, norm, distance, length, total, work, largest_entry, multiply, diagonal
@@ -24,13 +28,13 @@ module global_vectors
 
 contains
 
-  !> Scalar product x . y. A distributed back end counts entries on the border of two parts once.
+  !> Scalar product x . y.
   real(rk) function dot(x, y)
     real(rk), intent(in) :: x(:), y(:) !< of one size
     dot = dot_product(x, y)
   end function dot
 
-  !> sqrt(x . x). A distributed back end reduces scales and sums of all parts.
+  !> sqrt(x . x).
   real(rk) function norm_of_vector(x) result(norm)
     real(rk), intent(in) :: x(:)
     norm = norm2(x)
@@ -72,34 +76,34 @@ contains
     length = sqrt(dot_product(x, x))
   end function length
 
-  !> Sum of all entries. A distributed back end counts entries on the border of two parts once.
+  !> Sum of all entries.
   real(rk) function total(x)
     real(rk), intent(in) :: x(:)
     total = sum(x)
   end function total
 
-  !> The largest entry; -huge for an empty vector. A distributed back end takes the largest of all
-  !> parts.
+  !> The largest entry; -huge for an empty vector.
   real(rk) function largest_entry(x)
     real(rk), intent(in) :: x(:)
     largest_entry = maxval(x)
   end function largest_entry
 
-  !> y = A x over all unknowns, prescribed ones included. A distributed back end fetches the entries
-  !> of x that its columns need, and adds the entries of y on borders.
+  !> y = A x over all unknowns, prescribed ones included.
   subroutine multiply(matrix, values, x, y)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: values(:) !< of A
     real(rk), intent(in) :: x(:) !< (num_total)
-    real(rk), intent(out) :: y(:) !< (num_total)
+    real(rk), contiguous, intent(out) :: y(:) !< (num_total)
     call multiply_local(matrix, values, x, y)
+    if (matrix%is_shared) call add_over_ranks(y)
   end subroutine multiply
 
-  !> The diagonal of A. A distributed back end adds its entries on borders.
+  !> The diagonal of A.
   subroutine diagonal(matrix, values, d)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: values(:) !< of A
-    real(rk), intent(out) :: d(:) !< (num_total)
+    real(rk), contiguous, intent(out) :: d(:) !< (num_total)
     call diagonal_local(matrix, values, d)
+    if (matrix%is_shared) call add_over_ranks(d)
   end subroutine diagonal
 end module global_vectors

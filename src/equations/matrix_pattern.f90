@@ -4,6 +4,7 @@
 !> keep the lower triangle; an unsymmetric tangent has a separate full pattern.
 module matrix_pattern
   use kinds, only: rk
+  use unknown_layout, only: row_layout
   implicit none
   private
   public :: pattern, position_of, add_block, add_triples, multiply, diagonal, full_pattern
@@ -24,6 +25,8 @@ module matrix_pattern
     integer, allocatable :: free_entries(:) !< entries of each column in rows <= num_free
     !> Number of columns from each column on with the same rows below them, in a symmetric pattern.
     integer, allocatable :: alike(:)
+    logical :: is_shared = .false. !< values are the part of this rank in a sum over all ranks
+    type(row_layout), allocatable :: layout !< of the distributed matrix, where one is shared
   end type pattern
 
 contains
@@ -212,6 +215,7 @@ contains
     thin%num_free = matrix%num_free
     thin%num_total = matrix%num_total
     thin%num_last = matrix%num_last
+    thin%is_shared = matrix%is_shared
     thin%row = pack(matrix%row, is_kept)
     thin_values = pack(values, is_kept)
     allocate (thin%column_start(matrix%num_total + 1), source=1)

@@ -19,3 +19,21 @@ int keyway_nested_dissection(int n, int *start, int *neighbour, int *weight, int
   free(place);
   return status == METIS_OK ? 0 : 1;
 }
+
+/* Divides elements among parts of about the same weight with few nodes on borders; part[element]
+ * from 0. Elements are neighbours where they have a face in common. Returns 0 for success. */
+int keyway_divide_mesh(int num_elements, int num_nodes, int *first, int *node, int *weight,
+                       int num_parts, int *part)
+{
+  enum { nodes_of_face = 4 };
+  idx_t options[METIS_NOPTIONS], common = nodes_of_face, cut;
+  int *part_of_node = malloc((size_t)num_nodes * sizeof *part_of_node);
+  int status;
+  if (!part_of_node) return 1;
+  METIS_SetDefaultOptions(options);
+  options[METIS_OPTION_NUMBERING] = 0;
+  status = METIS_PartMeshDual(&num_elements, &num_nodes, first, node, weight, NULL, &common,
+                              &num_parts, NULL, options, &cut, part, part_of_node);
+  free(part_of_node);
+  return status == METIS_OK ? 0 : 1;
+}

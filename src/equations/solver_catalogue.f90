@@ -1,8 +1,9 @@
 !> The one list of equation solvers.
 module solver_catalogue
-  use errors, only: error_type, raise, system_failed
+  use errors, only: deck_is_wrong, error_type, raise, system_failed
   use linear_solver, only: equation_solver
   use solver_cholmod, only: cholmod_solver
+  use solver_petsc, only: petsc_solver
   use solver_umfpack, only: umfpack_solver
   implicit none
   private
@@ -13,16 +14,23 @@ module solver_catalogue
 
 contains
 
-  !> The solver of that name.
-  subroutine make_solver(name, solver, error)
+  !> The solver of that name; for a shared matrix the one that divides the factor among the ranks.
+  subroutine make_solver(name, solver, error, is_shared)
     character(*), intent(in) :: name !< upper case
     class(equation_solver), allocatable, intent(out) :: solver
     type(error_type), allocatable, intent(out) :: error
+    logical, intent(in), optional :: is_shared !< the matrix is a sum over all ranks
+    logical :: is_whole
+    is_whole = .true.
+    if (present(is_shared)) is_whole = .not. is_shared
     select case (name)
     case (symmetric_solver)
-      allocate (cholmod_solver :: solver)
+      if (is_whole) allocate (cholmod_solver :: solver)
+      if (.not. is_whole) allocate (petsc_solver :: solver)
     case (unsymmetric_solver)
-      allocate (umfpack_solver :: solver)
+      if (is_whole) allocate (umfpack_solver :: solver)
+      if (.not. is_whole) call raise(error, 'equations that are not symmetric are '// &
+                                     'solved by one process; start without mpiexec', deck_is_wrong)
     case default
       call raise(error, "there is no equation solver '"//name//"'; expected "//symmetric_solver// &
                  ' or '//unsymmetric_solver, system_failed)

@@ -1,22 +1,25 @@
 set(sources
   anderson_mixing.f90
-  arpack.f90
   blas_bridge.c
   blas_threads.f90
   cholmod_bridge.c
+  distributed/petsc_equations.f90
+  distributed/unknown_layout.f90
   elimination/factor_top.f90
   elimination/group_dissection.f90
   elimination/wider_pattern.f90
   global_vectors.f90
   linear_solver.f90
   low_rank/solver_low_rank.f90
-  matrix_condition.f90
   matrix_pattern.f90
   metis_bridge.c
   nested_dissection.f90
   solver_catalogue.f90
   solver_cholmod.f90
+  solver_petsc.f90
   solver_umfpack.f90
+  spectrum/arpack.f90
+  spectrum/matrix_condition.f90
   supernodes/active_solve.f90
   supernodes/factor_top.c
   supernodes/refined_solve.f90
@@ -25,3 +28,9 @@ set(sources
   supernodes/single_factor.c
   supernodes/supernodal_solve.c
 )
+# What stands behind petsc_equations.f90
+if(KEYWAY_PETSC)
+  list(APPEND sources distributed/petsc_bridge.c)
+else()
+  list(APPEND sources distributed/without_petsc.c)
+endif()

@@ -14,6 +14,7 @@ module load_reservoir
   use matrix_pattern, only: pattern
   use scatter_matrix, only: scatter_blocks
   use mesh_faces, only: face_nodes
+  use row_tables, only: row_table
   use wetted_facet, only: water_body, wet_facet, integrate_wet_part
   implicit none
   private
@@ -23,6 +24,7 @@ module load_reservoir
 
   type, extends(load) :: reservoir_load
     type(surface) :: faces !< upstream face; its dry part is ignored
+    integer, allocatable :: nodes(:, :) !< (4, faces) their nodes
     type(water_body) :: water
     real(rk) :: density = 1000.0_rk !< of water [kg/m3]
     real(rk) :: gravity = 9.81_rk !< [m/s2]
@@ -30,6 +32,8 @@ module load_reservoir
     logical :: has_added_mass = .false. !< Westergaard
     logical :: is_diagonal = .true. !< m n_k**2 on each axis, else m n n^T
   contains
+    procedure :: take_faces
+    procedure :: add_cells
     procedure :: add_force
     procedure :: has_matrix
     procedure :: add_matrix
@@ -37,6 +41,33 @@ module load_reservoir
   end type reservoir_load
 
 contains
+
+  !> Sets the wetted surface.
+  subroutine take_faces(self, faces, mesh)
+    class(reservoir_load), intent(inout) :: self
+    type(surface), intent(in) :: faces
+    type(fe_mesh), intent(in) :: mesh
+    integer :: i
+    self%faces = faces
+    allocate (self%nodes(4, size(faces%element)))
+    do i = 1, size(faces%element)
+      self%nodes(:, i) = face_nodes(mesh, faces%element(i), faces%face(i))
+    end do
+  end subroutine take_faces
+
+  !> The nodes under the added mass, each by itself: the rank that adds the mass need not have the
+  !> elements at them.
+  subroutine add_cells(self, cells)
+    class(reservoir_load), intent(in) :: self
+    type(row_table), intent(inout) :: cells
+    integer :: i, a
+    if (.not. self%has_added_mass) return
+    do i = 1, size(self%faces%element)
+      do a = 1, size(self%nodes, 1)
+        call cells%append(self%nodes(a:a, i))
+      end do
+    end do
+  end subroutine add_cells
 
   !> Minus rho g times the integral of y N_a n.
   subroutine add_force(self, mesh, density, force)

@@ -74,7 +74,7 @@ contains
     call results%costs%stop()
     if (now%increment == 0) then ! not after a restart within the step
       call store_motion(system%numbers, now)
-      call results%increment_done(model, now, error)
+      call results%report_increment(model, now, error)
       if (allocated(error)) return
     end if
     call make_step_solver(plan, system, solids%has_inelastic() .and. &

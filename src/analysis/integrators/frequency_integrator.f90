@@ -82,6 +82,6 @@ contains
     end associate
     if (allocated(error)) return
     now%is_last_of_step = .true.
-    call results%modes_found(model, now%step, modes, error)
+    call results%report_modes(model, now%step, modes, error)
   end subroutine report_modes
 end module frequency_integrator

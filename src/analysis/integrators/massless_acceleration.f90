@@ -44,7 +44,7 @@ contains
     class(equation_solver), allocatable :: solver
     a = 0.0_rk
     worst = 0
-    call make_solver(symmetric_solver, solver, error)
+    call make_solver(symmetric_solver, solver, error, matrix%is_shared)
     if (.not. allocated(error)) call solver%analyse(matrix, error)
     if (allocated(error)) return
     call solver%factorise(matrix, sum_of_both, error)

@@ -95,7 +95,7 @@ contains
     if (allocated(error) .or. now%increment > 0) return
     call open_account(model, self%system, now, now%total_time <= 0.0_rk, plan%changes_stage)
     call store_motion(self%system%numbers, now)
-    call results%increment_done(model, now, error)
+    call results%report_increment(model, now, error)
   end subroutine open_step
 
   !> Error: what the reduced model cannot hold and the reader of the deck cannot know.

@@ -7,6 +7,7 @@ module increment_listener
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
   use dual_solutions, only: dual_solution
+  use ranks, only: share_error
   use stop_signals, only: name_of_signal
   implicit none
   private
@@ -33,6 +34,7 @@ module increment_listener
     procedure :: wants_motion => always_wants_motion
     procedure(modes_found), deferred :: modes_found
     procedure :: weigh_modes
+    procedure, non_overridable :: report_increment, report_modes
   end type listener
 
   abstract interface
@@ -76,6 +78,27 @@ contains
     !> (modes) squared circular frequencies of the mesh less those of the structure [1/s2]
     real(rk), allocatable, intent(out) :: stiffening(:) !< not allocated where it is not known
   end subroutine weigh_modes
+
+  !> Reports an increment. The results are one rank's; their failure is that of all ranks.
+  subroutine report_increment(self, model, now, error)
+    class(listener), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    type(error_type), allocatable, intent(out) :: error
+    call self%increment_done(model, now, error)
+    call share_error(error)
+  end subroutine report_increment
+
+  !> Reports modes, as `report_increment` does an increment.
+  subroutine report_modes(self, model, step, modes, error)
+    class(listener), intent(inout) :: self
+    type(problem), intent(in) :: model
+    integer, intent(in) :: step
+    type(vibration_mode), intent(in) :: modes(:)
+    type(error_type), allocatable, intent(out) :: error
+    call self%modes_found(model, step, modes, error)
+    call share_error(error)
+  end subroutine report_modes
 
   !> A signal has ended the increment after `now`; the error ends the run.
   subroutine increment_dropped(self, model, now, error)

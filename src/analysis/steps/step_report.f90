@@ -44,7 +44,7 @@ contains
     type(state), intent(in) :: now
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
-    call results%increment_done(model, now, error)
+    call results%report_increment(model, now, error)
     if (allocated(error)) return
     call end_user_increment(model, now, results, error)
     if (allocated(error)) return

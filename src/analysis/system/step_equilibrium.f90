@@ -12,6 +12,7 @@ module step_equilibrium
   use equilibrium_catalogue, only: condensed_solver, full_solver, make_joint_solver
   use joint_forces, only: reference_stiffness
   use joint_iteration, only: closed_tangent
+  use ranks, only: share_error
   use run_ledger, only: ledger
   use step_system, only: dam_system
   use write_text, only: as_text
@@ -50,8 +51,9 @@ contains
     balance%controls = plan%controls
     if (.not. allocated(system%matrix%group) .or. name /= condensed_solver &
         .or. size(system%modal, 2) > 0) call check_memory(system%operator%num_points, error)
+    call share_error(error)
     if (allocated(error)) return
-    call make_solver(symmetric_solver, balance%factor, error)
+    call make_solver(symmetric_solver, balance%factor, error, system%matrix%is_shared)
     if (allocated(error)) return
     call balance%factor%analyse(system%matrix, error)
   end subroutine make_equilibrium
@@ -125,7 +127,7 @@ contains
     allocate (closed, source=system%stiffness)
     call system%operator%add_stiffness(closed_tangent(reference), system%matrix, closed)
     call costs%start('analyse', 'structure', 'solver')
-    call make_solver(symmetric_solver, balance%factor, error)
+    call make_solver(symmetric_solver, balance%factor, error, system%matrix%is_shared)
     if (.not. allocated(error)) call balance%factor%analyse(system%matrix, error)
     call costs%stop()
     if (allocated(error)) return

@@ -11,6 +11,7 @@ module step_system
   use constraint_elimination, only: number_step
   use global_vectors, only: diagonal, dot, multiply
   use matrix_pattern, only: pattern, drop_zeros
+  use matrix_rows, only: lay_out_rows
   use pattern_builder, only: list_cells, build_pattern
   use assemble_elements, only: assemble_stiffness, assemble_mass, assemble_damping, &
                                assemble_origins
@@ -142,6 +143,12 @@ contains
     if (allocated(error)) return
     call list_cells(model%mesh, guests, cells)
     call build_pattern(system%numbers, cells, system%matrix)
+    if (allocated(model%mesh%rank_of_element)) then
+      call lay_out_rows(model%mesh, system%numbers, cells, system%matrix)
+      system%matrix%layout%solver = model%equation_solver
+      system%matrix%layout%has_inertia = plan%procedure%has_inertia .and. &
+                                         all(model%materials%density > 0.0_rk)
+    end if
     call build_jump_operator(system%numbers, model%mesh, model%joints, system%operator)
     call find_separators(system%numbers, system%operator, system%matrix%group, &
                          system%matrix%jump, system%matrix%joined)

@@ -10,10 +10,31 @@ contains
   !> Adds all pages of this module, in the order in which their signs are looked for.
   subroutine add_pages_of_runs(list)
     type(page_list), intent(inout) :: list
+    call pages_from_ranks(list)
     call pages_from_usage(list)
     call pages_from_no_memory(list)
     call pages_from_energy(list)
   end subroutine add_pages_of_runs
+
+  subroutine pages_from_ranks(list)
+    type(page_list), intent(inout) :: list
+    call list%add('one-process', &
+                  'in one process only|is built with PETSc|solved by one process|AUTO, DIRECT '// &
+                  'or ITERATIVE', &
+                  'Several processes under mpiexec do not work on this yet, or the program is '// &
+                  'the plain one, which has no solvers for several processes.', &
+                  'Start the deck without mpiexec and --solver; docs/large_models.md says what '// &
+                  'several processes work on.', &
+                  'mpiexec -n 2 keyway joints.inp', &
+                  'keyway -j 2 joints.inp')
+    call list%add('slow-solver', &
+                  'conjugate gradients', &
+                  'The iterative solver of several processes does not converge: a part of the '// &
+                  'model is free to move, or stiffnesses differ too much.', &
+                  'Add supports; or take the factor with --solver DIRECT.', &
+                  'mpiexec -n 4 keyway --solver ITERATIVE dam.inp', &
+                  'mpiexec -n 4 keyway --solver DIRECT dam.inp')
+  end subroutine pages_from_ranks
 
   subroutine pages_from_usage(list)
     type(page_list), intent(inout) :: list

@@ -3,6 +3,7 @@
 module joint_operator
   use dam_mesh, only: fe_mesh
   use kinds, only: rk
+  use guest_list, only: is_guest_here
   use joint_parts, only: point_is_there
   use joint_points, only: dam_joint
   use node_dofs, only: num_directions
@@ -19,6 +20,7 @@ module joint_operator
     integer :: num_points = 0
     integer, allocatable :: first_point(:) !< (joints + 1)
     real(rk), allocatable :: area(:) !< (points) [m2]
+    logical, allocatable :: is_here(:) !< (points) the matrices of the joint are of this rank
     real(rk), allocatable :: x(:, :) !< (3, points) [m]
     integer, allocatable :: row_start(:) !< (rows + 1) rows as in `joint_rows`
     integer, allocatable :: unknown(:) !< columns of B
@@ -46,7 +48,7 @@ contains
     operator%num_points = operator%first_point(size(joints) + 1) - 1
     last_row = num_rows(operator%num_points)
     allocate (operator%area(operator%num_points), operator%row_start(last_row + 1))
-    allocate (operator%x(3, operator%num_points))
+    allocate (operator%x(3, operator%num_points), operator%is_here(operator%num_points))
     allocate (operator%unknown(9*operator%num_points), operator%coefficient(9*operator%num_points))
     allocate (place(numbers%num_total), source=0)
     operator%row_start = 1
@@ -56,6 +58,7 @@ contains
         if (joints(j)%is_nodal) pair = pair + 1
         point = operator%first_point(j) + p - 1
         operator%area(point) = joints(j)%area(p)
+        operator%is_here(point) = is_guest_here(j)
         operator%x(:, point) = joints(j)%x(:, p)
         if (.not. point_is_there(mesh, joints(j), p)) then
           operator%row_start(row_of(point, 1) + 1:row_of(point, num_axes) + 1) = &
@@ -187,7 +190,7 @@ contains
     real(rk), intent(in) :: tangent(:, :, :) !< (3, 3, points) D [Pa/m]
     type(pattern), intent(in) :: matrix
     real(rk), intent(inout) :: values(:)
-    call add_joint_stiffness(self%row_start, self%unknown, self%coefficient, self%area, tangent, &
-                             matrix, values)
+    call add_joint_stiffness(self%row_start, self%unknown, self%coefficient, self%area, &
+                             self%is_here, tangent, matrix, values)
   end subroutine add_stiffness
 end module joint_operator

@@ -11,11 +11,13 @@ module joint_stiffness
 contains
 
   !> Adds B^T (area D) B, point by point. In a symmetric matrix the symmetric part of D counts.
-  subroutine add_joint_stiffness(row_start, unknown, coefficient, area, tangent, matrix, values)
+  subroutine add_joint_stiffness(row_start, unknown, coefficient, area, is_here, tangent, matrix, &
+                                 values)
     integer, intent(in) :: row_start(:) !< (rows + 1) of B
     integer, intent(in) :: unknown(:) !< columns of B
     real(rk), intent(in) :: coefficient(:) !< values of B
     real(rk), intent(in) :: area(:) !< (points) [m2]
+    logical, intent(in) :: is_here(:) !< (points) to be added by this rank
     real(rk), intent(in) :: tangent(:, :, :) !< (3, 3, points) D [Pa/m]
     type(pattern), intent(in) :: matrix
     real(rk), intent(inout) :: values(:)
@@ -24,6 +26,7 @@ contains
     real(rk) :: d(3, 3)
     integer :: p, row, first, last
     do p = 1, size(area)
+      if (.not. is_here(p)) cycle
       d = tangent(:, :, p)
       if (matrix%is_symmetric) d = 0.5_rk*(d + transpose(d))
       row = row_of(p, 1)

@@ -14,6 +14,7 @@ module equilibrium
   use joint_forces, only: gather_jumps, gather_tractions, take_origins
   use active_solve, only: repeated_solve
   use linear_solver, only: equation_solver
+  use ranks, only: num_ranks
   use refined_solve, only: exact_matrix
   use run_ledger, only: ledger
   use step_plan, only: step_controls
@@ -146,10 +147,12 @@ contains
     self%guess_traction = traction
   end subroutine start_from
 
-  !> Whether a signal ends the iteration of an increment, which is then dropped.
+  !> Whether a signal ends the iteration of an increment, which is then dropped. Ranks get
+  !> signals at different times: several ranks complete the increment.
   logical function is_dropped(controls)
     type(step_controls), intent(in) :: controls
     is_dropped = controls%may_be_dropped
+    if (is_dropped) is_dropped = num_ranks() == 1
     if (is_dropped) is_dropped = is_asked_to_stop()
   end function is_dropped
 

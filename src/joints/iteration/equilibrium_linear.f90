@@ -37,7 +37,7 @@ contains
     self%is_unsymmetric = .not. matrix%is_symmetric
     if (self%is_unsymmetric .and. .not. allocated(self%unsymmetric_factor)) then
       call self%costs%start('analyse', 'structure', 'solver')
-      call make_solver(unsymmetric_solver, self%unsymmetric_factor, error)
+      call make_solver(unsymmetric_solver, self%unsymmetric_factor, error, matrix%is_shared)
       if (.not. allocated(error)) call self%unsymmetric_factor%analyse(matrix, error)
       call self%costs%stop()
       if (allocated(error)) return

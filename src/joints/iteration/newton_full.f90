@@ -251,7 +251,7 @@ contains
     else
       self%full_matrix = self%matrix
     end if
-    call make_solver(unsymmetric_solver, self%unsymmetric_factor, error)
+    call make_solver(unsymmetric_solver, self%unsymmetric_factor, error, self%matrix%is_shared)
     if (.not. allocated(error)) call self%unsymmetric_factor%analyse(self%full_matrix, error)
     call self%costs%stop()
   end subroutine start_unsymmetric

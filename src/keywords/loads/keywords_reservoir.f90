@@ -69,7 +69,7 @@ contains
       return
     end if
     lake%kind = 'reservoir'
-    lake%faces = model%problem%surfaces(found)
+    call lake%take_faces(model%problem%surfaces(found), model%problem%mesh)
     lake%water%level = this%real('LEVEL')
     lake%water%bed = this%real('BED')
     lake%water%up = this%integer('UP')

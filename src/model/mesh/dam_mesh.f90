@@ -8,7 +8,7 @@ module dam_mesh
   use row_tables, only: weighted_rows
   implicit none
   private
-  public :: fe_mesh, named_set, surface, node_tie, element_is_there, are_there
+  public :: fe_mesh, named_set, surface, node_tie, element_is_there, are_there, is_assembled_here
 
   type :: fe_mesh
     integer :: num_nodes = 0
@@ -24,6 +24,8 @@ module dam_mesh
     !> (elements) taken out by *MODEL CHANGE in the present step; such an element has material 0, so
     !> that it takes part in nothing. Not allocated in models without *MODEL CHANGE.
     logical, allocatable :: is_absent(:)
+    !> (elements) rank that assembles the element; not allocated: there is one rank
+    integer, allocatable :: rank_of_element(:)
     logical, allocatable :: is_node_absent(:) !< (nodes) all elements of the node are absent
   end type fe_mesh
 
@@ -62,6 +64,17 @@ contains
     is_there = .true.
     if (allocated(mesh%is_absent)) is_there = .not. mesh%is_absent(element)
   end function element_is_there
+
+  !> Whether an element takes part in the matrices of this rank.
+  pure logical function is_assembled_here(mesh, rank, element) result(is_here)
+    type(fe_mesh), intent(in) :: mesh
+    integer, intent(in) :: rank !< this rank
+    integer, intent(in) :: element !< position
+    is_here = mesh%material_of_element(element) > 0
+    if (is_here .and. allocated(mesh%rank_of_element)) then
+      is_here = mesh%rank_of_element(element) == rank
+    end if
+  end function is_assembled_here
 
   !> Whether all these nodes take part in the present step.
   pure logical function are_there(mesh, nodes)

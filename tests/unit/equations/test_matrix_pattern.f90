@@ -109,6 +109,7 @@ contains
     integer, parameter :: unknown(10) = [15, 16, 17, 9, 3, 4, 10, 11, 5, 3]
     real(rk), parameter :: coefficient(10) = [1.0_rk, 1.0_rk, 1.0_rk, 0.6_rk, -0.6_rk, 0.8_rk, &
                                               -0.8_rk, 0.5_rk, -1.0_rk, 0.3_rk], area(2) = [2, 3]
+    logical, parameter :: is_here(2) = .true.
     integer :: k, i
     b = 0.0_rk
     do k = 1, 10
@@ -119,12 +120,12 @@ contains
     tangent = reshape([(sin(real(k, rk)), k=1, 18)], [3, 3, 2])
     allocate (full_values(size(full%row)), values(size(lower%row)))
     full_values = 0.0_rk
-    call add_joint_stiffness(start, unknown, coefficient, area, tangent, full, full_values)
+    call add_joint_stiffness(start, unknown, coefficient, area, is_here, tangent, full, full_values)
     call multiply(full, full_values, q, y)
     call check_close(log, norm2(y - product_of(b, area, tangent, q)), 0.0_rk, 1.0e-14_rk, &
                      'B^T (area D B q)')
     values = 0.0_rk
-    call add_joint_stiffness(start, unknown, coefficient, area, tangent, lower, values)
+    call add_joint_stiffness(start, unknown, coefficient, area, is_here, tangent, lower, values)
     call multiply(lower, values, q, r)
     do k = 1, 2
       tangent(:, :, k) = 0.5_rk*(tangent(:, :, k) + transpose(tangent(:, :, k)))

@@ -7,7 +7,9 @@
 module matrix_condition
   use kinds, only: rk
   use errors, only: error_type
-  use matrix_pattern, only: pattern, diagonal
+  use global_vectors, only: diagonal
+  use matrix_pattern, only: pattern
+  use ranks, only: add_over_ranks
   use linear_solver, only: equation_solver
   implicit none
   private
@@ -53,8 +55,9 @@ contains
     condition = condition*scaled_norm(matrix, values, root)
   end subroutine estimate_condition
 
-  !> |S|_1 from the lower triangle.
-  pure real(rk) function scaled_norm(matrix, values, root) result(norm)
+  !> |S|_1 from the lower triangle. Of a shared matrix an upper bound: magnitudes of the parts are
+  !> added.
+  real(rk) function scaled_norm(matrix, values, root) result(norm)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: values(:)
     real(rk), intent(in) :: root(:) !< (free unknowns) of the diagonal
@@ -69,6 +72,7 @@ contains
         if (i /= j) column(i) = column(i) + entry
       end do
     end do
+    if (matrix%is_shared) call add_over_ranks(column)
     norm = maxval(column)
   end function scaled_norm
 end module matrix_condition

@@ -1,0 +1,95 @@
+!> A run of several ranks. Rank 0 runs the analysis as the plain program does; the other ranks take
+!> the same path with results that write nothing.
+module divided_run
+  use analysis_state, only: state, vibration_mode
+  use cli, only: command_line
+  use element_parts, only: divide_elements
+  use errors, only: deck_is_wrong, error_type, raise
+  use increment_listener, only: listener
+  use initial_state, only: start_analysis
+  use omp_lib, only: omp_get_num_procs, omp_set_num_threads
+  use problem_definition, only: problem
+  use ranks, only: is_first_rank, num_ranks, num_ranks_here, share_error
+  use run_ledger, only: ledger
+  use step_loop, only: run_all_steps
+  use undivided_effects, only: refuse_undivided
+  use unknown_layout, only: choose_solver
+  implicit none
+  private
+  public :: adapt_options, divide_problem, assist_run
+
+  !> Results of the ranks that write none.
+  type, extends(listener) :: silent_listener
+  contains
+    procedure :: increment_done, modes_found
+  end type silent_listener
+
+contains
+
+  !> Makes other ranks than the first silent, divides the processors of a machine among its ranks,
+  !> and refuses what one process does.
+  subroutine adapt_options(options, error)
+    type(command_line), intent(inout) :: options
+    type(error_type), allocatable, intent(out) :: error
+    character(:), allocatable :: word
+    if (num_ranks() == 1) return
+    if (.not. is_first_rank()) options%is_quiet = .true.
+    if (options%num_threads == 0) options%num_threads = max(1, omp_get_num_procs() &
+                                                            /num_ranks_here())
+    word = ''
+    if (options%is_check) word = '--check'
+    if (options%is_material) word = '--material'
+    if (options%is_continued) word = '--continue'
+    if (size(options%umat%files) > 0) word = '--umat'
+    if (options%most_unsaved < huge(1)) word = '--save-joint-problems'
+    if (word == '') return
+    call raise(error, 'keyway: '//word//' works in one process only so far; start '// &
+               'without mpiexec', deck_is_wrong)
+  end subroutine adapt_options
+
+  !> Gives each rank its elements; refuses what several ranks cannot do. One rank has the solvers of
+  !> several where --solver asks for one.
+  subroutine divide_problem(options, model, error)
+    type(command_line), intent(in) :: options
+    type(problem), intent(inout) :: model
+    type(error_type), allocatable, intent(out) :: error
+    if (num_ranks() == 1 .and. options%solver == choose_solver) return
+    model%equation_solver = options%solver
+    call refuse_undivided(model, error)
+    if (.not. allocated(error)) call divide_elements(model%mesh, error)
+    call share_error(error)
+  end subroutine divide_problem
+
+  !> The part of the ranks that write nothing in a run; the calls of `share_error` meet those of
+  !> run_analysis.
+  subroutine assist_run(model, costs, error)
+    type(problem), intent(inout) :: model
+    type(ledger), intent(in) :: costs
+    type(error_type), allocatable, intent(out) :: error
+    type(silent_listener) :: results
+    type(state), allocatable :: now
+    results%costs = costs
+    call share_error(error)
+    if (allocated(error)) return
+    call start_analysis(model, now, error)
+    if (.not. allocated(error)) call run_all_steps(model, now, results, error)
+  end subroutine assist_run
+
+  !> Writes nothing.
+  subroutine increment_done(self, model, now, error)
+    class(silent_listener), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    type(error_type), allocatable, intent(out) :: error
+    if (allocated(self%duals)) deallocate (self%duals)
+  end subroutine increment_done
+
+  !> Writes nothing.
+  subroutine modes_found(self, model, step, modes, error)
+    class(silent_listener), intent(inout) :: self
+    type(problem), intent(in) :: model
+    integer, intent(in) :: step
+    type(vibration_mode), intent(in) :: modes(:)
+    type(error_type), allocatable, intent(out) :: error
+  end subroutine modes_found
+end module divided_run

@@ -1,0 +1,57 @@
+!> Divides the elements among the ranks by METIS: about the same work, few nodes on borders.
+module element_parts
+  use, intrinsic :: iso_c_binding, only: c_int
+  use dam_mesh, only: fe_mesh
+  use errors, only: error_type, raise, system_failed
+  use ranks, only: num_ranks
+  implicit none
+  private
+  public :: divide_elements
+
+  interface
+    function keyway_divide_mesh(num_elements, num_nodes, first, node, weight, num_parts, part) &
+      result(status) bind(c)
+      import :: c_int
+      implicit none
+      integer(c_int), value :: num_elements, num_nodes, num_parts
+      integer(c_int), intent(in) :: first(num_elements + 1), node(first(num_elements + 1))
+      integer(c_int), intent(in) :: weight(num_elements)
+      integer(c_int), intent(out) :: part(num_elements)
+      integer(c_int) :: status
+    end function keyway_divide_mesh
+  end interface
+
+contains
+
+  !> Gives each element with a material to a rank; the other elements to the first one. All ranks
+  !> find the same division.
+  subroutine divide_elements(mesh, error)
+    type(fe_mesh), intent(inout) :: mesh
+    type(error_type), allocatable, intent(out) :: error
+    integer(c_int), allocatable :: first(:), node(:), weight(:), part(:)
+    integer, allocatable :: solid(:)
+    integer :: k, a, last
+    solid = pack([(k, k=1, mesh%num_elements)], mesh%material_of_element > 0)
+    allocate (mesh%rank_of_element(mesh%num_elements), source=0)
+    if (num_ranks() == 1) return
+    if (size(solid) < num_ranks()) return
+    allocate (first(size(solid) + 1), node(8*size(solid)), part(size(solid)))
+    first(1) = 0
+    last = 0
+    do k = 1, size(solid)
+      do a = 1, 8
+        if (mesh%nodes(a, solid(k)) == 0) cycle
+        last = last + 1
+        node(last) = int(mesh%nodes(a, solid(k)) - 1, c_int)
+      end do
+      first(k + 1) = int(last, c_int)
+    end do
+    weight = [(1_c_int, k=1, size(solid))]
+    if (keyway_divide_mesh(int(size(solid), c_int), int(mesh%num_nodes, c_int), first, &
+                           node(:last), weight, int(num_ranks(), c_int), part) /= 0) then
+      call raise(error, 'METIS could not divide the elements among the processes', system_failed)
+      return
+    end if
+    mesh%rank_of_element(solid) = int(part)
+  end subroutine divide_elements
+end module element_parts

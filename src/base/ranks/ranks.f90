@@ -1,0 +1,179 @@
+!> The processes (ranks) of a run under mpiexec; the plain program has one.
+!>
+!> All ranks take the same path through the program, with the same numbers, and meet in the
+!> procedures of this module that exchange something. CMake chooses what stands behind it:
+!> one_rank.c, or mpi_ranks.c with KEYWAY_PETSC.
+module ranks
+  use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_size_t
+  use kinds, only: rk
+  use errors, only: error_type, raise
+  implicit none
+  private
+  public :: start_ranks, end_ranks, num_ranks, this_rank, is_first_rank, is_alone
+  public :: num_ranks_here, add_over_ranks, gather_rows, is_true_everywhere, share_error
+
+  !> For ranks that do not come, because they wait for this one elsewhere [s]. Rank 0 may write
+  !> results meanwhile.
+  integer(c_int), parameter :: patience = 300
+
+  interface
+    !> Joins the other ranks, where a launcher such as mpiexec has started the program.
+    subroutine start_ranks() bind(c, name='keyway_start_ranks')
+      implicit none
+    end subroutine start_ranks
+
+    !> Leaves the other ranks; a rank that is alone ends them with `code`.
+    subroutine end_ranks(code) bind(c, name='keyway_end_ranks')
+      import :: c_int
+      implicit none
+      integer(c_int), value :: code
+    end subroutine end_ranks
+
+    function keyway_num_ranks() result(number) bind(c)
+      import :: c_int
+      implicit none
+      integer(c_int) :: number
+    end function keyway_num_ranks
+
+    function keyway_num_ranks_here() result(number) bind(c)
+      import :: c_int
+      implicit none
+      integer(c_int) :: number
+    end function keyway_num_ranks_here
+
+    function keyway_this_rank() result(number) bind(c)
+      import :: c_int
+      implicit none
+      integer(c_int) :: number
+    end function keyway_this_rank
+
+    function keyway_is_alone() result(answer) bind(c)
+      import :: c_int
+      implicit none
+      integer(c_int) :: answer
+    end function keyway_is_alone
+
+    function keyway_wait_for_ranks(seconds) result(all_come) bind(c)
+      import :: c_int
+      implicit none
+      integer(c_int), value :: seconds
+      integer(c_int) :: all_come
+    end function keyway_wait_for_ranks
+
+    subroutine keyway_add_over_ranks(x, length) bind(c)
+      import :: c_double, c_size_t
+      implicit none
+      integer(c_size_t), value :: length
+      real(c_double), intent(inout) :: x(length)
+    end subroutine keyway_add_over_ranks
+
+    subroutine keyway_gather_rows(own, all, num_ranks, first) bind(c)
+      import :: c_double, c_int
+      implicit none
+      integer(c_int), value :: num_ranks
+      integer(c_int), intent(in) :: first(num_ranks + 1)
+      ! allow(assumed-size)
+      real(c_double), intent(in) :: own(*)
+      real(c_double), intent(out) :: all(first(num_ranks + 1))
+    end subroutine keyway_gather_rows
+
+    function keyway_least_of_ranks(number) result(least) bind(c)
+      import :: c_int
+      implicit none
+      integer(c_int), value :: number
+      integer(c_int) :: least
+    end function keyway_least_of_ranks
+
+    subroutine keyway_share_text(rank, text, length) bind(c)
+      import :: c_char, c_int
+      implicit none
+      integer(c_int), value :: rank, length
+      character(kind=c_char), intent(inout) :: text(length)
+    end subroutine keyway_share_text
+  end interface
+
+contains
+
+  !> Ranks of the run.
+  integer function num_ranks()
+    num_ranks = int(keyway_num_ranks())
+  end function num_ranks
+
+  !> Ranks of the run on this machine.
+  integer function num_ranks_here()
+    num_ranks_here = int(keyway_num_ranks_here())
+  end function num_ranks_here
+
+  !> Number of this rank, from 0.
+  integer function this_rank()
+    this_rank = int(keyway_this_rank())
+  end function this_rank
+
+  !> Whether this rank prints and writes.
+  logical function is_first_rank()
+    is_first_rank = keyway_this_rank() == 0
+  end function is_first_rank
+
+  !> Whether this rank has waited for the others without success.
+  logical function is_alone()
+    is_alone = keyway_is_alone() /= 0
+  end function is_alone
+
+  !> Replaces `x` by the sum over all ranks, which has the same bits on all of them.
+  subroutine add_over_ranks(x)
+    real(rk), contiguous, intent(inout) :: x(:) !< of one size on all ranks
+    call keyway_add_over_ranks(x, size(x, kind=c_size_t))
+  end subroutine add_over_ranks
+
+  !> Puts the rows of all ranks together, on all ranks.
+  subroutine gather_rows(first, own, all)
+    integer, intent(in) :: first(:) !< (ranks + 1) first row of each rank, from 0
+    real(rk), contiguous, intent(in) :: own(:) !< of this rank
+    real(rk), contiguous, intent(out) :: all(:)
+    call keyway_gather_rows(own, all, int(size(first) - 1, c_int), int(first, c_int))
+  end subroutine gather_rows
+
+  !> Whether something holds on all ranks.
+  logical function is_true_everywhere(holds)
+    logical, intent(in) :: holds
+    is_true_everywhere = keyway_least_of_ranks(merge(1_c_int, 0_c_int, holds)) == 1
+  end function is_true_everywhere
+
+  !> An error of one rank becomes that of all: the error of the lowest rank that has one. A rank
+  !> with an error that the others do not meet here is alone from then on.
+  subroutine share_error(error)
+    type(error_type), allocatable, intent(inout) :: error
+    character(:), allocatable :: text
+    integer(c_int) :: rank, head(2)
+    if (keyway_num_ranks() == 1) return
+    if (keyway_wait_for_ranks(merge(patience, 0_c_int, allocated(error))) == 0) return
+    rank = keyway_this_rank()
+    if (.not. allocated(error)) rank = keyway_num_ranks()
+    rank = keyway_least_of_ranks(rank)
+    if (rank == keyway_num_ranks()) return
+    head = 0_c_int
+    if (rank == keyway_this_rank()) head = int([error%exit_code, len(error%message)], c_int)
+    head(1) = -keyway_least_of_ranks(-head(1))
+    head(2) = -keyway_least_of_ranks(-head(2))
+    text = repeat(' ', head(2))
+    if (rank == keyway_this_rank()) text = error%message
+    text = text_of_rank(rank, text)
+    if (.not. allocated(error)) call raise(error, text, int(head(1)))
+  end subroutine share_error
+
+  !> The text of one rank, on all ranks.
+  function text_of_rank(rank, own) result(text)
+    integer(c_int), intent(in) :: rank
+    character(*), intent(in) :: own !< of one length on all ranks
+    character(len(own)) :: text
+    character(kind=c_char) :: letters(len(own))
+    integer :: i
+    do i = 1, len(own)
+      letters(i) = own(i:i)
+    end do
+    call keyway_share_text(rank, letters, int(len(own), c_int))
+    do i = 1, len(own)
+      text(i:i) = letters(i)
+    end do
+  end function text_of_rank
+end module ranks

@@ -1,0 +1,226 @@
+/* Behind petsc_equations.f90 with KEYWAY_PETSC: a matrix by rows, a solver, two vectors. */
+#include <petscksp.h>
+#include <stdlib.h>
+
+_Static_assert(sizeof(PetscInt) == sizeof(int), "PETSc must be built with 32-bit indices");
+_Static_assert(sizeof(PetscScalar) == sizeof(double), "PETSc must be built with real scalars");
+
+enum { by_cholesky = 1, by_multigrid = 2, by_blocks = 3 };
+enum { done = 0, singular = 1, slow = 2, failed = 3 };
+enum { num_rigid = 6, rows_of_node = 3, num_old = 6, most_iterations = 5000 };
+
+/* Residual over the right-hand side. Results at 1e-6 of the largest value need less; forces that
+ * nearly cancel need this. */
+static const double tolerance = 1e-10;
+
+struct equations {
+  int method;
+  int rows;
+  Mat matrix;
+  KSP solver;
+  Vec b, x;
+};
+
+static PetscErrorCode keep_quiet(MPI_Comm comm, int line, const char *function, const char *file,
+                                 PetscErrorCode code, PetscErrorType type, const char *text,
+                                 void *context)
+{
+  (void)comm, (void)line, (void)function, (void)file, (void)type, (void)text, (void)context;
+  return code;
+}
+
+int keyway_has_petsc(void) { return 1; }
+
+/* An option that the user has not set in PETSC_OPTIONS. */
+static PetscErrorCode set_default(const char *name, const char *value)
+{
+  PetscBool is_set;
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsHasName(NULL, NULL, name, &is_set));
+  if (!is_set) PetscCall(PetscOptionsSetValue(NULL, name, value));
+  PetscFunctionReturn(0);
+}
+
+void *keyway_petsc_start(void)
+{
+  PetscBool is_started;
+  if (PetscInitialized(&is_started)) return NULL;
+  if (!is_started) {
+    /* Signals are the program's; PETSc's help on errors is not for users of the program. */
+    if (PetscOptionsSetValue(NULL, "-no_signal_handler", "true")) return NULL;
+    if (PetscInitializeNoArguments()) return NULL;
+    if (PetscPushErrorHandler(keep_quiet, NULL)) return NULL;
+    if (set_default("-keyway_mat_mumps_icntl_14", "60")) return NULL; /* room for pivots [%] */
+    if (set_default("-keyway_sub_pc_type", "icc")) return NULL;
+  }
+  return calloc(1, sizeof(struct equations));
+}
+
+void keyway_petsc_finish(void *handle)
+{
+  struct equations *self = handle;
+  if (!self) return;
+  KSPDestroy(&self->solver);
+  MatDestroy(&self->matrix);
+  VecDestroy(&self->b);
+  VecDestroy(&self->x);
+  free(self);
+}
+
+/* The motions of a rigid body, which multigrid must represent on every level. */
+static PetscErrorCode give_rigid_motions(struct equations *self, const double *rigid)
+{
+  Vec motion[num_rigid];
+  MatNullSpace space;
+  PetscFunctionBegin;
+  for (int k = 0; k < num_rigid; k++) {
+    PetscScalar *own;
+    PetscCall(VecDuplicate(self->b, &motion[k]));
+    PetscCall(VecGetArray(motion[k], &own));
+    for (int i = 0; i < self->rows; i++) own[i] = rigid[(size_t)k * self->rows + i];
+    PetscCall(VecRestoreArray(motion[k], &own));
+    for (int m = 0; m < k; m++) {
+      PetscScalar product;
+      PetscCall(VecDot(motion[k], motion[m], &product));
+      PetscCall(VecAXPY(motion[k], -product, motion[m]));
+    }
+    PetscCall(VecNormalize(motion[k], NULL));
+  }
+  PetscCall(MatNullSpaceCreate(PETSC_COMM_WORLD, PETSC_FALSE, num_rigid, motion, &space));
+  PetscCall(MatSetNearNullSpace(self->matrix, space));
+  PetscCall(MatNullSpaceDestroy(&space));
+  for (int k = 0; k < num_rigid; k++) PetscCall(VecDestroy(&motion[k]));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode choose_method(struct equations *self)
+{
+  PC pc;
+  PetscFunctionBegin;
+  PetscCall(KSPCreate(PETSC_COMM_WORLD, &self->solver));
+  PetscCall(KSPSetOptionsPrefix(self->solver, "keyway_"));
+  PetscCall(KSPSetOperators(self->solver, self->matrix, self->matrix));
+  PetscCall(KSPGetPC(self->solver, &pc));
+  if (self->method == by_cholesky) {
+    PetscCall(KSPSetType(self->solver, KSPPREONLY));
+    PetscCall(PCSetType(pc, PCCHOLESKY));
+    PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  } else {
+    PetscCall(KSPSetType(self->solver, KSPCG));
+    PetscCall(KSPSetNormType(self->solver, KSP_NORM_UNPRECONDITIONED));
+    PetscCall(KSPSetTolerances(self->solver, tolerance, PETSC_DEFAULT, PETSC_DEFAULT,
+                               most_iterations));
+    PetscCall(PCSetType(pc, self->method == by_multigrid ? PCGAMG : PCBJACOBI));
+  }
+  /* Starts from the best combination of the last solutions. */
+  if (self->method == by_blocks) PetscCall(KSPSetUseFischerGuess(self->solver, 1, num_old));
+  PetscCall(KSPSetFromOptions(self->solver));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode plan(struct equations *self, const double *rigid, size_t entries, int *row,
+                           int *column)
+{
+  PetscFunctionBegin;
+  PetscCall(MatCreate(PETSC_COMM_WORLD, &self->matrix));
+  PetscCall(MatSetSizes(self->matrix, self->rows, self->rows, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetType(self->matrix, MATAIJ));
+  PetscCall(MatSetBlockSize(self->matrix, rows_of_node));
+  PetscCall(MatSetPreallocationCOO(self->matrix, (PetscCount)entries, row, column));
+  PetscCall(MatSetOption(self->matrix, MAT_SPD, PETSC_TRUE));
+  PetscCall(MatCreateVecs(self->matrix, &self->x, &self->b));
+  if (self->method == by_multigrid) PetscCall(give_rigid_motions(self, rigid));
+  PetscCall(choose_method(self));
+  PetscFunctionReturn(0);
+}
+
+int keyway_petsc_plan(void *handle, int method, int rows, const double *rigid, size_t entries,
+                      int *row, int *column)
+{
+  struct equations *self = handle;
+  self->method = method;
+  self->rows = rows;
+  return plan(self, rigid, entries, row, column) ? failed : done;
+}
+
+/* Whether the factor solves for forces that no symmetry cancels: a body that is free to move
+ * answers them with displacements of 1/round-off. */
+static PetscErrorCode check_factor(struct equations *self, int *status)
+{
+  Vec scale, residual;
+  PetscScalar *own, work, stiff;
+  PetscInt first;
+  KSPConvergedReason reason;
+  PetscFunctionBegin;
+  PetscCall(VecDuplicate(self->b, &scale));
+  PetscCall(VecDuplicate(self->b, &residual));
+  PetscCall(MatGetDiagonal(self->matrix, scale));
+  PetscCall(VecGetOwnershipRange(self->b, &first, NULL));
+  PetscCall(VecGetArray(self->b, &own));
+  for (int i = 0; i < self->rows; i++) {
+    const unsigned mixed = (unsigned)(first + i + 1) * 2654435761u;
+    own[i] = (double)(mixed >> 8) / (1 << 24) - 0.5;
+  }
+  PetscCall(VecRestoreArray(self->b, &own));
+  PetscCall(VecPointwiseMult(self->b, self->b, scale));
+  PetscCall(KSPSolve(self->solver, self->b, self->x));
+  PetscCall(KSPGetConvergedReason(self->solver, &reason));
+  /* x.b against b.b/diagonal: the softest direction over the stiffness of one node */
+  PetscCall(VecDot(self->x, self->b, &work));
+  PetscCall(VecPointwiseDivide(residual, self->b, scale));
+  PetscCall(VecDot(residual, self->b, &stiff));
+  *status = reason > 0 && work > 0 && work < 1e13 * stiff ? done : singular;
+  PetscCall(VecDestroy(&scale));
+  PetscCall(VecDestroy(&residual));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode factor(struct equations *self, const double *values, int *status)
+{
+  PC pc;
+  PCFailedReason reason;
+  PetscFunctionBegin;
+  PetscCall(MatSetValuesCOO(self->matrix, values, INSERT_VALUES));
+  PetscCall(KSPSetOperators(self->solver, self->matrix, self->matrix));
+  PetscCall(KSPSetUp(self->solver));
+  PetscCall(KSPGetPC(self->solver, &pc));
+  PetscCall(PCGetFailedReason(pc, &reason));
+  *status = reason ? singular : done;
+  if (reason == PC_FACTOR_OUTMEMORY) *status = failed;
+  if (*status == done && self->method == by_cholesky) PetscCall(check_factor(self, status));
+  PetscFunctionReturn(0);
+}
+
+int keyway_petsc_factor(void *handle, size_t entries, const double *values)
+{
+  int status;
+  (void)entries;
+  return factor(handle, values, &status) ? failed : status;
+}
+
+static PetscErrorCode solve(struct equations *self, double *b, int *iterations, int *status)
+{
+  PetscScalar *own;
+  KSPConvergedReason reason;
+  PetscInt count;
+  PetscFunctionBegin;
+  PetscCall(VecGetArray(self->b, &own));
+  for (int i = 0; i < self->rows; i++) own[i] = b[i];
+  PetscCall(VecRestoreArray(self->b, &own));
+  PetscCall(KSPSolve(self->solver, self->b, self->x));
+  PetscCall(KSPGetConvergedReason(self->solver, &reason));
+  PetscCall(KSPGetIterationNumber(self->solver, &count));
+  PetscCall(VecGetArray(self->x, &own));
+  for (int i = 0; i < self->rows; i++) b[i] = own[i];
+  PetscCall(VecRestoreArray(self->x, &own));
+  *iterations = count;
+  *status = reason > 0 ? done : reason == KSP_DIVERGED_ITS ? slow : singular;
+  PetscFunctionReturn(0);
+}
+
+int keyway_petsc_solve(void *handle, int rows, double *b, int *iterations)
+{
+  int status;
+  (void)rows;
+  return solve(handle, b, iterations, &status) ? failed : status;
+}

@@ -1,0 +1,73 @@
+!> Distributed equations of PETSc behind plain arguments: petsc_bridge.c, or without_petsc.c in the
+!> plain program. All ranks call every procedure.
+module petsc_equations
+  use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_ptr, c_size_t
+  implicit none
+  private
+  public :: has_petsc, start_petsc, plan_petsc, factor_petsc, solve_petsc, finish_petsc
+  public :: by_cholesky, by_multigrid, by_blocks
+  public :: is_done, is_singular, is_slow
+
+  integer(c_int), parameter :: by_cholesky = 1 !< L L^T by MUMPS
+  !> Conjugate gradients, with smoothed aggregation, and with the incomplete factor of each rank
+  integer(c_int), parameter :: by_multigrid = 2, by_blocks = 3
+  integer(c_int), parameter :: is_done = 0, is_singular = 1, is_slow = 2 !< outcomes; else a failure
+
+  interface
+    !> Not 0 where the program is built with PETSc.
+    function has_petsc() result(answer) bind(c, name='keyway_has_petsc')
+      import :: c_int
+      implicit none
+      integer(c_int) :: answer
+    end function has_petsc
+
+    !> Fails with a null pointer where the program is built without PETSc.
+    function start_petsc() result(handle) bind(c, name='keyway_petsc_start')
+      import :: c_ptr
+      implicit none
+      type(c_ptr) :: handle
+    end function start_petsc
+
+    !> Plans a matrix from the places of the entries that this rank adds.
+    function plan_petsc(handle, method, rows, rigid, entries, row, column) result(status) &
+      bind(c, name='keyway_petsc_plan')
+      import :: c_double, c_int, c_ptr, c_size_t
+      implicit none
+      type(c_ptr), value :: handle
+      integer(c_int), value :: method, rows !< own rows
+      real(c_double), intent(in) :: rigid(rows, 6)
+      integer(c_size_t), value :: entries
+      integer(c_int), intent(inout) :: row(entries), column(entries) !< from 0; overwritten
+      integer(c_int) :: status
+    end function plan_petsc
+
+    !> Sums the entries of all ranks, and prepares the solver.
+    function factor_petsc(handle, entries, values) result(status) &
+      bind(c, name='keyway_petsc_factor')
+      import :: c_double, c_int, c_ptr, c_size_t
+      implicit none
+      type(c_ptr), value :: handle
+      integer(c_size_t), value :: entries
+      real(c_double), intent(in) :: values(entries)
+      integer(c_int) :: status
+    end function factor_petsc
+
+    !> Solves for the own rows of the right-hand side, in place.
+    function solve_petsc(handle, rows, b, iterations) result(status) &
+      bind(c, name='keyway_petsc_solve')
+      import :: c_double, c_int, c_ptr
+      implicit none
+      type(c_ptr), value :: handle
+      integer(c_int), value :: rows
+      real(c_double), intent(inout) :: b(rows)
+      integer(c_int), intent(out) :: iterations
+      integer(c_int) :: status
+    end function solve_petsc
+
+    subroutine finish_petsc(handle) bind(c, name='keyway_petsc_finish')
+      import :: c_ptr
+      implicit none
+      type(c_ptr), value :: handle
+    end subroutine finish_petsc
+  end interface
+end module petsc_equations

@@ -1,0 +1,27 @@
+/* Behind petsc_equations.f90 in the plain program, which has one rank and never calls these. */
+#include <stddef.h>
+
+enum { failed = 3 };
+
+int keyway_has_petsc(void) { return 0; }
+void *keyway_petsc_start(void) { return NULL; }
+void keyway_petsc_finish(void *handle) { (void)handle; }
+
+int keyway_petsc_plan(void *handle, int method, int rows, const double *rigid, size_t entries,
+                      int *row, int *column)
+{
+  (void)handle, (void)method, (void)rows, (void)rigid, (void)entries, (void)row, (void)column;
+  return failed;
+}
+
+int keyway_petsc_factor(void *handle, size_t entries, const double *values)
+{
+  (void)handle, (void)entries, (void)values;
+  return failed;
+}
+
+int keyway_petsc_solve(void *handle, int rows, double *b, int *iterations)
+{
+  (void)handle, (void)rows, (void)b, (void)iterations;
+  return failed;
+}

@@ -1,0 +1,208 @@
+!> Symmetric positive definite equations whose matrix is a sum over ranks, by PETSc: Cholesky's
+!> factor of MUMPS, or conjugate gradients.
+!>
+!> Right-hand sides and solutions are whole on every rank; the matrix and its factor are not.
+module solver_petsc
+  use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_null_ptr, c_ptr, c_size_t
+  use kinds, only: rk
+  use errors, only: error_type, raise, system_failed
+  use blas_threads, only: use_many_threads, use_one_thread
+  use linear_solver, only: equation_solver
+  use matrix_pattern, only: pattern
+  use petsc_equations, only: by_blocks, by_cholesky, by_multigrid, factor_petsc, finish_petsc, &
+                             is_done, is_singular, is_slow, plan_petsc, solve_petsc, start_petsc
+  use ranks, only: gather_rows, this_rank
+  use unknown_layout, only: choose_solver, direct_solver, own_rows, row_layout
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: petsc_solver
+
+  !> Most rows for which AUTO takes the factor.
+  integer, parameter :: most_direct = 200000
+
+  type, extends(equation_solver) :: petsc_solver
+    integer :: num_iterations = 0 !< of all solves
+    type(c_ptr), private :: handle = c_null_ptr
+    integer(c_int), private :: method = by_cholesky
+    integer(c_size_t), private :: num_entries_given = 0
+    type(row_layout), private :: layout
+  contains
+    procedure :: analyse, factorise, solve
+    final :: release
+  end type petsc_solver
+
+contains
+
+  !> Gives PETSc the places of the entries that this rank adds to the matrix.
+  subroutine analyse(self, matrix, error)
+    class(petsc_solver), intent(inout) :: self
+    type(pattern), intent(in) :: matrix !< with a layout
+    type(error_type), allocatable, intent(out) :: error
+    integer(c_int), allocatable :: row(:), column(:)
+    integer :: bounds(2)
+    call release(self)
+    self%layout = matrix%layout
+    bounds = own_rows(self%layout, this_rank())
+    self%method = method_of(self%layout)
+    call list_places(matrix, bounds, row, column)
+    self%num_entries_given = size(row, kind=c_size_t)
+    self%handle = start_petsc()
+    if (.not. c_associated(self%handle)) then
+      call raise(error, 'PETSc could not be started', system_failed)
+    else if (plan_petsc(self%handle, self%method, int(bounds(2) - bounds(1) + 1, c_int), &
+                        self%layout%rigid, self%num_entries_given, row, column) /= is_done) then
+      call raise(error, 'PETSc could not plan the equations (not enough memory?)', system_failed)
+    end if
+  end subroutine analyse
+
+  !> The method for a matrix.
+  pure integer(c_int) function method_of(layout) result(method)
+    type(row_layout), intent(in) :: layout
+    logical :: is_direct
+    is_direct = layout%solver == direct_solver
+    if (layout%solver == choose_solver) then
+      is_direct = layout%first_row(size(layout%first_row)) <= most_direct
+    end if
+    method = merge(by_blocks, by_multigrid, layout%has_inertia)
+    if (is_direct) method = by_cholesky
+  end function method_of
+
+  !> Rows and columns of the entries that this rank adds, both triangles, in the order of
+  !> `list_values`; then the own rows without an unknown.
+  subroutine list_places(matrix, bounds, row, column)
+    type(pattern), intent(in) :: matrix
+    integer, intent(in) :: bounds(2) !< own rows
+    integer(c_int), allocatable, intent(out) :: row(:), column(:)
+    logical :: is_empty(bounds(1):bounds(2))
+    integer :: j, k, n, i, pass
+    associate (place => matrix%layout%row)
+      is_empty = .true.
+      do j = 1, matrix%num_free
+        if (place(j) >= bounds(1) .and. place(j) <= bounds(2)) is_empty(place(j)) = .false.
+      end do
+      do pass = 1, 2
+        n = 0
+        do j = 1, matrix%num_free
+          if (.not. matrix%layout%is_touched(j)) cycle
+          do k = matrix%column_start(j), matrix%column_start(j) + matrix%free_entries(j) - 1
+            call add_place(place(matrix%row(k)), place(j))
+            if (matrix%row(k) /= j) call add_place(place(j), place(matrix%row(k)))
+          end do
+        end do
+        do i = bounds(1), bounds(2)
+          if (is_empty(i)) call add_place(i, i)
+        end do
+        if (pass == 1) allocate (row(n), column(n))
+      end do
+    end associate
+  contains
+    !> Counts a place, and in the second pass writes it.
+    subroutine add_place(row_of_place, column_of_place)
+      integer, intent(in) :: row_of_place, column_of_place
+      n = n + 1
+      if (pass == 1) return
+      row(n) = int(row_of_place, c_int)
+      column(n) = int(column_of_place, c_int)
+    end subroutine add_place
+  end subroutine list_places
+
+  !> The values of the entries of `list_places`.
+  subroutine list_values(matrix, values, list)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: values(:) !< of this rank
+    real(rk), intent(out) :: list(:)
+    real(rk) :: largest
+    integer :: j, k, n
+    n = 0
+    largest = 0.0_rk
+    do j = 1, matrix%num_free
+      if (.not. matrix%layout%is_touched(j)) cycle
+      largest = max(largest, values(matrix%column_start(j)))
+      do k = matrix%column_start(j), matrix%column_start(j) + matrix%free_entries(j) - 1
+        n = n + 1
+        list(n) = values(k)
+        if (matrix%row(k) == j) cycle
+        n = n + 1
+        list(n) = values(k)
+      end do
+    end do
+    list(n + 1:) = max(largest, tiny(1.0_rk))
+  end subroutine list_values
+
+  !> Sums the matrix over the ranks, and factors it or prepares the iteration.
+  subroutine factorise(self, matrix, values, error)
+    class(petsc_solver), intent(inout) :: self
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: values(:)
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: list(:)
+    integer(c_int) :: status
+    integer :: levels
+    self%failed_unknown = 0
+    if (matrix%num_free == 0) return
+    allocate (list(self%num_entries_given))
+    call list_values(matrix, values, list)
+    call use_many_threads(levels)
+    status = factor_petsc(self%handle, self%num_entries_given, list)
+    call use_one_thread(levels)
+    if (status == is_singular) then
+      call raise(error, 'the stiffness matrix is singular: a part of the model is free to '// &
+                 'move; add supports, or connect the part by common nodes or a tie (a run '// &
+                 'without mpiexec names the node)')
+    else if (status /= is_done) then
+      call raise(error, 'PETSc could not factor the matrix (not enough memory?)', system_failed)
+    end if
+  end subroutine factorise
+
+  !> Solves for each column of `b`, in place.
+  subroutine solve(self, b, error)
+    class(petsc_solver), intent(inout) :: self
+    real(rk), intent(inout) :: b(:, :) !< (num_free, right-hand sides)
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: own(:), all(:)
+    integer(c_int) :: status, iterations
+    integer :: bounds(2), j, k
+    if (size(b, 1) == 0) return
+    bounds = own_rows(self%layout, this_rank())
+    allocate (own(bounds(2) - bounds(1) + 1))
+    allocate (all(self%layout%first_row(size(self%layout%first_row))))
+    do k = 1, size(b, 2)
+      own = 0.0_rk
+      do j = 1, size(b, 1)
+        associate (row => self%layout%row(j))
+          if (row >= bounds(1) .and. row <= bounds(2)) own(row - bounds(1) + 1) = b(j, k)
+        end associate
+      end do
+      status = solve_petsc(self%handle, int(size(own), c_int), own, iterations)
+      self%num_iterations = self%num_iterations + iterations
+      call gather_rows(self%layout%first_row, own, all)
+      b(:, k) = all(self%layout%row + 1)
+      if (status == is_done) cycle
+      call report_failure(status, iterations, error)
+      return
+    end do
+  end subroutine solve
+
+  !> Why a solve has failed.
+  subroutine report_failure(status, iterations, error)
+    integer(c_int), intent(in) :: status, iterations
+    type(error_type), allocatable, intent(out) :: error
+    if (status == is_slow) then
+      call raise(error, 'conjugate gradients did not converge in '//as_text(int(iterations))// &
+                 ' iterations: a part of the model may be free to move; if none is, use '// &
+                 '--solver DIRECT')
+    else if (status == is_singular) then
+      call raise(error, 'conjugate gradients failed: the matrix is not positive definite')
+    else
+      call raise(error, 'PETSc failed to solve the equations', system_failed)
+    end if
+  end subroutine report_failure
+
+  !> Frees the memory of PETSc.
+  subroutine release(self)
+    type(petsc_solver), intent(inout) :: self
+    call finish_petsc(self%handle)
+    self%handle = c_null_ptr
+  end subroutine release
+end module solver_petsc

@@ -1,0 +1,63 @@
+"""A block on rock, with what several processes work on: decks of a few hundred unknowns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from brick_decks import elastic
+from keyway_tools.box_mesh import box_mesh, stretched
+from keyway_tools.deck_text import mesh_deck
+from uplift_decks import joined
+
+
+@dataclass
+class BlockOnRock:
+    """Two boxes that touch in the plane z = 0, one upon the other, each with its own mesh."""
+
+    counts: tuple[int, int, int] = (4, 4, 5)
+    rock_counts: tuple[int, int, int] = (3, 3, 2)
+    coupling: str = "*TIE, NAME=T\nSOLE, ROOF\n"
+    rock_has_mass: bool = True
+    element: str = "C3D8I"
+    supports: str = "BED, 1, 3\n"
+
+    def deck(self, steps: str) -> str:
+        """Sets BLOCK, TOP, BED; the upstream face of the block is UPSTREAM."""
+        ground = stretched((6.0, 6.0, 3.0))
+        mesh, (block, rock) = joined(
+            box_mesh(self.counts, stretched((5.0, 4.0, 8.0))),
+            box_mesh(self.rock_counts, lambda a, b, c: ground(a, b, c - 1.0)),
+        )
+        bricks = np.arange(np.prod(self.counts)).reshape(self.counts)
+        below = bricks.size + np.arange(np.prod(self.rock_counts)).reshape(self.rock_counts)
+        mesh.brick_sets = {"BLOCK": bricks.ravel(), "ROCK": below.ravel()}
+        mesh.node_sets = {"TOP": block[:, :, -1].ravel(), "BED": rock[:, :, 0].ravel()}
+        mesh.surfaces = {
+            "SOLE": [(int(brick), 1) for brick in bricks[:, :, 0].ravel()],
+            "ROOF": [(int(brick), 2) for brick in below[:, :, -1].ravel()],
+            "UPSTREAM": [(int(brick), 6) for brick in bricks[0].ravel()],
+        }
+        rock_density = 2600.0 if self.rock_has_mass else None
+        return (
+            mesh_deck(mesh, {"BLOCK": self.element, "ROCK": "C3D8"}, "")
+            + elastic(3e10, 0.2, 2400.0).replace("BODY", "BLOCK")
+            + elastic(2e10, 0.25, rock_density).replace("BODY", "ROCK").replace("=M\n", "=R\n")
+            + self.coupling
+            + (f"*BOUNDARY\n{self.supports}" if self.supports else "")
+            + steps
+        )
+
+
+OUTPUT = "*NODE PRINT, NSET=TOP\nU\n*NODE FILE\nU\n*EL FILE\nS\n"
+LAKE = "*RESERVOIR, NAME=LAKE, SURFACE=UPSTREAM, LEVEL=7., BED=0., ADDED MASS=WESTERGAARD\n"
+WEIGHT = (
+    "*STEP, NAME=WEIGHT\n*STATIC\n0.5, 1.\n"
+    f"*DLOAD\nBLOCK, GRAV, 9.81, 0., 0., -1.\n{LAKE}{OUTPUT}*END STEP\n"
+)
+MOTION = (
+    "*STEP, NAME=MOTION\n*DYNAMIC, DIRECT\n0.01, 0.1\n*DAMPING, RATIO=0.05, F1=2., F2=30.\n"
+    f"*BASE MOTION, DOF=1, AMPLITUDE=QUAKE\n{OUTPUT}*NODE PRINT, NSET=TOP\nV, A\n*END STEP\n"
+)
+QUAKE = "*AMPLITUDE, NAME=QUAKE\n0., 0., 0.03, 1., 0.07, -1., 0.1, 0.\n"
+SPRINGS = "*TIE, NAME=T, STIFFNESS=1e11\nSOLE, ROOF\n"

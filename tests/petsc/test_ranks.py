@@ -1,0 +1,68 @@
+"""Several processes against one: all files of results, on 1, 2 and 4 ranks."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from keyway_tools.written_values import compare_written
+from rank_decks import MOTION, QUAKE, SPRINGS, WEIGHT, BlockOnRock
+
+# Rows and columns of round-off: a displacement that symmetry makes zero has the round-off of the
+# solver. Residuals, errors of the energy balance and the numerical energy are such numbers, too.
+ROUNDOFF = re.compile(r"residual|error|numerical|ledger|estimates\..*\.iteration")
+CASES = {
+    "static": (BlockOnRock(), WEIGHT),
+    "springs": (BlockOnRock(coupling=SPRINGS), WEIGHT),
+    "dynamic": (BlockOnRock(), QUAKE + MOTION),
+    "weight, then motion": (BlockOnRock(), QUAKE + WEIGHT + MOTION),
+    "massless rock": (BlockOnRock(rock_has_mass=False), QUAKE + MOTION),
+    "all corners": (BlockOnRock(element="C3D8R"), WEIGHT),
+}
+
+
+def worst_difference(plain, divided) -> tuple[float, str]:
+    """The largest relative difference of all results but round-off, and its place."""
+    found = [
+        (difference.size, f"{difference.place}: {difference.text}")
+        for difference in compare_written(plain.folder, divided.folder)
+        if not ROUNDOFF.search(difference.place)
+    ]
+    assert len(found) > 20
+    return max(found)
+
+
+@pytest.mark.parametrize("ranks", [0, 1, 2, 4])
+@pytest.mark.parametrize("case", CASES)
+def test_direct_solver_gives_the_same_results(keyway, on_ranks, case, ranks):
+    """1e-8 of the largest value of each array: the factors differ by round-off times the condition
+    of the stiffness, 1e-16 * 1e5. One rank takes the path of the plain program: no difference.
+    """
+    block, steps = CASES[case]
+    deck = block.deck(steps)
+    plain, divided = keyway(deck, "-j", "1"), on_ranks(ranks)(deck, "--solver", "AUTO")
+    size, place = worst_difference(plain, divided)
+    assert size <= (1e-8 if ranks > 1 else 0.0), place
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 4])
+@pytest.mark.parametrize("case", ["static", "springs", "dynamic", "massless rock"])
+def test_iterative_solver_gives_the_same_results(keyway, on_ranks, case, ranks):
+    """1e-6 of the largest value: the iteration stops at 1e-10 of the right-hand side, times the
+    condition of the matrix that its preconditioner leaves.
+    """
+    block, steps = CASES[case]
+    deck = block.deck(steps)
+    plain, divided = keyway(deck, "-j", "1"), on_ranks(ranks)(deck, "--solver", "ITERATIVE")
+    size, place = worst_difference(plain, divided)
+    assert size <= 1e-6, place
+
+
+def test_no_rank_assembles_all(on_ranks):
+    """The ledger of rank 0 has the memory of its part alone; what it prints is told once."""
+    deck = BlockOnRock((8, 8, 10)).deck(WEIGHT)
+    one, four = on_ranks(0)(deck), on_ranks(4)(deck)
+    assert four.stdout.count("finished in") == 1
+    assert four.json["status"] == one.json["status"] == "finished"
+    assert np.isclose(four.json["extremes"]["U"]["value"], one.json["extremes"]["U"]["value"])
