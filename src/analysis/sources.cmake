@@ -27,6 +27,7 @@ set(sources
   reduced/reduced_scheme.f90
   reduced/reduced_shapes.f90
   solids/active_unknowns.f90
+  solids/block_answers.f90
   solids/changing_elements.f90
   solids/conserving_stress.f90
   solids/force_iteration.f90

@@ -5,18 +5,24 @@ module divided_run
   use cli, only: command_line
   use element_parts, only: divide_elements
   use errors, only: deck_is_wrong, error_type, raise
+  use file_system, only: base_name
   use increment_listener, only: listener
+  use kinds, only: rk
   use initial_state, only: start_analysis
   use omp_lib, only: omp_get_num_procs, omp_set_num_threads
   use problem_definition, only: problem
-  use ranks, only: is_first_rank, num_ranks, num_ranks_here, share_error
+  use ranks, only: add_over_ranks, exchange_seconds, is_first_rank, num_ranks, num_ranks_here, &
+                   share_error, this_rank
+  use run_checkpoint, only: load_latest_state
   use run_ledger, only: ledger
   use step_loop, only: run_all_steps
   use undivided_effects, only: refuse_undivided
   use unknown_layout, only: choose_solver
+  use user_routines, only: end_user_routines
+  use write_text, only: as_text
   implicit none
   private
-  public :: adapt_options, divide_problem, assist_run
+  public :: adapt_options, divide_problem, assist_run, rank_costs
 
   !> Results of the ranks that write none.
   type, extends(listener) :: silent_listener
@@ -39,11 +45,9 @@ contains
     word = ''
     if (options%is_check) word = '--check'
     if (options%is_material) word = '--material'
-    if (options%is_continued) word = '--continue'
-    if (size(options%umat%files) > 0) word = '--umat'
     if (options%most_unsaved < huge(1)) word = '--save-joint-problems'
     if (word == '') return
-    call raise(error, 'keyway: '//word//' works in one process only so far; start '// &
+    call raise(error, 'keyway: '//word//' works in one process only; start '// &
                'without mpiexec', deck_is_wrong)
   end subroutine adapt_options
 
@@ -62,18 +66,52 @@ contains
 
   !> The part of the ranks that write nothing in a run; the calls of `share_error` meet those of
   !> run_analysis.
-  subroutine assist_run(model, costs, error)
+  subroutine assist_run(model, options, costs, error)
     type(problem), intent(inout) :: model
+    type(command_line), intent(in) :: options
     type(ledger), intent(in) :: costs
     type(error_type), allocatable, intent(out) :: error
     type(silent_listener) :: results
     type(state), allocatable :: now
+    type(error_type), allocatable :: failure
+    character(:), allocatable :: ignored
     results%costs = costs
+    results%log%is_quiet = .true.
+    if (options%is_continued) then
+      call start_analysis(model, now, error)
+      if (.not. allocated(error)) then
+        call load_latest_state(options%folder//'/'//base_name(model%deck_file), now, error)
+      end if
+      call share_error(error)
+    end if
     call share_error(error)
     if (allocated(error)) return
-    call start_analysis(model, now, error)
+    if (.not. allocated(now)) call start_analysis(model, now, error)
     if (.not. allocated(error)) call run_all_steps(model, now, results, error)
+    call share_error(error)
+    if (.not. allocated(error)) ignored = rank_costs(model)
+    call end_user_routines(model, now%total_time, results%log, failure)
+    if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
   end subroutine assist_run
+
+  !> The balance of the ranks as a line of the log. All ranks call this at the end of a run.
+  function rank_costs(model) result(text)
+    type(problem), intent(in) :: model
+    character(:), allocatable :: text !< '' for one rank
+    real(rk), allocatable :: elements(:), seconds(:)
+    integer :: i
+    text = ''
+    if (num_ranks() == 1) return
+    allocate (elements(num_ranks()), seconds(num_ranks()), source=0.0_rk)
+    seconds(this_rank() + 1) = exchange_seconds()
+    call add_over_ranks(seconds)
+    do i = 1, num_ranks()
+      elements(i) = count(model%mesh%rank_of_element == i - 1)
+    end do
+    text = as_text(num_ranks())//' ranks have '//as_text(nint(minval(elements)))//' to '// &
+           as_text(nint(maxval(elements)))//' elements each; exchange between them and waiting '// &
+           'for others took '//as_text(minval(seconds))//' to '//as_text(maxval(seconds))//' s'
+  end function rank_costs
 
   !> Writes nothing.
   subroutine increment_done(self, model, now, error)

@@ -86,7 +86,7 @@ program keyway
   else if (options%is_material) then
     call run_tests(model, options, echo, started_at, error)
   else if (.not. is_first_rank()) then
-    call assist_run(model, costs, error)
+    call assist_run(model, options, costs, error)
   else
     call run_problem(model, options, remarks, echo, costs, started_at, lock, error)
   end if

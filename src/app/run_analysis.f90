@@ -4,6 +4,7 @@ module run_analysis
   use errors, only: error_type, raise_unwritten
   use diagnostics, only: diagnostic_list
   use disk_advice, only: explain_failed_write
+  use divided_run, only: rank_costs
   use earlier_files, only: mark_summary
   use file_system, only: make_folder
   use run_lock, only: job_lock
@@ -68,6 +69,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(state), allocatable :: now
     type(error_type), allocatable :: failure
+    character(:), allocatable :: balance
     call open_run(model, given, echo, earlier, costs, results, now, error)
     call share_error(error)
     if (allocated(error)) then
@@ -82,6 +84,9 @@ contains
       call costs%stop()
     end if
     if (.not. allocated(error)) call run_all_steps(model, now, results, error)
+    call share_error(error)
+    balance = ''
+    if (.not. allocated(error)) balance = rank_costs(model)
     call end_user_routines(model, now%total_time, results%log, failure)
     if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
     call costs%stop_all()
@@ -96,6 +101,7 @@ contains
       call results%log%say(closing_lines(model, results%summary, results%record, costs))
       call results%log%say('finished in '//as_text(wall_clock() - started_at)//' s, '// &
                            as_text(peak_memory())//' MB')
+      if (balance /= '') call results%log%say(balance)
       call results%log%say(text_of_ledger(costs))
     end if
     call results%log%close()
@@ -138,6 +144,7 @@ contains
       call start_analysis(model, now, error)
       call costs%stop()
       if (.not. allocated(error)) call results%load(model, now, remark, error)
+      call share_error(error)
       if (allocated(error)) return
     end if
     call catch_signals(results%stem//'.json')

@@ -7,8 +7,9 @@ module user_routines
   use kinds, only: rk
   use logging, only: run_log
   use problem_definition, only: problem
+  use ranks, only: is_first_rank
   use run_lock, only: job_lock
-  use umat_loader, only: at_end, open_library, user_library
+  use umat_loader, only: at_end, open_library, umat_request, user_library
   implicit none
   private
   public :: load_user_routines, end_user_routines, close_user_routines
@@ -17,7 +18,7 @@ contains
 
   !> Builds and loads the UMAT that --umat names; null without --umat. The lock of the run is taken
   !> before the first file is touched and stays taken: of several runs that start at the same time
-  !> one goes on.
+  !> one goes on. Only the first rank has a lock and keeps what the UMAT writes.
   subroutine load_user_routines(given, lock, umat, error)
     type(command_line), intent(in) :: given
     type(job_lock), intent(inout) :: lock
@@ -25,6 +26,11 @@ contains
     type(error_type), allocatable, intent(out) :: error
     nullify (umat)
     if (size(given%umat%files) == 0) return
+    allocate (umat)
+    if (.not. is_first_rank()) then
+      call open_silently(given, umat, error)
+      return
+    end if
     call make_folder(given%folder, error)
     call explain_failed_write(error, given%folder, .false.)
     if (allocated(error)) return
@@ -32,9 +38,20 @@ contains
     call lock%take(given%folder//'/'//base_name(given%deck)//'.lock', error)
     call explain_failed_write(error, given%folder, .false.)
     if (allocated(error)) return
-    allocate (umat)
     call open_library(given%umat, base_name(given%deck), given%folder, umat, error)
   end subroutine load_user_routines
+
+  !> Builds and loads the UMAT of another rank than the first.
+  subroutine open_silently(given, umat, error)
+    type(command_line), intent(in) :: given
+    type(user_library), intent(inout) :: umat
+    type(error_type), allocatable, intent(out) :: error
+    type(umat_request) :: request
+    request = given%umat
+    request%target = ''
+    request%is_silent = .true.
+    call open_library(request, base_name(given%deck), given%folder, umat, error)
+  end subroutine open_silently
 
   !> Closes the library of a run that does not start.
   subroutine close_user_routines(model)

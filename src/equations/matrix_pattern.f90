@@ -241,6 +241,8 @@ contains
     full%num_total = lower%num_total
     full%num_last = lower%num_last
     full%is_symmetric = .false.
+    full%is_shared = lower%is_shared
+    if (allocated(lower%layout)) full%layout = lower%layout
     allocate (full%column_start(lower%num_total + 1), next(lower%num_total))
     allocate (full%row(2*size(lower%row) - lower%num_total))
     next = lower%column_start(2:) - lower%column_start(:lower%num_total) - 1

@@ -1,6 +1,6 @@
 !> The one list of equation solvers.
 module solver_catalogue
-  use errors, only: deck_is_wrong, error_type, raise, system_failed
+  use errors, only: error_type, raise, system_failed
   use linear_solver, only: equation_solver
   use solver_cholmod, only: cholmod_solver
   use solver_petsc, only: petsc_solver
@@ -29,8 +29,7 @@ contains
       if (.not. is_whole) allocate (petsc_solver :: solver)
     case (unsymmetric_solver)
       if (is_whole) allocate (umfpack_solver :: solver)
-      if (.not. is_whole) call raise(error, 'equations that are not symmetric are '// &
-                                     'solved by one process; start without mpiexec', deck_is_wrong)
+      if (.not. is_whole) allocate (petsc_solver :: solver)
     case default
       call raise(error, "there is no equation solver '"//name//"'; expected "//symmetric_solver// &
                  ' or '//unsymmetric_solver, system_failed)

@@ -1,22 +1,23 @@
-!> Symmetric positive definite equations whose matrix is a sum over ranks, by PETSc: Cholesky's
-!> factor of MUMPS, or conjugate gradients.
+!> Equations whose matrix is a sum over ranks, by PETSc: factors of MUMPS or, for symmetric positive
+!> definite matrices, conjugate gradients.
 !>
 !> Right-hand sides and solutions are whole on every rank; the matrix and its factor are not.
 module solver_petsc
   use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_null_ptr, c_ptr, c_size_t
-  use kinds, only: rk
+  use kinds, only: long, rk
   use errors, only: error_type, raise, system_failed
   use blas_threads, only: use_many_threads, use_one_thread
   use linear_solver, only: equation_solver
   use matrix_pattern, only: pattern
-  use petsc_equations, only: by_blocks, by_cholesky, by_multigrid, factor_petsc, finish_petsc, &
-                             is_done, is_singular, is_slow, plan_petsc, solve_petsc, start_petsc
+  use petsc_equations, only: by_blocks, by_cholesky, by_lu, by_multigrid, entries_of_petsc, &
+                             factor_petsc, finish_petsc, is_done, is_singular, is_slow, &
+                             plan_petsc, solve_petsc, start_petsc
   use ranks, only: gather_rows, this_rank
   use unknown_layout, only: choose_solver, direct_solver, own_rows, row_layout
   use write_text, only: as_text
   implicit none
   private
-  public :: petsc_solver
+  public :: petsc_solver, method_text
 
   !> Most rows for which AUTO takes the factor.
   integer, parameter :: most_direct = 200000
@@ -24,11 +25,13 @@ module solver_petsc
   type, extends(equation_solver) :: petsc_solver
     integer :: num_iterations = 0 !< of all solves
     type(c_ptr), private :: handle = c_null_ptr
+    logical, private :: is_ready = .false. !< there is a factor
     integer(c_int), private :: method = by_cholesky
     integer(c_size_t), private :: num_entries_given = 0
     type(row_layout), private :: layout
   contains
     procedure :: analyse, factorise, solve
+    procedure :: num_entries => num_entries_here
     final :: release
   end type petsc_solver
 
@@ -44,7 +47,8 @@ contains
     call release(self)
     self%layout = matrix%layout
     bounds = own_rows(self%layout, this_rank())
-    self%method = method_of(self%layout)
+    self%method = by_lu
+    if (matrix%is_symmetric) self%method = method_of(self%layout)
     call list_places(matrix, bounds, row, column)
     self%num_entries_given = size(row, kind=c_size_t)
     self%handle = start_petsc()
@@ -56,20 +60,36 @@ contains
     end if
   end subroutine analyse
 
-  !> The method for a matrix.
+  !> The method for a symmetric matrix.
   pure integer(c_int) function method_of(layout) result(method)
     type(row_layout), intent(in) :: layout
     logical :: is_direct
     is_direct = layout%solver == direct_solver
     if (layout%solver == choose_solver) then
-      is_direct = layout%first_row(size(layout%first_row)) <= most_direct
+      is_direct = layout%first_row(size(layout%first_row)) <= most_direct &
+                  .or. layout%has_many_sides
     end if
     method = merge(by_blocks, by_multigrid, layout%has_inertia)
     if (is_direct) method = by_cholesky
   end function method_of
 
-  !> Rows and columns of the entries that this rank adds, both triangles, in the order of
-  !> `list_values`; then the own rows without an unknown.
+  !> The method for a symmetric matrix in words.
+  function method_text(layout) result(text)
+    type(row_layout), intent(in) :: layout
+    character(:), allocatable :: text
+    select case (method_of(layout))
+    case (by_cholesky)
+      text = 'factors by MUMPS'
+    case (by_multigrid)
+      text = 'conjugate gradients with multigrid'
+    case default
+      text = 'conjugate gradients with an incomplete factor of each rank'
+    end select
+    text = as_text(layout%first_row(size(layout%first_row)))//' equations, '//text
+  end function method_text
+
+  !> Rows and columns of the entries that this rank adds in the order of `list_values`, of a
+  !> symmetric matrix in both triangles; then the own rows without an unknown.
   subroutine list_places(matrix, bounds, row, column)
     type(pattern), intent(in) :: matrix
     integer, intent(in) :: bounds(2) !< own rows
@@ -87,7 +107,7 @@ contains
           if (.not. matrix%layout%is_touched(j)) cycle
           do k = matrix%column_start(j), matrix%column_start(j) + matrix%free_entries(j) - 1
             call add_place(place(matrix%row(k)), place(j))
-            if (matrix%row(k) /= j) call add_place(place(j), place(matrix%row(k)))
+            if (is_mirrored(matrix, k, j)) call add_place(place(j), place(matrix%row(k)))
           end do
         end do
         do i = bounds(1), bounds(2)
@@ -107,6 +127,13 @@ contains
     end subroutine add_place
   end subroutine list_places
 
+  !> Whether an entry stands for that of the upper triangle, too.
+  pure logical function is_mirrored(matrix, entry, column)
+    type(pattern), intent(in) :: matrix
+    integer, intent(in) :: entry, column
+    is_mirrored = matrix%is_symmetric .and. matrix%row(entry) /= column
+  end function is_mirrored
+
   !> The values of the entries of `list_places`.
   subroutine list_values(matrix, values, list)
     type(pattern), intent(in) :: matrix
@@ -118,11 +145,11 @@ contains
     largest = 0.0_rk
     do j = 1, matrix%num_free
       if (.not. matrix%layout%is_touched(j)) cycle
-      largest = max(largest, values(matrix%column_start(j)))
       do k = matrix%column_start(j), matrix%column_start(j) + matrix%free_entries(j) - 1
+        largest = max(largest, values(k))
         n = n + 1
         list(n) = values(k)
-        if (matrix%row(k) == j) cycle
+        if (.not. is_mirrored(matrix, k, j)) cycle
         n = n + 1
         list(n) = values(k)
       end do
@@ -153,6 +180,7 @@ contains
     else if (status /= is_done) then
       call raise(error, 'PETSc could not factor the matrix (not enough memory?)', system_failed)
     end if
+    self%is_ready = status == is_done
   end subroutine factorise
 
   !> Solves for each column of `b`, in place.
@@ -160,29 +188,36 @@ contains
     class(petsc_solver), intent(inout) :: self
     real(rk), intent(inout) :: b(:, :) !< (num_free, right-hand sides)
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: own(:), all(:)
+    real(rk), allocatable :: own(:, :), all(:)
     integer(c_int) :: status, iterations
     integer :: bounds(2), j, k
-    if (size(b, 1) == 0) return
+    if (size(b) == 0) return
     bounds = own_rows(self%layout, this_rank())
-    allocate (own(bounds(2) - bounds(1) + 1))
+    allocate (own(bounds(2) - bounds(1) + 1, size(b, 2)), source=0.0_rk)
     allocate (all(self%layout%first_row(size(self%layout%first_row))))
     do k = 1, size(b, 2)
-      own = 0.0_rk
       do j = 1, size(b, 1)
         associate (row => self%layout%row(j))
-          if (row >= bounds(1) .and. row <= bounds(2)) own(row - bounds(1) + 1) = b(j, k)
+          if (row >= bounds(1) .and. row <= bounds(2)) own(row - bounds(1) + 1, k) = b(j, k)
         end associate
       end do
-      status = solve_petsc(self%handle, int(size(own), c_int), own, iterations)
-      self%num_iterations = self%num_iterations + iterations
-      call gather_rows(self%layout%first_row, own, all)
-      b(:, k) = all(self%layout%row + 1)
-      if (status == is_done) cycle
-      call report_failure(status, iterations, error)
-      return
     end do
+    status = solve_petsc(self%handle, int(size(own, 1), c_int), int(size(own, 2), c_int), own, &
+                         iterations)
+    self%num_iterations = self%num_iterations + iterations
+    do k = 1, size(b, 2)
+      call gather_rows(self%layout%first_row, own(:, k), all)
+      b(:, k) = all(self%layout%row + 1)
+    end do
+    if (status /= is_done) call report_failure(status, iterations, error)
   end subroutine solve
+
+  !> Entries of the factor on this rank.
+  integer(long) function num_entries_here(self) result(entries)
+    class(petsc_solver), intent(in) :: self
+    entries = 0_long
+    if (self%is_ready) entries = int(entries_of_petsc(self%handle), long)
+  end function num_entries_here
 
   !> Why a solve has failed.
   subroutine report_failure(status, iterations, error)
@@ -204,5 +239,6 @@ contains
     type(petsc_solver), intent(inout) :: self
     call finish_petsc(self%handle)
     self%handle = c_null_ptr
+    self%is_ready = .false.
   end subroutine release
 end module solver_petsc

@@ -10,13 +10,7 @@ from pathlib import Path
 
 import pytest
 from harness import ROOT, Program
-
-# More processes than processors, in containers that run as root, must not spin while they wait.
-LAUNCH = {
-    "OMPI_ALLOW_RUN_AS_ROOT": "1",
-    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    "OMPI_MCA_mpi_yield_when_idle": "1",
-}
+from rank_decks import LAUNCH
 
 
 class RankProgram(Program):

@@ -10,6 +10,13 @@ from keyway_tools.box_mesh import box_mesh, stretched
 from keyway_tools.deck_text import mesh_deck
 from uplift_decks import joined
 
+# More processes than processors, in containers that run as root, must not spin while they wait.
+LAUNCH = {
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_mpi_yield_when_idle": "1",
+}
+
 
 @dataclass
 class BlockOnRock:

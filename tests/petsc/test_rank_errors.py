@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import json
+import os
 import re
+import signal
+import subprocess
+import time
+from pathlib import Path
 
 import pytest
 from block_decks import Pair
-from rank_decks import QUAKE, WEIGHT, BlockOnRock
+from rank_decks import LAUNCH, MOTION, QUAKE, WEIGHT, BlockOnRock
 
 
 @pytest.mark.parametrize("ranks", [2, 4])
@@ -37,25 +43,27 @@ def test_free_body(keyway, on_ranks, solver):
 
 
 @pytest.mark.parametrize(
-    ("steps", "words"),
+    ("steps", "procedure", "words"),
     [
-        ("*STEP\n*FREQUENCY\n3\n*END STEP\n", "*FREQUENCY"),
-        (QUAKE + "*STEP\n*DYNAMIC, SCHEME=REDUCED\n0.01, 0.1\n*END STEP\n", "reduced models"),
+        (
+            "*STEP\n*DYNAMIC, SCHEME=REDUCED\n0.01, 0.1\n*BASE MOTION, DOF=1, AMPLITUDE=QUAKE\n",
+            "*DYNAMIC",
+            "reduced models",
+        ),
+        ("*STEP\n*STATIC\n*CONTROLS, PRECISION=SINGLE\n", "*STATIC", "PRECISION=SINGLE"),
     ],
 )
-def test_steps_that_one_process_takes(on_ranks, steps, words):
-    """Refused in one sentence, never run wrongly."""
-    run = on_ranks(2)(BlockOnRock().deck(steps), code=2)
+def test_steps_that_one_process_takes(on_ranks, steps, procedure, words):
+    """Refused with the place of the procedure and the way out, never run wrongly; the same program
+    runs the deck in one process.
+    """
+    deck = Pair().deck(QUAKE + steps + "*END STEP\n")
+    line = [text.split(",")[0].strip() for text in deck.splitlines()].index(procedure) + 1
+    run = on_ranks(2)(deck, code=2)
     assert words in run.stderr
-    assert "in one process only" in run.stderr
-
-
-def test_joints_need_one_process(keyway, on_ranks):
-    """Joints are refused on two ranks; the same program runs them on one."""
-    step = "*STEP\n*STATIC\n*DLOAD\nBLOCK, GRAV, 9.81, 0., 0., -1.\n*END STEP\n"
-    deck = Pair().deck(step)
-    assert "joints work in one process only" in on_ranks(2)(deck, code=2).stderr
-    assert on_ranks(1)(deck).json["status"] == "finished"
+    assert f"job.inp:{line}: " in run.stderr
+    assert "without mpiexec" in run.stderr
+    assert on_ranks(0)(deck).json["status"] == "finished"
 
 
 def test_failing_disk_ends_all(on_ranks, tmp_path):
@@ -63,6 +71,42 @@ def test_failing_disk_ends_all(on_ranks, tmp_path):
     program = on_ranks(2)
     (program.folder / "results_job").write_text("a file where the folder should be")
     assert program(BlockOnRock().deck(WEIGHT), code=3).stderr.count("results_job") == 1
+
+
+def process_of_rank(rank: int, launcher: int) -> int | None:
+    """The process of a rank below a launcher, if it has started."""
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            words = (folder / "environ").read_bytes().split(b"\0")
+            parent = int((folder / "stat").read_text().rsplit(")", 1)[1].split()[1])
+        except OSError:
+            continue
+        if parent == launcher and f"OMPI_COMM_WORLD_RANK={rank}".encode() in words:
+            return int(folder.name)
+    return None
+
+
+def test_a_rank_that_is_killed_ends_all(on_ranks):
+    """The launcher ends all ranks; what was written stays readable."""
+    program = on_ranks(2)
+    deck = BlockOnRock((8, 8, 10)).deck(QUAKE + MOTION.replace("0.01, 0.1", "0.0001, 10."))
+    (program.folder / "job.inp").write_text(deck, encoding="utf-8")
+    words = ["mpiexec", "-q", "--oversubscribe", "-n", "2", str(program.path), "-q", "-j", "1"]
+    summary = program.folder / "results_job/job.json"
+    with subprocess.Popen(
+        [*words, "-o", str(summary.parent), "job.inp"],
+        cwd=program.folder,
+        env={**os.environ, **LAUNCH},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    ) as launcher:
+        while not summary.exists() and launcher.poll() is None:
+            time.sleep(0.1)
+        rank = process_of_rank(1, launcher.pid)
+        assert rank is not None
+        os.kill(rank, signal.SIGKILL)
+        assert launcher.wait(timeout=60) != 0
+    assert json.loads(summary.read_text())["status"] in {"running", "stopped"}
 
 
 def test_plain_program_names_the_build(keyway):

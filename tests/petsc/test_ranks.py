@@ -10,8 +10,14 @@ from keyway_tools.written_values import compare_written
 from rank_decks import MOTION, QUAKE, SPRINGS, WEIGHT, BlockOnRock
 
 # Rows and columns of round-off: a displacement that symmetry makes zero has the round-off of the
-# solver. Residuals, errors of the energy balance and the numerical energy are such numbers, too.
-ROUNDOFF = re.compile(r"residual|error|numerical|ledger|estimates\..*\.iteration")
+# solver. Residuals, errors of the energy balance and the numerical energy are such numbers, too,
+# and so are estimated errors of stresses that do not vary. Round-off
+# also chooses between equal extremes of a symmetric model, and between the states stick and slip of
+# a point at the limit of friction. Checkpoints have a test of their own.
+ROUNDOFF = re.compile(
+    r"residual|error|numerical|ledger|condition|estimates\..*\.(iteration|relative|mesh)|\.(ckpt|undo)"
+    r"|\.x\.\d|\.(node|element|time)$|state|files\.\d"
+)
 CASES = {
     "static": (BlockOnRock(), WEIGHT),
     "springs": (BlockOnRock(coupling=SPRINGS), WEIGHT),
@@ -63,6 +69,6 @@ def test_no_rank_assembles_all(on_ranks):
     """The ledger of rank 0 has the memory of its part alone; what it prints is told once."""
     deck = BlockOnRock((8, 8, 10)).deck(WEIGHT)
     one, four = on_ranks(0)(deck), on_ranks(4)(deck)
-    assert four.stdout.count("finished in") == 1
+    assert four.stderr.count("finished in") == 1
     assert four.json["status"] == one.json["status"] == "finished"
     assert np.isclose(four.json["extremes"]["U"]["value"], one.json["extremes"]["U"]["value"])

@@ -1,7 +1,7 @@
 """Measures the time of runs relative to the equation solver, and the time for given accuracy.
 
 usage: .venv/bin/python tools/bench [run] [accuracy] [joints] [cracks] [reduced] [scale]
-           [estimates] [peers] [forecast]
+           [estimates] [peers] [forecast] [ranks]
            [--sizes N ...] [--json FILE]
 
 run (default): ratios of times taken in one process, which hardly depend on the machine:
@@ -36,6 +36,9 @@ peers: the same dam in Keyway, CalculiX (Debian's calculix-ccx) and OpenSees (pi
 a Python named by --opensees-python): weight, a linear history, a history with two joints. Time,
 memory and displacements side by side, as in docs/performance.md. The first of --sizes is used.
 
+ranks: a linear dam on 1, 2 and 4 processes with both solvers, beside the program with two threads;
+--petsc-program is the program of the preset petsc. As in docs/large_models.md.
+
 forecast: what `keyway --check` says of --decks (all of input/) on an idle machine, and what their
 runs took, as in docs/performance.md.
 """
@@ -59,6 +62,7 @@ from cost_of_accuracy import draw, measure_accuracy, tables  # noqa: E402
 from cost_of_cracks import measure_cracks  # noqa: E402
 from cost_of_estimates import HEAD, decks_of_input, measure_estimates  # noqa: E402
 from cost_of_joints import DAMS, measure_joints  # noqa: E402
+from cost_of_ranks import measure_ranks  # noqa: E402
 from cost_of_reduced import measure_reduced  # noqa: E402
 from cost_of_run import Figure, measure_all  # noqa: E402
 from cost_of_scale import ScaleOptions, draw_growth, measure_scale  # noqa: E402
@@ -78,6 +82,8 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("--refine", type=int, default=1, help="of the dam that cracks (1)")
     add("--threads", type=int, default=2, help="of the program (2)")
     add("--program", type=Path, default=ROOT / "build/release/keyway", help="the program")
+    petsc = ROOT / "build/petsc/keyway"
+    add("--petsc-program", type=Path, default=petsc, help="the program of several processes")
     add("--decks", type=Path, nargs="+", help="of estimates and forecast (all of input/)")
     add("--json", type=Path, metavar="FILE", help="write the figures as JSON too")
     add("--limit", type=float, default=200.0, help="of a run of peers (200) [s]")
@@ -88,7 +94,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     options = parser.parse_args(arguments)
     options.what = options.what or ["run"]
     known = {"run", "accuracy", "joints", "cracks", "reduced", "scale", "estimates", "peers",
-             "forecast"}  # fmt: skip
+             "forecast", "ranks"}  # fmt: skip
     if set(options.what) - known:
         parser.error(f"expected one of {', '.join(sorted(known))}")
     return options
@@ -140,6 +146,8 @@ def report_others(program: Program, folder: Path, options: argparse.Namespace) -
     if "forecast" in options.what:
         decks = options.decks or decks_of(ROOT / "input")
         print(measure_forecasts(program, folder, decks))
+    if "ranks" in options.what:
+        measure_ranks(program, options.petsc_program.resolve(), folder, options.sizes or [100_000])
     if "peers" in options.what:
         compare_peers(peer_options(options), folder)
 

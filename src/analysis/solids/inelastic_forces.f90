@@ -6,6 +6,7 @@
 !> summed over the points that are not elastic. Threads update blocks of elements; forces are
 !> summed in the order of the blocks, so that results do not depend on the number of threads.
 module inelastic_forces
+  use block_answers, only: block_answer, open_answers, share_points
   use dam_mesh, only: element_is_there
   use kinds, only: rk
   use problem_definition, only: problem
@@ -15,7 +16,8 @@ module inelastic_forces
   use gauss_rules, only: hex_point
   use shape_hex8, only: derivative_at, gradient_at, hex8_dofs
   use material_law, only: stress_law
-  use material_points, only: point_state, time_increment, update_report, no_tangent
+  use material_points, only: point_state, time_increment, no_tangent
+  use ranks, only: num_ranks
   implicit none
   private
   public :: block_answer, open_answers, update_points, recall_points, sum_excess, find_failure
@@ -24,32 +26,7 @@ module inelastic_forces
   !> Fewer elements than this are faster on one thread.
   integer, parameter :: few_elements = 32
 
-  !> Forces, tangents and report of the points of a block.
-  type :: block_answer
-    real(rk), allocatable :: force(:, :) !< (24, elements) sum w B^T (D eps - sigma) [N]
-    real(rk), allocatable :: tangent(:, :, :) !< (6, 6, points) [Pa], or (6, 6, 0)
-    logical, allocatable :: has_excess(:) !< (elements) with a point that is not elastic
-    !> (elements) Whether an update moves them; the others keep their last strain and stress
-    logical, allocatable :: takes_part(:)
-    real(rk), allocatable :: lost(:, :) !< (24, elements) lost damping force [N], if any
-    real(rk), allocatable :: correction(:, :) !< (24, elements) of the work [N], if any
-    type(update_report) :: report
-  end type block_answer
-
 contains
-
-  !> Allocates the answers of all blocks.
-  subroutine open_answers(blocks, answers)
-    type(inelastic_block), intent(in) :: blocks(:)
-    type(block_answer), allocatable, intent(out) :: answers(:)
-    integer :: i
-    allocate (answers(size(blocks)))
-    do i = 1, size(blocks)
-      allocate (answers(i)%force(hex8_dofs, size(blocks(i)%elements)), &
-                answers(i)%has_excess(size(blocks(i)%elements)), answers(i)%tangent(6, 6, 0))
-      allocate (answers(i)%takes_part(size(blocks(i)%elements)), source=.true.)
-    end do
-  end subroutine open_answers
 
   !> Strains from displacements and stresses by the laws, for all blocks.
   subroutine update_points(model, u, origin, time, old, new, answers)
@@ -72,7 +49,33 @@ contains
       if (.not. model%materials(model%inelastic(i)%material)%law%is_serial) cycle
       call update_block(model, model%inelastic(i), u, origin, time, old(i), new(i), answers(i))
     end do
+    if (num_ranks() > 1) call take_others(model, time, old, new, answers)
   end subroutine update_points
+
+  !> Takes the blocks of other ranks. A failure is repeated here, which finds its words.
+  subroutine take_others(model, time, old, new, answers)
+    type(problem), intent(in) :: model
+    type(time_increment), intent(in) :: time
+    type(point_state), intent(in) :: old(:) !< (blocks) converged
+    type(point_state), intent(inout) :: new(:) !< (blocks)
+    type(block_answer), intent(inout) :: answers(:) !< (blocks)
+    logical :: is_updated(size(answers))
+    integer :: i
+    do i = 1, size(answers)
+      is_updated(i) = any(answers(i)%takes_part) .and. &
+                      element_is_there(model%mesh, model%inelastic(i)%elements(1))
+    end do
+    call share_points(is_updated, new, answers)
+    do i = 1, size(answers)
+      if (.not. is_updated(i) .or. answers(i)%is_here) cycle
+      associate (report => answers(i)%report, part => model%inelastic(i))
+        if (report%failed_point > 0 .or. report%size_ratio < 1.0_rk) then
+          call call_law(model, part, time, old(i), new(i), answers(i))
+        end if
+        call sum_block(part, new(i), answers(i))
+      end associate
+    end do
+  end subroutine take_others
 
   !> Energies at the strains of the last update, of laws that defer them.
   subroutine complete_energies(model, time, old, new, answers)
@@ -87,11 +90,14 @@ contains
     do i = 1, size(answers)
       associate (law => model%materials(model%inelastic(i)%material)%law)
         if (.not. law%defers_energy .or. all(new(i)%is_elastic)) cycle
+        if (.not. answers(i)%is_here) cycle
         call law%update(model%inelastic(i)%points, time, old(i), new(i), answers(i)%tangent, &
                         answers(i)%report)
       end associate
     end do
     !$omp end parallel do
+    if (num_ranks() == 1) return
+    call share_points([(.not. all(new(i)%is_elastic), i=1, size(answers))], new, answers)
   end subroutine complete_energies
 
   !> Whether several threads are faster than one.
@@ -117,7 +123,7 @@ contains
     end do
   end subroutine recall_points
 
-  !> Updates one block.
+  !> Updates one block, of another rank up to its strains.
   subroutine update_block(model, part, u, origin, time, old, new, answer)
     type(problem), intent(in) :: model
     type(inelastic_block), intent(in) :: part
@@ -127,7 +133,6 @@ contains
     type(point_state), intent(in) :: old
     type(point_state), intent(inout) :: new
     type(block_answer), intent(inout) :: answer
-    type(time_increment) :: moment
     integer :: num_tangents
     if (.not. any(answer%takes_part)) return
     num_tangents = merge(0, part%points%num_points, time%tangent == no_tangent)
@@ -140,16 +145,29 @@ contains
       return
     end if
     call move_points(model, part, u, origin, answer%takes_part, new)
+    if (.not. answer%is_here) return
+    call call_law(model, part, time, old, new, answer)
+    call sum_block(part, new, answer)
+  end subroutine update_block
+
+  !> Calls the law of a block for the elements that take part.
+  subroutine call_law(model, part, time, old, new, answer)
+    type(problem), intent(in) :: model
+    type(inelastic_block), intent(in) :: part
+    type(time_increment), intent(in) :: time
+    type(point_state), intent(in) :: old
+    type(point_state), intent(inout) :: new
+    type(block_answer), intent(inout) :: answer
+    type(time_increment) :: moment
     moment = time
-    if (num_tangents == 0 .and. .not. all(answer%takes_part)) then
+    if (size(answer%tangent, 3) == 0 .and. .not. all(answer%takes_part)) then
       moment%stays = reshape(spread(.not. answer%takes_part, 1, part%points_of_element), &
                              [part%points%num_points])
     end if
     associate (law => model%materials(part%material)%law)
       call law%update(part%points, moment, old, new, answer%tangent, answer%report)
     end associate
-    call sum_block(part, new, answer)
-  end subroutine update_block
+  end subroutine call_law
 
   !> Strains, and gradients where the law wants them, of the elements that take part.
   subroutine move_points(model, part, u, origin, takes_part, new)

@@ -193,7 +193,8 @@ contains
       self%time%holds_switches = self%chosen%holds_switches
       call iterate_on_forces(self, model, system, task, before, after, outcome, error)
       outcome%has_held_switches = self%chosen%holds_switches
-      if (allocated(error) .or. outcome%has_converged .or. is_dropped(self%solver%controls)) return
+      if (allocated(error) .or. outcome%has_converged) return
+      if (is_dropped(self%solver%controls)) return
       if (.not. self%matrix%is_elastic) then
         call self%matrix%factorise_elastic(model, system, self%values, self%solver, error)
         if (allocated(error)) return

@@ -18,6 +18,7 @@ module solid_tangent
   type :: tangent_matrix
     logical :: is_elastic = .true. !< the factor is that of K_eff
     logical :: is_symmetric = .true. !< of A
+    logical :: is_shared = .false. !< of A: no rank has all of it
     integer :: number = 0 !< of the factorisation
     real(rk) :: increment_size = 0.0_rk !< that the integrator has made K_eff for [s]
     type(pattern) :: full_matrix !< both triangles, built for the first unsymmetric A
@@ -39,17 +40,18 @@ contains
     self%increment_size = increment_size
   end subroutine start_elastic
 
-  !> Copies what makes the matrix to the state, unless the state has it.
+  !> Copies what makes the matrix to the state, unless the state has it. Where ranks share A, a run
+  !> goes on from K_eff.
   subroutine store(self, matrix)
     class(tangent_matrix), intent(in) :: self
     type(last_matrix), intent(inout) :: matrix
     if (matrix%number == self%number) return
     matrix%number = self%number
-    matrix%is_elastic = self%is_elastic
+    matrix%is_elastic = self%is_elastic .or. self%is_shared
     matrix%is_symmetric = self%is_symmetric
     matrix%increment_size = self%increment_size
     if (allocated(matrix%lost)) deallocate (matrix%lost)
-    if (.not. self%is_elastic) matrix%lost = self%lost
+    if (.not. matrix%is_elastic) matrix%lost = self%lost
   end subroutine store
 
   !> Factors the matrix of a state that was loaded; K_eff is factored.
@@ -64,7 +66,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     integer :: num_values
     self%number = matrix%number
-    self%is_elastic = matrix%is_elastic
+    self%is_elastic = matrix%is_elastic .or. system%matrix%is_shared
     self%is_symmetric = matrix%is_symmetric
     if (self%is_elastic) return
     if (.not. self%is_symmetric) call full_pattern(system%matrix, self%full_matrix)
@@ -108,6 +110,7 @@ contains
     self%number = self%number + 1
     call solver%costs%start('assemble', 'inelastic solids', 'inelastic')
     if (allocated(self%lost)) deallocate (self%lost)
+    self%is_shared = system%matrix%is_shared
     if (self%is_symmetric) then
       allocate (self%lost(size(values)))
       call lost_stiffness(model, system%numbers, answers, system%matrix, self%lost)

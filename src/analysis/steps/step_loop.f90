@@ -10,6 +10,7 @@ module step_loop
   use step_control, only: increment_control, start_control
   use increment_listener, only: listener
   use equilibrium, only: balance_outcome, is_dropped
+  use solver_petsc, only: method_text
   use step_loads, only: step_time
   use joint_water, only: record_uplift
   use modal_errors, only: modal_error
@@ -56,6 +57,10 @@ contains
         call method%open_step(model, model%steps(i), now, results, error)
       end if
       if (allocated(error)) return
+      if (method%system%matrix%is_shared) then
+        call results%log%say("step '"//model%steps(i)%name//"': "// &
+                             method_text(method%system%matrix%layout))
+      end if
       call run_increments(model, model%steps(i), method, now, results, error)
       if (allocated(error)) return
       call method%close_step(model, model%steps(i), now, results, error)

@@ -3,6 +3,7 @@
 module kept_solvers
   use kinds, only: rk, long
   use equilibrium, only: equilibrium_solver
+  use ranks, only: is_true_everywhere
   implicit none
   private
   public :: solver_shelf
@@ -57,7 +58,7 @@ contains
     end do
   end subroutine take
 
-  !> Whether another factor and its work find memory, by allocating and freeing it.
+  !> Whether another factor and its work find memory on all ranks, by allocating and freeing it.
   logical function has_room(solver)
     class(equilibrium_solver), intent(in) :: solver
     real(rk), allocatable, volatile :: room(:) ! volatile: compilers would omit it
@@ -67,5 +68,6 @@ contains
     allocate (room(max(1_long, most)), stat=status)
     has_room = status == 0
     if (has_room) room(1) = 0.0_rk
+    has_room = is_true_everywhere(has_room)
   end function has_room
 end module kept_solvers

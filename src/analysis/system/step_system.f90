@@ -20,6 +20,7 @@ module step_system
   use guest_type, only: guest_reference, damping_matrix, mass_matrix, stiffness_matrix
   use joint_operator, only: jump_operator, build_jump_operator
   use joint_separators, only: find_separators
+  use ranks, only: add_over_ranks
   use step_loads, only: load_group, support, gather_loads, gather_supports
   use run_ledger, only: ledger
   implicit none
@@ -145,9 +146,11 @@ contains
     call build_pattern(system%numbers, cells, system%matrix)
     if (allocated(model%mesh%rank_of_element)) then
       call lay_out_rows(model%mesh, system%numbers, cells, system%matrix)
-      system%matrix%layout%solver = model%equation_solver
-      system%matrix%layout%has_inertia = plan%procedure%has_inertia .and. &
-                                         all(model%materials%density > 0.0_rk)
+      associate (layout => system%matrix%layout)
+        layout%solver = model%equation_solver
+        layout%has_inertia = plan%procedure%has_inertia .and. all(model%materials%density > 0.0_rk)
+        layout%has_many_sides = size(model%joints) > 0
+      end associate
     end if
     call build_jump_operator(system%numbers, model%mesh, model%joints, system%operator)
     call find_separators(system%numbers, system%operator, system%matrix%group, &
@@ -176,9 +179,20 @@ contains
                             system%origin_energy, error)
       call costs%stop()
       if (allocated(error)) return
+      if (system%matrix%is_shared) call share_origins(system)
     end if
     call build_thermal_force(model, now, system, costs)
   end subroutine build_origins
+
+  !> Adds the origins of the elements of all ranks.
+  subroutine share_origins(system)
+    type(dam_system), intent(inout) :: system
+    real(rk) :: energy(1)
+    call add_over_ranks(system%origin_force)
+    energy = system%origin_energy
+    call add_over_ranks(energy)
+    system%origin_energy = energy(1)
+  end subroutine share_origins
 
   !> The force of the thermal strains of a state, where a material expands.
   subroutine build_thermal_force(model, now, system, costs)

@@ -1,11 +1,12 @@
 !> The rows of a matrix that is divided among the ranks.
 !>
 !> A node belongs to the lowest rank that assembles an element at it; nodes without such an element
-!> belong to the first rank. Its three rows stand together.
+!> belong to the first rank. Its three rows stand together, and so do those of a jump, which belong
+!> to the rank of the node that the jump separates from the rest.
 module matrix_rows
   use dam_mesh, only: fe_mesh
-  use dam_mesh, only: fe_mesh
   use dof_numbering, only: numbering
+  use joint_rows, only: num_axes
   use kinds, only: rk
   use matrix_pattern, only: pattern
   use node_dofs, only: num_directions
@@ -25,13 +26,10 @@ contains
     type(row_table), intent(in) :: cells !< of this rank
     type(pattern), intent(inout) :: matrix
     integer, allocatable :: first_of_node(:)
-    integer :: j
     allocate (matrix%layout)
     matrix%is_shared = .true.
     associate (layout => matrix%layout)
-      call number_rows(mesh, numbers, layout%first_row, first_of_node)
-      layout%row = [(first_of_node(numbers%node(j)) + numbers%direction(j) - 1, &
-                     j=1, numbers%num_free)]
+      call number_rows(mesh, numbers, layout%first_row, layout%row, first_of_node)
       allocate (layout%is_touched(numbers%num_free), source=.false.)
       call touch_unknowns(numbers, cells, layout%is_touched)
       call find_rigid_motions(mesh, numbers, first_of_node, &
@@ -39,19 +37,21 @@ contains
     end associate
   end subroutine lay_out_rows
 
-  !> Numbers the rows of the nodes with free unknowns, rank by rank.
-  subroutine number_rows(mesh, numbers, first_row, first_of_node)
+  !> Numbers the rows of the nodes with free unknowns and of the jumps, rank by rank.
+  subroutine number_rows(mesh, numbers, first_row, row, first_of_node)
     type(fe_mesh), intent(in) :: mesh
     type(numbering), intent(in) :: numbers
     integer, allocatable, intent(out) :: first_row(:) !< (ranks + 1) from 0
+    integer, allocatable, intent(out) :: row(:) !< (num_free) from 0
     integer, allocatable, intent(out) :: first_of_node(:) !< (nodes) from 0; -1: no rows
     integer :: owner(mesh%num_nodes)
-    integer :: rank, node, next
+    integer :: rank, node, next, j, first_jump
     logical :: has_rows(mesh%num_nodes)
     call find_owners(mesh, owner)
+    first_jump = numbers%num_free - numbers%num_jumps + 1
     has_rows = .false.
-    has_rows(numbers%node(:numbers%num_free)) = .true.
-    allocate (first_row(num_ranks() + 1), first_of_node(mesh%num_nodes))
+    has_rows(numbers%node(:first_jump - 1)) = .true.
+    allocate (first_row(num_ranks() + 1), first_of_node(mesh%num_nodes), row(numbers%num_free))
     first_of_node = -1
     next = 0
     do rank = 0, num_ranks() - 1
@@ -61,8 +61,15 @@ contains
         first_of_node(node) = next
         next = next + num_directions
       end do
+      do j = first_jump, numbers%num_free, num_axes
+        if (owner(numbers%node(j)) /= rank) cycle
+        row(j:j + num_axes - 1) = [next, next + 1, next + 2]
+        next = next + num_axes
+      end do
     end do
     first_row(num_ranks() + 1) = next
+    row(:first_jump - 1) = first_of_node(numbers%node(:first_jump - 1)) &
+                           + numbers%direction(:first_jump - 1) - 1
   end subroutine number_rows
 
   !> The rank of each node.

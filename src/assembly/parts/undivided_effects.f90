@@ -1,12 +1,11 @@
 !> Refuses what several ranks do not work on yet, so that nothing is computed wrongly.
 module undivided_effects
   use errors, only: deck_is_wrong, error_type, raise
-  use guest_history, only: history
   use guest_type, only: damping_matrix, guest, mass_matrix, stiffness_matrix
-  use kinds, only: rk
   use problem_definition, only: problem
   use row_tables, only: row_table
   use step_plan, only: step
+  use write_text, only: as_text
   implicit none
   private
   public :: refuse_undivided
@@ -19,33 +18,27 @@ contains
   subroutine refuse_undivided(model, error)
     type(problem), intent(in) :: model
     type(error_type), allocatable, intent(out) :: error
-    character(:), allocatable :: effect
+    character(:), allocatable :: effect, place
     integer :: i
     effect = effect_of_model(model)
+    place = model%deck_file
     do i = 1, size(model%steps)
-      if (effect == '') effect = effect_of_step(model%steps(i))
+      if (effect /= '') exit
+      effect = effect_of_step(model%steps(i))
+      place = model%deck_file//':'//as_text(model%steps(i)%line)
     end do
     if (effect == '') return
-    call raise(error, model%deck_file//': '//effect//' work in one process only so far; start '// &
-               'this deck without mpiexec and --solver (large_models.md)', deck_is_wrong)
+    call raise(error, place//': '//effect//' work in one process only; start this deck '// &
+               'without mpiexec and --solver (large_models.md)', deck_is_wrong)
   end subroutine refuse_undivided
 
   !> What the model holds, '' for nothing.
   function effect_of_model(model) result(effect)
     type(problem), intent(in) :: model
     character(:), allocatable :: effect
-    class(history), allocatable :: own
     integer :: i
     effect = ''
-    if (size(model%joints) > 0) effect = 'joints'
-    if (allocated(model%inelastic)) then
-      if (size(model%inelastic) > 0) effect = 'materials that are not elastic'
-    end if
-    if (associated(model%umat)) effect = 'user materials'
-    if (allocated(model%mesh%is_absent)) effect = 'stages (*MODEL CHANGE)'
     do i = 1, size(model%guests)
-      call model%guests(i)%item%start_history(model%mesh, own)
-      if (allocated(own)) effect = "effects with a history ('"//model%guests(i)%item%name//"')"
       if (hides_cells(model%guests(i)%item)) effect = cells_needed//model%guests(i)%item%name//"')"
     end do
     do i = 1, size(model%loads)
@@ -71,13 +64,7 @@ contains
     type(step), intent(in) :: plan
     character(:), allocatable :: effect
     effect = ''
-    if (plan%procedure%finds_modes) effect = 'steps that find modes (*FREQUENCY)'
     if (plan%procedure%scheme == 'REDUCED') effect = 'reduced models (*DYNAMIC, SCHEME=REDUCED)'
-    if (plan%damping%modal_ratio > 0.0_rk) effect = 'modal damping'
     if (plan%controls%keeps_single) effect = 'factors in single precision (PRECISION=SINGLE)'
-    if (plan%changes_stage) effect = 'stages'
-    if (allocated(plan%heats)) then
-      if (size(plan%heats) > 0) effect = 'temperatures (*TEMPERATURE)'
-    end if
   end function effect_of_step
 end module undivided_effects

@@ -19,14 +19,13 @@ contains
   subroutine pages_from_ranks(list)
     type(page_list), intent(inout) :: list
     call list%add('one-process', &
-                  'in one process only|is built with PETSc|solved by one process|AUTO, DIRECT '// &
-                  'or ITERATIVE', &
+                  'in one process only|is built with PETSc|AUTO, DIRECT or ITERATIVE', &
                   'Several processes under mpiexec do not work on this yet, or the program is '// &
                   'the plain one, which has no solvers for several processes.', &
                   'Start the deck without mpiexec and --solver; docs/large_models.md says what '// &
                   'several processes work on.', &
-                  'mpiexec -n 2 keyway joints.inp', &
-                  'keyway -j 2 joints.inp')
+                  'mpiexec -n 2 keyway reduced.inp', &
+                  'keyway -j 2 reduced.inp')
     call list%add('slow-solver', &
                   'conjugate gradients', &
                   'The iterative solver of several processes does not converge: a part of the '// &

@@ -7,6 +7,7 @@ void keyway_end_ranks(int code) { (void)code; }
 int keyway_num_ranks(void) { return 1; }
 int keyway_num_ranks_here(void) { return 1; }
 int keyway_this_rank(void) { return 0; }
+double keyway_exchange_seconds(void) { return 0; }
 
 int keyway_is_alone(void) { return 0; }
 

@@ -10,7 +10,8 @@ module ranks
   implicit none
   private
   public :: start_ranks, end_ranks, num_ranks, this_rank, is_first_rank, is_alone
-  public :: num_ranks_here, add_over_ranks, gather_rows, is_true_everywhere, share_error
+  public :: exchange_seconds, num_ranks_here, add_over_ranks, gather_rows, is_true_everywhere
+  public :: share_error
 
   !> For ranks that do not come, because they wait for this one elsewhere [s]. Rank 0 may write
   !> results meanwhile.
@@ -28,6 +29,13 @@ module ranks
       implicit none
       integer(c_int), value :: code
     end subroutine end_ranks
+
+    !> Time that this rank has spent in the procedures of this module [s].
+    function exchange_seconds() result(seconds) bind(c, name='keyway_exchange_seconds')
+      import :: c_double
+      implicit none
+      real(c_double) :: seconds
+    end function exchange_seconds
 
     function keyway_num_ranks() result(number) bind(c)
       import :: c_int

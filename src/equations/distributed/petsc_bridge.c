@@ -5,7 +5,7 @@
 _Static_assert(sizeof(PetscInt) == sizeof(int), "PETSc must be built with 32-bit indices");
 _Static_assert(sizeof(PetscScalar) == sizeof(double), "PETSc must be built with real scalars");
 
-enum { by_cholesky = 1, by_multigrid = 2, by_blocks = 3 };
+enum { by_cholesky = 1, by_multigrid = 2, by_blocks = 3, by_lu = 4 };
 enum { done = 0, singular = 1, slow = 2, failed = 3 };
 enum { num_rigid = 6, rows_of_node = 3, num_old = 6, most_iterations = 5000 };
 
@@ -93,6 +93,11 @@ static PetscErrorCode give_rigid_motions(struct equations *self, const double *r
   PetscFunctionReturn(0);
 }
 
+static int is_direct(const struct equations *self)
+{
+  return self->method == by_cholesky || self->method == by_lu;
+}
+
 static PetscErrorCode choose_method(struct equations *self)
 {
   PC pc;
@@ -101,9 +106,9 @@ static PetscErrorCode choose_method(struct equations *self)
   PetscCall(KSPSetOptionsPrefix(self->solver, "keyway_"));
   PetscCall(KSPSetOperators(self->solver, self->matrix, self->matrix));
   PetscCall(KSPGetPC(self->solver, &pc));
-  if (self->method == by_cholesky) {
+  if (is_direct(self)) {
     PetscCall(KSPSetType(self->solver, KSPPREONLY));
-    PetscCall(PCSetType(pc, PCCHOLESKY));
+    PetscCall(PCSetType(pc, self->method == by_lu ? PCLU : PCCHOLESKY));
     PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
   } else {
     PetscCall(KSPSetType(self->solver, KSPCG));
@@ -127,7 +132,7 @@ static PetscErrorCode plan(struct equations *self, const double *rigid, size_t e
   PetscCall(MatSetType(self->matrix, MATAIJ));
   PetscCall(MatSetBlockSize(self->matrix, rows_of_node));
   PetscCall(MatSetPreallocationCOO(self->matrix, (PetscCount)entries, row, column));
-  PetscCall(MatSetOption(self->matrix, MAT_SPD, PETSC_TRUE));
+  if (self->method != by_lu) PetscCall(MatSetOption(self->matrix, MAT_SPD, PETSC_TRUE));
   PetscCall(MatCreateVecs(self->matrix, &self->x, &self->b));
   if (self->method == by_multigrid) PetscCall(give_rigid_motions(self, rigid));
   PetscCall(choose_method(self));
@@ -169,7 +174,16 @@ static PetscErrorCode check_factor(struct equations *self, int *status)
   PetscCall(VecDot(self->x, self->b, &work));
   PetscCall(VecPointwiseDivide(residual, self->b, scale));
   PetscCall(VecDot(residual, self->b, &stiff));
-  *status = reason > 0 && work > 0 && work < 1e13 * stiff ? done : singular;
+  *status = reason > 0 && PetscAbsReal(work) < 1e13 * stiff ? done : singular;
+  if (self->method == by_cholesky) {
+    PC pc;
+    Mat both;
+    PetscInt negative;
+    PetscCall(KSPGetPC(self->solver, &pc));
+    PetscCall(PCFactorGetMatrix(pc, &both));
+    PetscCall(MatMumpsGetInfog(both, 12, &negative)); /* pivots */
+    if (negative > 0 || work <= 0) *status = singular;
+  }
   PetscCall(VecDestroy(&scale));
   PetscCall(VecDestroy(&residual));
   PetscFunctionReturn(0);
@@ -187,13 +201,13 @@ static PetscErrorCode factor(struct equations *self, const double *values, int *
   PetscCall(PCGetFailedReason(pc, &reason));
   *status = reason ? singular : done;
   if (reason == PC_FACTOR_OUTMEMORY) *status = failed;
-  if (*status == done && self->method == by_cholesky) PetscCall(check_factor(self, status));
+  if (*status == done && is_direct(self)) PetscCall(check_factor(self, status));
   PetscFunctionReturn(0);
 }
 
 int keyway_petsc_factor(void *handle, size_t entries, const double *values)
 {
-  int status;
+  int status = failed;
   (void)entries;
   return factor(handle, values, &status) ? failed : status;
 }
@@ -218,9 +232,64 @@ static PetscErrorCode solve(struct equations *self, double *b, int *iterations, 
   PetscFunctionReturn(0);
 }
 
-int keyway_petsc_solve(void *handle, int rows, double *b, int *iterations)
+/* Entries of the factor or, without one, of the matrix, on this rank. */
+static PetscErrorCode count_entries(struct equations *self, double *entries)
 {
-  int status;
-  (void)rows;
-  return solve(handle, b, iterations, &status) ? failed : status;
+  MatInfo info;
+  PC pc;
+  Mat both;
+  PetscInt count;
+  PetscFunctionBegin;
+  if (is_direct(self)) {
+    PetscCall(KSPGetPC(self->solver, &pc));
+    PetscCall(PCFactorGetMatrix(pc, &both));
+    PetscCall(MatMumpsGetInfo(both, 9, &count));
+    *entries = count < 0 ? -1e6 * count : count; /* MUMPS counts many entries in millions */
+  } else {
+    PetscCall(MatGetInfo(self->matrix, MAT_LOCAL, &info));
+    *entries = info.nz_used;
+  }
+  PetscFunctionReturn(0);
+}
+
+double keyway_petsc_entries(void *handle)
+{
+  double entries = 0;
+  return count_entries(handle, &entries) ? 0 : entries;
+}
+
+/* All columns at once: a factor is read once for many of them. */
+static PetscErrorCode solve_columns(struct equations *self, int sides, double *b)
+{
+  Mat right, left;
+  const PetscScalar *own;
+  PetscInt stride;
+  PetscFunctionBegin;
+  PetscCall(MatCreateDense(PETSC_COMM_WORLD, self->rows, PETSC_DECIDE, PETSC_DETERMINE, sides, b,
+                           &right));
+  PetscCall(MatDuplicate(right, MAT_DO_NOT_COPY_VALUES, &left));
+  PetscCall(KSPMatSolve(self->solver, right, left));
+  PetscCall(MatDenseGetLDA(left, &stride));
+  PetscCall(MatDenseGetArrayRead(left, &own));
+  for (int k = 0; k < sides; k++)
+    for (int i = 0; i < self->rows; i++)
+      b[(size_t)k * self->rows + i] = own[(size_t)k * stride + i];
+  PetscCall(MatDenseRestoreArrayRead(left, &own));
+  PetscCall(MatDestroy(&left));
+  PetscCall(MatDestroy(&right));
+  PetscFunctionReturn(0);
+}
+
+int keyway_petsc_solve(void *handle, int rows, int sides, double *b, int *iterations)
+{
+  struct equations *self = handle;
+  int status = done;
+  *iterations = 0;
+  if (sides > 1 && is_direct(self)) return solve_columns(self, sides, b) ? failed : done;
+  for (int k = 0; k < sides && status == done; k++) {
+    int count = 0;
+    if (solve(self, b + (size_t)k * rows, &count, &status)) return failed;
+    *iterations += count;
+  }
+  return status;
 }

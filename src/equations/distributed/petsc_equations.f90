@@ -5,12 +5,14 @@ module petsc_equations
   implicit none
   private
   public :: has_petsc, start_petsc, plan_petsc, factor_petsc, solve_petsc, finish_petsc
-  public :: by_cholesky, by_multigrid, by_blocks
+  public :: entries_of_petsc
+  public :: by_cholesky, by_multigrid, by_blocks, by_lu
   public :: is_done, is_singular, is_slow
 
   integer(c_int), parameter :: by_cholesky = 1 !< L L^T by MUMPS
   !> Conjugate gradients, with smoothed aggregation, and with the incomplete factor of each rank
   integer(c_int), parameter :: by_multigrid = 2, by_blocks = 3
+  integer(c_int), parameter :: by_lu = 4 !< L U by MUMPS, of a matrix that is not symmetric
   integer(c_int), parameter :: is_done = 0, is_singular = 1, is_slow = 2 !< outcomes; else a failure
 
   interface
@@ -52,17 +54,25 @@ module petsc_equations
       integer(c_int) :: status
     end function factor_petsc
 
-    !> Solves for the own rows of the right-hand side, in place.
-    function solve_petsc(handle, rows, b, iterations) result(status) &
+    !> Solves for the own rows of right-hand sides, in place.
+    function solve_petsc(handle, rows, sides, b, iterations) result(status) &
       bind(c, name='keyway_petsc_solve')
       import :: c_double, c_int, c_ptr
       implicit none
       type(c_ptr), value :: handle
-      integer(c_int), value :: rows
-      real(c_double), intent(inout) :: b(rows)
-      integer(c_int), intent(out) :: iterations
+      integer(c_int), value :: rows, sides
+      real(c_double), intent(inout) :: b(rows, sides)
+      integer(c_int), intent(out) :: iterations !< of all sides
       integer(c_int) :: status
     end function solve_petsc
+
+    !> Entries of the factor or, without one, of the matrix, on this rank.
+    function entries_of_petsc(handle) result(entries) bind(c, name='keyway_petsc_entries')
+      import :: c_double, c_ptr
+      implicit none
+      type(c_ptr), value :: handle
+      real(c_double) :: entries
+    end function entries_of_petsc
 
     subroutine finish_petsc(handle) bind(c, name='keyway_petsc_finish')
       import :: c_ptr

@@ -19,6 +19,7 @@ module unknown_layout
     logical, allocatable :: is_touched(:) !< (num_free) this rank adds to the row
     real(rk), allocatable :: rigid(:, :) !< (own rows, 6) motions of a rigid body [m]
     logical :: has_inertia = .false. !< mass everywhere makes the matrix well conditioned
+    logical :: has_many_sides = .false. !< joints need a solution for each of their jumps
     integer :: solver = choose_solver
   end type row_layout
 

@@ -2,6 +2,7 @@
 module umat_loader
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_funptr, c_int
   use, intrinsic :: iso_c_binding, only: c_null_char, c_null_funptr, c_null_ptr, c_ptr, c_size_t
+  use, intrinsic :: iso_fortran_env, only: output_unit
   use errors, only: analysis_failed, deck_is_wrong, error_type, raise, system_failed
   use kinds, only: rk
   use umat_build, only: build_library, is_library, umat_file
@@ -32,6 +33,7 @@ module umat_loader
     logical :: is_threadsafe = .false. !< may be called by several threads at once
     logical :: checks_tangent = .false. !< compare DDSDDE with differences of STRESS
     logical :: is_continued = .false. !< the run goes on from a checkpoint
+    logical :: is_silent = .false. !< what the UMAT writes is lost
   end type umat_request
 
   type :: user_library
@@ -77,7 +79,11 @@ contains
       call keyway_remove_temporary(temporary//c_null_char)
     end if
     if (allocated(error)) return
-    call open_message_file(folder//'/'//job//'.msg', request%is_continued, error)
+    if (request%is_silent) then
+      call open_nowhere(error)
+    else
+      call open_message_file(folder//'/'//job//'.msg', request%is_continued, error)
+    end if
     if (allocated(error)) return
     call library%call_external(merge(at_restart, at_start, request%is_continued), &
                                [0.0_rk, 0.0_rk], 0.0_rk, 0, 0, error)
@@ -152,6 +158,16 @@ contains
     end if
     if (status /= 0) call raise(error, "keyway: cannot write '"//path//"'", system_failed)
   end subroutine open_message_file
+
+  !> Opens units 6 and 7 where nothing is kept.
+  subroutine open_nowhere(error)
+    type(error_type), allocatable, intent(out) :: error
+    integer :: status
+    open (unit=message_unit, status='scratch', action='readwrite', iostat=status)
+    if (status == 0) open (unit=output_unit, file='/dev/null', action='write', iostat=status)
+    if (status /= 0) call raise(error, 'keyway: cannot open a scratch file for the UMAT', &
+                                system_failed)
+  end subroutine open_nowhere
 
   !> Calls UEXTERNALDB, if present, at a moment of the analysis.
   subroutine call_external(self, moment, time, size, step, increment, error)

@@ -59,10 +59,11 @@ contains
     type(state), intent(in) :: now
     type(run_record), intent(in) :: record
     type(run_log), intent(inout) :: log
+    logical :: is_due
     call log%note(line_of_log(now))
-    if (log%is_terminal .or. self%is_due(model, now)) then
-      call log%progress(self%line(model, now, record))
-    end if
+    is_due = log%is_terminal
+    if (.not. is_due) is_due = self%is_due(model, now)
+    if (is_due) call log%progress(self%line(model, now, record))
   end subroutine show
 
   !> Whether a pipe gets a line for this increment: each part of the run, each minute, and the ends
@@ -73,8 +74,8 @@ contains
     type(state), intent(in) :: now
     real(rk) :: done
     done = done_of_run(model, now)
-    is_due = now%is_last_of_step .or. self%shown < 0.0_rk .or. done >= self%shown + part_of_line &
-             .or. wall_clock() - self%shown_at >= time_of_line
+    is_due = now%is_last_of_step .or. self%shown < 0.0_rk .or. done >= self%shown + part_of_line
+    if (.not. is_due) is_due = wall_clock() - self%shown_at >= time_of_line
     if (.not. is_due) return
     self%shown = done
     self%shown_at = wall_clock()

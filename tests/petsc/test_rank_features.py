@@ -1,0 +1,142 @@
+"""What several processes work on, against one: joints, water, cracks, stages, heat, modes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from harness import ROOT
+from heat_decks import brick, lines_of, model, warm
+from joint_decks import Block, amplitude, dynamic, static, weight
+from rank_decks import OUTPUT, QUAKE, SPRINGS, BlockOnRock
+from test_ranks import worst_difference
+from test_stages_in_motion import column
+from uplift_decks import Section, lake
+from uplift_decks import weight as weight_of_section
+
+SHAKE = amplitude("SINE", np.arange(0.0, 0.2001, 0.005), 6.0 * np.sin(np.pi * np.arange(41) / 10.0))
+# Tight tolerances: the program stops at these and not where the processes differ.
+TIGHT = "*CONTROLS, RESIDUAL=1e-10, INCREMENT=1e-10, ITERATIONS=50"
+
+
+def rocking(meshes=None, solver: str = "AUTO", damping: str = "") -> str:
+    """A block that rocks and slides on its joint."""
+    block = Block(
+        (1.0, 1.0, 2.0),
+        (2, 2, 4),
+        young=1e8,
+        law="KN=1e9, KT=1e9, FRICTION=0.4",
+        meshes=meshes,
+        cards=SHAKE,
+    )
+    controls = f"{TIGHT}, JOINT SOLVER={solver}\n"
+    shaking = "*BASE MOTION, DOF=1, AMPLITUDE=SINE\n*NODE PRINT, NSET=TOP\nU\n"
+    shaking += "*JOINT PRINT, JOINT=BED\n"
+    return block.deck(
+        static(controls + weight()) + dynamic(controls + damping + shaking, 0.005, 0.2)
+    )
+
+
+def shaken_water(ground_counts: int) -> str:
+    """A section that rocks with water in its joint."""
+    section = Section(
+        counts=(12, 5),
+        ground_counts=ground_counts,
+        crest=1.5,
+        young=2e10,
+        law="KN=1e10, KT=1e10, FRICTION=0.8, UPLIFT=LAKE, PROFILE=OPEN",
+    )
+    print_joint = "*JOINT PRINT, JOINT=BED\n"
+    steps = static(f"{TIGHT}\n" + weight_of_section() + lake(9.0) + print_joint, "0.25, 1.")
+    steps += dynamic(f"{TIGHT}\n*BASE MOTION, DOF=1, AMPLITUDE=SINE\n" + print_joint, 0.005, 0.2)
+    return section.deck(SHAKE + steps)
+
+
+def joint_on_rock() -> str:
+    """Blocks of different meshes with a joint between them, on springs of rock."""
+    law = "*JOINT LAW, NAME=LAW, KN=1e10, KT=1e10, FRICTION=0.5\n*JOINT, NAME=SOLE, LAW=LAW\n"
+    block = BlockOnRock(coupling=law + "SOLE, ROOF\n")
+    push = "*DLOAD\nBLOCK, GRAV, 9.81, 0., 0., -1.\nBLOCK, GRAV, 2., 1., 0., 0.\n"
+    return block.deck(static(f"{TIGHT}\n{push}{OUTPUT}*JOINT PRINT, JOINT=SOLE\n", "0.5, 1."))
+
+
+def tangents(kind: str) -> str:
+    """The column that is built in lifts and cracks in motion."""
+    controls = f"*CONTROLS, RESIDUAL=1e-8, INCREMENT=1e-8, ITERATIONS=50, TANGENT={kind}\n"
+    return column().replace("*END STEP\n", f"{controls}*END STEP\n")
+
+
+def modes() -> str:
+    """Five modes of a block on springs."""
+    return BlockOnRock(coupling=SPRINGS).deck("*STEP\n*FREQUENCY\n5\n*END STEP\n")
+
+
+def modal_damping() -> str:
+    """A block with modal damping."""
+    damping = "*DAMPING, MODAL, RATIO=0.05, MODES=4\n"
+    motion = f"*BASE MOTION, DOF=1, AMPLITUDE=QUAKE\n{OUTPUT}"
+    return BlockOnRock().deck(QUAKE + dynamic(damping + motion, 0.01, 0.1))
+
+
+def warmed() -> str:
+    """A held brick with a field of temperatures."""
+    blocks = brick((4, 3, 3))
+    held = "*BOUNDARY\n1, 1, 3\n2, 1, 3\n5, 1, 3\n9, 1, 3\n"
+    return model(blocks, held) + warm(lines_of(blocks, lambda x: 10.0 + x[:, 0] * x[:, 1] * 9.0))
+
+
+FEATURES: dict[str, Callable[[], str]] = {
+    "joint of one mesh": rocking,
+    "joint of two meshes": lambda: rocking((3, 2)),
+    "joint by full Newton": lambda: rocking(solver="FULL"),
+    "joint with modal damping": lambda: rocking(damping="*DAMPING, MODAL, RATIO=0.1, MODES=4\n"),
+    "joint on rock": joint_on_rock,
+    "water in a joint of one mesh": lambda: shaken_water(0),
+    "water in a joint of two meshes": lambda: shaken_water(8),
+    "stages and cracks, elastic matrix": lambda: tangents("ELASTIC"),
+    "stages and cracks, consistent tangent": lambda: tangents("CONSISTENT"),
+    "modes": modes,
+    "modal damping": modal_damping,
+    "temperature": warmed,
+}
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 4])
+@pytest.mark.parametrize("feature", FEATURES)
+def test_feature(keyway, on_ranks, feature, ranks):
+    """1e-8 of the largest value of each array, as with elastic solids (test_ranks): the iterations
+    stop at 1e-10. Cracks stop at 1e-8, and stresses take a hundred times the remainder: 1e-6. One
+    rank with --solver DIRECT has the divided matrix in one part.
+    """
+    deck = FEATURES[feature]()
+    plain, divided = keyway(deck, "-j", "1"), on_ranks(ranks)(deck, "--solver", "DIRECT")
+    size, place = worst_difference(plain, divided)
+    assert size <= (1e-6 if "cracks" in feature else 1e-8), place
+
+
+@pytest.mark.parametrize("ranks", [2, 4])
+def test_user_material(keyway, on_ranks, ranks):
+    """A UMAT is built and called by every rank."""
+    umat = str(ROOT / "input/umat/plastic_j2.f90")
+    deck = (ROOT / "input/umat/plastic_j2.inp").read_text(encoding="utf-8")
+    plain = keyway(deck, "--umat", umat, "-j", "1")
+    size, place = worst_difference(plain, on_ranks(ranks)(deck, "--umat", umat))
+    assert size <= 1e-8, place
+
+
+@pytest.mark.parametrize(("first", "second"), [(2, 4), (2, 0), (0, 2)])
+def test_any_number_of_ranks_goes_on(keyway, on_ranks, first, second):
+    """A run of two steps equals the first step, and the second one with other ranks."""
+    whole = rocking()
+    end = whole.index("*STEP, NAME=DYNAMIC")
+    part = whole[:end].replace("*END STEP\n", "*RESTART, WRITE\n*END STEP\n")
+    full = part + whole[end:]
+    plain = keyway(full, "-j", "1")
+    on_ranks(first)(part)
+    source = on_ranks(first).folder
+    program = on_ranks(second)
+    if program.folder != source:
+        (source / "results_job").rename(program.folder / "results_job")
+    size, place = worst_difference(plain, program(full, "--continue"))
+    assert size <= 1e-8, place
