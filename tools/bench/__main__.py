@@ -37,7 +37,7 @@ a Python named by --opensees-python): weight, a linear history, a history with t
 memory and displacements side by side, as in docs/performance.md. The first of --sizes is used.
 
 ranks: a linear dam on 1, 2 and 4 processes with both solvers, beside the program with two threads;
---petsc-program is the program of the preset petsc. As in docs/large_models.md.
+--petsc-program is the program of the preset petsc (docs/large_models.md).
 
 forecast: what `keyway --check` says of --decks (all of input/) on an idle machine, and what their
 runs took, as in docs/performance.md.

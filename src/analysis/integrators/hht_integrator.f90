@@ -104,7 +104,7 @@ contains
         q(:size(modes%shape, 1)) = modes%shape(:, k)
         call numbers%expand(q, shape(:, :, k))
       end do
-      call results%weigh_modes(model, shape, stiffening)
+      call results%stiffening_of_modes(model, shape, stiffening)
       if (allocated(stiffening)) call start_mesh_error(modes, stiffening, now%timing)
     end associate
     call results%costs%stop()

@@ -7,7 +7,7 @@ module increment_listener
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
   use dual_solutions, only: dual_solution
-  use ranks, only: share_error
+  use ranks, only: add_over_ranks, is_first_rank, num_ranks, share_error
   use stop_signals, only: name_of_signal
   implicit none
   private
@@ -34,7 +34,7 @@ module increment_listener
     procedure :: wants_motion => always_wants_motion
     procedure(modes_found), deferred :: modes_found
     procedure :: weigh_modes
-    procedure, non_overridable :: report_increment, report_modes
+    procedure, non_overridable :: report_increment, report_modes, stiffening_of_modes
   end type listener
 
   abstract interface
@@ -78,6 +78,22 @@ contains
     !> (modes) squared circular frequencies of the mesh less those of the structure [1/s2]
     real(rk), allocatable, intent(out) :: stiffening(:) !< not allocated where it is not known
   end subroutine weigh_modes
+
+  !> Answers of `weigh_modes`. The results are one rank's; all ranks have the answer of rank 0.
+  subroutine stiffening_of_modes(self, model, shape, stiffening)
+    class(listener), intent(inout) :: self
+    type(problem), intent(in) :: model
+    real(rk), intent(in) :: shape(:, :, :) !< (3, nodes, modes) unit modal mass
+    real(rk), allocatable, intent(out) :: stiffening(:) !< (modes) [1/s2], see `weigh_modes`
+    real(rk) :: shared(size(shape, 3) + 1)
+    call self%weigh_modes(model, shape, stiffening)
+    if (num_ranks() == 1) return
+    shared = 0.0_rk
+    if (is_first_rank() .and. allocated(stiffening)) shared = [stiffening, 1.0_rk]
+    call add_over_ranks(shared)
+    if (allocated(stiffening)) deallocate (stiffening)
+    if (shared(size(shared)) > 0.5_rk) stiffening = shared(:size(shape, 3))
+  end subroutine stiffening_of_modes
 
   !> Reports an increment. The results are one rank's; their failure is that of all ranks.
   subroutine report_increment(self, model, now, error)
