@@ -228,7 +228,9 @@ contains
                  ' iterations: a part of the model may be free to move; if none is, use '// &
                  '--solver DIRECT')
     else if (status == is_singular) then
-      call raise(error, 'conjugate gradients failed: the matrix is not positive definite')
+      call raise(error, 'conjugate gradients failed, because the matrix is not positive '// &
+                 'definite: a part of the model may be free to move; if none is, use '// &
+                 '--solver DIRECT')
     else
       call raise(error, 'PETSc failed to solve the equations', system_failed)
     end if

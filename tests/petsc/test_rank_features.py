@@ -128,9 +128,9 @@ def test_grout(keyway, on_ranks, facets, ranks):
     steps = move(-PUSH) + move(SAWN) + move(SAWN, "*GROUT, JOINT=J\n")
     deck = bar(BONDED, facets) + steps + move(2 * SAWN - PUSH)
     plain, divided = keyway(deck, "-j", "1"), on_ranks(ranks)(deck, "--solver", "DIRECT")
-    for column, size in (("tn", abs(BEFORE)), ("opening", SAWN)):
-        gap = ends_of_steps(plain, column) - ends_of_steps(divided, column)
-        assert np.abs(gap).max() <= 1e-8 * size, column
+    for name, size in (("tn", abs(BEFORE)), ("opening", SAWN)):
+        gap = ends_of_steps(plain, name) - ends_of_steps(divided, name)
+        assert np.abs(gap).max() <= 1e-8 * size, name
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])
