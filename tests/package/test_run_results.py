@@ -160,7 +160,8 @@ def test_errors_have_the_message_and_the_exit_code(program_path, tmp_path, monke
 
 def test_a_run_that_is_too_long_is_ended_and_keeps_its_results(program_path, tmp_path):
     deck = package.Deck(INPUT / "sliding_block.inp")
-    deck.card("DYNAMIC").data[0][0] = 1e-5  # 500 times as many increments
+    deck.card("DYNAMIC").data[0][0] = 1e-6  # more increments than any processor takes in 3 s
+    deck.card("STEP", NAME="SHAKING").parameters["INC"] = 10_000_000
     with pytest.raises(subprocess.TimeoutExpired):
         package.run(deck, threads=1, results=tmp_path, program=program_path, timeout=3.0)
     run = package.open(tmp_path)
