@@ -10,7 +10,7 @@ from fuzz import Fuzzer, all_decks
 from harness import ROOT
 
 SEED = 20260117
-NUM_MUTANTS = 1000
+NUM_MUTANTS = 600
 NUM_MANY = 100_000
 
 

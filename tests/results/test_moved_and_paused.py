@@ -141,7 +141,7 @@ def kill_in_checkpoint(process: subprocess.Popen, out: Path, row: int, delay: fl
 
 @pytest.mark.parametrize(
     ("threads", "kills"),
-    [("1", 10), ("2", 10), *(pytest.param(n, 100, marks=pytest.mark.full) for n in "12")],
+    [("1", 6), ("2", 6), *(pytest.param(n, 100, marks=pytest.mark.full) for n in "12")],
 )
 def test_kills_in_checkpoints(program_path, umat, tmp_path, threads, kills):
     """A checkpoint an increment: while it is written, when it is renamed, or just after."""
