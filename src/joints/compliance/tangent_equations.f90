@@ -24,6 +24,8 @@ module tangent_equations
     !> so that a run that is continued takes the same ones.
     logical :: is_first = .true.
     logical :: is_single = .false. !< factors of several groups may be in single precision
+    !> Groups see each other strongly: all are solved for at once. Fixed before the first tangent.
+    logical :: is_static = .false.
   contains
     procedure :: set_tangent, solve, estimate
     procedure, private :: precondition, iterate, step_roughly
@@ -56,7 +58,7 @@ contains
     end do
     if (.not. allocated(self%group)) then
       allocate (self%group(blocks%groups%num_groups))
-      self%is_later = order_of_groups(blocks)
+      self%is_later = order_of_groups(blocks) .and. .not. self%is_static
     end if
     kept = merge(kept_share, 0.0_rk, size(self%group) > 1 .and. .not. self%is_first)
     self%is_first = .false.

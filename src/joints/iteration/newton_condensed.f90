@@ -146,6 +146,7 @@ contains
       if (is_dropped(controls)) return
       outcome%iterations = outcome%iterations + 1
       self%tangent%is_single = .not. field%is_static
+      self%tangent%is_static = field%is_static
       call self%tangent%set_tangent(self%blocks, self%k_ref, self%weight*operator%area, &
                                     field%tangent)
       if (self%tangent%is_singular) return ! a smaller increment may avoid it
