@@ -4,7 +4,7 @@ module divided_run
   use analysis_state, only: state, vibration_mode
   use cli, only: command_line
   use element_parts, only: divide_elements
-  use errors, only: deck_is_wrong, error_type, raise
+  use errors, only: deck_is_wrong, error_type, keep_first, raise
   use file_system, only: base_name
   use increment_listener, only: listener
   use kinds, only: rk
@@ -91,7 +91,7 @@ contains
     call share_error(error)
     if (.not. allocated(error)) ignored = rank_costs(model)
     call end_user_routines(model, now%total_time, results%log, failure)
-    if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
+    call keep_first(error, failure)
   end subroutine assist_run
 
   !> The balance of the ranks as a line of the log. All ranks call this at the end of a run.

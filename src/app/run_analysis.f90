@@ -1,7 +1,7 @@
 !> One analysis: opens the results, runs the steps, and closes the results even after a failure.
 module run_analysis
   use kinds, only: rk
-  use errors, only: error_type, raise_unwritten
+  use errors, only: error_type, keep_first, raise_unwritten
   use diagnostics, only: diagnostic_list
   use disk_advice, only: explain_failed_write
   use divided_run, only: rank_costs
@@ -88,7 +88,7 @@ contains
     balance = ''
     if (.not. allocated(error)) balance = rank_costs(model)
     call end_user_routines(model, now%total_time, results%log, failure)
-    if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
+    call keep_first(error, failure)
     call costs%stop_all()
     if (allocated(error)) then
       call explain_failed_write(error, results%stem, .true.)

@@ -2,7 +2,7 @@
 module run_material
   use cli, only: command_line
   use diagnostics, only: diagnostic_list
-  use errors, only: error_type, raise, system_failed
+  use errors, only: error_type, keep_first, raise, system_failed
   use file_system, only: base_name, make_folder, safe_name
   use kinds, only: rk
   use logging, only: run_log
@@ -47,14 +47,14 @@ contains
       if (error%exit_code == system_failed) return
     end do
     call end_user_routines(model, maxval(summaries%time), log, failure)
-    if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
+    call keep_first(error, failure)
     call write_test_summary(stem//'.json', model%deck_file, summaries, failure)
     call log%say(table_of_tests(summaries))
     if (.not. allocated(error)) then
       call log%say('finished in '//as_text(wall_clock() - started_at)//' s')
     end if
     call log%close()
-    if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
+    call keep_first(error, failure)
     if (allocated(error) .or. .not. log%has_failed) return
     call raise(error, "cannot write '"//stem//".log' (disk full?)", system_failed)
   end subroutine run_tests

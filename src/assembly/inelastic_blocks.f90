@@ -7,6 +7,7 @@ module inelastic_blocks
   use dam_mesh, only: fe_mesh
   use element_catalogue, only: is_solid, make_solid
   use element_formulation, only: solid_element
+  use element_matrices, only: strains_of_element
   use gauss_rules, only: hex_point
   use guest_history, only: history, stored_work
   use guest_type, only: guest
@@ -131,14 +132,9 @@ contains
     real(rk), intent(in) :: u(hex8_dofs) !< [m]
     real(rk), intent(out) :: strain(6, self%points_of_element)
     real(rk) :: sum_of(self%points_of_element, 6)
-    integer :: a, n, q, i
+    integer :: a, n
     if (.not. allocated(self%slope)) then
-      strain = 0.0_rk
-      do q = 1, self%points_of_element
-        do i = 1, hex8_dofs
-          strain(:, q) = strain(:, q) + self%b(:, i, q, e)*u(i)
-        end do
-      end do
+      call strains_of_element(self%b(:, :, :, e), u, strain)
       return
     end if
     sum_of = 0.0_rk

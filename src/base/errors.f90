@@ -5,7 +5,7 @@
 module errors
   implicit none
   private
-  public :: error_type, raise, raise_unwritten
+  public :: error_type, raise, raise_unwritten, keep_first
   public :: analysis_failed, deck_is_wrong, system_failed
 
   integer, parameter :: analysis_failed = 1 !< exit code: the analysis stopped, results are kept
@@ -42,4 +42,10 @@ contains
     end if
     error%is_of_disk = .true.
   end subroutine raise_unwritten
+
+  !> Keeps the first of two failures.
+  pure subroutine keep_first(error, failure)
+    type(error_type), allocatable, intent(inout) :: error, failure
+    if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
+  end subroutine keep_first
 end module errors

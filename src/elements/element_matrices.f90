@@ -9,6 +9,7 @@ module element_matrices
   implicit none
   private
   public :: stiffness_matrices, consistent_masses, nodal_volumes, strains_at_points, stress_forces
+  public :: strains_of_element
 
   !> Elements whose operators fit into the first-level cache (tools/bench/bench_elements).
   integer, parameter :: chunk = 4
@@ -156,16 +157,25 @@ contains
     real(rk), contiguous, intent(in) :: b(:, :, :, :) !< (6, 24, points, elements) [1/m]
     real(rk), contiguous, intent(in) :: u(:, :) !< (24, elements) [m]
     real(rk), contiguous, intent(out) :: strain(:, :, :) !< (6, points, elements)
-    integer :: e, q, i
+    integer :: e
     do e = 1, size(b, 4)
-      do q = 1, size(b, 3)
-        strain(:, q, e) = 0.0_rk
-        do i = 1, hex8_dofs
-          strain(:, q, e) = strain(:, q, e) + b(:, i, q, e)*u(i, e)
-        end do
-      end do
+      call strains_of_element(b(:, :, :, e), u(:, e), strain(:, :, e))
     end do
   end subroutine strains_at_points
+
+  !> eps = B u at the points of one element.
+  pure subroutine strains_of_element(b, u, strain)
+    real(rk), contiguous, intent(in) :: b(:, :, :) !< (6, 24, points) [1/m]
+    real(rk), intent(in) :: u(hex8_dofs) !< [m]
+    real(rk), contiguous, intent(out) :: strain(:, :) !< (6, points)
+    integer :: q, i
+    strain = 0.0_rk
+    do q = 1, size(b, 3)
+      do i = 1, hex8_dofs
+        strain(:, q) = strain(:, q) + b(:, i, q)*u(i)
+      end do
+    end do
+  end subroutine strains_of_element
 
   !> f = sum w B^T sigma of each element (without hourglass forces).
   pure subroutine stress_forces(b, weight, stress, force)

@@ -20,16 +20,15 @@ contains
     class(equation_solver), allocatable, intent(out) :: solver
     type(error_type), allocatable, intent(out) :: error
     logical, intent(in), optional :: is_shared !< the matrix is a sum over all ranks
-    logical :: is_whole
-    is_whole = .true.
-    if (present(is_shared)) is_whole = .not. is_shared
+    if (present(is_shared)) then
+      if (is_shared) allocate (petsc_solver :: solver)
+      if (is_shared) return
+    end if
     select case (name)
     case (symmetric_solver)
-      if (is_whole) allocate (cholmod_solver :: solver)
-      if (.not. is_whole) allocate (petsc_solver :: solver)
+      allocate (cholmod_solver :: solver)
     case (unsymmetric_solver)
-      if (is_whole) allocate (umfpack_solver :: solver)
-      if (.not. is_whole) allocate (petsc_solver :: solver)
+      allocate (umfpack_solver :: solver)
     case default
       call raise(error, "there is no equation solver '"//name//"'; expected "//symmetric_solver// &
                  ' or '//unsymmetric_solver, system_failed)

@@ -4,7 +4,7 @@
 !> solvers; `finish` (also after a failure).
 module result_files
   use kinds, only: rk
-  use errors, only: error_type, raise, raise_unwritten
+  use errors, only: error_type, keep_first, raise, raise_unwritten
   use diagnostics, only: diagnostic_list
   use timer, only: wall_clock
   use write_text, only: as_text
@@ -19,7 +19,6 @@ module result_files
   use requested_fields, only: needs_nodes
   use writer_catalogue, only: writer_item, list_writers
   use summary_json, only: write_summary
-  use first_failure, only: keep_first
   use input_files, only: inputs_of, refuse_inputs
   use sha256, only: digest_of_file
   use earlier_files, only: mark_summary, remove_earlier_files

@@ -19,7 +19,6 @@ set(sources
   fields/solid_fields.f90
   fields/stage_fields.f90
   fields/thermal_fields.f90
-  first_failure.f90
   input_files.f90
   quantities/covered_faces.f90
   quantities/dam_faces.f90

@@ -68,8 +68,8 @@ def test_iterative_solver_gives_the_same_results(keyway, on_ranks, case, ranks):
     assert size <= 1e-6, place
 
 
-def test_no_rank_assembles_all(on_ranks):
-    """The ledger of rank 0 has the memory of its part alone; what it prints is told once."""
+def test_four_ranks_print_once(on_ranks):
+    """The end of the run is printed once, and the largest displacement is that of one process."""
     deck = BlockOnRock((8, 8, 10)).deck(WEIGHT)
     one, four = on_ranks(0)(deck), on_ranks(4)(deck)
     assert four.stderr.count("finished in") == 1

@@ -1,13 +1,7 @@
 /* Products of matrices in single precision with vectors in double precision, sums in double
  * precision. Their time is that of reading the matrix: four columns are used at once. */
+#include "each_processor.h"
 #include <stddef.h>
-
-/* The best of these is chosen when the program starts. */
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__clang__)
-#define FOR_EACH_PROCESSOR __attribute__((target_clones("avx512f", "arch=haswell", "default")))
-#else
-#define FOR_EACH_PROCESSOR
-#endif
 
 /* y = y + A x, A by columns. */
 FOR_EACH_PROCESSOR

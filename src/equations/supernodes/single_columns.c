@@ -1,6 +1,7 @@
 /* The time of a substitution is that of reading the factor from memory: four columns are used at
  * once, so that t stays in registers and in the nearest cache. */
 #include "single_columns.h"
+#include "../../base/math/each_processor.h"
 #include <stddef.h>
 
 /* Asks for values that are needed soon: blocks are short, and the processor is slow to see that
@@ -10,13 +11,6 @@ static inline void fetch(const float *value, int count)
   enum { line = 16, level_2 = 2 };
   for (int k = 0; k < count; k += line) __builtin_prefetch(value + k, 0, level_2);
 }
-
-/* The best of these is chosen when the program starts. */
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__clang__)
-#define FOR_EACH_PROCESSOR __attribute__((target_clones("avx512f", "arch=haswell", "default")))
-#else
-#define FOR_EACH_PROCESSOR
-#endif
 
 FOR_EACH_PROCESSOR
 void keyway_forward_columns(int width, int length, const float *value, double *t)

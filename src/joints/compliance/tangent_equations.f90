@@ -17,8 +17,7 @@ module tangent_equations
   type :: joint_tangent
     real(rk), allocatable :: change(:, :, :) !< (3, 3, points) D [N/m]
     type(group_factor), allocatable :: group(:) !< kept factors
-    !> (groups with jumps, groups with forces) the forces are solved for before the jumps
-    logical, allocatable :: is_later(:, :)
+    logical, allocatable :: is_second(:) !< (groups) solved for after those of the first half
     logical :: is_singular = .false.
     !> No factor has been used since the increment began. The first ones depend on its start alone,
     !> so that a run that is continued takes the same ones.
@@ -58,7 +57,7 @@ contains
     end do
     if (.not. allocated(self%group)) then
       allocate (self%group(blocks%groups%num_groups))
-      self%is_later = order_of_groups(blocks) .and. .not. self%is_static
+      self%is_second = half_of_groups(blocks) .and. .not. self%is_static
     end if
     kept = merge(kept_share, 0.0_rk, size(self%group) > 1 .and. .not. self%is_first)
     self%is_first = .false.
@@ -74,19 +73,15 @@ contains
 
   !> Groups in two halves; those of the second are solved for with the forces of the first. A group
   !> is in another half than the one before it that it sees most: neighbours alternate.
-  pure function order_of_groups(blocks) result(is_later)
+  pure function half_of_groups(blocks) result(is_second)
     type(compliance_blocks), intent(in) :: blocks
-    logical :: is_later(blocks%groups%num_groups, blocks%groups%num_groups)
     logical :: is_second(blocks%groups%num_groups)
     integer :: g
     is_second = .false.
     do g = 2, size(is_second)
       is_second(g) = .not. is_second(maxloc(blocks%block(:g - 1, g)%coupling, 1))
     end do
-    do g = 1, size(is_second)
-      is_later(:, g) = is_second .and. .not. is_second(g)
-    end do
-  end function order_of_groups
+  end function half_of_groups
 
   !> The correction d of the jumps, and D d - z: what the equations leave.
   subroutine solve(self, blocks, response, tolerance, smallest, correction, rest)
@@ -208,15 +203,16 @@ contains
     real(rk), intent(in) :: v(:) !< (rows) [N]
     real(rk), intent(out) :: p(:), product(:) !< (rows) [N]
     real(rk), dimension(size(v)) :: early, moved ! jumps by forces of the first half, by the others
-    logical :: is_second(size(self%group)), takes_part(size(self%group), size(self%group))
-    integer :: g
-    is_second = any(self%is_later, 2)
+    logical :: takes_part(size(self%group), size(self%group)) ! jumps of groups, forces of groups
+    integer :: g, n
+    n = size(self%group)
+    takes_part = spread(self%is_second, 2, n) .and. .not. spread(self%is_second, 1, n)
     p = v
-    call self%precondition(blocks,.not. is_second, p)
-    call blocks%couple(self%is_later, p, early)
+    call self%precondition(blocks,.not. self%is_second, p)
+    call blocks%couple(takes_part, p, early)
     p = p + apply_change(self%change, early)
-    call self%precondition(blocks, is_second, p)
-    takes_part = .not. self%is_later
+    call self%precondition(blocks, self%is_second, p)
+    takes_part = .not. takes_part
     do g = 1, size(self%group)
       takes_part(g, g) = .not. self%group(g)%is_exact
     end do

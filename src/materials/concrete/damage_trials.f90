@@ -74,6 +74,7 @@ contains
                      - model%gamma*max(0.0_rk, -largest) <= limit
     end do
   end subroutine screen_points
+
   !> Trial states of the points of a list.
   pure subroutine find_trials(model, points, strain, internal, trials)
     type(concrete_model), intent(in) :: model

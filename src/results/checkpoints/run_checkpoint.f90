@@ -4,7 +4,7 @@ module run_checkpoint
   use checkpoint_files, only: checkpoint_path, new_checkpoint_path, journal_path, keep_checkpoint, &
                               keep_journal
   use checkpoint_identity, only: check_identity, save_identity
-  use errors, only: deck_is_wrong, error_type, raise, system_failed
+  use errors, only: deck_is_wrong, error_type, keep_first, raise, system_failed
   use hdf5_archive, only: hdf5_store
   use problem_definition, only: problem
   use record_archive, only: load_record, save_record
@@ -50,7 +50,7 @@ contains
     if (.not. allocated(error)) call save_summary(summary, file, error)
     if (.not. allocated(error)) call save_positions(writers, file, error)
     call file%close(failure)
-    if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
+    call keep_first(error, failure)
     if (.not. allocated(error)) call keep_checkpoint(stem, error)
     if (allocated(error)) return
     call keep_journal(stem)

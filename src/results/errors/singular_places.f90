@@ -1,4 +1,4 @@
-!> Places where linear elasticity has no finite stress, told by the shape of the model alone
+!> Places where linear elasticity has no finite stress, found from the shape of the model alone
 !> (theory.md, 14.6): re-entrant edges and corners, and edges of supports that hold all directions.
 !> The stress there grows with every refinement of the mesh.
 module singular_places

@@ -177,18 +177,11 @@ contains
     type(state), intent(in) :: now
     real(rk), intent(out) :: strain(:, :, :) !< (6, max_points, solids)
     real(rk), intent(out) :: stress(:, :, :) !< (6, max_points, solids) [Pa]
-    integer :: i, k
-    !$omp parallel do default(none) shared(model, plan, now, strain, stress) private(k) &
+    integer :: i
+    !$omp parallel do default(none) shared(model, plan, now, strain, stress) &
     !$omp schedule(dynamic, 4) if (model%mesh%num_nodes > few_nodes)
     do i = 1, size(plan%blocks)
-      if (plan%blocks(i)%is_inelastic) then
-        do k = 1, size(plan%blocks(i)%solids)
-          call copy_solid(plan, now, plan%blocks(i)%solids(k), strain, stress)
-        end do
-        call add_expansions(model, plan, plan%blocks(i), now, strain)
-      else
-        call recover_block(model, plan, plan%blocks(i), now, strain, stress)
-      end if
+      call recover_part(model, plan, plan%blocks(i), now, strain, stress)
     end do
     !$omp end parallel do
   end subroutine recover_points
@@ -202,20 +195,32 @@ contains
     real(rk), intent(inout) :: strain(:, :, :) !< (6, max_points, solids)
     real(rk), intent(inout) :: stress(:, :, :) !< (6, max_points, solids) [Pa]
     type(element_block) :: part
-    integer :: i, k
+    integer :: i
     do i = 1, size(plan%blocks)
       if (.not. any(is_wanted(plan%blocks(i)%solids))) cycle
       part = plan%blocks(i)
       part%solids = pack(part%solids, is_wanted(part%solids))
-      if (.not. part%is_inelastic) then
-        call recover_block(model, plan, part, now, strain, stress)
-        cycle
-      end if
-      do k = 1, size(part%solids)
-        call copy_solid(plan, now, part%solids(k), strain, stress)
-      end do
+      call recover_part(model, plan, part, now, strain, stress)
     end do
   end subroutine recover_some
+
+  !> Strain and stress of one block, or of a part of it.
+  subroutine recover_part(model, plan, part, now, strain, stress)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    type(element_block), intent(in) :: part
+    type(state), intent(in) :: now
+    real(rk), intent(inout) :: strain(:, :, :), stress(:, :, :)
+    integer :: k
+    if (.not. part%is_inelastic) then
+      call recover_block(model, plan, part, now, strain, stress)
+      return
+    end if
+    do k = 1, size(part%solids)
+      call copy_solid(plan, now, part%solids(k), strain, stress)
+    end do
+    call add_expansions(model, plan, part, now, strain)
+  end subroutine recover_part
 
   !> Strain and stress of one solid with states.
   subroutine copy_solid(plan, now, solid, strain, stress)
