@@ -97,6 +97,7 @@ def _sensitivity(size: Size) -> list[Case]:
         ("recovery_lee_fenves", "recovery", "LEE-FENVES", f"{base} --recovery LEE-FENVES"),
         ("no_outlets", "outlets", "none", f"{base} --no-outlets"),
         ("elastic", "concrete", "elastic", f"{base} --law elastic"),
+        ("fracture_energy", "concrete", "G_f", f"{base} --law fracture-energy"),
         ("at_once", "building", "at once, surfaces", auto),
         ("uplift", "building", "water in open joints, surfaces", f"{auto} --uplift OPEN"),
         ("stages", "building", "lifts, grouted", f"{auto} {LIFTS}"),

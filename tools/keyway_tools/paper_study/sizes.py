@@ -24,7 +24,7 @@ SIZES = {
     "full": Size(
         f"--arc 40 --levels 16 --bottom 8 --thick 4 {ROCK} --refine 2 --fine-refine 3 "
         "--fine-thick 6",
-        100_000, 20_000, 20.0, 50,
+        100_000, 10_000, 20.0, 50,
         f"--arc 78 --levels 32 --bottom 14 --thick 4 {ROCK}",
         f"--arc 34 --levels 14 --bottom 6 --thick 3 {ROCK}", 100,
     ),
