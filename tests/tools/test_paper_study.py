@@ -55,6 +55,12 @@ def test_stopped_study_goes_on_and_writes_its_page(tmp_path, program_path):
     data = json.loads((tmp_path / "paper_study.json").read_text())
     assert [case["status"] for case in data["cases"]] == ["finished", "finished"]
     assert all(case["unknowns"] > 0 for case in data["cases"])
+    other = study(tmp_path, program_path)
+    other[other.index(PAIR[1])], other[other.index("--threads") + 1] = PAIR[0], "2"
+    subprocess.run(other, capture_output=True, timeout=120, check=True)
+    data = json.loads((tmp_path / "paper_study.json").read_text())
+    # another number of threads keeps the runs; the page has also the case that was not chosen
+    assert [case["name"] for case in data["cases"]] == PAIR
 
 
 def test_no_case_starts_after_the_budget(tmp_path):
@@ -150,6 +156,14 @@ def test_differences_stand_beside_those_of_the_paper():
     assert [row.paper for row in rows] == [0.065, None, None, None, None, 0.01, 0.065]
     kinds = [one.kind for one in joint_verdicts(run("a", 1.0), run("b", 1.03))]
     assert kinds == ["good", "fair", "good"]
+
+
+def test_a_crest_that_the_motion_moves_is_named_with_its_reason():
+    slips = {"JOINT1": 0.1, "JOINT3": 0.5}
+    (one,) = [v for v in dam_verdicts(made_up("a", moved=0.5, slips=slips)) if "crest at" in v.text]
+    assert one.kind == "fair"
+    assert "by 0.5 m for good, and JOINT3 slips by up to 0.5 m" in one.text
+    assert "Elastic concrete" in one.text
 
 
 def test_lines_of_values_have_the_sign_of_their_field():

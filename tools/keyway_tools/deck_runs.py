@@ -91,10 +91,15 @@ def end_with_parent() -> None:
 class DeckRunner:
     """Runs one deck after another for any number of threads, until `end` is called."""
 
-    def __init__(self, program: Path, options: list[str], timeout: float | None = None):
+    def __init__(
+        self, program: Path, options: list[str], timeout: float | None = None,
+        threads: int | None = None,
+    ):  # fmt: skip
+        """`threads` of each run do not change its results: a run with others is kept."""
         self.program = program
         self.options = options
         self.timeout = timeout
+        self.threads = [] if threads is None else ["-j", str(threads)]
         self.version = version_of(program)
         self.is_ending = False
         self._children: set[subprocess.Popen[bytes]] = set()
@@ -131,7 +136,9 @@ class DeckRunner:
         return record
 
     def _execute(self, deck: Path, record: Record) -> None:
-        command = [str(self.program), "-o", record.folder, *self.options, str(deck)]
+        command = [
+            str(self.program), "-o", record.folder, *self.threads, *self.options, str(deck)
+        ]  # fmt: skip
         start = time.monotonic()
         with (Path(record.folder) / "batch.out").open("wb") as output:
             child = subprocess.Popen(

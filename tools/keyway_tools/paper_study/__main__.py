@@ -6,7 +6,7 @@
 
 A second call keeps the cases that have finished and goes on with the others; so does a call after
 the study was stopped or killed. No case starts after the budget; one that runs goes on to its end.
-The page holds what has run so far.
+The page holds what has run so far in the folder, also the cases that this call does not choose.
 """
 
 from __future__ import annotations
@@ -52,8 +52,9 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
     given = parser.parse_args(arguments)
     if given.j < 1 or (given.threads or 1) < 1:
         parser.error("-j and --threads take 1 or more")
+    given.all_cases = list_cases(SIZES[given.size])
     try:
-        given.chosen = choose(list_cases(SIZES[given.size]), given.cases)
+        given.chosen = choose(given.all_cases, given.cases)
     except ValueError as fault:
         parser.error(str(fault))
     if not given.list and not os.access(given.program, os.X_OK):
@@ -71,7 +72,7 @@ def main(arguments: list[str] | None = None) -> int:
             print("\n    ".join([f"{case.name}: {case.title}", *commands]))
         return 0
     given.o.mkdir(parents=True, exist_ok=True)
-    runner = DeckRunner(given.program, ["-j", str(given.threads)])
+    runner = DeckRunner(given.program, [], threads=given.threads)
 
     def stop(*_: object) -> None:
         runner.is_ending = True
@@ -79,7 +80,8 @@ def main(arguments: list[str] | None = None) -> int:
 
     before = {sign: signal.signal(sign, stop) for sign in (signal.SIGINT, signal.SIGTERM)}
     try:
-        outcomes = Study(given.o, runner, given.budget, say).run(given.chosen, given.j)
+        study = Study(given.o, runner, given.budget, say)
+        outcomes = study.run(given.chosen, given.j)
     except KeyboardInterrupt:
         runner.stop()
     finally:
@@ -89,7 +91,8 @@ def main(arguments: list[str] | None = None) -> int:
         sys.stderr.write("paper_study: stopped; the same call goes on, finished cases are kept\n")
         return EXIT_INTERRUPTED
     if not given.no_page:
-        say(str(write_page(given.o, header_of(given, runner), outcomes, concrete(given))))
+        shown = study.with_kept(outcomes, given.all_cases)
+        say(str(write_page(given.o, header_of(given, runner), shown, concrete(given))))
     return 0 if all(outcome.is_finished for outcome in outcomes) else 1
 
 
@@ -107,7 +110,7 @@ def header_of(given: argparse.Namespace, runner: DeckRunner) -> list[list[str]]:
                  f"{size.num_records} records"],
         ["Date", datetime.now().strftime("%Y-%m-%d %H:%M")],
         ["Program", runner.version.splitlines()[0]],
-        ["Threads", f"{given.threads} a run, {given.j} runs at a time"],
+        ["Threads", f"{given.threads} a run, {given.j} runs at a time, in the last call"],
     ]  # fmt: skip
 
 

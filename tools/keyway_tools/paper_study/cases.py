@@ -83,7 +83,9 @@ def choose(cases: list[Case], patterns: list[str]) -> list[Case]:
         found = [case for case in cases if case.name == pattern]
         found = found or [c for c in cases if fnmatch(c.name, pattern) or c.group == pattern]
         if not found:
-            names = ", ".join(c.name for c in cases)
+            names = ", ".join(c.name for c in cases if c.group != "records")
+            records = [c.name for c in cases if c.group == "records"]
+            names += f", {records[0]} to {records[-1]}" if records else ""
             raise ValueError(f"no case fits '{pattern}'; there are {names}")
         chosen += found
     return [case for case in cases if case in chosen]

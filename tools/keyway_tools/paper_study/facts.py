@@ -37,6 +37,8 @@ class Facts:
     hz: list[float] = field(default_factory=list)
     # [m3]: all damaged, of it above UPPER of the height, and downstream of the middle surface
     damaged: dict[str, float] = field(default_factory=dict)
+    slips: dict[str, float] = field(default_factory=dict)  # largest of each joint [m]
+    moved: float | None = None  # of the crest, by the motion, see `_moved` [m]
     dissipated: float = 0.0  # by cracking [J]
     created: float = 0.0  # by the recovery of stiffness [J]
     height: float = 0.0  # of the dam [m]
@@ -71,6 +73,7 @@ def facts_of(outcome: Outcome) -> Facts:
         opening = joint["opening"]
         facts.openings[name] = {face: opening.get(face, {}).get("value", 0.0) for face in FACES}
         facts.places[name] = opening["anywhere"].get("x", [])
+        facts.slips[name] = joint.get("slip", {}).get("anywhere", {}).get("value", 0.0)
     nodes = np.unique(results.connectivity[results.dam])
     facts.height = float(np.ptp(results.x[nodes, 2]))
     damage = summary.get("damage") or {}
@@ -78,6 +81,7 @@ def facts_of(outcome: Outcome) -> Facts:
     facts.created = damage.get("created") or 0.0
     facts.damaged = _damaged(results)
     facts.largest_fall = _largest_fall(results)
+    facts.moved = _moved(results)
     reduced = summary["accuracy"].get("reduced") or {}
     errors = [one["estimated_error"] for one in reduced.values()]
     facts.reduced_error = max(errors) if errors else None
@@ -91,6 +95,22 @@ def _largest_fall(results: SiResults) -> float:
     if len(spent) < 2 or spent[-1] <= 0.0:
         return 0.0
     return float(max(0.0, -np.diff(spent).min()) / spent[-1])
+
+
+def _moved(results: SiResults) -> float | None:
+    """How far the last step moves the first printed node: the mean of its last tenth, beside the
+    end of the step before [m]; None where no node is printed."""
+    names = [name for name in results.tables() if name.startswith("node_")]
+    if not names:
+        return None
+    table = results.table(names[0])
+    of_node = table["node"] == table["node"][0]
+    step = table["step"][of_node]
+    u = np.stack([table[f"U{i}"][of_node] for i in (1, 2, 3)], axis=1)
+    before = u[step < step[-1]][-1:].sum(axis=0)
+    motion = u[step == step[-1]]
+    end = motion[-max(1, len(motion) // 10):].mean(axis=0)  # fmt: skip
+    return float(np.linalg.norm(end - before))
 
 
 def _damaged(results: SiResults) -> dict[str, float]:

@@ -113,7 +113,9 @@ def plot_factor(factor: str, cases: list[Facts], values: list[str], sheet: Sheet
     }
     if any(one.damaged for one in cases):
         bars["damaged volume [1000 m³]"] = [1e-3 * one.damaged.get("all", 0.0) for one in cases]
-    figure, axes = new_figure(1, width=13.0, row_height=0.45 * len(cases) + 1.6,
+    if all(one.moved is not None for one in cases):
+        bars["crest moved for good [mm]"] = [1e3 * (one.moved or 0.0) for one in cases]
+    figure, axes = new_figure(1, width=3.3 * len(bars), row_height=0.45 * len(cases) + 1.6,
                               columns=len(bars), sharey=True)  # fmt: skip
     for axis, (label, sizes) in zip(axes, bars.items(), strict=True):
         colours = [COLOURS[1] if value == "as it is" else COLOURS[0] for value in values]

@@ -16,6 +16,7 @@ PAPER = {
 PAPER_TENSION, PAPER_COMPRESSION = 2.48e6, -28.73e6
 STRENGTH_SLACK = 0.005  # of f_t
 AT_CREST = 0.95  # of the height
+LARGE_MOVEMENT = 0.1  # of the crest, that stays after the motion [m]
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,10 @@ def joint_verdicts(classical: Facts, proposed: Facts) -> list[Verdict]:
 
 def dam_verdicts(facts: Facts) -> list[Verdict]:
     """Jinping: each statement of section 4.2."""
-    return [*_stress_verdicts(facts), *_opening_verdicts(facts), *_damage_verdicts(facts)]
+    return [
+        *_stress_verdicts(facts), *_opening_verdicts(facts), *_damage_verdicts(facts),
+        *_movement_verdicts(facts),
+    ]  # fmt: skip
 
 
 def _stress_verdicts(facts: Facts) -> list[Verdict]:
@@ -155,6 +159,26 @@ def _lower_verdict(damaged: dict[str, float]) -> Verdict:
         "with every finer mesh."
     )
     return Verdict("good" if lower < 0.1 else "fair", text)
+
+
+def _movement_verdicts(facts: Facts) -> list[Verdict]:
+    """What the motion leaves behind; the paper shows no displacements."""
+    if facts.moved is None or not facts.slips:
+        return []
+    name = max(facts.slips, key=lambda name: facts.slips[name])
+    slip = facts.slips[name]
+    text = (
+        f"The motion moves the crest at the crown by {facts.moved:.2g} m for good, and {name} "
+        f"slips by up to {slip:.2g} m; the paper shows neither."
+    )
+    if facts.moved > LARGE_MOVEMENT:
+        text += (
+            " Elastic concrete keeps a small part of such a displacement (Sensitivity, concrete): the plastic "
+            "strain of cracks stays, and blocks that cracks have loosened tilt further with each "
+            "large opening. The law of Table 1 is not meant for cracks that are this wide, and "
+            "joints have friction here but no shear keys: read displacements and slips with care."
+        )
+    return [Verdict("fair" if facts.moved > LARGE_MOVEMENT else "good", text)]
 
 
 def _place(facts: Facts, name: str) -> str:
