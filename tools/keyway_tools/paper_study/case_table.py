@@ -36,13 +36,13 @@ def _xingbiling(size: Size) -> list[Case]:
         text = f"{mesh} {shaken} {options} --title {shlex.quote(f'Xingbiling, {title}')}"
         found.append(Case(f"xingbiling_{name}", "xingbiling", title, "make_dam", text))
     built = f"{size.built} {shaken}"
-    rows = (
+    seasons = (
         ("at_once", "weight at once", built, ""),
         ("stages", "four lifts, grouted twice", f"{built} {LIFTS}", ""),
         ("summer", "built, shaken in August", f"{built} {LIFTS}", "summer"),
         ("winter", "built, shaken in February", f"{built} {LIFTS}", "winter"),
     )
-    for name, title, options, season in rows:
+    for name, title, options, season in seasons:
         text = f"{options} --title {shlex.quote(f'Xingbiling, {title}')}"
         found.append(
             Case(f"xingbiling_{name}", "xingbiling built", title, "make_dam", text,

@@ -14,6 +14,7 @@ from ..pictures_damage import plot_mean_envelope
 from ..pictures_faces import plot_envelope, plot_face_openings
 from ..pictures_joints import plot_joint_areas
 from ..render_dam import View
+from ..results import Step
 from ..shared_scales import shared_scales
 from ..si_results import SiResults
 from .facts import Facts
@@ -129,7 +130,7 @@ def plot_factor(factor: str, cases: list[Facts], values: list[str], sheet: Sheet
     return sheet.save(figure)
 
 
-def _last(results: SiResults):
+def _last(results: SiResults) -> Step:
     return [step for step in results.steps() if step.envelopes][-1]
 
 

@@ -173,10 +173,11 @@ def _movement_verdicts(facts: Facts) -> list[Verdict]:
     )
     if facts.moved > LARGE_MOVEMENT:
         text += (
-            " Elastic concrete keeps a small part of such a displacement (Sensitivity, concrete): the plastic "
-            "strain of cracks stays, and blocks that cracks have loosened tilt further with each "
-            "large opening. The law of Table 1 is not meant for cracks that are this wide, and "
-            "joints have friction here but no shear keys: read displacements and slips with care."
+            " Elastic concrete keeps a small part of such a displacement (Sensitivity, concrete): "
+            "the plastic strain of cracks stays, and blocks that cracks have loosened tilt further "
+            "with each large opening. The law of Table 1 is not meant for cracks that are this "
+            "wide, and joints have friction here but no shear keys: read displacements and slips "
+            "with care."
         )
     return [Verdict("fair" if facts.moved > LARGE_MOVEMENT else "good", text)]
 
