@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from keyway_tools.colour_scale import parse_levels
 from keyway_tools.paper_study.case_table import list_cases
+from keyway_tools.paper_study.checks import coupling_verdicts
 from keyway_tools.paper_study.cases import Case, choose
 from keyway_tools.paper_study.facts import Facts
 from keyway_tools.paper_study.openings import by_height
@@ -164,6 +165,26 @@ def test_a_crest_that_the_motion_moves_is_named_with_its_reason():
     assert one.kind == "fair"
     assert "by 0.5 m for good, and JOINT3 slips by up to 0.5 m" in one.text
     assert "Elastic concrete" in one.text
+
+
+def test_coupling_is_judged_beside_both_equal_meshes():
+    def run(s1, opening):
+        fields = {"S1": s1, "S3": -2.0, "OPENING": opening}
+        extremes = {
+            name: {face: {"value": value} for face in ("upstream", "downstream")}
+            for name, value in fields.items()
+        }
+        return Facts("a", "a", "finished", unknowns=1, extremes=extremes)
+
+    facts = {
+        "xingbiling_classical": run(1.0, 0.010),
+        "xingbiling_classical_shifted": run(2.0, 0.020),
+        "xingbiling_one_step_shifted": run(2.1, 0.015),
+    }
+    stress, opening = coupling_verdicts(facts)
+    assert (stress.kind, opening.kind) == ("fair", "good")
+    assert "by 5 % beyond" in stress.text  # 2.1 beside 1 to 2
+    assert not coupling_verdicts({})
 
 
 def test_lines_of_values_have_the_sign_of_their_field():

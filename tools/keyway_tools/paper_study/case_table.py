@@ -24,16 +24,26 @@ def _xingbiling(size: Size) -> list[Case]:
     """The dam of section 4.1: joints between equal and between different meshes; its building."""
     shaken = f"--joints 2 --histories --duration {size.duration:g} "
     shaken += f"--picture-every {size.frequency}"
+    fine = _as_fine(size.xingbiling)
+    # Levels of a block half an element apart: no face fits, all elements have the same size.
+    shifted = f"{_as_coarse(size.xingbiling)} --shift 0.5"
     rows = (
-        ("classical", "classical joint, same mesh", "--join matching"),
-        ("chain", "the paper's chain, different meshes", "--fine 2 --join chain"),
-        ("one_step", "joint on surfaces, different meshes", "--fine 2 --join surfaces"),
-        ("classical_fine", "classical joint, all as fine as the finer block", "--join matching"),
-    )
+        ("classical", "classical joint, same mesh", size.xingbiling, "--join matching"),
+        ("chain", "the paper's chain, different meshes", size.xingbiling, "--fine 2 --join chain"),
+        ("one_step", "joint on surfaces, different meshes", size.xingbiling,
+         "--fine 2 --join surfaces"),
+        ("classical_fine", "classical joint, all as fine as the finer block", fine,
+         "--join matching"),
+        ("classical_shifted", "classical joint, levels of all blocks shifted", shifted,
+         "--fine 1 2 3 --join matching"),
+        ("one_step_shifted", "joint on surfaces, levels of one block shifted", shifted,
+         "--fine 2 --join surfaces"),
+    )  # fmt: skip
     found = []
-    for name, title, options in rows:
-        mesh = _as_fine(size.xingbiling) if name == "classical_fine" else size.xingbiling
-        text = f"{mesh} {shaken} {options} --title {shlex.quote(f'Xingbiling, {title}')}"
+    for name, title, mesh, options in rows:
+        # Tied to the rock in all of them: shared nodes would smooth the stress at the foot.
+        text = f"{mesh} {shaken} {options} --tie-all "
+        text += f"--title {shlex.quote(f'Xingbiling, {title}')}"
         found.append(Case(f"xingbiling_{name}", "xingbiling", title, "make_dam", text))
     built = f"{size.built} {shaken}"
     seasons = (
@@ -51,11 +61,22 @@ def _xingbiling(size: Size) -> list[Case]:
     return found
 
 
+MESHES = (("--refine", "--fine-refine"), ("--thick", "--fine-thick"))  # of a coarse, a fine block
+
+
 def _as_fine(mesh: str) -> str:
     """The options of a mesh whose blocks are all as fine as the finer one."""
     words = mesh.split()
-    for coarse, fine in (("--refine", "--fine-refine"), ("--thick", "--fine-thick")):
+    for coarse, fine in MESHES:
         words[words.index(coarse) + 1] = words[words.index(fine) + 1]
+    return " ".join(words)
+
+
+def _as_coarse(mesh: str) -> str:
+    """The options of a mesh whose finer block is as coarse as the others."""
+    words = mesh.split()
+    for coarse, fine in MESHES:
+        words[words.index(fine) + 1] = words[words.index(coarse) + 1]
     return " ".join(words)
 
 

@@ -7,6 +7,7 @@ from .verdicts import PAPER_TENSION, STRENGTH_SLACK, Verdict
 
 UNKNOWNS, SECONDS = 100_000, 2400.0  # of Jinping on two cores
 ENERGY_ERROR, STEP_ERROR, SYMMETRY_ERROR = 1e-6, 0.02, 1e-3
+STRESS_BESIDE, OPENING_BESIDE = 0.01, 0.005  # of a joint on surfaces, beside equal meshes
 
 
 def run_verdicts(facts: Facts) -> list[Verdict]:
@@ -59,6 +60,38 @@ def check_verdicts(facts: dict[str, Facts]) -> list[Verdict]:
                     f"alike to {size:.1e} of the largest opening.")
         )  # fmt: skip
     return found
+
+
+def coupling_verdicts(facts: dict[str, Facts]) -> list[Verdict]:
+    """What the coupling of different meshes changes, measured as in
+    docs/studies/different_meshes.md: values outside of those of the two equal meshes."""
+    names = ("one_step_shifted", "classical", "classical_shifted")
+    runs = [facts.get(f"xingbiling_{name}") for name in names]
+    if not all(run and run.unknowns for run in runs):
+        return []
+    found = []
+    for what, fields, asked in (
+        ("stress on the faces", ("S1", "S3"), STRESS_BESIDE),
+        ("openings", ("OPENING",), OPENING_BESIDE),
+    ):
+        size = max(
+            excess(*(run.value(name, face) or 0.0 for run in runs if run))
+            for name in fields
+            for face in FACES
+        )
+        kind = "good" if size <= asked else "fair"
+        found.append(
+            Verdict(kind, "Where the levels of one block are shifted by half an element, the joint "
+                    f"on surfaces changes the largest {what} by {100.0 * size:.2g} % beyond the "
+                    f"values of both equal meshes; asked is at most {100.0 * asked:g} %.")
+        )  # fmt: skip
+    return found
+
+
+def excess(value: float, first: float, second: float) -> float:
+    """How far a value lies outside of two others, over the larger of these."""
+    low, high = sorted((first, second))
+    return max(low - value, value - high, 0.0) / (max(abs(low), abs(high)) or 1.0)
 
 
 def opens(facts: Facts) -> bool:

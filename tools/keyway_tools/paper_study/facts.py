@@ -49,6 +49,11 @@ class Facts:
         """An extreme, None where there is none."""
         return self.extremes.get(name, {}).get(place, {}).get("value")
 
+    def value_or_nan(self, name: str) -> float:
+        """An extreme anywhere, NaN where there is none."""
+        value = self.value(name)
+        return float("nan") if value is None else value
+
     def as_data(self) -> dict[str, Any]:
         """For JSON."""
         return asdict(self)

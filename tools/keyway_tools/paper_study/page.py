@@ -13,7 +13,7 @@ from ..picture_style import Sheet
 from ..report.templates import render
 from ..si_results import SiResults
 from .cases import Case
-from .checks import check_verdicts, run_verdicts
+from .checks import check_verdicts, coupling_verdicts, run_verdicts
 from .facts import Facts, facts_of
 from .openings import plot_profiles
 from .pictures import jinping_pictures, plot_factor, xingbiling_pictures
@@ -99,6 +99,7 @@ def _xingbiling(
         "joint_verdicts": said,
         "xingbiling": {key: embed(files) for key, files in pictures.items()},
         "built": built,
+        "coupling": coupling_verdicts(facts),
     }
 
 

@@ -109,8 +109,8 @@ def plot_factor(factor: str, cases: list[Facts], values: list[str], sheet: Sheet
     tension, compression = ("S1_POINT", "S3_POINT") if stress == "at points" else ("S1", "S3")
     bars = {
         "largest opening [mm]": [1e3 * (one.value("OPENING") or 0.0) for one in cases],
-        f"tension {stress} [MPa]": [1e-6 * (one.value(tension) or 0.0) for one in cases],
-        f"compression {stress} [MPa]": [-1e-6 * (one.value(compression) or 0.0) for one in cases],
+        f"tension {stress} [MPa]": [1e-6 * one.value_or_nan(tension) for one in cases],
+        f"compression {stress} [MPa]": [-1e-6 * one.value_or_nan(compression) for one in cases],
     }
     if any(one.damaged for one in cases):
         bars["damaged volume [1000 m³]"] = [1e-3 * one.damaged.get("all", 0.0) for one in cases]
@@ -121,7 +121,8 @@ def plot_factor(factor: str, cases: list[Facts], values: list[str], sheet: Sheet
     for axis, (label, sizes) in zip(axes, bars.items(), strict=True):
         colours = [COLOURS[1] if value == "as it is" else COLOURS[0] for value in values]
         drawn = axis.barh(values, sizes, color=colours)
-        axis.bar_label(drawn, fmt="%.3g", padding=2, fontsize=10)
+        written = ["not printed" if np.isnan(size) else f"{size:.3g}" for size in sizes]
+        axis.bar_label(drawn, written, padding=2, fontsize=10)
         axis.set_xlabel(label)
         axis.margins(x=0.25)
         axis.grid(axis="y", visible=False)
