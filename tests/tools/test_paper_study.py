@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from keyway_tools.colour_scale import parse_levels
 from keyway_tools.paper_study.case_table import list_cases
-from keyway_tools.paper_study.checks import coupling_verdicts
 from keyway_tools.paper_study.cases import Case, choose
+from keyway_tools.paper_study.checks import coupling_verdicts
 from keyway_tools.paper_study.facts import Facts
 from keyway_tools.paper_study.openings import by_height
 from keyway_tools.paper_study.runner import Study
