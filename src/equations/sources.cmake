@@ -22,9 +22,9 @@ set(sources
   spectrum/matrix_condition.f90
   supernodes/active_solve.f90
   supernodes/factor_top.c
+  supernodes/fused_columns.c
   supernodes/refined_solve.f90
   supernodes/selected_inverse.c
-  supernodes/single_columns.c
   supernodes/single_factor.c
   supernodes/supernodal_solve.c
 )

@@ -4,18 +4,9 @@
  * the lower part has been eliminated from b: the upper part holds, with a column, all columns that
  * follow it in the elimination tree (Liu, SIAM J. Matrix Anal. Appl. 11, 1990, 134-172). */
 #include "supernodal_solve.h"
-#include "single_columns.h"
+#include "fused_columns.h"
 #include <stdlib.h>
 #include <string.h>
-
-void dtrsv_(const char *uplo, const char *trans, const char *diag, const int *n, const double *a,
-            const int *lda, double *x, const int *incx);
-void dgemv_(const char *trans, const int *m, const int *n, const double *alpha, const double *a,
-            const int *lda, const double *x, const int *incx, const double *beta, double *y,
-            const int *incy);
-
-static const int one_step = 1;
-static const double one = 1.0, zero = 0.0, minus_one = -1.0;
 
 double keyway_mark_upper(const struct keyway_supernodes *l, int count, const int *column,
                          char *is_upper)
@@ -52,72 +43,34 @@ static const double *double_values(const struct keyway_supernodes *l, int s)
   return l->part_start[s] < 0 ? l->value - l->part_start[s] - 1 : NULL;
 }
 
-static void forward_single(const struct keyway_supernodes *l, int s, double *y, double *work)
-{
-  int first = l->column[s], width = l->column[s + 1] - first;
-  int length = l->row_start[s + 1] - l->row_start[s];
-  const int *row = l->row + l->row_start[s];
-  memcpy(work, y + first, (size_t)width * sizeof *y);
-  memset(work + width, 0, (size_t)(length - width) * sizeof *y);
-  keyway_forward_columns(width, length, l->single + l->part_start[s], work);
-  memcpy(y + first, work, (size_t)width * sizeof *y);
-  for (int i = width; i < length; i++) y[row[i]] += work[i];
-}
-
-static void backward_single(const struct keyway_supernodes *l, int s, double *y, double *work)
-{
-  int first = l->column[s], width = l->column[s + 1] - first;
-  int length = l->row_start[s + 1] - l->row_start[s];
-  const int *row = l->row + l->row_start[s];
-  for (int i = 0; i < length; i++) work[i] = y[row[i]];
-  keyway_backward_columns(width, length, l->single + l->part_start[s], work);
-  memcpy(y + first, work, (size_t)width * sizeof *y);
-}
-
 static void forward_one(const struct keyway_supernodes *l, int s, double *y, double *work)
 {
   int first = l->column[s], width = l->column[s + 1] - first;
-  int length = l->row_start[s + 1] - l->row_start[s], rest = length - width;
-  const int *row = l->row + l->row_start[s] + width;
+  int length = l->row_start[s + 1] - l->row_start[s];
+  const int *row = l->row + l->row_start[s];
   const double *value = double_values(l, s);
-  if (!value) {
-    forward_single(l, s, y, work);
-    return;
-  }
-  if (width == 1) {
-    double x = y[first] /= value[0];
-    for (int i = 0; i < rest; i++) y[row[i]] -= value[1 + i] * x;
-    return;
-  }
-  dtrsv_("L", "N", "N", &width, value, &length, y + first, &one_step);
-  if (rest == 0) return;
-  dgemv_("N", &rest, &width, &one, value + width, &length, y + first, &one_step, &zero, work,
-         &one_step);
-  for (int i = 0; i < rest; i++) y[row[i]] -= work[i];
+  memcpy(work, y + first, (size_t)width * sizeof *y);
+  memset(work + width, 0, (size_t)(length - width) * sizeof *y);
+  if (value)
+    keyway_forward_double(width, length, value, work);
+  else
+    keyway_forward_single(width, length, l->single + l->part_start[s], work);
+  memcpy(y + first, work, (size_t)width * sizeof *y);
+  for (int i = width; i < length; i++) y[row[i]] += work[i];
 }
 
 static void backward_one(const struct keyway_supernodes *l, int s, double *y, double *work)
 {
   int first = l->column[s], width = l->column[s + 1] - first;
-  int length = l->row_start[s + 1] - l->row_start[s], rest = length - width;
-  const int *row = l->row + l->row_start[s] + width;
+  int length = l->row_start[s + 1] - l->row_start[s];
+  const int *row = l->row + l->row_start[s];
   const double *value = double_values(l, s);
-  if (!value) {
-    backward_single(l, s, y, work);
-    return;
-  }
-  if (width == 1) {
-    double x = y[first];
-    for (int i = 0; i < rest; i++) x -= value[1 + i] * y[row[i]];
-    y[first] = x / value[0];
-    return;
-  }
-  if (rest > 0) {
-    for (int i = 0; i < rest; i++) work[i] = y[row[i]];
-    dgemv_("T", &rest, &width, &minus_one, value + width, &length, work, &one_step, &one,
-           y + first, &one_step);
-  }
-  dtrsv_("L", "T", "N", &width, value, &length, y + first, &one_step);
+  for (int i = 0; i < length; i++) work[i] = y[row[i]];
+  if (value)
+    keyway_backward_double(width, length, value, work);
+  else
+    keyway_backward_single(width, length, l->single + l->part_start[s], work);
+  memcpy(y + first, work, (size_t)width * sizeof *y);
 }
 
 void keyway_substitute_forward(const struct keyway_supernodes *l, enum keyway_part part,

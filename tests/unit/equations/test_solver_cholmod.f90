@@ -23,7 +23,7 @@ contains
     type(pattern) :: matrix
     type(cholmod_solver) :: solver
     type(error_type), allocatable :: error
-    real(rk), allocatable :: values(:), q(:, :), b(:, :)
+    real(rk), allocatable :: values(:), q(:, :), b(:, :), one(:, :)
     integer, allocatable :: order(:)
     integer :: j, pass
     call make_box(matrix, values, 30)
@@ -41,8 +41,13 @@ contains
       do j = 1, size(q, 2)
         call product_of_free(matrix, values, q(:, j), b(:, j))
       end do
+      one = b(:, :1)
       call solver%solve(b, error)
       call check_close(log, maxval(abs(b - q(:matrix%num_free, :))), 0.0_rk, 1.0e-11_rk, 'K^-1 K q')
+      ! A single right-hand side has a substitution of its own.
+      call solver%solve(one, error)
+      call check_close(log, maxval(abs(one - q(:matrix%num_free, :1))), 0.0_rk, 1.0e-11_rk, &
+                       'K^-1 K q of one right-hand side')
       deallocate (q, b)
     end do
   end subroutine solutions

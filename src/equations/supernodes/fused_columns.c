@@ -1,0 +1,23 @@
+/* The time of a substitution is that of reading the factor from memory: four columns are used at
+ * once, so that t stays in registers and in the nearest cache. Blocks are short, and the processor
+ * is slow to see that they follow one another in memory: the values that are needed next are asked
+ * for in good time. */
+#include "fused_columns.h"
+#include "../../base/math/each_processor.h"
+#include <stddef.h>
+
+enum {
+  rows_at_once = 32,
+  line = 64,  /* [bytes] of the cache */
+  level_2 = 2 /* the cache that takes what is asked for; the first is too small */
+};
+
+#define VALUE double
+#define OF_PRECISION(name) name##_double
+#include "fused_columns_template.h"
+#undef VALUE
+#undef OF_PRECISION
+
+#define VALUE float
+#define OF_PRECISION(name) name##_single
+#include "fused_columns_template.h"
