@@ -7,22 +7,20 @@ module divided_run
   use errors, only: deck_is_wrong, error_type, keep_first, raise
   use file_system, only: base_name
   use increment_listener, only: listener
-  use kinds, only: rk
   use initial_state, only: start_analysis
   use omp_lib, only: omp_get_num_procs, omp_set_num_threads
   use problem_definition, only: problem
-  use ranks, only: add_over_ranks, exchange_seconds, is_first_rank, num_ranks, num_ranks_here, &
-                   share_error, this_rank
-  use run_checkpoint, only: load_latest_state
+  use rank_balance, only: balance_of_ranks, gather_balance
+  use ranks, only: is_first_rank, number_of_first_rank, num_ranks, num_ranks_here, share_error
+  use run_checkpoint, only: load_chosen_state
   use run_ledger, only: ledger
   use step_loop, only: run_all_steps
   use undivided_effects, only: refuse_undivided
   use unknown_layout, only: choose_solver
   use user_routines, only: end_user_routines
-  use write_text, only: as_text
   implicit none
   private
-  public :: adapt_options, divide_problem, assist_run, rank_costs
+  public :: adapt_options, divide_problem, assist_run, chosen_checkpoint
 
   !> Results of the ranks that write none.
   type, extends(listener) :: silent_listener
@@ -74,44 +72,34 @@ contains
     type(silent_listener) :: results
     type(state), allocatable :: now
     type(error_type), allocatable :: failure
-    character(:), allocatable :: ignored
+    type(balance_of_ranks) :: ignored
+    logical :: is_old
     results%costs = costs
     results%log%is_quiet = .true.
     if (options%is_continued) then
       call start_analysis(model, now, error)
-      if (.not. allocated(error)) then
-        call load_latest_state(options%folder//'/'//base_name(model%deck_file), now, error)
-      end if
       call share_error(error)
+      if (allocated(error)) return
+      is_old = chosen_checkpoint(.false.)
+      call load_chosen_state(options%folder//'/'//base_name(model%deck_file), is_old, now, error)
+      call share_error(error)
+      if (allocated(error)) return
     end if
     call share_error(error)
     if (allocated(error)) return
     if (.not. allocated(now)) call start_analysis(model, now, error)
     if (.not. allocated(error)) call run_all_steps(model, now, results, error)
     call share_error(error)
-    if (.not. allocated(error)) ignored = rank_costs(model)
+    if (.not. allocated(error)) call gather_balance(costs, model%mesh%rank_of_element, ignored)
     call end_user_routines(model, now%total_time, results%log, failure)
     call keep_first(error, failure)
   end subroutine assist_run
 
-  !> The balance of the ranks as a line of the log. All ranks call this at the end of a run.
-  function rank_costs(model) result(text)
-    type(problem), intent(in) :: model
-    character(:), allocatable :: text !< '' for one rank
-    real(rk), allocatable :: elements(:), seconds(:)
-    integer :: i
-    text = ''
-    if (num_ranks() == 1) return
-    allocate (elements(num_ranks()), seconds(num_ranks()), source=0.0_rk)
-    seconds(this_rank() + 1) = exchange_seconds()
-    call add_over_ranks(seconds)
-    do i = 1, num_ranks()
-      elements(i) = count(model%mesh%rank_of_element == i - 1)
-    end do
-    text = as_text(num_ranks())//' ranks have '//as_text(nint(minval(elements)))//' to '// &
-           as_text(nint(maxval(elements)))//' elements each; exchange between them and waiting '// &
-           'for others took '//as_text(minval(seconds))//' to '//as_text(maxval(seconds))//' s'
-  end function rank_costs
+  !> Whether the first rank goes on from the checkpoint before the last, on all ranks.
+  logical function chosen_checkpoint(is_old) result(is_chosen)
+    logical, intent(in) :: is_old !< the choice of the first rank
+    is_chosen = number_of_first_rank(merge(1, 0, is_old)) == 1
+  end function chosen_checkpoint
 
   !> Writes nothing.
   subroutine increment_done(self, model, now, error)

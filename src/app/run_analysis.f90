@@ -4,13 +4,14 @@ module run_analysis
   use errors, only: error_type, keep_first, raise_unwritten
   use diagnostics, only: diagnostic_list
   use disk_advice, only: explain_failed_write
-  use divided_run, only: rank_costs
+  use divided_run, only: chosen_checkpoint
   use earlier_files, only: mark_summary
   use file_system, only: make_folder
   use run_lock, only: job_lock
   use stop_signals, only: catch_signals
   use ledger_text, only: text_of_ledger
-  use ranks, only: share_error
+  use rank_balance, only: gather_balance
+  use ranks, only: num_ranks, share_error
   use run_ledger, only: ledger
   use timer, only: peak_memory, wall_clock
   use write_text, only: as_text
@@ -69,7 +70,6 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(state), allocatable :: now
     type(error_type), allocatable :: failure
-    character(:), allocatable :: balance
     call open_run(model, given, echo, earlier, costs, results, now, error)
     call share_error(error)
     if (allocated(error)) then
@@ -85,8 +85,9 @@ contains
     end if
     if (.not. allocated(error)) call run_all_steps(model, now, results, error)
     call share_error(error)
-    balance = ''
-    if (.not. allocated(error)) balance = rank_costs(model)
+    if (.not. allocated(error) .and. allocated(model%mesh%rank_of_element)) then
+      call gather_balance(costs, model%mesh%rank_of_element, results%summary%balance)
+    end if
     call end_user_routines(model, now%total_time, results%log, failure)
     call keep_first(error, failure)
     call costs%stop_all()
@@ -101,7 +102,7 @@ contains
       call results%log%say(closing_lines(model, results%summary, results%record, costs))
       call results%log%say('finished in '//as_text(wall_clock() - started_at)//' s, '// &
                            as_text(peak_memory())//' MB')
-      if (balance /= '') call results%log%say(balance)
+      if (num_ranks() > 1) call results%log%say(results%summary%balance%lines())
       call results%log%say(text_of_ledger(costs))
     end if
     call results%log%close()
@@ -139,12 +140,16 @@ contains
     type(state), allocatable, intent(out) :: now !< of the checkpoint; not allocated in a new run
     type(error_type), allocatable, intent(out) :: error
     character(:), allocatable :: remark
+    logical :: is_old
     if (given%is_continued) then
       call costs%start('assemble', 'initial state', 'solver')
       call start_analysis(model, now, error)
       call costs%stop()
       if (.not. allocated(error)) call results%load(model, now, remark, error)
       call share_error(error)
+      if (allocated(error)) return
+      is_old = chosen_checkpoint(results%is_from_old)
+      call share_error(error) ! of the other ranks, before files are set back
       if (allocated(error)) return
     end if
     call catch_signals(results%stem//'.json')

@@ -35,6 +35,7 @@ set(sources
   messages/pages_of_models.f90
   messages/pages_of_runs.f90
   messages/pages_of_values.f90
+  ranks/rank_balance.f90
   ranks/ranks.f90
   report/diagnostic_text.f90
   report/diagnostics.f90
@@ -61,7 +62,7 @@ set(sources
 )
 # What stands behind ranks.f90
 if(KEYWAY_PETSC)
-  list(APPEND sources ranks/mpi_ranks.c)
+  list(APPEND sources ranks/mpi_ranks.c ranks/mpi_times.c)
 else()
   list(APPEND sources ranks/one_rank.c)
 endif()

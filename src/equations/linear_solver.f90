@@ -10,6 +10,8 @@ module linear_solver
 
   type, abstract :: equation_solver
     integer :: failed_unknown = 0 !< unknown whose pivot failed, 0 for none
+    !> Norm of the residual at which a solve by iteration may end; 0: at round-off of the forces [N]
+    real(rk) :: admissible = 0.0_rk
     !> (free unknowns) order of elimination; not allocated: no forward and backward substitution
     integer, allocatable :: order(:)
   contains
@@ -23,6 +25,7 @@ module linear_solver
     procedure :: substitute => refuse_part
     procedure :: keep_single => keep_double
     procedure :: num_entries => unknown_entries
+    procedure :: describe_iterations => describe_none
   end type equation_solver
 
   !> Parts of a factor. The upper part holds the columns of the active unknowns and all columns that
@@ -114,6 +117,13 @@ contains
     class(equation_solver), intent(in) :: self
     entries = 0_long
   end function unknown_entries
+
+  !> The iterations of the solves so far in words; '' for a solver without iteration.
+  function describe_none(self) result(text)
+    class(equation_solver), intent(in) :: self
+    character(:), allocatable :: text
+    text = repeat(' ', min(0, self%failed_unknown))
+  end function describe_none
 
   !> y = L^-1 y or y = L^-T y with a part of the factor, in the order of elimination.
   subroutine refuse_part(self, part, is_forward, y, error)

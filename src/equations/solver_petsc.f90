@@ -23,7 +23,8 @@ module solver_petsc
   integer, parameter :: most_direct = 200000
 
   type, extends(equation_solver) :: petsc_solver
-    integer :: num_iterations = 0 !< of all solves
+    integer :: num_solves = 0 !< right-hand sides that were solved for
+    integer :: num_iterations = 0, least = huge(1), most = 0 !< of all solves, of a solve
     type(c_ptr), private :: handle = c_null_ptr
     logical, private :: is_ready = .false. !< there is a factor
     integer(c_int), private :: method = by_cholesky
@@ -32,6 +33,7 @@ module solver_petsc
   contains
     procedure :: analyse, factorise, solve
     procedure :: num_entries => num_entries_here
+    procedure :: describe_iterations
     final :: release
   end type petsc_solver
 
@@ -189,7 +191,7 @@ contains
     real(rk), intent(inout) :: b(:, :) !< (num_free, right-hand sides)
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: own(:, :), all(:)
-    integer(c_int) :: status, iterations
+    integer(c_int) :: status, iterations(size(b, 2))
     integer :: bounds(2), j, k
     if (size(b) == 0) return
     bounds = own_rows(self%layout, this_rank())
@@ -202,15 +204,29 @@ contains
         end associate
       end do
     end do
-    status = solve_petsc(self%handle, int(size(own, 1), c_int), int(size(own, 2), c_int), own, &
-                         iterations)
-    self%num_iterations = self%num_iterations + iterations
+    status = solve_petsc(self%handle, int(size(own, 1), c_int), int(size(own, 2), c_int), &
+                         self%admissible, own, iterations)
+    self%num_solves = self%num_solves + size(iterations)
+    self%num_iterations = self%num_iterations + int(sum(iterations))
+    self%least = min(self%least, int(minval(iterations)))
+    self%most = max(self%most, int(maxval(iterations)))
     do k = 1, size(b, 2)
       call gather_rows(self%layout%first_row, own(:, k), all)
       b(:, k) = all(self%layout%row + 1)
     end do
-    if (status /= is_done) call report_failure(status, iterations, error)
+    if (status /= is_done) call report_failure(status, maxval(iterations), error)
   end subroutine solve
+
+  !> Mean, least and most iterations of a solve; '' for a factor.
+  function describe_iterations(self) result(text)
+    class(petsc_solver), intent(in) :: self
+    character(:), allocatable :: text
+    text = ''
+    if (self%method == by_cholesky .or. self%method == by_lu .or. self%num_solves == 0) return
+    text = as_text(self%num_solves)//' solves took '// &
+           as_text(nint(real(self%num_iterations, rk)/self%num_solves))//' iterations each ('// &
+           as_text(self%least)//' to '//as_text(self%most)//')'
+  end function describe_iterations
 
   !> Entries of the factor on this rank.
   integer(long) function num_entries_here(self) result(entries)

@@ -30,7 +30,8 @@ set(sources
 )
 # What stands behind petsc_equations.f90
 if(KEYWAY_PETSC)
-  list(APPEND sources distributed/petsc_bridge.c)
+  list(APPEND sources distributed/block_matrix.c distributed/last_solutions.c
+       distributed/petsc_bridge.c)
 else()
   list(APPEND sources distributed/without_petsc.c)
 endif()

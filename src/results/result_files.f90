@@ -43,7 +43,7 @@ module result_files
     real(rk), private :: summarised_at = 0.0_rk !< wall clock [s]
     integer, private :: num_warnings_printed = 0
     integer, private :: num_checkpoints = 0
-    logical, private :: is_from_old = .false. !< the last checkpoint is damaged
+    logical :: is_from_old = .false. !< the last checkpoint is damaged
     type(writer_item), allocatable, private :: writers(:)
   contains
     procedure :: prepare, load, go_on

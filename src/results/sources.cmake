@@ -40,6 +40,7 @@ set(sources
   record/result_writer.f90
   record/run_records.f90
   result_files.f90
+  summary/rank_json.f90
   summary/run_closing.f90
   summary/damage_json.f90
   summary/error_json.f90

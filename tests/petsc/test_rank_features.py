@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import h5py
 import numpy as np
 import pytest
 from harness import ROOT
@@ -171,4 +172,19 @@ def test_any_number_of_ranks_goes_on(keyway, on_ranks, first, second):
     if program.folder != source:
         (source / "results_job").rename(program.folder / "results_job")
     size, place = worst_difference(plain, program(full, "--continue"))
+    assert size <= 1e-8, place
+
+
+def test_all_ranks_take_the_checkpoint_of_rank_0(keyway, on_ranks):
+    """The record of results in the last checkpoint is damaged, which rank 0 alone reads: all ranks
+    go on from the checkpoint before, the end of the first step.
+    """
+    deck = rocking().replace("*END STEP\n", "*RESTART, WRITE\n*END STEP\n")
+    plain, program = keyway(deck, "-j", "1"), on_ranks(2)
+    first = program(deck, "--solver", "DIRECT")
+    with h5py.File(first.folder / "job.ckpt.h5", "r+") as file:
+        del file["record"]
+    second = program(deck, "--continue", "--solver", "DIRECT")
+    assert "the checkpoint before it is used" in second.stderr
+    size, place = worst_difference(plain, second)
     assert size <= 1e-8, place

@@ -63,10 +63,23 @@ contains
       end if
       call run_increments(model, model%steps(i), method, now, results, error)
       if (allocated(error)) return
+      call report_iterations(model%steps(i), method, results)
       call method%close_step(model, model%steps(i), now, results, error)
       if (allocated(error)) return
     end do
   end subroutine run_all_steps
+
+  !> Says how many iterations the solves of a step have taken, where they are iterations.
+  subroutine report_iterations(plan, method, results)
+    type(step), intent(in) :: plan
+    class(integrator), intent(in) :: method
+    class(listener), intent(inout) :: results
+    character(:), allocatable :: text
+    if (.not. allocated(method%solids%solver)) return
+    if (.not. allocated(method%solids%solver%factor)) return
+    text = method%solids%solver%factor%describe_iterations()
+    if (text /= '') call results%log%say("step '"//plan%name//"': "//text)
+  end subroutine report_iterations
 
   !> The step that a state goes on with: the one that it is in, unless the state is its end.
   pure integer function first_step(now)

@@ -148,7 +148,7 @@ contains
       call lay_out_rows(model%mesh, system%numbers, cells, system%matrix)
       associate (layout => system%matrix%layout)
         layout%solver = model%equation_solver
-        layout%has_inertia = plan%procedure%has_inertia .and. all(model%materials%density > 0.0_rk)
+        layout%has_inertia = plan%procedure%has_inertia
         layout%has_many_sides = size(model%joints) > 0
       end associate
     end if

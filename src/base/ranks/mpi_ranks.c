@@ -6,7 +6,8 @@
 #include <time.h>
 
 static int number = 1, rank, number_here = 1, is_started, is_alone;
-static double exchange_started, exchange_seconds;
+void keyway_add_waiting(double waited); /* of mpi_times.c */
+
 static MPI_Comm meetings; /* its messages cannot be taken for those of another exchange */
 
 /* Variables that launchers set. A program without one runs alone, without a start of MPI. */
@@ -33,12 +34,6 @@ void keyway_start_ranks(void)
   MPI_Comm_dup(MPI_COMM_WORLD, &meetings);
 }
 
-/* Between these two a rank exchanges, or waits for others. */
-static void open_exchange(void) { exchange_started = MPI_Wtime(); }
-static void close_exchange(void) { exchange_seconds += MPI_Wtime() - exchange_started; }
-
-double keyway_exchange_seconds(void) { return exchange_seconds; }
-
 int keyway_num_ranks(void) { return number; }
 int keyway_num_ranks_here(void) { return number_here; }
 int keyway_this_rank(void) { return rank; }
@@ -50,18 +45,17 @@ int keyway_wait_for_ranks(int seconds)
 {
   const struct timespec pause = {0, 200000};
   MPI_Request request;
-  double limit;
+  double start;
   int all_come = 0;
   if (number == 1 || is_alone) return !is_alone;
-  open_exchange();
   MPI_Ibarrier(meetings, &request);
-  limit = MPI_Wtime() + seconds;
+  start = MPI_Wtime();
   while (!all_come && !is_alone) {
     MPI_Test(&request, &all_come, MPI_STATUS_IGNORE);
     if (!all_come) nanosleep(&pause, NULL);
-    is_alone = !all_come && seconds > 0 && MPI_Wtime() > limit;
+    is_alone = !all_come && seconds > 0 && MPI_Wtime() > start + seconds;
   }
-  close_exchange();
+  keyway_add_waiting(MPI_Wtime() - start);
   return all_come;
 }
 
@@ -77,7 +71,6 @@ void keyway_end_ranks(int code)
 void keyway_add_over_ranks(double *x, size_t length)
 {
   if (number == 1) return;
-  open_exchange();
   while (length > 0) {
     const int count = length < (size_t)INT_MAX ? (int)length : INT_MAX;
     MPI_Reduce(rank == 0 ? MPI_IN_PLACE : x, x, count, MPI_DOUBLE, MPI_SUM, 0, MPI_COMM_WORLD);
@@ -85,7 +78,6 @@ void keyway_add_over_ranks(double *x, size_t length)
     x += count;
     length -= (size_t)count;
   }
-  close_exchange();
 }
 
 void keyway_gather_rows(const double *own, double *all, int num_ranks, const int *first)
@@ -94,9 +86,7 @@ void keyway_gather_rows(const double *own, double *all, int num_ranks, const int
   if (!count) MPI_Abort(MPI_COMM_WORLD, 3);
   for (int i = 0; i < num_ranks; i++) count[i] = first[i + 1] - first[i];
   if (is_started) {
-    open_exchange();
     MPI_Allgatherv(own, count[rank], MPI_DOUBLE, all, count, first, MPI_DOUBLE, MPI_COMM_WORLD);
-    close_exchange();
   } else {
     for (int i = 0; i < first[1]; i++) all[i] = own[i];
   }

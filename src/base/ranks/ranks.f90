@@ -11,7 +11,7 @@ module ranks
   private
   public :: start_ranks, end_ranks, num_ranks, this_rank, is_first_rank, is_alone
   public :: exchange_seconds, num_ranks_here, add_over_ranks, gather_rows, is_true_everywhere
-  public :: share_error
+  public :: number_of_first_rank, text_of_first_rank, share_error
 
   !> For ranks that do not come, because they wait for this one elsewhere [s]. Rank 0 may write
   !> results meanwhile.
@@ -30,7 +30,7 @@ module ranks
       integer(c_int), value :: code
     end subroutine end_ranks
 
-    !> Time that this rank has spent in the procedures of this module [s].
+    !> Time that this rank has spent in exchange with others, and waiting for them [s].
     function exchange_seconds() result(seconds) bind(c, name='keyway_exchange_seconds')
       import :: c_double
       implicit none
@@ -147,6 +147,12 @@ contains
     is_true_everywhere = keyway_least_of_ranks(merge(1_c_int, 0_c_int, holds)) == 1
   end function is_true_everywhere
 
+  !> The number that the first rank has, on all ranks.
+  integer function number_of_first_rank(own) result(number)
+    integer, intent(in) :: own !< used on the first rank; less than huge(1)
+    number = int(keyway_least_of_ranks(int(merge(own, huge(1), is_first_rank()), c_int)))
+  end function number_of_first_rank
+
   !> An error of one rank becomes that of all: the error of the lowest rank that has one. A rank
   !> with an error that the others do not meet here is alone from then on.
   subroutine share_error(error)
@@ -168,6 +174,15 @@ contains
     text = text_of_rank(rank, text)
     if (.not. allocated(error)) call raise(error, text, int(head(1)))
   end subroutine share_error
+
+  !> The text of the first rank, on all ranks.
+  function text_of_first_rank(own) result(text)
+    character(*), intent(in) :: own
+    character(:), allocatable :: text
+    text = repeat(' ', number_of_first_rank(len(own)))
+    if (is_first_rank()) text = own
+    text = text_of_rank(0_c_int, text)
+  end function text_of_first_rank
 
   !> The text of one rank, on all ranks.
   function text_of_rank(rank, own) result(text)

@@ -1,24 +1,34 @@
 /* Behind petsc_equations.f90 with KEYWAY_PETSC: a matrix by rows, a solver, two vectors. */
 #include <petscksp.h>
+#include <stdio.h>
 #include <stdlib.h>
+
+#include "block_matrix.h"
+#include "last_solutions.h"
 
 _Static_assert(sizeof(PetscInt) == sizeof(int), "PETSc must be built with 32-bit indices");
 _Static_assert(sizeof(PetscScalar) == sizeof(double), "PETSc must be built with real scalars");
 
 enum { by_cholesky = 1, by_multigrid = 2, by_blocks = 3, by_lu = 4 };
 enum { done = 0, singular = 1, slow = 2, failed = 3 };
-enum { num_rigid = 6, rows_of_node = 3, num_old = 6, most_iterations = 5000 };
+enum { num_rigid = 6, rows_of_node = 3, most_iterations = 5000 };
 
-/* Residual over the right-hand side. Results at 1e-6 of the largest value need less; forces that
- * nearly cancel need this. */
+/* Residual over the right-hand side, where the caller admits none. Results at 1e-6 of the largest
+ * value need less; forces that nearly cancel need this. */
 static const double tolerance = 1e-10;
+
+/* Aggregates of one or two nodes have no six motions. Their empty rows on coarse levels get this
+ * part of the largest diagonal entry, so that smoothers can divide. */
+static const double of_empty_row = 1e-12;
 
 struct equations {
   int method;
   int rows;
   Mat matrix;
+  Mat blocks; /* the same in blocks of 3 x 3, upper triangle; by_blocks only */
   KSP solver;
   Vec b, x;
+  struct last_solutions last;
 };
 
 static PetscErrorCode keep_quiet(MPI_Comm comm, int line, const char *function, const char *file,
@@ -52,6 +62,8 @@ void *keyway_petsc_start(void)
     if (PetscPushErrorHandler(keep_quiet, NULL)) return NULL;
     if (set_default("-keyway_mat_mumps_icntl_14", "60")) return NULL; /* room for pivots [%] */
     if (set_default("-keyway_sub_pc_type", "icc")) return NULL;
+    if (set_default("-keyway_mg_levels_pc_type", "sor")) return NULL;
+    if (set_default("-keyway_pc_gamg_threshold", "0.01")) return NULL;
   }
   return calloc(1, sizeof(struct equations));
 }
@@ -62,6 +74,8 @@ void keyway_petsc_finish(void *handle)
   if (!self) return;
   KSPDestroy(&self->solver);
   MatDestroy(&self->matrix);
+  MatDestroy(&self->blocks);
+  forget_solutions(&self->last);
   VecDestroy(&self->b);
   VecDestroy(&self->x);
   free(self);
@@ -104,7 +118,6 @@ static PetscErrorCode choose_method(struct equations *self)
   PetscFunctionBegin;
   PetscCall(KSPCreate(PETSC_COMM_WORLD, &self->solver));
   PetscCall(KSPSetOptionsPrefix(self->solver, "keyway_"));
-  PetscCall(KSPSetOperators(self->solver, self->matrix, self->matrix));
   PetscCall(KSPGetPC(self->solver, &pc));
   if (is_direct(self)) {
     PetscCall(KSPSetType(self->solver, KSPPREONLY));
@@ -113,12 +126,9 @@ static PetscErrorCode choose_method(struct equations *self)
   } else {
     PetscCall(KSPSetType(self->solver, KSPCG));
     PetscCall(KSPSetNormType(self->solver, KSP_NORM_UNPRECONDITIONED));
-    PetscCall(KSPSetTolerances(self->solver, tolerance, PETSC_DEFAULT, PETSC_DEFAULT,
-                               most_iterations));
+    PetscCall(KSPSetInitialGuessNonzero(self->solver, PETSC_TRUE));
     PetscCall(PCSetType(pc, self->method == by_multigrid ? PCGAMG : PCBJACOBI));
   }
-  /* Starts from the best combination of the last solutions. */
-  if (self->method == by_blocks) PetscCall(KSPSetUseFischerGuess(self->solver, 1, num_old));
   PetscCall(KSPSetFromOptions(self->solver));
   PetscFunctionReturn(0);
 }
@@ -189,13 +199,43 @@ static PetscErrorCode check_factor(struct equations *self, int *status)
   PetscFunctionReturn(0);
 }
 
+/* The matrix that the iteration multiplies with: in blocks, which read half as many indices. */
+static PetscErrorCode give_matrix(struct equations *self)
+{
+  PetscFunctionBegin;
+  if (self->method == by_blocks) {
+    PetscCall(copy_to_blocks(self->matrix, &self->blocks));
+    PetscCall(KSPSetOperators(self->solver, self->blocks, self->blocks));
+  } else {
+    PetscCall(KSPSetOperators(self->solver, self->matrix, self->matrix));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode fill_empty_rows(struct equations *self)
+{
+  char text[32];
+  PetscReal largest;
+  Vec diagonal;
+  PetscFunctionBegin;
+  PetscCall(VecDuplicate(self->b, &diagonal));
+  PetscCall(MatGetDiagonal(self->matrix, diagonal));
+  PetscCall(VecMax(diagonal, NULL, &largest));
+  PetscCall(VecDestroy(&diagonal));
+  snprintf(text, sizeof text, "%.6e", of_empty_row * largest);
+  PetscCall(PetscOptionsSetValue(NULL, "-keyway_mg_levels_pc_sor_diagonal_shift", text));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode factor(struct equations *self, const double *values, int *status)
 {
   PC pc;
   PCFailedReason reason;
   PetscFunctionBegin;
+  PetscCall(forget_solutions(&self->last));
   PetscCall(MatSetValuesCOO(self->matrix, values, INSERT_VALUES));
-  PetscCall(KSPSetOperators(self->solver, self->matrix, self->matrix));
+  if (self->method == by_multigrid) PetscCall(fill_empty_rows(self));
+  PetscCall(give_matrix(self));
   PetscCall(KSPSetUp(self->solver));
   PetscCall(KSPGetPC(self->solver, &pc));
   PetscCall(PCGetFailedReason(pc, &reason));
@@ -212,18 +252,26 @@ int keyway_petsc_factor(void *handle, size_t entries, const double *values)
   return factor(handle, values, &status) ? failed : status;
 }
 
-static PetscErrorCode solve(struct equations *self, double *b, int *iterations, int *status)
+static PetscErrorCode solve(struct equations *self, double admissible, int is_kept, double *b,
+                            int *iterations, int *status)
 {
-  PetscScalar *own;
+  PetscScalar *own, with[most_kept];
   KSPConvergedReason reason;
   PetscInt count;
   PetscFunctionBegin;
   PetscCall(VecGetArray(self->b, &own));
   for (int i = 0; i < self->rows; i++) own[i] = b[i];
   PetscCall(VecRestoreArray(self->b, &own));
+  if (!is_direct(self)) {
+    PetscCall(KSPSetTolerances(self->solver, tolerance, admissible, PETSC_DEFAULT,
+                               most_iterations));
+    PetscCall(combine_solutions(&self->last, self->b, with, self->x));
+  }
   PetscCall(KSPSolve(self->solver, self->b, self->x));
   PetscCall(KSPGetConvergedReason(self->solver, &reason));
   PetscCall(KSPGetIterationNumber(self->solver, &count));
+  if (is_kept && !is_direct(self) && reason > 0)
+    PetscCall(keep_solution(&self->last, self->b, with, self->x));
   PetscCall(VecGetArray(self->x, &own));
   for (int i = 0; i < self->rows; i++) b[i] = own[i];
   PetscCall(VecRestoreArray(self->x, &own));
@@ -280,16 +328,17 @@ static PetscErrorCode solve_columns(struct equations *self, int sides, double *b
   PetscFunctionReturn(0);
 }
 
-int keyway_petsc_solve(void *handle, int rows, int sides, double *b, int *iterations)
+int keyway_petsc_solve(void *handle, int rows, int sides, double admissible, double *b,
+                       int *iterations)
 {
   struct equations *self = handle;
   int status = done;
-  *iterations = 0;
+  for (int k = 0; k < sides; k++) iterations[k] = 0;
   if (sides > 1 && is_direct(self)) return solve_columns(self, sides, b) ? failed : done;
   for (int k = 0; k < sides && status == done; k++) {
     int count = 0;
-    if (solve(self, b + (size_t)k * rows, &count, &status)) return failed;
-    *iterations += count;
+    if (solve(self, admissible, sides == 1, b + (size_t)k * rows, &count, &status)) return failed;
+    iterations[k] = count;
   }
   return status;
 }

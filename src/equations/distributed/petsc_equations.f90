@@ -54,15 +54,17 @@ module petsc_equations
       integer(c_int) :: status
     end function factor_petsc
 
-    !> Solves for the own rows of right-hand sides, in place.
-    function solve_petsc(handle, rows, sides, b, iterations) result(status) &
+    !> Solves for the own rows of right-hand sides, in place. An iteration ends at a residual of
+    !> 1e-10 of the right-hand side, or of `admissible` where that is larger.
+    function solve_petsc(handle, rows, sides, admissible, b, iterations) result(status) &
       bind(c, name='keyway_petsc_solve')
       import :: c_double, c_int, c_ptr
       implicit none
       type(c_ptr), value :: handle
       integer(c_int), value :: rows, sides
+      real(c_double), value :: admissible !< norm over all ranks
       real(c_double), intent(inout) :: b(rows, sides)
-      integer(c_int), intent(out) :: iterations !< of all sides
+      integer(c_int), intent(out) :: iterations(sides)
       integer(c_int) :: status
     end function solve_petsc
 

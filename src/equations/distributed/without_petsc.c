@@ -26,8 +26,9 @@ double keyway_petsc_entries(void *handle)
   return 0;
 }
 
-int keyway_petsc_solve(void *handle, int rows, int sides, double *b, int *iterations)
+int keyway_petsc_solve(void *handle, int rows, int sides, double admissible, double *b,
+                       int *iterations)
 {
-  (void)handle, (void)rows, (void)sides, (void)b, (void)iterations;
+  (void)handle, (void)rows, (void)sides, (void)admissible, (void)b, (void)iterations;
   return failed;
 }

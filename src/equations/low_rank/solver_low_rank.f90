@@ -21,7 +21,7 @@ module solver_low_rank
     real(rk), allocatable, private :: z(:, :) !< (free unknowns, rank) Z
     type(lu_factor), private :: small !< of I + U^T Z
   contains
-    procedure :: analyse, factorise, solve, keep_single
+    procedure :: analyse, factorise, solve, keep_single, describe_iterations
   end type low_rank_solver
 
 contains
@@ -81,7 +81,9 @@ contains
     real(rk), intent(inout) :: b(:, :)
     type(error_type), allocatable, intent(out) :: error
     real(rk) :: share(size(self%u, 2), size(b, 2))
+    self%sparse%admissible = self%admissible
     call self%sparse%solve(b, error)
+    self%sparse%admissible = 0.0_rk
     if (allocated(error)) return
     call project(self%u, b, share)
     call solve_factored(self%small, share)
@@ -95,6 +97,13 @@ contains
     logical, intent(out) :: is_kept
     call self%sparse%keep_single(unknown, is_kept)
   end subroutine keep_single
+
+  !> The iterations with A.
+  function describe_iterations(self) result(text)
+    class(low_rank_solver), intent(in) :: self
+    character(:), allocatable :: text
+    text = self%sparse%describe_iterations()
+  end function describe_iterations
 
   !> U^T B.
   subroutine project(u, b, product)

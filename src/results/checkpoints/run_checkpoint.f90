@@ -16,7 +16,7 @@ module run_checkpoint
   use writer_catalogue, only: writer_item
   implicit none
   private
-  public :: run_position, save_checkpoint, load_checkpoint, load_latest_state, start_journals
+  public :: run_position, save_checkpoint, load_checkpoint, load_chosen_state, start_journals
 
   !> What a checkpoint stores of a run.
   type :: run_position
@@ -119,25 +119,20 @@ contains
     end if
   end subroutine load_checkpoint
 
-  !> Loads the state alone, for a process that writes no results, from the checkpoint that
-  !> `load_checkpoint` chooses.
-  subroutine load_latest_state(stem, now, error)
+  !> Loads the state alone, for a process that writes no results, from the checkpoint that the
+  !> process with the results has chosen by `load_checkpoint`.
+  subroutine load_chosen_state(stem, is_old, now, error)
     character(*), intent(in) :: stem !< folder and name of the job
-    type(state), allocatable, intent(inout) :: now !< as `start_analysis` makes it; then as saved
+    logical, intent(in) :: is_old !< the checkpoint before the last
+    type(state), intent(inout) :: now !< as `start_analysis` makes it; then as saved
     type(error_type), allocatable, intent(out) :: error
-    type(error_type), allocatable :: ignored
-    type(state), allocatable :: fresh
+    type(error_type), allocatable :: failure
     type(hdf5_store) :: file
-    integer :: i
-    fresh = now
-    do i = 1, 2
-      call file%open(checkpoint_path(stem, i == 2))
-      now = fresh
-      call load_state(now, file, error)
-      call file%close(ignored)
-      if (.not. allocated(error)) return
-    end do
-  end subroutine load_latest_state
+    call file%open(checkpoint_path(stem, is_old))
+    call load_state(now, file, error)
+    call file%close(failure)
+    call keep_first(error, failure)
+  end subroutine load_chosen_state
 
   !> Loads one checkpoint.
   subroutine load_one(path, model, writers, found, failure, error)

@@ -4,6 +4,7 @@ module run_summaries
   use diagnostics, only: diagnostic_list
   use node_dofs, only: num_directions
   use problem_definition, only: problem
+  use rank_balance, only: balance_of_ranks
   use analysis_state, only: state, energy_balance, reduction_status, time_accuracy, vibration_mode
   implicit none
   private
@@ -35,6 +36,7 @@ module run_summaries
     type(diagnostic_list) :: remarks !< warnings and ignored input of the deck
     integer :: num_unknowns = 0
     type(step_summary), allocatable :: steps(:)
+    type(balance_of_ranks) :: balance !< at the end of a run of several ranks
   contains
     procedure :: begin_step
     procedure :: note

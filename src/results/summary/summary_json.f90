@@ -5,6 +5,8 @@ module summary_json
   use build_info, only: program_version, compiler, libraries
   use diagnostics, only: severity_ignored
   use diagnostic_text, only: headline
+  use rank_balance, only: balance_of_ranks
+  use rank_json, only: put_balance
   use run_ledger, only: ledger, ledger_part
   use timer, only: peak_memory
   use guest_list, only: guests_of_model
@@ -65,7 +67,7 @@ contains
     call put_damage(json, record%damage)
     call put_umat(json, model%umat)
     call put_accuracy(json, model, summary, record)
-    call put_costs(json, costs)
+    call put_costs(json, costs, summary%balance)
     call put_files(json, record)
     call json%close_object()
     text = json%contents()
@@ -354,9 +356,10 @@ contains
   end subroutine put_contact
 
   !> The ledger of time and memory.
-  subroutine put_costs(json, costs)
+  subroutine put_costs(json, costs, balance)
     type(json_text), intent(inout) :: json
     type(ledger), intent(in) :: costs
+    type(balance_of_ranks), intent(in) :: balance
     type(ledger_part), allocatable :: parts(:)
     real(rk) :: wall_time
     integer :: i
@@ -377,6 +380,7 @@ contains
       call json%close_object()
     end do
     call json%close_array()
+    call put_balance(json, balance)
     call json%close_object()
   end subroutine put_costs
 
