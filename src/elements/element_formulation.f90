@@ -1,10 +1,11 @@
 !> The contract of solid elements: each gives its strain-displacement operator at its points.
 !>
 !> Stiffness, forces and strains are generic: K = sum w B^T D B (+ hourglass control),
-!> f = sum w B^T sigma, eps = B u. One call handles a block of elements.
+!> f = sum w B^T sigma, eps = B u. One call handles a block of elements. Strains of a few
+!> displacements are had without B where that is cheaper.
 module element_formulation
   use kinds, only: rk
-  use shape_hex8, only: gradient_at, point_derivative, point_shape
+  use shape_hex8, only: gradient_at, hex8_dofs, point_derivative, point_shape
   implicit none
   private
   public :: solid_element
@@ -17,6 +18,7 @@ module element_formulation
     logical :: has_plain_strain = .false.
   contains
     procedure(strain_operator), deferred :: strain_operator
+    procedure :: find_strains => apply_operator
     procedure :: add_stabilisation
     procedure :: thermal_strain => mean_expansion
   end type solid_element
@@ -36,6 +38,26 @@ module element_formulation
   end interface
 
 contains
+
+  !> Strains of one element under some displacements. Default: B u.
+  subroutine apply_operator(self, x, d, moved, strain)
+    class(solid_element), intent(in) :: self
+    real(rk), intent(in) :: x(3, 8) !< [m]
+    real(rk), intent(in) :: d(6, 6) !< elastic stiffness (incompatible modes need it) [Pa]
+    real(rk), contiguous, intent(in) :: moved(:, :) !< (24, fields) [m]
+    real(rk), contiguous, intent(out) :: strain(:, :, :) !< (6, points, fields)
+    real(rk) :: b(6, hex8_dofs, self%num_points, 1), weight(self%num_points, 1)
+    integer :: status(1), i, k, q
+    call self%strain_operator(reshape(x, [3, 8, 1]), d, b, weight, status)
+    strain = 0.0_rk
+    do k = 1, size(moved, 2)
+      do q = 1, self%num_points
+        do i = 1, hex8_dofs
+          strain(:, q, k) = strain(:, q, k) + b(:, i, q, 1)*moved(i, k)
+        end do
+      end do
+    end do
+  end subroutine apply_operator
 
   !> Adds the stiffness of hourglass control, if the element needs it.
   subroutine add_stabilisation(self, x, d, ke)

@@ -9,6 +9,7 @@ module element_hex8_incompatible
   use element_formulation, only: solid_element
   use element_hex8, only: hex8_gradients
   use gauss_rules, only: hex_point
+  use hex8_slopes, only: slopes_at_points, strains_of_slopes
   use shape_hex8, only: derivative_at, hex8_dofs, point_shape, strain_rows
   use small_matrix, only: invert3
   implicit none
@@ -18,6 +19,7 @@ module element_hex8_incompatible
   type, extends(solid_element) :: incompatible_hexahedron
   contains
     procedure :: strain_operator
+    procedure :: find_strains
     procedure :: thermal_strain
   end type incompatible_hexahedron
 
@@ -47,6 +49,23 @@ contains
     end do
   end subroutine strain_operator
 
+  !> The strains of the displacements and those of the modes that follow them.
+  subroutine find_strains(self, x, d, moved, strain)
+    class(incompatible_hexahedron), intent(in) :: self
+    real(rk), intent(in) :: x(3, 8)
+    real(rk), intent(in) :: d(6, 6)
+    real(rk), contiguous, intent(in) :: moved(:, :)
+    real(rk), contiguous, intent(out) :: strain(:, :, :)
+    real(rk) :: slope(8, 3, 8), weight(8), mode(6, 9, 8)
+    integer :: k, status
+    call slopes_at_points(x, slope, weight, status)
+    call mode_strains(x, weight, mode)
+    do k = 1, size(moved, 2)
+      call strains_of_slopes(slope, moved(:, k), strain(:, :, k))
+    end do
+    call relax(mode, d, weight, strain)
+  end subroutine find_strains
+
   !> The expansion at each point, and that less the strains of the modes that follow it: a free
   !> element whose temperature is linear has no stress.
   subroutine thermal_strain(self, x, d, nodal, expansion, strain)
@@ -56,9 +75,8 @@ contains
     real(rk), contiguous, intent(in) :: nodal(:, :)
     real(rk), contiguous, intent(out) :: expansion(:, :)
     real(rk), contiguous, intent(out) :: strain(:, :, :)
-    real(rk) :: gradient(3, 8, 8), weight(8), mode(6, 9, 8), amplitude(9, hex8_dofs)
-    real(rk) :: operator(6, hex8_dofs, 8)
-    integer :: e, q, status
+    real(rk) :: gradient(3, 8, 8), weight(8), mode(6, 9, 8)
+    integer :: e, status
     do e = 1, size(x, 3)
       expansion(:, e) = nodal(1, e) + matmul(nodal(:, e) - nodal(1, e), point_shape)
       strain(1:3, :, e) = spread(expansion(:, e), 1, 3)
@@ -67,14 +85,30 @@ contains
       call hex8_gradients(x(:, :, e), gradient, weight, status)
       if (status /= 0) cycle
       call mode_strains(x(:, :, e), weight, mode)
-      operator = 0.0_rk
-      operator(:, 1, :) = strain(:, :, e)
-      call mode_amplitudes(mode, operator, d, weight, amplitude)
-      do q = 1, self%num_points
-        strain(:, q, e) = strain(:, q, e) + matmul(mode(:, :, q), amplitude(:, 1))
-      end do
+      call relax(mode, d, weight, strain(:, :, e:e))
     end do
   end subroutine thermal_strain
+
+  !> Adds the strains of the modes that follow given strains.
+  pure subroutine relax(mode, d, weight, strain)
+    real(rk), intent(in) :: mode(6, 9, 8), d(6, 6), weight(8)
+    real(rk), intent(inout) :: strain(:, :, :) !< (6, 8, fields)
+    real(rk) :: k(9, 9), stress(9, 6, 8), amplitude(9, size(strain, 3))
+    integer :: i, q
+    call condense_modes(mode, d, weight, stress, k)
+    amplitude = 0.0_rk
+    do i = 1, size(strain, 3)
+      do q = 1, 8
+        amplitude(:, i) = amplitude(:, i) + matmul(stress(:, :, q), strain(:, q, i))
+      end do
+    end do
+    call solve_positive(size(amplitude, 2), k, amplitude)
+    do i = 1, size(strain, 3)
+      do q = 1, 8
+        strain(:, q, i) = strain(:, q, i) + matmul(mode(:, :, q), amplitude(:, i))
+      end do
+    end do
+  end subroutine relax
 
   !> Strains of the nine modes at the points.
   pure subroutine mode_strains(x, weight, mode)
@@ -97,21 +131,32 @@ contains
   pure subroutine mode_amplitudes(mode, b, d, weight, amplitude)
     real(rk), intent(in) :: mode(6, 9, 8), b(6, hex8_dofs, 8), d(6, 6), weight(8)
     real(rk), intent(out) :: amplitude(9, hex8_dofs)
-    real(rk) :: k(9, 9), stress(9, 6)
+    real(rk) :: k(9, 9), stress(9, 6, 8)
     integer :: q
-    k = 0.0_rk
+    call condense_modes(mode, d, weight, stress, k)
     amplitude = 0.0_rk
     do q = 1, 8
-      stress = -weight(q)*matmul(transpose(mode(:, :, q)), d)
-      k = k - matmul(stress, mode(:, :, q))
-      amplitude = amplitude + matmul(stress, b(:, :, q))
+      amplitude = amplitude + matmul(stress(:, :, q), b(:, :, q))
     end do
-    call solve_positive(k, amplitude)
+    call solve_positive(hex8_dofs, k, amplitude)
   end subroutine mode_amplitudes
 
+  !> K_ii, and the negative stresses of the modes times the volumes of the points.
+  pure subroutine condense_modes(mode, d, weight, stress, k)
+    real(rk), intent(in) :: mode(6, 9, 8), d(6, 6), weight(8)
+    real(rk), intent(out) :: stress(9, 6, 8), k(9, 9)
+    integer :: q
+    k = 0.0_rk
+    do q = 1, 8
+      stress(:, :, q) = -weight(q)*matmul(transpose(mode(:, :, q)), d)
+      k = k - matmul(stress(:, :, q), mode(:, :, q))
+    end do
+  end subroutine condense_modes
+
   !> Solves K X = B in place by Cholesky's factor; K is positive definite and overwritten.
-  pure subroutine solve_positive(k, b)
-    real(rk), intent(inout) :: k(9, 9), b(9, hex8_dofs)
+  pure subroutine solve_positive(n, k, b)
+    integer, intent(in) :: n !< columns
+    real(rk), intent(inout) :: k(9, 9), b(9, n)
     integer :: i, j
     do j = 1, 9
       k(j, j) = sqrt(k(j, j) - sum(k(j, :j - 1)**2))

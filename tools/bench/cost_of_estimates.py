@@ -1,18 +1,24 @@
-"""What the estimates of errors cost: their share in the time of runs, from the ledger."""
+"""What the estimates of errors cost: processor time of runs with and without them, and the parts
+of the ledger."""
 
 from __future__ import annotations
 
-import json
-import subprocess
+import re
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from measured_run import Program
+from measured_run import Program, Run
 
 LIMIT = 0.05  # of the time of a run
-PATIENCE = 600.0  # s
-HEAD = "| deck | unknowns | increments | run [s] | mesh | time | |\n|---|---|---|---|---|---|---|"
+PATIENCE = 60.0  # s, for the pairs of one deck
+FEWEST, MOST = 3, 25  # pairs of runs: the least time of each kind counts
+HEAD = (
+    "| deck | unknowns | increments | run [s] | estimates | [ms] | mesh | time | law | |\n"
+    "|---|---|---|---|---|---|---|---|---|---|"
+)
 NOT_ALONE = ("material", "umat", "meshes")  # folders of parts, and of decks with a UMAT
+KINDS = {"mesh": ("mesh",), "time": ("time", "increments"), "law": ("law",)}  # of the ledger
 
 
 def decks_of_input(folder: Path) -> list[Path]:
@@ -32,49 +38,78 @@ class Share:
     deck: str
     unknowns: int
     increments: int
-    seconds: float
-    mesh: float  # share of the run
-    time: float
+    seconds: float  # of the processor, with estimates
+    bare: float  # without
+    parts: dict[str, float]  # shares of the ledger
+
+    @property
+    def more(self) -> float:
+        """The share of the estimates in the run."""
+        return self.seconds / self.bare - 1.0
 
     @property
     def row(self) -> str:
-        parts = f"{100.0 * self.mesh:.1f} % | {100.0 * self.time:.1f} %"
-        mark = "" if self.mesh + self.time <= LIMIT else "above 5 %"
+        parts = " | ".join(f"{100.0 * self.parts[kind]:.1f} %" for kind in KINDS)
+        mark = "" if self.more <= LIMIT else "above 5 %"
         return (
-            f"| {self.deck} | {self.unknowns} | {self.increments} | {self.seconds:.2f} | {parts}"
-            f" | {mark} |"
+            f"| {self.deck} | {self.unknowns} | {self.increments} | {self.seconds:.3g} "
+            f"| {100.0 * self.more:+.1f} % | {1e3 * (self.seconds - self.bare):.1f} "
+            f"| {parts} | {mark} |"
         )
 
 
 def measure_estimates(program: Program, decks: list[Path], folder: Path) -> list[Share]:
-    """Runs each deck and prints its row; one that takes too long is left out."""
+    """Runs each deck and its twin without estimates in turn, and prints its row."""
     found = []
     for deck in decks:
-        out = folder / deck.stem
-        call = [program.path, "-q", "-j", str(program.threads), "-o", out, deck]
+        twin = write_twin(deck, folder / "without" / deck.stem)
         try:
-            subprocess.run(call, check=True, timeout=PATIENCE, capture_output=True)
-        except (subprocess.TimeoutExpired, subprocess.CalledProcessError) as why:
-            print(f"{deck.name} left out: {type(why).__name__}")
+            found.append(measure_pairs(program, deck, twin, folder))
+        except SystemExit as why:
+            print(f"{deck.name} left out: {why}")
             continue
-        found.append(share_of(deck, json.loads((out / f"{deck.stem}.json").read_text())))
         print(found[-1].row, flush=True)
     return found
 
 
-def share_of(deck: Path, run: dict) -> Share:
-    """The share of the work `estimate` of a run."""
-    parts = run["ledger"]["parts"]
-    wall = run["ledger"]["wall_s"]
+def write_twin(deck: Path, folder: Path) -> Path:
+    """The deck without estimates, beside links to what is in its folder."""
+    folder.mkdir(parents=True)
+    twin = folder / deck.name
+    for path in deck.resolve().parent.iterdir():
+        if path.name != deck.name:
+            (folder / path.name).symlink_to(path)
+    text, changes = re.subn(
+        r"(?m)^(\*(STATIC|DYNAMIC|FREQUENCY)\b)",
+        r"*CONTROLS, ERROR ESTIMATE=OFF\n\1",
+        deck.read_text(),
+        count=1,
+    )
+    if not changes:
+        raise SystemExit(f"bench: {deck.name} has no step")
+    twin.write_text(text)
+    return twin
 
-    def share(name: str) -> float:
-        return sum(part["wall_s"] for part in parts if part["name"] == name) / wall
 
+def measure_pairs(program: Program, deck: Path, twin: Path, folder: Path) -> Share:
+    """Pairs of runs until the least times have settled, or PATIENCE is over."""
+    start, runs, bare = time.monotonic(), [], []
+    while len(runs) < FEWEST or (len(runs) < MOST and time.monotonic() - start < PATIENCE):
+        runs.append(program.run(deck, folder / deck.stem))
+        bare.append(program.run(twin, folder / "without" / "results"))
+    best = min(runs, key=lambda run: run.processor)
     return Share(
         deck=deck.stem,
-        unknowns=run["model"]["unknowns"],
-        increments=sum(step["increments"] for step in run["steps"]),
-        seconds=wall,
-        mesh=share("estimate mesh"),
-        time=share("estimate time"),
+        unknowns=best.unknowns,
+        increments=sum(step["increments"] for step in best.results.find("steps")),
+        seconds=best.processor,
+        bare=min(run.processor for run in bare),
+        parts={kind: share_of(best, effects) for kind, effects in KINDS.items()},
     )
+
+
+def share_of(run: Run, effects: tuple[str, ...]) -> float:
+    """The share of the work `estimate` on some effects in the ledger."""
+    names = [f"estimate {effect}" for effect in effects]
+    wall = run.results.find("ledger.wall_s")
+    return sum(part["wall_s"] for part in run.parts if part["name"] in names) / wall

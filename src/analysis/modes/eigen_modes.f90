@@ -15,8 +15,10 @@ module eigen_modes
   use arpack, only: lanczos
   implicit none
   private
-  public :: list_massive, find_modes, solve_modes, num_massive
+  public :: list_massive, find_modes, solve_modes, estimate_modes, num_massive
 
+  !> Of the iteration: of results, and of estimates.
+  real(rk), parameter :: accurate = 1.0e-13_rk, rough = 1.0e-6_rk
   integer, parameter :: few = 200 !< most unknowns with mass for the dense problem
   real(rk), parameter :: smallest_share = 1.0e-12_rk !< smallest 1/f^2 of a mode, over the largest
   !> |K phi - w^2 M phi| over |K phi|, and the most where round-off is larger
@@ -83,6 +85,32 @@ contains
     real(rk), allocatable, intent(out) :: lambda(:) !< (modes) squared circular frequency [1/s2]
     real(rk), allocatable, intent(out) :: phi(:, :) !< (num_free, modes)
     type(error_type), allocatable, intent(out) :: error
+    call find_lowest(matrix, mass, solver, num_modes, accurate, lambda, phi, error)
+    if (allocated(error)) return
+    call check_residuals(matrix, stiffness, mass, lambda, phi, error)
+  end subroutine solve_modes
+
+  !> The same for estimates: two thirds of the work, frequencies to 12 digits, shapes to 6.
+  subroutine estimate_modes(matrix, mass, solver, num_modes, lambda, phi, error)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:) !< values of M, added mass included
+    class(equation_solver), intent(inout) :: solver !< holds the factor of K
+    integer, intent(in) :: num_modes
+    real(rk), allocatable, intent(out) :: lambda(:) !< (modes) squared circular frequency [1/s2]
+    real(rk), allocatable, intent(out) :: phi(:, :) !< (num_free, modes)
+    type(error_type), allocatable, intent(out) :: error
+    call find_lowest(matrix, mass, solver, num_modes, rough, lambda, phi, error)
+  end subroutine estimate_modes
+
+  !> The lowest modes, by one of two methods.
+  subroutine find_lowest(matrix, mass, solver, num_modes, tolerance, lambda, phi, error)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:) !< values of M
+    class(equation_solver), intent(inout) :: solver
+    integer, intent(in) :: num_modes
+    real(rk), intent(in) :: tolerance !< of the iteration
+    real(rk), allocatable, intent(out) :: lambda(:), phi(:, :)
+    type(error_type), allocatable, intent(out) :: error
     integer, allocatable :: massive(:)
     massive = list_massive(matrix, mass)
     if (size(massive) < num_modes) then
@@ -93,12 +121,11 @@ contains
     if (size(massive) <= max(few, num_modes + 1)) then
       call condense(matrix, mass, solver, massive, lambda, phi, error)
     else
-      call lanczos(matrix, mass, solver, min(2*num_modes + 10, size(massive)), lambda, phi, error)
+      call lanczos(matrix, mass, solver, min(2*num_modes + 10, size(massive)), tolerance, lambda, &
+                   phi, error)
     end if
-    if (allocated(error)) return
-    call sort_modes(lambda, phi)
-    call check_residuals(matrix, stiffness, mass, lambda, phi, error)
-  end subroutine solve_modes
+    if (.not. allocated(error)) call sort_modes(lambda, phi)
+  end subroutine find_lowest
 
   !> Error: more modes are requested than exist.
   subroutine refuse(num_modes, num_massive, error)

@@ -4,7 +4,7 @@
 module time_error
   use kinds, only: rk
   use analysis_state, only: motion
-  use eigen_modes, only: list_massive, solve_modes
+  use eigen_modes, only: estimate_modes, list_massive
   use equilibrium, only: equilibrium_solver
   use errors, only: error_type
   use global_vectors, only: multiply
@@ -63,8 +63,8 @@ contains
     if (allocated(failure)) return
     modes%massive = list_massive(system%matrix, system%mass)
     num_modes = min(most_modes, size(modes%massive))
-    call solve_modes(system%matrix, closed, system%mass, solver%factor, num_modes, modes%square, &
-                     modes%shape, failure)
+    call estimate_modes(system%matrix, system%mass, solver%factor, num_modes, modes%square, &
+                        modes%shape, failure)
     if (allocated(failure)) then
       if (allocated(modes%square)) deallocate (modes%square)
       return

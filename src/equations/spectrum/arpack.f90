@@ -9,8 +9,6 @@ module arpack
   private
   public :: lanczos
 
-  !> Relative tolerance of the eigenvalues; the vectors are accurate to about its square root.
-  real(rk), parameter :: tolerance = 1.0e-13_rk
   integer, parameter :: most_restarts = 300
 
   !> Values of `request`, from the manual of ARPACK.
@@ -54,11 +52,12 @@ module arpack
 contains
 
   !> The lowest eigenvalues of K phi = lambda M phi and vectors with phi^T M phi = 1.
-  subroutine lanczos(matrix, mass, solver, num_basis, lambda, phi, error)
+  subroutine lanczos(matrix, mass, solver, num_basis, tolerance, lambda, phi, error)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: mass(:) !< values of M
     class(equation_solver), intent(inout) :: solver !< holds the factor of K
     integer, intent(in) :: num_basis !< Lanczos vectors, more than eigenvalues wanted
+    real(rk), intent(in) :: tolerance !< of |K^-1 M phi - phi/lambda| over |phi|/lambda, norm of M
     real(rk), intent(out) :: lambda(:) !< (modes) [1/s2]
     real(rk), intent(out) :: phi(:, :) !< (num_free, modes)
     type(error_type), allocatable, intent(out) :: error
@@ -81,7 +80,7 @@ contains
       call apply_request(request, matrix, mass, solver, work, error)
       if (allocated(error)) return
     end do
-    if (status == 0) call extract_modes(n, num_basis, work, lambda, phi, status)
+    if (status == 0) call extract_modes(n, num_basis, tolerance, work, lambda, phi, status)
     if (status /= 0) call raise_failure(status, error)
   end subroutine lanczos
 
@@ -110,8 +109,9 @@ contains
   end subroutine apply_request
 
   !> Computes the eigenvectors from the Lanczos vectors.
-  subroutine extract_modes(n, num_basis, work, lambda, phi, status)
+  subroutine extract_modes(n, num_basis, tolerance, work, lambda, phi, status)
     integer, intent(in) :: n, num_basis
+    real(rk), intent(in) :: tolerance
     type(workspace), intent(inout) :: work
     real(rk), intent(out) :: lambda(:), phi(:, :)
     integer, intent(out) :: status

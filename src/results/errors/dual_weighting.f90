@@ -2,16 +2,14 @@
 !> force of the result (theory.md, 14.2). Elastic solids without temperatures.
 module dual_weighting
   use dam_mesh, only: element_is_there
-  use element_hex8, only: hex8_gradients
-  use element_matrices, only: strains_at_points
   use hex8_slopes, only: slopes_at_points, strains_of_slopes
   use kinds, only: rk
   use node_dofs, only: gather_vectors
   use problem_definition, only: problem
-  use shape_hex8, only: hex8_dofs, strain_rows
+  use shape_hex8, only: hex8_dofs
   use fitted_stress, only: fitted_defect, make_patch_fit, patch_fit
   use stress_error, only: smoothing_plan, stress_defect
-  use stress_recovery, only: recovery_plan, operators_of_block, max_points, few_nodes
+  use stress_recovery, only: recovery_plan, max_points, few_nodes
   implicit none
   private
   public :: weigh_defects, weigh_own_defects
@@ -43,7 +41,7 @@ contains
     integer :: k
     call find_fitted(plan, is_fitted)
     call find_fields(model, plan, smoothing, u, [any(wants_fit), wants_fit] .and. any(is_fitted), &
-                     own)
+                     all(wants_fit) .and. all(is_fitted), own)
     do k = 1, size(change)
       change(k) = sum(products(model, plan, smoothing, is_fitted .and. wants_fit(k), own(1), &
                                own(k + 1))) &
@@ -63,7 +61,7 @@ contains
     logical :: is_fitted(plan%num_solids)
     integer :: k
     is_fitted = .true.
-    call find_fields(model, plan, smoothing, u, spread(.true., 1, size(u, 3)), own)
+    call find_fields(model, plan, smoothing, u, spread(.true., 1, size(u, 3)), .true., own)
     do k = 1, size(change)
       change(k) = sum(products(model, plan, smoothing, is_fitted, own(k), own(k))) &
                   + hourglass_work(model, plan, u(:, :, k), u(:, :, k))
@@ -71,12 +69,13 @@ contains
   end subroutine weigh_own_defects
 
   !> What fields of displacements give at the points of the solids.
-  subroutine find_fields(model, plan, smoothing, u, wants_fit, own)
+  subroutine find_fields(model, plan, smoothing, u, wants_fit, is_all_fitted, own)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(smoothing_plan), intent(in) :: smoothing
     real(rk), intent(in) :: u(:, :, :) !< (3, nodes, fields)
     logical, intent(in) :: wants_fit(:) !< (fields)
+    logical, intent(in) :: is_all_fitted !< no means of corners are needed
     type(point_fields), intent(inout) :: own(:) !< (fields)
     integer :: i, k
     do k = 1, size(own)
@@ -93,7 +92,7 @@ contains
       end if
     end do
     !$omp end parallel do
-    call smooth_stresses(model, plan, smoothing, wants_fit, own)
+    call smooth_stresses(model, plan, smoothing, wants_fit, is_all_fitted, own)
   end subroutine find_fields
 
   !> The solids whose stresses hardly jump at their corners, for all their error: incompatible modes
@@ -111,19 +110,22 @@ contains
   end subroutine find_fitted
 
   !> Smooth stresses less those of the elements.
-  subroutine smooth_stresses(model, plan, smoothing, wants_fit, own)
+  subroutine smooth_stresses(model, plan, smoothing, wants_fit, is_all_fitted, own)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(smoothing_plan), intent(in) :: smoothing
     logical, intent(in) :: wants_fit(:) !< (fields)
+    logical, intent(in) :: is_all_fitted !< no means of corners are needed
     type(point_fields), intent(inout) :: own(:)
     type(patch_fit) :: fit
     integer :: k
     if (any(wants_fit)) call make_patch_fit(model%mesh, plan, smoothing, fit)
     do k = 1, size(own)
-      allocate (own(k)%averaged, mold=own(k)%stress)
-      call stress_defect(plan, smoothing, own(k)%stress, spread(.false., 1, plan%num_solids), &
-                         own(k)%averaged)
+      if (.not. is_all_fitted) then
+        allocate (own(k)%averaged, mold=own(k)%stress)
+        call stress_defect(plan, smoothing, own(k)%stress, spread(.false., 1, plan%num_solids), &
+                           own(k)%averaged)
+      end if
       if (.not. wants_fit(k)) cycle
       allocate (own(k)%fitted, mold=own(k)%stress)
       call fitted_defect(model%mesh, plan, smoothing, fit, own(k)%stress, own(k)%fitted)
@@ -155,52 +157,41 @@ contains
     end associate
   end subroutine recover_plain_block
 
-  !> Stresses and added strains of the elements of one block, from all displacements.
+  !> Stresses and added strains of the elements of one block, from all displacements. One point
+  !> stands for all.
   subroutine recover_block(model, plan, block, u, own)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     integer, intent(in) :: block
     real(rk), intent(in) :: u(:, :, :) !< (3, nodes, fields)
     type(point_fields), intent(inout) :: own(:)
-    real(rk), allocatable :: b(:, :, :, :), moved(:, :), strain(:, :, :)
-    real(rk) :: d(6, 6)
-    integer :: e, i, k, q, s, points
-    associate (part => plan%blocks(block))
-      call operators_of_block(model, plan, part, b, d)
-      points = size(b, 3)
-      allocate (moved(hex8_dofs, size(part%solids)), strain(6, points, size(part%solids)))
-      do k = 1, size(own)
-        do i = 1, size(part%solids)
-          e = plan%element_of_solid(part%solids(i))
-          moved(:, i) = gather_vectors(u(:, :, k), model%mesh%nodes(:, e))
-        end do
-        call strains_at_points(b, moved, strain)
-        do i = 1, size(part%solids)
-          s = part%solids(i)
-          do q = 1, max_points
-            own(k)%added(:, q, s) = strain(:, min(q, points), i)
-            own(k)%stress(:, q, s) = matmul(d, own(k)%added(:, q, s))
+    real(rk) :: d(6, 6), slope(8, 3, 8), weight(8), compatible(6, max_points)
+    real(rk) :: moved(hex8_dofs, size(own))
+    real(rk), allocatable :: strain(:, :, :)
+    integer :: i, k, q, s, status
+    associate (part => plan%blocks(block), kind => plan%formulations)
+      call model%materials(part%material)%law%elastic_stiffness(d)
+      allocate (strain(6, kind(part%formulation)%item%num_points, size(own)))
+      do i = 1, size(part%solids)
+        s = part%solids(i)
+        associate (nodes => model%mesh%nodes(:, plan%element_of_solid(s)))
+          do k = 1, size(own)
+            moved(:, k) = gather_vectors(u(:, :, k), nodes)
           end do
-          call take_compatible(model%mesh%x(:, model%mesh%nodes(:, plan%element_of_solid(s))), &
-                               moved(:, i), own(k)%added(:, :, s))
+          call kind(part%formulation)%item%find_strains(model%mesh%x(:, nodes), d, moved, strain)
+          call slopes_at_points(model%mesh%x(:, nodes), slope, weight, status)
+        end associate
+        do k = 1, size(own)
+          call strains_of_slopes(slope, moved(:, k), compatible)
+          do q = 1, max_points
+            own(k)%added(:, q, s) = strain(:, min(q, size(strain, 2)), k)
+            own(k)%stress(:, q, s) = matmul(d, own(k)%added(:, q, s))
+            own(k)%added(:, q, s) = own(k)%added(:, q, s) - compatible(:, q)
+          end do
         end do
       end do
     end associate
   end subroutine recover_block
-
-  !> Takes the strains of the displacements of an element from its strains.
-  pure subroutine take_compatible(x, moved, strain)
-    real(rk), intent(in) :: x(3, 8) !< [m]
-    real(rk), intent(in) :: moved(hex8_dofs) !< [m]
-    real(rk), intent(inout) :: strain(6, max_points)
-    real(rk) :: gradient(3, 8, 8), volume(8), b(6, hex8_dofs)
-    integer :: q, status
-    call hex8_gradients(x, gradient, volume, status)
-    do q = 1, max_points
-      call strain_rows(gradient(:, :, q), b)
-      strain(:, q) = strain(:, q) - matmul(b, moved)
-    end do
-  end subroutine take_compatible
 
   !> The products of the defects of two fields in each solid, and of the added strains of each with
   !> the defect of the other [J].

@@ -19,6 +19,7 @@ module fitted_stress
     real(rk), allocatable :: size(:) !< (patches) of its solids [m]
     integer, allocatable :: num_solids(:) !< (patches)
     integer, allocatable :: most(:) !< (patches) solids of the richest patch that shares a solid
+    logical, allocatable :: is_used(:) !< (patches) whether a patch takes its fit
     real(rk), allocatable :: normal(:, :, :) !< (terms, terms, patches) sums of products of terms
   end type patch_fit
 
@@ -30,23 +31,58 @@ contains
     type(recovery_plan), intent(in) :: plan
     type(smoothing_plan), intent(in) :: smoothing
     type(patch_fit), intent(out) :: fit
-    real(rk) :: x(3, max_points), own(terms)
-    integer :: i, p, q, s
+    real(rk) :: x(3, max_points), centre(3), spreading(3, 3), own(terms)
+    integer :: i, p, s
     call measure_patches(mesh, plan, smoothing, fit)
-    allocate (fit%most(smoothing%num_patches), source=0)
+    call find_used(plan, smoothing, fit)
     allocate (fit%normal(terms, terms, smoothing%num_patches), source=0.0_rk)
     do s = 1, plan%num_solids
       x = points_of(mesh, plan%element_of_solid(s))
+      centre = sum(x, dim=2)/max_points
+      x = x - spread(centre, 2, max_points)
+      spreading = matmul(x, transpose(x))
       do i = 1, 8
         p = smoothing%patch(i, s)
-        fit%most(p) = max(fit%most(p), maxval(fit%num_solids(smoothing%patch(:, s))))
-        do q = 1, max_points
-          own = terms_at(fit, p, x(:, q))
-          fit%normal(:, :, p) = fit%normal(:, :, p) + spread(own, 1, terms)*spread(own, 2, terms)
-        end do
+        own = terms_at(fit, p, centre)
+        fit%normal(:, :, p) = fit%normal(:, :, p) &
+                              + max_points*spread(own, 1, terms)*spread(own, 2, terms)
+        fit%normal(2:, 2:, p) = fit%normal(2:, 2:, p) + spreading/fit%size(p)**2
       end do
     end do
   end subroutine make_patch_fit
+
+  !> Finds the richest patches beside each patch.
+  subroutine find_used(plan, smoothing, fit)
+    type(recovery_plan), intent(in) :: plan
+    type(smoothing_plan), intent(in) :: smoothing
+    type(patch_fit), intent(inout) :: fit
+    integer :: i, k, most, s
+    allocate (fit%most(smoothing%num_patches), source=0)
+    allocate (fit%is_used(smoothing%num_patches), source=.false.)
+    do s = 1, plan%num_solids
+      most = maxval(fit%num_solids(smoothing%patch(:, s)))
+      do i = 1, 8
+        fit%most(smoothing%patch(i, s)) = max(fit%most(smoothing%patch(i, s)), most)
+      end do
+    end do
+    do s = 1, plan%num_solids
+      associate (patch => smoothing%patch(:, s))
+        do i = 1, 8
+          do k = 1, 8
+            if (takes(fit, patch(i), patch(k))) fit%is_used(patch(k)) = .true.
+          end do
+        end do
+      end associate
+    end do
+  end subroutine find_used
+
+  !> Whether a patch takes the fit of another one that shares a solid with it.
+  pure logical function takes(fit, patch, other)
+    type(patch_fit), intent(in) :: fit
+    integer, intent(in) :: patch, other
+    takes = fit%num_solids(other) == fit%most(patch)
+    if (fit%num_solids(patch) == fit%most(patch)) takes = other == patch
+  end function takes
 
   !> Place, size and number of solids of each patch.
   subroutine measure_patches(mesh, plan, smoothing, fit)
@@ -123,6 +159,7 @@ contains
       moment = matmul(x - spread(centre, 2, max_points), transpose(stress(:, :, s)))
       do i = 1, 8
         p = smoothing%patch(i, s)
+        if (.not. fit%is_used(p)) cycle
         slope(1, :, p) = slope(1, :, p) + total
         do k = 1, 3
           slope(k + 1, :, p) = slope(k + 1, :, p) &
@@ -131,6 +168,7 @@ contains
       end do
     end do
     do p = 1, smoothing%num_patches
+      if (.not. fit%is_used(p)) cycle
       call solve_dense(fit%normal(:, :, p), slope(:, :, p), found, is_singular)
       slope(:, :, p) = found
       if (is_singular) slope(:, :, p) = 0.0_rk
@@ -154,8 +192,7 @@ contains
         p = smoothing%patch(i, s)
         do k = 1, 8
           rich = smoothing%patch(k, s)
-          if (fit%num_solids(rich) < fit%most(p)) cycle
-          if (fit%num_solids(p) == fit%most(p) .and. rich /= p) cycle
+          if (.not. takes(fit, p, rich)) cycle
           smooth(:, p) = smooth(:, p) + matmul(terms_at(fit, rich, fit%x(:, p)), slope(:, :, rich))
           num_fits(p) = num_fits(p) + 1
         end do

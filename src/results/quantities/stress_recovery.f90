@@ -8,7 +8,6 @@ module stress_recovery
   use kinds, only: rk
   use element_formulation, only: solid_element
   use element_catalogue, only: is_solid, make_solid
-  use element_matrices, only: strains_at_points
   use hex8_slopes, only: slopes_at_points, strains_of_slopes
   use node_dofs, only: gather_vectors
   use problem_definition, only: problem
@@ -286,7 +285,7 @@ contains
     if (plan%formulations(part%formulation)%item%has_plain_strain) then
       call find_plain_strains(model, plan, part, now, found)
     else
-      call find_general_strains(model, plan, part, now, found)
+      call find_general_strains(model, plan, part, now, d, found)
     end if
     call take_thermal(model, now, plan%element_of_solid(part%solids), found)
     do k = 1, n
@@ -314,21 +313,22 @@ contains
     end do
   end subroutine find_plain_strains
 
-  !> Strains by the strain operators.
-  subroutine find_general_strains(model, plan, part, now, strain)
+  !> Strains of other elements.
+  subroutine find_general_strains(model, plan, part, now, d, strain)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(element_block), intent(in) :: part
     type(state), intent(in) :: now
+    real(rk), intent(in) :: d(6, 6) !< [Pa]
     real(rk), contiguous, intent(out) :: strain(:, :, :) !< (6, points, solids of the block)
-    real(rk), allocatable :: b(:, :, :, :)
-    real(rk) :: d(6, 6), moved(hex8_dofs, size(part%solids))
-    integer :: k
-    call operators_of_block(model, plan, part, b, d)
+    real(rk) :: moved(hex8_dofs, 1)
+    integer :: k, e
     do k = 1, size(part%solids)
-      moved(:, k) = motion_of_element(model, now, plan%element_of_solid(part%solids(k)))
+      e = plan%element_of_solid(part%solids(k))
+      moved(:, 1) = motion_of_element(model, now, e)
+      call plan%formulations(part%formulation)%item%find_strains( &
+        model%mesh%x(:, model%mesh%nodes(:, e)), d, moved, strain(:, :, k:k))
     end do
-    call strains_at_points(b, moved, strain)
   end subroutine find_general_strains
 
   !> Displacements of the nodes of an element since it appeared without stress.

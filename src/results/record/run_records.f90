@@ -137,16 +137,17 @@ contains
     do j = 1, size(model%joints)
       call note_joint(self%joints(j), model%joints(j), now%joints(j), now%total_time)
     end do
-    if (model%steps(now%step)%controls%estimates_errors) then
-      call costs%start('estimate', 'mesh', 'output')
-      call note_space_error(model, now, self%stresses, self%space)
+    if (size(self%active) > 0) then
+      call costs%start('recover', 'envelopes', 'output')
+      do i = 1, size(self%active)
+        call self%update_envelope(model, now, costs, self%envelopes(self%active(i)))
+      end do
       call costs%stop()
     end if
-    if (size(self%active) == 0) return
-    call costs%start('recover', 'envelopes', 'output')
-    do i = 1, size(self%active)
-      call self%update_envelope(model, now, costs, self%envelopes(self%active(i)))
-    end do
+    ! Last, from the stresses that the envelopes have recovered.
+    if (.not. model%steps(now%step)%controls%estimates_errors) return
+    call costs%start('estimate', 'mesh', 'output')
+    call note_space_error(model, now, self%stresses, self%space)
     call costs%stop()
   end subroutine note
 

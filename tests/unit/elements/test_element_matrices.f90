@@ -39,6 +39,9 @@ program test_element_matrices
     end do
     call patch_of_seven(trim(solids(i)), log)
   end do
+  do i = 1, 4
+    call strains_without_operators(trim(solids(i)), log)
+  end do
   call ways_to_the_plain_element(log)
   call bending_of_a_cube(log)
   call volume_locking(log)
@@ -81,6 +84,31 @@ contains
                                                   0.4_rk, 0.9_rk, 0.6_rk], [3, 3])
     u = reshape(matmul(slope, x), [size(x)])
   end function linear_field
+
+  !> The strains of two displacements are B u, in a hexahedron and in a wedge. Round-off of a few
+  !> hundred products.
+  subroutine strains_without_operators(name, log)
+    character(*), intent(in) :: name
+    type(test_log), intent(inout) :: log
+    class(solid_element), allocatable :: element
+    real(rk), allocatable :: b(:, :, :, :), weight(:, :), strain(:, :, :), expected(:, :, :)
+    real(rk) :: x(3, 8, 1), u(24, 2)
+    integer :: i, j, status(1)
+    call make_solid(name, element)
+    allocate (b(6, 24, element%num_points, 1), weight(element%num_points, 1))
+    allocate (strain(6, element%num_points, 2), expected(6, element%num_points, 1))
+    u = reshape([(sin(2.0_rk*i) + 0.1_rk*i, i=1, 48)], [24, 2])
+    do j = 1, 2
+      x = distorted(shapes(:, j))
+      call element%strain_operator(x, hooke(0.2_rk), b, weight, status)
+      call element%find_strains(x(:, :, 1), hooke(0.2_rk), u, strain)
+      do i = 1, 2
+        call strains_at_points(b, u(:, i:i), expected)
+        call check(log, maxval(abs(strain(:, :, i) - expected(:, :, 1))) < &
+                   1.0e-12_rk*maxval(abs(expected)), name//': strains without operators')
+      end do
+    end do
+  end subroutine strains_without_operators
 
   !> A linear field gives its strain at all points, and K u = sum w B^T D eps.
   subroutine constant_strain_is_exact(name, nodes, log)
