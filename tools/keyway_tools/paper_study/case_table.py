@@ -38,6 +38,8 @@ def _xingbiling(size: Size) -> list[Case]:
          "--fine 1 2 3 --join matching"),
         ("one_step_shifted", "joint on surfaces, levels of one block shifted", shifted,
          "--fine 2 --join surfaces"),
+        ("chain_shifted", "the paper's chain, levels of one block shifted", shifted,
+         "--fine 2 --join chain"),
     )  # fmt: skip
     found = []
     for name, title, mesh, options in rows:
