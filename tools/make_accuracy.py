@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 import sys
 import textwrap
 from pathlib import Path
@@ -65,7 +66,9 @@ def studies() -> list[dict[str, Any]]:
 
 
 def name_of(facts: dict[str, Any]) -> str:
-    return Path(facts["deck"]).stem
+    """The deck, and the duration of a study of its first seconds: 'gmsh_arch_0.3s'."""
+    found = re.search(r"first (\S+) s", dict(facts["header"]).get("Duration", ""))
+    return Path(facts["deck"]).stem + (f"_{found[1]}s" if found else "")
 
 
 def model_of(header: dict[str, str]) -> str:

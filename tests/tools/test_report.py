@@ -219,7 +219,8 @@ def test_estimates_of_errors_are_shown_where_there_are_some(block, tmp_path):
     summary["accuracy"]["estimates"] = {"displacement": {"value": 9.0, "error": 1.2, "mesh": 1.1}}
     path.write_text(json.dumps(summary))
     text = page_of(tmp_path).read_text()
-    assert text.count("error 1.2, mesh 1.1") == 2  # beside the envelope, and among the estimates
+    assert text.count("error 1.2, mesh 1.1") == 1  # among the estimates, in the units of the deck
+    assert text.count("± 1200 mm (mesh 1100)") == 1  # beside the envelope, in its unit
     assert "no estimate of those" not in text
 
 

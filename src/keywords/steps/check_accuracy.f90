@@ -61,7 +61,8 @@ contains
       else if (now%procedure%scheme == reduced) then
         call given%fault_parameter(faults, 'ACCURACY', 'ACCURACY and *DYNAMIC, REDUCED exclude '// &
                                    'each other: a reduced model is tried with one increment', &
-                                   'no REDUCED, or no ACCURACY of *CONTROLS')
+                                   'no REDUCED, or no ACCURACY of *CONTROLS (half the '// &
+                                   'increment shows its error)')
       else if (now%is_direct) then
         call given%fault_parameter(faults, 'ACCURACY', 'ACCURACY and *DYNAMIC, DIRECT exclude '// &
                                    'each other: DIRECT fixes the increment', &

@@ -1,17 +1,19 @@
 !> The estimated errors of results in words, for the lines at the end of a run.
 module error_words
-  use dual_solutions, only: of_displacement
+  use dual_solutions, only: of_displacement, of_opening
   use envelopes, only: envelope
   use goal_errors, only: goal_error
   use kinds, only: rk
   use place_errors, only: left_elasticity
   use problem_definition, only: problem
   use run_records, only: run_record
+  use run_summaries, only: run_summary
   use singular_places, only: why_singular
   use write_text, only: as_short_text, as_text
   implicit none
   private
   public :: error_of, error_of_envelope, error_of_motion, line_of_law, line_of_mesh
+  public :: line_of_omissions
 
   real(rk), parameter :: smallest_part = 1.0e-3_rk !< of an error that is named, over all of it
   character, parameter :: nl = new_line('a')
@@ -23,11 +25,15 @@ contains
   function error_of_motion(record) result(text)
     type(run_record), intent(in) :: record
     character(:), allocatable :: text
-    type(goal_error) :: found
+    text = error_of(goal_of_motion(record), record%displacement%at(1)%value)
+  end function error_of_motion
+
+  !> What is known of the error of the largest displacement.
+  pure type(goal_error) function goal_of_motion(record) result(found)
+    type(run_record), intent(in) :: record
     found = record%goals(of_displacement)
     if (size(record%joints) > 0) found%at_time = 0.0_rk
-    text = error_of(found, record%displacement%at(1)%value)
-  end function error_of_motion
+  end function goal_of_motion
 
   !> ', +-0.0012 (time 0.0004, mesh 0.0008)': what is known of the error of a result.
   function error_of(found, value) result(text)
@@ -111,4 +117,39 @@ contains
            'at most '//as_short_text(record%path%stress)//' in a stress ('// &
            as_text(record%path%num_points)//' points sampled)'
   end function line_of_law
+
+  !> Results in the lines above whose error is not estimated, and what measures it.
+  function line_of_omissions(model, summary, record) result(text)
+    type(problem), intent(in) :: model
+    type(run_summary), intent(in) :: summary
+    type(run_record), intent(in) :: record
+    character(:), allocatable :: text, names
+    integer :: j
+    text = ''
+    names = ''
+    if (.not. any(model%steps%controls%estimates_errors)) return
+    if (record%displacement%at(1)%is_found) then
+      call add('the largest displacement', goal_of_motion(record), record%displacement%at(1)%value)
+    end if
+    j = record%largest_opening()
+    if (j > 0 .and. all(summary%steps%reduction%num_modes == 0)) then
+      call add('the largest opening', record%goals(of_opening), &
+               record%joints(j)%opening%at(1)%value)
+    end if
+    if (any(record%joints%slip%at(1)%is_found)) then
+      if (any(record%joints%slip%at(1)%value > 0.0_rk)) names = names//', slips'
+    end if
+    if (names == '') return
+    text = nl//'errors not estimated: '//names(3:)//' (docs/accuracy.md); tools/accuracy '// &
+           'measures them'
+  contains
+    !> Adds a result if nothing is known of its error.
+    subroutine add(name, found, value)
+      character(*), intent(in) :: name
+      type(goal_error), intent(in) :: found
+      real(rk), intent(in) :: value !< [m]
+      if (value <= 0.0_rk .or. found%is_stray(value) .or. found%total(value) >= 0.0_rk) return
+      names = names//', '//name
+    end subroutine add
+  end function line_of_omissions
 end module error_words

@@ -5,7 +5,7 @@ module run_closing
   use diagnostics, only: severity_ignored
   use dual_solutions, only: of_opening
   use error_words, only: error_of, error_of_envelope, error_of_motion, line_of_law, &
-                         line_of_mesh
+                         line_of_mesh, line_of_omissions
   use extremes, only: extreme
   use kinds, only: rk
   use problem_definition, only: problem
@@ -37,7 +37,7 @@ contains
     text = text//lines_of_modes(model, summary)//lines_of_envelopes(model, summary, record)// &
            lines_of_joints(model, summary, record)//lines_of_damage(model, summary, record)// &
            lines_of_accuracy(model, summary)//lines_of_increments(model, summary)// &
-           line_of_mesh(record)//line_of_law(record)// &
+           line_of_mesh(record)//line_of_law(record)//line_of_omissions(model, summary, record)// &
            line_of_remarks(summary, record)//line_of_costs(costs)
   end function closing_lines
 

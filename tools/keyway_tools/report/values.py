@@ -16,7 +16,8 @@ from ..si_results import SiResults
 WHERE = ("anywhere", "upstream", "downstream")
 _JOINT_VALUES = (("opening", 1e3, "mm"), ("slip", 1e3, "mm"), ("pressure", 1e-6, "MPa"))
 # Estimates in job.json by the names of envelopes
-ESTIMATE_OF = {"U": "displacement", "OPENING": "opening"}
+ESTIMATE_OF = {"U": "displacement", "OPENING": "opening", "S1": "S1", "S3": "S3"}
+_PARTS = ("time", "mesh", "joints", "iteration")  # of an error
 
 
 def header(results: SiResults) -> list[tuple[str, str]]:
@@ -32,8 +33,7 @@ def header(results: SiResults) -> list[tuple[str, str]]:
     ]
     machine = summary.get("machine") or program.get("machine")
     if machine:
-        parts = [str(value) for _, value in leaves(machine, "")]
-        rows.append(("Machine", ", ".join(parts)))
+        rows.append(("Machine", _machine_in_words(machine)))
     model = summary.get("model", {})
     rows.append(("Model", ", ".join(f"{count:,} {name}" for name, count in model.items())))
     ledger = summary.get("ledger", {})
@@ -41,6 +41,21 @@ def header(results: SiResults) -> list[tuple[str, str]]:
         memory = ledger.get("peak_memory_mb", 0.0)
         rows.append(("Cost", f"{ledger['wall_s']:.3g} s, {memory:.3g} MB"))
     return [(name, text) for name, text in rows if text]
+
+
+def _machine_in_words(machine: Any) -> str:
+    """Processor, threads, kernels, memory, as far as they are known."""
+    if not isinstance(machine, dict):
+        return str(machine)
+    words = {
+        "processor": "{}",
+        "processors": "processors: {}",
+        "threads": "threads: {}",
+        "blas_kernels": "kernels of OpenBLAS: {}",
+        "memory_mb": "{} MB",
+    }
+    found = leaves(machine, "")
+    return ", ".join(words.get(name, f"{name}: {{}}").format(value) for name, value in found)
 
 
 def verdict(results: SiResults) -> list[tuple[str, str]]:
@@ -104,16 +119,18 @@ def key_numbers(results: SiResults) -> list[dict[str, Any]]:
     rows = []
     for name, values in results.si_summary.get("envelopes", {}).items():
         field = FIELDS.get(name)
+        scale, unit = (field.scale, field.unit) if field else (1.0, "")
         for where in (w for w in WHERE if "value" in values.get(w, {})):
             extreme = values[where]
             rows.append({
                 "label": field.label if field else name,
                 "where": "" if where == "anywhere" else where,
-                "value": (field.scale if field else 1.0) * extreme["value"],
-                "unit": field.unit if field else "",
+                "value": scale * extreme["value"],
+                "unit": unit,
                 "time": extreme.get("time"),
+                "in_step": time_in_step(results, extreme.get("time")),
                 "x": extreme.get("x"),
-                "error": _estimate(results, name) if where == "anywhere" else "",
+                "error": _estimate(results, name, scale, unit) if where == "anywhere" else "",
                 "path": f"envelopes.{name}.{where}.value",
             })  # fmt: skip
     return rows
@@ -125,10 +142,39 @@ def _known_estimates(results: SiResults) -> dict[str, Any]:
     return known if isinstance(known, dict) else {}
 
 
-def _estimate(results: SiResults, name: str) -> str:
-    """The estimate of the error of an envelope in the units of the deck, where there is one."""
-    found = _known_estimates(results).get(ESTIMATE_OF.get(name, name))
-    return "" if found is None else _estimate_in_words(found)
+def time_in_step(results: SiResults, time: float | None) -> str:
+    """Step and time in it of a total time, where the run has several steps that take time."""
+    ends, last = [], 0.0
+    for step in results.summary.get("steps", []):
+        if step.get("increments"):
+            ends.append((step["name"], last))
+            last += step.get("time", 0.0)
+    if time is None or len(ends) < 2:
+        return ""
+    name, start = next((one for one in reversed(ends) if one[1] < time), ends[0])
+    return f"{name} {time - start:.5g}"
+
+
+def _estimate(results: SiResults, name: str, scale: float, unit: str) -> str:
+    """The estimate of the error of an envelope in the unit of the page."""
+    known = _known_estimates(results)
+    if not known or name not in ESTIMATE_OF:
+        return ""
+    found = known.get(ESTIMATE_OF[name])
+    if not isinstance(found, dict):
+        return "not estimated"
+    if "singular" in found or "not_known" in found:
+        return _estimate_in_words(found)
+    scale *= results.units.length if name in ("U", "OPENING") else results.units.stress
+    words = "error not estimated"
+    if "error" in found:
+        parts = (f"{part} {scale * found[part]:.4g}" for part in _PARTS if part in found)
+        words = f"\u00b1 {scale * found['error']:.4g} {unit} ({', '.join(parts)})"
+    if "springs" in found:
+        words += f"; springs of joints give {scale * found['springs']:.4g} {unit} of the value"
+    if "history" in found:
+        words += f"; histories \u00b1 {100.0 * found['history']:.2g} % (time)"
+    return words
 
 
 def _estimate_in_words(found: Any) -> str:
@@ -185,6 +231,7 @@ def joints(results: SiResults) -> list[dict[str, Any]]:
                 "value": None if value is None else scale * value,
                 "unit": unit,
                 "time": extreme.get("time"),
+                "in_step": time_in_step(results, extreme.get("time")),
                 "x": extreme.get("x"),
                 "path": f"joints.{name}.{key}.anywhere.value",
             })  # fmt: skip
