@@ -14,7 +14,7 @@ module cli
   use process_limits, only: print_text
   use umat_build, only: umat_file
   use umat_loader, only: umat_request
-  use unknown_layout, only: choose_solver, direct_solver, iterative_solver
+  use unknown_layout, only: choose_solver, compressed_solver, direct_solver, iterative_solver
   use write_text, only: as_text
   implicit none
   private
@@ -69,7 +69,7 @@ contains
            '  --umat-check       compare DDSDDE of the UMAT with differences of STRESS'//nl// &
            '  --save-joint-problems N  save increments with more than N iterations on '// &
            'joints, one HDF5 file each'//nl// &
-           '  --solver NAME      of several processes (mpiexec): AUTO, DIRECT or ITERATIVE'//nl// &
+           '  --solver NAME      of several processes: AUTO, DIRECT, BLR or ITERATIVE'//nl// &
            '  --c3d8=full|bbar   meaning of C3D8: 2 x 2 x 2 points (CalculiX) or B-bar '// &
            '(Abaqus)'//nl// &
            '  --small-strain     analyse steps with NLGEOM=YES with small strains'//nl// &
@@ -269,9 +269,11 @@ contains
       given%solver = direct_solver
     case ('ITERATIVE')
       given%solver = iterative_solver
+    case ('BLR')
+      given%solver = compressed_solver
     case default
-      call raise(error, "keyway: found '--solver "//word//"'; expected AUTO, DIRECT or ITERATIVE", &
-                 deck_is_wrong)
+      call raise(error, "keyway: found '--solver "//word//"'; expected AUTO, DIRECT, BLR or "// &
+                 'ITERATIVE', deck_is_wrong)
       return
     end select
     if (given%solver == choose_solver) return

@@ -118,7 +118,7 @@ contains
     entries = 0_long
   end function unknown_entries
 
-  !> The iterations of the solves so far in words; '' for a solver without iteration.
+  !> Iterations of the solves so far and memory in words; '' for a solver that does not say.
   function describe_none(self) result(text)
     class(equation_solver), intent(in) :: self
     character(:), allocatable :: text

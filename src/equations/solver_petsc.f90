@@ -9,11 +9,12 @@ module solver_petsc
   use blas_threads, only: use_many_threads, use_one_thread
   use linear_solver, only: equation_solver
   use matrix_pattern, only: pattern
-  use petsc_equations, only: by_blocks, by_cholesky, by_lu, by_multigrid, entries_of_petsc, &
-                             factor_petsc, finish_petsc, is_done, is_singular, is_slow, &
-                             plan_petsc, solve_petsc, start_petsc
+  use petsc_equations, only: by_blocks, by_cholesky, by_compressed, by_lu, by_multigrid, &
+                             entries_of_petsc, factor_petsc, finish_petsc, is_done, &
+                             is_singular, is_slow, memory_of_petsc, plan_petsc, solve_petsc, &
+                             start_petsc
   use ranks, only: gather_rows, this_rank
-  use unknown_layout, only: choose_solver, direct_solver, own_rows, row_layout
+  use unknown_layout, only: choose_solver, compressed_solver, direct_solver, own_rows, row_layout
   use write_text, only: as_text
   implicit none
   private
@@ -73,6 +74,7 @@ contains
     end if
     method = merge(by_blocks, by_multigrid, layout%has_inertia)
     if (is_direct) method = by_cholesky
+    if (layout%solver == compressed_solver) method = by_compressed
   end function method_of
 
   !> The method for a symmetric matrix in words.
@@ -82,6 +84,8 @@ contains
     select case (method_of(layout))
     case (by_cholesky)
       text = 'factors by MUMPS'
+    case (by_compressed)
+      text = 'conjugate gradients with factors of low-rank blocks by MUMPS'
     case (by_multigrid)
       text = 'conjugate gradients with multigrid'
     case default
@@ -217,15 +221,23 @@ contains
     if (status /= is_done) call report_failure(status, maxval(iterations), error)
   end subroutine solve
 
-  !> Mean, least and most iterations of a solve; '' for a factor.
+  !> Mean, least and most iterations of a solve, and the memory of the factor.
   function describe_iterations(self) result(text)
     class(petsc_solver), intent(in) :: self
     character(:), allocatable :: text
+    integer(c_int) :: memory(2)
     text = ''
-    if (self%method == by_cholesky .or. self%method == by_lu .or. self%num_solves == 0) return
-    text = as_text(self%num_solves)//' solves took '// &
-           as_text(nint(real(self%num_iterations, rk)/self%num_solves))//' iterations each ('// &
-           as_text(self%least)//' to '//as_text(self%most)//')'
+    if (self%num_solves == 0 .or. .not. self%is_ready) return
+    if (self%method /= by_cholesky .and. self%method /= by_lu) then
+      text = as_text(self%num_solves)//' solves took '// &
+             as_text(nint(real(self%num_iterations, rk)/self%num_solves))//' iterations each ('// &
+             as_text(self%least)//' to '//as_text(self%most)//')'
+    end if
+    call memory_of_petsc(self%handle, memory)
+    if (memory(2) == 0) return
+    if (text /= '') text = text//', '
+    text = text//'MUMPS used '//as_text(int(memory(1)))//' MB on the largest rank, '// &
+           as_text(int(memory(2)))//' MB in all'
   end function describe_iterations
 
   !> Entries of the factor on this rank.

@@ -31,7 +31,7 @@ set(sources
 # What stands behind petsc_equations.f90
 if(KEYWAY_PETSC)
   list(APPEND sources distributed/block_matrix.c distributed/last_solutions.c
-       distributed/petsc_bridge.c)
+       distributed/mumps_factor.c distributed/petsc_bridge.c)
 else()
   list(APPEND sources distributed/without_petsc.c)
 endif()

@@ -76,3 +76,31 @@ def test_four_ranks_print_once(on_ranks):
     assert four.json["status"] == one.json["status"] == "finished"
     largest = [run.json["displacement"]["anywhere"]["value"] for run in (one, four)]
     assert np.isclose(*largest)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("case", ["static", "dynamic"])
+def test_low_rank_factor_gives_the_same_results(keyway, on_ranks, case, ranks):
+    """1e-6 of the largest value: the factor is one of an iteration that ends as the others do."""
+    block, steps = CASES[case]
+    deck = block.deck(steps)
+    plain, divided = keyway(deck, "-j", "1"), on_ranks(ranks)(deck, "--solver", "BLR")
+    size, place = worst_difference(plain, divided)
+    assert size <= 1e-6, place
+    assert "MUMPS used" in divided.stderr
+
+
+def test_mumps_gets_more_room(keyway, on_ranks, monkeypatch):
+    """MUMPS starts with half of the room that it asks for: the factor is repeated with more."""
+    monkeypatch.setenv("PETSC_OPTIONS", "-keyway_mat_mumps_icntl_14 -50")
+    deck = BlockOnRock().deck(WEIGHT)
+    plain, divided = keyway(deck, "-j", "1"), on_ranks(2)(deck, "--solver", "DIRECT")
+    size, place = worst_difference(plain, divided)
+    assert size <= 1e-8, place
+
+
+def test_too_little_memory_for_mumps(on_ranks, monkeypatch):
+    """A limit of memory that no factor fits in ends the run with its cause, not as a free body."""
+    monkeypatch.setenv("PETSC_OPTIONS", "-keyway_mat_mumps_icntl_23 1")
+    run = on_ranks(2)(BlockOnRock().deck(WEIGHT), "--solver", "DIRECT", code=3)
+    assert "not enough memory?" in run.stderr

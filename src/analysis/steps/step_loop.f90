@@ -69,7 +69,7 @@ contains
     end do
   end subroutine run_all_steps
 
-  !> Says how many iterations the solves of a step have taken, where they are iterations.
+  !> Says what the solves of a step have taken, where the solver says it.
   subroutine report_iterations(plan, method, results)
     type(step), intent(in) :: plan
     class(integrator), intent(in) :: method

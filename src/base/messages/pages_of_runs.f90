@@ -19,7 +19,7 @@ contains
   subroutine pages_from_ranks(list)
     type(page_list), intent(inout) :: list
     call list%add('one-process', &
-                  'in one process only|is built with PETSc|AUTO, DIRECT or ITERATIVE', &
+                  'in one process only|is built with PETSc|AUTO, DIRECT, BLR or', &
                   'Several processes under mpiexec do not work on this yet, or the program is '// &
                   'the plain one, which has no solvers for several processes.', &
                   'Start the deck without mpiexec and --solver; docs/large_models.md says what '// &

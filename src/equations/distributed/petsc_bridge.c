@@ -5,11 +5,12 @@
 
 #include "block_matrix.h"
 #include "last_solutions.h"
+#include "mumps_factor.h"
 
 _Static_assert(sizeof(PetscInt) == sizeof(int), "PETSc must be built with 32-bit indices");
 _Static_assert(sizeof(PetscScalar) == sizeof(double), "PETSc must be built with real scalars");
 
-enum { by_cholesky = 1, by_multigrid = 2, by_blocks = 3, by_lu = 4 };
+enum { by_cholesky = 1, by_multigrid = 2, by_blocks = 3, by_lu = 4, by_compressed = 5 };
 enum { done = 0, singular = 1, slow = 2, failed = 3 };
 enum { num_rigid = 6, rows_of_node = 3, most_iterations = 5000 };
 
@@ -60,7 +61,6 @@ void *keyway_petsc_start(void)
     if (PetscOptionsSetValue(NULL, "-no_signal_handler", "true")) return NULL;
     if (PetscInitializeNoArguments()) return NULL;
     if (PetscPushErrorHandler(keep_quiet, NULL)) return NULL;
-    if (set_default("-keyway_mat_mumps_icntl_14", "60")) return NULL; /* room for pivots [%] */
     if (set_default("-keyway_sub_pc_type", "icc")) return NULL;
     if (set_default("-keyway_mg_levels_pc_type", "sor")) return NULL;
     if (set_default("-keyway_pc_gamg_threshold", "0.01")) return NULL;
@@ -112,21 +112,27 @@ static int is_direct(const struct equations *self)
   return self->method == by_cholesky || self->method == by_lu;
 }
 
+static int has_factor(const struct equations *self)
+{
+  return is_direct(self) || self->method == by_compressed;
+}
+
 static PetscErrorCode choose_method(struct equations *self)
 {
   PC pc;
   PetscFunctionBegin;
   PetscCall(KSPCreate(PETSC_COMM_WORLD, &self->solver));
   PetscCall(KSPSetOptionsPrefix(self->solver, "keyway_"));
+  PetscCall(KSPSetOperators(self->solver, self->matrix, self->matrix));
   PetscCall(KSPGetPC(self->solver, &pc));
-  if (is_direct(self)) {
-    PetscCall(KSPSetType(self->solver, KSPPREONLY));
-    PetscCall(PCSetType(pc, self->method == by_lu ? PCLU : PCCHOLESKY));
-    PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  } else {
-    PetscCall(KSPSetType(self->solver, KSPCG));
+  PetscCall(KSPSetType(self->solver, is_direct(self) ? KSPPREONLY : KSPCG));
+  if (!is_direct(self)) {
     PetscCall(KSPSetNormType(self->solver, KSP_NORM_UNPRECONDITIONED));
     PetscCall(KSPSetInitialGuessNonzero(self->solver, PETSC_TRUE));
+  }
+  if (has_factor(self)) {
+    PetscCall(choose_mumps(self->solver, self->method != by_lu, self->method == by_compressed));
+  } else {
     PetscCall(PCSetType(pc, self->method == by_multigrid ? PCGAMG : PCBJACOBI));
   }
   PetscCall(KSPSetFromOptions(self->solver));
@@ -178,6 +184,9 @@ static PetscErrorCode check_factor(struct equations *self, int *status)
   }
   PetscCall(VecRestoreArray(self->b, &own));
   PetscCall(VecPointwiseMult(self->b, self->b, scale));
+  PetscCall(VecSet(self->x, 0));
+  PetscCall(KSPSetTolerances(self->solver, tolerance, PETSC_DEFAULT, PETSC_DEFAULT,
+                             most_iterations));
   PetscCall(KSPSolve(self->solver, self->b, self->x));
   PetscCall(KSPGetConvergedReason(self->solver, &reason));
   /* x.b against b.b/diagonal: the softest direction over the stiffness of one node */
@@ -185,13 +194,9 @@ static PetscErrorCode check_factor(struct equations *self, int *status)
   PetscCall(VecPointwiseDivide(residual, self->b, scale));
   PetscCall(VecDot(residual, self->b, &stiff));
   *status = reason > 0 && PetscAbsReal(work) < 1e13 * stiff ? done : singular;
-  if (self->method == by_cholesky) {
-    PC pc;
-    Mat both;
+  if (self->method != by_lu) {
     PetscInt negative;
-    PetscCall(KSPGetPC(self->solver, &pc));
-    PetscCall(PCFactorGetMatrix(pc, &both));
-    PetscCall(MatMumpsGetInfog(both, 12, &negative)); /* pivots */
+    PetscCall(count_negative_pivots(self->solver, &negative));
     if (negative > 0 || work <= 0) *status = singular;
   }
   PetscCall(VecDestroy(&scale));
@@ -231,17 +236,23 @@ static PetscErrorCode factor(struct equations *self, const double *values, int *
 {
   PC pc;
   PCFailedReason reason;
+  int is_repeated = 0;
   PetscFunctionBegin;
   PetscCall(forget_solutions(&self->last));
-  PetscCall(MatSetValuesCOO(self->matrix, values, INSERT_VALUES));
-  if (self->method == by_multigrid) PetscCall(fill_empty_rows(self));
-  PetscCall(give_matrix(self));
-  PetscCall(KSPSetUp(self->solver));
+  do {
+    PetscCall(MatSetValuesCOO(self->matrix, values, INSERT_VALUES));
+    if (self->method == by_multigrid) PetscCall(fill_empty_rows(self));
+    PetscCall(give_matrix(self));
+    if (is_repeated) PetscCall(choose_mumps(self->solver, self->method != by_lu,
+                                            self->method == by_compressed));
+    if (has_factor(self)) PetscCall(factor_by_mumps(self->solver, &is_repeated));
+    else PetscCall(KSPSetUp(self->solver));
+  } while (is_repeated);
   PetscCall(KSPGetPC(self->solver, &pc));
   PetscCall(PCGetFailedReason(pc, &reason));
   *status = reason ? singular : done;
-  if (reason == PC_FACTOR_OUTMEMORY) *status = failed;
-  if (*status == done && is_direct(self)) PetscCall(check_factor(self, status));
+  if (reason == PC_FACTOR_OUTMEMORY || reason == PC_FACTOR_OTHER) *status = failed;
+  if (*status == done && has_factor(self)) PetscCall(check_factor(self, status));
   PetscFunctionReturn(0);
 }
 
@@ -284,20 +295,21 @@ static PetscErrorCode solve(struct equations *self, double admissible, int is_ke
 static PetscErrorCode count_entries(struct equations *self, double *entries)
 {
   MatInfo info;
-  PC pc;
-  Mat both;
-  PetscInt count;
   PetscFunctionBegin;
-  if (is_direct(self)) {
-    PetscCall(KSPGetPC(self->solver, &pc));
-    PetscCall(PCFactorGetMatrix(pc, &both));
-    PetscCall(MatMumpsGetInfo(both, 9, &count));
-    *entries = count < 0 ? -1e6 * count : count; /* MUMPS counts many entries in millions */
+  if (has_factor(self)) {
+    PetscCall(count_factor_entries(self->solver, entries));
   } else {
     PetscCall(MatGetInfo(self->matrix, MAT_LOCAL, &info));
     *entries = info.nz_used;
   }
   PetscFunctionReturn(0);
+}
+
+void keyway_petsc_memory(void *handle, int *memory)
+{
+  struct equations *self = handle;
+  memory[0] = memory[1] = 0;
+  if (has_factor(self) && read_factor_memory(self->solver, memory)) memory[0] = memory[1] = 0;
 }
 
 double keyway_petsc_entries(void *handle)

@@ -5,14 +5,16 @@ module petsc_equations
   implicit none
   private
   public :: has_petsc, start_petsc, plan_petsc, factor_petsc, solve_petsc, finish_petsc
-  public :: entries_of_petsc
-  public :: by_cholesky, by_multigrid, by_blocks, by_lu
+  public :: entries_of_petsc, memory_of_petsc
+  public :: by_cholesky, by_multigrid, by_blocks, by_lu, by_compressed
   public :: is_done, is_singular, is_slow
 
   integer(c_int), parameter :: by_cholesky = 1 !< L L^T by MUMPS
   !> Conjugate gradients, with smoothed aggregation, and with the incomplete factor of each rank
   integer(c_int), parameter :: by_multigrid = 2, by_blocks = 3
   integer(c_int), parameter :: by_lu = 4 !< L U by MUMPS, of a matrix that is not symmetric
+  !> Conjugate gradients with L L^T by MUMPS whose blocks have low rank
+  integer(c_int), parameter :: by_compressed = 5
   integer(c_int), parameter :: is_done = 0, is_singular = 1, is_slow = 2 !< outcomes; else a failure
 
   interface
@@ -75,6 +77,14 @@ module petsc_equations
       type(c_ptr), value :: handle
       real(c_double) :: entries
     end function entries_of_petsc
+
+    !> Memory of the last factor; 0 without one.
+    subroutine memory_of_petsc(handle, memory) bind(c, name='keyway_petsc_memory')
+      import :: c_int, c_ptr
+      implicit none
+      type(c_ptr), value :: handle
+      integer(c_int), intent(out) :: memory(2) !< on one rank at most, on all ranks [MB]
+    end subroutine memory_of_petsc
 
     subroutine finish_petsc(handle) bind(c, name='keyway_petsc_finish')
       import :: c_ptr

@@ -7,11 +7,12 @@ module unknown_layout
   implicit none
   private
   public :: row_layout, own_rows
-  public :: choose_solver, direct_solver, iterative_solver
+  public :: choose_solver, direct_solver, iterative_solver, compressed_solver
 
   integer, parameter :: choose_solver = 0 !< by the number of rows
   integer, parameter :: direct_solver = 1 !< MUMPS
   integer, parameter :: iterative_solver = 2 !< conjugate gradients
+  integer, parameter :: compressed_solver = 3 !< the same, with a factor of low-rank blocks
 
   type :: row_layout
     integer, allocatable :: first_row(:) !< (ranks + 1) first row of each rank, from 0
