@@ -38,6 +38,7 @@ ROOMS = (
     "guests/history",
     "materials/law",
     "materials/concrete",
+    "materials/concrete_blocks",
     "materials/metal",
     "materials/umat",
     "materials/at_a_point",

@@ -11,11 +11,13 @@ set(sources
   concrete/damage_point.f90
   concrete/damage_return.f90
   concrete/damage_split.f90
-  concrete/damage_stress.f90
   concrete/damage_tangent.f90
-  concrete/damage_trials.f90
   concrete/damage_yield.f90
-  concrete/material_damage_plasticity.f90
+  concrete_blocks/damage_flows.f90
+  concrete_blocks/damage_stress.f90
+  concrete_blocks/damage_trials.f90
+  concrete_blocks/flow_search.f90
+  concrete_blocks/material_damage_plasticity.f90
   law/crack_band.f90
   law/material_elastic.f90
   law/material_law.f90

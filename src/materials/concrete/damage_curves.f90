@@ -16,7 +16,7 @@ module damage_curves
   implicit none
   private
   public :: strength_curve, curve_value, make_tension_curve, make_compression_curve
-  public :: place_knots, value_of_curve, smallest_strength
+  public :: place_knots, value_of_curve, row_below, smallest_strength
 
   !> Smallest strength of a curve, as a fraction of the first. At zero strength beta of Eq. 23 is
   !> undefined and the yield surface encloses nothing. The extra energy of a crack is at most a
@@ -270,26 +270,23 @@ contains
   end subroutine value_of_curve
 
   !> The last row with a knot at or below a plastic strain, the first one if there is none: the
-  !> guess, the next one, or by bisection.
+  !> guess, or by bisection without branches, which processors would predict wrongly.
   pure integer function row_below(knots, plastic, guess) result(row)
     real(rk), intent(in) :: knots(:) !< ascending
     real(rk), intent(in) :: plastic
     integer, intent(in) :: guess
-    integer :: high, middle
-    row = 1
-    if (knots(guess) <= plastic) row = guess
-    high = size(knots) + 1
-    if (row < size(knots)) then
-      if (knots(row + 1) > plastic) high = row + 1
+    integer :: num_left, half
+    row = guess
+    if (knots(guess) <= plastic) then
+      if (guess == size(knots)) return
+      if (knots(guess + 1) > plastic) return
     end if
-    if (row /= guess) high = min(high, guess)
-    do while (high - row > 1)
-      middle = (row + high)/2
-      if (knots(middle) <= plastic) then
-        row = middle
-      else
-        high = middle
-      end if
+    row = 1
+    num_left = size(knots)
+    do while (num_left > 1)
+      half = num_left/2
+      row = merge(row + half, row, knots(row + half) <= plastic)
+      num_left = num_left - half
     end do
   end function row_below
 end module damage_curves

@@ -19,6 +19,7 @@ module damage_return
   implicit none
   private
   public :: trial_state, flow_state, flow_by, find_flow
+  public :: tolerance, acceptable, largest_bend, overshoot
 
   real(rk), parameter :: tolerance = 1.0e-13_rk !< |F| over the strength in compression
   real(rk), parameter :: acceptable = 1.0e-9_rk !< the same, where round-off prevents more

@@ -8,9 +8,8 @@ module material_damage_plasticity
                             unpack_history, width_row
   use damage_model, only: concrete_model, make_concrete_model, placed_curves, stiffness_of
   use damage_point, only: point_answer, point_history, point_motion, update_point
-  use damage_return, only: trial_state
-  use damage_stress, only: find_stress, has_plain_stress
-  use damage_trials, only: find_trials, screen_points, trial_block
+  use damage_stress, only: find_stresses, has_plain_stress
+  use damage_trials, only: screen_points
   use errors, only: deck_is_wrong, error_type, raise
   use kinds, only: rk
   use material_law, only: stress_law
@@ -89,7 +88,7 @@ contains
     end if
     has_answer = .false.
     if (allocated(time%stays)) has_answer = time%stays
-    call screen_runs(self%model,.not. has_answer, factor, new, stored)
+    call screen_runs(self%model,.not. has_answer, factor, old, new, stored)
     motion%time = time%size
     motion%wants_tangent = time%tangent /= no_tangent
     motion%is_secant = time%tangent == secant_tangent
@@ -100,8 +99,6 @@ contains
       if (has_answer(i)) cycle
       has_answer(i) = new%is_elastic(i) .and. old%is_elastic(i)
       if (.not. has_answer(i)) cycle
-      new%internal(:, i) = old%internal(:, i)
-      new%energy(:, i) = old%energy(:, i)
       new%energy(stored_energy, i) = stored(i)
       if (motion%wants_tangent) tangent(:, :, i) = d
     end do
@@ -121,12 +118,13 @@ contains
     end do
   end subroutine update
 
-  !> Screens the points that change, in runs of adjacent ones.
-  pure subroutine screen_runs(model, changes, factor, new, stored)
+  !> Screens the points that change, in runs of adjacent ones; they begin with the old history.
+  pure subroutine screen_runs(model, changes, factor, old, new, stored)
     type(concrete_model), intent(in) :: model
     logical, intent(in) :: changes(:) !< (points)
     real(rk), intent(in) :: factor(:) !< (points) as in screen_points
-    type(point_state), intent(inout) :: new !< stress and is_elastic are set
+    type(point_state), intent(in) :: old
+    type(point_state), intent(inout) :: new !< all is set but strains
     real(rk), intent(inout) :: stored(:) !< (points) [J/m3]
     integer :: first, last
     last = 0
@@ -135,38 +133,22 @@ contains
       if (first == last) return
       last = findloc(changes(first:), .false., 1)
       last = merge(size(changes), first + last - 2, last == 0)
+      call copy_values((last - first + 1)*size(old%internal, 1), old%internal(1, first), &
+                       new%internal(1, first))
+      call copy_values((last - first + 1)*size(old%energy, 1), old%energy(1, first), &
+                       new%energy(1, first))
       call screen_points(model, factor(first:last), new%strain(:, first:last), &
                          new%stress(:, first:last), stored(first:last), new%is_elastic(first:last))
     end do
   end subroutine screen_runs
 
-  !> Stresses and histories alone of points that may yield or have yielded.
-  pure subroutine find_stresses(model, points, old, placed, new, has_answer)
-    type(concrete_model), intent(in) :: model
-    type(point_set), intent(in) :: points
-    type(point_state), intent(in) :: old
-    type(placed_curves), intent(inout) :: placed
-    type(point_state), intent(inout) :: new
-    logical, intent(inout) :: has_answer(:) !< (points) true: keep the present answer
-    type(trial_block) :: trials
-    type(trial_state) :: trial
-    type(point_answer) :: answer
-    integer :: i, k, pending(points%num_points), num_pending
-    if (all(has_answer)) return
-    num_pending = count(.not. has_answer)
-    pending(:num_pending) = pack([(i, i=1, points%num_points)],.not. has_answer)
-    call find_trials(model, pending(:num_pending), new%strain, old%internal, trials)
-    do k = 1, num_pending
-      i = pending(k)
-      trial = trial_state(q=trials%q(k), p=trials%p(k), shape=trials%shape(:, k), &
-                          measures=old%internal(last_strain + 1:last_measure, i))
-      call find_stress(model, trial, trials%deviator(:, k), points%edges(:, :, i), &
-                       old%internal(:, i), placed, new%internal(:, i), answer)
-      new%stress(:, i) = answer%stress
-      new%is_elastic(i) = answer%is_elastic
-      has_answer(i) = answer%has_converged
-    end do
-  end subroutine find_stresses
+  !> Copies adjacent numbers.
+  pure subroutine copy_values(num_values, from, to)
+    integer, intent(in) :: num_values
+    real(rk), intent(in) :: from(num_values)
+    real(rk), intent(inout) :: to(num_values)
+    to = from
+  end subroutine copy_values
 
   !> Updates a point that may yield or has yielded.
   pure subroutine yield_point(model, motion, i, old, placed, new, answer)

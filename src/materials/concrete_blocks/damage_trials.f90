@@ -9,12 +9,17 @@
 !> Trial states of the other points have their principal values: those of a deviator with q = 1 are
 !> 2/3 cos(theta) and 2/3 cos(theta -/+ 120 deg). c = cos(theta) is the root of 4 c^3 - 3 c = x in
 !> [1/2, 1]. From the bound above Newton's iterates decrease to it; where |x| < 0.9 four of them
-!> have all digits (an error of 0.06 at most becomes 6e-3, 4e-5, 3e-9, 1e-17). Else two values are
-!> near to each other, and the procedure for one tensor finds all three.
+!> have all digits (an error of 0.06 at most becomes 6e-3, 4e-5, 3e-9, 1e-17).
+!>
+!> Else two values are near to each other, and x has lost digits of their difference. The sine s of
+!> the angle to the nearer axis, theta or 60 deg - theta, is then the root of 3 s - 4 s^3 = y, with
+!> y = sin(3 theta) from a sum of squares that loses none: for the discriminant, 4/27 y^2, is three
+!> times that of all (S_i T_j - S_j T_i)^2, i < j, with T the deviator of S^2 (the Gram determinant
+!> of 1, S, S^2). From y/3 + 4/81 y^3 three of Newton's steps have all digits
+!> (y < 0.44; an error of 4e-4 at most becomes 1e-7, 5e-15).
 module damage_trials
   use damage_model, only: concrete_model
   use kinds, only: rk
-  use tensor6, only: principal_values
   implicit none
   private
   public :: screen_points, trial_block, find_trials
@@ -83,15 +88,21 @@ contains
     real(rk), intent(in), contiguous :: internal(:, :) !< (1-6: plastic strain, all points)
     type(trial_block), intent(out) :: trials
     real(rk) :: cosine(size(points))
-    integer :: k, n
+    integer :: k, n, near(size(points)), num_near
     n = size(points)
     allocate (trials%q(n), trials%p(n), trials%deviator(6, n), trials%shape(3, n))
     call find_deviators(model, points, strain, internal, trials%p, trials%q, trials%deviator)
     call find_cosines(trials%deviator, cosine)
     call find_shapes(cosine, trials%shape)
+    num_near = 0
     do k = 1, n
-      if (abs(cosine(k)) < safe_cosine .and. trials%q(k) > 0.0_rk) cycle
-      trials%shape(:, k) = principal_values(trials%deviator(:, k))
+      if (abs(cosine(k)) < safe_cosine) cycle
+      num_near = num_near + 1
+      near(num_near) = k
+    end do
+    call find_near_shapes(near(:num_near), trials%deviator, cosine, trials%shape)
+    do k = 1, n
+      if (.not. trials%q(k) > tiny(1.0_rk)) trials%shape(:, k) = 0.0_rk
     end do
   end subroutine find_trials
 
@@ -169,4 +180,56 @@ contains
       shape(3, k) = -2.0_rk/3.0_rk*(sine + 0.5_rk*c)
     end do
   end subroutine find_shapes
+
+  !> Principal values of deviators of which two are near to each other.
+  pure subroutine find_near_shapes(list, deviator, x, shape)
+    integer, intent(in) :: list(:)
+    real(rk), intent(in), contiguous :: deviator(:, :) !< (6, points) with q = 1
+    real(rk), intent(in), contiguous :: x(:) !< (points) cos(3 theta)
+    real(rk), intent(inout), contiguous :: shape(:, :) !< (3, points)
+    real(rk) :: d(size(list), 6), values(size(list), 3), turn(size(list)), y, s, c, part
+    integer :: k
+    do k = 1, size(list)
+      d(k, :) = deviator(:, list(k))
+      turn(k) = sign(1.0_rk, x(list(k)))
+    end do
+    !$omp simd private(y, s, c, part)
+    do k = 1, size(list)
+      y = 4.5_rk*sqrt(sum_of_squares(d(k, 1), d(k, 2), d(k, 3), d(k, 4), d(k, 5), d(k, 6)))
+      s = y*(1.0_rk/3.0_rk + 4.0_rk/81.0_rk*y**2)
+      s = (y - 8.0_rk*s**3)/(3.0_rk - 12.0_rk*s**2)
+      s = (y - 8.0_rk*s**3)/(3.0_rk - 12.0_rk*s**2)
+      s = (y - 8.0_rk*s**3)/(3.0_rk - 12.0_rk*s**2)
+      c = 1.0_rk/3.0_rk*sqrt((1.0_rk - s)*(1.0_rk + s))
+      part = 2.0_rk/3.0_rk*half_root*s
+      values(k, 1) = merge(2.0_rk*c, c + part, turn(k) > 0.0_rk)
+      values(k, 2) = turn(k)*(part - c)
+      values(k, 3) = merge(-c - part, -2.0_rk*c, turn(k) > 0.0_rk)
+    end do
+    do k = 1, size(list)
+      shape(:, list(k)) = values(k, :)
+    end do
+  end subroutine find_near_shapes
+
+  !> sum (S_i T_j - S_j T_i)^2 over pairs of components of a tensor with nine components, T being
+  !> the deviator of S^2.
+  pure real(rk) function sum_of_squares(s1, s2, s3, s4, s5, s6) result(whole)
+    real(rk), intent(in) :: s1, s2, s3, s4, s5, s6 !< with q = 1
+    real(rk) :: t1, t2, t3, t4, t5, t6, mean
+    t1 = s1**2 + s4**2 + s5**2
+    t2 = s4**2 + s2**2 + s6**2
+    t3 = s5**2 + s6**2 + s3**2
+    mean = (t1 + t2 + t3)/3.0_rk
+    t1 = t1 - mean
+    t2 = t2 - mean
+    t3 = t3 - mean
+    t4 = s1*s4 + s4*s2 + s5*s6
+    t5 = s1*s5 + s4*s6 + s5*s3
+    t6 = s4*s5 + s2*s6 + s6*s3
+    whole = (s1*t2 - s2*t1)**2 + (s1*t3 - s3*t1)**2 + (s2*t3 - s3*t2)**2 &
+            + 2.0_rk*((s1*t4 - s4*t1)**2 + (s1*t5 - s5*t1)**2 + (s1*t6 - s6*t1)**2 &
+                      + (s2*t4 - s4*t2)**2 + (s2*t5 - s5*t2)**2 + (s2*t6 - s6*t2)**2 &
+                      + (s3*t4 - s4*t3)**2 + (s3*t5 - s5*t3)**2 + (s3*t6 - s6*t3)**2) &
+            + 4.0_rk*((s4*t5 - s5*t4)**2 + (s4*t6 - s6*t4)**2 + (s5*t6 - s6*t5)**2)
+  end function sum_of_squares
 end module damage_trials

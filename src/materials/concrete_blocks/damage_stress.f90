@@ -1,0 +1,193 @@
+!> Stresses of points alone, without energies and tangents: what the iterations of a structure need.
+!> They are those of damage_point for RECOVERY=LEE-FENVES without viscosity, to round-off, found for
+!> many points side by side, without principal directions and copies of histories.
+module damage_stress
+  use crack_band, only: band_width
+  use damage_flows, only: find_kinematics, find_parts, find_residuals, flow_block, keep_flows, &
+                          most_points
+  use damage_history, only: last_damage, last_measure, last_strain, width_row
+  use damage_increment, only: yield_tolerance
+  use damage_model, only: concrete_model, placed_curves
+  use damage_trials, only: find_trials, trial_block
+  use flow_search, only: find_flows, flow_ends
+  use kinds, only: rk
+  use material_points, only: point_set, point_state
+  use tensor6, only: principal_axes
+  implicit none
+  private
+  public :: has_plain_stress, find_stresses
+
+contains
+
+  !> Whether `find_stresses` can be used.
+  pure logical function has_plain_stress(model)
+    type(concrete_model), intent(in) :: model
+    has_plain_stress = .not. (model%splits_energy .or. model%recovers_by_sign &
+                              .or. model%viscosity > 0.0_rk)
+  end function has_plain_stress
+
+  !> Stresses and histories of the points without an answer.
+  pure subroutine find_stresses(model, points, old, placed, new, has_answer)
+    type(concrete_model), intent(in) :: model
+    type(point_set), intent(in) :: points
+    type(point_state), intent(in) :: old
+    type(placed_curves), intent(inout) :: placed !< curves, kept by the caller
+    type(point_state), intent(inout) :: new !< with strains
+    logical, intent(inout) :: has_answer(:) !< (points) on return false where the return map failed
+    integer :: pending(most_points), n, i
+    n = 0
+    do i = 1, points%num_points
+      if (.not. has_answer(i)) then
+        n = n + 1
+        pending(n) = i
+      end if
+      if (n == most_points .or. (n > 0 .and. i == points%num_points)) then
+        call find_block(model, points, pending(:n), old, placed, new, has_answer)
+        n = 0
+      end if
+    end do
+  end subroutine find_stresses
+
+  !> Stresses and histories of the points of a list, in one part of the increment; see
+  !> integrate_part. Without convergence more parts are needed.
+  pure subroutine find_block(model, points, list, old, placed, new, has_answer)
+    type(concrete_model), intent(in) :: model
+    type(point_set), intent(in) :: points
+    integer, intent(in) :: list(:) !< at most most_points
+    type(point_state), intent(in) :: old
+    type(placed_curves), intent(inout) :: placed
+    type(point_state), intent(inout) :: new
+    logical, intent(inout) :: has_answer(:)
+    type(trial_block) :: trials
+    type(flow_block) :: b
+    type(flow_ends) :: ends
+    integer :: k, n, yielding(most_points)
+    real(rk) :: size_of_f
+    call find_trials(model, list, new%strain, old%internal, trials)
+    call open_block(model, points, list, old, trials, placed, b)
+    n = 0
+    do k = 1, size(list)
+      size_of_f = abs(b%f(k))
+      ends%has_converged(k) = .false.
+      if (.not. size_of_f < huge(1.0_rk)) cycle ! NaN
+      if (b%f(k) > yield_tolerance*b%compression%strength(k)) then
+        n = n + 1
+        yielding(n) = k
+        if (b%width(k) <= 0.0_rk) then
+          b%width(k) = width_at(points%edges(:, :, list(k)), trials%deviator(:, k))
+        end if
+      else
+        call take_trial(b, k, old%internal(:, list(k)), ends)
+      end if
+    end do
+    if (n > 0) then
+      ends%width(yielding(:n)) = b%width(yielding(:n))
+      call keep_flows(yielding(:n), b)
+      call find_flows(model, placed, b, ends)
+    end if
+    do k = 1, size(list)
+      has_answer(list(k)) = ends%has_converged(k)
+      if (ends%has_converged(k)) call take_end(model, trials, k, ends, list(k), new)
+    end do
+  end subroutine find_block
+
+  !> F of the trial states.
+  pure subroutine open_block(model, points, list, old, trials, placed, b)
+    type(concrete_model), intent(in) :: model
+    type(point_set), intent(in) :: points
+    integer, intent(in) :: list(:)
+    type(point_state), intent(in) :: old
+    type(trial_block), intent(in) :: trials
+    type(placed_curves), intent(inout) :: placed
+    type(flow_block), intent(out) :: b
+    integer :: k, i
+    b%num_points = size(list)
+    do k = 1, size(list)
+      i = list(k)
+      b%place(k) = k
+      b%q_trial(k) = trials%q(k)
+      b%p_trial(k) = trials%p(k)
+      b%shape1(k) = trials%shape(1, k)
+      b%shape2(k) = trials%shape(2, k)
+      b%shape3(k) = trials%shape(3, k)
+      b%cracking(k) = old%internal(last_strain + 1, i)
+      b%crushing(k) = old%internal(last_measure, i)
+      b%tension%measure(k) = b%cracking(k)
+      b%compression%measure(k) = b%crushing(k)
+      b%tension%row(k) = 0
+      b%compression%row(k) = 0
+      b%y(k) = 0.0_rk
+      b%width(k) = old%internal(width_row, i)
+      if (model%by_opening .and. b%width(k) <= 0.0_rk) then
+        b%width(k) = width_at(points%edges(:, :, i), trials%deviator(:, k))
+      end if
+    end do
+    call find_parts(model, placed, b)
+    call find_kinematics(model, b)
+    call find_residuals(model, b)
+  end subroutine open_block
+
+  !> Width of a crack band normal to the largest principal stress [m].
+  pure real(rk) function width_at(edges, deviator) result(width)
+    real(rk), intent(in) :: edges(3, 3), deviator(6)
+    real(rk) :: principal(3), axes(3, 3)
+    call principal_axes(deviator, principal, axes)
+    width = band_width(edges, axes(:, 1))
+  end function width_at
+
+  !> The trial state is the end of the increment.
+  pure subroutine take_trial(b, k, internal, ends)
+    type(flow_block), intent(in) :: b
+    integer, intent(in) :: k
+    real(rk), intent(in) :: internal(:) !< at the start of the increment
+    type(flow_ends), intent(inout) :: ends
+    ends%has_converged(k) = .true.
+    ends%x(k) = 0.0_rk
+    ends%q(k) = b%q(k)
+    ends%p(k) = b%p(k)
+    ends%radius(k) = b%radius(k)
+    ends%share(k) = b%share(k)
+    ends%kappa_t(k) = b%cracking(k)
+    ends%kappa_c(k) = b%crushing(k)
+    ends%d_t(k) = internal(last_measure + 1)
+    ends%d_c(k) = internal(last_damage)
+    ends%width(k) = internal(width_row)
+  end subroutine take_trial
+
+  !> Writes the end of an increment to the state of a point.
+  pure subroutine take_end(model, trials, k, ends, i, new)
+    type(concrete_model), intent(in) :: model
+    type(trial_block), intent(in) :: trials
+    integer, intent(in) :: k, i !< place in the list, point
+    type(flow_ends), intent(in) :: ends
+    type(point_state), intent(inout) :: new !< with the old history
+    real(rk) :: slip, swelling, left
+    slip = 1.5_rk*ends%x(k)*ends%q(k)/ends%radius(k)
+    swelling = ends%x(k)*model%tan_dilation/3.0_rk
+    left = stiffness_left(model, ends%d_t(k), ends%d_c(k), ends%share(k))
+    associate (shape => trials%deviator(:, k), internal => new%internal(:, i), &
+               stress => new%stress(:, i))
+      if (ends%x(k) > 0.0_rk) then
+        internal(1:3) = internal(1:3) + slip*shape(1:3) + swelling
+        internal(4:last_strain) = internal(4:last_strain) + 2.0_rk*slip*shape(4:6)
+        internal(last_strain + 1) = ends%kappa_t(k)
+        internal(last_measure) = ends%kappa_c(k)
+        internal(last_measure + 1) = ends%d_t(k)
+        internal(last_damage) = ends%d_c(k)
+        if (ends%kappa_t(k) > 0.0_rk) internal(width_row) = ends%width(k)
+      end if
+      stress(1:3) = left*(ends%q(k)*shape(1:3) - ends%p(k))
+      stress(4:6) = left*(ends%q(k)*shape(4:6))
+    end associate
+    new%is_elastic(i) = .not. (ends%x(k) > 0.0_rk .or. ends%kappa_t(k) > 0.0_rk &
+                               .or. ends%kappa_c(k) > 0.0_rk)
+  end subroutine take_end
+
+  !> 1 - d of Eqs. 15-16 (see total_damage).
+  pure real(rk) function stiffness_left(model, tension, compression, share) result(left)
+    type(concrete_model), intent(in) :: model
+    real(rk), intent(in) :: tension, compression, share !< d_t, d_c, r
+    left = (1.0_rk - (1.0_rk - model%tension_recovery*share)*compression) &
+           *(1.0_rk - (1.0_rk - model%compression_recovery*(1.0_rk - share))*tension)
+  end function stiffness_left
+end module damage_stress
