@@ -20,8 +20,9 @@ set(sources
   kinds.f90
   math/dense_factor.f90
   math/single_factor.f90
+  math/single_solve.c
   math/dense_products.f90
-  math/mixed_products.c
+  math/fused_products.c
   math/mixed_products.f90
   math/row_tables.f90
   math/small_matrix.f90

@@ -1,5 +1,6 @@
 !> Factors of small dense matrices in single precision (LAPACK), for preconditioners.
 module single_factor
+  use, intrinsic :: iso_c_binding, only: c_float, c_int
   use, intrinsic :: iso_fortran_env, only: single => real32
   use kinds, only: rk
   implicit none
@@ -23,15 +24,23 @@ module single_factor
       integer, intent(out) :: ipiv(n), info
     end subroutine sgetrf
 
-    subroutine sgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
-      import :: single
+    !> x = L^-1 x, L with a unit diagonal.
+    subroutine keyway_solve_unit_lower(rows, values, x) bind(c)
+      import :: c_float, c_int
       implicit none
-      character, intent(in) :: trans
-      integer, intent(in) :: n, nrhs, lda, ldb, ipiv(n)
-      real(single), intent(in) :: a(lda, n)
-      real(single), intent(inout) :: b(ldb, nrhs)
-      integer, intent(out) :: info
-    end subroutine sgetrs
+      integer(c_int), value :: rows
+      real(c_float), intent(in) :: values(rows, rows)
+      real(c_float), intent(inout) :: x(rows)
+    end subroutine keyway_solve_unit_lower
+
+    !> x = U^-1 x.
+    subroutine keyway_solve_upper(rows, values, x) bind(c)
+      import :: c_float, c_int
+      implicit none
+      integer(c_int), value :: rows
+      real(c_float), intent(in) :: values(rows, rows)
+      real(c_float), intent(inout) :: x(rows)
+    end subroutine keyway_solve_upper
   end interface
 
 contains
@@ -60,15 +69,21 @@ contains
   subroutine solve_single(factor, b)
     type(single_lu), intent(in) :: factor
     real(rk), intent(inout) :: b(:) !< (rows)
-    real(single) :: x(size(b), 1)
+    real(single) :: x(size(b)), moved
     real(rk) :: largest
-    integer :: n, info
+    integer :: n, i
     n = size(b)
     if (n == 0) return
     b = factor%scale*b
     largest = max(maxval(abs(b)), tiny(1.0_rk))
-    x(:, 1) = real(b/largest, single)
-    call sgetrs('N', n, 1, factor%values, n, factor%pivot, x, n, info)
-    b = largest*real(x(:, 1), rk)
+    x = real(b/largest, single)
+    do i = 1, n
+      moved = x(i)
+      x(i) = x(factor%pivot(i))
+      x(factor%pivot(i)) = moved
+    end do
+    call keyway_solve_unit_lower(n, factor%values, x)
+    call keyway_solve_upper(n, factor%values, x)
+    b = largest*real(x, rk)
   end subroutine solve_single
 end module single_factor

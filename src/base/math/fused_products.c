@@ -1,26 +1,17 @@
-/* Products of matrices in single precision with vectors in double precision, sums in double
- * precision. Their time is that of reading the matrix: four columns are used at once. */
+/* Products of matrices in double or single precision with vectors in double precision, sums in
+ * double precision. Their time is that of reading the matrix: four columns are used at once. */
 #include "each_processor.h"
 #include <stddef.h>
 
-/* y = y + A x, A by columns. */
-FOR_EACH_PROCESSOR
-void keyway_add_product(int rows, int columns, const float *value, const double *x, double *y)
-{
-  int j = 0;
-  for (; j + 4 <= columns; j += 4) {
-    const float *a = value + (size_t)j * (size_t)rows, *b = a + rows, *c = b + rows, *d = c + rows;
-    double p = x[j], q = x[j + 1], r = x[j + 2], s = x[j + 3];
-#pragma omp simd
-    for (int i = 0; i < rows; i++) y[i] += a[i] * p + b[i] * q + (c[i] * r + d[i] * s);
-  }
-  for (; j < columns; j++) {
-    const float *a = value + (size_t)j * (size_t)rows;
-    double p = x[j];
-#pragma omp simd
-    for (int i = 0; i < rows; i++) y[i] += a[i] * p;
-  }
-}
+#define VALUE double
+#define ADD_PRODUCT keyway_add_double_product
+#include "fused_products_template.h"
+#undef VALUE
+#undef ADD_PRODUCT
+
+#define VALUE float
+#define ADD_PRODUCT keyway_add_product
+#include "fused_products_template.h"
 
 /* y = A^T x. */
 FOR_EACH_PROCESSOR
