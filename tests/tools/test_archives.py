@@ -137,6 +137,7 @@ TYPES = (
         {
             "status": "of the end of the run",
             "message": "of the end of the run",
+            "balance": "of the end of the run",
             "deck_digest": "of the deck",
             "remarks": "of the deck",
         },

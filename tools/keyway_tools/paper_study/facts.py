@@ -9,12 +9,14 @@ import numpy as np
 
 from ..mesh_data import BrickMesh
 from ..mesh_quality import volumes
+from ..result_files import Table
 from ..si_results import SiResults
 from .runner import Outcome
 
 FACES = ("upstream", "downstream")
 DAMAGED = 0.1  # mean of an element
 UPPER = 0.6  # of the height
+IN_PLANE = 1e-6  # of the largest displacement
 
 
 @dataclass
@@ -42,6 +44,9 @@ class Facts:
     dissipated: float = 0.0  # by cracking [J]
     created: float = 0.0  # by the recovery of stiffness [J]
     height: float = 0.0  # of the dam [m]
+    # Until when the first printed node moves across the valley (x) by less than 1e-6 of what it
+    # moves at all [s]; None where no node is printed
+    in_plane_until: float | None = None
     largest_fall: float = 0.0  # of the dissipation in one increment, over its last value
     reduced_error: float | None = None  # that the reduced model estimates
 
@@ -86,7 +91,7 @@ def facts_of(outcome: Outcome) -> Facts:
     facts.created = damage.get("created") or 0.0
     facts.damaged = _damaged(results)
     facts.largest_fall = _largest_fall(results)
-    facts.moved = _moved(results)
+    facts.moved, facts.in_plane_until = _moved(results), _in_plane_until(results)
     reduced = summary["accuracy"].get("reduced") or {}
     errors = [one["estimated_error"] for one in reduced.values()]
     facts.reduced_error = max(errors) if errors else None
@@ -105,17 +110,37 @@ def _largest_fall(results: SiResults) -> float:
 def _moved(results: SiResults) -> float | None:
     """How far the last step moves the first printed node: the mean of its last tenth, beside the
     end of the step before [m]; None where no node is printed."""
-    names = [name for name in results.tables() if name.startswith("node_")]
-    if not names:
+    table = _printed_node(results)
+    if table is None:
         return None
-    table = results.table(names[0])
-    of_node = table["node"] == table["node"][0]
-    step = table["step"][of_node]
-    u = np.stack([table[f"U{i}"][of_node] for i in (1, 2, 3)], axis=1)
+    step, u = table["step"], _displacement(table)
     before = u[step < step[-1]][-1:].sum(axis=0)
     motion = u[step == step[-1]]
-    end = motion[-max(1, len(motion) // 10):].mean(axis=0)  # fmt: skip
+    end = motion[-max(1, len(motion) // 10) :].mean(axis=0)
     return float(np.linalg.norm(end - before))
+
+
+def _in_plane_until(results: SiResults) -> float | None:
+    table = _printed_node(results)
+    if table is None:
+        return None
+    u = _displacement(table)
+    leaves = np.abs(u[:, 0]) > IN_PLANE * np.abs(u).max()
+    return float(table["time"][np.argmax(leaves) if leaves.any() else -1])
+
+
+def _displacement(table: Table) -> np.ndarray:
+    return np.stack([table[f"U{i}"] for i in (1, 2, 3)], axis=1)
+
+
+def _printed_node(results: SiResults) -> Table | None:
+    """The history of the first printed node."""
+    for name in results.tables():
+        if name.startswith("node_"):
+            table = results.table(name)
+            of_node = table["node"] == table["node"][0]
+            return {column: values[of_node] for column, values in table.items()}
+    return None
 
 
 def _damaged(results: SiResults) -> dict[str, float]:
