@@ -40,18 +40,21 @@ def seconds(run: Run, pattern: str) -> float:
 def measure_joints(program: Program, folder: Path, joints: list[int], duration: float) -> str:
     """A table in Markdown, with one row for each dam."""
     lines = [
-        "| joints | points | unknowns | increment, in solves | joint iteration, in solves "
-        "| set-up of joints, in factorisations |",
-        "|---|---|---|---|---|---|",
+        "| joints | points | unknowns | solve [ms] | solve and joints [ms] | increment, in solves "
+        "| joint iteration, in solves | set-up of joints, in factorisations |",
+        "|" + "---|" * 8,
     ]
     for number in joints:
         run = program.run(write_dam(folder, number, duration))
         points = sum(joint["points"] for joint in run.results.find("joints").values())
         solve = seconds(run, "solve (forward|backward) structure")
         iteration = seconds(run, r"(iterate|correct) JOINT\d+")
+        increments = sum(step["increments"] for step in run.results.find("steps"))
+        each = [1e3 * time / increments for time in (solve, solve + iteration)]
         set_up = seconds(run, r"condense JOINT\d+") / seconds(run, "factor structure")
         lines.append(
-            f"| {number} | {points} | {run.unknowns} | {1.0 + iteration / solve:.2f} "
+            f"| {number} | {points} | {run.unknowns} | {each[0]:.1f} | {each[1]:.1f} "
+            f"| {1.0 + iteration / solve:.2f} "
             f"| {iteration / solve:.2f} | {set_up:.2f} |"
         )
     return "\n".join(lines)
