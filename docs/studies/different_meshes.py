@@ -23,6 +23,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 import h5py  # noqa: E402
 import make_dam  # noqa: E402
 import numpy as np  # noqa: E402
+from keyway_tools.paper_study.checks import excess  # noqa: E402
 
 CELLS = "--arc 16 --levels 7 --bottom 2 --thick 2 --joints 2 --refine 2"
 AXIS_Y = 254.886  # of the crest's upstream arc [m]
@@ -120,12 +121,6 @@ def extremes(report: dict) -> list[float]:
     return [report["envelopes"][name][side]["value"] for name, side in QUANTITIES]
 
 
-def excess(value: float, ends: tuple[float, float]) -> float:
-    """How far a value lies outside of two others, over the larger of these."""
-    low, high = sorted(ends)
-    return max(low - value, value - high, 0.0) / (max(abs(low), abs(high)) or 1.0)
-
-
 def row(name: str, reports: dict[str, dict], chosen: tuple[str, ...]) -> str:
     """Line of a main table: values, and in percent the distance from the coarse matching mesh."""
     case, report = CASES[name], reports[name]
@@ -144,7 +139,7 @@ def row(name: str, reports: dict[str, dict], chosen: tuple[str, ...]) -> str:
         cells.append(
             f"{scale * value:.{digits}f}" + ("" if name == case.coarse else f" ({change:+.2f})")
         )
-        worst = max(worst, 100.0 * excess(value, (old, new)))
+        worst = max(worst, 100.0 * excess(value, old, new))
     cells.append(f"{worst:.2g} %" if case.fine else "")
     return "| " + " | ".join(cells) + " |"
 

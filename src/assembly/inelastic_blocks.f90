@@ -6,8 +6,7 @@ module inelastic_blocks
   use kinds, only: rk
   use dam_mesh, only: fe_mesh
   use element_catalogue, only: is_solid, make_solid
-  use element_formulation, only: solid_element
-  use element_matrices, only: strains_of_element
+  use element_formulation, only: solid_element, strains_of_element
   use gauss_rules, only: hex_point
   use guest_history, only: history, stored_work
   use guest_type, only: guest

@@ -8,7 +8,7 @@ module element_formulation
   use shape_hex8, only: gradient_at, hex8_dofs, point_derivative, point_shape
   implicit none
   private
-  public :: solid_element
+  public :: solid_element, strains_of_element
 
   type, abstract :: solid_element
     character(8) :: name = '' !< as in the deck: 'C3D8', ...
@@ -47,17 +47,26 @@ contains
     real(rk), contiguous, intent(in) :: moved(:, :) !< (24, fields) [m]
     real(rk), contiguous, intent(out) :: strain(:, :, :) !< (6, points, fields)
     real(rk) :: b(6, hex8_dofs, self%num_points, 1), weight(self%num_points, 1)
-    integer :: status(1), i, k, q
+    integer :: status(1), k
     call self%strain_operator(reshape(x, [3, 8, 1]), d, b, weight, status)
-    strain = 0.0_rk
     do k = 1, size(moved, 2)
-      do q = 1, self%num_points
-        do i = 1, hex8_dofs
-          strain(:, q, k) = strain(:, q, k) + b(:, i, q, 1)*moved(i, k)
-        end do
-      end do
+      call strains_of_element(b(:, :, :, 1), moved(:, k), strain(:, :, k))
     end do
   end subroutine apply_operator
+
+  !> eps = B u at the points of one element.
+  pure subroutine strains_of_element(b, u, strain)
+    real(rk), contiguous, intent(in) :: b(:, :, :) !< (6, 24, points) [1/m]
+    real(rk), intent(in) :: u(hex8_dofs) !< [m]
+    real(rk), contiguous, intent(out) :: strain(:, :) !< (6, points)
+    integer :: q, i
+    strain = 0.0_rk
+    do q = 1, size(b, 3)
+      do i = 1, hex8_dofs
+        strain(:, q) = strain(:, q) + b(:, i, q)*u(i)
+      end do
+    end do
+  end subroutine strains_of_element
 
   !> Adds the stiffness of hourglass control, if the element needs it.
   subroutine add_stabilisation(self, x, d, ke)

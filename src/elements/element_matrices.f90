@@ -3,13 +3,12 @@
 !> A call takes a block of elements of one material, say 64.
 module element_matrices
   use kinds, only: rk
-  use element_formulation, only: solid_element
+  use element_formulation, only: solid_element, strains_of_element
   use hex8_slopes, only: slopes_at_points, stiffness_of_slopes
   use shape_hex8, only: hex8_dofs, point_shape
   implicit none
   private
   public :: stiffness_matrices, consistent_masses, nodal_volumes, strains_at_points, stress_forces
-  public :: strains_of_element
 
   !> Elements whose operators fit into the first-level cache (tools/bench/bench_elements).
   integer, parameter :: chunk = 4
@@ -162,20 +161,6 @@ contains
       call strains_of_element(b(:, :, :, e), u(:, e), strain(:, :, e))
     end do
   end subroutine strains_at_points
-
-  !> eps = B u at the points of one element.
-  pure subroutine strains_of_element(b, u, strain)
-    real(rk), contiguous, intent(in) :: b(:, :, :) !< (6, 24, points) [1/m]
-    real(rk), intent(in) :: u(hex8_dofs) !< [m]
-    real(rk), contiguous, intent(out) :: strain(:, :) !< (6, points)
-    integer :: q, i
-    strain = 0.0_rk
-    do q = 1, size(b, 3)
-      do i = 1, hex8_dofs
-        strain(:, q) = strain(:, q) + b(:, i, q)*u(i)
-      end do
-    end do
-  end subroutine strains_of_element
 
   !> f = sum w B^T sigma of each element (without hourglass forces).
   pure subroutine stress_forces(b, weight, stress, force)

@@ -1,4 +1,4 @@
-/* What MUMPS is told and asked, behind a solver of PETSc. */
+/* Options and answers of MUMPS, behind a solver of PETSc. */
 #ifndef KEYWAY_MUMPS_FACTOR_H
 #define KEYWAY_MUMPS_FACTOR_H
 #include <petscksp.h>

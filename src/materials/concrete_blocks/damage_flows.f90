@@ -10,7 +10,7 @@ module damage_flows
   implicit none
   private
   public :: flow_block, curve_parts, most_points, no_knot
-  public :: find_kinematics, find_parts, find_strengths, find_residuals, keep_flows
+  public :: find_kinematics, find_parts, find_strengths, find_residuals, keep_flows, keep_values
 
   integer, parameter :: most_points = 64 !< of a block: its numbers fit the fastest cache
   !> In place of the end of the last part of a curve, and of a multiplier without limit.

@@ -5,7 +5,7 @@
 !> not arrive is left to the procedure for one point.
 module flow_search
   use damage_flows, only: find_kinematics, find_parts, find_residuals, flow_block, keep_flows, &
-                          most_points, no_knot
+                          keep_values, most_points, no_knot
   use damage_model, only: concrete_model, placed_curves
   use damage_return, only: acceptable, largest_bend, overshoot, tolerance
   use kinds, only: rk
@@ -231,7 +231,7 @@ contains
   pure subroutine close_ranks(b, search)
     type(flow_block), intent(inout) :: b
     type(search_block), intent(inout) :: search
-    integer :: list(most_points), n, k, i
+    integer :: list(most_points), n, k
     n = 0
     do k = 1, b%num_points
       if (.not. search%is_open(k)) cycle
@@ -241,16 +241,13 @@ contains
     call keep_flows(list(:n), b)
     associate (s => search)
       s%is_open(:n) = .true.
-      do i = 1, n
-        k = list(i)
-        s%low(i) = s%low(k)
-        s%high(i) = s%high(k)
-        s%size_before(i) = s%size_before(k)
-        s%x(i) = s%x(k)
-        s%value(i) = s%value(k)
-        s%slope(i) = s%slope(k)
-        s%kind(i) = s%kind(k)
-      end do
+      call keep_values(list(:n), s%low)
+      call keep_values(list(:n), s%high)
+      call keep_values(list(:n), s%size_before)
+      call keep_values(list(:n), s%x)
+      call keep_values(list(:n), s%value)
+      call keep_values(list(:n), s%slope)
+      call keep_values(list(:n), s%kind)
     end associate
   end subroutine close_ranks
 end module flow_search

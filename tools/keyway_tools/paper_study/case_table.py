@@ -24,9 +24,9 @@ def _xingbiling(size: Size) -> list[Case]:
     """The dam of section 4.1: joints between equal and between different meshes; its building."""
     shaken = f"--joints 2 --histories --duration {size.duration:g} "
     shaken += f"--picture-every {size.frequency}"
-    fine = _as_fine(size.xingbiling)
+    fine = _with_equal_blocks(size.xingbiling, "--fine", "-")
     # Levels of a block half an element apart: no face fits, all elements have the same size.
-    shifted = f"{_as_coarse(size.xingbiling)} --shift 0.5"
+    shifted = _with_equal_blocks(size.xingbiling, "-", "--fine") + " --shift 0.5"
     rows = (
         ("classical", "classical joint, same mesh", size.xingbiling, "--join matching"),
         ("chain", "the paper's chain, different meshes", size.xingbiling, "--fine 2 --join chain"),
@@ -63,22 +63,12 @@ def _xingbiling(size: Size) -> list[Case]:
     return found
 
 
-MESHES = (("--refine", "--fine-refine"), ("--thick", "--fine-thick"))  # of a coarse, a fine block
-
-
-def _as_fine(mesh: str) -> str:
-    """The options of a mesh whose blocks are all as fine as the finer one."""
+def _with_equal_blocks(mesh: str, take: str, give: str) -> str:
+    """The options of a mesh whose blocks all have the elements of one kind of block: those of the
+    finer block have `--fine` before their names, those of the others have `-`."""
     words = mesh.split()
-    for coarse, fine in MESHES:
-        words[words.index(coarse) + 1] = words[words.index(fine) + 1]
-    return " ".join(words)
-
-
-def _as_coarse(mesh: str) -> str:
-    """The options of a mesh whose finer block is as coarse as the others."""
-    words = mesh.split()
-    for coarse, fine in MESHES:
-        words[words.index(fine) + 1] = words[words.index(coarse) + 1]
+    for name in ("-refine", "-thick"):
+        words[words.index(give + name) + 1] = words[words.index(take + name) + 1]
     return " ".join(words)
 
 

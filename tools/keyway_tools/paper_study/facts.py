@@ -91,7 +91,9 @@ def facts_of(outcome: Outcome) -> Facts:
     facts.created = damage.get("created") or 0.0
     facts.damaged = _damaged(results)
     facts.largest_fall = _largest_fall(results)
-    facts.moved, facts.in_plane_until = _moved(results), _in_plane_until(results)
+    node = _printed_node(results)
+    if node is not None:
+        facts.moved, facts.in_plane_until = _moved(node), _in_plane_until(node)
     reduced = summary["accuracy"].get("reduced") or {}
     errors = [one["estimated_error"] for one in reduced.values()]
     facts.reduced_error = max(errors) if errors else None
@@ -107,12 +109,9 @@ def _largest_fall(results: SiResults) -> float:
     return float(max(0.0, -np.diff(spent).min()) / spent[-1])
 
 
-def _moved(results: SiResults) -> float | None:
-    """How far the last step moves the first printed node: the mean of its last tenth, beside the
-    end of the step before [m]; None where no node is printed."""
-    table = _printed_node(results)
-    if table is None:
-        return None
+def _moved(table: Table) -> float:
+    """How far the last step moves a node: the mean of its last tenth, beside the end of the step
+    before [m]."""
     step, u = table["step"], _displacement(table)
     before = u[step < step[-1]][-1:].sum(axis=0)
     motion = u[step == step[-1]]
@@ -120,10 +119,8 @@ def _moved(results: SiResults) -> float | None:
     return float(np.linalg.norm(end - before))
 
 
-def _in_plane_until(results: SiResults) -> float | None:
-    table = _printed_node(results)
-    if table is None:
-        return None
+def _in_plane_until(table: Table) -> float:
+    """Until when a node moves across the valley by less than IN_PLANE of all its motion [s]."""
     u = _displacement(table)
     leaves = np.abs(u[:, 0]) > IN_PLANE * np.abs(u).max()
     return float(table["time"][np.argmax(leaves) if leaves.any() else -1])
@@ -134,7 +131,7 @@ def _displacement(table: Table) -> np.ndarray:
 
 
 def _printed_node(results: SiResults) -> Table | None:
-    """The history of the first printed node."""
+    """The history of the first printed node; None where no node is printed."""
     for name in results.tables():
         if name.startswith("node_"):
             table = results.table(name)
