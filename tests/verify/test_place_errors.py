@@ -1,11 +1,15 @@
 """The estimated error of the mesh in the largest and the smallest principal stress, against closed
 forms, and places that are singular."""
 
+import subprocess
+
 import numpy as np
 import pytest
 from brick_decks import brick_deck, elastic
 from joint_decks import Block, static, weight
 from keyway_tools.box_mesh import box_mesh, stretched
+from keyway_tools.results import Results
+from stopped_runs import stop_after
 from test_mesh_error import BORE, MODULUS, OUTSIDE, POISSON, cantilever, cylinder
 
 ELEMENTS = ("C3D8", "C3D8B", "C3D8I", "C3D8R")
@@ -122,3 +126,22 @@ def test_a_joint_on_a_rigid_base_is_an_edge(keyway):
     block = Block((1.0, 1.0, 2.0), (2, 2, 4), 1e9, 0.2)
     run = keyway(with_envelope(block.deck(static(weight()))))
     assert estimates(run)["S3"]["singular"] == "at the edge of a support"
+
+
+def test_a_singular_place_keeps_its_name(keyway, program_path, tmp_path):
+    """The first of two steps has the extremes; a run that goes on after it says the same."""
+    deck = with_envelope(cantilever(4, "C3D8"))
+    loads = deck[deck.index("*STEP") :]
+    less = "*STEP\n*STATIC\n.005, 1., .005, .005\n*CLOAD, OP=NEW\n*ENVELOPE\nS1, S3\n*END STEP\n"
+    deck = deck.replace(loads, loads + less)
+    whole = keyway(deck)
+    assert all(estimates(whole)[name]["singular"] for name in ("S1", "S3"))
+    folder, file = tmp_path / "parts", tmp_path / "job.inp"
+    file.write_text(deck)
+    assert stop_after(program_path, folder, file, 20)
+    subprocess.run([program_path, "-q", "-o", folder, "--continue", file], check=True)
+    parts = Results(folder, "job").summary["accuracy"]["estimates"]
+    for name in ("S1", "S3"):
+        assert parts[name]["singular"] == estimates(whole)[name]["singular"]
+        # Residuals and the order of sums in threads leave 1e-12.
+        assert parts[name]["value"] == pytest.approx(estimates(whole)[name]["value"], rel=1e-9)

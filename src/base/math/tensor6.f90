@@ -6,7 +6,7 @@ module tensor6
   implicit none
   private
   public :: trace, second_invariant, third_invariant, von_mises, principal_values, principal_axes
-  public :: as_matrix
+  public :: as_matrix, sum_tensors
 
   real(rk), parameter :: third_of_turn = 2.0_rk*acos(-1.0_rk)/3.0_rk
   real(rk), parameter :: sin_of_third = sqrt(0.75_rk) !< of a turn
@@ -48,6 +48,23 @@ contains
     matrix(:, 2) = t([4, 2, 6])
     matrix(:, 3) = t([5, 6, 3])
   end function as_matrix
+
+  !> Sums of tensors, each with its own factors: tensors times factors.
+  pure subroutine sum_tensors(num_tensors, tensors, factors, num_sums, sums)
+    integer, intent(in) :: num_tensors, num_sums
+    real(rk), intent(in) :: tensors(6, num_tensors)
+    real(rk), intent(in) :: factors(num_tensors, num_sums)
+    real(rk), intent(out) :: sums(6, num_sums)
+    real(rk) :: own(6)
+    integer :: i, k
+    do k = 1, num_sums
+      own = 0.0_rk
+      do i = 1, num_tensors
+        own = own + factors(i, k)*tensors(:, i)
+      end do
+      sums(:, k) = own
+    end do
+  end subroutine sum_tensors
 
   !> Principal values, the largest first; accurate to roundoff also where values coincide.
   !>

@@ -10,6 +10,7 @@ module dual_weighting
   use fitted_stress, only: fitted_defect, make_patch_fit, patch_fit
   use stress_error, only: smoothing_plan, stress_defect
   use stress_recovery, only: recovery_plan, max_points, few_nodes
+  use tensor6, only: sum_tensors
   implicit none
   private
   public :: weigh_defects, weigh_own_defects
@@ -150,7 +151,7 @@ contains
           do k = 1, size(own)
             moved = gather_vectors(u(:, :, k), nodes)
             call strains_of_slopes(slope, moved, strain)
-            own(k)%stress(:, :, s) = matmul(d, strain)
+            call sum_tensors(6, d, strain, 8, own(k)%stress(:, :, s))
           end do
         end associate
       end do
@@ -185,9 +186,9 @@ contains
           call strains_of_slopes(slope, moved(:, k), compatible)
           do q = 1, max_points
             own(k)%added(:, q, s) = strain(:, min(q, size(strain, 2)), k)
-            own(k)%stress(:, q, s) = matmul(d, own(k)%added(:, q, s))
-            own(k)%added(:, q, s) = own(k)%added(:, q, s) - compatible(:, q)
           end do
+          call sum_tensors(6, d, own(k)%added(:, :, s), 8, own(k)%stress(:, :, s))
+          own(k)%added(:, :, s) = own(k)%added(:, :, s) - compatible
         end do
       end do
     end associate

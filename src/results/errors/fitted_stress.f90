@@ -7,6 +7,7 @@ module fitted_stress
   use small_matrix, only: solve_dense
   use stress_error, only: smoothing_plan
   use stress_recovery, only: recovery_plan, max_points
+  use tensor6, only: sum_tensors
   implicit none
   private
   public :: patch_fit, make_patch_fit, fitted_defect
@@ -129,13 +130,15 @@ contains
     type(smoothing_plan), intent(in) :: smoothing
     type(patch_fit), intent(in) :: fit
     real(rk), intent(in) :: stress(:, :, :) !< (6, max_points, solids) [Pa]
-    real(rk), intent(out) :: defect(:, :, :) !< (6, max_points, solids) [Pa]
+    real(rk), intent(out), contiguous :: defect(:, :, :) !< (6, max_points, solids) [Pa]
     real(rk), allocatable :: slope(:, :, :), smooth(:, :)
+    real(rk) :: at_corner(6, 8)
     integer :: s
     call solve_patches(mesh, plan, smoothing, fit, stress, slope)
     call evaluate_patches(plan, smoothing, fit, slope, smooth)
     do s = 1, plan%num_solids
-      defect(:, :, s) = matmul(smooth(:, smoothing%patch(:, s)), point_shape)
+      at_corner = smooth(:, smoothing%patch(:, s))
+      call sum_tensors(8, at_corner, point_shape, 8, defect(:, :, s))
       defect(:, :, s) = defect(:, :, s) - stress(:, :, s)
     end do
   end subroutine fitted_defect

@@ -95,71 +95,82 @@ contains
     logical, intent(in) :: by_means !< of the elements, else by all points
     integer, intent(in) :: node
     real(rk) :: stress(6) !< [Pa]
-    integer, allocatable :: solids(:), around(:)
+    real(rk) :: normal(terms, terms, size(patches)), sums(terms, 6, size(patches))
+    real(rk) :: own(terms, terms), moment(terms, 6), length
     integer :: num_solids(size(patches))
-    integer :: k, s
+    integer, allocatable :: solids(:)
+    integer :: a, i, k, s
+    normal = 0.0_rk
+    sums = 0.0_rk
+    num_solids = 0
     solids = pack([(s, s=1, size(is_wanted))], is_wanted)
-    associate (patch => stresses%smoothing%patch)
-      do k = 1, size(patches)
-        num_solids(k) = count(any(patch(:, solids) == patches(k), dim=1))
+    length = sum(stresses%smoothing%volume(:, solids))**(1.0_rk/3.0_rk)
+    do i = 1, size(solids)
+      s = solids(i)
+      call find_moments(mesh, stresses, s, by_means, mesh%x(:, node), length, own, moment)
+      do a = 1, 8
+        k = findloc(patches, stresses%smoothing%patch(a, s), dim=1)
+        if (k == 0) cycle
+        num_solids(k) = num_solids(k) + 1
+        normal(:, :, k) = normal(:, :, k) + own
+        sums(:, :, k) = sums(:, :, k) + moment
       end do
-      stress = 0.0_rk
-      do k = 1, size(patches)
-        if (num_solids(k) < maxval(num_solids)) cycle
-        around = pack(solids, any(patch(:, solids) == patches(k), dim=1))
-        stress = stress + fit_of(mesh, stresses, around, by_means, mesh%x(:, node))
-      end do
-    end associate
+    end do
+    stress = 0.0_rk
+    do k = 1, size(patches)
+      if (num_solids(k) < maxval(num_solids)) cycle
+      stress = stress + fit_of(normal(:, :, k), sums(:, :, k))
+    end do
     stress = stress/count(num_solids == maxval(num_solids))
   end function fit_at
 
-  !> A linear stress by least squares over some solids, at a place.
-  function fit_of(mesh, stresses, solids, by_means, place) result(stress)
-    type(fe_mesh), intent(in) :: mesh
-    type(recovered_fields), intent(in) :: stresses
-    integer, intent(in) :: solids(:)
-    logical, intent(in) :: by_means !< of the elements, else by all points
-    real(rk), intent(in) :: place(3) !< [m]
+  !> A linear stress by least squares, at the origin of its terms.
+  function fit_of(normal, sums) result(stress)
+    real(rk), intent(in) :: normal(terms, terms), sums(terms, 6)
     real(rk) :: stress(6) !< [Pa]
-    real(rk) :: normal(terms, terms), sums(terms, 6), found(terms, 6), length
+    real(rk) :: ridged(terms, terms), found(terms, 6)
     logical :: is_singular
-    integer :: i, k
-    normal = 0.0_rk
-    sums = 0.0_rk
-    length = sum(stresses%smoothing%volume(:, solids))**(1.0_rk/3.0_rk)
-    do i = 1, size(solids)
-      call add_solid(mesh, stresses, solids(i), by_means, place, length, normal, sums)
-    end do
+    integer :: k
+    ridged = normal
     do k = 2, terms
-      normal(k, k) = normal(k, k) + share*normal(1, 1)
+      ridged(k, k) = ridged(k, k) + share*normal(1, 1)
     end do
-    call solve_dense(normal, sums, found, is_singular)
+    call solve_dense(ridged, sums, found, is_singular)
     stress = found(1, :)
     if (is_singular) stress = sums(1, :)/normal(1, 1)
   end function fit_of
 
-  !> Adds the points of a solid, or its mean, to the normal equations.
-  subroutine add_solid(mesh, stresses, solid, by_means, place, length, normal, sums)
+  !> The normal equations of the points of a solid, or of its mean.
+  pure subroutine find_moments(mesh, stresses, solid, by_means, place, length, normal, sums)
     type(fe_mesh), intent(in) :: mesh
     type(recovered_fields), intent(in) :: stresses
     integer, intent(in) :: solid
     logical, intent(in) :: by_means
     real(rk), intent(in) :: place(3), length !< [m]
-    real(rk), intent(inout) :: normal(terms, terms), sums(terms, 6)
+    real(rk), intent(out) :: normal(terms, terms), sums(terms, 6)
     real(rk) :: x(3, max_points), stress(6, max_points), own(terms)
-    integer :: q, num_points
+    integer :: c, k, q, num_points
     num_points = stresses%plan%num_points(solid)
-    x = matmul(mesh%x(:, mesh%nodes(:, stresses%plan%element_of_solid(solid))), point_shape)
     stress(:, :num_points) = stresses%point_stress(:, :num_points, solid)
-    if (by_means .or. num_points == 1) then
-      x(:, 1) = sum(x, dim=2)/max_points
-      stress(:, 1) = sum(stress(:, :num_points), dim=2)/num_points
-      num_points = 1
-    end if
+    associate (corners => mesh%x(:, mesh%nodes(:, stresses%plan%element_of_solid(solid))))
+      if (by_means .or. num_points == 1) then
+        x(:, 1) = sum(corners, dim=2)/max_points
+        stress(:, 1) = sum(stress(:, :num_points), dim=2)/num_points
+        num_points = 1
+      else
+        x = matmul(corners, point_shape)
+      end if
+    end associate
+    normal = 0.0_rk
+    sums = 0.0_rk
     do q = 1, num_points
       own = [1.0_rk, (x(:, q) - place)/length]
-      normal = normal + spread(own, 1, terms)*spread(own, 2, terms)
-      sums = sums + spread(own, 2, 6)*spread(stress(:, q), 1, terms)
+      do k = 1, terms
+        normal(:, k) = normal(:, k) + own*own(k)
+      end do
+      do c = 1, 6
+        sums(:, c) = sums(:, c) + own*stress(c, q)
+      end do
     end do
-  end subroutine add_solid
+  end subroutine find_moments
 end module place_errors

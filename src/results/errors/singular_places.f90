@@ -10,7 +10,18 @@ module singular_places
   use small_matrix, only: cross_product, solve_dense
   implicit none
   private
-  public :: why_singular
+  public :: singular_nodes, is_singular, words_of_cause
+
+  !> What makes a place singular.
+  integer, parameter :: not_asked = 0, regular = 1, edge_of_support = 2, reentrant_edge = 3
+
+  !> What has been found so far: the same node is asked for in many increments.
+  type :: singular_nodes
+    integer :: stage = -1 !< of the mesh
+    integer, allocatable :: cause(:) !< (nodes)
+  contains
+    procedure :: cause_at
+  end type singular_nodes
 
   real(rk), parameter :: pi = acos(-1.0_rk)
   real(rk), parameter :: near = 1.0e-4_rk !< of the diagonal of an element: the same place
@@ -23,27 +34,53 @@ module singular_places
 
 contains
 
-  !> Why a place is singular, in words; '' where it is regular.
-  function why_singular(model, x) result(why)
+  !> Whether a cause makes a place singular.
+  pure elemental logical function is_singular(cause)
+    integer, intent(in) :: cause
+    is_singular = cause > regular
+  end function is_singular
+
+  !> A cause in words; '' where the place is regular.
+  pure function words_of_cause(cause) result(words)
+    integer, intent(in) :: cause
+    character(:), allocatable :: words
+    words = ''
+    if (cause == edge_of_support) words = 'at the edge of a support'
+    if (cause == reentrant_edge) words = 'a re-entrant edge'
+  end function words_of_cause
+
+  !> What makes a node singular in the mesh of this stage.
+  integer function cause_at(self, model, node) result(cause)
+    class(singular_nodes), intent(inout) :: self
+    type(problem), intent(in) :: model
+    integer, intent(in) :: node
+    if (self%stage /= model%mesh%stage) then
+      if (.not. allocated(self%cause)) allocate (self%cause(model%mesh%num_nodes))
+      self%cause = not_asked
+      self%stage = model%mesh%stage
+    end if
+    if (self%cause(node) == not_asked) self%cause(node) = find_cause(model, model%mesh%x(:, node))
+    cause = self%cause(node)
+  end function cause_at
+
+  !> What makes a place singular.
+  integer function find_cause(model, x) result(cause)
     type(problem), intent(in) :: model
     real(rk), intent(in) :: x(3) !< [m]
-    character(:), allocatable :: why
     real(rk) :: angle, whole
     integer :: held, n
-    why = ''
+    cause = edge_of_support
     held = count(directions_held(model, x))
-    if (held == 3) then
-      why = 'at the edge of a support'
-      return
-    end if
+    if (held == 3) return
+    cause = regular
     angle = angle_of_solids(model%mesh, x)
     do n = held, 0, -1
       whole = angle*2**n
       if (whole > (2.0_rk - all_around)*4.0_rk*pi) cycle ! the support is no plane of symmetry here
-      if (whole > margin*2.0_rk*pi .and. whole < all_around*4.0_rk*pi) why = 'a re-entrant edge'
+      if (whole > margin*2.0_rk*pi .and. whole < all_around*4.0_rk*pi) cause = reentrant_edge
       return
     end do
-  end function why_singular
+  end function find_cause
 
   !> The directions that supports hold at the nodes of a place, in any step.
   function directions_held(model, x) result(is_held)

@@ -17,6 +17,7 @@ module envelopes
     real(rk), allocatable :: mean(:) !< (elements) largest element means, of fields with means
     type(extremes_by_face) :: largest !< of all steps with this envelope
     real(rk) :: error = -1.0_rk !< of the mesh in the extreme anywhere; < 0: place_errors
+    integer :: cause = 0 !< that makes the place of this extreme singular: singular_places
   end type envelope
 
 contains

@@ -12,6 +12,7 @@ module stress_error
   use small_matrix, only: solve_dense
   use analysis_state, only: state
   use stress_recovery, only: recovery_plan, motion_of_element, max_points, few_nodes
+  use tensor6, only: sum_tensors
   implicit none
   private
   public :: smoothing_plan, make_smoothing_plan, stress_defect, energy_of_stresses
@@ -116,16 +117,18 @@ contains
   subroutine stress_defect(plan, smoothing, stress, is_bounded, defect)
     type(recovery_plan), intent(in) :: plan
     type(smoothing_plan), intent(in) :: smoothing
-    real(rk), intent(in) :: stress(:, :, :) !< (6, max_points, solids) at the points [Pa]
+    real(rk), intent(in), contiguous :: stress(:, :, :) !< (6, max_points, solids) [Pa]
     logical, intent(in) :: is_bounded(:) !< (solids) corners take the value of the nearest point
-    real(rk), intent(out) :: defect(:, :, :) !< (6, max_points, solids) [Pa]
+    real(rk), intent(out), contiguous :: defect(:, :, :) !< (6, max_points, solids) [Pa]
     real(rk), allocatable :: smooth(:, :)
+    real(rk) :: at_corner(6, 8)
     integer :: s
     call average_patches(plan, smoothing, stress, is_bounded, smooth)
     !$omp parallel do default(none) shared(plan, smoothing, stress, smooth, defect) &
-    !$omp schedule(static) if (plan%num_solids > few_nodes)
+    !$omp private(at_corner) schedule(static) if (plan%num_solids > few_nodes)
     do s = 1, plan%num_solids
-      defect(:, :, s) = matmul(smooth(:, smoothing%patch(:, s)), point_shape)
+      at_corner = smooth(:, smoothing%patch(:, s))
+      call sum_tensors(8, at_corner, point_shape, 8, defect(:, :, s))
       defect(:, :, s) = defect(:, :, s) - stress(:, :, s)
     end do
     !$omp end parallel do
@@ -135,7 +138,7 @@ contains
   subroutine average_patches(plan, smoothing, stress, is_bounded, smooth)
     type(recovery_plan), intent(in) :: plan
     type(smoothing_plan), intent(in) :: smoothing
-    real(rk), intent(in) :: stress(:, :, :)
+    real(rk), intent(in), contiguous :: stress(:, :, :)
     logical, intent(in) :: is_bounded(:)
     real(rk), allocatable, intent(out) :: smooth(:, :) !< (6, patches) [Pa]
     real(rk) :: to_corner(max_points, 8), at_corner(6, 8)
@@ -148,7 +151,7 @@ contains
       if (is_bounded(s)) then
         at_corner = stress(:, corner_of_point, s)
       else
-        at_corner = matmul(stress(:, :, s), to_corner)
+        call sum_tensors(8, stress(:, :, s), to_corner, 8, at_corner)
       end if
       do a = 1, 8
         associate (p => smoothing%patch(a, s))

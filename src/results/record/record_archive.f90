@@ -280,6 +280,7 @@ contains
     call file%put('mean', item%mean)
     call save_extremes('largest', item%largest, file)
     call file%put('error', item%error)
+    call file%put('cause', item%cause)
   end subroutine save_envelope
 
   !> Reads one envelope.
@@ -297,6 +298,7 @@ contains
     call file%get('mean', item%mean)
     call load_extremes('largest', item%largest, file)
     call file%get('error', item%error)
+    call file%get('cause', item%cause)
   end subroutine load_envelope
 
   !> Writes the extremes anywhere, upstream and downstream.

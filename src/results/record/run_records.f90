@@ -14,6 +14,7 @@ module run_records
   use goal_errors, only: goal_error
   use path_errors, only: path_error
   use place_errors, only: error_at_node, not_known
+  use singular_places, only: is_singular, singular_nodes
   use space_errors, only: space_error, note_space_error
   use stress_fields, only: recovered_fields
   use field_table, only: list_fields, find_field
@@ -40,6 +41,7 @@ module run_records
   type :: run_record
     type(result_field), allocatable :: fields(:) !< the table of fields
     type(recovered_fields) :: stresses
+    type(singular_nodes) :: singular !< found again where a run goes on
     type(dam_skin) :: skin
     type(joint_record), allocatable :: joints(:)
     type(damage_record) :: damage
@@ -64,7 +66,7 @@ module run_records
     procedure :: has_envelope_of_nodes
     procedure :: largest_opening
     procedure, private :: check_law, check_time_stepping, check_crack_energy, has_warned
-    procedure, private :: update_envelope, note_nodes, note_points, note_joints
+    procedure, private :: update_envelope, note_nodes, note_points, note_joints, note_error
   end type run_record
 
 contains
@@ -272,14 +274,36 @@ contains
                      now%total_time, item%wants_smallest)
     if (.not. (item%name == 'S1' .or. item%name == 'S3')) return
     if (before%is_found .and. abs(item%largest%at(1)%value - before%value) <= 0.0_rk) return
+    n = maxloc(merge(-values(solid_nodes), values(solid_nodes), item%wants_smallest), dim=1)
+    call self%note_error(model, now, costs, solid_nodes(n), item)
+  end subroutine note_nodes
+
+  !> The error of an extreme that has grown. At a singular place there is none to find, but whether
+  !> inelastic solids have cracked there.
+  subroutine note_error(self, model, now, costs, node, item)
+    class(run_record), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    type(ledger), intent(in) :: costs
+    integer, intent(in) :: node !< of the extreme
+    type(envelope), intent(inout) :: item
     item%error = not_known
+    item%cause = 0
     if (.not. model%steps(now%step)%controls%estimates_errors) return
     call costs%start('estimate', 'mesh', 'output')
-    n = maxloc(merge(-values(solid_nodes), values(solid_nodes), item%wants_smallest), dim=1)
-    item%error = error_at_node(model, now, self%stresses, solid_nodes(n), &
-                               merge(3, 1, item%wants_smallest))
+    item%cause = self%singular%cause_at(model, node)
+    if (.not. is_singular(item%cause) .or. has_inelastic(model)) then
+      item%error = error_at_node(model, now, self%stresses, node, merge(3, 1, item%wants_smallest))
+    end if
     call costs%stop()
-  end subroutine note_nodes
+  end subroutine note_error
+
+  !> Whether solids can leave elasticity.
+  pure logical function has_inelastic(model)
+    type(problem), intent(in) :: model
+    has_inelastic = .false.
+    if (allocated(model%inelastic)) has_inelastic = size(model%inelastic) > 0
+  end function has_inelastic
 
   !> A field of joints: the extremes are those of the points; closed points count as 0.
   subroutine note_joints(self, model, now, on_nodes, item)

@@ -4,7 +4,7 @@ module error_json
   use dual_solutions, only: of_displacement, of_opening
   use goal_errors, only: goal_error
   use place_errors, only: left_elasticity, not_known
-  use singular_places, only: why_singular
+  use singular_places, only: is_singular, words_of_cause
   use json_writer, only: json_text
   use problem_definition, only: problem
   use run_records, only: run_record
@@ -22,7 +22,7 @@ contains
     type(run_record), intent(in) :: record
     call json%open_object('estimates')
     call put_stress(json, record)
-    call put_extremes(json, model, record)
+    call put_extremes(json, record)
     call put_law(json, record)
     call put_displacement(json, record)
     call put_opening(json, model, record)
@@ -134,22 +134,20 @@ contains
   end subroutine put_law
 
   !> The largest and the smallest principal stress of *ENVELOPE; a singular place has no error.
-  subroutine put_extremes(json, model, record)
+  subroutine put_extremes(json, record)
     type(json_text), intent(inout) :: json
-    type(problem), intent(in) :: model
     type(run_record), intent(in) :: record
-    character(:), allocatable :: why
     integer :: i
     do i = 1, size(record%envelopes)
       associate (item => record%envelopes(i))
-        if (item%error <= not_known .and. item%error > left_elasticity) cycle
+        if (item%error <= not_known .and. item%error > left_elasticity &
+            .and. .not. is_singular(item%cause)) cycle
         call json%open_object(trim(item%name))
         call json%put_real(item%largest%at(1)%value, 'value')
-        why = why_singular(model, item%largest%at(1)%x)
         if (item%error <= left_elasticity) then
           call json%put_text('the solid has left elasticity', 'not_known')
-        else if (why /= '') then
-          call json%put_text(why, 'singular')
+        else if (is_singular(item%cause)) then
+          call json%put_text(words_of_cause(item%cause), 'singular')
         else
           call json%put_real(item%error, 'error')
           call json%put_real(item%error, 'mesh')

@@ -8,7 +8,7 @@ module error_words
   use problem_definition, only: problem
   use run_records, only: run_record
   use run_summaries, only: run_summary
-  use singular_places, only: why_singular
+  use singular_places, only: is_singular, words_of_cause
   use write_text, only: as_short_text, as_text
   implicit none
   private
@@ -74,18 +74,18 @@ contains
   function error_of_envelope(model, item) result(text)
     type(problem), intent(in) :: model
     type(envelope), intent(in) :: item
-    character(:), allocatable :: text, why
+    character(:), allocatable :: text
     text = ''
     if (item%error <= left_elasticity) then
       text = ', error not known: the solid has left elasticity there'
       return
     end if
-    if (item%error < 0.0_rk) return
-    why = why_singular(model, item%largest%at(1)%x)
-    if (why /= '') then
-      text = ', a singular place ('//why//'): this stress grows with every refinement'
+    if (is_singular(item%cause)) then
+      text = ', a singular place ('//words_of_cause(item%cause)// &
+             '): this stress grows with every refinement'
       return
     end if
+    if (item%error < 0.0_rk) return
     text = ', +-'//as_short_text(item%error)//' (mesh'
     if (any(model%steps%procedure%has_inertia)) text = text//'; time not estimated'
     text = text//')'

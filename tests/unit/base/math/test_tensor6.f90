@@ -3,7 +3,7 @@ program test_tensor6
   use kinds, only: rk
   use small_matrix, only: cross_product, determinant3
   use tensor6, only: as_matrix, principal_axes, principal_values, second_invariant, &
-                     third_invariant, trace, von_mises
+                     sum_tensors, third_invariant, trace, von_mises
   use testing, only: check, check_close, repeat_chance, test_log
   implicit none
   real(rk), parameter :: roundoff = 20.0_rk*epsilon(1.0_rk) !< a few operations on the largest value
@@ -12,6 +12,7 @@ program test_tensor6
   call repeat_chance(1)
   call simple_states()
   call invariants()
+  call sums_of_tensors()
   call rotated_states()
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
@@ -74,6 +75,16 @@ contains
     call check_close(log, von_mises([5.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 0.0_rk]), 5.0_rk, &
                      1.0e-14_rk, 'von Mises')
   end subroutine invariants
+
+  !> Sums of tensors are a product of matrices.
+  subroutine sums_of_tensors()
+    real(rk) :: tensors(6, 5), factors(5, 3), sums(6, 3)
+    call random_number(tensors)
+    call random_number(factors)
+    call sum_tensors(5, tensors, factors, 3, sums)
+    call check_close(log, maxval(abs(sums - matmul(tensors, factors))), 0.0_rk, roundoff, &
+                     'sums of tensors')
+  end subroutine sums_of_tensors
 
   !> Random axes, values that are apart, near or equal by turns: error a few units of roundoff.
   subroutine rotated_states()

@@ -98,6 +98,7 @@ contains
       record%envelopes(i)%time = record%envelopes(i)%time + 0.2_rk*i
       call fill_extremes(70.0_rk + i, record%envelopes(i)%largest)
       record%envelopes(i)%error = 79.0_rk + i
+      record%envelopes(i)%cause = 1 + i
     end do
   end subroutine make_record
 
@@ -192,6 +193,7 @@ contains
         call compare(log, 'mean', x%mean, y%mean)
         call compare_extremes(log, 'largest', x%largest, y%largest)
         call compare(log, 'error', x%error, y%error)
+        call compare(log, 'cause', x%cause, y%cause)
       end associate
     end do
     call compare(log, 'number of warnings', size(a%warnings), size(b%warnings))
