@@ -28,6 +28,7 @@ ROOMS = (
     "equations/distributed",
     "equations/elimination",
     "equations",
+    "equations/products",
     "equations/spectrum",
     "equations/low_rank",
     "equations/supernodes",

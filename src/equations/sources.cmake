@@ -14,6 +14,8 @@ set(sources
   matrix_pattern.f90
   metis_bridge.c
   nested_dissection.f90
+  products/column_products.c
+  products/column_products.f90
   solver_catalogue.f90
   solver_cholmod.f90
   solver_petsc.f90

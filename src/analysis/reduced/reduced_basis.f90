@@ -6,6 +6,7 @@
 !> Loads f_k and joints are the ports P: only their rows of Phi and R are kept.
 module reduced_basis
   use, intrinsic :: iso_fortran_env, only: single => real32
+  use column_products, only: multiply_columns
   use dense_factor, only: factorise_dense, lu_factor, solve_factored
   use dense_products, only: times, transposed_times
   use equilibrium, only: equilibrium_solver
@@ -149,7 +150,8 @@ contains
     real(rk), dimension(size(compliance, 1), size(shapes, 2)) :: path, moved, coupling
     real(rk), allocatable :: work(:, :), frequency(:), rotation(:, :)
     integer :: k
-    call multiply_shapes(system%matrix, stiffness, shapes, work)
+    allocate (work, mold=shapes)
+    call multiply_columns(system%matrix, stiffness, shapes, work)
     own = transposed_times(shapes, work)
     call find_modes(0.5_rk*(own + transpose(own)), frequency, rotation, error)
     if (allocated(error)) return
@@ -158,7 +160,7 @@ contains
       own(k, k) = frequency(k)
     end do
     shapes = times(shapes, rotation)
-    call multiply_shapes(system%mass_pattern, system%mass_entries, shapes, work)
+    call multiply_columns(system%mass_pattern, system%mass_entries, shapes, work)
     call solve_blocks(solver, work, error)
     if (allocated(error)) return
     do k = 1, size(shapes, 2)
@@ -205,42 +207,19 @@ contains
     coupling = spread(scale, 2, size(coupling, 2))*coupling
   end subroutine condense_ports
 
-  !> A times each shape, over the free unknowns.
-  subroutine multiply_shapes(matrix, values, shapes, products)
-    type(pattern), intent(in) :: matrix
-    real(rk), intent(in) :: values(:) !< of A
-    real(rk), intent(in) :: shapes(:, :)
-    real(rk), allocatable, intent(out) :: products(:, :)
-    real(rk), dimension(matrix%num_total) :: x, y
-    integer :: k
-    allocate (products, mold=shapes)
-    x = 0.0_rk
-    do k = 1, size(shapes, 2)
-      x(:size(shapes, 1)) = shapes(:, k)
-      call multiply(matrix, values, x, y)
-      products(:, k) = y(:size(shapes, 1))
-    end do
-  end subroutine multiply_shapes
-
   !> Ports and damping of the modes.
   subroutine spread_modes(system, basis)
     type(dam_system), intent(in) :: system
     type(reduced_model), intent(inout) :: basis
-    real(rk), dimension(system%matrix%num_total) :: x, force
     real(rk), allocatable :: viscous(:, :)
     integer :: k
-    allocate (viscous, mold=basis%mode)
     allocate (basis%path(num_rows(system%operator%num_points) + size(basis%force, 2), &
                          basis%num_modes))
-    x = 0.0_rk
-    associate (free => system%matrix%num_free)
-      do k = 1, basis%num_modes
-        x(:free) = basis%mode(:, k)
-        basis%path(:, k) = rounded(rows_of(system, basis%force, x(:free)))
-        call system%find_damping_force(x, force)
-        viscous(:, k) = force(:free)
-      end do
-    end associate
+    do k = 1, basis%num_modes
+      basis%path(:, k) = rounded(rows_of(system, basis%force, basis%mode(:, k)))
+    end do
+    allocate (viscous, mold=basis%mode)
+    call system%find_damping_forces(basis%mode, viscous)
     basis%damping = transposed_times(basis%mode, viscous)
     basis%damping = 0.5_rk*(basis%damping + transpose(basis%damping))
   end subroutine spread_modes

@@ -5,9 +5,11 @@
 !> For each state of the joints they span the block Krylov space of K^-1 M that starts with the
 !> static responses to the loads (Wilson, Yuan & Dickens 1982).
 module reduced_shapes
+  use column_products, only: multiply_columns
+  use dense_products, only: subtract_times, transposed_times
   use equilibrium, only: equilibrium_solver
   use errors, only: error_type
-  use global_vectors, only: multiply
+  use global_vectors, only: dot
   use joint_forces, only: reference_stiffness
   use joint_iteration, only: closed_tangent
   use kinds, only: rk
@@ -62,65 +64,70 @@ contains
     real(rk), intent(in) :: loads(:, :) !< (num_free, loads) [N]
     integer, intent(in) :: num_new
     class(equilibrium_solver), intent(inout) :: solver
-    real(rk), intent(inout) :: shapes(:, :)
+    real(rk), intent(inout), contiguous :: shapes(:, :)
     integer, intent(inout) :: num_shapes
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: block(:, :)
-    real(rk), dimension(system%matrix%num_total) :: x, product
-    integer :: k, last, first
-    logical :: is_new
+    real(rk), allocatable :: block(:, :), product(:, :)
+    integer :: last, num_taken
     last = num_shapes + num_new
     block = loads
-    x = 0.0_rk
     do while (num_shapes < last .and. size(block, 2) > 0)
       call solver%factor%solve(block, error)
       if (allocated(error)) return
-      first = num_shapes + 1
-      do k = 1, size(block, 2)
-        if (num_shapes == last) exit
-        shapes(:, num_shapes + 1) = block(:, k)
-        call orthonormalise(system, shapes(:, :num_shapes), shapes(:, num_shapes + 1), is_new)
-        if (is_new) num_shapes = num_shapes + 1
-      end do
-      block = shapes(:, first:num_shapes)
-      do k = 1, size(block, 2)
-        x(:size(block, 1)) = block(:, k)
-        call multiply(system%mass_pattern, system%mass_entries, x, product)
-        block(:, k) = product(:size(block, 1))
-      end do
+      call orthonormalise(system, shapes(:, :num_shapes), block, product)
+      num_taken = min(size(block, 2), last - num_shapes)
+      shapes(:, num_shapes + 1:num_shapes + num_taken) = block(:, :num_taken)
+      num_shapes = num_shapes + num_taken
+      block = product(:, :num_taken)
     end do
   end subroutine add_krylov
 
-  !> Makes a shape orthogonal to the others with M, twice against round-off, and its size one.
-  subroutine orthonormalise(system, others, shape, is_new)
+  !> Makes the shapes of a block orthogonal to the others and to each other with M, twice against
+  !> round-off, and their size one. Shapes without a part beyond the others are taken out.
+  subroutine orthonormalise(system, others, block, product)
     type(dam_system), intent(in) :: system
-    real(rk), intent(in) :: others(:, :)
-    real(rk), intent(inout) :: shape(:)
-    logical, intent(out) :: is_new !< it has a part beyond the others
-    real(rk), dimension(system%matrix%num_total) :: x, product
-    real(rk) :: length, rest
-    integer :: pass
-    x = 0.0_rk
-    call find_length(length)
-    is_new = length > 0.0_rk
-    if (.not. is_new) return
-    shape = shape/length
-    product = product/length
-    do pass = 1, 2
-      shape = shape - matmul(others, matmul(product(:size(shape)), others))
-      call find_length(rest)
-      if (pass == 1) is_new = rest > least_part
-      if (.not. is_new) return
-      shape = shape/rest
-      product = product/rest
+    real(rk), intent(in), contiguous :: others(:, :) !< (num_free, shapes)
+    real(rk), allocatable, intent(inout) :: block(:, :) !< (num_free, shapes)
+    real(rk), allocatable, intent(out) :: product(:, :) !< M times the block
+    real(rk) :: length(size(block, 2))
+    integer :: pass, k
+    allocate (product, mold=block)
+    call multiply_columns(system%mass_pattern, system%mass_entries, block, product)
+    do k = 1, size(length)
+      length(k) = sqrt(max(0.0_rk, dot(block(:, k), product(:, k))))
+      if (.not. length(k) > 0.0_rk) cycle
+      block(:, k) = block(:, k)/length(k)
+      product(:, k) = product(:, k)/length(k)
     end do
-  contains
-    !> The size of the shape with M, and M times the shape.
-    subroutine find_length(length)
-      real(rk), intent(out) :: length
-      x(:size(shape)) = shape
-      call multiply(system%mass_pattern, system%mass_entries, x, product)
-      length = sqrt(max(0.0_rk, dot_product(shape, product(:size(shape)))))
-    end subroutine find_length
+    do pass = 1, 2
+      call subtract_times(others, transposed_times(others, product), block)
+      call multiply_columns(system%mass_pattern, system%mass_entries, block, product)
+      call separate(merge(least_part, 0.0_rk, pass == 1), block, product)
+    end do
   end subroutine orthonormalise
+
+  !> Makes the shapes of a block orthogonal to each other and their size one. Those that are not
+  !> longer than `least` then are taken out.
+  subroutine separate(least, block, product)
+    real(rk), intent(in) :: least
+    real(rk), allocatable, intent(inout) :: block(:, :), product(:, :) !< and M times the block
+    real(rk) :: length
+    integer :: k, j, n
+    n = 0
+    do k = 1, size(block, 2)
+      do j = 1, n
+        associate (part => dot(product(:, j), block(:, k)))
+          block(:, k) = block(:, k) - part*block(:, j)
+          product(:, k) = product(:, k) - part*product(:, j)
+        end associate
+      end do
+      length = sqrt(max(0.0_rk, dot(block(:, k), product(:, k))))
+      if (.not. length > least) cycle
+      n = n + 1
+      block(:, n) = block(:, k)/length
+      product(:, n) = product(:, k)/length
+    end do
+    block = block(:, :n)
+    product = product(:, :n)
+  end subroutine separate
 end module reduced_shapes

@@ -8,7 +8,9 @@ module step_system
   use row_tables, only: row_table
   use step_plan, only: step
   use dof_numbering, only: numbering
+  use column_products, only: multiply_columns
   use constraint_elimination, only: number_step
+  use dense_products, only: times, transposed_times
   use global_vectors, only: diagonal, dot, multiply
   use matrix_pattern, only: pattern, drop_zeros
   use matrix_rows, only: lay_out_rows
@@ -51,7 +53,7 @@ module step_system
     type(load_group), allocatable :: groups(:)
     type(support), allocatable :: supports(:)
   contains
-    procedure :: find_damping_force, add_damping, find_elastic, stored_energy
+    procedure :: find_damping_force, find_damping_forces, add_damping, find_elastic, stored_energy
     procedure :: add_warming, set_thermal
   end type dam_system
 
@@ -74,6 +76,21 @@ contains
       end associate
     end do
   end subroutine find_damping_force
+
+  !> C v for many velocities, over the free unknowns; prescribed ones are at rest.
+  subroutine find_damping_forces(self, v, force)
+    class(dam_system), intent(in) :: self
+    real(rk), intent(in), contiguous :: v(:, :) !< (num_free, velocities)
+    real(rk), intent(out) :: force(:, :) !< (num_free, velocities)
+    if (size(self%damping) > 0) then
+      call multiply_columns(self%matrix, self%damping, v, force)
+    else
+      force = 0.0_rk
+    end if
+    if (size(self%modal, 2) > 0) then
+      force = force + times(self%modal, transposed_times(self%modal, v))
+    end if
+  end subroutine find_damping_forces
 
   !> The force of the undamaged elements: K q, less that of their origins and thermal strains.
   subroutine find_elastic(self, q, force)

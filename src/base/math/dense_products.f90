@@ -5,7 +5,7 @@ module dense_products
   use kinds, only: rk
   implicit none
   private
-  public :: times, transposed_times, times_vector, transposed_times_vector, &
+  public :: times, transposed_times, subtract_times, times_vector, transposed_times_vector, &
             single_times_vector, transposed_single_times_vector, &
             add_times_vector, add_single_times_vector
 
@@ -74,6 +74,15 @@ contains
     call dgemm('T', 'N', size(a, 2), size(b, 2), size(b, 1), 1.0_rk, a, size(a, 1), b, &
                size(b, 1), 0.0_rk, product, size(a, 2))
   end function transposed_times
+
+  !> C = C - A B.
+  subroutine subtract_times(a, b, c)
+    real(rk), intent(in), contiguous :: a(:, :), b(:, :)
+    real(rk), intent(inout), contiguous :: c(:, :)
+    if (size(c) == 0 .or. size(b, 1) == 0) return
+    call dgemm('N', 'N', size(a, 1), size(b, 2), size(b, 1), -1.0_rk, a, size(a, 1), b, &
+               size(b, 1), 1.0_rk, c, size(a, 1))
+  end subroutine subtract_times
 
   !> A x.
   function times_vector(a, x) result(product)
