@@ -11,7 +11,9 @@ set(sources
   concrete/damage_point.f90
   concrete/damage_return.f90
   concrete/damage_split.f90
+  concrete/damage_states.f90
   concrete/damage_tangent.f90
+  concrete/damage_work.f90
   concrete/damage_yield.f90
   concrete_blocks/damage_flows.f90
   concrete_blocks/damage_stress.f90

@@ -13,7 +13,8 @@ module concrete_paths
   use damage_curves, only: curve_value, value_of_curve
   use damage_model, only: concrete_model, place_curves, placed_curves
   use damage_split, only: tension_at
-  use damage_point, only: point_answer, point_history, point_motion, update_point
+  use damage_point, only: update_point
+  use damage_states, only: point_answer, point_history, point_motion
   use damage_yield, only: yield_at, yield_value
   use kinds, only: rk
   use tensor6, only: principal_values, second_invariant, trace

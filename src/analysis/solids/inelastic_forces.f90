@@ -84,14 +84,17 @@ contains
     type(point_state), intent(in) :: old(:) !< (blocks) converged
     type(point_state), intent(inout) :: new(:) !< (blocks) updated
     type(block_answer), intent(inout) :: answers(:) !< (blocks)
+    type(time_increment) :: moment
     integer :: i
-    !$omp parallel do schedule(dynamic) default(none) shared(model, time, old, new, answers) &
+    moment = time
+    moment%is_updated = .true.
+    !$omp parallel do schedule(dynamic) default(none) shared(model, moment, old, new, answers) &
     !$omp if (has_many_elements(answers))
     do i = 1, size(answers)
       associate (law => model%materials(model%inelastic(i)%material)%law)
         if (.not. law%defers_energy .or. all(new(i)%is_elastic)) cycle
         if (.not. answers(i)%is_here) cycle
-        call law%update(model%inelastic(i)%points, time, old(i), new(i), answers(i)%tangent, &
+        call law%update(model%inelastic(i)%points, moment, old(i), new(i), answers(i)%tangent, &
                         answers(i)%report)
       end associate
     end do

@@ -10,7 +10,7 @@
 !> | 11 | width of the crack band [m], 0 before the first crack |
 !> | 12-17 | with viscosity only: plastic strain without viscosity |
 module damage_history
-  use damage_point, only: point_history
+  use damage_states, only: point_history
   use kinds, only: rk
   implicit none
   private

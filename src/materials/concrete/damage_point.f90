@@ -1,63 +1,18 @@
 !> One increment at a point of plastic-damage concrete: kernel of the material of the deck and of
 !> the user subroutine for other programs.
 module damage_point
-  use damage_energy, only: created_work, crushing_share, dissipated_by_split, dissipated_work, &
-                           flow_path, fraction_of_crushing, onset_of_flow, stored_work
-  use damage_increment, only: elastic_stress, increment_result, integrate_increment, plastic_state
+  use damage_increment, only: elastic_stress, increment_result, integrate_increment
   use damage_model, only: concrete_model, placed_curves, stiffness_of
-  use damage_split, only: energy_split, left_after, nominal_stress, split_stress, &
-                          stiffness_left, stiffness_of_split
+  use damage_split, only: left_after, nominal_stress, split_stress, stiffness_of_split
+  use damage_states, only: end_state, point_answer, point_history, point_motion
   use damage_tangent, only: effective_tangent, has_regular_flow, share_row
-  use damage_yield, only: damage_gradient, tension_share, total_damage
+  use damage_work, only: find_energies
+  use damage_yield, only: tension_share, total_damage
   use kinds, only: rk
   use tensor6, only: principal_axes
   implicit none
   private
-  public :: point_history, point_motion, point_answer, update_point
-
-  !> History of a point.
-  type :: point_history
-    type(plastic_state) :: backbone !< without viscosity: plastic strain, kappa_t, kappa_c, width
-    real(rk) :: plastic_strain(6) = 0.0_rk !< with viscosity
-    real(rk) :: damage(2) = 0.0_rk !< d_t, d_c of the stress
-  end type point_history
-
-  !> Strains, element and time of an increment.
-  type :: point_motion
-    real(rk) :: before(6) = 0.0_rk, strain(6) = 0.0_rk !< strains at both ends, engineering shear
-    real(rk) :: edges(3, 3) = 0.0_rk !< columns: edges of its element [m]; an isotropic length l as
-    !! l times the unit matrix
-    real(rk) :: time = 0.0_rk !< of the increment, for viscosity [s]
-    real(rk) :: stored = 0.0_rk !< energy at its start [J/m3]
-    logical :: wants_tangent = .true.
-    logical :: wants_energy = .true. !< stored, dissipated and created energy
-    !> The symmetric (1 - d) D instead of the consistent tangent. It also replaces a consistent
-    !> tangent that does not exist: see has_regular_flow.
-    logical :: is_secant = .false.
-    logical :: holds_switch = .false. !< r of Eq. 17 keeps its value from the start of the increment
-  end type point_motion
-
-  !> Result of an increment.
-  type :: point_answer
-    real(rk) :: stress(6) = 0.0_rk !< [Pa]
-    real(rk) :: tangent(6, 6) = 0.0_rk !< d stress/d strain [Pa]
-    real(rk) :: stored = 0.0_rk !< stress : elastic strain/2 [J/m3]
-    real(rk) :: fracture = 0.0_rk, crushing = 0.0_rk !< dissipated in the increment [J/m3]
-    real(rk) :: created = 0.0_rk !< by recovery of stiffness in the increment [J/m3]
-    logical :: is_elastic = .true. !< never yielded
-    logical :: has_converged = .true.
-  end type point_answer
-
-  !> Stress and damage at the end of an increment.
-  type :: end_state
-    real(rk) :: stress(6) = 0.0_rk !< effective [Pa]
-    real(rk) :: principal(3) = 0.0_rk, axes(3, 3) = 0.0_rk !< of the stress
-    real(rk) :: lag = 0.0_rk !< share of the previous history after relaxation
-    real(rk) :: share = 0.0_rk, share_by(3) = 0.0_rk !< r of the stiffness, dr/ds_i
-    type(damage_gradient) :: d
-    type(energy_split) :: split !< RECOVERY=ENERGY; else d counts
-    type(stiffness_left) :: left
-  end type end_state
+  public :: update_point
 
 contains
 
@@ -201,97 +156,4 @@ contains
       tangent(:, i) = matmul(frozen, strain) + matmul(by_damage, damages(i, :))
     end do
   end subroutine differentiate_split
-
-  !> Stored, dissipated and created energy.
-  pure subroutine find_energies(model, motion, old, placed, backbone, finish, new, answer)
-    type(concrete_model), intent(in) :: model
-    type(point_motion), intent(in) :: motion
-    type(point_history), intent(in) :: old
-    type(placed_curves), intent(in) :: placed
-    type(increment_result), intent(in) :: backbone
-    type(end_state), intent(in) :: finish
-    type(point_history), intent(in) :: new
-    type(point_answer), intent(inout) :: answer !< with the stress
-    type(flow_path) :: path
-    answer%stored = 0.5_rk*dot_product(answer%stress, motion%strain - new%plastic_strain)
-    call find_path(model, motion, old, placed, backbone, finish, new, path)
-    if (backbone%has_yielded .or. model%viscosity > 0.0_rk) then
-      call dissipate(model, old, backbone, finish, path, answer)
-    end if
-    call count_created(model, motion, old, path, answer)
-  end subroutine find_energies
-
-  !> The path of the effective stress in the increment.
-  pure subroutine find_path(model, motion, old, placed, backbone, finish, new, path)
-    type(concrete_model), intent(in) :: model
-    type(point_motion), intent(in) :: motion
-    type(point_history), intent(in) :: old
-    type(placed_curves), intent(in) :: placed
-    type(increment_result), intent(in) :: backbone
-    type(end_state), intent(in) :: finish
-    type(point_history), intent(in) :: new
-    type(flow_path), intent(out) :: path
-    real(rk) :: trial(6)
-    path%start = elastic_stress(model, motion%before - old%plastic_strain)
-    path%onset = path%start
-    path%finish = finish%stress
-    path%flow = new%plastic_strain - old%plastic_strain
-    path%growth = new%damage - old%damage
-    if (model%viscosity > 0.0_rk) return
-    path%onset = path%finish
-    if (.not. backbone%has_yielded) return
-    trial = elastic_stress(model, motion%strain - old%plastic_strain)
-    path%onset = onset_of_flow(model, placed, path%start, old%backbone, trial, &
-                               backbone%trial_excess)
-  end subroutine find_path
-
-  !> Energy created by the recovery of stiffness in the increment. A switch that is held creates
-  !> none; what it holds back is created when it is free again.
-  pure subroutine count_created(model, motion, old, path, answer)
-    type(concrete_model), intent(in) :: model
-    type(point_motion), intent(in) :: motion
-    type(point_history), intent(in) :: old
-    type(flow_path), intent(in) :: path
-    type(point_answer), intent(inout) :: answer !< its created energy is set
-    if (model%splits_energy .or. all(old%damage + path%growth <= 0.0_rk)) return
-    if (model%recovers_by_sign) then
-      if (motion%holds_switch .and. any(old%damage > 0.0_rk)) return
-      answer%created = stored_work(model, path%start, old%damage) - motion%stored
-    end if
-    answer%created = answer%created + created_work(model, path%start, path%onset, old%damage) &
-                     + created_work(model, path%onset, path%finish, old%damage + 0.5_rk*path%growth)
-  end subroutine count_created
-
-  !> Dissipation of the increment. Work of flow under pressures that have the strength in
-  !> compression is crushing, other work of flow cracking; work of damage likewise, by d_c and d_t.
-  pure subroutine dissipate(model, old, backbone, finish, path, answer)
-    type(concrete_model), intent(in) :: model
-    type(point_history), intent(in) :: old
-    type(increment_result), intent(in) :: backbone
-    type(end_state), intent(in) :: finish
-    type(flow_path), intent(inout) :: path
-    type(point_answer), intent(inout) :: answer !< its fracture and crushing are set
-    type(stiffness_left) :: left
-    type(damage_gradient) :: before
-    real(rk) :: work(2), share(2), losses(2)
-    if (model%splits_energy) then
-      call left_after(model, old%damage(1), old%damage(2), left)
-      call dissipated_by_split(model, path, left, finish%left, work, losses)
-    else
-      before = total_damage(model, old%damage(1), old%damage(2), finish%share)
-      path%damages = [before%value, finish%d%value]
-      work = dissipated_work(model, path)
-      losses = [finish%d%by_tension, finish%d%by_compression]*path%growth
-    end if
-    associate (flow => backbone%flow)
-      share(1) = crushing_share(flow%s, 1.5_rk*flow%q/flow%radius*backbone%trial%shape &
-                                + model%tan_dilation/3.0_rk, flow%compression%strength)
-      share(2) = 0.0_rk
-      if (losses(2) > 0.0_rk) then
-        share(2) = losses(2)/sum(losses)*fraction_of_crushing(flow%s(3), flow%compression%strength)
-      end if
-    end associate
-    answer%fracture = dot_product(1.0_rk - share, work)
-    answer%crushing = dot_product(share, work)
-  end subroutine dissipate
 end module damage_point

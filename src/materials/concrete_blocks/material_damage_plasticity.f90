@@ -7,9 +7,11 @@ module material_damage_plasticity
   use damage_history, only: last_backbone, last_damage, last_measure, last_strain, pack_history, &
                             unpack_history, width_row
   use damage_model, only: concrete_model, make_concrete_model, placed_curves, stiffness_of
-  use damage_point, only: point_answer, point_history, point_motion, update_point
+  use damage_point, only: update_point
+  use damage_states, only: point_answer, point_history, point_motion
   use damage_stress, only: find_stresses, has_plain_stress
   use damage_trials, only: screen_points
+  use damage_work, only: complete_energies
   use errors, only: deck_is_wrong, error_type, raise
   use kinds, only: rk
   use material_law, only: stress_law
@@ -82,6 +84,10 @@ contains
     real(rk) :: d(6, 6)
     logical :: is_plain, has_answer(points%num_points)
     integer :: i
+    if (time%is_updated .and. has_plain_stress(self%model)) then
+      call add_energies(self%model, points, old, new)
+      return
+    end if
     factor = 1.0_rk
     if (self%model%tension%longest < huge(1.0_rk)) then
       factor = min(1.0_rk, sqrt(self%model%tension%longest/points%widest))
@@ -117,6 +123,44 @@ contains
                        ' in the increment'
     end do
   end subroutine update
+
+  !> Energies of points whose stress and history are known.
+  pure subroutine add_energies(model, points, old, new)
+    type(concrete_model), intent(in) :: model
+    type(point_set), intent(in) :: points
+    type(point_state), intent(in) :: old
+    type(point_state), intent(inout) :: new !< with stresses and histories
+    type(point_motion) :: motion
+    type(point_history) :: before, after
+    type(point_answer) :: answer
+    type(placed_curves) :: placed
+    integer :: i
+    do i = 1, points%num_points
+      if (new%is_elastic(i)) then
+        new%energy(stored_energy, i) = 0.5_rk*dot_product(new%stress(:, i), new%strain(:, i))
+        cycle
+      end if
+      motion%before = old%strain(:, i)
+      motion%strain = new%strain(:, i)
+      motion%edges = points%edges(:, :, i)
+      call unpack_history(old%internal(:, i), before)
+      call unpack_history(new%internal(:, i), after)
+      answer = point_answer(stress=new%stress(:, i))
+      call complete_energies(model, motion, before, after, placed, answer)
+      call take_energies(answer, old%energy(:, i), new%energy(:, i))
+    end do
+  end subroutine add_energies
+
+  !> Writes the energies at the end of an increment.
+  pure subroutine take_energies(answer, old, new)
+    type(point_answer), intent(in) :: answer
+    real(rk), intent(in) :: old(:) !< (num_energies) [J/m3]
+    real(rk), intent(inout) :: new(:) !< (num_energies) [J/m3]
+    new(stored_energy) = answer%stored
+    new(fracture_energy) = old(fracture_energy) + answer%fracture
+    new(crushing_energy) = old(crushing_energy) + answer%crushing
+    new(created_energy) = old(created_energy) + answer%created
+  end subroutine take_energies
 
   !> Screens the points that change, in runs of adjacent ones; they begin with the old history.
   pure subroutine screen_runs(model, changes, factor, old, new, stored)
@@ -168,10 +212,7 @@ contains
     call pack_history(after, new%internal(:, i))
     new%stress(:, i) = answer%stress
     new%is_elastic(i) = answer%is_elastic
-    new%energy(stored_energy, i) = answer%stored
-    new%energy(fracture_energy, i) = old%energy(fracture_energy, i) + answer%fracture
-    new%energy(crushing_energy, i) = old%energy(crushing_energy, i) + answer%crushing
-    new%energy(created_energy, i) = old%energy(created_energy, i) + answer%created
+    call take_energies(answer, old%energy(:, i), new%energy(:, i))
   end subroutine yield_point
 
   !> PE, DAMAGET, DAMAGEC, SDV.

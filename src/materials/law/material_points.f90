@@ -67,6 +67,9 @@ module material_points
     logical :: holds_switches = .false.
     !> False: laws that defer their energies leave them out.
     logical :: wants_energy = .true.
+    !> True: stress and history at the end are those of an update of the same increment without
+    !> energies, which a law may keep and complete.
+    logical :: is_updated = .false.
     !> (points) Strain and history at the start are those of the last update, whose answer a law may
     !> keep; not allocated: none
     logical, allocatable :: stays(:)

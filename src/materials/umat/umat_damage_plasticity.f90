@@ -9,6 +9,7 @@
 !>   materials/concrete/damage_yield.f90 materials/law/crack_band.f90
 !>   materials/concrete/damage_return.f90 materials/concrete/damage_increment.f90
 !>   materials/concrete/damage_tangent.f90 materials/concrete/damage_energy.f90
+!>   materials/concrete/damage_states.f90 materials/concrete/damage_work.f90
 !>   materials/concrete/damage_point.f90 materials/concrete/damage_history.f90
 !>   materials/umat/umat_concrete.f90
 !> and this file. Free form, Fortran 2008; `tools/make_umat` writes all of it into one file.
@@ -41,7 +42,8 @@ module umat_damage_plasticity
   use, intrinsic :: iso_fortran_env, only: output_unit
   use damage_history, only: last_backbone, pack_history, unpack_history
   use damage_model, only: concrete_model, placed_curves
-  use damage_point, only: point_answer, point_history, point_motion, update_point
+  use damage_point, only: update_point
+  use damage_states, only: point_answer, point_history, point_motion
   use kinds, only: rk
   use umat_concrete, only: make_model
   implicit none

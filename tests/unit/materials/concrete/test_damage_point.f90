@@ -3,7 +3,8 @@ program test_damage_point
   use concrete_model, only: lee_fenves, table_one
   use damage_constants, only: concrete_constants
   use damage_model, only: concrete_model, make_concrete_model, placed_curves, stiffness_of
-  use damage_point, only: point_answer, point_history, point_motion, update_point
+  use damage_point, only: update_point
+  use damage_states, only: point_answer, point_history, point_motion
   use kinds, only: rk
   use testing, only: check, check_close, repeat_chance, test_log
   implicit none

@@ -1,5 +1,6 @@
 !> Updates without energies give the same stresses and histories as updates with energies: random
-!> paths of blocks of points. Points that stay keep their answer to the last bit.
+!> paths of blocks of points. Energies that are completed are those of updates with energies. Points
+!> that stay keep their answer to the last bit.
 program test_damage_stress
   use concrete_model, only: table_one
   use damage_constants, only: concrete_constants
@@ -7,7 +8,8 @@ program test_damage_stress
   use kinds, only: rk
   use material_damage_plasticity, only: concrete_law, make_concrete_law
   use material_law, only: start_points
-  use material_points, only: no_tangent, point_set, point_state, time_increment, update_report
+  use material_points, only: created_energy, crushing_energy, no_tangent, point_set, &
+                             point_state, time_increment, update_report
   use testing, only: check, check_close, repeat_chance, test_log
   implicit none
   integer, parameter :: num_points = 2000, num_increments = 8
@@ -16,27 +18,33 @@ program test_damage_stress
   real(rk), parameter :: tolerance = 1.0e-9_rk
   type(test_log) :: log
   type(concrete_constants) :: concrete
+  real(rk), allocatable :: strength(:)
   log%suite = 'damage_stress'
   call repeat_chance(1)
-  call follow(table_one(), 'Table 1')
+  call follow(table_one(), .false., 'Table 1')
   concrete = table_one()
   concrete%stiffening = 'GFI'
   concrete%tension_damage_type = 'DISPLACEMENT'
   concrete%tension = reshape([2.48e6_rk, 200.0_rk], [2, 1])
   concrete%tension_damage = reshape([0.0_rk, 0.0_rk, 0.9_rk, 1.6e-4_rk], [2, 2])
-  call follow(concrete, 'G_f and damage')
+  call follow(concrete, .false., 'G_f and damage')
+  strength = concrete%compression(1, :)
+  concrete%compression(1, :) = 0.15_rk*strength
+  call follow(concrete, .true., 'weak in compression')
+  concrete%compression(1, :) = strength
   concrete%recovery = 'SIGN'
-  call follow(concrete, 'RECOVERY=SIGN')
+  call follow(concrete, .false., 'RECOVERY=SIGN')
   concrete%recovery = 'ENERGY'
-  call follow(concrete, 'RECOVERY=ENERGY')
+  call follow(concrete, .false., 'RECOVERY=ENERGY')
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
 
 contains
 
   !> Random increments of all points.
-  subroutine follow(constants, what)
+  subroutine follow(constants, crushes, what)
     type(concrete_constants), intent(in) :: constants
+    logical, intent(in) :: crushes !< some point
     character(*), intent(in) :: what
     type(concrete_law) :: law
     type(point_set) :: points
@@ -44,7 +52,7 @@ contains
     type(time_increment) :: time
     type(update_report) :: report
     type(error_type), allocatable :: error
-    real(rk) :: unused(6, 6, 0), chance(6, num_points), stress, history
+    real(rk) :: unused(6, 6, 0), chance(6, num_points), stress, history, energy
     integer :: i, num_yielded
     call make_concrete_law(constants, law, error)
     if (allocated(error)) error stop 2
@@ -55,6 +63,7 @@ contains
     time%tangent = no_tangent
     stress = 0.0_rk
     history = 0.0_rk
+    energy = 0.0_rk
     do i = 1, num_increments
       call random_number(chance)
       full%strain = old%strain + (chance - 0.45_rk)*3.0e-4_rk
@@ -67,12 +76,23 @@ contains
       history = max(history, maxval(abs(full%internal - bare%internal)))
       call check(log, all(full%is_elastic .eqv. bare%is_elastic), what//': the same points yield')
       call repeat_some(law, points, old, bare, what)
+      time%wants_energy = .true.
+      time%is_updated = .true.
+      call law%update(points, time, old, bare, unused, report)
+      time%is_updated = .false.
+      energy = max(energy, maxval(abs(full%energy - bare%energy)))
       old = full
     end do
     num_yielded = count(.not. old%is_elastic)
     call check(log, num_yielded > num_points/2, what//': points yield')
     call check_close(log, stress/constants%tension(1, 1), 0.0_rk, tolerance, what//': stress')
     call check_close(log, history, 0.0_rk, tolerance, what//': history')
+    call check(log, any(old%energy(created_energy, :) > 0.0_rk) .neqv. law%model%splits_energy, &
+               what//': stiffness comes back')
+    call check(log, any(old%energy(crushing_energy, :) > 0.0_rk) .eqv. crushes, &
+               what//': points crush')
+    call check_close(log, energy*constants%young/constants%tension(1, 1)**2, 0.0_rk, tolerance, &
+                     what//': energy')
   end subroutine follow
 
   !> Moves every third point, in runs of one and of two that stay, and moves it back.
