@@ -83,3 +83,26 @@ def test_threads(keyway):
     expected = openings(one, SHAKEN.num_joints)
     found = openings(two, SHAKEN.num_joints)
     assert found == pytest.approx(expected, abs=1e-6 * expected.max())
+
+
+def test_model_without_an_estimate(keyway):
+    """With MODES and ERROR ESTIMATE=OFF the step is not run for an estimate: the same openings."""
+    _, deck, files = decks(SHAKEN, ", MODES=60")
+    tried = keyway(deck, name="tried", files=files)
+    off = deck.replace("*DYNAMIC,", "*CONTROLS, ERROR ESTIMATE=OFF\n*DYNAMIC,")
+    run = keyway(off, name="off", files=files)
+    expected = openings(tried, SHAKEN.num_joints)
+    # The same increments from the same model.
+    assert openings(run, SHAKEN.num_joints) == pytest.approx(expected, abs=1e-9 * expected.max())
+    parts = [part["name"] for part in run.json["ledger"]["parts"]]
+    assert "estimate reduced model" not in parts
+    (reduced,) = run.json["accuracy"]["reduced"].values()
+    assert set(reduced) == {"modes", "highest_hz"}
+
+
+def test_accuracy_needs_the_estimate(keyway):
+    """Without MODES the estimate finds their number, also with ERROR ESTIMATE=OFF."""
+    _, deck, files = decks(SHAKEN)
+    run = keyway(deck.replace("*DYNAMIC,", "*CONTROLS, ERROR ESTIMATE=OFF\n*DYNAMIC,"), files=files)
+    (reduced,) = run.json["accuracy"]["reduced"].values()
+    assert reduced["estimated_error"] <= ACCURACY

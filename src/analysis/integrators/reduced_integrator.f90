@@ -60,6 +60,7 @@ module reduced_integrator
   real(rk), parameter :: decay = 1.5_rk
   real(rk), parameter :: round_off = 1.0e-12_rk !< of a displacement
   real(rk), parameter :: two_pi = 2.0_rk*acos(-1.0_rk)
+  real(rk), parameter :: not_known = -1.0_rk !< an estimate that is not made
 
 contains
 
@@ -167,7 +168,8 @@ contains
   end subroutine start_modal
 
   !> Builds the reduced model, with more and more modes until the estimate of its error meets the
-  !> accuracy. A continued run has as many as its state.
+  !> accuracy. A continued run has as many as its state. Where the deck has the number of modes and
+  !> ERROR ESTIMATE is OFF, the runs of the estimate are left out.
   subroutine build_model(self, model, plan, now, results, error)
     class(reduced_method), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -184,9 +186,12 @@ contains
       call build_basis_of(self, model, plan, wanted, results, error)
       if (allocated(error) .or. now%increment > 0) return
       call start_modes(self, now)
-      call results%costs%start('estimate', 'reduced model', 'solver')
-      call estimate_error(model, plan, self%system, self%basis, now, estimate)
-      call results%costs%stop()
+      estimate = not_known
+      if (plan%reduced%num_modes == 0 .or. plan%controls%estimates_errors) then
+        call results%costs%start('estimate', 'reduced model', 'solver')
+        call estimate_error(model, plan, self%system, self%basis, now, estimate)
+        call results%costs%stop()
+      end if
       now%reduction = reduction_status(wanted, self%basis%num_modes, &
                                        sqrt(maxval(self%basis%lambda))/two_pi, estimate)
       call say_model(now%reduction, plan%reduced%accuracy, results)
@@ -236,11 +241,15 @@ contains
     type(reduction_status), intent(in) :: reduction
     real(rk), intent(in) :: accuracy
     class(listener), intent(inout) :: results
-    character(160) :: text
-    write (text, '(a,i0,a,f0.1,2(a,f0.2),a)') 'reduced model  modes ', reduction%num_modes, &
-      '  highest ', reduction%highest, ' Hz  estimated error ', 100.0_rk*reduction%estimate, &
-      ' % of the largest opening  wanted ', 100.0_rk*accuracy, ' %'
-    call results%log%say(trim(text))
+    character(160) :: text, error
+    write (text, '(a,i0,a,f0.1,a)') 'reduced model  modes ', reduction%num_modes, '  highest ', &
+      reduction%highest, ' Hz'
+    error = ''
+    if (reduction%estimate >= 0.0_rk) then
+      write (error, '(2(a,f0.2),a)') '  estimated error ', 100.0_rk*reduction%estimate, &
+        ' % of the largest opening  wanted ', 100.0_rk*accuracy, ' %'
+    end if
+    call results%log%say(trim(text)//trim(error))
   end subroutine say_model
 
   !> Forces that the shapes start with: loads that may change, forces that are not balanced at the

@@ -14,7 +14,7 @@ module reduced_estimate
   use reduced_increment, only: load_factors, take_reduced_increment
   use reduced_scheme, only: reduced_matrices
   use step_loads, only: step_time
-  use step_plan, only: step
+  use step_plan, only: step, step_controls
   use step_system, only: dam_system
   implicit none
   private
@@ -22,6 +22,9 @@ module reduced_estimate
 
   !> Error of a model over its difference from the model with half of the modes.
   real(rk), parameter :: share_of_difference = 0.7_rk
+  !> Tolerances of the joints in these runs: far below the differences that matter, with fewer
+  !> iterations.
+  real(rk), parameter :: rough_residual = 1.0e-4_rk, rough_correction = 1.0e-2_rk
 
 contains
 
@@ -57,8 +60,12 @@ contains
     type(state), allocatable :: now, trial, other
     type(step_time) :: when
     type(balance_outcome) :: outcome
+    type(step_controls) :: controls
     real(rk) :: factors(size(basis%force, 2), 2)
     integer :: i, num_increments
+    controls = plan%controls
+    controls%residual_tolerance = max(controls%residual_tolerance, rough_residual)
+    controls%increment_tolerance = max(controls%increment_tolerance, rough_correction)
     call keep_modes(basis, num_modes, fewer)
     call matrices%prepare(fewer, make_scheme(plan%alpha, plan%first_increment, &
                                              plan%controls%joint_forces), model%joints, &
@@ -75,8 +82,7 @@ contains
         call when%set_end((i - 1)*plan%first_increment, plan%first_increment)
         factors(:, 1) = factors(:, 2)
         factors(:, 2) = load_factors(system%groups, model%amplitudes, when, first)
-        call take_reduced_increment(fewer, matrices, model, plan%controls, factors, now, trial, &
-                                    outcome)
+        call take_reduced_increment(fewer, matrices, model, controls, factors, now, trial, outcome)
         if (.not. outcome%has_converged) exit
         call watch(fewer, system%operator, trial, histories(:, i))
         call move_alloc(now, other)

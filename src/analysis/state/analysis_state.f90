@@ -40,7 +40,7 @@ module analysis_state
     integer :: num_shapes = 0 !< that it was built from
     integer :: num_modes = 0 !< 0: the step has no reduced model
     real(rk) :: highest = 0.0_rk !< frequency [Hz]
-    real(rk) :: estimate = 0.0_rk !< error of the openings, over the largest
+    real(rk) :: estimate = 0.0_rk !< error of the openings, over the largest; negative: not known
   end type reduction_status
 
   !> The error in time of a step whose increments follow it (theory.md, 7.5). Norms are weighted by

@@ -5,10 +5,11 @@
 !> the factors of the groups as preconditioner.
 module tangent_equations
   use block_compliance, only: compliance_blocks
-  use global_vectors, only: norm
+  use global_vectors, only: length
   use joint_rows, only: num_axes
   use kinds, only: rk
-  use krylov_spaces, only: krylov_space, most_steps, start_space, add_to_space, solve_triangle
+  use krylov_spaces, only: krylov_space, most_steps, start_space, make_room, add_to_space, &
+                           solve_triangle
   use tangent_factors, only: group_factor, update_factor, solve_group, apply_change
   implicit none
   private
@@ -100,7 +101,7 @@ contains
       correction = response + correction
       rest = 0.0_rk
     else
-      call self%iterate(blocks, b, max(tolerance*norm(b), smallest), correction, rest)
+      call self%iterate(blocks, b, max(tolerance*length(b), smallest), correction, rest)
       correction = response + correction
     end if
   end subroutine solve
@@ -115,7 +116,7 @@ contains
     real(rk), dimension(size(response)) :: b, z
     b = apply_change(self%change, response)
     z = 0.0_rk
-    if (norm(b) > 0.0_rk) call add_solution(self, blocks, b, tolerance*norm(b), .true., z)
+    if (length(b) > 0.0_rk) call add_solution(self, blocks, b, tolerance*length(b), .true., z)
     call blocks%couple(spread(spread(.true., 1, size(self%group)), 2, size(self%group)), z, &
                        correction)
     correction = response + correction
@@ -158,7 +159,7 @@ contains
     z = 0.0_rk
     rest = b
     do pass = 1, most_passes
-      if (.not. norm(rest) > merge(near_target, 1.0_rk, pass > 1)*target) return
+      if (.not. length(rest) > merge(near_target, 1.0_rk, pass > 1)*target) return
       call add_solution(self, blocks, rest, target, pass < most_passes, z)
       call blocks%product(z, product)
       rest = b + apply_change(self%change, product) - z
@@ -178,6 +179,7 @@ contains
     integer :: k
     call start_space(b, space)
     do k = 1, most_steps
+      call make_room(k, space)
       if (is_rough) then
         call self%step_roughly(blocks, space%v(:, k), space%p(:, k), space%v(:, k + 1))
       else

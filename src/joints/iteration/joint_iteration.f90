@@ -2,7 +2,7 @@
 !> at a trial jump, residual and correction.
 module joint_iteration
   use kinds, only: rk
-  use global_vectors, only: norm, distance, total
+  use global_vectors, only: norm, distance, length, total
   use joint_law, only: joint_state
   use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
@@ -251,15 +251,15 @@ contains
     real(rk) :: force, kept
     integer :: p
     do p = 1, operator%num_points
-      unbalance(p) = operator%area(p)*norm2(field%traction(:, p) - linear(:, p))
+      unbalance(p) = operator%area(p)*sqrt(sum((field%traction(:, p) - linear(:, p))**2))
       square(p) = sum((operator%area(p)*field%traction(:, p))**2)
     end do
     force = max(sqrt(total(square)), smallest_force(field))
     kept = 0.0_rk
     if (field%is_static) kept = norm(stiffness_floor*spread(operator%area, 1, 3)*k_ref*field%jump)
     if (kept <= most_kept*field%bulk_force .or. most_kept*kept > field%bulk_force) kept = 0.0_rk
-    outcome%residual = max(norm(unbalance), kept)/force
-    outcome%unbalance = norm(unbalance)/force
+    outcome%unbalance = length(unbalance)/force
+    outcome%residual = max(outcome%unbalance, kept/force)
     outcome%is_loose = .false.
     outcome%is_driven = kept > 0.0_rk
     outcome%worst_point = maxloc(unbalance, 1)

@@ -263,7 +263,7 @@ contains
     limit = slip_limit(law, opening, point%cohesion)
     k = law%tangent_stiffness
     trial = k*(point%jump(2:3) - before%slip)
-    size_of_trial = norm2(trial)
+    size_of_trial = sqrt(trial(1)**2 + trial(2)**2)
     point%traction(1) = law%normal_stiffness*opening
     point%is_broken = .true.
     if (size_of_trial <= limit .and. limit > 0.0_rk) then
@@ -310,7 +310,7 @@ contains
     tangent(1, 1) = k_n
     limit = point%cohesion - law%friction*trial
     z = multiplier(2:3)*(1.0_rk - scale(2)/k) + scale(2)*(point%jump(2:3) - slip)
-    size_of_z = norm2(z)
+    size_of_z = sqrt(z(1)**2 + z(2)**2)
     if (size_of_z <= limit .and. (law%friction > 0.0_rk .or. point%cohesion > 0.0_rk)) then
       iterate(2:3) = k*(point%jump(2:3) - slip)
       tangent(2, 2) = k

@@ -132,7 +132,8 @@ contains
       call add('the largest displacement', goal_of_motion(record), record%displacement%at(1)%value)
     end if
     j = record%largest_opening()
-    if (j > 0 .and. all(summary%steps%reduction%num_modes == 0)) then
+    if (j > 0 .and. all(summary%steps%reduction%num_modes == 0 &
+                        .or. summary%steps%reduction%estimate < 0.0_rk)) then
       call add('the largest opening', record%goals(of_opening), &
                record%joints(j)%opening%at(1)%value)
     end if

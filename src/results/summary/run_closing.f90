@@ -152,7 +152,9 @@ contains
       do i = 1, size(steps)
         if (steps(i)%reduction%num_modes == 0) cycle
         text = text//nl//'reduced model of step '//model%steps(steps(i)%step)%name//': '// &
-               as_text(steps(i)%reduction%num_modes)//' modes, estimated error of openings '// &
+               as_text(steps(i)%reduction%num_modes)//' modes'
+        if (steps(i)%reduction%estimate < 0.0_rk) cycle
+        text = text//', estimated error of openings '// &
                as_short_text(100.0_rk*steps(i)%reduction%estimate)//' % of the largest'
       end do
     end associate

@@ -320,8 +320,10 @@ contains
         call json%open_object(model%steps(part%step)%name)
         call json%put_integer(part%reduction%num_modes, 'modes')
         call json%put_real(part%reduction%highest, 'highest_hz')
-        call json%put_real(part%reduction%estimate, 'estimated_error')
-        call json%put_real(model%steps(part%step)%reduced%accuracy, 'wanted')
+        if (part%reduction%estimate >= 0.0_rk) then
+          call json%put_real(part%reduction%estimate, 'estimated_error')
+          call json%put_real(model%steps(part%step)%reduced%accuracy, 'wanted')
+        end if
         call json%close_object()
       end associate
     end do
