@@ -97,6 +97,7 @@ TYPES = (
         "record",
         "compare_records",
         stresses="made anew from the state",
+        singular="of the mesh, found again",
         skin="of the model",
         fields="the same for all runs",
         path="of the state",

@@ -183,6 +183,9 @@ contains
     call fill(control%easy_so_far, n)
     call fill(control%cuts_in_a_row, n)
     call fill(control%cutbacks, n)
+    call fill(control%steady_so_far, n)
+    call fill(control%steady_needed, n)
+    call fill(control%has_tried, n)
   end subroutine fill_control
 
   !> Vectors of the integrator.

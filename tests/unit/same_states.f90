@@ -192,6 +192,9 @@ contains
     call compare(log, what//'easy_so_far', a%easy_so_far, b%easy_so_far)
     call compare(log, what//'cuts_in_a_row', a%cuts_in_a_row, b%cuts_in_a_row)
     call compare(log, what//'cutbacks', a%cutbacks, b%cutbacks)
+    call compare(log, what//'steady_so_far', a%steady_so_far, b%steady_so_far)
+    call compare(log, what//'steady_needed', a%steady_needed, b%steady_needed)
+    call compare(log, what//'has_tried', a%has_tried, b%has_tried)
   end subroutine compare_control
 
   !> Vectors of the integrator.

@@ -364,6 +364,9 @@ contains
     call file%put('easy_so_far', control%easy_so_far)
     call file%put('cuts_in_a_row', control%cuts_in_a_row)
     call file%put('cutbacks', control%cutbacks)
+    call file%put('steady_so_far', control%steady_so_far)
+    call file%put('steady_needed', control%steady_needed)
+    call file%put('has_tried', control%has_tried)
   end subroutine save_control
 
   !> Reads the size of increments.
@@ -383,5 +386,8 @@ contains
     call file%get('easy_so_far', control%easy_so_far)
     call file%get('cuts_in_a_row', control%cuts_in_a_row)
     call file%get('cutbacks', control%cutbacks)
+    call file%get('steady_so_far', control%steady_so_far)
+    call file%get('steady_needed', control%steady_needed)
+    call file%get('has_tried', control%has_tried)
   end subroutine load_control
 end module state_archive

@@ -1,4 +1,6 @@
 !> Controls the size of increments: it grows after quick convergence and is cut without convergence.
+!> A static increment that was cut grows again after many that have converged, however slowly: where
+!> concrete softens, smaller increments take as many iterations as larger ones.
 module step_control
   use kinds, only: rk
   use step_plan, only: step
@@ -13,6 +15,9 @@ module step_control
   integer, parameter :: easy_iterations = 5 !< at most, of an increment that may grow
   integer, parameter :: easy_increments = 2 !< in a row, before a static step grows
   integer, parameter :: easy_dynamic_increments = 10 !< in a row: a new size is factored anew
+  !> Increments in a row without a cut, before a static step grows that was cut; twice as many after
+  !> each growth that was cut at once, up to the most.
+  integer, parameter :: steady_increments = 4, most_steady_increments = 64
   integer, parameter :: most_cuts_in_a_row = 10
   !> Round-off of times, over the increment: a sum of n equal increments is off by up to n^2*1e-16.
   real(rk), parameter :: roundoff = 1.0e-6_rk
@@ -32,9 +37,12 @@ module step_control
     integer :: easy_needed = easy_increments
     logical :: is_direct = .false.
     integer :: easy_so_far = 0, cuts_in_a_row = 0, cutbacks = 0
+    integer :: steady_so_far = 0 !< increments since the size has changed
+    integer :: steady_needed = steady_increments
+    logical :: has_tried = .false. !< the size has grown after steady increments, none has ended yet
   contains
     procedure :: next_size, accept, may_cut, cut, least_size, follow_error
-    procedure, private :: on_grid
+    procedure, private :: on_grid, is_steady
   end type increment_control
 
 contains
@@ -81,14 +89,29 @@ contains
     integer, intent(in) :: iterations
     self%cuts_in_a_row = 0
     self%easy_so_far = merge(self%easy_so_far + 1, 0, iterations <= easy_iterations)
-    if (self%is_direct .or. self%first > 0.0_rk .or. self%easy_so_far < self%easy_needed) return
+    self%steady_so_far = self%steady_so_far + 1
+    if (self%has_tried) self%steady_needed = steady_increments
+    self%has_tried = .false.
+    if (self%is_direct .or. self%first > 0.0_rk) return
+    if (self%easy_so_far < self%easy_needed) then
+      if (.not. self%is_steady()) return
+      self%has_tried = .true.
+    end if
     if (self%size*self%growth <= self%largest*(1.0_rk + roundoff)) then
       self%size = self%size*self%growth
     else if (self%easy_needed == easy_increments) then
       self%size = self%largest
     end if
     self%easy_so_far = 0
+    self%steady_so_far = 0
   end subroutine accept
+
+  !> Whether a static step that was cut may grow though its increments converge slowly.
+  pure logical function is_steady(self)
+    class(increment_control), intent(in) :: self
+    is_steady = self%easy_needed == easy_increments .and. self%cutbacks > 0 &
+                .and. self%steady_so_far >= self%steady_needed
+  end function is_steady
 
   !> The estimated error chooses the size of the next increment, after `accept`. The size is doubled
   !> where a multiple of the new size ends, so that multiples of the first increment are met.
@@ -149,6 +172,9 @@ contains
     self%cutbacks = self%cutbacks + 1
     self%cuts_in_a_row = self%cuts_in_a_row + 1
     self%easy_so_far = 0
+    self%steady_so_far = 0
+    if (self%has_tried) self%steady_needed = min(2*self%steady_needed, most_steady_increments)
+    self%has_tried = .false.
     self%size = min(cut_factor, max(ratio, smallest_ratio))*size
     if (self%first > 0.0_rk) self%size = self%on_grid(self%size)
     gives_up = self%is_direct .or. self%cuts_in_a_row > most_cuts_in_a_row &

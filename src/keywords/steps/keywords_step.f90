@@ -149,7 +149,8 @@ contains
     spec%family = 'step'
     spec%place = 'step'
     spec%meaning = 'Static analysis; loads ramp over the step. The increment is reduced where '// &
-                   'the iteration does not converge, and grows after quick convergence.'
+                   'the iteration does not converge, and grows after quick convergence. One '// &
+                   'that was reduced also grows after some that have converged slowly.'
     spec%example = '*STATIC'//nl//'0.1, 1.'
     spec%most_lines = 1
     allocate (spec%parameters, source=[ &

@@ -134,6 +134,7 @@ contains
     call control%cut(0.15_rk, 1.0_rk, gives_up)
     call check_close(log, control%size, 0.075_rk, 1.0e-15_rk, 'halved')
     call check(log,.not. gives_up, 'goes on')
+    call slow_increments_grow(log, plan)
     plan%first_increment = 0.01_rk
     call start_control(plan, .true., control)
     do i = 1, 40
@@ -153,6 +154,39 @@ contains
     call control%cut(0.01_rk, 1.0_rk, gives_up)
     call check(log, gives_up, 'direct increments are not cut')
   end subroutine increments_grow_and_shrink
+
+  !> A size that was cut grows after four increments that converged slowly; after eight when the
+  !> first one of the larger size was cut. A size that was never cut stays.
+  subroutine slow_increments_grow(log, plan)
+    type(test_log), intent(inout) :: log
+    type(step), intent(in) :: plan
+    type(increment_control) :: control
+    logical :: gives_up
+    integer :: i
+    call start_control(plan, .false., control)
+    do i = 1, 40
+      call control%accept(30)
+    end do
+    call check_close(log, control%size, 0.1_rk, 1.0e-15_rk, 'no growth without a cut')
+    call control%cut(0.1_rk, 1.0_rk, gives_up)
+    do i = 1, 4
+      call check_close(log, control%size, 0.05_rk, 1.0e-15_rk, 'cut')
+      call control%accept(30)
+    end do
+    call check_close(log, control%size, 0.075_rk, 1.0e-15_rk, 'grown')
+    call control%cut(0.075_rk, 1.0_rk, gives_up)
+    do i = 1, 8
+      call check_close(log, control%size, 0.0375_rk, 1.0e-15_rk, 'cut at once')
+      call control%accept(30)
+    end do
+    call check_close(log, control%size, 0.05625_rk, 1.0e-15_rk, 'grown later')
+    call control%accept(30)
+    call control%cut(0.05625_rk, 1.0_rk, gives_up)
+    do i = 1, 4
+      call control%accept(30)
+    end do
+    call check(log, control%size > 0.03_rk, 'the larger size served once: four increments again')
+  end subroutine slow_increments_grow
 
   !> Sizes that follow an error: powers of two within the limits, doubled at their multiples.
   subroutine follow_an_error(log, given)
