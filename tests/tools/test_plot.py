@@ -16,7 +16,7 @@ from keyway_tools.colour_scale import Scales, parse_ranges
 from keyway_tools.dam_views import Faces
 from keyway_tools.picture_style import Sheet
 from keyway_tools.pictures_faces import plot_envelope
-from keyway_tools.pictures_joints import JointView, range_of
+from keyway_tools.pictures_joints import JointView, last_slips, ranges_of
 from keyway_tools.pictures_shapes import masses_in_words
 from keyway_tools.results import Results, find_jobs
 from keyway_tools.shared_scales import shared_scales
@@ -150,6 +150,10 @@ def test_runs_share_a_range(dam_results, tmp_path):
     assert scales.given["S1"] == pytest.approx(3.0)
     assert scales.given["OPENING"] == pytest.approx(5.0)
     assert "DAMAGET" not in scales.given
+    slips = [last_slips(results)[0].values() for results in both]
+    largest = max((slip.max() for one in slips for slip in one), default=0.0)
+    assert largest > 0.0
+    assert scales.given["SLIP"] == pytest.approx(1e3 * largest)
 
 
 def test_marks_and_notes_name_extreme_place_deck_and_date(dam_results, tmp_path):
@@ -243,14 +247,17 @@ def test_material_file_that_is_no_curve_is_refused(tmp_path, capsys):
     assert "no column work" in capsys.readouterr().err
 
 
-def test_upright_joints_share_one_range_of_heights():
-    """Each joint is drawn from its lowest to its highest corner, a short one beside a tall one."""
+def test_upright_joints_share_one_scale():
+    """Each joint is drawn from its lowest to its highest corner, a short one beside a tall one; a
+    wide one beside a narrow one has the same scale."""
     corners = np.array([[0.0, 0.0, 0.0], [0.0, 20.0, 0.0], [0.0, 20.0, 1.0], [0.0, 0.0, 1.0]])
-    tall, short = (JointView(corners * [1.0, 1.0, height]) for height in (200.0, 30.0))
+    tall, short = (JointView(corners * [1.0, s, z]) for s, z in ((1.0, 200.0), (3.0, 30.0)))
     flat = JointView(corners[:, [1, 1, 0]] * [1.0, 0.5, 1.0])
     for order in ([tall, short, flat], [flat, short, tall]):
         for view in (tall, short):
-            low, high = range_of(view, order)
-            assert low < 0.0
-            assert high > 200.0
-        assert range_of(flat, order)[1] < 20.0
+            along, up = ranges_of(view, order)
+            assert up[0] < 0.0
+            assert up[1] > 200.0
+            assert along[1] > 60.0
+        assert ranges_of(tall, order) == ranges_of(short, order)
+        assert ranges_of(flat, order)[1][1] < 20.0

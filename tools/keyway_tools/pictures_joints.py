@@ -53,11 +53,17 @@ def _part_in_plan(x: np.ndarray, triangles: np.ndarray) -> float:
     return float(np.abs(normals[:, 2]).sum() / max(np.linalg.norm(normals, axis=1).sum(), 1e-300))
 
 
-def range_of(view: JointView, views: list[JointView]) -> tuple[float, float]:
-    """Range of the vertical axis [m]: one for all upright joints, so that heights compare."""
+def ranges_of(
+    view: JointView, views: list[JointView]
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Ranges of both axes [m]: one for all upright joints, so that all have one scale."""
     same = [other for other in views if other.is_upright] if view.is_upright else [view]
     margin = max(other.margin for other in same)
-    return min(v.up.min() for v in same) - margin, max(v.up.max() for v in same) + margin
+
+    def around(values: list[np.ndarray]) -> tuple[float, float]:
+        return min(v.min() for v in values) - margin, max(v.max() for v in values) + margin
+
+    return around([v.along for v in same]), around([v.up for v in same])
 
 
 def _never_below_zero(values: np.ndarray) -> np.ndarray:
@@ -83,20 +89,23 @@ class JointPage:
             rows, width=max(width * columns + 1.8, 8.0), row_height=height + 1.5, columns=columns,
             squeeze=False,
         )  # fmt: skip
+        # Panels of a fixed aspect are smaller than their cells: titles and legends follow them.
+        self.figure.set_layout_engine("compressed")
         self.axes = dict(zip(joints, axes.flat, strict=False))
         for axis in axes.flat[len(joints) :]:
             axis.set_axis_off()
 
     def _shape(self, name: str) -> float:
-        low, high = range_of(self.views[name], list(self.views.values()))
-        return (high - low) / max(np.ptp(self.views[name].along), 1e-12)
+        along, up = ranges_of(self.views[name], list(self.views.values()))
+        return (up[1] - up[0]) / max(along[1] - along[0], 1e-12)
 
     def frame(self, name: str, title: str) -> None:
         """Title, labels and range of the panel of a joint."""
         axis, view = self.axes[name], self.views[name]
         axis.set_aspect("equal")
-        axis.set_xlim(view.along.min() - view.margin, view.along.max() + view.margin)
-        axis.set_ylim(range_of(view, list(self.views.values())))
+        along, up = ranges_of(view, list(self.views.values()))
+        axis.set_xlim(along)
+        axis.set_ylim(up)
         axis.set_title(title, fontsize=12)
         axis.set_xlabel(view.labels[0])
         if axis is next(iter(self.axes.values())) or not view.is_upright:
@@ -164,20 +173,26 @@ def _saved_joints(results: SiResults) -> list[tuple[object, float]]:
     return [(group["joints"], time) for group, time in saved if "joints" in group]
 
 
-def plot_joint_slips(results: SiResults, scales: Scales, sheet: Sheet) -> list[Path]:
-    """Irrecoverable sliding of every joint at the last saved time."""
+def last_slips(results: SiResults) -> tuple[dict[str, np.ndarray], float]:
+    """Irrecoverable sliding [m] of the corners of every joint at the last saved time; the time."""
     saved, joints = _saved_joints(results), joints_with_faces(results)
     if not saved or not joints:
-        return []
+        return {}, 0.0
     group, time = saved[-1]
     slips = {}
     for name, joint in joints.items():
         size = results.units.length * np.linalg.norm(group[name]["slip"][:], axis=1)
         slips[name] = size[_point_of_corner(results, name, joint)]
-    everything = np.concatenate(list(slips.values()))
+    return slips, time
+
+
+def plot_joint_slips(results: SiResults, scales: Scales, sheet: Sheet) -> list[Path]:
+    """Irrecoverable sliding of every joint at the last saved time."""
+    slips, time = last_slips(results)
+    everything = np.concatenate([np.zeros(1), *slips.values()])
     if everything.max() <= 0.0:
         return []
-    page = JointPage(results, joints)
+    page = JointPage(results, joints_with_faces(results))
     borders = scales.limits("SLIP", everything).borders
     for name, values in slips.items():
         shade = page.fill(name, 1e3 * values, borders, FIELDS["SLIP"].colours)
