@@ -117,6 +117,10 @@ def test_slider_moves_the_dam_through_the_saved_states(block):
 
 
 MOVE = "(slider, value) => { slider.value = value; slider.dispatchEvent(new Event('input')); }"
+CUT_TABLES = (
+    "[...document.querySelectorAll('.run table')].filter("
+    "t => t.offsetWidth > t.closest('.run').clientWidth + 1).map(t => t.innerText)"
+)
 DRAWN = "['x', 'y', 'z'].map(k => Array.from(document.getElementById('space-0').data[0][k]))"
 
 
@@ -177,6 +181,8 @@ def test_two_runs_side_by_side_and_on_paper(block, modes, tmp_path):
         boxes = [page.locator(f"#space-{k}").bounding_box() for k in (0, 1)]
         assert boxes[0]["y"] == boxes[1]["y"]
         assert boxes[0]["x"] + boxes[0]["width"] <= boxes[1]["x"]
+        page.set_viewport_size({"width": 1300, "height": 1000})
+        assert page.evaluate(CUT_TABLES) == []  # nothing hidden at the right of a column
     assert errors == []
     assert print_pdf(path).read_bytes().startswith(b"%PDF")
 
