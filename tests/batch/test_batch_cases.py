@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import csv
 import json
+import signal
+import subprocess
 
 import pandas as pd
 import pytest
@@ -13,7 +15,7 @@ from keyway.batch.fractiles import write_fractiles
 from keyway.batch.lock import lock_of
 from keyway.batch.table import ResultTable, result_table
 from keyway.commands import batch
-from keyway_tools.deck_runs import Record
+from keyway_tools.deck_runs import Record, send
 
 TEMPLATE = """** A block, friction {FRICTION}, unknown {here}
 *INCLUDE, INPUT=parts/mesh.inp
@@ -170,3 +172,10 @@ def test_two_batches_in_one_folder(tmp_path, capsys):
     batch.main([str(tmp_path / "a.inp"), "-o", str(tmp_path / "out")])
     assert "there is no deck" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_a_signal_to_a_run_that_has_just_ended(tmp_path):
+    """Between the end of a child and its removal from the list there is a moment."""
+    child = subprocess.Popen(["true"], start_new_session=True)
+    child.wait()
+    send(child, signal.SIGTERM)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import hashlib
 import json
@@ -46,6 +47,12 @@ class Record:
     def write(self) -> None:
         text = json.dumps(asdict(self), indent=2)
         (Path(self.folder) / RECORD).write_text(text + "\n", encoding="utf-8")
+
+
+def send(child: subprocess.Popen[bytes], sign: signal.Signals) -> None:
+    """A signal to a child and its processes; none where they have ended since a moment ago."""
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(child.pid, sign)
 
 
 def files_of(deck: Path) -> list[Path]:
@@ -150,7 +157,7 @@ class DeckRunner:
         with self._lock:
             self._children.add(child)
         if self.is_ending:  # since a moment ago
-            os.killpg(child.pid, signal.SIGTERM)
+            send(child, signal.SIGTERM)
         watch = threading.Timer(self.timeout, self._end, [child]) if self.timeout else None
         if watch:
             watch.start()
@@ -182,7 +189,7 @@ class DeckRunner:
             with self._lock:
                 if child not in self._children:
                     return
-                os.killpg(child.pid, sign)
+                send(child, sign)
             until = time.monotonic() + patience
             while child in self._children and time.monotonic() < until:
                 time.sleep(0.05)
@@ -191,11 +198,11 @@ class DeckRunner:
         """Ends the running children after an exception has left `run`: nobody waits for them."""
         self.is_ending = True
         for child in list(self._children):
-            os.killpg(child.pid, signal.SIGTERM)
+            send(child, signal.SIGTERM)
             try:
                 child.wait(GRACE)
             except subprocess.TimeoutExpired:
-                os.killpg(child.pid, signal.SIGKILL)
+                send(child, signal.SIGKILL)
                 child.wait()
 
     def end(self) -> None:

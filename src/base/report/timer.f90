@@ -1,10 +1,10 @@
-!> Wall clock, processor time and memory of the process.
+!> Wall clock, and memory of the process.
 module timer
   use, intrinsic :: iso_c_binding, only: c_long
   use kinds, only: long, rk
   implicit none
   private
-  public :: wall_clock, processor_time, peak_memory
+  public :: wall_clock, peak_memory
 
   real(rk), parameter :: kilobytes_per_megabyte = 1024.0_rk
 
@@ -25,11 +25,6 @@ contains
     call system_clock(ticks, rate)
     seconds = real(ticks, rk)/real(rate, rk)
   end function wall_clock
-
-  !> Seconds that the processors have worked for this process, all threads together.
-  real(rk) function processor_time() result(seconds)
-    call cpu_time(seconds)
-  end function processor_time
 
   !> Peak memory of the process so far [MB]; 0 if the system does not report it.
   real(rk) function peak_memory() result(megabytes)
