@@ -28,7 +28,7 @@ def coupling_rungs(deck: Deck) -> list[Rung]:
     add("joints on surfaces", 1.3, bool(of_elements), joints_on_surfaces)
     add("joints by chains of interface elements", 1.5, bool(on_surfaces), chains)
     add("slaves and masters of joints exchanged", 1.2, bool(on_surfaces), exchanged)
-    add("joints with Gauss points", 1.2, any(not has_gauss(card) for card in joints), with_gauss)
+    add("joints with Gauss points", 3.0, any(not has_gauss(card) for card in joints), with_gauss)
     exact = [card for card in ties if "STIFFNESS" not in card.parameters]
     add("ties by springs", 1.0, bool(exact), ties_by_springs)
     add("ties by joints that stay closed", 1.5, bool(ties), ties_by_joints)
