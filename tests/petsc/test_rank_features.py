@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import h5py
+import make_dam
 import numpy as np
 import pytest
 from harness import ROOT
@@ -82,6 +84,25 @@ def modal_damping() -> str:
     return BlockOnRock().deck(QUAKE + dynamic(damping + motion, 0.01, 0.1))
 
 
+def opened_dam(folder: Path) -> str:
+    """A dam with two joints of 85 points, which are groups of their own: each has its rank."""
+    sizes = "--joints 2 --arc 10 --levels 4 --bottom 2 --thick 16 --no-rock"
+    time = 0.01 * np.arange(40)
+    motion = []
+    for k, axis in enumerate("xyz"):
+        motion.append(folder / f"motion_{axis}.txt")
+        np.savetxt(motion[-1], 30.0 / (k + 1) * np.sin(10.0 * np.pi * time + k))
+    files = [str(file) for file in motion]
+    options = ["--motion-unit", "M/S2", "--duration", "0.3", "--motion", *files]
+    assert make_dam.main(["-o", str(folder / "dam.inp"), *sizes.split(), *options]) == 0
+    dam = (folder / "dam.inp").read_text()
+    mesh = (folder / "dam_mesh.inp").read_text()
+    deck = dam.replace("*INCLUDE, INPUT=dam_mesh.inp\n", mesh)
+    for first in ("*DLOAD", "*DAMPING"):  # of both steps
+        deck = deck.replace(first, f"{TIGHT}\n{first}")
+    return deck.replace("INPUT=dam_motion", f"INPUT={folder}/dam_motion")
+
+
 def warmed() -> str:
     """A held brick with a field of temperatures."""
     blocks = brick((4, 3, 3))
@@ -115,6 +136,18 @@ def test_feature(keyway, on_ranks, feature, ranks):
     """
     deck = FEATURES[feature]()
     plain, divided = keyway(deck, "-j", "1"), on_ranks(ranks)(deck, "--solver", "DIRECT")
+    size, place = worst_difference(plain, divided)
+    assert size <= 1e-8, place
+
+
+@pytest.mark.parametrize("ranks", [2, 4])
+def test_each_joint_on_its_rank(keyway, on_ranks, tmp_path, ranks):
+    """A joint opens by 0.1 m. Two joints on two ranks, and on four, of which two have none; as in
+    `test_feature`.
+    """
+    deck = opened_dam(tmp_path)
+    plain, divided = keyway(deck, "-j", "1"), on_ranks(ranks)(deck, "--solver", "DIRECT")
+    assert plain.csv("joint_JOINT1")["opening"].max() > 0.05
     size, place = worst_difference(plain, divided)
     assert size <= 1e-8, place
 

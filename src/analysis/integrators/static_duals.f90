@@ -24,6 +24,9 @@ module static_duals
   real(rk), parameter :: share_of_force = 1.0e-3_rk
   !> Tolerance of the responses over that of the step.
   real(rk), parameter :: tighter = 1.0e-2_rk
+  !> Responses need no less, and round-off may not allow it: for the residual, and for the last
+  !> correction over the response, which is round-off where the converged state is solved for again.
+  real(rk), parameter :: least_tolerance = 1.0e-10_rk, least_correction = 1.0e-3_rk
 
   !> An equilibrium beside the converged one.
   type :: response
@@ -204,7 +207,9 @@ contains
     allocate (found%x(size(load)))
     found%joints = now%joints
     kept = solver%controls
-    solver%controls%residual_tolerance = tighter*kept%residual_tolerance
+    solver%controls%residual_tolerance = min(kept%residual_tolerance, &
+                                             max(tighter*kept%residual_tolerance, least_tolerance))
+    solver%controls%increment_tolerance = max(kept%increment_tolerance, least_correction)
     solver%controls%most_unsaved = huge(1)
     call solver%solve_balance(balance, model%joints, now%joints, found%joints, found%x, outcome, &
                               failure)

@@ -100,6 +100,11 @@ module ranks
     end subroutine keyway_share_text
   end interface
 
+  !> Replaces an array by its sum over all ranks, which has the same bits on all of them.
+  interface add_over_ranks
+    module procedure add_vectors, add_matrices
+  end interface add_over_ranks
+
 contains
 
   !> Ranks of the run.
@@ -127,11 +132,17 @@ contains
     is_alone = keyway_is_alone() /= 0
   end function is_alone
 
-  !> Replaces `x` by the sum over all ranks, which has the same bits on all of them.
-  subroutine add_over_ranks(x)
+  !> The sum of vectors.
+  subroutine add_vectors(x)
     real(rk), contiguous, intent(inout) :: x(:) !< of one size on all ranks
     call keyway_add_over_ranks(x, size(x, kind=c_size_t))
-  end subroutine add_over_ranks
+  end subroutine add_vectors
+
+  !> The sum of matrices.
+  subroutine add_matrices(x)
+    real(rk), contiguous, intent(inout) :: x(:, :) !< of one size on all ranks
+    call keyway_add_over_ranks(x, size(x, kind=c_size_t))
+  end subroutine add_matrices
 
   !> Puts the rows of all ranks together, on all ranks.
   subroutine gather_rows(first, own, all)

@@ -1,11 +1,13 @@
 !> The compliance G = B K_0^-1 B^T of the structure at the points of its joints, in blocks between
 !> groups of points (theory.md, 8). Blocks that are too small to matter are left out.
 !>
-!> Vectors have the rows of all points, in the order of the points.
+!> Vectors have the rows of all points, in the order of the points. On several ranks each rank holds
+!> the rows of its own groups, and the couplings of all.
 module block_compliance
   use coupling_block, only: dense_block, make_block, transpose_block
   use kinds, only: rk, long
   use point_groups, only: group_list
+  use ranks, only: add_over_ranks
   implicit none
   private
   public :: compliance_blocks, few_points, take_blocks, own_size
@@ -127,12 +129,14 @@ contains
     real(rk) :: sorted_x(size(x)), sorted_y(size(y))
     integer :: j
     sorted_x = x(self%groups%row)
+    if (self%groups%is_divided()) sorted_y = 0.0_rk
     !$omp parallel do schedule(dynamic) default(none) shared(self, sorted_x, sorted_y) &
     !$omp if (self%groups%num_groups > 1)
     do j = 1, self%groups%num_groups
-      call move_group(self, j, sorted_x, sorted_y)
+      if (self%groups%is_here(j)) call move_group(self, j, sorted_x, sorted_y)
     end do
     !$omp end parallel do
+    if (self%groups%is_divided()) call add_over_ranks(sorted_y)
     y(self%groups%row) = sorted_y
   end subroutine product
 
@@ -145,12 +149,14 @@ contains
     real(rk) :: sorted_x(size(x)), sorted_y(size(y))
     integer :: j
     sorted_x = x(self%groups%row)
+    if (self%groups%is_divided()) sorted_y = 0.0_rk
     !$omp parallel do schedule(dynamic) default(none) &
     !$omp shared(self, takes_part, sorted_x, sorted_y) if (self%groups%num_groups > 1)
     do j = 1, self%groups%num_groups
-      call move_roughly(self, j, takes_part(j, :), sorted_x, sorted_y)
+      if (self%groups%is_here(j)) call move_roughly(self, j, takes_part(j, :), sorted_x, sorted_y)
     end do
     !$omp end parallel do
+    if (self%groups%is_divided()) call add_over_ranks(sorted_y)
     y(self%groups%row) = sorted_y
   end subroutine couple
 

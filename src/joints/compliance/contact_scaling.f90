@@ -6,6 +6,7 @@ module contact_scaling
   use joint_operator, only: jump_operator
   use joint_rows, only: num_axes, row_of
   use kinds, only: rk
+  use ranks, only: add_over_ranks
   implicit none
   private
   public :: contact_scale, open_group, find_contact_scale
@@ -31,7 +32,7 @@ module contact_scaling
 
 contains
 
-  !> r of the augmented form, and C of all groups. C is (I - G W k_ref)^-1 G with the own block of
+  !> r of the augmented form, and C of all groups of this rank. C is (I - G W k_ref)^-1 G with the own block of
   !> the group, W = weight*area; a part of k_ref stays so that C exists for blocks that only joints
   !> hold.
   subroutine find_contact_scale(blocks, operator, k_ref, weight, scale, opened)
@@ -43,13 +44,19 @@ contains
     type(open_group), allocatable, intent(out) :: opened(:) !< (groups)
     integer :: g
     allocate (opened(blocks%groups%num_groups))
-    allocate (scale%shared(operator%num_points), scale%own(2, operator%num_points))
+    allocate (scale%shared(operator%num_points), source=0.0_rk)
+    allocate (scale%own(2, operator%num_points), source=0.0_rk)
     !$omp parallel do schedule(dynamic) default(none) if (size(opened) > 1) &
     !$omp shared(blocks, operator, k_ref, weight, scale, opened)
     do g = 1, size(opened)
+      if (.not. blocks%groups%is_here(g)) cycle
       call scale_group(blocks, g, weight*operator%area, k_ref, scale, opened(g))
     end do
     !$omp end parallel do
+    if (blocks%groups%is_divided()) then
+      call add_over_ranks(scale%shared)
+      call add_over_ranks(scale%own)
+    end if
   end subroutine find_contact_scale
 
   !> C of a group.

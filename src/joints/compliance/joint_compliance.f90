@@ -1,43 +1,96 @@
 !> Compliance of the structure at the points of its joints, G = B K_0^-1 B^T, by solves.
 module joint_compliance
+  use block_compliance, only: compliance_blocks, own_size
   use kinds, only: rk
   use errors, only: error_type
   use joint_rows, only: num_rows
   use linear_solver, only: equation_solver
   use joint_operator, only: jump_operator
+  use point_groups, only: group_list
+  use ranks, only: add_over_ranks
   implicit none
   private
-  public :: find_compliance
+  public :: find_compliance, find_own_rows
 
   integer, parameter :: block_size = 48 !< right-hand sides solved at once
 
 contains
 
-  !> Computes G by solves with blocks of right-hand sides.
+  !> Computes G.
   subroutine find_compliance(factor, operator, num_free, compliance, error)
     class(equation_solver), intent(inout) :: factor !< of K_0
     type(jump_operator), intent(in) :: operator
     integer, intent(in) :: num_free
     real(rk), allocatable, intent(out) :: compliance(:, :) !< (rows, rows) [m/N]
     type(error_type), allocatable, intent(out) :: error
+    integer :: row
+    call find_columns(factor, operator, num_free, [(row, row=1, num_rows(operator%num_points))], &
+                      compliance, error)
+    if (.not. allocated(error)) compliance = 0.5_rk*(compliance + transpose(compliance))
+  end subroutine find_compliance
+
+  !> Computes G in blocks; each rank keeps the rows of its own groups. All ranks solve together.
+  subroutine find_own_rows(factor, operator, num_free, spring, groups, blocks, error)
+    class(equation_solver), intent(inout) :: factor !< of K_0
+    type(jump_operator), intent(in) :: operator
+    integer, intent(in) :: num_free
+    real(rk), intent(in) :: spring(:) !< (rows) compliance of the joints' own springs [m/N]
+    type(group_list), intent(in) :: groups
+    type(compliance_blocks), intent(out) :: blocks
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: columns(:, :)
+    real(rk) :: lengths(groups%num_groups, groups%num_groups), own(groups%num_groups)
+    integer :: j, k
+    call blocks%start(groups)
+    lengths = 0.0_rk
+    own = 0.0_rk
+    do j = 1, groups%num_groups
+      call find_columns(factor, operator, num_free, groups%rows(j), columns, error)
+      if (allocated(error)) return
+      if (.not. groups%is_here(j)) cycle
+      do k = 1, groups%num_groups
+        blocks%block(j, k)%values = transpose(columns(groups%rows(k), :))
+        lengths(j, k) = norm2(blocks%block(j, k)%values)
+      end do
+      associate (block => blocks%block(j, j)%values)
+        block = 0.5_rk*(block + transpose(block))
+        own(j) = own_size(block, spring(groups%rows(j)))
+      end associate
+    end do
+    call add_over_ranks(lengths)
+    call add_over_ranks(own)
+    do k = 1, groups%num_groups
+      blocks%block(:, k)%coupling = lengths(:, k)/max(sqrt(own*own(k)), tiny(1.0_rk))
+      blocks%block(k, k)%coupling = 1.0_rk
+    end do
+    blocks%left_out = 0.0_rk
+  end subroutine find_own_rows
+
+  !> Columns of G by solves with blocks of right-hand sides.
+  subroutine find_columns(factor, operator, num_free, rows, columns, error)
+    class(equation_solver), intent(inout) :: factor !< of K_0
+    type(jump_operator), intent(in) :: operator
+    integer, intent(in) :: num_free
+    integer, intent(in) :: rows(:) !< the rows of B whose forces move the structure
+    real(rk), allocatable, intent(out) :: columns(:, :) !< (all rows, rows) [m/N]
+    type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: b(:, :)
-    integer :: m, first, last, row
-    m = num_rows(operator%num_points)
-    allocate (compliance(m, m), b(num_free, min(block_size, m)))
-    do first = 1, m, block_size
-      last = min(first + block_size - 1, m)
-      b = 0.0_rk
-      do row = first, last
-        call spread_row(operator, row, b(:, row - first + 1))
+    integer :: first, last, k
+    allocate (columns(num_rows(operator%num_points), size(rows)))
+    do first = 1, size(rows), block_size
+      last = min(first + block_size - 1, size(rows))
+      allocate (b(num_free, last - first + 1), source=0.0_rk)
+      do k = first, last
+        call spread_row(operator, rows(k), b(:, k - first + 1))
       end do
       call factor%solve(b, error)
       if (allocated(error)) return
-      do row = first, last
-        call apply_rows(operator, b(:, row - first + 1), compliance(:, row))
+      do k = first, last
+        call apply_rows(operator, b(:, k - first + 1), columns(:, k))
       end do
+      deallocate (b)
     end do
-    compliance = 0.5_rk*(compliance + transpose(compliance))
-  end subroutine find_compliance
+  end subroutine find_columns
 
   !> One row of B as a column over the free unknowns.
   pure subroutine spread_row(operator, row, column)

@@ -1,12 +1,14 @@
 !> Groups of joint points: those of a joint, of some small joints, or of a patch of a large joint.
 !>
-!> The compliance of the joints is kept in blocks between groups (theory.md, 8).
+!> The compliance of the joints is kept in blocks between groups (theory.md, 8). On several ranks
+!> each group has a rank of its own, which holds its rows of the compliance and solves for it.
 module point_groups
   use joint_rows, only: num_axes, row_of
   use kinds, only: rk
+  use ranks, only: num_ranks, this_rank
   implicit none
   private
-  public :: group_list, group_points, single_group
+  public :: group_list, group_points, single_group, divide
 
   !> Points and rows, group by group.
   type :: group_list
@@ -15,8 +17,10 @@ module point_groups
     integer, allocatable :: point(:)
     integer, allocatable :: row(:) !< rows of these points; those of group g start at first_row(g)
     integer, allocatable :: first_row(:) !< (groups + 1) in `row`
+    !> (groups) rank of each group, from 0; not allocated where every rank has all groups
+    integer, allocatable :: rank(:)
   contains
-    procedure :: members, rows
+    procedure :: members, rows, is_divided, is_here
   end type group_list
 
   !> Joints are one group as long as they have so many points together. Their tangent is then
@@ -49,7 +53,39 @@ contains
     groups%first(groups%num_groups + 1) = num_points + 1
     groups%first = groups%first(:groups%num_groups + 1)
     call list_rows(groups)
+    if (num_ranks() > 1 .and. groups%num_groups > 1) call divide(num_ranks(), groups)
   end subroutine group_points
+
+  !> Gives each group to a rank: the largest group first, to the rank with the least points so far.
+  pure subroutine divide(num_parts, groups)
+    integer, intent(in) :: num_parts
+    type(group_list), intent(inout) :: groups
+    integer :: points(0:num_parts - 1), size_of(groups%num_groups), k, g, rank
+    points = 0
+    size_of = groups%first(2:) - groups%first(:groups%num_groups)
+    allocate (groups%rank(groups%num_groups))
+    do k = 1, groups%num_groups
+      g = maxloc(size_of, 1)
+      rank = minloc(points, 1) - 1
+      groups%rank(g) = rank
+      points(rank) = points(rank) + size_of(g)
+      size_of(g) = -1
+    end do
+  end subroutine divide
+
+  !> Whether the groups have ranks of their own.
+  pure logical function is_divided(self)
+    class(group_list), intent(in) :: self
+    is_divided = allocated(self%rank)
+  end function is_divided
+
+  !> Whether this rank works for a group.
+  logical function is_here(self, group)
+    class(group_list), intent(in) :: self
+    integer, intent(in) :: group
+    is_here = .true.
+    if (allocated(self%rank)) is_here = self%rank(group) == this_rank()
+  end function is_here
 
   !> All points in one group.
   subroutine single_group(num_points, groups)

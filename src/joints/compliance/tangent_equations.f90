@@ -2,7 +2,8 @@
 !>
 !> D = weight*area*(k_ref - tangent); a correction of the jumps is d = r + G z. With one group of
 !> points the equations are solved by its factor, with several by flexible GMRES (Saad 1993) with
-!> the factors of the groups as preconditioner.
+!> the factors of the groups as preconditioner. On several ranks each rank has the factors of its own
+!> groups.
 module tangent_equations
   use block_compliance, only: compliance_blocks
   use global_vectors, only: length
@@ -10,6 +11,7 @@ module tangent_equations
   use kinds, only: rk
   use krylov_spaces, only: krylov_space, most_steps, start_space, make_room, add_to_space, &
                            solve_triangle
+  use ranks, only: add_over_ranks
   use tangent_factors, only: group_factor, update_factor, solve_group, apply_change
   implicit none
   private
@@ -66,11 +68,29 @@ contains
     !$omp parallel do schedule(dynamic) default(none) if (size(self%group) > 1) &
     !$omp shared(self, blocks, kept, is_single)
     do g = 1, size(self%group)
+      if (.not. blocks%groups%is_here(g)) cycle
       call update_factor(blocks, g, self%change, kept, is_single, self%group(g))
     end do
     !$omp end parallel do
+    if (blocks%groups%is_divided()) call share_outcomes(blocks, self%group)
     self%is_singular = .not. all(self%group%is_there)
   end subroutine set_tangent
+
+  !> Tells all ranks which factors are there, and which are those of the present D.
+  subroutine share_outcomes(blocks, group)
+    type(compliance_blocks), intent(in) :: blocks
+    type(group_factor), intent(inout) :: group(:)
+    real(rk) :: outcome(2*size(group)) ! 1 for true
+    integer :: g
+    outcome = 0.0_rk
+    do g = 1, size(group)
+      if (.not. blocks%groups%is_here(g)) cycle
+      outcome(2*g - 1:2*g) = merge(1.0_rk, 0.0_rk, [group(g)%is_there, group(g)%is_exact])
+    end do
+    call add_over_ranks(outcome)
+    group%is_there = outcome(1::2) > 0.5_rk
+    group%is_exact = outcome(2::2) > 0.5_rk
+  end subroutine share_outcomes
 
   !> Groups in two halves; those of the second are solved for with the forces of the first. A group
   !> is in another half than the one before it that it sees most: neighbours alternate.
@@ -134,11 +154,16 @@ contains
     !$omp parallel do schedule(dynamic) default(none) shared(self, blocks, takes_part, sorted) &
     !$omp if (size(self%group) > 1)
     do g = 1, size(self%group)
-      if (.not. takes_part(g)) cycle
-      call solve_group(self%group(g), sorted(blocks%groups%first_row(g): &
-                                             blocks%groups%first_row(g + 1) - 1))
+      associate (first => blocks%groups%first_row(g), next => blocks%groups%first_row(g + 1))
+        if (.not. blocks%groups%is_here(g)) then
+          sorted(first:next - 1) = 0.0_rk
+        else if (takes_part(g)) then
+          call solve_group(self%group(g), sorted(first:next - 1))
+        end if
+      end associate
     end do
     !$omp end parallel do
+    if (blocks%groups%is_divided()) call add_over_ranks(sorted)
     x(blocks%groups%row) = sorted
   end subroutine precondition
 

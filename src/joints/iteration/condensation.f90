@@ -14,7 +14,7 @@ module condensation
   use joint_iteration, only: start_iteration, excess_traction, closed_tangent
   use block_compliance, only: few_points, take_blocks
   use contact_scaling, only: find_contact_scale
-  use joint_compliance, only: find_compliance
+  use joint_compliance, only: find_compliance, find_own_rows
   use point_groups, only: group_list, group_points
   use selected_compliance, only: select_compliance
   use matrix_condition, only: estimate_condition
@@ -156,6 +156,11 @@ contains
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: dense(:, :)
     integer :: levels
+    if (groups%is_divided()) then
+      call find_own_rows(self%factor, self%operator, num_free, spring, groups, &
+                         self%condensed%blocks, error)
+      return
+    end if
     if (self%jumps%is_there .and. .not. self%jumps%top%is_there) then
       if (self%operator%num_points > few_points) call use_many_threads(levels)
       call schur_compliance(self%jumps, self%operator, dense)

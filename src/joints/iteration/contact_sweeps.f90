@@ -16,6 +16,7 @@ module contact_sweeps
   use joint_points, only: dam_joint
   use joint_rows, only: num_axes, row_of
   use kinds, only: rk
+  use ranks, only: add_over_ranks
   implicit none
   private
   public :: swept_points, gather_points, sweep_contacts
@@ -80,16 +81,37 @@ contains
       do visit = 1, size(opened)
         g = visit
         if (mod(sweep, 2) == 0) g = size(opened) + 1 - visit
-        if (size(opened) > 1 .or. sweep == 1) then
-          call find_rest(blocks, opened(g), g, points, closed_jump, force, d)
+        if (blocks%groups%is_here(g)) then
+          if (size(opened) > 1 .or. sweep == 1) then
+            call find_rest(blocks, opened(g), g, points, closed_jump, force, d)
+          end if
+          call sweep_group(opened(g)%compliance, blocks%groups%members(g), points, &
+                           mod(sweep, 2) == 1, force, d, field)
         end if
-        call sweep_group(opened(g)%compliance, blocks%groups%members(g), points, &
-                         mod(sweep, 2) == 1, force, d, field)
+        if (blocks%groups%is_divided()) call share_group(blocks, g, force, d)
       end do
     end do
     field%multiplier = force/spread(points%share, 1, 3)
     field%jump = d + points%spring*force
   end subroutine sweep_contacts
+
+  !> Gives all ranks the forces and the d of a group.
+  subroutine share_group(blocks, group, force, d)
+    type(compliance_blocks), intent(in) :: blocks
+    integer, intent(in) :: group
+    real(rk), intent(inout) :: force(:, :), d(:, :) !< (3, points) [N], [m]
+    real(rk), allocatable :: both(:, :)
+    associate (point => blocks%groups%members(group))
+      allocate (both(6, size(point)), source=0.0_rk)
+      if (blocks%groups%is_here(group)) then
+        both(:3, :) = force(:, point)
+        both(4:, :) = d(:, point)
+      end if
+      call add_over_ranks(both)
+      force(:, point) = both(:3, :)
+      d(:, point) = both(4:, :)
+    end associate
+  end subroutine share_group
 
   !> d of a group from its forces and the d of other groups. Other joints carry the forces of closed
   !> ones less d/spring.

@@ -5,7 +5,7 @@ program test_tangent_equations
   use dense_factor, only: factorise_dense, lu_factor, solve_factored
   use kinds, only: rk
   use omp_lib, only: omp_set_num_threads
-  use point_groups, only: group_list, group_points
+  use point_groups, only: divide, group_list, group_points
   use tangent_equations, only: joint_tangent
   use testing, only: check, check_close, test_log
   implicit none
@@ -47,6 +47,9 @@ contains
                  'patches follow one another')
     end do
     call check(log, sum(list%point) == 1100*1101/2 .and. size(list%row) == 3300, 'every point once')
+    call check(log,.not. list%is_divided() .and. list%is_here(5), 'one rank has all groups')
+    call divide(2, list)
+    call check(log, all(list%rank == [0, 0, 1, 0, 1]), 'two ranks: 600 and 500 points')
   end subroutine points_are_grouped
 
   !> Points of a group.
