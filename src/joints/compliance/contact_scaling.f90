@@ -32,9 +32,9 @@ module contact_scaling
 
 contains
 
-  !> r of the augmented form, and C of all groups of this rank. C is (I - G W k_ref)^-1 G with the own block of
-  !> the group, W = weight*area; a part of k_ref stays so that C exists for blocks that only joints
-  !> hold.
+  !> r of the augmented form, and C of all groups of this rank. C is (I - G W k_ref)^-1 G with the
+  !> own block of the group, W = weight*area; a part of k_ref stays so that C exists for blocks that
+  !> only joints hold.
   subroutine find_contact_scale(blocks, operator, k_ref, weight, scale, opened)
     type(compliance_blocks), intent(in) :: blocks !< G with the closed joints
     type(jump_operator), intent(in) :: operator

@@ -2,8 +2,7 @@
 !>
 !> D = weight*area*(k_ref - tangent); a correction of the jumps is d = r + G z. With one group of
 !> points the equations are solved by its factor, with several by flexible GMRES (Saad 1993) with
-!> the factors of the groups as preconditioner. On several ranks each rank has the factors of its own
-!> groups.
+!> the factors of the groups as preconditioner. On several ranks each rank has those of its groups.
 module tangent_equations
   use block_compliance, only: compliance_blocks
   use global_vectors, only: length
