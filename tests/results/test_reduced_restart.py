@@ -1,12 +1,15 @@
 """A run with a reduced model goes on from its checkpoint bit by bit."""
 
+import pytest
 from restart_case import continue_killed, differences
 from test_reduced_model import SHAKEN, decks
 
 
-def test_continued_run(program_path, tmp_path):
+@pytest.mark.parametrize("estimate", ["ON", "OFF"])
+def test_continued_run(program_path, tmp_path, estimate):
     _, deck, files = decks(SHAKEN, ", MODES=60")
-    deck = deck.replace("*DYNAMIC,", "*RESTART, WRITE, FREQUENCY=40\n*DYNAMIC,")
+    cards = f"*RESTART, WRITE, FREQUENCY=40\n*CONTROLS, ERROR ESTIMATE={estimate}\n"
+    deck = deck.replace("*DYNAMIC,", cards + "*DYNAMIC,")
     for name, text in (files | {"dam.inp": deck}).items():
         (tmp_path / name).write_text(text)
     path, options = tmp_path / "dam.inp", ["-j", "1"]
