@@ -93,6 +93,8 @@ ROOMS = (
 FOLDERS = tuple(dict.fromkeys(room.split("/")[0] for room in ROOMS))
 # Modules of the compiler and of the libraries.
 FOREIGN = {"iso_fortran_env", "iso_c_binding", "omp_lib", "hdf5", "h5lt", "ieee_arithmetic"}
+# Modules with this ending are copies that CMake makes (cmake/WideCopies.cmake).
+COPY = "_wide"
 # CMake fills these in (cmake/BuildInfo.cmake).
 TEMPLATES = "*.f90.in"
 
@@ -123,7 +125,8 @@ def read_sources(root: Path) -> tuple[list[Source], list[str]]:
         stem = path.name.split(".")[0]
         if unit != stem and not (room == "app" and stem == "main"):
             faults.append(f"{place}: holds '{unit}'; file and module must have the same name")
-        found.append(Source(place, room, unit, parent_name(text), tuple(uses(text))))
+        used = tuple((line, name.removesuffix(COPY)) for line, name in uses(text))
+        found.append(Source(place, room, unit, parent_name(text), used))
     return found, faults
 
 

@@ -14,6 +14,7 @@ module inelastic_blocks
   use material_points, only: point_set, point_state, stored_energy, fracture_energy, &
                              crushing_energy
   use shape_hex8, only: edges_at, hex8_dofs, shape_at
+  use slope_products, only: add_forces_of_stress, find_symmetric_gradient
   implicit none
   private
   public :: inelastic_block, list_inelastic_blocks
@@ -25,8 +26,8 @@ module inelastic_blocks
     integer, allocatable :: elements(:) !< positions in the mesh
     integer :: points_of_element = 0
     real(rk), allocatable :: b(:, :, :, :) !< (6, 24, points, elements) strain operators [1/m]
-    !> (points, 3, 8, elements) derivatives of the shape functions, where they alone make the strain
-    !> operators: a sixth of the numbers [1/m]
+    !> (8 points, 3, 8, elements) derivatives of the shape functions, where they alone make the
+    !> strain operators: a sixth of the numbers [1/m]
     real(rk), allocatable :: slope(:, :, :, :)
     real(rk), allocatable :: weight(:, :) !< (points, elements) volumes of the points [m3]
     real(rk) :: d(6, 6) = 0.0_rk !< elastic stiffness of the law [Pa]
@@ -100,12 +101,13 @@ contains
     call place_points(mesh%element_id(elements), x, part)
   end subroutine build_block
 
-  !> Takes the derivatives of the shape functions from the strain operators.
+  !> Takes the derivatives of the shape functions from the strain operators of eight points.
   pure subroutine find_slopes(part)
     type(inelastic_block), intent(inout) :: part
     real(rk) :: plain(6, 3), g(3)
     integer :: e, a, q, n
-    allocate (part%slope(size(part%b, 3), 3, 8, size(part%b, 4)))
+    if (part%points_of_element /= 8) return
+    allocate (part%slope(8, 3, 8, size(part%b, 4)))
     do e = 1, size(part%b, 4)
       do a = 1, 8
         n = 3*a - 2
@@ -130,25 +132,11 @@ contains
     integer, intent(in) :: e
     real(rk), intent(in) :: u(hex8_dofs) !< [m]
     real(rk), intent(out) :: strain(6, self%points_of_element)
-    real(rk) :: sum_of(self%points_of_element, 6)
-    integer :: a, n
-    if (.not. allocated(self%slope)) then
+    if (allocated(self%slope)) then
+      call find_symmetric_gradient(self%slope(:, :, :, e), u, strain)
+    else
       call strains_of_element(self%b(:, :, :, e), u, strain)
-      return
     end if
-    sum_of = 0.0_rk
-    do a = 1, 8
-      n = 3*a - 2
-      associate (g => self%slope(:, :, a, e))
-        sum_of(:, 1) = sum_of(:, 1) + g(:, 1)*u(n)
-        sum_of(:, 2) = sum_of(:, 2) + g(:, 2)*u(n + 1)
-        sum_of(:, 3) = sum_of(:, 3) + g(:, 3)*u(n + 2)
-        sum_of(:, 4) = sum_of(:, 4) + g(:, 2)*u(n) + g(:, 1)*u(n + 1)
-        sum_of(:, 5) = sum_of(:, 5) + g(:, 3)*u(n) + g(:, 1)*u(n + 2)
-        sum_of(:, 6) = sum_of(:, 6) + g(:, 3)*u(n + 1) + g(:, 2)*u(n + 2)
-      end associate
-    end do
-    strain = transpose(sum_of)
   end subroutine find_strains
 
   !> Adds sum B^T sigma of one element.
@@ -157,16 +145,9 @@ contains
     integer, intent(in) :: e
     real(rk), intent(in) :: stress(self%points_of_element, 6) !< times volumes of points [N m]
     real(rk), intent(inout) :: force(hex8_dofs) !< [N]
-    integer :: a, n, q, i
+    integer :: q, i
     if (allocated(self%slope)) then
-      do a = 1, 8
-        n = 3*a - 2
-        associate (g => self%slope(:, :, a, e), s => stress)
-          force(n) = force(n) + sum(g(:, 1)*s(:, 1) + g(:, 2)*s(:, 4) + g(:, 3)*s(:, 5))
-          force(n + 1) = force(n + 1) + sum(g(:, 2)*s(:, 2) + g(:, 1)*s(:, 4) + g(:, 3)*s(:, 6))
-          force(n + 2) = force(n + 2) + sum(g(:, 3)*s(:, 3) + g(:, 1)*s(:, 5) + g(:, 2)*s(:, 6))
-        end associate
-      end do
+      call add_forces_of_stress(self%slope(:, :, :, e), stress, force)
       return
     end if
     do q = 1, self%points_of_element

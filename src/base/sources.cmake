@@ -47,6 +47,8 @@ set(sources
   report/timer.f90
   system/file_identity.f90
   system/machine.f90
+  system/processor_features.c
+  system/processor_features.f90
   system/run_lock.f90
   system/stop_signals.f90
   system/system_calls.c

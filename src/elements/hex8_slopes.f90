@@ -7,7 +7,7 @@ module hex8_slopes
   use shape_hex8, only: corner_fault, corner_of_point, hex8_dofs, point_derivative
   implicit none
   private
-  public :: slopes_at_points, stiffness_of_slopes, strains_of_slopes
+  public :: slopes_at_points, stiffness_of_slopes, strains_of_slopes, add_forces_of_slopes
 
   integer, parameter :: num_points = 8
 
@@ -161,4 +161,24 @@ contains
     end do
     strain = transpose(sums)
   end subroutine strains_of_slopes
+
+  !> Adds the forces of stresses at the points: the transpose of strains_of_slopes.
+  pure subroutine add_forces_of_slopes(slope, stress, force)
+    real(rk), intent(in) :: slope(8, 3, 8) !< (point, direction, node) [1/m]
+    real(rk), intent(in) :: stress(8, 6) !< (point, component) times volumes of points [N m]
+    real(rk), intent(inout) :: force(hex8_dofs) !< [N]
+    real(rk) :: sums(8, 3)
+    integer :: a, q
+    do a = 1, 8
+      sums(:, 1) = slope(:, 1, a)*stress(:, 1) + slope(:, 2, a)*stress(:, 4) &
+                   + slope(:, 3, a)*stress(:, 5)
+      sums(:, 2) = slope(:, 2, a)*stress(:, 2) + slope(:, 1, a)*stress(:, 4) &
+                   + slope(:, 3, a)*stress(:, 6)
+      sums(:, 3) = slope(:, 3, a)*stress(:, 3) + slope(:, 1, a)*stress(:, 5) &
+                   + slope(:, 2, a)*stress(:, 6)
+      do q = 1, num_points
+        force(3*a - 2:3*a) = force(3*a - 2:3*a) + sums(q, :)
+      end do
+    end do
+  end subroutine add_forces_of_slopes
 end module hex8_slopes

@@ -11,4 +11,5 @@ set(sources
   hex8_slopes.f90
   shape_hex8.f90
   shape_quad4.f90
+  slope_products.f90
 )

@@ -16,6 +16,7 @@ set(sources
   concrete/damage_work.f90
   concrete/damage_yield.f90
   concrete_blocks/damage_flows.f90
+  concrete_blocks/damage_loops.f90
   concrete_blocks/damage_stress.f90
   concrete_blocks/damage_trials.f90
   concrete_blocks/flow_search.f90

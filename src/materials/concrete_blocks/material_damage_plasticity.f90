@@ -6,11 +6,10 @@ module material_damage_plasticity
   use damage_increment, only: elastic_stress
   use damage_history, only: last_backbone, last_damage, last_measure, last_strain, pack_history, &
                             unpack_history, width_row
+  use damage_loops, only: find_plain_stresses, has_plain_stress, screen_adjacent
   use damage_model, only: concrete_model, make_concrete_model, placed_curves, stiffness_of
   use damage_point, only: update_point
   use damage_states, only: point_answer, point_history, point_motion
-  use damage_stress, only: find_stresses, has_plain_stress
-  use damage_trials, only: screen_points
   use damage_work, only: complete_energies
   use errors, only: deck_is_wrong, error_type, raise
   use kinds, only: rk
@@ -110,7 +109,7 @@ contains
     end do
     is_plain = has_plain_stress(self%model) &
                .and. .not. (motion%wants_tangent .or. motion%wants_energy)
-    if (is_plain) call find_stresses(self%model, points, old, placed, new, has_answer)
+    if (is_plain) call find_plain_stresses(self%model, points, old, placed, new, has_answer)
     do i = 1, points%num_points
       if (has_answer(i)) cycle
       motion%edges = points%edges(:, :, i)
@@ -166,7 +165,7 @@ contains
   pure subroutine screen_runs(model, changes, factor, old, new, stored)
     type(concrete_model), intent(in) :: model
     logical, intent(in) :: changes(:) !< (points)
-    real(rk), intent(in) :: factor(:) !< (points) as in screen_points
+    real(rk), intent(in) :: factor(:) !< (points) as in screen_adjacent
     type(point_state), intent(in) :: old
     type(point_state), intent(inout) :: new !< all is set but strains
     real(rk), intent(inout) :: stored(:) !< (points) [J/m3]
@@ -181,8 +180,9 @@ contains
                        new%internal(1, first))
       call copy_values((last - first + 1)*size(old%energy, 1), old%energy(1, first), &
                        new%energy(1, first))
-      call screen_points(model, factor(first:last), new%strain(:, first:last), &
-                         new%stress(:, first:last), stored(first:last), new%is_elastic(first:last))
+      call screen_adjacent(model, factor(first:last), new%strain(:, first:last), &
+                           new%stress(:, first:last), stored(first:last), &
+                           new%is_elastic(first:last))
     end do
   end subroutine screen_runs
 
