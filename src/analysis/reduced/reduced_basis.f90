@@ -14,7 +14,6 @@ module reduced_basis
   use global_vectors, only: multiply
   use joint_rows, only: num_rows
   use kinds, only: rk
-  use matrix_pattern, only: pattern
   use mixed_products, only: rounded
   use reduced_ports, only: find_port_compliance, forces_of, rows_of, solve_blocks
   use step_system, only: dam_system

@@ -5,9 +5,8 @@ module fitted_stress
   use kinds, only: rk
   use shape_hex8, only: point_shape
   use small_matrix, only: solve_dense
-  use stress_error, only: smoothing_plan
+  use stress_error, only: compare_smooth, smoothing_plan
   use stress_recovery, only: recovery_plan, max_points
-  use tensor6, only: sum_tensors
   implicit none
   private
   public :: patch_fit, make_patch_fit, fitted_defect
@@ -132,15 +131,9 @@ contains
     real(rk), intent(in) :: stress(:, :, :) !< (6, max_points, solids) [Pa]
     real(rk), intent(out), contiguous :: defect(:, :, :) !< (6, max_points, solids) [Pa]
     real(rk), allocatable :: slope(:, :, :), smooth(:, :)
-    real(rk) :: at_corner(6, 8)
-    integer :: s
     call solve_patches(mesh, plan, smoothing, fit, stress, slope)
     call evaluate_patches(plan, smoothing, fit, slope, smooth)
-    do s = 1, plan%num_solids
-      at_corner = smooth(:, smoothing%patch(:, s))
-      call sum_tensors(8, at_corner, point_shape, 8, defect(:, :, s))
-      defect(:, :, s) = defect(:, :, s) - stress(:, :, s)
-    end do
+    call compare_smooth(plan, smoothing, smooth, stress, defect)
   end subroutine fitted_defect
 
   !> The coefficients of the fits, by least squares over the points of the solids of a patch.

@@ -15,7 +15,7 @@ module stress_error
   use tensor6, only: sum_tensors
   implicit none
   private
-  public :: smoothing_plan, make_smoothing_plan, stress_defect, energy_of_stresses
+  public :: smoothing_plan, make_smoothing_plan, stress_defect, compare_smooth, energy_of_stresses
   public :: repeat_single_points, add_hourglass_energy
 
   !> A patch is a node with the solids of one section around it.
@@ -121,9 +121,19 @@ contains
     logical, intent(in) :: is_bounded(:) !< (solids) corners take the value of the nearest point
     real(rk), intent(out), contiguous :: defect(:, :, :) !< (6, max_points, solids) [Pa]
     real(rk), allocatable :: smooth(:, :)
+    call average_patches(plan, smoothing, stress, is_bounded, smooth)
+    call compare_smooth(plan, smoothing, smooth, stress, defect)
+  end subroutine stress_defect
+
+  !> The stress between the values of patches less the stress of the elements.
+  subroutine compare_smooth(plan, smoothing, smooth, stress, defect)
+    type(recovery_plan), intent(in) :: plan
+    type(smoothing_plan), intent(in) :: smoothing
+    real(rk), intent(in) :: smooth(:, :) !< (6, patches) [Pa]
+    real(rk), intent(in) :: stress(:, :, :) !< (6, max_points, solids) [Pa]
+    real(rk), intent(out), contiguous :: defect(:, :, :) !< (6, max_points, solids) [Pa]
     real(rk) :: at_corner(6, 8)
     integer :: s
-    call average_patches(plan, smoothing, stress, is_bounded, smooth)
     !$omp parallel do default(none) shared(plan, smoothing, stress, smooth, defect) &
     !$omp private(at_corner) schedule(static) if (plan%num_solids > few_nodes)
     do s = 1, plan%num_solids
@@ -132,7 +142,7 @@ contains
       defect(:, :, s) = defect(:, :, s) - stress(:, :, s)
     end do
     !$omp end parallel do
-  end subroutine stress_defect
+  end subroutine compare_smooth
 
   !> The mean of the corners in each patch.
   subroutine average_patches(plan, smoothing, stress, is_bounded, smooth)

@@ -169,16 +169,10 @@ contains
     end do
     call check_close(log, control%size, 0.1_rk, 1.0e-15_rk, 'no growth without a cut')
     call control%cut(0.1_rk, 1.0_rk, gives_up)
-    do i = 1, 4
-      call check_close(log, control%size, 0.05_rk, 1.0e-15_rk, 'cut')
-      call control%accept(30)
-    end do
+    call stay(log, control, 4, 0.05_rk, 'cut')
     call check_close(log, control%size, 0.075_rk, 1.0e-15_rk, 'grown')
     call control%cut(0.075_rk, 1.0_rk, gives_up)
-    do i = 1, 8
-      call check_close(log, control%size, 0.0375_rk, 1.0e-15_rk, 'cut at once')
-      call control%accept(30)
-    end do
+    call stay(log, control, 8, 0.0375_rk, 'cut at once')
     call check_close(log, control%size, 0.05625_rk, 1.0e-15_rk, 'grown later')
     call control%accept(30)
     call control%cut(0.05625_rk, 1.0_rk, gives_up)
@@ -187,6 +181,20 @@ contains
     end do
     call check(log, control%size > 0.03_rk, 'the larger size served once: four increments again')
   end subroutine slow_increments_grow
+
+  !> Increments of one size that converge slowly.
+  subroutine stay(log, control, num_increments, size_of_all, what)
+    type(test_log), intent(inout) :: log
+    type(increment_control), intent(inout) :: control
+    integer, intent(in) :: num_increments
+    real(rk), intent(in) :: size_of_all
+    character(*), intent(in) :: what
+    integer :: i
+    do i = 1, num_increments
+      call check_close(log, control%size, size_of_all, 1.0e-15_rk, what)
+      call control%accept(30)
+    end do
+  end subroutine stay
 
   !> Sizes that follow an error: powers of two within the limits, doubled at their multiples.
   subroutine follow_an_error(log, given)
