@@ -21,6 +21,9 @@ in factorisations.
 cracks: a dam with two joints whose concrete cracks, Table 1 and a table of openings: increments in
 solves, iterations, share of the laws. --refine divides its elements.
 
+Both, and run, count in solves of the program and in solves of CHOLMOD alone with the same matrix,
+before and after the run: build `bench_bare_solve` beside the program. Run leaves these out without.
+
 reduced: a dam with the first of --joints joints, with the full and with the reduced model: time of
 an increment, error of the openings and its estimate.
 

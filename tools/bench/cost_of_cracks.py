@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 import sys
+from functools import partial
 from pathlib import Path
 
+from bare_cholmod import BareSolve, measure_beside
 from cost_of_joints import TOOLS, run_quietly
 from measured_run import Program, Run
 
@@ -42,9 +44,10 @@ LAWS = {"Table 1": TABLE_1, "G_f": OPENINGS}
 CASES = [("Table 1", 0.269), ("Table 1", 0.5), ("G_f", 0.5)]  # law, peak of the motion [g]
 ELASTIC = r"(\*MATERIAL, NAME=CONCRETE\n\*DENSITY\n\S+\n\*ELASTIC\n.*\n)"
 HEAD = (
-    "| concrete | peak [g] | unknowns | increments | cut-backs | increment, in solves | iterations "
-    "an increment | evaluations of laws an increment | laws, share of the increment "
-    "| increment [ms] | solve [ms] |"
+    "| concrete | peak [g] | unknowns | increments | cut-backs | iterations an increment "
+    "| evaluations of laws an increment | laws, share of the increment | increment [ms] "
+    "| own solve [ms] | CHOLMOD, same order [ms] | CHOLMOD, METIS [ms] | in own solves "
+    "| in solves of CHOLMOD | with METIS |"
 )
 
 
@@ -66,7 +69,7 @@ def solve_time(run: Run, increments: int) -> float:
 
 def measure_cracks(program: Program, folder: Path, refine: int, duration: float) -> str:
     """A table in Markdown, with one row for each concrete and motion."""
-    lines = [HEAD, "|" + "---|" * 11]
+    lines = [HEAD, "|" + "---|" * 15]
     for law, peak in CASES:
         text = write_dam(folder, peak, refine, duration)
         elastic = folder / "elastic.inp"
@@ -75,21 +78,25 @@ def measure_cracks(program: Program, folder: Path, refine: int, duration: float)
         deck = folder / "cracks.inp"
         place = re.search(ELASTIC, text).end()
         deck.write_text(text[:place] + cards + text[place:])
-        lines.append(row(program.run(deck), program.run(elastic), law, peak))
+        run, bare = measure_beside(program, elastic, partial(program.run, deck))
+        lines.append(row(run, program.run(elastic), bare, law, peak))
     return "\n".join(lines)
 
 
-def row(run: Run, elastic: Run, law: str, peak: float) -> str:
+def row(run: Run, elastic: Run, bare: BareSolve, law: str, peak: float) -> str:
     """One row: the time of all parts that are called in each increment, over that of a solve."""
     step = run.results.find("steps")[-1]
     increments, counts = step["increments"], elastic.results.find("steps")[-1]["increments"]
     parts = [p for p in run.parts if p["calls"] >= increments and p["kind"] != "output"]
     whole = sum(p["wall_s"] for p in parts)
     laws, calls = run.cost("update CONCRETE")
-    solve = solve_time(elastic, counts)
+    solves = [solve_time(elastic, counts), bare.same_order, bare.own_order]
     return (
         f"| {law} | {peak} | {run.unknowns} | {increments} | {step['cutbacks']} "
-        f"| {whole / increments / solve:.1f} "
         f"| {step['iterations'] / increments:.1f} | {calls / increments:.1f} "
-        f"| {laws / whole:.2f} | {1e3 * whole / increments:.1f} | {1e3 * solve:.2f} |"
+        f"| {laws / whole:.2f} | {1e3 * whole / increments:.1f} | "
+        + " | ".join(f"{1e3 * solve:.2f}" for solve in solves)
+        + " | "
+        + " | ".join(f"{whole / increments / solve:.1f}" for solve in solves)
+        + " |"
     )

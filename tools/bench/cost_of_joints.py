@@ -5,8 +5,10 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
+from bare_cholmod import measure_beside
 from measured_run import Program, Run
 
 TOOLS = Path(__file__).resolve().parent.parent
@@ -14,6 +16,11 @@ SHAPE = ["--height", "200", "--crest-arc", "500", "--refine", "2"]
 MESH = ["--arc", "44", "--levels", "16", "--bottom", "12", "--thick", "4"]
 FINE = ["--arc", "104", "--levels", "40", "--bottom", "24", "--thick", "10", "--refine", "1"]
 DAMS = {1: MESH, 2: MESH, 6: MESH, 12: MESH, 25: FINE, 50: FINE}  # joints: options of the mesh
+HEAD = (
+    "| joints | points | unknowns | solve and joints [ms] | own solve [ms] "
+    "| CHOLMOD, same order [ms] | CHOLMOD, METIS [ms] | in own solves | in solves of CHOLMOD "
+    "| with METIS | set-up of joints, in factorisations |"
+)
 PEAK = "0.35"  # of the motion [g]
 
 
@@ -39,22 +46,22 @@ def seconds(run: Run, pattern: str) -> float:
 
 def measure_joints(program: Program, folder: Path, joints: list[int], duration: float) -> str:
     """A table in Markdown, with one row for each dam."""
-    lines = [
-        "| joints | points | unknowns | solve [ms] | solve and joints [ms] | increment, in solves "
-        "| joint iteration, in solves | set-up of joints, in factorisations |",
-        "|" + "---|" * 8,
-    ]
+    lines = [HEAD, "|" + "---|" * 11]
     for number in joints:
-        run = program.run(write_dam(folder, number, duration))
+        deck = write_dam(folder, number, duration)
+        run, bare = measure_beside(program, deck, partial(program.run, deck))
         points = sum(joint["points"] for joint in run.results.find("joints").values())
         solve = seconds(run, "solve (forward|backward) structure")
         iteration = seconds(run, r"(iterate|correct) JOINT\d+")
         increments = sum(step["increments"] for step in run.results.find("steps"))
-        each = [1e3 * time / increments for time in (solve, solve + iteration)]
+        each = (solve + iteration) / increments
+        times = [solve / increments, bare.same_order, bare.own_order]
         set_up = seconds(run, r"condense JOINT\d+") / seconds(run, "factor structure")
         lines.append(
-            f"| {number} | {points} | {run.unknowns} | {each[0]:.1f} | {each[1]:.1f} "
-            f"| {1.0 + iteration / solve:.2f} "
-            f"| {iteration / solve:.2f} | {set_up:.2f} |"
+            f"| {number} | {points} | {run.unknowns} | {1e3 * each:.1f} | "
+            + " | ".join(f"{1e3 * time:.1f}" for time in times)
+            + " | "
+            + " | ".join(f"{each / time:.2f}" for time in times)
+            + f" | {set_up:.2f} |"
         )
     return "\n".join(lines)

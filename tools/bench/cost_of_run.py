@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
+from bare_cholmod import BareSolve, bench_program, measure_beside
 from measured_run import Program, Run
 from scenes import INCREMENT, dam_of_size, make_concrete, scaled_dam, write_deck
 
@@ -49,13 +51,20 @@ def measure_static(program: Program, folder: Path, size: int) -> list[Figure]:
 
 
 def measure_dynamic(program: Program, folder: Path, size: int, count: int) -> list[Figure]:
-    """Linear increments with hardly any output, and with envelopes of the stresses."""
+    """Linear increments with hardly any output, and with envelopes of the stresses.
+
+    The first over a solve of CHOLMOD alone, too, where the program of the bare solves is built.
+    """
     mesh = dam_of_size(size)
     figures = []
     for has_envelopes in (False, True):
         name = f"dynamic_{size}_{has_envelopes:d}"
         deck = write_deck(folder, name, mesh, count * INCREMENT, has_envelopes=has_envelopes)
-        run = program.run(deck)
+        if bench_program(program).exists() and not has_envelopes:
+            run, bare = measure_beside(program, deck, partial(program.run, deck))
+            figures.append(over_bare_solve(run, bare))
+        else:
+            run = program.run(deck)
         what = "linear increment" + (" with envelopes" if has_envelopes else "") + " / solve"
         limit = None if has_envelopes else STEP_LIMIT
         figures.append(ratio_of_increment(run, "solve structure", what, limit))
@@ -85,11 +94,27 @@ def measure_sound(program: Program, folder: Path, size: int, count: int) -> Figu
     return Figure(scene, what, whole / (whole - laws), SOUND_LIMIT, detail)
 
 
+def time_of_increment(run: Run, count: int) -> float:
+    """Seconds from the first increment to the end, over the increments."""
+    return (run.results.find("ledger.wall_s") - run.cost(ONCE)[0]) / count
+
+
+def over_bare_solve(run: Run, bare: BareSolve) -> Figure:
+    """A linear increment over a solve of CHOLMOD in the order of METIS."""
+    step = time_of_increment(run, run.cost("solve structure")[1])
+    detail = (
+        f"{step * 1e3:.1f} ms over {bare.own_order * 1e3:.1f} ms; "
+        f"{bare.same_order * 1e3:.1f} ms in the order of the program"
+    )
+    scene = f"arch dam, {run.unknowns} unknowns"
+    what = "linear increment / solve of CHOLMOD alone"
+    return Figure(scene, what, step / bare.own_order, None, detail)
+
+
 def ratio_of_increment(run: Run, solving: str, what: str, limit: float | None) -> Figure:
     """Time from the first increment to the end over the time of the solves, in one process."""
     time_of_solves, count = run.cost(solving)
-    once, _ = run.cost(ONCE)
-    step, solve = (run.results.find("ledger.wall_s") - once) / count, time_of_solves / count
+    step, solve = time_of_increment(run, count), time_of_solves / count
     detail = f"{step * 1e3:.1f} ms over {solve * 1e3:.1f} ms"
     return Figure(f"arch dam, {run.unknowns} unknowns", what, step / solve, limit, detail)
 
