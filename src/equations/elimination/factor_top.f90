@@ -11,20 +11,19 @@ module factor_top
   type :: top_of_factor
     logical :: is_there = .false.
     integer :: num_free = 0
-    real(rk) :: entries = 0.0_rk !< of L in the top
     type(c_ptr), private :: handle = c_null_ptr !< of the solver, which must live as long
   contains
-    procedure :: add_forces, solve_for_top, invert, inverse_block, forget_inverse
+    procedure :: add_forces, solve_for_top, inverse_block, forget_inverse
+    procedure :: start_inverse, expect, invert_for, release, first_supernode
   end type top_of_factor
 
   interface
-    function keyway_cholmod_choose_top(handle, n, count, unknown, entries) result(status) bind(c)
-      import :: c_ptr, c_int, c_double
+    function keyway_cholmod_choose_top(handle, n, count, unknown) result(status) bind(c)
+      import :: c_ptr, c_int
       implicit none
       type(c_ptr), value :: handle
       integer(c_int), value :: n, count
       integer(c_int), intent(in) :: unknown(count)
-      real(c_double), intent(out) :: entries
       integer(c_int) :: status
     end function keyway_cholmod_choose_top
 
@@ -46,11 +45,35 @@ module factor_top
       real(c_double), intent(inout) :: x(n)
     end subroutine keyway_cholmod_solve_top
 
-    function keyway_cholmod_invert_top(handle, entries) result(status) bind(c)
-      import :: c_ptr, c_int, c_double
+    function keyway_cholmod_start_inverse(handle) result(status) bind(c)
+      import :: c_ptr, c_int
       implicit none
       type(c_ptr), value :: handle
-      real(c_double), value :: entries
+      integer(c_int) :: status
+    end function keyway_cholmod_start_inverse
+
+    subroutine keyway_cholmod_expect(handle, count, unknown, uses) bind(c)
+      import :: c_ptr, c_int
+      implicit none
+      type(c_ptr), value :: handle
+      integer(c_int), value :: count, uses
+      integer(c_int), intent(in) :: unknown(count)
+    end subroutine keyway_cholmod_expect
+
+    function keyway_cholmod_first_super(handle, count, unknown) result(first) bind(c)
+      import :: c_ptr, c_int
+      implicit none
+      type(c_ptr), value :: handle
+      integer(c_int), value :: count
+      integer(c_int), intent(in) :: unknown(count)
+      integer(c_int) :: first
+    end function keyway_cholmod_first_super
+
+    function keyway_cholmod_invert_top(handle, first) result(status) bind(c)
+      import :: c_ptr, c_int
+      implicit none
+      type(c_ptr), value :: handle
+      integer(c_int), value :: first
       integer(c_int) :: status
     end function keyway_cholmod_invert_top
 
@@ -82,8 +105,7 @@ contains
     type(top_of_factor), intent(out) :: top
     top%handle = handle
     top%num_free = num_free
-    top%is_there = keyway_cholmod_choose_top(handle, num_free, size(unknown), unknown - 1, &
-                                             top%entries) == 0
+    top%is_there = keyway_cholmod_choose_top(handle, num_free, size(unknown), unknown - 1) == 0
   end subroutine choose_top
 
   !> Adds forces on unknowns of the top to a forward substitution.
@@ -102,12 +124,41 @@ contains
     call keyway_cholmod_solve_top(self%handle, self%num_free, half, x)
   end subroutine solve_for_top
 
-  !> Computes the inverse of the matrix in the pattern of the top.
-  subroutine invert(self, has_failed)
+  !> Starts the inverse of the matrix in the pattern of the top, without any of its entries.
+  subroutine start_inverse(self, has_failed)
     class(top_of_factor), intent(in) :: self
     logical, intent(out) :: has_failed !< no memory
-    has_failed = keyway_cholmod_invert_top(self%handle, self%entries) /= 0
-  end subroutine invert
+    has_failed = keyway_cholmod_start_inverse(self%handle) /= 0
+  end subroutine start_inverse
+
+  !> Announces a use of entries with some unknowns: they are held until their release.
+  subroutine expect(self, unknown)
+    class(top_of_factor), intent(in) :: self
+    integer, intent(in) :: unknown(:) !< of the top
+    call keyway_cholmod_expect(self%handle, size(unknown), unknown - 1, 1)
+  end subroutine expect
+
+  !> Computes the entries of the inverse with some unknowns, and those that these depend on.
+  subroutine invert_for(self, unknown, has_failed)
+    class(top_of_factor), intent(in) :: self
+    integer, intent(in) :: unknown(:) !< of the top
+    logical, intent(out) :: has_failed !< no memory
+    has_failed = keyway_cholmod_invert_top(self%handle, self%first_supernode(unknown)) /= 0
+  end subroutine invert_for
+
+  !> Ends a use of entries with some unknowns; frees those that no other entry depends on.
+  subroutine release(self, unknown)
+    class(top_of_factor), intent(in) :: self
+    integer, intent(in) :: unknown(:) !< of the top
+    call keyway_cholmod_expect(self%handle, size(unknown), unknown - 1, -1)
+  end subroutine release
+
+  !> The first supernode with some unknowns; supernodes are inverted from the last to the first.
+  integer function first_supernode(self, unknown) result(first)
+    class(top_of_factor), intent(in) :: self
+    integer, intent(in) :: unknown(:) !< of the top
+    first = keyway_cholmod_first_super(self%handle, size(unknown), unknown - 1)
+  end function first_supernode
 
   !> Entries of the inverse; those outside of the pattern are zero.
   subroutine inverse_block(self, row, column, block, missing)

@@ -1,6 +1,7 @@
 /* A factor of CHOLMOD with what our own work on its supernodes needs. */
 #ifndef KEYWAY_CHOLMOD_FACTOR_H
 #define KEYWAY_CHOLMOD_FACTOR_H
+#include "selected_inverse.h"
 #include "supernodal_solve.h"
 #include <cholmod.h>
 
@@ -13,8 +14,8 @@ struct keyway_cholmod {
   /* The top of the factor: supernodes with chosen unknowns, and all their ancestors. */
   char *is_top;
   int *super_of, *place_of;
-  long *top_start; /* of each supernode in the inverse, -1 below the top */
-  double *inverse, *top_work;
+  double *top_work;
+  struct keyway_inverse inverse; /* in the pattern of the top */
   /* The factor with its lower part in single precision; NULL: CHOLMOD has all of it. */
   float *single;
   size_t num_single;

@@ -1,6 +1,5 @@
 /* The top of a factor of CHOLMOD: the supernodes with chosen unknowns and all their ancestors. */
 #include "cholmod_factor.h"
-#include "selected_inverse.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,24 +8,20 @@ void keyway_free_top(struct keyway_cholmod *c)
   free(c->is_top);
   free(c->super_of);
   free(c->place_of);
-  free(c->top_start);
-  free(c->inverse);
   free(c->top_work);
+  if (c->factor) keyway_free_inverse((int)c->factor->nsuper, &c->inverse);
   c->is_top = NULL;
   c->super_of = c->place_of = NULL;
-  c->top_start = NULL;
-  c->inverse = c->top_work = NULL;
+  c->top_work = NULL;
 }
 
-/* Chooses the top of a planned factor by `count` unknowns, 0-based. `entries` are those of its L.
- * Returns 0 for success. */
-int keyway_cholmod_choose_top(void *handle, int n, int count, const int *unknown, double *entries)
+/* Chooses the top of a planned factor by `count` unknowns, 0-based. Returns 0 for success. */
+int keyway_cholmod_choose_top(void *handle, int n, int count, const int *unknown)
 {
   struct keyway_cholmod *c = handle;
   const int *perm = c->factor->Perm;
   struct keyway_supernodes l;
   int *wanted;
-  long used = 0;
   keyway_free_top(c);
   if (!c->factor->is_super) return 1;
   l = keyway_supernodes_of(c);
@@ -34,9 +29,8 @@ int keyway_cholmod_choose_top(void *handle, int n, int count, const int *unknown
   c->is_top = malloc((size_t)l.num_supernodes + 1);
   c->super_of = malloc((size_t)n * sizeof(int));
   c->place_of = malloc((size_t)n * sizeof(int));
-  c->top_start = malloc((size_t)l.num_supernodes * sizeof(long));
   c->top_work = malloc((size_t)n * sizeof(double));
-  if (!wanted || !c->is_top || !c->super_of || !c->place_of || !c->top_start || !c->top_work) {
+  if (!wanted || !c->is_top || !c->super_of || !c->place_of || !c->top_work) {
     free(wanted);
     keyway_free_top(c);
     return -2;
@@ -49,13 +43,8 @@ int keyway_cholmod_choose_top(void *handle, int n, int count, const int *unknown
     return -2;
   }
   free(wanted);
-  for (int s = 0; s < l.num_supernodes; s++) {
-    int width = l.column[s + 1] - l.column[s];
+  for (int s = 0; s < l.num_supernodes; s++)
     for (int j = l.column[s]; j < l.column[s + 1]; j++) c->super_of[j] = s;
-    c->top_start[s] = c->is_top[s] ? used : -1;
-    if (c->is_top[s]) used += (long)(l.row_start[s + 1] - l.row_start[s]) * width;
-  }
-  *entries = (double)used;
   return 0;
 }
 
@@ -87,15 +76,44 @@ void keyway_cholmod_solve_top(void *handle, int n, const double *y, double *x)
   free(z);
 }
 
-/* Inverts the top; `entries` as from choose_top. Returns 0 for success. */
-int keyway_cholmod_invert_top(void *handle, double entries)
+/* Starts the inverse of the matrix in the pattern of the top. Returns 0 for success. */
+int keyway_cholmod_start_inverse(void *handle)
 {
   struct keyway_cholmod *c = handle;
   struct keyway_supernodes l = keyway_supernodes_of(c);
   if (c->single) return 1;
-  c->inverse = malloc((size_t)entries * sizeof(double));
-  if (!c->inverse) return -2;
-  return keyway_invert(&l, c->super_of, c->top_start, c->inverse);
+  keyway_free_inverse(l.num_supernodes, &c->inverse);
+  return keyway_start_inverse(&l, c->super_of, c->is_top, &c->inverse);
+}
+
+/* Adds to the expected uses of some unknowns, 0-based, or takes them away, and then frees what is
+ * not used any more. */
+void keyway_cholmod_expect(void *handle, int count, const int *unknown, int uses)
+{
+  struct keyway_cholmod *c = handle;
+  struct keyway_supernodes l = keyway_supernodes_of(c);
+  for (int i = 0; i < count; i++) c->inverse.pending[c->super_of[c->place_of[unknown[i]]]] += uses;
+  if (uses < 0) keyway_release_blocks(&l, c->super_of, &c->inverse);
+}
+
+/* The first supernode with some unknowns, 0-based. */
+int keyway_cholmod_first_super(void *handle, int count, const int *unknown)
+{
+  struct keyway_cholmod *c = handle;
+  int first = (int)c->factor->nsuper;
+  for (int i = 0; i < count; i++) {
+    int s = c->super_of[c->place_of[unknown[i]]];
+    if (s < first) first = s;
+  }
+  return first;
+}
+
+/* Inverts the top down to a supernode. Returns 0 for success. */
+int keyway_cholmod_invert_top(void *handle, int first)
+{
+  struct keyway_cholmod *c = handle;
+  struct keyway_supernodes l = keyway_supernodes_of(c);
+  return keyway_invert_down_to(&l, c->super_of, c->is_top, first, &c->inverse);
 }
 
 /* Entries of the inverse of the matrix for pairs of unknowns of the top, 0-based. Returns how many
@@ -109,8 +127,8 @@ int keyway_cholmod_inverse(void *handle, int rows, const int *row, int columns, 
   if (!place) return -1;
   for (int i = 0; i < rows; i++) place[i] = c->place_of[row[i]];
   for (int i = 0; i < columns; i++) place[rows + i] = c->place_of[column[i]];
-  answer = keyway_inverse_entries(&l, c->super_of, c->top_start, c->inverse, rows, place, columns,
-                                  place + rows, block);
+  answer = keyway_inverse_entries(&l, c->super_of, &c->inverse, rows, place, columns, place + rows,
+                                  block);
   free(place);
   return answer;
 }
@@ -119,6 +137,5 @@ int keyway_cholmod_inverse(void *handle, int rows, const int *row, int columns, 
 void keyway_cholmod_forget_inverse(void *handle)
 {
   struct keyway_cholmod *c = handle;
-  free(c->inverse);
-  c->inverse = NULL;
+  keyway_free_inverse((int)c->factor->nsuper, &c->inverse);
 }

@@ -34,32 +34,68 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(group_unknowns) :: of_group(groups%num_groups)
     real(rk) :: own(groups%num_groups)
-    real(rk), allocatable :: values(:, :)
-    integer :: j, k, absent
+    integer :: order(groups%num_groups), i, absent
     logical :: has_failed
     missing = 0
-    call top%invert(has_failed)
-    if (has_failed) then
-      call raise(error, 'no memory for the compliance of the joints', system_failed)
-      return
-    end if
     call blocks%start(groups)
-    do j = 1, groups%num_groups
-      call list_unknowns(operator, groups, j, top%num_free, of_group(j))
-      call take_block(top, of_group(j), of_group(j), values, absent)
-      missing = missing + absent
-      own(j) = own_size(values, spring(groups%rows(j)))
-      call blocks%put(j, j, 1.0_rk, values, 0.0_rk)
+    do i = 1, groups%num_groups
+      call list_unknowns(operator, groups, i, top%num_free, of_group(i))
     end do
-    do j = 1, groups%num_groups
-      do k = 1, j - 1
-        if (.not. are_known(top, of_group(j)%unknown, of_group(k)%unknown)) cycle
-        call take_block(top, of_group(j), of_group(k), values, absent)
-        call blocks%put_coupling(j, k, sqrt(own(j))*sqrt(own(k)), values, smallest)
-      end do
+    call top%start_inverse(has_failed)
+    if (.not. has_failed) call order_groups(top, of_group, order)
+    do i = 1, groups%num_groups
+      if (has_failed) exit
+      call top%invert_for(of_group(order(i))%unknown, has_failed)
+      if (has_failed) exit
+      call take_group(top, of_group, order(:i), spring, smallest, own, blocks, absent)
+      missing = missing + absent
+      call top%release(of_group(order(i))%unknown)
     end do
     call top%forget_inverse()
+    if (has_failed) call raise(error, 'no memory for the compliance of the joints', system_failed)
   end subroutine select_compliance
+
+  !> Announces the use of the unknowns of all groups, and orders the groups as their entries are
+  !> computed: those of the last supernodes first.
+  subroutine order_groups(top, of_group, order)
+    type(top_of_factor), intent(in) :: top
+    type(group_unknowns), intent(in) :: of_group(:)
+    integer, intent(out) :: order(:) !< (groups)
+    integer :: first(size(order)), i
+    do i = 1, size(order)
+      call top%expect(of_group(i)%unknown)
+      first(i) = top%first_supernode(of_group(i)%unknown)
+    end do
+    do i = 1, size(order)
+      order(i) = maxloc(first, 1)
+      first(order(i)) = -1
+    end do
+  end subroutine order_groups
+
+  !> Takes the own block of the last of some groups, and its blocks with the others.
+  subroutine take_group(top, of_group, some, spring, smallest, own, blocks, missing)
+    type(top_of_factor), intent(in) :: top
+    type(group_unknowns), intent(in) :: of_group(:)
+    integer, intent(in) :: some(:) !< groups
+    real(rk), intent(in) :: spring(:) !< (rows) compliance of the joints' own springs [m/N]
+    real(rk), intent(in) :: smallest !< coupling of a block that is kept
+    real(rk), intent(inout) :: own(:) !< (groups) sizes of own blocks [m/N]
+    type(compliance_blocks), intent(inout) :: blocks
+    integer, intent(out) :: missing !< entries of the own block outside of the pattern
+    real(rk), allocatable :: values(:, :)
+    integer :: i, j, k, g, absent
+    g = some(size(some))
+    call take_block(top, of_group(g), of_group(g), values, missing)
+    own(g) = own_size(values, spring(blocks%groups%rows(g)))
+    call blocks%put(g, g, 1.0_rk, values, 0.0_rk)
+    do i = 1, size(some) - 1
+      j = max(some(i), g)
+      k = min(some(i), g)
+      if (.not. are_known(top, of_group(j)%unknown, of_group(k)%unknown)) cycle
+      call take_block(top, of_group(j), of_group(k), values, absent)
+      call blocks%put_coupling(j, k, sqrt(own(j))*sqrt(own(k)), values, smallest)
+    end do
+  end subroutine take_group
 
   !> Whether some entries of a block are in the pattern.
   logical function are_known(top, row, column)

@@ -90,17 +90,16 @@ contains
     call check_close(log, maxval(abs(half - whole(:, 1))), 0.0_rk, 1.0e-12_rk, 'two halves')
   end subroutine halves
 
-  !> Groups of unknowns as separators: the order, substitution with the top of the factor, entries
-  !> of the inverse; against whole solves.
+  !> Groups of unknowns as separators: the order, substitution with the top of the factor; against
+  !> whole solves.
   subroutine tops()
     type(pattern) :: matrix
     type(cholmod_solver) :: solver
     type(top_of_factor) :: top
     type(error_type), allocatable :: error
-    real(rk), allocatable :: values(:), whole(:, :), half(:), x(:), force(:), block(:, :)
+    real(rk), allocatable :: values(:), whole(:, :), half(:), x(:), force(:)
     integer, allocatable :: group(:), one(:), two(:), place(:)
-    integer :: j, missing
-    logical :: has_failed
+    integer :: j
     call make_box(matrix, values, 0)
     ! Unknowns 3 k - 2 .. 3 k of node k; two planes of nodes across the box are groups.
     group = [(merge(1, merge(2, 0, mod((j - 1)/3, 6) == 4), mod((j - 1)/3, 6) == 1), &
@@ -131,10 +130,24 @@ contains
                      'unknowns of the top')
     call solver%backward_substitute(half, error)
     call check_close(log, maxval(abs(half - whole(:, 1))), 0.0_rk, 1.0e-12_rk, 'all unknowns')
-    call top%invert(has_failed)
+    call inverses(solver, top, one, two)
+  end subroutine tops
+
+  !> Entries of the inverse with the unknowns of two groups, against whole solves.
+  subroutine inverses(solver, top, one, two)
+    type(cholmod_solver), intent(inout) :: solver
+    type(top_of_factor), intent(in) :: top
+    integer, intent(in) :: one(:), two(:)
+    type(error_type), allocatable :: error
+    real(rk), allocatable :: whole(:, :), block(:, :)
+    integer :: j, missing
+    logical :: has_failed
+    call top%start_inverse(has_failed)
+    call top%expect(one)
+    call top%expect(two)
+    if (.not. has_failed) call top%invert_for([one, two], has_failed)
     call check(log,.not. has_failed, 'inverse')
-    deallocate (whole)
-    allocate (whole(matrix%num_free, size(two)), source=0.0_rk)
+    allocate (whole(top%num_free, size(two)), source=0.0_rk)
     do j = 1, size(two)
       whole(two(j), j) = 1.0_rk
     end do
@@ -150,8 +163,12 @@ contains
     call check(log, missing == 0, 'all entries between neighbours')
     call check_close(log, maxval(abs(block - whole(one, :)))/maxval(abs(block)), 0.0_rk, &
                      1.0e-12_rk, 'entries between neighbours')
+    call top%release(one)
+    call top%release(two)
+    call top%inverse_block(one, two, block, missing)
+    call check(log, missing == size(block), 'entries that nothing needs are not held')
     call top%forget_inverse()
-  end subroutine tops
+  end subroutine inverses
 
   !> The free part of K q.
   subroutine product_of_free(matrix, values, q, b)
