@@ -157,8 +157,9 @@ def _draw_mark(axis, mark: Mark, extent) -> None:
 def _scale_bar(axis, extent) -> None:
     """A bar of a round length below the image, off the dam."""
     width, height = extent[1] - extent[0], extent[3] - extent[2]
-    length = MaxNLocator(nbins=1, steps=[1, 2, 5, 10]).tick_values(0.0, 0.15 * width)[1]
-    strip = 0.09 * max(width, 0.6 * height)
+    size = max(width, 0.6 * height)
+    length = MaxNLocator(nbins=1, steps=[1, 2, 5, 10]).tick_values(0.0, 0.15 * size)[1]
+    strip = 0.09 * size
     left, bottom = extent[0] + 0.03 * width, extent[2] - 0.8 * strip
     axis.set_ylim(extent[2] - strip, extent[3])
     axis.plot([left, left + length], [bottom, bottom], color=GREY, lw=4.0, solid_capstyle="butt")

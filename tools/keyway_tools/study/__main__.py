@@ -31,7 +31,7 @@ from .effects import list_effects
 from .errors import errors_of
 from .facts import facts_of, write_table
 from .ladder import JOB, Ladder, Outcome
-from .page import OWN_SECONDS, WALL_SECONDS, accuracy_page, effects_page
+from .page import accuracy_page, effects_page, what_seconds_are
 from .pictures import draw
 from .rungs import base_deck, finer_rung, list_rungs, shortened
 from .words import effect_sentences, sentences
@@ -130,10 +130,10 @@ def study(given: argparse.Namespace, runner: DeckRunner) -> int:
     ladder = Ladder(deck, rungs, given.o, runner, given.budget, say)
     outcomes = ladder.run()
     header = header_of(given, runner, outcomes[0])
-    what_seconds_are = OWN_SECONDS if given.threads == 1 else WALL_SECONDS
+    meaning, is_busy = what_seconds_are(given.threads, outcomes)
     if given.effects:
         page = given.o / "effects.html"
-        text = effects_page(given.deck, header, what_seconds_are, outcomes)
+        text = effects_page(given.deck, header, meaning, outcomes)
         lines = effect_sentences(outcomes)
     else:
         page = given.o / "accuracy.html"
@@ -141,11 +141,13 @@ def study(given: argparse.Namespace, runner: DeckRunner) -> int:
         if not errors:
             raise RuntimeError("the deck has no displacement, stress or frequency to compare")
         facts = facts_of(outcomes, errors)
-        facts |= {"deck": given.deck.name, "header": header, "what_seconds_are": what_seconds_are}
+        facts |= {"deck": given.deck.name, "header": header, "what_seconds_are": meaning}
         write_files(given.o, facts)
         text = accuracy_page(given.deck, facts)
         lines = sentences(facts)
     page.write_text(text, encoding="utf-8")
+    if is_busy:
+        lines.append(meaning)
     say("\n".join([*lines, str(page)]))
     return 0
 

@@ -178,6 +178,7 @@ class Ladder:
     def measure(self, rung: Rung, record: Record) -> Measured:
         """The numbers of a run. One thread: its own seconds, whatever else the machine does."""
         found = measure(Results(self.folder_of(rung) / "results", JOB))
+        found.processor = record.processor_s or 0.0
         if is_alone(self.runner.options) and record.processor_s:
             found.seconds = record.processor_s
         return found

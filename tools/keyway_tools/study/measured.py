@@ -28,6 +28,7 @@ class Measured:
     values: dict[str, float] = field(default_factory=dict)  # of QUANTITIES
     peak: float = 0.0  # largest S1 anywhere
     peak_place: list[float] = field(default_factory=list)
+    processor: float = 0.0  # seconds of all threads; 0: not known
 
     def as_dict(self) -> dict:
         return asdict(self)

@@ -29,6 +29,24 @@ WALL_SECONDS = (
     "Seconds are those of the clock for whole runs without output, as busy as the machine was."
 )
 
+BUSY_SECONDS = (
+    "The machine was busy: the clock showed {ratio:.2g} times the seconds that these runs had a "
+    "processor. Times of variants do not compare; with --threads 1 they are processor seconds."
+)
+MOST_WAITING = 1.5  # clock over processor: a run that waits for nothing has at most 1
+
+
+def what_seconds_are(threads: int, outcomes: list[Outcome]) -> tuple[str, bool]:
+    """What the seconds of a study mean, and whether the machine was too busy for them."""
+    if threads == 1:
+        return OWN_SECONDS, False
+    runs = [one.measured for one in outcomes if one.measured and one.measured.processor]
+    worked = sum(run.processor for run in runs)
+    ratio = sum(run.seconds for run in runs) / worked if worked else 0.0
+    if ratio <= MOST_WAITING:
+        return WALL_SECONDS, False
+    return f"{WALL_SECONDS} {BUSY_SECONDS.format(ratio=ratio)}", True
+
 
 def accuracy_page(deck: Path, facts: dict[str, Any]) -> str:
     """The page of a ladder."""
