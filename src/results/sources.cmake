@@ -7,7 +7,9 @@ set(sources
   errors/goal_errors.f90
   errors/place_errors.f90
   errors/singular_places.f90
+  errors/solid_layers.f90
   errors/space_errors.f90
+  errors/stress_polynomials.f90
   fields/derived_fields.f90
   fields/error_fields.f90
   fields/field_help.f90

@@ -67,8 +67,9 @@ CASES = {"cylinder": (bored, LAME), "hole": (pierced, (3.0, -1.0))}
 @pytest.mark.parametrize("element", ELEMENTS)
 @pytest.mark.parametrize("case", CASES)
 def test_effectivity(keyway, documented, case, element):
-    """Where errors of two signs cancel, the estimate is larger than an error of up to 3.2 %. The
-    radial stress of a coarse mesh of C3D8 is worse than it seems: a quarter of the error."""
+    """Within half to twice the error, unless that is below 0.1 %, where errors of two signs cancel.
+    The largest compression of the coarse mesh of C3D8 is one element off the bore: the fits see it
+    at the nodes beside."""
     make, exact = CASES[case]
     for count in (16, 32):
         run = keyway(make(count, element))
@@ -78,10 +79,39 @@ def test_effectivity(keyway, documented, case, element):
             assert found["mesh"] == found["error"]
             true = abs(truth - found["value"])
             effectivity = found["mesh"] / true
-            is_blind = (case, element, count, name) == ("cylinder", "C3D8", 16, "S3")
-            assert effectivity > (0.2 if is_blind else 0.47)
-            assert effectivity < 2.0 or true < 0.032 * abs(truth)
+            assert effectivity > 0.5
+            assert effectivity < 2.0 or true < 0.001 * abs(truth)
             documented("error of a stress", (case, element), f"{name}, {count}", effectivity)
+
+
+def thin_cylinder(count: int, element: str, outside: float) -> str:
+    """The cylinder of Lame with `count` elements from the bore to another outer radius."""
+
+    def place(a, b, c):
+        r, angle = BORE + (outside - BORE) * a, 0.5 * np.pi * b
+        return np.stack([r * np.cos(angle), r * np.sin(angle), c], axis=-1)
+
+    mesh, number = box_mesh((count, 12, 1), place)
+    mesh.node_sets["ALL"] = number.ravel()
+    mesh.node_sets["ON_X"] = number[:, 0].ravel()
+    mesh.node_sets["ON_Y"] = number[:, -1].ravel()
+    mesh.surfaces["BORE"] = [(brick, 6) for brick in range(12)]
+    cards = elastic(MODULUS, POISSON) + "*BOUNDARY\nALL, 3, 3\nON_X, 2, 2\nON_Y, 1, 1\n"
+    cards += "*STEP\n*STATIC\n*DSLOAD\nBORE, P, 1.\n"
+    return brick_deck(mesh, element, cards + ENVELOPE + "*END STEP\n")
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_three_elements_across(keyway, element):
+    """Three elements across are enough for a quadratic stress; with two the fit is linear, and
+    sees between a twelfth and three times the error."""
+    outside = 5.0
+    ratio = outside**2 / BORE**2
+    for count, low, high in ((3, 0.5, 2.0), (2, 0.08, 3.0)):
+        run = keyway(thin_cylinder(count, element, outside))
+        for name, truth in (("S1", (ratio + 1.0) / (ratio - 1.0)), ("S3", -1.0)):
+            found = estimates(run)[name]
+            assert low < found["mesh"] / abs(truth - found["value"]) < high
 
 
 def with_envelope(deck: str) -> str:

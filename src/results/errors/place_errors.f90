@@ -1,17 +1,17 @@
 !> The error of the mesh in a principal stress at one node: the stress that a run reports there, the
-!> mean of the elements around the node, against those of linear fits (theory.md, 14.6). A fit uses
-!> the elements around the node that has most of them, among those that share an element with the
-!> place, once with all their points and once with their means (Zienkiewicz & Zhu, Int. J. Num.
-!> Meth. Engng 33 (1992) 1331).
+!> mean of the elements around the node, against those of fits (theory.md, 14.6). Where solids lie
+!> three deep, quadratic fits of the elements around the place: of their means, up to the third
+!> ring, and of all points of two rings. Elsewhere linear ones, of the elements around the node that
+!> has most of them, among those that share an element with the place (Zienkiewicz & Zhu, Int. J.
+!> Num. Meth. Engng 33 (1992) 1331).
 module place_errors
   use dam_mesh, only: fe_mesh
   use kinds, only: rk
   use analysis_state, only: state
   use problem_definition, only: problem
-  use shape_hex8, only: point_shape
-  use small_matrix, only: solve_dense
+  use solid_layers, only: has_three_layers
   use stress_fields, only: recovered_fields
-  use stress_recovery, only: max_points
+  use stress_polynomials, only: stress_polynomial, linear_terms, quadratic_terms
   use tensor6, only: principal_values
   implicit none
   private
@@ -19,11 +19,6 @@ module place_errors
 
   !> In place of an error.
   real(rk), parameter :: not_known = -1.0_rk, left_elasticity = -2.0_rk
-
-  integer, parameter :: terms = 4 !< 1, x, y, z
-  !> Added to the squares of the slopes, over the number of points: a direction in which all points
-  !> are level has none.
-  real(rk), parameter :: share = 1.0e-9_rk
 
 contains
 
@@ -36,24 +31,29 @@ contains
     integer, intent(in) :: node
     integer, intent(in) :: number !< 1: the largest, 3: the smallest
     integer, allocatable :: patches(:)
-    logical, allocatable :: is_near(:), is_wanted(:)
-    real(rk) :: fitted(3), own(3)
-    integer :: i
+    logical, allocatable :: is_near(:), is_second(:), is_third(:)
+    integer, allocatable :: solids(:)
+    integer :: s
     error = not_known
     call stresses%need_smoothing(model)
     call list_patches(stresses, node, patches)
     if (size(patches) == 0) return
     allocate (is_near(stresses%smoothing%num_patches), source=.false.)
     is_near(patches) = .true.
-    call list_solids(stresses, is_near, is_wanted)
-    call stresses%need_points_of(model, now, is_wanted)
-    if (any(stresses%is_inelastic .and. is_wanted)) error = left_elasticity
+    call list_solids(stresses, is_near, is_second)
+    call add_patches(stresses, is_second, is_near)
+    call list_solids(stresses, is_near, is_third)
+    solids = pack([(s, s=1, size(is_third))], is_third)
+    if (.not. is_deep(stresses, solids, node)) is_third = is_second
+    call stresses%need_points_of(model, now, is_third)
+    if (any(stresses%is_inelastic .and. is_second)) error = left_elasticity
     if (error < not_known) return
-    own = principal_values(stresses%node_stress(:, node))
-    do i = 1, 2
-      fitted = principal_values(fit_at(model%mesh, stresses, patches, is_wanted, i == 1, node))
-      error = max(error, abs(fitted(number) - own(number)))
-    end do
+    if (count(is_third) > count(is_second) .and. .not. any(stresses%is_inelastic .and. is_third)) &
+      then
+      error = quadratic_error(model%mesh, stresses, is_second, is_third, node, number)
+    else
+      error = linear_error(model%mesh, stresses, patches, is_second, node, number)
+    end if
   end function error_at_node
 
   !> The patches (a node with the solids of one section) of the solids in the mean of a node.
@@ -86,7 +86,103 @@ contains
     end do
   end subroutine list_solids
 
-  !> The stress at a node: the mean of the fits of the patches with most solids.
+  !> Adds the patches of some solids.
+  pure subroutine add_patches(stresses, is_wanted, is_near)
+    type(recovered_fields), intent(in) :: stresses
+    logical, intent(in) :: is_wanted(:) !< (solids)
+    logical, intent(inout) :: is_near(:) !< (patches)
+    integer :: s
+    do s = 1, size(is_wanted)
+      if (is_wanted(s)) is_near(stresses%smoothing%patch(:, s)) = .true.
+    end do
+  end subroutine add_patches
+
+  !> Whether the solids around a node lie three deep.
+  pure logical function is_deep(stresses, solids, node)
+    type(recovered_fields), intent(in) :: stresses
+    integer, intent(in) :: solids(:), node
+    integer :: i
+    is_deep = .true.
+    associate (plan => stresses%plan)
+      do i = plan%node_start(node), plan%node_start(node + 1) - 1
+        is_deep = is_deep .and. &
+                  has_three_layers(stresses%smoothing%patch, solids, (plan%corner(i) - 1)/8 + 1)
+      end do
+    end associate
+  end function is_deep
+
+  !> The distance to quadratic fits at the node, and how far the fit exceeds the value at the nodes
+  !> beside: the largest stress may lie there.
+  real(rk) function quadratic_error(mesh, stresses, is_second, is_third, node, number) &
+    result(error)
+    type(fe_mesh), intent(in) :: mesh
+    type(recovered_fields), intent(in) :: stresses
+    logical, intent(in) :: is_second(:), is_third(:) !< (solids) rings around the node
+    integer, intent(in) :: node, number
+    type(stress_polynomial) :: of_means, of_points
+    real(rk) :: own
+    integer :: a, e, i, s
+    of_means%num_terms = quadratic_terms
+    of_means%origin = mesh%x(:, node)
+    of_means%length = sum(stresses%smoothing%volume, &
+                          mask=spread(is_second, 1, 8))**(1.0_rk/3.0_rk)
+    of_points = of_means
+    do s = 1, size(is_third)
+      if (is_third(s)) call of_means%add_solid(mesh, stresses, s, by_means=.true.)
+      if (is_second(s)) call of_points%add_solid(mesh, stresses, s, by_means=.false.)
+    end do
+    own = value_of(stresses%node_stress(:, node), number)
+    call of_means%solve()
+    error = abs(value_of(of_means%value_at(mesh%x(:, node)), number) - own)
+    associate (plan => stresses%plan)
+      do i = plan%node_start(node), plan%node_start(node + 1) - 1
+        s = (plan%corner(i) - 1)/8 + 1
+        e = plan%element_of_solid(s)
+        do a = 1, 8
+          error = max(error, excess(value_of(of_means%value_at(mesh%x(:, mesh%nodes(a, e))), &
+                                             number), own, number))
+        end do
+      end do
+      if (any(plan%num_points == 1 .and. is_second)) return
+    end associate
+    call of_points%solve()
+    error = max(error, abs(value_of(of_points%value_at(mesh%x(:, node)), number) - own))
+  end function quadratic_error
+
+  !> How far a stress is beyond the extreme.
+  pure real(rk) function excess(value, own, number)
+    real(rk), intent(in) :: value, own !< [Pa]
+    integer, intent(in) :: number !< 1: the largest, 3: the smallest
+    excess = merge(value - own, own - value, number == 1)
+  end function excess
+
+  !> A principal value.
+  pure real(rk) function value_of(stress, number)
+    real(rk), intent(in) :: stress(6) !< [Pa]
+    integer, intent(in) :: number
+    real(rk) :: values(3)
+    values = principal_values(stress)
+    value_of = values(number)
+  end function value_of
+
+  !> The distance to linear fits at the node, of all points and of means.
+  real(rk) function linear_error(mesh, stresses, patches, is_wanted, node, number) result(error)
+    type(fe_mesh), intent(in) :: mesh
+    type(recovered_fields), intent(in) :: stresses
+    integer, intent(in) :: patches(:)
+    logical, intent(in) :: is_wanted(:) !< (solids)
+    integer, intent(in) :: node, number
+    real(rk) :: own
+    integer :: i
+    own = value_of(stresses%node_stress(:, node), number)
+    error = 0.0_rk
+    do i = 1, 2
+      error = max(error, abs(value_of(fit_at(mesh, stresses, patches, is_wanted, i == 1, node), &
+                                      number) - own))
+    end do
+  end function linear_error
+
+  !> The stress at a node: the mean of the linear fits of the patches with most solids.
   function fit_at(mesh, stresses, patches, is_wanted, by_means, node) result(stress)
     type(fe_mesh), intent(in) :: mesh
     type(recovered_fields), intent(in) :: stresses
@@ -95,82 +191,29 @@ contains
     logical, intent(in) :: by_means !< of the elements, else by all points
     integer, intent(in) :: node
     real(rk) :: stress(6) !< [Pa]
-    real(rk) :: normal(terms, terms, size(patches)), sums(terms, 6, size(patches))
-    real(rk) :: own(terms, terms), moment(terms, 6), length
+    type(stress_polynomial) :: fit(size(patches)), empty
     integer :: num_solids(size(patches))
-    integer, allocatable :: solids(:)
-    integer :: a, i, k, s
-    normal = 0.0_rk
-    sums = 0.0_rk
+    integer :: a, k, s
+    empty%num_terms = linear_terms
+    empty%origin = mesh%x(:, node)
+    empty%length = sum(stresses%smoothing%volume, mask=spread(is_wanted, 1, 8))**(1.0_rk/3.0_rk)
+    fit = empty
     num_solids = 0
-    solids = pack([(s, s=1, size(is_wanted))], is_wanted)
-    length = sum(stresses%smoothing%volume(:, solids))**(1.0_rk/3.0_rk)
-    do i = 1, size(solids)
-      s = solids(i)
-      call find_moments(mesh, stresses, s, by_means, mesh%x(:, node), length, own, moment)
+    do s = 1, size(is_wanted)
+      if (.not. is_wanted(s)) cycle
       do a = 1, 8
         k = findloc(patches, stresses%smoothing%patch(a, s), dim=1)
         if (k == 0) cycle
         num_solids(k) = num_solids(k) + 1
-        normal(:, :, k) = normal(:, :, k) + own
-        sums(:, :, k) = sums(:, :, k) + moment
+        call fit(k)%add_solid(mesh, stresses, s, by_means)
       end do
     end do
     stress = 0.0_rk
     do k = 1, size(patches)
       if (num_solids(k) < maxval(num_solids)) cycle
-      stress = stress + fit_of(normal(:, :, k), sums(:, :, k))
+      call fit(k)%solve()
+      stress = stress + fit(k)%value_at(mesh%x(:, node))
     end do
     stress = stress/count(num_solids == maxval(num_solids))
   end function fit_at
-
-  !> A linear stress by least squares, at the origin of its terms.
-  function fit_of(normal, sums) result(stress)
-    real(rk), intent(in) :: normal(terms, terms), sums(terms, 6)
-    real(rk) :: stress(6) !< [Pa]
-    real(rk) :: ridged(terms, terms), found(terms, 6)
-    logical :: is_singular
-    integer :: k
-    ridged = normal
-    do k = 2, terms
-      ridged(k, k) = ridged(k, k) + share*normal(1, 1)
-    end do
-    call solve_dense(ridged, sums, found, is_singular)
-    stress = found(1, :)
-    if (is_singular) stress = sums(1, :)/normal(1, 1)
-  end function fit_of
-
-  !> The normal equations of the points of a solid, or of its mean.
-  pure subroutine find_moments(mesh, stresses, solid, by_means, place, length, normal, sums)
-    type(fe_mesh), intent(in) :: mesh
-    type(recovered_fields), intent(in) :: stresses
-    integer, intent(in) :: solid
-    logical, intent(in) :: by_means
-    real(rk), intent(in) :: place(3), length !< [m]
-    real(rk), intent(out) :: normal(terms, terms), sums(terms, 6)
-    real(rk) :: x(3, max_points), stress(6, max_points), own(terms)
-    integer :: c, k, q, num_points
-    num_points = stresses%plan%num_points(solid)
-    stress(:, :num_points) = stresses%point_stress(:, :num_points, solid)
-    associate (corners => mesh%x(:, mesh%nodes(:, stresses%plan%element_of_solid(solid))))
-      if (by_means .or. num_points == 1) then
-        x(:, 1) = sum(corners, dim=2)/max_points
-        stress(:, 1) = sum(stress(:, :num_points), dim=2)/num_points
-        num_points = 1
-      else
-        x = matmul(corners, point_shape)
-      end if
-    end associate
-    normal = 0.0_rk
-    sums = 0.0_rk
-    do q = 1, num_points
-      own = [1.0_rk, (x(:, q) - place)/length]
-      do k = 1, terms
-        normal(:, k) = normal(:, k) + own*own(k)
-      end do
-      do c = 1, 6
-        sums(:, c) = sums(:, c) + own*stress(c, q)
-      end do
-    end do
-  end subroutine find_moments
 end module place_errors
