@@ -11,8 +11,8 @@ module solver_petsc
   use matrix_pattern, only: pattern
   use petsc_equations, only: by_blocks, by_cholesky, by_compressed, by_lu, by_multigrid, &
                              entries_of_petsc, factor_petsc, finish_petsc, is_done, &
-                             is_singular, is_slow, memory_of_petsc, plan_petsc, solve_petsc, &
-                             start_petsc
+                             is_singular, is_slow, memory_of_petsc, plan_petsc, &
+                             shift_of_petsc, solve_petsc, start_petsc
   use ranks, only: gather_rows, this_rank
   use unknown_layout, only: choose_solver, compressed_solver, direct_solver, own_rows, row_layout
   use write_text, only: as_text
@@ -226,12 +226,16 @@ contains
     class(petsc_solver), intent(in) :: self
     character(:), allocatable :: text
     integer(c_int) :: memory(2)
+    real(rk) :: shift
     text = ''
     if (self%num_solves == 0 .or. .not. self%is_ready) return
     if (self%method /= by_cholesky .and. self%method /= by_lu) then
       text = as_text(self%num_solves)//' solves took '// &
              as_text(nint(real(self%num_iterations, rk)/self%num_solves))//' iterations each ('// &
              as_text(self%least)//' to '//as_text(self%most)//')'
+      shift = real(shift_of_petsc(self%handle), rk)
+      if (shift > 0.0_rk) text = text//', incomplete factor of the matrix with '// &
+                                 as_text(1.0_rk + shift)//' times its diagonal'
     end if
     call memory_of_petsc(self%handle, memory)
     if (memory(2) == 0) return

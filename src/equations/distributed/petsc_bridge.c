@@ -4,7 +4,9 @@
 #include <stdlib.h>
 
 #include "block_matrix.h"
+#include "incomplete_factor.h"
 #include "last_solutions.h"
+#include "multigrid.h"
 #include "mumps_factor.h"
 
 _Static_assert(sizeof(PetscInt) == sizeof(int), "PETSc must be built with 32-bit indices");
@@ -12,21 +14,18 @@ _Static_assert(sizeof(PetscScalar) == sizeof(double), "PETSc must be built with 
 
 enum { by_cholesky = 1, by_multigrid = 2, by_blocks = 3, by_lu = 4, by_compressed = 5 };
 enum { done = 0, singular = 1, slow = 2, failed = 3 };
-enum { num_rigid = 6, rows_of_node = 3, most_iterations = 5000 };
+enum { rows_of_node = 3, most_iterations = 5000 };
 
 /* Residual over the right-hand side, where the caller admits none. Results at 1e-6 of the largest
  * value need less; forces that nearly cancel need this. */
 static const double tolerance = 1e-10;
 
-/* Aggregates of one or two nodes have no six motions. Their empty rows on coarse levels get this
- * part of the largest diagonal entry, so that smoothers can divide. */
-static const double of_empty_row = 1e-12;
-
 struct equations {
   int method;
   int rows;
   Mat matrix;
-  Mat blocks; /* the same in blocks of 3 x 3, upper triangle; by_blocks only */
+  Mat blocks; /* the same in blocks of 3 x 3, upper triangle; by_blocks and by_multigrid */
+  struct incomplete_factor incomplete; /* of the blocks */
   KSP solver;
   Vec b, x;
   struct last_solutions last;
@@ -62,6 +61,7 @@ void *keyway_petsc_start(void)
     if (PetscInitializeNoArguments()) return NULL;
     if (PetscPushErrorHandler(keep_quiet, NULL)) return NULL;
     if (set_default("-keyway_sub_pc_type", "icc")) return NULL;
+    if (set_default("-keyway_finest_sub_pc_type", "icc")) return NULL;
     if (set_default("-keyway_mg_levels_pc_type", "sor")) return NULL;
     if (set_default("-keyway_pc_gamg_threshold", "0.01")) return NULL;
   }
@@ -75,36 +75,11 @@ void keyway_petsc_finish(void *handle)
   KSPDestroy(&self->solver);
   MatDestroy(&self->matrix);
   MatDestroy(&self->blocks);
+  MatDestroy(&self->incomplete.shifted);
   forget_solutions(&self->last);
   VecDestroy(&self->b);
   VecDestroy(&self->x);
   free(self);
-}
-
-/* The motions of a rigid body, which multigrid must represent on every level. */
-static PetscErrorCode give_rigid_motions(struct equations *self, const double *rigid)
-{
-  Vec motion[num_rigid];
-  MatNullSpace space;
-  PetscFunctionBegin;
-  for (int k = 0; k < num_rigid; k++) {
-    PetscScalar *own;
-    PetscCall(VecDuplicate(self->b, &motion[k]));
-    PetscCall(VecGetArray(motion[k], &own));
-    for (int i = 0; i < self->rows; i++) own[i] = rigid[(size_t)k * self->rows + i];
-    PetscCall(VecRestoreArray(motion[k], &own));
-    for (int m = 0; m < k; m++) {
-      PetscScalar product;
-      PetscCall(VecDot(motion[k], motion[m], &product));
-      PetscCall(VecAXPY(motion[k], -product, motion[m]));
-    }
-    PetscCall(VecNormalize(motion[k], NULL));
-  }
-  PetscCall(MatNullSpaceCreate(PETSC_COMM_WORLD, PETSC_FALSE, num_rigid, motion, &space));
-  PetscCall(MatSetNearNullSpace(self->matrix, space));
-  PetscCall(MatNullSpaceDestroy(&space));
-  for (int k = 0; k < num_rigid; k++) PetscCall(VecDestroy(&motion[k]));
-  PetscFunctionReturn(0);
 }
 
 static int is_direct(const struct equations *self)
@@ -150,7 +125,7 @@ static PetscErrorCode plan(struct equations *self, const double *rigid, size_t e
   PetscCall(MatSetPreallocationCOO(self->matrix, (PetscCount)entries, row, column));
   if (self->method != by_lu) PetscCall(MatSetOption(self->matrix, MAT_SPD, PETSC_TRUE));
   PetscCall(MatCreateVecs(self->matrix, &self->x, &self->b));
-  if (self->method == by_multigrid) PetscCall(give_rigid_motions(self, rigid));
+  if (self->method == by_multigrid) PetscCall(give_rigid_motions(self->matrix, self->rows, rigid));
   PetscCall(choose_method(self));
   PetscFunctionReturn(0);
 }
@@ -204,55 +179,66 @@ static PetscErrorCode check_factor(struct equations *self, int *status)
   PetscFunctionReturn(0);
 }
 
-/* The matrix that the iteration multiplies with: in blocks, which read half as many indices. */
-static PetscErrorCode give_matrix(struct equations *self)
-{
-  PetscFunctionBegin;
-  if (self->method == by_blocks) {
-    PetscCall(copy_to_blocks(self->matrix, &self->blocks));
-    PetscCall(KSPSetOperators(self->solver, self->blocks, self->blocks));
-  } else {
-    PetscCall(KSPSetOperators(self->solver, self->matrix, self->matrix));
-  }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode fill_empty_rows(struct equations *self)
-{
-  char text[32];
-  PetscReal largest;
-  Vec diagonal;
-  PetscFunctionBegin;
-  PetscCall(VecDuplicate(self->b, &diagonal));
-  PetscCall(MatGetDiagonal(self->matrix, diagonal));
-  PetscCall(VecMax(diagonal, NULL, &largest));
-  PetscCall(VecDestroy(&diagonal));
-  snprintf(text, sizeof text, "%.6e", of_empty_row * largest);
-  PetscCall(PetscOptionsSetValue(NULL, "-keyway_mg_levels_pc_sor_diagonal_shift", text));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode factor(struct equations *self, const double *values, int *status)
+/* A factor of MUMPS, again where it has lacked room. */
+static PetscErrorCode set_up_factor(struct equations *self, const double *values, int *status)
 {
   PC pc;
   PCFailedReason reason;
   int is_repeated = 0;
   PetscFunctionBegin;
-  PetscCall(forget_solutions(&self->last));
   do {
-    PetscCall(MatSetValuesCOO(self->matrix, values, INSERT_VALUES));
-    if (self->method == by_multigrid) PetscCall(fill_empty_rows(self));
-    PetscCall(give_matrix(self));
+    if (is_repeated) PetscCall(MatSetValuesCOO(self->matrix, values, INSERT_VALUES));
+    PetscCall(KSPSetOperators(self->solver, self->matrix, self->matrix));
     if (is_repeated) PetscCall(choose_mumps(self->solver, self->method != by_lu,
                                             self->method == by_compressed));
-    if (has_factor(self)) PetscCall(factor_by_mumps(self->solver, &is_repeated));
-    else PetscCall(KSPSetUp(self->solver));
+    PetscCall(factor_by_mumps(self->solver, &is_repeated));
   } while (is_repeated);
   PetscCall(KSPGetPC(self->solver, &pc));
   PetscCall(PCGetFailedReason(pc, &reason));
   *status = reason ? singular : done;
   if (reason == PC_FACTOR_OUTMEMORY || reason == PC_FACTOR_OTHER) *status = failed;
-  if (*status == done && has_factor(self)) PetscCall(check_factor(self, status));
+  if (*status == done) PetscCall(check_factor(self, status));
+  PetscFunctionReturn(0);
+}
+
+/* Products with a matrix in blocks read half as many indices. */
+static PetscErrorCode set_up_blocks(struct equations *self, int *status)
+{
+  int is_definite;
+  PetscFunctionBegin;
+  PetscCall(copy_to_blocks(self->matrix, &self->blocks));
+  if (self->method == by_multigrid) {
+    /* New levels: those of a matrix before would keep their smoothers. */
+    PetscCall(KSPDestroy(&self->solver));
+    PetscCall(choose_method(self));
+    PetscCall(set_up_multigrid(self->solver, self->matrix, self->blocks, &self->incomplete,
+                               &is_definite));
+  } else {
+    PetscCall(set_up_incomplete(&self->incomplete, self->solver, self->blocks, &is_definite));
+  }
+  *status = is_definite ? done : singular;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode factor(struct equations *self, const double *values, int *status)
+{
+  PetscFunctionBegin;
+  PetscCall(forget_solutions(&self->last));
+  PetscCall(MatSetValuesCOO(self->matrix, values, INSERT_VALUES));
+  if (has_factor(self)) PetscCall(set_up_factor(self, values, status));
+  else PetscCall(set_up_blocks(self, status));
+  PetscFunctionReturn(0);
+}
+
+/* The preconditioner with a larger shift. */
+static PetscErrorCode renew_incomplete(struct equations *self, int *is_definite)
+{
+  PetscFunctionBegin;
+  if (self->method == by_multigrid) {
+    PetscCall(renew_smoother(self->solver, self->blocks, &self->incomplete, is_definite));
+  } else {
+    PetscCall(set_up_incomplete(&self->incomplete, self->solver, self->blocks, is_definite));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -263,30 +249,49 @@ int keyway_petsc_factor(void *handle, size_t entries, const double *values)
   return factor(handle, values, &status) ? failed : status;
 }
 
+/* Conjugate gradients, again with a larger shift where a direction shows in which the incomplete
+ * factor is negative. */
+static PetscErrorCode iterate(struct equations *self, double admissible, PetscScalar *with,
+                              KSPConvergedReason *reason, int *iterations)
+{
+  int is_repeated;
+  *iterations = 0;
+  PetscFunctionBegin;
+  PetscCall(KSPSetTolerances(self->solver, tolerance, admissible, PETSC_DEFAULT, most_iterations));
+  do {
+    PetscInt count;
+    PetscCall(combine_solutions(&self->last, self->b, with, self->x));
+    PetscCall(KSPSolve(self->solver, self->b, self->x));
+    PetscCall(KSPGetConvergedReason(self->solver, reason));
+    PetscCall(KSPGetIterationNumber(self->solver, &count));
+    *iterations += count;
+    is_repeated = !has_factor(self) && *reason == KSP_DIVERGED_INDEFINITE_PC
+                  && raise_shift(&self->incomplete);
+    if (is_repeated) PetscCall(renew_incomplete(self, &is_repeated));
+  } while (is_repeated);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode solve(struct equations *self, double admissible, int is_kept, double *b,
                             int *iterations, int *status)
 {
   PetscScalar *own, with[most_kept];
   KSPConvergedReason reason;
-  PetscInt count;
   PetscFunctionBegin;
   PetscCall(VecGetArray(self->b, &own));
   for (int i = 0; i < self->rows; i++) own[i] = b[i];
   PetscCall(VecRestoreArray(self->b, &own));
-  if (!is_direct(self)) {
-    PetscCall(KSPSetTolerances(self->solver, tolerance, admissible, PETSC_DEFAULT,
-                               most_iterations));
-    PetscCall(combine_solutions(&self->last, self->b, with, self->x));
+  if (is_direct(self)) {
+    PetscCall(KSPSolve(self->solver, self->b, self->x));
+    PetscCall(KSPGetConvergedReason(self->solver, &reason));
+  } else {
+    PetscCall(iterate(self, admissible, with, &reason, iterations));
+    if (is_kept && reason > 0)
+      PetscCall(keep_solution(&self->last, self->b, with, self->x));
   }
-  PetscCall(KSPSolve(self->solver, self->b, self->x));
-  PetscCall(KSPGetConvergedReason(self->solver, &reason));
-  PetscCall(KSPGetIterationNumber(self->solver, &count));
-  if (is_kept && !is_direct(self) && reason > 0)
-    PetscCall(keep_solution(&self->last, self->b, with, self->x));
   PetscCall(VecGetArray(self->x, &own));
   for (int i = 0; i < self->rows; i++) b[i] = own[i];
   PetscCall(VecRestoreArray(self->x, &own));
-  *iterations = count;
   *status = reason > 0 ? done : reason == KSP_DIVERGED_ITS ? slow : singular;
   PetscFunctionReturn(0);
 }
@@ -310,6 +315,12 @@ void keyway_petsc_memory(void *handle, int *memory)
   struct equations *self = handle;
   memory[0] = memory[1] = 0;
   if (has_factor(self) && read_factor_memory(self->solver, memory)) memory[0] = memory[1] = 0;
+}
+
+double keyway_petsc_shift(void *handle)
+{
+  const struct equations *self = handle;
+  return self->incomplete.shift;
 }
 
 double keyway_petsc_entries(void *handle)

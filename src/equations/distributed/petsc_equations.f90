@@ -5,7 +5,7 @@ module petsc_equations
   implicit none
   private
   public :: has_petsc, start_petsc, plan_petsc, factor_petsc, solve_petsc, finish_petsc
-  public :: entries_of_petsc, memory_of_petsc
+  public :: entries_of_petsc, memory_of_petsc, shift_of_petsc
   public :: by_cholesky, by_multigrid, by_blocks, by_lu, by_compressed
   public :: is_done, is_singular, is_slow
 
@@ -85,6 +85,14 @@ module petsc_equations
       type(c_ptr), value :: handle
       integer(c_int), intent(out) :: memory(2) !< on one rank at most, on all ranks [MB]
     end subroutine memory_of_petsc
+
+    !> What the diagonal has got more, relative to it, for the incomplete factor; 0 without a shift.
+    function shift_of_petsc(handle) result(shift) bind(c, name='keyway_petsc_shift')
+      import :: c_double, c_ptr
+      implicit none
+      type(c_ptr), value :: handle
+      real(c_double) :: shift
+    end function shift_of_petsc
 
     subroutine finish_petsc(handle) bind(c, name='keyway_petsc_finish')
       import :: c_ptr

@@ -26,6 +26,12 @@ double keyway_petsc_entries(void *handle)
   return 0;
 }
 
+double keyway_petsc_shift(void *handle)
+{
+  (void)handle;
+  return 0;
+}
+
 void keyway_petsc_memory(void *handle, int *memory)
 {
   (void)handle;

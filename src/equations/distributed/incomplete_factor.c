@@ -1,0 +1,82 @@
+/* PETSc shifts no pivots of ICC in blocks. The diagonal of the whole matrix is shifted instead
+ * (T. A. Manteuffel, Mathematics of Computation 34, 1980, 473-497): a large enough shift leaves a
+ * positive definite factor of any positive definite matrix. */
+#include "incomplete_factor.h"
+
+/* Each shift is about the root of ten times as large as the one before. */
+static const double shifts[] = {0, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1, 3, 10};
+enum { num_shifts = sizeof shifts / sizeof *shifts };
+
+/* Iterations of the trial. Broken factors of stretched bricks show within six. */
+enum { trial_iterations = 20 };
+
+int raise_shift(struct incomplete_factor *self)
+{
+  for (int k = 1; k < num_shifts; k++) {
+    if (shifts[k] <= self->shift) continue;
+    self->shift = shifts[k];
+    return 1;
+  }
+  return 0;
+}
+
+static PetscErrorCode give_operators(struct incomplete_factor *self, KSP solver, Mat blocks)
+{
+  Vec diagonal;
+  PetscFunctionBegin;
+  if (self->shift <= 0) {
+    PetscCall(KSPSetOperators(solver, blocks, blocks));
+    PetscFunctionReturn(0);
+  }
+  if (!self->shifted) PetscCall(MatDuplicate(blocks, MAT_COPY_VALUES, &self->shifted));
+  else PetscCall(MatCopy(blocks, self->shifted, SAME_NONZERO_PATTERN));
+  PetscCall(MatSetOption(self->shifted, MAT_SPD, PETSC_TRUE));
+  PetscCall(MatCreateVecs(blocks, &diagonal, NULL));
+  PetscCall(MatGetDiagonal(blocks, diagonal));
+  PetscCall(VecScale(diagonal, 1 + self->shift));
+  PetscCall(MatDiagonalSet(self->shifted, diagonal, INSERT_VALUES));
+  PetscCall(VecDestroy(&diagonal));
+  PetscCall(KSPSetOperators(solver, blocks, self->shifted));
+  PetscFunctionReturn(0);
+}
+
+/* Conjugate gradients meet a direction in which the preconditioner is negative, if there is one
+ * that matters. */
+static PetscErrorCode try_factor(KSP solver, Mat blocks, int *is_definite)
+{
+  PC pc;
+  KSP trial;
+  Vec b, x;
+  KSPConvergedReason reason;
+  PetscFunctionBegin;
+  PetscCall(KSPGetPC(solver, &pc));
+  PetscCall(MatCreateVecs(blocks, &x, &b));
+  PetscCall(VecSetRandom(b, NULL));
+  PetscCall(KSPCreate(PetscObjectComm((PetscObject)blocks), &trial));
+  PetscCall(KSPSetType(trial, KSPCG));
+  PetscCall(KSPSetNormType(trial, KSP_NORM_UNPRECONDITIONED));
+  PetscCall(KSPSetPC(trial, pc));
+  PetscCall(KSPSetTolerances(trial, 1e-10, PETSC_DEFAULT, PETSC_DEFAULT, trial_iterations));
+  PetscCall(KSPSolve(trial, b, x));
+  PetscCall(KSPGetConvergedReason(trial, &reason));
+  *is_definite = reason > 0 || reason == KSP_DIVERGED_ITS || reason == KSP_DIVERGED_INDEFINITE_MAT;
+  PetscCall(KSPDestroy(&trial));
+  PetscCall(VecDestroy(&b));
+  PetscCall(VecDestroy(&x));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode set_up_incomplete(struct incomplete_factor *self, KSP solver, Mat blocks,
+                                 int *is_definite)
+{
+  PC pc;
+  PetscFunctionBegin;
+  PetscCall(KSPGetPC(solver, &pc));
+  do {
+    PetscCall(PCSetFailedReason(pc, PC_NOERROR));
+    PetscCall(give_operators(self, solver, blocks));
+    PetscCall(try_factor(solver, blocks, is_definite));
+  } while (!*is_definite && raise_shift(self));
+  PetscCall(KSPSetUp(solver));
+  PetscFunctionReturn(0);
+}
