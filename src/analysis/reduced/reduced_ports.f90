@@ -80,13 +80,15 @@ contains
     real(rk), allocatable, intent(out) :: compliance(:, :) !< (rows, rows) [m/N]
     type(error_type), allocatable, intent(out) :: error
     type(jump_schur_block) :: jumps
+    integer, allocatable :: place(:)
     if (system%operator%num_points == 0) then
       allocate (compliance(0, 0))
       return
     end if
     call extract_schur_block(solver%factor, system%operator, system%matrix, jumps)
     if (jumps%is_there .and. .not. jumps%top%is_there) then
-      call schur_compliance(jumps, system%operator, compliance)
+      call schur_compliance(jumps, system%operator, compliance, place)
+      compliance = compliance(place, place)
     else
       call find_compliance(solver%factor, system%operator, system%matrix%num_free, compliance, &
                            error)

@@ -6,6 +6,8 @@ module dense_factor
   public :: lu_factor, factorise_dense, solve_factored, solve_lower, solve_lower_transposed
   public :: invert_from_lower
 
+  integer, parameter :: tile = 64 !< rows that are copied together
+
   !> P A = L U.
   type :: lu_factor
     real(rk), allocatable :: values(:, :)
@@ -56,12 +58,15 @@ contains
   !> Replaces L by the inverse of L L^T, both triangles.
   subroutine invert_from_lower(a)
     real(rk), intent(inout), contiguous :: a(:, :) !< only the lower triangle of L is read
-    integer :: n, j, info
+    integer :: n, first, last, j, info
     n = size(a, 1)
     if (n == 0) return
     call dpotri('L', n, a, n, info)
-    do j = 2, n
-      a(:j - 1, j) = a(j, :j - 1)
+    do first = 1, n, tile
+      last = min(first + tile - 1, n)
+      do j = first, n ! rows of the lower triangle stay in the cache
+        a(first:min(last, j - 1), j) = a(j, first:min(last, j - 1))
+      end do
     end do
   end subroutine invert_from_lower
 

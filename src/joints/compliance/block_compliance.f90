@@ -64,25 +64,28 @@ contains
   !> Takes the blocks that matter from a dense compliance, to the accuracy that matters. A block is
   !> compared with what the structure adds to the springs in the own blocks, spring - G: where
   !> springs are stiff, G is nearly theirs alone.
-  subroutine take_blocks(dense, spring, groups, smallest, blocks)
+  subroutine take_blocks(dense, spring, groups, smallest, blocks, place)
     real(rk), intent(in) :: dense(:, :) !< G (rows, rows) [m/N]
     real(rk), intent(in) :: spring(:) !< (rows) compliance of the joints' own springs [m/N]
     type(group_list), intent(in) :: groups
     real(rk), intent(in) :: smallest !< coupling of a block that is kept
     type(compliance_blocks), intent(out) :: blocks
+    integer, intent(in), optional :: place(:) !< (rows) of each row in `dense`; else all in order
     real(rk) :: own(groups%num_groups)
-    integer :: j, k
+    real(rk), allocatable :: values(:, :)
+    integer :: where_is(size(spring)), j, k
+    where_is = [(j, j=1, size(spring))]
+    if (present(place)) where_is = place
     call blocks%start(groups)
     do j = 1, groups%num_groups
-      associate (rows => groups%rows(j))
-        own(j) = own_size(dense(rows, rows), spring(rows))
-        call blocks%put(j, j, 1.0_rk, dense(rows, rows), 0.0_rk)
-      end associate
+      values = dense(where_is(groups%rows(j)), where_is(groups%rows(j)))
+      own(j) = own_size(values, spring(groups%rows(j)))
+      call blocks%put(j, j, 1.0_rk, values, 0.0_rk)
     end do
     !$omp parallel do schedule(dynamic) default(none) if (groups%num_groups > 1) &
-    !$omp shared(dense, groups, smallest, own, blocks)
+    !$omp shared(dense, where_is, groups, smallest, own, blocks)
     do j = 2, groups%num_groups
-      call take_row(dense, groups, j, smallest, own, blocks)
+      call take_row(dense, where_is, groups, j, smallest, own, blocks)
     end do
     !$omp end parallel do
     blocks%left_out = 0.0_rk
@@ -94,18 +97,19 @@ contains
   end subroutine take_blocks
 
   !> Takes the blocks of a group with those before it.
-  subroutine take_row(dense, groups, j, smallest, own, blocks)
+  subroutine take_row(dense, place, groups, j, smallest, own, blocks)
     real(rk), intent(in) :: dense(:, :) !< G (rows, rows) [m/N]
+    integer, intent(in) :: place(:) !< (rows) of each row in `dense`
     type(group_list), intent(in) :: groups
     integer, intent(in) :: j !< the group
     real(rk), intent(in) :: smallest !< coupling of a block that is kept
     real(rk), intent(in) :: own(:) !< (groups) sizes of the own blocks [m/N]
     type(compliance_blocks), intent(inout) :: blocks
+    real(rk), allocatable :: values(:, :)
     integer :: k
     do k = 1, j - 1
-      associate (values => dense(groups%rows(j), groups%rows(k)))
-        call blocks%put_coupling(j, k, sqrt(own(j))*sqrt(own(k)), values, smallest)
-      end associate
+      values = dense(place(groups%rows(j)), place(groups%rows(k)))
+      call blocks%put_coupling(j, k, sqrt(own(j))*sqrt(own(k)), values, smallest)
     end do
   end subroutine take_row
 

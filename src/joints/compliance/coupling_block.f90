@@ -42,13 +42,22 @@ module coupling_block
   real(rk), parameter :: most_entries = 0.6_rk
 
   interface
-    subroutine dger(m, n, alpha, x, incx, y, incy, a, lda)
+    subroutine dgemm(form_a, form_b, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
       import :: rk
       implicit none
-      integer, intent(in) :: m, n, incx, incy, lda
-      real(rk), intent(in) :: alpha, x(m), y(n)
-      real(rk), intent(inout) :: a(lda, n)
-    end subroutine dger
+      character, intent(in) :: form_a, form_b
+      integer, intent(in) :: m, n, k, lda, ldb, ldc
+      real(rk), intent(in) :: alpha, beta, a(lda, k), b(ldb, k)
+      real(rk), intent(inout) :: c(ldc, n)
+    end subroutine dgemm
+
+    pure function ddot(n, x, incx, y, incy)
+      import :: rk
+      implicit none
+      integer, intent(in) :: n, incx, incy
+      real(rk), intent(in) :: x(n), y(n)
+      real(rk) :: ddot
+    end function ddot
   end interface
 
 contains
@@ -79,6 +88,8 @@ contains
 
   !> Gram-Schmidt's orthogonalisation of the columns, the longest first, until what is left of all
   !> columns is small. Without result where it needs too many.
+  !>
+  !> What is left of the columns is computed for several steps at once.
   subroutine narrow(values, allowed, rough, block, is_exact)
     real(rk), intent(in) :: values(:, :) !< [m/N]
     real(rk), intent(in) :: allowed !< norm of the error; 0: a rough block is enough [m/N]
@@ -87,24 +98,25 @@ contains
     logical, intent(out) :: is_exact !< to `allowed`
     real(rk), allocatable :: rest(:, :), left(:, :), right(:, :)
     real(rk) :: square(size(values, 2)) ! of the lengths of the columns
-    integer :: rank, most, c, m, n
+    integer :: rank, most, done, m, n
     m = size(values, 1)
     n = size(values, 2)
     most = int(most_entries*real(m, rk)*real(n, rk)/real(max(m + n, 1), rk))
     allocate (rest, source=values)
     allocate (left(m, most), right(n, most))
     is_exact = .false.
+    done = 0 ! columns of left and right that `rest` is without
+    square = squares_of(rest)
     do rank = 0, most
-      if (mod(rank, few_steps) == 0) square = sum(rest**2, 1)
-      if (sum(square) <= max(allowed, rough)**2) square = sum(rest**2, 1)
+      if (rank - done == few_steps .or. sum(square) <= max(allowed, rough)**2) then
+        call take_away(left(:, done + 1:rank), right(:, done + 1:rank), rest, square)
+        done = rank
+      end if
       if (block%rough_rank == 0 .and. sum(square) <= rough**2) block%rough_rank = rank
       is_exact = allowed > 0.0_rk .and. sum(square) <= allowed**2
       if (is_exact .or. rank == most) exit
       if (block%rough_rank > 0 .and. allowed <= 0.0_rk) exit
-      c = maxloc(square, 1)
-      left(:, rank + 1) = rest(:, c)/norm2(rest(:, c))
-      right(:, rank + 1) = transposed_times_vector(rest, left(:, rank + 1))
-      call dger(m, n, -1.0_rk, left(:, rank + 1), 1, right(:, rank + 1), 1, rest, m)
+      call add_column(rest, square, left(:, done + 1:rank + 1), right(:, done + 1:rank + 1))
       square = square - right(:, rank + 1)**2
     end do
     if (.not. is_exact) rank = block%rough_rank
@@ -112,6 +124,51 @@ contains
     block%left = real(left(:, :rank), single)
     block%right = real(right(:, :rank), single)
   end subroutine narrow
+
+  !> rest = rest - left*transpose(right), and the squares of the lengths of its columns.
+  subroutine take_away(left, right, rest, square)
+    real(rk), intent(in), contiguous :: left(:, :), right(:, :)
+    real(rk), intent(inout), contiguous :: rest(:, :)
+    real(rk), intent(out) :: square(:)
+    integer :: m, n
+    m = size(rest, 1)
+    n = size(rest, 2)
+    if (size(left, 2) > 0) then
+      call dgemm('N', 'T', m, n, size(left, 2), -1.0_rk, left, m, right, n, 1.0_rk, rest, m)
+    end if
+    square = squares_of(rest)
+  end subroutine take_away
+
+  !> Squares of the lengths of columns.
+  pure function squares_of(columns) result(square)
+    real(rk), intent(in), contiguous :: columns(:, :)
+    real(rk) :: square(size(columns, 2))
+    integer :: j, m
+    m = size(columns, 1)
+    do j = 1, size(columns, 2)
+      square(j) = ddot(m, columns(:, j), 1, columns(:, j), 1)
+    end do
+  end function squares_of
+
+  !> The last columns of left and right: the direction of the longest column that is left, and how
+  !> much of it all columns have. The other columns of left and right are not yet taken from `rest`.
+  subroutine add_column(rest, square, left, right)
+    real(rk), intent(in), contiguous :: rest(:, :)
+    real(rk), intent(in) :: square(:) !< of the lengths of the columns that are left
+    real(rk), intent(inout), contiguous :: left(:, :), right(:, :)
+    integer :: c, k, r
+    r = size(left, 2)
+    c = maxloc(square, 1)
+    left(:, r) = rest(:, c)
+    do k = 1, r - 1
+      left(:, r) = left(:, r) - right(c, k)*left(:, k)
+    end do
+    left(:, r) = left(:, r)/norm2(left(:, r))
+    right(:, r) = transposed_times_vector(rest, left(:, r))
+    do k = 1, r - 1
+      right(:, r) = right(:, r) - dot_product(left(:, k), left(:, r))*right(:, k)
+    end do
+  end subroutine add_column
 
   pure logical function is_there(self)
     class(dense_block), intent(in) :: self

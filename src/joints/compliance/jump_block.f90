@@ -43,28 +43,59 @@ contains
     call factor%take_schur_block(matrix%num_last, jumps%lower, jumps%unknown, jumps%is_there)
   end subroutine extract_schur_block
 
-  !> G = B S^-1 B^T.
-  subroutine schur_compliance(jumps, operator, compliance)
+  !> G = B S^-1 B^T. Where each row of B is one unknown, this is S^-1 in another order.
+  subroutine schur_compliance(jumps, operator, compliance, place)
     type(jump_schur_block), intent(in) :: jumps
     type(jump_operator), intent(in) :: operator
-    real(rk), allocatable, intent(out) :: compliance(:, :) !< (rows, rows) [m/N]
+    real(rk), allocatable, intent(out) :: compliance(:, :) !< (rows, rows) in some order [m/N]
+    integer, allocatable, intent(out) :: place(:) !< (rows) of each row in `compliance`
     real(rk), allocatable :: inverse(:, :)
-    real(rk) :: column(size(jumps%unknown))
-    integer :: place(jumps%num_free), i, k, row
+    integer :: place_of(jumps%num_free), i
+    place_of = 0
+    place_of(jumps%unknown) = [(i, i=1, size(jumps%unknown))]
     inverse = jumps%lower
     call invert_from_lower(inverse)
-    place = 0
-    place(jumps%unknown) = [(i, i=1, size(jumps%unknown))]
+    if (selects_unknowns(operator, jumps%num_free)) then
+      place = place_of(operator%unknown)
+      call move_alloc(inverse, compliance)
+    else
+      place = [(i, i=1, num_rows(operator%num_points))]
+      call apply_operator(operator, place_of, inverse, compliance)
+    end if
+  end subroutine schur_compliance
+
+  !> Whether each row of B is one free unknown.
+  pure logical function selects_unknowns(operator, num_free)
+    type(jump_operator), intent(in) :: operator
+    integer, intent(in) :: num_free
+    associate (rows => num_rows(operator%num_points))
+      selects_unknowns = size(operator%unknown) == rows
+      if (selects_unknowns) then
+        selects_unknowns = all(operator%row_start(2:) - operator%row_start(:rows) == 1) .and. &
+                           all(operator%unknown <= num_free) .and. &
+                           .not. any(abs(operator%coefficient - 1.0_rk) > 0.0_rk)
+      end if
+    end associate
+  end function selects_unknowns
+
+  !> B S^-1 B^T.
+  subroutine apply_operator(operator, place, inverse, compliance)
+    type(jump_operator), intent(in) :: operator
+    integer, intent(in) :: place(:) !< (free unknowns) in the inverse
+    real(rk), intent(in) :: inverse(:, :) !< S^-1
+    real(rk), allocatable, intent(out) :: compliance(:, :) !< (rows, rows) [m/N]
+    real(rk) :: column(size(inverse, 1))
+    integer :: k, row
     allocate (compliance(num_rows(operator%num_points), num_rows(operator%num_points)))
     do row = 1, size(compliance, 2)
       column = 0.0_rk
       do k = operator%row_start(row), operator%row_start(row + 1) - 1
-        if (operator%unknown(k) > jumps%num_free) cycle
+        if (operator%unknown(k) > size(place)) cycle
         column = column + operator%coefficient(k)*inverse(:, place(operator%unknown(k)))
       end do
       call apply_rows(operator, place, column, compliance(:, row))
     end do
-  end subroutine schur_compliance
+  end subroutine apply_operator
 
   !> B times a column over the last unknowns.
   pure subroutine apply_rows(operator, place, column, product)

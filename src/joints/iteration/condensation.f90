@@ -155,6 +155,7 @@ contains
     real(rk), intent(in) :: smallest !< coupling of a block that is kept
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: dense(:, :)
+    integer, allocatable :: place(:) ! of each row in `dense`; not allocated: all in order
     integer :: levels
     if (groups%is_divided()) then
       call find_own_rows(self%factor, self%operator, num_free, spring, groups, &
@@ -163,13 +164,13 @@ contains
     end if
     if (self%jumps%is_there .and. .not. self%jumps%top%is_there) then
       if (self%operator%num_points > few_points) call use_many_threads(levels)
-      call schur_compliance(self%jumps, self%operator, dense)
+      call schur_compliance(self%jumps, self%operator, dense, place)
       if (self%operator%num_points > few_points) call use_one_thread(levels)
     else
       call find_compliance(self%factor, self%operator, num_free, dense, error)
       if (allocated(error)) return
     end if
-    call take_blocks(dense, spring, groups, smallest, self%condensed%blocks)
+    call take_blocks(dense, spring, groups, smallest, self%condensed%blocks, place)
   end subroutine condense_densely
 
   !> Computes the blocks of G that were left out: joints of a static step, and joints that carry a
