@@ -26,6 +26,9 @@ module linear_solver
     procedure :: keep_single => keep_double
     procedure :: num_entries => unknown_entries
     procedure :: describe_iterations => describe_none
+    procedure :: has_patches => has_no_patches
+    procedure :: take_patch => refuse_patch
+    procedure :: solve_patch => refuse_solve_of_patch
   end type equation_solver
 
   !> Parts of a factor. The upper part holds the columns of the active unknowns and all columns that
@@ -124,6 +127,32 @@ contains
     character(:), allocatable :: text
     text = repeat(' ', min(0, self%failed_unknown))
   end function describe_none
+
+  !> Whether solves are iterations, and parts of the matrix can have factors of their own.
+  logical function has_no_patches(self)
+    class(equation_solver), intent(in) :: self
+    has_no_patches = self%failed_unknown > huge(1) - 1
+  end function has_no_patches
+
+  !> Takes the patch of this rank: the unknowns within some layers of neighbours of the seeds. What
+  !> is outside does not move. All ranks call it together; without seeds a rank keeps its patch.
+  subroutine refuse_patch(self, seed, layers, unknown, error)
+    class(equation_solver), intent(inout) :: self
+    integer, intent(in) :: seed(:) !< unknowns
+    integer, intent(in) :: layers
+    integer, allocatable, intent(out) :: unknown(:) !< of each row of the patch, 0 for none
+    type(error_type), allocatable, intent(out) :: error
+    allocate (unknown(0))
+    call raise(error, 'this solver has no factors of parts')
+  end subroutine refuse_patch
+
+  !> Solves for columns over the patch of this rank, in place. Other ranks take no part.
+  subroutine refuse_solve_of_patch(self, b, error)
+    class(equation_solver), intent(inout) :: self
+    real(rk), intent(inout) :: b(:, :) !< (rows of the patch, right-hand sides)
+    type(error_type), allocatable, intent(out) :: error
+    call raise(error, 'this solver has no factors of parts')
+  end subroutine refuse_solve_of_patch
 
   !> y = L^-1 y or y = L^-T y with a part of the factor, in the order of elimination.
   subroutine refuse_part(self, part, is_forward, y, error)

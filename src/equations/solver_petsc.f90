@@ -12,8 +12,9 @@ module solver_petsc
   use petsc_equations, only: by_blocks, by_cholesky, by_compressed, by_lu, by_multigrid, &
                              entries_of_petsc, factor_petsc, finish_petsc, is_done, &
                              is_singular, is_slow, memory_of_petsc, plan_petsc, &
-                             shift_of_petsc, solve_petsc, start_petsc
-  use ranks, only: gather_rows, this_rank
+                             rows_of_petsc_patch, shift_of_petsc, solve_petsc, &
+                             solve_petsc_patch, start_petsc, take_petsc_patch
+  use ranks, only: gather_rows, share_error, this_rank
   use unknown_layout, only: choose_solver, compressed_solver, direct_solver, own_rows, row_layout
   use write_text, only: as_text
   implicit none
@@ -35,6 +36,7 @@ module solver_petsc
     procedure :: analyse, factorise, solve
     procedure :: num_entries => num_entries_here
     procedure :: describe_iterations
+    procedure :: has_patches, take_patch, solve_patch
     final :: release
   end type petsc_solver
 
@@ -69,8 +71,7 @@ contains
     logical :: is_direct
     is_direct = layout%solver == direct_solver
     if (layout%solver == choose_solver) then
-      is_direct = layout%first_row(size(layout%first_row)) <= most_direct &
-                  .or. layout%has_many_sides
+      is_direct = layout%first_row(size(layout%first_row)) <= most_direct
     end if
     method = merge(by_blocks, by_multigrid, layout%has_inertia)
     if (is_direct) method = by_cholesky
@@ -250,6 +251,50 @@ contains
     entries = 0_long
     if (self%is_ready) entries = int(entries_of_petsc(self%handle), long)
   end function num_entries_here
+
+  !> Whether solves are iterations.
+  logical function has_patches(self)
+    class(petsc_solver), intent(in) :: self
+    has_patches = self%method == by_blocks .or. self%method == by_multigrid
+  end function has_patches
+
+  !> Takes the patch of this rank.
+  subroutine take_patch(self, seed, layers, unknown, error)
+    class(petsc_solver), intent(inout) :: self
+    integer, intent(in) :: seed(:) !< unknowns
+    integer, intent(in) :: layers
+    integer, allocatable, intent(out) :: unknown(:) !< of each row of the patch, 0 for none
+    type(error_type), allocatable, intent(out) :: error
+    integer(c_int), allocatable :: row(:)
+    integer(c_int) :: num_rows, status
+    integer, allocatable :: unknown_of_row(:)
+    integer :: j
+    status = take_petsc_patch(self%handle, int(layers, c_int), int(size(seed), c_int), &
+                              int(self%layout%row(seed), c_int), num_rows)
+    allocate (row(num_rows))
+    if (status == is_done) status = rows_of_petsc_patch(self%handle, num_rows, row)
+    if (status /= is_done) then
+      call raise(error, 'a part of the matrix near joints could not be factored (not enough '// &
+                 'memory?)', system_failed)
+    end if
+    call share_error(error)
+    if (allocated(error)) return
+    allocate (unknown_of_row(self%layout%first_row(size(self%layout%first_row))), source=0)
+    do j = 1, size(self%layout%row)
+      unknown_of_row(self%layout%row(j) + 1) = j
+    end do
+    unknown = unknown_of_row(row + 1)
+  end subroutine take_patch
+
+  !> Solves for columns over the patch of this rank, in place.
+  subroutine solve_patch(self, b, error)
+    class(petsc_solver), intent(inout) :: self
+    real(rk), intent(inout) :: b(:, :) !< (rows of the patch, right-hand sides)
+    type(error_type), allocatable, intent(out) :: error
+    if (solve_petsc_patch(self%handle, int(size(b, 1), c_int), int(size(b, 2), c_int), b) &
+        == is_done) return
+    call raise(error, 'PETSc failed to solve for a part of the matrix', system_failed)
+  end subroutine solve_patch
 
   !> Why a solve has failed.
   subroutine report_failure(status, iterations, error)

@@ -33,8 +33,8 @@ set(sources
 # What stands behind petsc_equations.f90
 if(KEYWAY_PETSC)
   list(APPEND sources distributed/block_matrix.c distributed/incomplete_factor.c
-       distributed/last_solutions.c distributed/multigrid.c distributed/mumps_factor.c
-       distributed/petsc_bridge.c)
+       distributed/last_solutions.c distributed/matrix_patch.c distributed/multigrid.c
+       distributed/mumps_factor.c distributed/petsc_bridge.c)
 else()
   list(APPEND sources distributed/without_petsc.c)
 endif()

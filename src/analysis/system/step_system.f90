@@ -166,7 +166,6 @@ contains
       associate (layout => system%matrix%layout)
         layout%solver = model%equation_solver
         layout%has_inertia = plan%procedure%has_inertia
-        layout%has_many_sides = size(model%joints) > 0
       end associate
     end if
     call build_jump_operator(system%numbers, model%mesh, model%joints, system%operator)

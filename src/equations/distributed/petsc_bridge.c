@@ -6,6 +6,7 @@
 #include "block_matrix.h"
 #include "incomplete_factor.h"
 #include "last_solutions.h"
+#include "matrix_patch.h"
 #include "multigrid.h"
 #include "mumps_factor.h"
 
@@ -20,6 +21,10 @@ enum { rows_of_node = 3, most_iterations = 5000 };
  * value need less; forces that nearly cancel need this. */
 static const double tolerance = 1e-10;
 
+/* The same where the caller admits a residual: what round-off leaves of the forces. In motion the
+ * right-hand side can be a hundred times the forces that the residual is compared with. */
+static const double least_residual = 1e-12;
+
 struct equations {
   int method;
   int rows;
@@ -29,6 +34,7 @@ struct equations {
   KSP solver;
   Vec b, x;
   struct last_solutions last;
+  struct matrix_patch patch;
 };
 
 static PetscErrorCode keep_quiet(MPI_Comm comm, int line, const char *function, const char *file,
@@ -77,6 +83,7 @@ void keyway_petsc_finish(void *handle)
   MatDestroy(&self->blocks);
   MatDestroy(&self->incomplete.shifted);
   forget_solutions(&self->last);
+  forget_patch(&self->patch);
   VecDestroy(&self->b);
   VecDestroy(&self->x);
   free(self);
@@ -257,7 +264,8 @@ static PetscErrorCode iterate(struct equations *self, double admissible, PetscSc
   int is_repeated;
   *iterations = 0;
   PetscFunctionBegin;
-  PetscCall(KSPSetTolerances(self->solver, tolerance, admissible, PETSC_DEFAULT, most_iterations));
+  PetscCall(KSPSetTolerances(self->solver, admissible > 0 ? least_residual : tolerance, admissible,
+                             PETSC_DEFAULT, most_iterations));
   do {
     PetscInt count;
     PetscCall(combine_solutions(&self->last, self->b, with, self->x));
@@ -364,4 +372,26 @@ int keyway_petsc_solve(void *handle, int rows, int sides, double admissible, dou
     iterations[k] = count;
   }
   return status;
+}
+
+int keyway_petsc_patch(void *handle, int layers, int count, const int *seed, int *rows)
+{
+  struct equations *self = handle;
+  int has_failed;
+  *rows = 0;
+  if (take_patch(self->matrix, layers, count, seed, &self->patch, &has_failed)) return failed;
+  if (count_patch_rows(&self->patch, rows)) return failed;
+  return has_failed ? singular : done;
+}
+
+int keyway_petsc_patch_rows(void *handle, int rows, int *row)
+{
+  struct equations *self = handle;
+  return rows > 0 && copy_patch_rows(&self->patch, row) ? failed : done;
+}
+
+int keyway_petsc_solve_patch(void *handle, int rows, int sides, double *b)
+{
+  struct equations *self = handle;
+  return rows > 0 && solve_patch(&self->patch, sides, b) ? failed : done;
 }

@@ -6,6 +6,8 @@ module petsc_equations
   private
   public :: has_petsc, start_petsc, plan_petsc, factor_petsc, solve_petsc, finish_petsc
   public :: entries_of_petsc, memory_of_petsc, shift_of_petsc
+  public :: entries_of_petsc, memory_of_petsc
+  public :: take_petsc_patch, rows_of_petsc_patch, solve_petsc_patch
   public :: by_cholesky, by_multigrid, by_blocks, by_lu, by_compressed
   public :: is_done, is_singular, is_slow
 
@@ -93,6 +95,40 @@ module petsc_equations
       type(c_ptr), value :: handle
       real(c_double) :: shift
     end function shift_of_petsc
+    !> Takes the rows within some layers of neighbours of the rows `seed`, and factors their part of
+    !> the matrix. A rank without seeds keeps its patch.
+    function take_petsc_patch(handle, layers, count, seed, rows) result(status) &
+      bind(c, name='keyway_petsc_patch')
+      import :: c_int, c_ptr
+      implicit none
+      type(c_ptr), value :: handle
+      integer(c_int), value :: layers, count
+      integer(c_int), intent(in) :: seed(count) !< from 0
+      integer(c_int), intent(out) :: rows !< of the patch of this rank
+      integer(c_int) :: status
+    end function take_petsc_patch
+
+    !> The rows of the patch of this rank.
+    function rows_of_petsc_patch(handle, rows, row) result(status) &
+      bind(c, name='keyway_petsc_patch_rows')
+      import :: c_int, c_ptr
+      implicit none
+      type(c_ptr), value :: handle
+      integer(c_int), value :: rows
+      integer(c_int), intent(out) :: row(rows) !< from 0
+      integer(c_int) :: status
+    end function rows_of_petsc_patch
+
+    !> Solves for columns over the patch of this rank, in place. Other ranks take no part.
+    function solve_petsc_patch(handle, rows, sides, b) result(status) &
+      bind(c, name='keyway_petsc_solve_patch')
+      import :: c_double, c_int, c_ptr
+      implicit none
+      type(c_ptr), value :: handle
+      integer(c_int), value :: rows, sides
+      real(c_double), intent(inout) :: b(rows, sides)
+      integer(c_int) :: status
+    end function solve_petsc_patch
 
     subroutine finish_petsc(handle) bind(c, name='keyway_petsc_finish')
       import :: c_ptr

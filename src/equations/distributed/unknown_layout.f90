@@ -20,7 +20,6 @@ module unknown_layout
     logical, allocatable :: is_touched(:) !< (num_free) this rank adds to the row
     real(rk), allocatable :: rigid(:, :) !< (own rows, 6) motions of a rigid body [m]
     logical :: has_inertia = .false. !< mass makes the matrix well conditioned, or most of it
-    logical :: has_many_sides = .false. !< joints need a solution for each of their jumps
     integer :: solver = choose_solver
   end type row_layout
 

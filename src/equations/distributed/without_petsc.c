@@ -44,3 +44,22 @@ int keyway_petsc_solve(void *handle, int rows, int sides, double admissible, dou
   (void)handle, (void)rows, (void)sides, (void)admissible, (void)b, (void)iterations;
   return failed;
 }
+
+int keyway_petsc_patch(void *handle, int layers, int count, const int *seed, int *rows)
+{
+  (void)handle, (void)layers, (void)count, (void)seed;
+  *rows = 0;
+  return failed;
+}
+
+int keyway_petsc_patch_rows(void *handle, int rows, int *row)
+{
+  (void)handle, (void)rows, (void)row;
+  return failed;
+}
+
+int keyway_petsc_solve_patch(void *handle, int rows, int sides, double *b)
+{
+  (void)handle, (void)rows, (void)sides, (void)b;
+  return failed;
+}

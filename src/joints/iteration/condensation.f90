@@ -15,6 +15,7 @@ module condensation
   use block_compliance, only: few_points, take_blocks
   use contact_scaling, only: find_contact_scale
   use joint_compliance, only: find_compliance, find_own_rows
+  use near_compliance, only: find_near_rows
   use point_groups, only: group_list, group_points
   use selected_compliance, only: select_compliance
   use matrix_condition, only: estimate_condition
@@ -52,8 +53,8 @@ module condensation
   real(rk), parameter :: smallest_coupling = 5.0e-10_rk
   !> Most corrections of a solution with a factor in single precision.
   integer, parameter :: most_refinements = 10
-  !> A pass takes as long as so many columns of the blocks that were left out, which are computed
-  !> when passes have taken as long.
+  !> A pass by the Schur block takes as long as so many columns of the blocks that were left out,
+  !> which are computed when passes have taken as long. By iterations a pass takes as long as one.
   integer, parameter :: columns_of_a_pass = 16
   !> Most points for which all blocks of G are kept where an increment needs them.
   integer, parameter :: most_completed = 3000
@@ -127,7 +128,12 @@ contains
       call group_points(operator%first_point, operator%x, groups)
       spring = joint_springs(operator, condensed%k_ref, self%weight)
       missing = 1
-      if (self%jumps%top%is_there) then
+      if (self%factor%has_patches()) then
+        missing = 0
+        call find_near_rows(self%factor, operator, num_free, spring, groups, condensed%blocks, &
+                            error)
+        if (allocated(error)) return
+      else if (self%jumps%top%is_there) then
         call use_many_threads(levels)
         call select_compliance(self%jumps%top, operator, spring, groups, smallest_coupling, &
                                condensed%blocks, missing, error)
@@ -195,7 +201,8 @@ contains
     integer, intent(in) :: num_free
     type(error_type), allocatable, intent(out) :: error
     type(group_list) :: groups
-    if (self%num_passes <= num_rows(self%operator%num_points)/columns_of_a_pass &
+    if (self%num_passes <= num_rows(self%operator%num_points) &
+        /merge(1, columns_of_a_pass, self%factor%has_patches()) &
         .or. self%condensed%blocks%left_out <= smallest_coupling &
         .or. self%operator%num_points > most_completed .or. self%exact%is_rounded()) return
     self%num_passes = -huge(1)

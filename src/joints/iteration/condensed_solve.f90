@@ -64,7 +64,8 @@ contains
         if (.not. outcome%has_converged) return
         excess = excess_traction(k_ref, field%jump, balance%offset, field%iterate)
         if (is_last_pass(self, passes)) exit
-        call find_drift(self, balance, new, excess - last_excess, half, field)
+        call find_drift(self, balance, new, excess - last_excess, half, x, field, error)
+        if (allocated(error)) return
         last_excess = excess
         if (field%drift <= admissible_drift(self) .and. .not. self%condensed%is_rough) exit
         call start_pass(self, field, passes)
@@ -155,27 +156,58 @@ contains
     call save_problem(path, common, problem, error)
   end subroutine save_increment
 
-  !> Jumps from the Schur block after a pass, and how far they are from those of the blocks of G.
-  subroutine find_drift(self, balance, new, change, half, field)
+  !> Jumps by the Schur block or a solve after a pass, and how far they are from those of the blocks
+  !> of G.
+  subroutine find_drift(self, balance, new, change, half, x, field, error)
     class(condensed_equilibrium), intent(inout) :: self
     type(force_balance), intent(in) :: balance
     type(joint_state), intent(in) :: new(:)
     real(rk), intent(in) :: change(:, :) !< (3, points) of the excess traction [Pa]
-    real(rk), intent(inout) :: half(:) !< (free unknowns) after forward substitution
+    real(rk), allocatable, intent(inout) :: half(:) !< (free unknowns) after forward substitution
+    !> (all unknowns) solution with the last excess; with a Schur block its jumps alone
+    real(rk), intent(inout) :: x(:)
     type(joint_field), intent(inout) :: field
-    real(rk) :: x(size(balance%rhs) + self%num_held)
+    type(error_type), allocatable, intent(out) :: error
     call self%costs%start('correct', 'joints', 'joint')
-    x = 0.0_rk
-    call self%operator%add_forces(self%weight*change, x)
-    call self%jumps%add_jump_forces(x, half)
-    x = 0.0_rk
-    call self%jumps%store_jumps(half, x)
-    if (allocated(self%base)) x(:size(half)) = x(:size(half)) + self%base
-    call self%operator%jumps(x, field%response)
-    field%response = field%response + balance%offset
-    field%drift = self%jump_drift(balance, new, field%response - field%jump)
+    if (self%jumps%is_there) then
+      call add_to_half(self, change, half, x)
+      x = 0.0_rk
+      call self%jumps%store_jumps(half, x)
+      if (allocated(self%base)) x(:size(half)) = x(:size(half)) + self%base
+    else
+      call add_response(self, change, x, error)
+    end if
+    if (.not. allocated(error)) then
+      call self%operator%jumps(x, field%response)
+      field%response = field%response + balance%offset
+      field%drift = self%jump_drift(balance, new, field%response - field%jump)
+    end if
     call self%costs%stop()
   end subroutine find_drift
+
+  !> Adds joint forces to a forward substitution.
+  subroutine add_to_half(self, change, half, work)
+    class(condensed_equilibrium), intent(in) :: self
+    real(rk), intent(in) :: change(:, :) !< (3, points) of the excess traction [Pa]
+    real(rk), intent(inout) :: half(:) !< (free unknowns) after forward substitution
+    real(rk), intent(out) :: work(:) !< (all unknowns) forces [N]
+    work = 0.0_rk
+    call self%operator%add_forces(self%weight*change, work)
+    call self%jumps%add_jump_forces(work, half)
+  end subroutine add_to_half
+
+  !> Adds the response to a change of the joint forces by a solve.
+  subroutine add_response(self, change, x, error)
+    class(condensed_equilibrium), intent(inout) :: self
+    real(rk), intent(in) :: change(:, :) !< (3, points) of the excess traction [Pa]
+    real(rk), intent(inout) :: x(:) !< (all unknowns)
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: correction(size(x)), no_load(size(x) - self%num_held)
+    if (.not. any(abs(change) > 0.0_rk)) return
+    no_load = 0.0_rk
+    call respond(self, no_load, change, self%admissible, correction, error)
+    if (.not. allocated(error)) x = x + correction
+  end subroutine add_response
 
   !> Response to the guess: forward substitution and jumps, or all unknowns.
   subroutine begin_solve(self, balance, excess, half, x, error)
@@ -225,12 +257,9 @@ contains
     real(rk), allocatable, intent(inout) :: half(:)
     real(rk), intent(inout) :: x(:) !< (all unknowns)
     type(error_type), allocatable, intent(out) :: error
-    real(rk) :: correction(size(x)), no_load(self%jumps%num_free)
     if (self%jumps%is_there) then
-      correction = 0.0_rk
-      call self%operator%add_forces(self%weight*change, correction)
       call self%costs%start('solve backward', 'structure', 'solver')
-      call self%jumps%add_jump_forces(correction, half)
+      call add_to_half(self, change, half, x)
       x = 0.0_rk
       if (self%repeated%is_there(self%factor)) then
         call self%repeated%backward(self%factor, half, is_partial, x(:size(half)), error)
@@ -240,10 +269,8 @@ contains
       end if
       if (allocated(self%base)) x(:size(half)) = x(:size(half)) + self%base
       call self%costs%stop()
-    else if (any(abs(change) > 0.0_rk)) then
-      no_load = 0.0_rk
-      call respond(self, no_load, change, self%admissible, correction, error)
-      x = x + correction
+    else
+      call add_response(self, change, x, error)
     end if
   end subroutine end_solve
 

@@ -1,0 +1,23 @@
+/* A part of a distributed matrix near some rows, with a factor of its own on one rank. */
+#ifndef KEYWAY_MATRIX_PATCH_H
+#define KEYWAY_MATRIX_PATCH_H
+#include <petscmat.h>
+
+struct matrix_patch {
+  IS rows;    /* of the whole matrix, ascending */
+  Mat factor; /* L L^T of MUMPS */
+};
+
+/* Takes the rows within some layers of neighbours of `seed`. All ranks call it; a rank without
+ * seeds keeps the patch that it has. *has_failed: the part is not positive definite, or memory. */
+PetscErrorCode take_patch(Mat matrix, int layers, int count, const int *seed,
+                          struct matrix_patch *self, int *has_failed);
+
+PetscErrorCode count_patch_rows(const struct matrix_patch *self, int *count);
+PetscErrorCode copy_patch_rows(const struct matrix_patch *self, int *row);
+
+/* Solves for columns over the rows of the patch, in place; for this rank alone. */
+PetscErrorCode solve_patch(const struct matrix_patch *self, int sides, double *b);
+
+PetscErrorCode forget_patch(struct matrix_patch *self);
+#endif
