@@ -4,7 +4,6 @@ set(sources
   blas_threads.f90
   cholmod_bridge.c
   distributed/petsc_equations.f90
-  distributed/unknown_layout.f90
   elimination/factor_top.f90
   elimination/group_dissection.f90
   elimination/wider_pattern.f90
@@ -29,6 +28,7 @@ set(sources
   supernodes/selected_inverse.c
   supernodes/single_factor.c
   supernodes/supernodal_solve.c
+  unknown_layout.f90
 )
 # What stands behind petsc_equations.f90
 if(KEYWAY_PETSC)

@@ -6,7 +6,6 @@ module petsc_equations
   private
   public :: has_petsc, start_petsc, plan_petsc, factor_petsc, solve_petsc, finish_petsc
   public :: entries_of_petsc, memory_of_petsc, shift_of_petsc
-  public :: entries_of_petsc, memory_of_petsc
   public :: take_petsc_patch, rows_of_petsc_patch, solve_petsc_patch
   public :: by_cholesky, by_multigrid, by_blocks, by_lu, by_compressed
   public :: is_done, is_singular, is_slow
@@ -95,6 +94,7 @@ module petsc_equations
       type(c_ptr), value :: handle
       real(c_double) :: shift
     end function shift_of_petsc
+
     !> Takes the rows within some layers of neighbours of the rows `seed`, and factors their part of
     !> the matrix. A rank without seeds keeps its patch.
     function take_petsc_patch(handle, layers, count, seed, rows) result(status) &
