@@ -15,6 +15,7 @@ module divided_run
   use run_checkpoint, only: load_chosen_state
   use run_ledger, only: ledger
   use step_loop, only: run_all_steps
+  use stop_signals, only: outlive_signal
   use undivided_effects, only: refuse_undivided
   use unknown_layout, only: choose_solver
   use user_routines, only: end_user_routines
@@ -74,16 +75,17 @@ contains
     type(error_type), allocatable :: failure
     type(balance_of_ranks) :: ignored
     logical :: is_old
+    call outlive_signal()
     results%costs = costs
     results%log%is_quiet = .true.
     if (options%is_continued) then
       call start_analysis(model, now, error)
       call share_error(error)
-      if (allocated(error)) return
-      is_old = chosen_checkpoint(.false.)
-      call load_chosen_state(options%folder//'/'//base_name(model%deck_file), is_old, now, error)
-      call share_error(error)
-      if (allocated(error)) return
+      if (.not. allocated(error)) then
+        is_old = chosen_checkpoint(.false.)
+        call load_chosen_state(options%folder//'/'//base_name(model%deck_file), is_old, now, error)
+        call share_error(error)
+      end if
     end if
     call share_error(error)
     if (allocated(error)) return

@@ -64,6 +64,7 @@ program keyway
   if (len(options%deck) == 0) then
     call keep_library(options%umat, error)
     call end_on(error)
+    call end_ranks(0_c_int)
     stop
   end if
   if (options%num_threads > 0) call omp_set_num_threads(options%num_threads)

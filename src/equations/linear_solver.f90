@@ -29,6 +29,7 @@ module linear_solver
     procedure :: has_patches => has_no_patches
     procedure :: take_patch => refuse_patch
     procedure :: solve_patch => refuse_solve_of_patch
+    procedure :: drop_patch => keep_nothing
   end type equation_solver
 
   !> Parts of a factor. The upper part holds the columns of the active unknowns and all columns that
@@ -135,11 +136,12 @@ contains
   end function has_no_patches
 
   !> Takes the patch of this rank: the unknowns within some layers of neighbours of the seeds. What
-  !> is outside does not move. All ranks call it together; without seeds a rank keeps its patch.
-  subroutine refuse_patch(self, seed, layers, unknown, error)
+  !> is outside does not move. All ranks call it together. A rank keeps its patch where it gives no
+  !> seeds, and where the new one would be too large: `unknown` is then empty.
+  subroutine refuse_patch(self, seed, layers, most_rows, unknown, error)
     class(equation_solver), intent(inout) :: self
     integer, intent(in) :: seed(:) !< unknowns
-    integer, intent(in) :: layers
+    integer, intent(in) :: layers, most_rows
     integer, allocatable, intent(out) :: unknown(:) !< of each row of the patch, 0 for none
     type(error_type), allocatable, intent(out) :: error
     allocate (unknown(0))
@@ -153,6 +155,11 @@ contains
     type(error_type), allocatable, intent(out) :: error
     call raise(error, 'this solver has no factors of parts')
   end subroutine refuse_solve_of_patch
+
+  !> Gives the memory of the patch back, for solvers with patches.
+  subroutine keep_nothing(self)
+    class(equation_solver), intent(inout) :: self
+  end subroutine keep_nothing
 
   !> y = L^-1 y or y = L^-T y with a part of the factor, in the order of elimination.
   subroutine refuse_part(self, part, is_forward, y, error)

@@ -10,8 +10,8 @@ module solver_petsc
   use linear_solver, only: equation_solver
   use matrix_pattern, only: pattern
   use petsc_equations, only: by_blocks, by_cholesky, by_compressed, by_lu, by_multigrid, &
-                             entries_of_petsc, factor_petsc, finish_petsc, is_done, &
-                             is_singular, is_slow, memory_of_petsc, plan_petsc, &
+                             drop_petsc_patch, entries_of_petsc, factor_petsc, finish_petsc, &
+                             is_done, is_singular, is_slow, memory_of_petsc, plan_petsc, &
                              rows_of_petsc_patch, shift_of_petsc, solve_petsc, &
                              solve_petsc_patch, start_petsc, take_petsc_patch
   use ranks, only: gather_rows, share_error, this_rank
@@ -29,6 +29,7 @@ module solver_petsc
     integer :: num_iterations = 0, least = huge(1), most = 0 !< of all solves, of a solve
     type(c_ptr), private :: handle = c_null_ptr
     logical, private :: is_ready = .false. !< there is a factor
+    logical, private :: has_failed = .false. !< PETSc has, on this rank or on all
     integer(c_int), private :: method = by_cholesky
     integer(c_size_t), private :: num_entries_given = 0
     type(row_layout), private :: layout
@@ -36,7 +37,7 @@ module solver_petsc
     procedure :: analyse, factorise, solve
     procedure :: num_entries => num_entries_here
     procedure :: describe_iterations
-    procedure :: has_patches, take_patch, solve_patch
+    procedure :: has_patches, take_patch, solve_patch, drop_patch
     final :: release
   end type petsc_solver
 
@@ -62,6 +63,7 @@ contains
     else if (plan_petsc(self%handle, self%method, int(bounds(2) - bounds(1) + 1, c_int), &
                         self%layout%rigid, self%num_entries_given, row, column) /= is_done) then
       call raise(error, 'PETSc could not plan the equations (not enough memory?)', system_failed)
+      self%has_failed = .true.
     end if
   end subroutine analyse
 
@@ -186,6 +188,7 @@ contains
                  'without mpiexec names the node)')
     else if (status /= is_done) then
       call raise(error, 'PETSc could not factor the matrix (not enough memory?)', system_failed)
+      self%has_failed = .true.
     end if
     self%is_ready = status == is_done
   end subroutine factorise
@@ -215,11 +218,13 @@ contains
     self%num_iterations = self%num_iterations + int(sum(iterations))
     self%least = min(self%least, int(minval(iterations)))
     self%most = max(self%most, int(maxval(iterations)))
+    self%has_failed = .not. any(status == [is_done, is_slow, is_singular])
+    if (status /= is_done) call report_failure(status, maxval(iterations), error)
+    if (self%has_failed) return
     do k = 1, size(b, 2)
       call gather_rows(self%layout%first_row, own(:, k), all)
       b(:, k) = all(self%layout%row + 1)
     end do
-    if (status /= is_done) call report_failure(status, maxval(iterations), error)
   end subroutine solve
 
   !> Mean, least and most iterations of a solve, and the memory of the factor.
@@ -252,25 +257,25 @@ contains
     if (self%is_ready) entries = int(entries_of_petsc(self%handle), long)
   end function num_entries_here
 
-  !> Whether solves are iterations.
+  !> Whether solves are iterations, and there are equations.
   logical function has_patches(self)
     class(petsc_solver), intent(in) :: self
-    has_patches = self%method == by_blocks .or. self%method == by_multigrid
+    has_patches = self%is_ready .and. (self%method == by_blocks .or. self%method == by_multigrid)
   end function has_patches
 
   !> Takes the patch of this rank.
-  subroutine take_patch(self, seed, layers, unknown, error)
+  subroutine take_patch(self, seed, layers, most_rows, unknown, error)
     class(petsc_solver), intent(inout) :: self
     integer, intent(in) :: seed(:) !< unknowns
-    integer, intent(in) :: layers
+    integer, intent(in) :: layers, most_rows
     integer, allocatable, intent(out) :: unknown(:) !< of each row of the patch, 0 for none
     type(error_type), allocatable, intent(out) :: error
     integer(c_int), allocatable :: row(:)
     integer(c_int) :: num_rows, status
     integer, allocatable :: unknown_of_row(:)
     integer :: j
-    status = take_petsc_patch(self%handle, int(layers, c_int), int(size(seed), c_int), &
-                              int(self%layout%row(seed), c_int), num_rows)
+    status = take_petsc_patch(self%handle, int(layers, c_int), int(most_rows, c_int), &
+                              int(size(seed), c_int), int(self%layout%row(seed), c_int), num_rows)
     allocate (row(num_rows))
     if (status == is_done) status = rows_of_petsc_patch(self%handle, num_rows, row)
     if (status /= is_done) then
@@ -296,6 +301,12 @@ contains
     call raise(error, 'PETSc failed to solve for a part of the matrix', system_failed)
   end subroutine solve_patch
 
+  !> Gives the memory of the patch back.
+  subroutine drop_patch(self)
+    class(petsc_solver), intent(inout) :: self
+    call drop_petsc_patch(self%handle)
+  end subroutine drop_patch
+
   !> Why a solve has failed.
   subroutine report_failure(status, iterations, error)
     integer(c_int), intent(in) :: status, iterations
@@ -313,10 +324,11 @@ contains
     end if
   end subroutine report_failure
 
-  !> Frees the memory of PETSc.
+  !> Frees the memory of PETSc. All ranks do so together: after a failure, which may be that of one
+  !> rank, nothing is freed, and the run ends.
   subroutine release(self)
     type(petsc_solver), intent(inout) :: self
-    call finish_petsc(self%handle)
+    if (.not. self%has_failed) call finish_petsc(self%handle)
     self%handle = c_null_ptr
     self%is_ready = .false.
   end subroutine release

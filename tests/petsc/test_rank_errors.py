@@ -8,6 +8,8 @@ import re
 import signal
 import subprocess
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -73,6 +75,15 @@ def test_failing_disk_ends_all(on_ranks, tmp_path):
     assert program(BlockOnRock().deck(WEIGHT), code=3).stderr.count("results_job") == 1
 
 
+@pytest.mark.parametrize("ranks", [2, 4])
+def test_no_checkpoint_to_go_on_from(keyway, on_ranks, ranks):
+    """The message of the plain program, once, and at once: no rank waits for the others."""
+    deck = BlockOnRock().deck(WEIGHT)
+    plain, divided = keyway(deck, "--continue", code=2), on_ranks(ranks)(deck, "--continue", code=2)
+    assert "there is no checkpoint" in divided.stderr
+    assert divided.stderr.count("--continue") == plain.stderr.count("--continue")
+
+
 def process_of_rank(rank: int, launcher: int) -> int | None:
     """The process of a rank below a launcher, if it has started."""
     for folder in Path("/proc").glob("[0-9]*"):
@@ -86,13 +97,14 @@ def process_of_rank(rank: int, launcher: int) -> int | None:
     return None
 
 
-def test_a_rank_that_is_killed_ends_all(on_ranks):
-    """The launcher ends all ranks; what was written stays readable."""
-    program = on_ranks(2)
+@contextmanager
+def long_run(program) -> Iterator[tuple[subprocess.Popen, Path]]:
+    """A run of two ranks that has begun with its increments, and its summary."""
     deck = BlockOnRock((8, 8, 10)).deck(QUAKE + MOTION.replace("0.01, 0.1", "0.0001, 10."))
     (program.folder / "job.inp").write_text(deck, encoding="utf-8")
     words = ["mpiexec", "-q", "--oversubscribe", "-n", "2", str(program.path), "-q", "-j", "1"]
     summary = program.folder / "results_job/job.json"
+    table = summary.with_name("job_energy.csv")
     with subprocess.Popen(
         [*words, "-o", str(summary.parent), "job.inp"],
         cwd=program.folder,
@@ -100,13 +112,37 @@ def test_a_rank_that_is_killed_ends_all(on_ranks):
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     ) as launcher:
-        while not summary.exists() and launcher.poll() is None:
+        while launcher.poll() is None and not (
+            table.exists() and table.read_text().count("\n") > 3
+        ):
             time.sleep(0.1)
+        yield launcher, summary
+
+
+def test_a_rank_that_is_killed_ends_all(on_ranks):
+    """The launcher ends all ranks; what was written stays readable."""
+    with long_run(on_ranks(2)) as (launcher, summary):
         rank = process_of_rank(1, launcher.pid)
         assert rank is not None
         os.kill(rank, signal.SIGKILL)
         assert launcher.wait(timeout=60) != 0
     assert json.loads(summary.read_text())["status"] in {"running", "stopped"}
+
+
+def test_a_signal_to_all_ranks_stops_the_run(on_ranks):
+    """As the launcher of a cluster sends it at the end of the time: rank 0 ends the run after its
+    increment, with a checkpoint, although the others have the signal first.
+    """
+    with long_run(on_ranks(2)) as (launcher, summary):
+        for number in (1, 0):
+            rank = process_of_rank(number, launcher.pid)
+            assert rank is not None
+            os.kill(rank, signal.SIGTERM)
+        assert launcher.wait(timeout=60) == 1
+    content = json.loads(summary.read_text())
+    assert content["status"] == "stopped"
+    assert "stopped by SIGTERM after increment" in content["message"]
+    assert summary.with_name("job.ckpt.h5").exists()
 
 
 def test_plain_program_names_the_build(keyway):

@@ -17,6 +17,7 @@ from test_grouting import BEFORE, BONDED, PUSH, SAWN, bar, ends_of_steps, move
 from test_motion_errors import of_displacement, tower
 from test_ranks import worst_difference
 from test_stages_in_motion import column
+from tied_blocks import Blocks, node_set
 from uplift_decks import Section, lake
 from uplift_decks import weight as weight_of_section
 
@@ -112,6 +113,23 @@ def warmed() -> str:
     return model(blocks, held) + warm(lines_of(blocks, lambda x: 10.0 + x[:, 0] * x[:, 1] * 9.0))
 
 
+def held_joint(planes: int) -> str:
+    """Two blocks whose faces at their joint are pressed together by 1 um; planes of nodes along x
+    of a block: 2 at the joint and at the end, which are held, 3 with one between that is free.
+    Strains are uniform, so that an estimated error would be round-off.
+    """
+    blocks = Blocks()
+    blocks.add("A", (planes - 1, 0, 1), (1, 0, 1), (1, 0, 1))
+    blocks.add("B", (planes - 1, 1, 2), (1, 0, 1), (1, 0, 1))
+    faces = node_set("STILL", [*blocks.side("A", "X0"), *blocks.side("A", "X1")])
+    faces += node_set("MOVED", [*blocks.side("B", "X0"), *blocks.side("B", "X1")])
+    law = "*JOINT LAW, NAME=LAW, KN=1e12, KT=1e12, FRICTION=0.5\n*JOINT, NAME=J, LAW=LAW\n"
+    loads = "*CONTROLS, ERROR ESTIMATE=OFF\n*BOUNDARY\nMOVED, 1, 1, -1e-6\n"
+    steps = static(f"{loads}*JOINT PRINT, JOINT=J\nTRACTION\n", "1., 1.")
+    cards = f"{law}B_X0, A_X1\n*BOUNDARY\nSTILL, 1, 3\nMOVED, 2, 3\n"
+    return blocks.deck({"": "*ELASTIC\n3e10, 0.\n"}, faces) + cards + steps
+
+
 FEATURES: dict[str, Callable[[], str]] = {
     "joint of one mesh": rocking,
     "joint of two meshes": lambda: rocking((3, 2)),
@@ -154,16 +172,38 @@ def test_each_joint_on_its_rank(keyway, on_ranks, tmp_path, ranks):
     assert size <= 1e-8, place
 
 
-@pytest.mark.parametrize("ranks", [1, 2, 4])
+@pytest.mark.parametrize("ranks", [1, 2, 3, 4])
 def test_joints_by_conjugate_gradients(keyway, on_ranks, tmp_path, ranks):
     """The compliance of a joint is that of the dam within 3 and then 6 elements, a half of the
     blocks; solves of the whole dam make up for the rest. 1e-6 of the largest value, as with
     elastic solids (test_ranks). Solves by iteration leave 1e-12 of forces that nearly cancel, so
-    that increments of motion end at 1e-8.
+    that increments of motion end at 1e-8. One of three ranks and two of four have no joint.
     """
     deck = opened_dam(tmp_path, arc=36).replace("=1e-10", "=1e-8")
     plain, divided = keyway(deck, "-j", "1"), on_ranks(ranks)(deck, "--solver", "ITERATIVE")
     assert plain.csv("joint_JOINT1")["opening"].max() > 0.05
+    size, place = worst_difference(plain, divided)
+    assert size <= 1e-6, place
+
+
+@pytest.mark.parametrize("feature", FEATURES)
+def test_feature_by_conjugate_gradients(keyway, on_ranks, feature):
+    """As `test_feature`, where increments end at 1e-8, to 1e-6 of the largest value."""
+    deck = FEATURES[feature]().replace("=1e-10", "=1e-8")
+    plain, divided = keyway(deck, "-j", "1"), on_ranks(2)(deck, "--solver", "ITERATIVE")
+    size, place = worst_difference(plain, divided)
+    assert size <= 1e-6, place
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("top", [2, 3], ids=["all", "faces"])
+def test_joint_between_held_faces(keyway, on_ranks, ranks, top):
+    """Without free unknowns at a joint, or in all of the model, there is no part of the matrix near
+    the joint. Its traction is that of its springs.
+    """
+    deck = held_joint(top)
+    plain, divided = keyway(deck, "-j", "1"), on_ranks(ranks)(deck, "--solver", "ITERATIVE")
+    assert divided.csv("joint_J")["tn"] == pytest.approx(-1e12 * 1e-6, rel=1e-9)
     size, place = worst_difference(plain, divided)
     assert size <= 1e-6, place
 

@@ -82,6 +82,16 @@ def test_incomplete_factor_that_needs_a_shift(keyway, on_ranks, steps):
     assert size <= 1e-6, place
 
 
+@pytest.mark.parametrize("solver", ["DIRECT", "ITERATIVE"])
+@pytest.mark.parametrize("elements", [2, 5])
+def test_ranks_without_elements(keyway, on_ranks, solver, elements):
+    """More ranks than elements, and one element for a rank. Tolerances as above."""
+    deck = BlockOnRock((1, 1, elements - 1), (1, 1, 1)).deck(QUAKE + WEIGHT + MOTION)
+    plain, divided = keyway(deck, "-j", "1"), on_ranks(4)(deck, "--solver", solver)
+    size, place = worst_difference(plain, divided)
+    assert size <= (1e-8 if solver == "DIRECT" else 1e-6), place
+
+
 def test_four_ranks_print_once(on_ranks):
     """The end of the run is printed once, and the largest displacement is that of one process."""
     deck = BlockOnRock((8, 8, 10)).deck(WEIGHT)

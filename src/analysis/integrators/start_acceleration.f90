@@ -1,7 +1,7 @@
 !> The acceleration that a dynamic step starts with, with or without mass everywhere.
 module start_acceleration
   use kinds, only: rk
-  use errors, only: error_type, raise
+  use errors, only: error_type, raise, system_failed
   use global_vectors, only: norm
   use problem_definition, only: problem
   use joint_law, only: joint_state, state_open
@@ -45,12 +45,21 @@ contains
       if (.not. allocated(values)) return ! no mass anywhere
       call find_constrained_acceleration(system%matrix, system%mass, values, load, r, a, worst, &
                                          error)
-      if (worst == 0) return
+      if (is_final(worst, error)) return
       if (.not. leaves_open) exit
       leaves_open = .false.
     end do
-    call name_place(system%numbers%describe(worst, model%mesh%node_id), error)
+    if (worst > 0) call name_place(system%numbers%describe(worst, model%mesh%node_id), error)
   end subroutine find_start
+
+  !> Whether other joints would not help: an acceleration is found, or the system has failed. A
+  !> divided matrix that is singular has an error without a place.
+  pure logical function is_final(worst, error)
+    integer, intent(in) :: worst !< unknown of the place, 0 for none
+    type(error_type), allocatable, intent(in) :: error
+    is_final = worst == 0
+    if (allocated(error)) is_final = error%exit_code == system_failed
+  end function is_final
 
   !> Whether the loads are balanced where a step starts. Without loads massless parts that nothing
   !> holds would not be found.

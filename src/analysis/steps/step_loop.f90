@@ -13,12 +13,14 @@ module step_loop
   use solver_petsc, only: method_text
   use step_loads, only: step_time
   use joint_water, only: record_uplift
+  use matrix_pattern, only: pattern
   use modal_errors, only: modal_error
   use path_sampling, only: sample_paths
   use integrator_type, only: integrator
   use stage_entry, only: enter_stage, show_stage
   use integrator_catalogue, only: make_integrator
   use step_report, only: close_increment, count_increment, report_failure
+  use tangent_choice, only: choose_tangents, tangent
   use user_increments, only: begin_user_increment
   use warming, only: warm
   implicit none
@@ -59,7 +61,7 @@ contains
       if (allocated(error)) return
       if (method%system%matrix%is_shared) then
         call results%log%say("step '"//model%steps(i)%name//"': "// &
-                             method_text(method%system%matrix%layout))
+                             method_of_step(model, model%steps(i), method%system%matrix))
       end if
       call run_increments(model, model%steps(i), method, now, results, error)
       if (allocated(error)) return
@@ -68,6 +70,18 @@ contains
       if (allocated(error)) return
     end do
   end subroutine run_all_steps
+
+  !> The number of equations and how several processes solve them.
+  function method_of_step(model, plan, matrix) result(text)
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(pattern), intent(in) :: matrix !< with a layout
+    character(:), allocatable :: text
+    type(tangent), allocatable :: choices(:)
+    choices = choose_tangents(model, plan)
+    text = method_text(matrix%layout)
+    if (.not. all(choices%is_symmetric())) text = text//', unsymmetric tangents by MUMPS'
+  end function method_of_step
 
   !> Says what the solves of a step have taken, where the solver says it.
   subroutine report_iterations(plan, method, results)

@@ -64,7 +64,8 @@ contains
     real(rk), allocatable, volatile :: room(:) ! volatile: compilers would omit it
     integer(long) :: most
     integer :: status
-    most = room_share*(solver%factor%num_entries() + 9_long*solver%operator%num_points**2)
+    most = room_share*(solver%factor%num_entries() &
+                       + (3_long*solver%operator%num_points)**2)
     allocate (room(max(1_long, most)), stat=status)
     has_room = status == 0
     if (has_room) room(1) = 0.0_rk

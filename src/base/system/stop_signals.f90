@@ -3,7 +3,7 @@ module stop_signals
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
   implicit none
   private
-  public :: catch_signals, is_asked_to_stop, name_of_signal, has_met_file_limit
+  public :: catch_signals, outlive_signal, is_asked_to_stop, name_of_signal, has_met_file_limit
 
   interface
     !> Catches signals; a crash marks the summary at `path` (system_calls.c).
@@ -13,6 +13,12 @@ module stop_signals
       ! allow(assumed-size)
       character(kind=c_char), intent(in) :: path(*)
     end subroutine c_catch_signals
+
+    !> From now on the first signal that asks to stop does not end this process; a second one does.
+    !> The process that has the results ends the run after its increment.
+    subroutine outlive_signal() bind(c, name='keyway_outlive_signal')
+      implicit none
+    end subroutine outlive_signal
 
     !> The first signal that has arrived, 0 for none.
     function c_stop_signal() result(number) bind(c, name='keyway_stop_signal')

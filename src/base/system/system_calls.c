@@ -161,6 +161,15 @@ static void catch_one(int signal_number, void (*handler)(int)) {
   sigaction(signal_number, &now, NULL);
 }
 
+/* Signals that ask to stop. */
+static const int stopping[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
+enum { num_stopping = sizeof stopping / sizeof stopping[0] };
+
+/* The first signal that asks the run to stop sets a flag alone. */
+void keyway_outlive_signal(void) {
+  for (int i = 0; i < num_stopping; i++) catch_one(stopping[i], ask_to_stop);
+}
+
 /* From now on signals stop the run after its increment, and a crash marks job.json at PATH. The empty
  * path: the run has ended, nothing is marked any more. */
 void keyway_catch_signals(const char *path) {
@@ -172,10 +181,7 @@ void keyway_catch_signals(const char *path) {
   if (is_caught || !path[0]) return;
   is_caught = 1;
   is_run_open = 1;
-  catch_one(SIGINT, ask_to_stop);
-  catch_one(SIGTERM, ask_to_stop);
-  catch_one(SIGHUP, ask_to_stop);
-  catch_one(SIGXCPU, ask_to_stop);
+  keyway_outlive_signal();
   memset(&now, 0, sizeof now);
   now.sa_handler = note_limit;
   now.sa_flags = SA_RESTART;
@@ -192,6 +198,20 @@ int keyway_stop_signal(void) { return first_signal; }
 
 /* Whether a write met the limit of file sizes. */
 int keyway_has_met_limit(void) { return has_met_limit; }
+
+/* Before the results are open the first signal ends the process, without a lock that stays. */
+static void end_unopened(int signal_number) {
+  drop_lock();
+  end_by(signal_number);
+}
+
+/* Signals that ask to stop wait until a lock is taken or not. */
+static void hold_signals(sigset_t *former) {
+  sigset_t held;
+  sigemptyset(&held);
+  for (int i = 0; i < num_stopping; i++) sigaddset(&held, stopping[i]);
+  sigprocmask(SIG_BLOCK, &held, former);
+}
 
 /* What a lock file says: the process and its host, as "123 host". */
 static void read_holder(int file, char *holder, size_t room) {
@@ -239,9 +259,8 @@ static void keep_lock(int file, const char *path) {
   if (!is_registered++) atexit(drop_lock);
 }
 
-/* Takes the lock file PATH. Returns its descriptor, or -1: it cannot be made, -2: another process has
- * it, -3: it was left by a process of another host, -4: the disk is full. `holder`: who has it or has left it, "" for none. */
-int keyway_take_lock(const char *path, char *holder, size_t room) {
+/* Takes the lock file PATH. Returns its descriptor, or a negative number as keyway_take_lock. */
+static int take_lock(const char *path, char *holder, size_t room) {
   char host[256] = "", text[300];
   struct stat opened, named;
   int file, length;
@@ -277,6 +296,20 @@ int keyway_take_lock(const char *path, char *holder, size_t room) {
     return -4;
   }
   keep_lock(file, path);
+  return file;
+}
+
+/* Takes the lock file PATH. Returns its descriptor, or -1: it cannot be made, -2: another process has
+ * it, -3: it was left by a process of another host, -4: the disk is full. `holder`: who has it or has
+ * left it, "" for none. */
+int keyway_take_lock(const char *path, char *holder, size_t room) {
+  sigset_t former;
+  int file;
+  hold_signals(&former);
+  file = take_lock(path, holder, room);
+  for (int i = 0; file >= 0 && !is_run_open && i < num_stopping; i++)
+    catch_one(stopping[i], end_unopened);
+  sigprocmask(SIG_SETMASK, &former, NULL);
   return file;
 }
 

@@ -40,14 +40,34 @@ static PetscErrorCode give_operators(struct incomplete_factor *self, KSP solver,
   PetscFunctionReturn(0);
 }
 
-/* Conjugate gradients meet a direction in which the preconditioner is negative, if there is one
- * that matters. */
-static PetscErrorCode try_factor(KSP solver, Mat blocks, int *is_definite)
+/* PETSc has no incomplete factor without rows: of a rank whose part of the structure is not there
+ * in a stage, or that has no elements. */
+static PetscErrorCode leave_out_empty(PC pc, Mat blocks)
+{
+  PC factor;
+  KSP *own;
+  PetscBool is_divided;
+  PetscInt rows, num_own;
+  PetscFunctionBegin;
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCBJACOBI, &is_divided));
+  if (!is_divided) PetscFunctionReturn(0);
+  PetscCall(PCSetUp(pc));
+  PetscCall(MatGetLocalSize(blocks, &rows, NULL));
+  PetscCall(PCBJacobiGetSubKSP(pc, &num_own, NULL, &own));
+  for (int k = 0; rows == 0 && k < num_own; k++) {
+    PetscCall(KSPGetPC(own[k], &factor));
+    PetscCall(PCSetType(factor, PCNONE));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Conjugate gradients meet a direction in which the preconditioner or the matrix is negative, if
+ * there is one that matters. */
+static PetscErrorCode try_factor(KSP solver, Mat blocks, KSPConvergedReason *reason)
 {
   PC pc;
   KSP trial;
   Vec b, x;
-  KSPConvergedReason reason;
   PetscFunctionBegin;
   PetscCall(KSPGetPC(solver, &pc));
   PetscCall(MatCreateVecs(blocks, &x, &b));
@@ -58,8 +78,8 @@ static PetscErrorCode try_factor(KSP solver, Mat blocks, int *is_definite)
   PetscCall(KSPSetPC(trial, pc));
   PetscCall(KSPSetTolerances(trial, 1e-10, PETSC_DEFAULT, PETSC_DEFAULT, trial_iterations));
   PetscCall(KSPSolve(trial, b, x));
-  PetscCall(KSPGetConvergedReason(trial, &reason));
-  *is_definite = reason > 0 || reason == KSP_DIVERGED_ITS || reason == KSP_DIVERGED_INDEFINITE_MAT;
+  PetscCall(KSPGetConvergedReason(trial, reason));
+  if (*reason == KSP_DIVERGED_ITS) *reason = KSP_CONVERGED_ITS;
   PetscCall(KSPDestroy(&trial));
   PetscCall(VecDestroy(&b));
   PetscCall(VecDestroy(&x));
@@ -70,13 +90,16 @@ PetscErrorCode set_up_incomplete(struct incomplete_factor *self, KSP solver, Mat
                                  int *is_definite)
 {
   PC pc;
+  KSPConvergedReason reason;
   PetscFunctionBegin;
   PetscCall(KSPGetPC(solver, &pc));
   do {
     PetscCall(PCSetFailedReason(pc, PC_NOERROR));
     PetscCall(give_operators(self, solver, blocks));
-    PetscCall(try_factor(solver, blocks, is_definite));
-  } while (!*is_definite && raise_shift(self));
+    PetscCall(leave_out_empty(pc, blocks));
+    PetscCall(try_factor(solver, blocks, &reason));
+  } while (reason < 0 && reason != KSP_DIVERGED_INDEFINITE_MAT && raise_shift(self));
+  *is_definite = reason > 0;
   PetscCall(KSPSetUp(solver));
   PetscFunctionReturn(0);
 }

@@ -9,7 +9,8 @@ struct incomplete_factor {
 };
 
 /* Gives a solver the matrix, and factors with the least shift that leaves a positive definite
- * preconditioner; a shift that was needed before is kept. No shift may suffice. */
+ * preconditioner; a shift that was needed before is kept. No shift may suffice, and the matrix may
+ * not be positive definite. */
 PetscErrorCode set_up_incomplete(struct incomplete_factor *self, KSP solver, Mat blocks,
                                  int *is_definite);
 

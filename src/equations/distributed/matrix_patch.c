@@ -16,7 +16,7 @@ PetscErrorCode forget_patch(struct matrix_patch *self)
 }
 
 /* L L^T of a matrix of this rank. */
-static PetscErrorCode factor_part(Mat part, Mat *both, int *has_failed)
+static PetscErrorCode factor_part(Mat part, Mat *both, enum patch_outcome *outcome)
 {
   MatFactorInfo choices;
   MatFactorError error;
@@ -28,31 +28,62 @@ static PetscErrorCode factor_part(Mat part, Mat *both, int *has_failed)
   PetscCall(MatCholeskyFactorSymbolic(*both, part, NULL, &choices));
   PetscCall(MatCholeskyFactorNumeric(*both, part, &choices));
   PetscCall(MatFactorGetError(*both, &error));
-  *has_failed = error != MAT_FACTOR_NOERROR;
+  if (error != MAT_FACTOR_NOERROR) *outcome = patch_has_no_factor;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode take_patch(Mat matrix, int layers, int count, const int *seed,
-                          struct matrix_patch *self, int *has_failed)
+/* The first rows of the matrix: a part for a rank that needs none. */
+static PetscErrorCode take_first_rows(Mat matrix, IS *rows)
 {
-  const PetscInt num_patches = count > 0;
-  IS near = NULL;
-  Mat *part;
+  PetscInt size;
   PetscFunctionBegin;
-  *has_failed = 0;
-  if (num_patches) {
-    PetscCall(ISCreateGeneral(PETSC_COMM_SELF, count, seed, PETSC_COPY_VALUES, &near));
-    PetscCall(ISSortRemoveDups(near));
+  PetscCall(MatGetBlockSize(matrix, &size));
+  PetscCall(ISCreateStride(PETSC_COMM_SELF, size, 0, 1, rows));
+  PetscFunctionReturn(0);
+}
+
+/* The rows within some layers of neighbours of the seed, ascending. */
+static PetscErrorCode grow_rows(Mat matrix, int layers, int count, const int *seed, IS *rows)
+{
+  PetscFunctionBegin;
+  if (count > 0) {
+    PetscCall(ISCreateGeneral(PETSC_COMM_SELF, count, seed, PETSC_COPY_VALUES, rows));
+    PetscCall(ISSortRemoveDups(*rows));
+  } else {
+    PetscCall(take_first_rows(matrix, rows));
   }
-  PetscCall(MatIncreaseOverlap(matrix, num_patches, &near, layers));
-  if (num_patches) PetscCall(ISSort(near));
-  PetscCall(MatCreateSubMatrices(matrix, num_patches, &near, &near, MAT_INITIAL_MATRIX, &part));
-  if (num_patches) {
+  PetscCall(MatIncreaseOverlap(matrix, 1, rows, layers));
+  PetscCall(ISSort(*rows));
+  PetscFunctionReturn(0);
+}
+
+/* PETSc waits for ever where some ranks take a part of a symmetric matrix and others none: ranks
+ * without a new patch take a part at the first rows, and forget it. */
+PetscErrorCode take_patch(Mat matrix, int layers, int most, int count, const int *seed,
+                          struct matrix_patch *self, enum patch_outcome *outcome)
+{
+  IS near;
+  Mat *part;
+  PetscInt size;
+  int is_taken;
+  PetscFunctionBegin;
+  PetscCall(grow_rows(matrix, layers, count, seed, &near));
+  PetscCall(ISGetLocalSize(near, &size));
+  *outcome = count > 0 && size > most ? patch_too_large : patch_is_there;
+  is_taken = count > 0 && size <= most;
+  if (!is_taken) {
+    PetscCall(ISDestroy(&near));
+    PetscCall(take_first_rows(matrix, &near));
+  }
+  PetscCall(MatCreateSubMatrices(matrix, 1, &near, &near, MAT_INITIAL_MATRIX, &part));
+  if (is_taken) {
     PetscCall(forget_patch(self));
     self->rows = near;
-    PetscCall(factor_part(part[0], &self->factor, has_failed));
+    PetscCall(factor_part(part[0], &self->factor, outcome));
+  } else {
+    PetscCall(ISDestroy(&near));
   }
-  PetscCall(MatDestroySubMatrices(num_patches, &part));
+  PetscCall(MatDestroySubMatrices(1, &part));
   PetscFunctionReturn(0);
 }
 

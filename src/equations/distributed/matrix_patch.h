@@ -8,10 +8,13 @@ struct matrix_patch {
   Mat factor; /* L L^T of MUMPS */
 };
 
-/* Takes the rows within some layers of neighbours of `seed`. All ranks call it; a rank without
- * seeds keeps the patch that it has. *has_failed: the part is not positive definite, or memory. */
-PetscErrorCode take_patch(Mat matrix, int layers, int count, const int *seed,
-                          struct matrix_patch *self, int *has_failed);
+/* patch_has_no_factor: the part is not positive definite, or memory lacks. */
+enum patch_outcome { patch_is_there, patch_too_large, patch_has_no_factor };
+
+/* Takes the rows within some layers of neighbours of `seed`. All ranks call it. A rank keeps the
+ * patch that it has where it gives no seeds, and where there are more rows than `most`. */
+PetscErrorCode take_patch(Mat matrix, int layers, int most, int count, const int *seed,
+                          struct matrix_patch *self, enum patch_outcome *outcome);
 
 PetscErrorCode count_patch_rows(const struct matrix_patch *self, int *count);
 PetscErrorCode copy_patch_rows(const struct matrix_patch *self, int *row);

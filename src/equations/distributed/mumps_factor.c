@@ -12,6 +12,10 @@ enum { first_room = 60, most_room = 480 };
 enum { icntl_room = 14, icntl_low_rank = 35, in_factor_and_solves = 2, cntl_low_rank = 7 };
 enum { few_integers = -8, few_reals = -9 };
 
+/* INFOG(1) of a symmetric matrix that is not positive definite in the last columns of its factor,
+ * which ScaLAPACK computes on several ranks. */
+enum { last_columns_indefinite = -40 };
+
 /* The factor, before it is computed too. */
 static PetscErrorCode find_factor(KSP solver, Mat *both)
 {
@@ -66,6 +70,17 @@ PetscErrorCode factor_by_mumps(KSP solver, int *lacks_room)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode has_indefinite_end(KSP solver, int *answer)
+{
+  Mat both;
+  PetscInt cause;
+  PetscFunctionBegin;
+  PetscCall(find_factor(solver, &both));
+  PetscCall(MatMumpsGetInfog(both, 1, &cause));
+  *answer = cause == last_columns_indefinite;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode count_negative_pivots(KSP solver, PetscInt *negative)
 {
   Mat both;
@@ -96,5 +111,25 @@ PetscErrorCode read_factor_memory(KSP solver, int *memory)
   PetscCall(MatMumpsGetInfog(both, 22, &sum));
   memory[0] = most;
   memory[1] = sum;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode solve_columns(KSP solver, int rows, int sides, double *b)
+{
+  Mat right, left;
+  const PetscScalar *own;
+  PetscInt stride;
+  PetscFunctionBegin;
+  PetscCall(MatCreateDense(PETSC_COMM_WORLD, rows, PETSC_DECIDE, PETSC_DETERMINE, sides, b, &right));
+  PetscCall(MatDuplicate(right, MAT_DO_NOT_COPY_VALUES, &left));
+  PetscCall(KSPMatSolve(solver, right, left));
+  PetscCall(MatDenseGetLDA(left, &stride));
+  PetscCall(MatDenseGetArrayRead(left, &own));
+  for (int k = 0; k < sides; k++)
+    for (int i = 0; i < rows; i++)
+      b[(size_t)k * rows + i] = own[(size_t)k * stride + i];
+  PetscCall(MatDenseRestoreArrayRead(left, &own));
+  PetscCall(MatDestroy(&left));
+  PetscCall(MatDestroy(&right));
   PetscFunctionReturn(0);
 }

@@ -191,7 +191,7 @@ static PetscErrorCode set_up_factor(struct equations *self, const double *values
 {
   PC pc;
   PCFailedReason reason;
-  int is_repeated = 0;
+  int is_repeated = 0, is_indefinite;
   PetscFunctionBegin;
   do {
     if (is_repeated) PetscCall(MatSetValuesCOO(self->matrix, values, INSERT_VALUES));
@@ -203,7 +203,11 @@ static PetscErrorCode set_up_factor(struct equations *self, const double *values
   PetscCall(KSPGetPC(self->solver, &pc));
   PetscCall(PCGetFailedReason(pc, &reason));
   *status = reason ? singular : done;
-  if (reason == PC_FACTOR_OUTMEMORY || reason == PC_FACTOR_OTHER) *status = failed;
+  if (reason == PC_FACTOR_OUTMEMORY) *status = failed;
+  if (reason == PC_FACTOR_OTHER) {
+    PetscCall(has_indefinite_end(self->solver, &is_indefinite));
+    if (!is_indefinite) *status = failed;
+  }
   if (*status == done) PetscCall(check_factor(self, status));
   PetscFunctionReturn(0);
 }
@@ -337,35 +341,14 @@ double keyway_petsc_entries(void *handle)
   return count_entries(handle, &entries) ? 0 : entries;
 }
 
-/* All columns at once: a factor is read once for many of them. */
-static PetscErrorCode solve_columns(struct equations *self, int sides, double *b)
-{
-  Mat right, left;
-  const PetscScalar *own;
-  PetscInt stride;
-  PetscFunctionBegin;
-  PetscCall(MatCreateDense(PETSC_COMM_WORLD, self->rows, PETSC_DECIDE, PETSC_DETERMINE, sides, b,
-                           &right));
-  PetscCall(MatDuplicate(right, MAT_DO_NOT_COPY_VALUES, &left));
-  PetscCall(KSPMatSolve(self->solver, right, left));
-  PetscCall(MatDenseGetLDA(left, &stride));
-  PetscCall(MatDenseGetArrayRead(left, &own));
-  for (int k = 0; k < sides; k++)
-    for (int i = 0; i < self->rows; i++)
-      b[(size_t)k * self->rows + i] = own[(size_t)k * stride + i];
-  PetscCall(MatDenseRestoreArrayRead(left, &own));
-  PetscCall(MatDestroy(&left));
-  PetscCall(MatDestroy(&right));
-  PetscFunctionReturn(0);
-}
-
 int keyway_petsc_solve(void *handle, int rows, int sides, double admissible, double *b,
                        int *iterations)
 {
   struct equations *self = handle;
   int status = done;
   for (int k = 0; k < sides; k++) iterations[k] = 0;
-  if (sides > 1 && is_direct(self)) return solve_columns(self, sides, b) ? failed : done;
+  if (sides > 1 && is_direct(self))
+    return solve_columns(self->solver, self->rows, sides, b) ? failed : done;
   for (int k = 0; k < sides && status == done; k++) {
     int count = 0;
     if (solve(self, admissible, sides == 1, b + (size_t)k * rows, &count, &status)) return failed;
@@ -374,14 +357,20 @@ int keyway_petsc_solve(void *handle, int rows, int sides, double admissible, dou
   return status;
 }
 
-int keyway_petsc_patch(void *handle, int layers, int count, const int *seed, int *rows)
+int keyway_petsc_patch(void *handle, int layers, int most, int count, const int *seed, int *rows)
 {
   struct equations *self = handle;
-  int has_failed;
+  enum patch_outcome outcome;
   *rows = 0;
-  if (take_patch(self->matrix, layers, count, seed, &self->patch, &has_failed)) return failed;
-  if (count_patch_rows(&self->patch, rows)) return failed;
-  return has_failed ? singular : done;
+  if (take_patch(self->matrix, layers, most, count, seed, &self->patch, &outcome)) return failed;
+  if (outcome != patch_too_large && count_patch_rows(&self->patch, rows)) return failed;
+  return outcome == patch_has_no_factor ? singular : done;
+}
+
+void keyway_petsc_drop_patch(void *handle)
+{
+  struct equations *self = handle;
+  if (self) forget_patch(&self->patch);
 }
 
 int keyway_petsc_patch_rows(void *handle, int rows, int *row)

@@ -6,7 +6,7 @@ module petsc_equations
   private
   public :: has_petsc, start_petsc, plan_petsc, factor_petsc, solve_petsc, finish_petsc
   public :: entries_of_petsc, memory_of_petsc, shift_of_petsc
-  public :: take_petsc_patch, rows_of_petsc_patch, solve_petsc_patch
+  public :: take_petsc_patch, rows_of_petsc_patch, solve_petsc_patch, drop_petsc_patch
   public :: by_cholesky, by_multigrid, by_blocks, by_lu, by_compressed
   public :: is_done, is_singular, is_slow
 
@@ -96,15 +96,16 @@ module petsc_equations
     end function shift_of_petsc
 
     !> Takes the rows within some layers of neighbours of the rows `seed`, and factors their part of
-    !> the matrix. A rank without seeds keeps its patch.
-    function take_petsc_patch(handle, layers, count, seed, rows) result(status) &
+    !> the matrix. A rank keeps its patch where it gives no seeds, and where the new one would have
+    !> more rows than `most`.
+    function take_petsc_patch(handle, layers, most, count, seed, rows) result(status) &
       bind(c, name='keyway_petsc_patch')
       import :: c_int, c_ptr
       implicit none
       type(c_ptr), value :: handle
-      integer(c_int), value :: layers, count
+      integer(c_int), value :: layers, most, count
       integer(c_int), intent(in) :: seed(count) !< from 0
-      integer(c_int), intent(out) :: rows !< of the patch of this rank
+      integer(c_int), intent(out) :: rows !< of the patch of this rank; 0: there are too many
       integer(c_int) :: status
     end function take_petsc_patch
 
@@ -129,6 +130,13 @@ module petsc_equations
       real(c_double), intent(inout) :: b(rows, sides)
       integer(c_int) :: status
     end function solve_petsc_patch
+
+    !> Frees the patch of this rank.
+    subroutine drop_petsc_patch(handle) bind(c, name='keyway_petsc_drop_patch')
+      import :: c_ptr
+      implicit none
+      type(c_ptr), value :: handle
+    end subroutine drop_petsc_patch
 
     subroutine finish_petsc(handle) bind(c, name='keyway_petsc_finish')
       import :: c_ptr

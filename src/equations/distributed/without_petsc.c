@@ -45,12 +45,14 @@ int keyway_petsc_solve(void *handle, int rows, int sides, double admissible, dou
   return failed;
 }
 
-int keyway_petsc_patch(void *handle, int layers, int count, const int *seed, int *rows)
+int keyway_petsc_patch(void *handle, int layers, int most, int count, const int *seed, int *rows)
 {
-  (void)handle, (void)layers, (void)count, (void)seed;
+  (void)handle, (void)layers, (void)most, (void)count, (void)seed;
   *rows = 0;
   return failed;
 }
+
+void keyway_petsc_drop_patch(void *handle) { (void)handle; }
 
 int keyway_petsc_patch_rows(void *handle, int rows, int *row)
 {

@@ -19,7 +19,7 @@ module near_compliance
 
   !> Layers of elements around a group in the first part; each further part has twice as many.
   integer, parameter :: first_layers = 3
-  !> Rows of the largest part.
+  !> Rows of the largest part, unless the first one has more.
   integer, parameter :: most_rows = 120000
   !> Change of some columns by the last layers, over these columns, that needs no more layers. The
   !> error is then its square where it falls exponentially.
@@ -67,9 +67,10 @@ contains
         call find_group(factor, operator, groups, part, blocks, lengths(g, :), own(g), error)
       end if
       call share_error(error)
-      if (allocated(error)) return
+      if (allocated(error)) exit
     end do
-    call share_sizes(lengths, own, change, blocks)
+    call factor%drop_patch()
+    if (.not. allocated(error)) call share_sizes(lengths, own, change, blocks)
   end subroutine find_near_rows
 
   !> The group of this rank in a round; 0 for none.
@@ -85,15 +86,17 @@ contains
     group = 0
   end function own_group
 
-  !> The sizes of all blocks are known on all ranks.
+  !> The sizes of all blocks, on all ranks; all know them already where there is one group.
   subroutine share_sizes(lengths, own, change, blocks)
     real(rk), contiguous, intent(inout) :: lengths(:, :) !< (groups, groups) norms of own rows
     real(rk), contiguous, intent(inout) :: own(:), change(:) !< (groups)
     type(compliance_blocks), intent(inout) :: blocks
     integer :: k
-    call add_over_ranks(lengths)
-    call add_over_ranks(own)
-    call add_over_ranks(change)
+    if (blocks%groups%is_divided()) then
+      call add_over_ranks(lengths)
+      call add_over_ranks(own)
+      call add_over_ranks(change)
+    end if
     lengths = max(lengths, transpose(lengths))
     do k = 1, size(own)
       blocks%block(:, k)%coupling = lengths(:, k)/max(sqrt(own*own(k)), tiny(1.0_rk))
@@ -119,7 +122,8 @@ contains
   end subroutine start_part
 
   !> Grows the part of a group until further layers change little, or it is all of the structure,
-  !> or it is large. Ranks whose parts have grown enough wait for the others.
+  !> or would be too large. Ranks whose parts have grown enough wait for the others. A group without
+  !> free unknowns has no part: its faces are held, or not there in this stage.
   subroutine find_part(factor, operator, part, change, error)
     class(equation_solver), intent(inout) :: factor
     type(jump_operator), intent(in) :: operator
@@ -129,23 +133,25 @@ contains
     integer, allocatable :: unknown(:)
     real(rk), allocatable :: sample(:, :), last(:, :)
     logical :: is_large
-    integer :: layers
-    is_large = part%group == 0
+    integer :: layers, most
+    is_large = size(part%seed) == 0
     layers = first_layers
+    most = huge(1)
     do
-      call factor%take_patch(part%seed, layers, unknown, error)
+      call factor%take_patch(part%seed, layers, most, unknown, error)
       if (allocated(error)) return
+      if (.not. is_large) is_large = size(unknown) == 0
       if (.not. is_large) then
         call place_unknowns(unknown, part)
         call take_sample(factor, operator, part, sample, error)
         if (.not. allocated(error)) call judge_part(sample, last, change, is_large)
-        is_large = is_large .or. part%num_rows > most_rows
       end if
       call share_error(error)
       if (allocated(error)) return
       if (is_true_everywhere(is_large)) return
       if (is_large) part%seed = [integer ::]
       layers = 2*layers
+      most = most_rows
     end do
   end subroutine find_part
 
@@ -224,7 +230,9 @@ contains
     do k = 1, groups%num_groups
       associate (values => columns(groups%rows(k), :))
         lengths(k) = norm2(values)
-        if (lengths(k) > 0.0_rk) blocks%block(part%group, k)%values = transpose(values)
+        if (lengths(k) > 0.0_rk .or. k == part%group) then
+          blocks%block(part%group, k)%values = transpose(values)
+        end if
       end associate
     end do
     associate (block => blocks%block(part%group, part%group)%values)

@@ -121,7 +121,6 @@ contains
     integer, intent(in) :: num_free
     type(error_type), allocatable, intent(out) :: error
     type(group_list) :: groups
-    type(joint_tangent) :: no_tangent
     real(rk), allocatable :: spring(:)
     integer :: missing, levels
     associate (operator => self%operator, condensed => self%condensed)
@@ -145,12 +144,36 @@ contains
                               merge(smallest_coupling, 0.0_rk, self%jumps%is_there), error)
       end if
       if (allocated(error)) return
-      call find_contact_scale(condensed%blocks, operator, condensed%k_ref, self%weight, &
+    end associate
+    call start_from_blocks(self)
+    self%num_passes = 0
+  end subroutine condense
+
+  !> Computes C and r from G; factors with the own blocks of another G are forgotten.
+  subroutine start_from_blocks(self)
+    class(condensed_equilibrium), intent(inout) :: self
+    type(joint_tangent) :: no_tangent
+    associate (condensed => self%condensed)
+      call find_contact_scale(condensed%blocks, self%operator, condensed%k_ref, self%weight, &
                               condensed%scale, condensed%opened)
       condensed%tangent = no_tangent
     end associate
-    self%num_passes = 0
-  end subroutine condense
+  end subroutine start_from_blocks
+
+  !> Computes the blocks of G that were left out. Own blocks change where they were those of a part
+  !> of the structure.
+  subroutine complete(self, num_free, smallest, error)
+    class(condensed_equilibrium), intent(inout) :: self
+    integer, intent(in) :: num_free
+    real(rk), intent(in) :: smallest !< coupling of a block that is kept
+    type(error_type), allocatable, intent(out) :: error
+    type(group_list) :: groups
+    groups = self%condensed%blocks%groups
+    call condense_densely(self, num_free, joint_springs(self%operator, self%condensed%k_ref, &
+                                                        self%weight), groups, smallest, error)
+    if (allocated(error)) return
+    if (self%factor%has_patches()) call start_from_blocks(self)
+  end subroutine complete
 
   !> Computes all of G, and keeps the blocks that matter.
   subroutine condense_densely(self, num_free, spring, groups, smallest, error)
@@ -186,13 +209,9 @@ contains
     integer, intent(in) :: num_free
     logical, intent(out) :: was_complete !< or is too large
     type(error_type), allocatable, intent(out) :: error
-    type(group_list) :: groups
     was_complete = self%condensed%blocks%left_out <= smallest_coupling &
                    .or. self%operator%num_points > most_completed
-    if (was_complete) return
-    groups = self%condensed%blocks%groups
-    call condense_densely(self, num_free, joint_springs(self%operator, self%condensed%k_ref, &
-                                                        self%weight), groups, 0.0_rk, error)
+    if (.not. was_complete) call complete(self, num_free, 0.0_rk, error)
   end subroutine complete_blocks
 
   !> Computes the blocks that were left out where many passes have made up for them.
@@ -200,17 +219,13 @@ contains
     class(condensed_equilibrium), intent(inout) :: self
     integer, intent(in) :: num_free
     type(error_type), allocatable, intent(out) :: error
-    type(group_list) :: groups
     if (self%num_passes <= num_rows(self%operator%num_points) &
         /merge(1, columns_of_a_pass, self%factor%has_patches()) &
         .or. self%condensed%blocks%left_out <= smallest_coupling &
         .or. self%operator%num_points > most_completed .or. self%exact%is_rounded()) return
     self%num_passes = -huge(1)
-    groups = self%condensed%blocks%groups
     call self%costs%start('condense', 'joints', 'joint')
-    call condense_densely(self, num_free, joint_springs(self%operator, self%condensed%k_ref, &
-                                                        self%weight), groups, smallest_coupling, &
-                          error)
+    call complete(self, num_free, smallest_coupling, error)
     call self%costs%stop()
   end subroutine replace_passes
 
