@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import resource
 import signal
 import subprocess
@@ -102,6 +103,24 @@ def test_sources_that_do_not_compile(program_path, tmp_path):
     (tmp_path / "bad.f90").write_text("subroutine umat(\n")
     arguments = ["-q", "-o", out, "--umat", tmp_path / "bad.f90", path]
     assert subprocess.run([program_path, *arguments], capture_output=True).returncode == 2
+    check_next_run(program_path, out, path)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_before_the_results_are_open(program_path, tmp_path, number):
+    """A UMAT that includes a pipe is never compiled: it holds the run between its lock and its
+    results."""
+    path, out, source = tmp_path / "job.inp", tmp_path / "out", tmp_path / "never.f90"
+    path.write_text(steel(SHORT))
+    os.mkfifo(tmp_path / "pipe.inc")
+    source.write_text(f"include '{tmp_path}/pipe.inc'\n")
+    process = subprocess.Popen(
+        [program_path, "-q", "-o", out, "--umat", source, path], start_new_session=True
+    )
+    while not (out / "job.lock").exists() or not (out / "job.lock").read_text():
+        assert process.poll() is None
+    os.killpg(process.pid, number)
+    assert process.wait(10) == -number
     check_next_run(program_path, out, path)
 
 
