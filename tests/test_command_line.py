@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from pathlib import Path
 
@@ -145,6 +146,10 @@ def test_reads_150_000_nodes_in_two_seconds(program_path: Path, tmp_path: Path) 
     (tmp_path / "big.inp").write_text("\n".join(lines))
     done = run(program_path, tmp_path, "-q", "--check", "big.inp")
     assert done.returncode == 0, done.stderr
+    cost = done.stdout.partition("Cost on this machine\n")[2].splitlines()
+    reason = "no forecast: planning the factor of more than 300000 unknowns takes too long"
+    assert cost[0].split(maxsplit=2)[2] == reason
+    assert re.fullmatch(r" +files +about \S+ MB", cost[1])
     timed = subprocess.run(
         ["bash", "-c", 'time "$0" --check big.inp > /dev/null', str(program_path.resolve())],
         cwd=tmp_path,

@@ -8,6 +8,7 @@ module run_forecast
   use errors, only: error_type
   use kinds, only: rk
   use machine_speed, only: find_speeds, speed
+  use node_dofs, only: num_directions
   use omp_lib, only: omp_get_max_threads
   use problem_definition, only: problem
   use run_file_sizes, only: num_planned, size_of_files
@@ -31,7 +32,8 @@ module run_forecast
   end type run_counts
 
   type(speed), parameter :: reference = speed(products=5.8e10_rk, sweeps=2.8e9_rk)
-  real(rk), parameter :: largest = 3.0e5_rk !< unknowns of a model whose factor is planned
+  integer, parameter :: most_planned = 300000 !< unknowns of a model whose factor is planned
+  integer, parameter :: width_of_names = 24 !< in lines of the forecast
   !> Points of joints that stay together at the end of the factor; of more points each group is a
   !> separator, and the inverse of the factor is kept in its pattern for a moment.
   real(rk), parameter :: most_at_the_end = 1500.0_rk
@@ -55,74 +57,102 @@ module run_forecast
 
 contains
 
-  !> A section of `keyway --check`; '' where no step has displacements.
+  !> A section of `keyway --check`; '' where the deck has no steps.
   function forecast_of(model, costs) result(text)
     type(problem), intent(in) :: model
     type(ledger), intent(in) :: costs
     character(:), allocatable :: text
-    character, parameter :: nl = new_line('a')
     type(run_counts) :: counts
+    character(:), allocatable :: why_not
     type(speed) :: now, best
     real(rk) :: time, delay, files
-    logical :: is_counted
     text = ''
     if (size(model%steps) == 0) return
-    call count_work(model, costs, counts, is_counted)
-    if (.not. is_counted) return
+    files = size_of_files(model, real(sum([0, model%joints%num_points]), rk))
+    call count_work(model, costs, counts, why_not)
+    if (why_not /= '') then
+      text = 'Cost on this machine'//row('time, memory', 'no forecast: '//why_not)// &
+             row('files', about(files, ' MB'))
+      return
+    end if
     call find_speeds(now, best)
     delay = slowness(now)/slowness(best)
     counts%reading = counts%reading/delay
-    files = size_of_files(model, counts%points)
     time = time_of_run(model%steps, counts, slowness(best)) + file_time*files
-    text = 'Cost on this machine, when it is idle'//nl// &
-           '  unknowns                '//as_text(nint(counts%unknowns))//nl// &
-           '  entries of the factor   '//as_short_text(counts%entries)//nl// &
-           '  time                    about '//as_short_text(rounded(time))//' s'//nl// &
-           '  memory                  about '// &
-           as_short_text(rounded(memory_of(model%steps, counts)))//' MB'//nl// &
-           '  files                   about '// &
-           as_short_text(rounded(files))//' MB'
+    text = 'Cost on this machine, when it is idle'// &
+           row('unknowns', as_text(nint(counts%unknowns)))// &
+           row('entries of the factor', as_short_text(counts%entries))// &
+           row('time', about(time, ' s'))// &
+           row('memory', about(memory_of(model%steps, counts), ' MB'))// &
+           row('files', about(files, ' MB'))
     if (delay > busy) then
-      text = text//nl//'  the machine is busy now: about '// &
-             as_short_text(rounded(delay*time))//' s'
+      text = text//new_line('a')//'  the machine is busy now: '//about(delay*time, ' s')
     end if
   end function forecast_of
 
-  !> Builds the structure of the first step and plans its factor.
-  subroutine count_work(model, costs, counts, is_counted)
+  !> A line with a name and a value.
+  pure function row(name, value) result(line)
+    character(*), intent(in) :: name, value
+    character(:), allocatable :: line
+    character(width_of_names) :: room
+    room = name
+    line = new_line('a')//'  '//room//value
+  end function row
+
+  !> 'about 25 MB'.
+  pure function about(number, unit) result(text)
+    real(rk), intent(in) :: number
+    character(*), intent(in) :: unit
+    character(:), allocatable :: text
+    text = 'about '//as_short_text(rounded(number))//unit
+  end function about
+
+  !> Builds the structure of the first step and plans its factor, or says why it does not.
+  subroutine count_work(model, costs, counts, why_not)
     type(problem), intent(in) :: model
     type(ledger), intent(in) :: costs
     type(run_counts), intent(out) :: counts
-    logical, intent(out) :: is_counted
+    character(:), allocatable, intent(out) :: why_not !< '' for counts that are complete
     type(dam_system) :: system
     type(cholmod_solver) :: factor
     type(error_type), allocatable :: error
     type(ledger_part), allocatable :: parts(:)
     real(rk) :: bytes, peak, started_at, worked_at, worked
-    integer :: i
-    is_counted = .false.
-    if (3.0_rk*model%mesh%num_nodes > largest) return
+    if (num_directions*model%mesh%num_nodes > most_planned) then
+      why_not = 'planning the factor of more than '//as_text(most_planned)// &
+                ' unknowns takes too long'
+      return
+    end if
     call costs%read_parts(parts, counts%reading) ! with the compiler of a UMAT
     ! The processor time does not count what other programs take, the wall clock not what threads do
     ! at once.
     started_at = wall_clock()
     call cpu_time(worked_at)
     call build_structure(model, model%steps(1), system, costs, error)
-    if (allocated(error)) return
-    call factor%analyse(system%matrix, error)
-    if (allocated(error)) return
+    if (.not. allocated(error)) call factor%analyse(system%matrix, error)
+    if (allocated(error)) then
+      why_not = error%message
+      return
+    end if
     call cpu_time(worked)
     counts%analysis = min(wall_clock() - started_at, worked - worked_at)
     counts%unknowns = real(system%matrix%num_free, rk)
     counts%points = real(system%operator%num_points, rk)
-    if (allocated(model%inelastic)) then
-      do i = 1, size(model%inelastic)
-        counts%law_points = counts%law_points + model%inelastic(i)%points%num_points
-      end do
-    end if
+    counts%law_points = law_points_of(model)
     call factor%statistics(counts%entries, bytes, peak)
-    is_counted = .true.
+    why_not = ''
   end subroutine count_work
+
+  !> Integration points of inelastic solids.
+  pure real(rk) function law_points_of(model) result(total)
+    type(problem), intent(in) :: model
+    integer :: i
+    total = 0.0_rk
+    if (.not. allocated(model%inelastic)) return
+    do i = 1, size(model%inelastic)
+      total = total + model%inelastic(i)%points%num_points
+    end do
+  end function law_points_of
 
   !> How slow a machine is, over the reference. Solves and products with sparse matrices are
   !> limited by the memory, laws and factors by the processor.
