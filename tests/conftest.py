@@ -14,9 +14,10 @@ LIMIT_OF_LONG_TESTS = 3600  # [s]
 NUMERICAL = {"compatibility", "decks", "points", "results", "verify"}  # folders
 # They compare runs with each other, or look at files: one kind of kernels is enough.
 NOT_NUMERICAL = {
-    "test_changed_deck.py", "test_dropped_increment.py", "test_full_disks.py",
-    "test_input_decks.py", "test_interrupted_run.py", "test_little_memory.py",
-    "test_lock_is_given_back.py", "test_moved_and_paused.py", "test_starts_together.py",
+    "test_absent_effects.py", "test_changed_deck.py", "test_dropped_increment.py",
+    "test_full_disks.py", "test_input_decks.py", "test_interrupted_run.py",
+    "test_little_memory.py", "test_lock_is_given_back.py", "test_moved_and_paused.py",
+    "test_starts_together.py",
 }  # fmt: skip
 
 

@@ -48,7 +48,7 @@ contains
       is_fixed(fixities(k)%dof, fixities(k)%node) = .true.
     end do
     call list_points(joints, points)
-    points%is_light = nodes_of_quads(mesh)
+    if (size(points%slave) > 0) points%is_light = nodes_of_quads(mesh)
     call ties_of(guests, ties)
     call keep_present(mesh, ties)
     call link_nodes(dofs, points, ties, is_used, is_fixed, links, error)

@@ -1,19 +1,17 @@
 """A scene pays only for the effects that it has: effects are added to a scene one by one.
 
-An effect that a deck lacks has no line in the ledger, so it takes no time that the ledger could
-book and no memory of its own. What else the run does is the same: the parts of the smaller scene
-are all there in the larger one, and what one effect adds bears its own name. The files that every
-run leaves (job.h5, job.pvd, tables) are no effects.
+An effect that a deck lacks has no line in the ledger: its kind of work is never started.
+`test_absent_effects.py` counts the instructions and the memory that its procedures take all the
+same. The files that every run leaves (job.h5, job.pvd, tables) are no effects.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import pytest
-from keyway_tools.study.deck_cards import Card, Deck, read_deck
 
-MESH = """*NODE
+MESH = """*AMPLITUDE, NAME=RAMP
+0., 0., 1., 1.
+*NODE
 1, 0., 0., 0.
 2, 1., 0., 0.
 3, 1., 1., 0.
@@ -61,7 +59,7 @@ MESH = """*NODE
 BASE, 1, 3
 *TIE, NAME=SEAM
 UPPER_BASE, LOWER_TOP
-*STEP, NAME=MOTION, INC=100
+*STEP, NAME=ONLY, INC=100
 *DYNAMIC, DIRECT
 0.01, 0.05
 *END STEP
@@ -73,57 +71,46 @@ CURVES = """*CONCRETE DAMAGED PLASTICITY
 *CONCRETE TENSION STIFFENING, TYPE=GFI
 2.5e6, 200.
 """
+MOTION = "*DYNAMIC, DIRECT\n0.01, 0.05\n"
+TIE = "*TIE, NAME=SEAM\nUPPER_BASE, LOWER_TOP\n"
+SECTION = "*SOLID SECTION, ELSET=UPPER"
+JOINT = (
+    "*JOINT LAW, NAME=DRY, KN=1.e10, KT=1.e10, FRICTION=0.6\n"
+    "*JOINT, NAME=JOINT, LAW=DRY\nUPPER_BASE, LOWER_TOP\n"
+)
+WEIGHT = "*DLOAD\n, GRAV, 9.81, 0., 0., -1.\n"
+LAKE = "*RESERVOIR, NAME=LAKE, SURFACE=FACE, LEVEL=2., BED=0.\n"
+AT_REST = "*STATIC\n1., 1.\n" + WEIGHT
 
-
-@dataclass
-class Effect:
-    """An effect: its cards, the card after which they stand, and its name in the ledger."""
-
-    name: str
-    text: str
-    after: str  # keyword, and a word of its parameters
-    word: str = ""
-    replaces: str = ""  # keyword of a card that goes away
-
-
-EFFECTS = [
-    Effect("gravity LOWER", "*DLOAD\nLOWER, GRAV, 9.81, 0., 0., -1.\n", "DYNAMIC"),
-    Effect("reservoir LAKE", "*RESERVOIR, NAME=LAKE, SURFACE=FACE, LEVEL=2., BED=0.\n", "DYNAMIC"),
-    Effect("damping", "*DAMPING, RATIO=0.05, F1=2., F2=10.\n", "DYNAMIC"),
-    Effect("base motion 1", "*BASE MOTION, DOF=1, AMPLITUDE=RAMP\n", "DYNAMIC"),
-    Effect("envelopes", "*ENVELOPE\nS1, U\n", "DYNAMIC"),
-    Effect("CONCRETE", CURVES, "ELASTIC", "CONCRETE"),
-    Effect(
-        "JOINT",
-        "*JOINT LAW, NAME=DRY, KN=1.e10, KT=1.e10, FRICTION=0.6\n"
-        "*JOINT, NAME=JOINT, LAW=DRY\nUPPER_BASE, LOWER_TOP\n",
-        "BOUNDARY",
-        replaces="TIE",
-    ),
-]
-
-
-def with_effect(deck: Deck, effect: Effect, folder) -> Deck:
-    """The deck with the cards of an effect."""
-    path = folder / "effect.inp"
-    path.write_text(effect.text, encoding="utf-8")
-    new = deck.copy()
-    new.without(new.of(effect.replaces))
-    places = [i for i, card in enumerate(new.cards) if card.keyword == effect.after]
-    place = places[-1]
-    new.cards[place + 1 : place + 1] = read_deck(path).cards
-    return new
-
-
-@pytest.fixture(scope="module")
-def plain(tmp_path_factory) -> Deck:
-    """Two blocks, tied, that stand still: mass and stiffness alone."""
-    folder = tmp_path_factory.mktemp("plain")
-    (folder / "plain.inp").write_text(MESH, encoding="utf-8")
-    deck = read_deck(folder / "plain.inp")
-    ramp = Card("AMPLITUDE", {"NAME": "RAMP"}, ["0., 0., 1., 1."])
-    deck.cards.insert(0, ramp)
-    return deck
+# Effects by the name of their part, in the order in which a scene in motion gets them: what they
+# replace, and by what.
+IN_MOTION = {
+    "gravity ALL SOLIDS": (MOTION, MOTION + WEIGHT),
+    "pressure 2 P2": (MOTION, MOTION + "*DLOAD\n2, P2, 1.e4\n"),
+    "point forces": (MOTION, MOTION + "*CLOAD\nTOP, 1, 1.e3\n"),
+    "reservoir LAKE": (MOTION, MOTION + LAKE),
+    "damping": (MOTION, MOTION + "*DAMPING, RATIO=0.05, F1=2., F2=10.\n"),
+    "modes": (MOTION, MOTION + "*DAMPING, MODAL, RATIO=0.05, MODES=2\n"),
+    "base motion 1": (MOTION, MOTION + "*BASE MOTION, DOF=1, AMPLITUDE=RAMP\n"),
+    "envelopes": (MOTION, MOTION + "*ENVELOPE\nS1, U\n"),
+    "checkpoint": (MOTION, MOTION + "*RESTART, WRITE, FREQUENCY=2\n"),
+    "temperature": (MOTION, MOTION + "*TEMPERATURE\nTOP, 5.\n"),
+    "CONCRETE": (SECTION, CURVES + SECTION),
+    "JOINT": (TIE, JOINT),
+}
+# Further effects, each added to the scene at rest or in motion alone.
+ALONE = {
+    "SEAM": {TIE: "*TIE, NAME=SEAM, STIFFNESS=1.e12\nUPPER_BASE, LOWER_TOP\n"},
+    "pressure FACE": {MOTION: AT_REST + "*DSLOAD\nFACE, P, 1.e3\n"},
+    "stages": {MOTION: AT_REST + "*MODEL CHANGE, TYPE=ELEMENT, REMOVE\nUPPER\n"},
+    "water of LAKE in joint JOINT (LINEAR)": {
+        TIE: JOINT.replace("FRICTION", "UPLIFT=LAKE, FRICTION"), MOTION: AT_REST + LAKE,
+    },
+    "modes": {MOTION: "*FREQUENCY\n2\n"},
+    "CONCRETE": {SECTION: "*PLASTIC\n1.e6, 0.\n" + SECTION, MOTION: AT_REST},
+    "reduced model": {TIE: JOINT, MOTION: MOTION.replace("DIRECT", "DIRECT, REDUCED") + WEIGHT},
+    "increments": {MOTION: MOTION.replace(", DIRECT", "") + "*CONTROLS, ACCURACY=0.02\n" + WEIGHT},
+}  # fmt: skip
 
 
 def parts_of(run) -> dict[str, dict]:
@@ -135,20 +122,52 @@ def named(parts: dict[str, dict], effect: str) -> list[str]:
     return [name for name, part in parts.items() if effect in (part["kind"], part["effect"])]
 
 
-def test_effects_have_no_part_before_they_are_added(keyway, plain, tmp_path):
-    deck = plain
-    before = parts_of(keyway(deck.text(), name="scene_0"))
-    for number, effect in enumerate(EFFECTS, start=1):
-        assert not named(before, effect.name), f"{effect.name} has a part without being there"
-        deck = with_effect(deck, effect, tmp_path)
-        after = parts_of(keyway(deck.text(), name=f"scene_{number}"))
-        assert named(after, effect.name), f"{effect.name} has no part"
+def changed(deck: str, changes: dict[str, str]) -> str:
+    """The deck with some texts in place of others."""
+    for old, new in changes.items():
+        assert deck.count(old) == 1
+        deck = deck.replace(old, new)
+    return deck
+
+
+def expanding(deck: str) -> str:
+    """The deck with solids that expand, which costs nothing without temperatures."""
+    return deck.replace("0.2\n", "0.2\n*EXPANSION\n1.e-5\n")
+
+
+def test_effects_have_no_part_before_they_are_added(keyway):
+    deck = expanding(MESH)
+    before = parts_of(keyway(deck, name="scene_0"))
+    for number, (name, (old, new)) in enumerate(IN_MOTION.items(), start=1):
+        assert not named(before, name), f"{name} has a part without being there"
+        deck = changed(deck, {old: new})
+        after = parts_of(keyway(deck, name=f"scene_{number}"))
+        assert named(after, name), f"{name} has no part"
         before = after
 
 
-def test_the_plain_scene_has_the_structure_alone(keyway, plain):
+@pytest.mark.parametrize("name", ALONE)
+def test_an_effect_alone_brings_its_part(keyway, name):
+    changes = ALONE[name]
+    at_rest = {MOTION: AT_REST} if AT_REST in changes.get(MOTION, "") else {}
+    assert not named(parts_of(keyway(changed(MESH, at_rest), name="without")), name)
+    assert named(parts_of(keyway(changed(MESH, changes), name="with")), name)
+
+
+def test_estimates_that_are_off_have_no_part(keyway):
+    """Neither those of the mesh, nor those of the increments in the law."""
+    deck = changed(MESH, {SECTION: CURVES + SECTION, MOTION: MOTION + "*CONTROLS\n" + WEIGHT})
+    off = deck.replace("*CONTROLS", "*CONTROLS, ERROR ESTIMATE=OFF")
+    found = [
+        {name for name in parts_of(keyway(text, name=job)) if name.startswith("estimate")}
+        for job, text in (("on", deck), ("off", off))
+    ]
+    assert found == [{"estimate mesh", "estimate law"}, set()]
+
+
+def test_the_plain_scene_has_the_structure_alone(keyway):
     """Without effects: files, one matrix, one factor, one solve an increment; the tie."""
-    parts = parts_of(keyway(plain.text(), name="plain"))
+    parts = parts_of(keyway(MESH, name="plain"))
     assert {part["kind"] for part in parts.values()} <= {"deck", "output", "run", "solver"}
     calls = {name: part["calls"] for name, part in parts.items()}
     assert calls["factor structure"] == 1

@@ -34,8 +34,6 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(linear_equilibrium) :: balance
     real(rk), allocatable :: closed(:), lambda(:), phi(:, :)
-    real(rk), dimension(system%matrix%num_total) :: mode, inertia
-    integer :: k
     if (.not. plan%damping%modal_ratio > 0.0_rk) return
     call factorise_closed(model, system, costs, closed, balance, error)
     if (allocated(error)) return
@@ -43,16 +41,26 @@ contains
     call choose_modes(plan%damping, system, closed, balance, lambda, phi, error)
     call costs%stop()
     if (allocated(error)) return
+    call set_columns(plan%damping%modal_ratio, lambda, phi, system)
+  end subroutine build_modal_damping
+
+  !> The columns of the modes.
+  subroutine set_columns(ratio, lambda, phi, system)
+    real(rk), intent(in) :: ratio !< of the damping
+    real(rk), intent(in) :: lambda(:) !< (modes) w_i squared [1/s2]
+    real(rk), intent(in) :: phi(:, :) !< (free unknowns, modes)
+    type(dam_system), intent(inout) :: system
+    real(rk), dimension(system%matrix%num_total) :: mode, inertia
+    integer :: k
     deallocate (system%modal)
     allocate (system%modal(system%matrix%num_free, size(lambda)))
     mode = 0.0_rk
     do k = 1, size(lambda)
       mode(:system%matrix%num_free) = phi(:, k)
       call multiply(system%matrix, system%mass, mode, inertia)
-      system%modal(:, k) = sqrt(2.0_rk*plan%damping%modal_ratio*sqrt(lambda(k))) &
-                           *inertia(:system%matrix%num_free)
+      system%modal(:, k) = sqrt(2.0_rk*ratio*sqrt(lambda(k)))*inertia(:system%matrix%num_free)
     end do
-  end subroutine build_modal_damping
+  end subroutine set_columns
 
   !> As many modes as requested, or all up to the highest frequency.
   subroutine choose_modes(damping, system, closed, balance, lambda, phi, error)

@@ -50,7 +50,7 @@ contains
     allocate (operator%area(operator%num_points), operator%row_start(last_row + 1))
     allocate (operator%x(3, operator%num_points), operator%is_here(operator%num_points))
     allocate (operator%unknown(9*operator%num_points), operator%coefficient(9*operator%num_points))
-    allocate (place(numbers%num_total), source=0)
+    allocate (place(merge(numbers%num_total, 0, operator%num_points > 0)), source=0)
     operator%row_start = 1
     pair = 0
     do j = 1, size(joints)

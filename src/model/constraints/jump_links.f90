@@ -62,6 +62,7 @@ contains
     type(dependence) :: graph
     integer :: i, most_rows, most_masters
     call allocate_links(points, ties, links)
+    if (size(points%slave) == 0 .and. size(ties) == 0) return
     most_rows = size(points%slave) + sum([(size(ties(i)%node), i=1, size(ties))])
     most_masters = size(points%master) + sum([(size(ties(i)%item), i=1, size(ties))])
     call graph%start(any(is_fixed(:num_directions, :), 1), most_rows, most_masters)

@@ -24,6 +24,7 @@ contains
     logical, allocatable :: is_used(:), is_fixed(:, :)
     real(rk) :: rotation(3, 3, 0), total
     integer :: k, t
+    if (size(ties) == 0) return
     allocate (is_used(size(field, 2)), source=.true.)
     allocate (is_fixed(size(field, 1), size(field, 2)), source=.false.)
     dofs = displacement_dofs(size(field, 2))

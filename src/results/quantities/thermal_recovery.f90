@@ -26,10 +26,9 @@ contains
     type(state), intent(in) :: now
     integer, intent(in) :: elements(:) !< positions
     real(rk), intent(inout) :: strain(:, :, :) !< (6, points, elements)
-    real(rk) :: expansion(size(strain, 2), size(strain, 3))
-    real(rk) :: thermal(6, size(strain, 2), size(strain, 3))
+    real(rk), allocatable :: expansion(:, :), thermal(:, :, :)
     if (.not. has_expansion(model, now, elements)) return
-    call find_thermal_strains(model, now%heat, elements, expansion, thermal)
+    call find_both(model, now, elements, size(strain, 2), expansion, thermal)
     strain = strain - thermal
   end subroutine take_thermal
 
@@ -39,13 +38,25 @@ contains
     type(state), intent(in) :: now
     integer, intent(in) :: elements(:) !< positions
     real(rk), intent(inout) :: strain(:, :, :) !< (6, points, elements)
-    real(rk) :: expansion(size(strain, 2), size(strain, 3))
-    real(rk) :: thermal(6, size(strain, 2), size(strain, 3))
+    real(rk), allocatable :: expansion(:, :), thermal(:, :, :)
     integer :: i
     if (.not. has_expansion(model, now, elements)) return
-    call find_thermal_strains(model, now%heat, elements, expansion, thermal)
+    call find_both(model, now, elements, size(strain, 2), expansion, thermal)
     do i = 1, 3
       strain(i, :, :) = strain(i, :, :) + expansion
     end do
   end subroutine add_expansion
+
+  !> Expansion and thermal strain of a block of elements that expand: models without have no memory
+  !> of them.
+  subroutine find_both(model, now, elements, num_points, expansion, thermal)
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    integer, intent(in) :: elements(:) !< positions
+    integer, intent(in) :: num_points !< of an element
+    real(rk), allocatable, intent(out) :: expansion(:, :) !< (points, elements)
+    real(rk), allocatable, intent(out) :: thermal(:, :, :) !< (6, points, elements)
+    allocate (expansion(num_points, size(elements)), thermal(6, num_points, size(elements)))
+    call find_thermal_strains(model, now%heat, elements, expansion, thermal)
+  end subroutine find_both
 end module thermal_recovery
