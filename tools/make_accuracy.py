@@ -116,7 +116,8 @@ def row_of(one: dict[str, Any]) -> str:
     """A quantity with its error and the parts of the error."""
     start = f"| {SHORT[one['quantity']]} | {one['value']:.4g}"
     if one["error"] is None:
-        return f"{start} | not known | {percent(one['increment'])} | not known | | |"
+        parts = " | ".join(percent(one[key]) for key in ("increment", "mesh"))
+        return f"{start} | not known | {parts} | | |"
     if one["error"] > 1.0:
         return f"{start} | does not converge | | | | |"
     parts = " | ".join(percent(one[key]) for key in ("error", "increment", "mesh", "iteration"))

@@ -1,8 +1,14 @@
 """docs/accuracy.md has what the data of its studies say."""
 
+from pathlib import Path
+
 import make_accuracy
 import pytest
+from keyway_tools.report.browser import find_browser, opened
+from keyway_tools.study.page import accuracy_page
 from keyway_tools.study.pictures import draw
+
+NEEDS = "no Chromium, Chrome or Edge; tools/test installs chromium on Debian"
 
 
 def test_the_page_and_its_data_agree():
@@ -28,3 +34,21 @@ def test_promised_errors_hold_where_they_were_checked():
     for check in checks:
         late = [row for row in check["rows"] if row["found"] > row["promised"]]
         assert not late
+
+
+@pytest.mark.skipif(find_browser() is None, reason=NEEDS)
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize("width", [1000, 700])
+def test_the_page_of_a_study_fits_its_window(tmp_path, width):
+    """The study with most quantities: tables are not wider than the window, or scroll by
+    themselves."""
+    facts = max(make_accuracy.studies(), key=lambda facts: len(facts["quantities"]))
+    path, errors = tmp_path / "accuracy.html", []
+    path.write_text(accuracy_page(Path(facts["deck"]), facts), encoding="utf-8")
+    with opened(path, errors, "body") as page:
+        page.set_viewport_size({"width": width, "height": 800})
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        wide = "[...document.querySelectorAll('.wide')].map(box => box.scrollWidth)"
+        if width == 1000:
+            assert max(page.evaluate(wide)) <= width
+    assert errors == []

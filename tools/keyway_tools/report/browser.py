@@ -16,6 +16,7 @@ SHOW_ON_PAPER = """async () => {
   window.dispatchEvent(new Event("beforeprint"));
   await Promise.all([...document.images].filter(i => i.src).map(i => i.decode()));
 }"""
+READY = "body[data-ready], body[data-failed]"  # of a report that is drawn
 WAIT = 240_000  # [ms]
 
 
@@ -26,8 +27,9 @@ def find_browser() -> str | None:
 
 
 @contextmanager
-def opened(path: Path, errors: list[str]) -> Iterator[Any]:
-    """The page as a browser shows it, once it is drawn; `errors` collects those of its console."""
+def opened(path: Path, errors: list[str], ready: str = READY) -> Iterator[Any]:
+    """The page as a browser shows it, once it has the element `ready`; `errors` collects those of
+    its console."""
     from playwright.sync_api import sync_playwright
 
     program = find_browser()
@@ -42,7 +44,7 @@ def opened(path: Path, errors: list[str]) -> Iterator[Any]:
             page.on("console", lambda m: errors.append(m.text) if m.type == "error" else None)
             page.on("pageerror", lambda error: errors.append(str(error)))
             page.goto(path.resolve().as_uri(), wait_until="commit")
-            page.wait_for_selector("body[data-ready], body[data-failed]")
+            page.wait_for_selector(ready)
             yield page
         finally:
             browser.close()

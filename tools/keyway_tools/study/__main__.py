@@ -26,10 +26,11 @@ from keyway_tools.program import command_name, given_program
 from keyway_tools.results import Results
 
 from .couplings import coupling_rungs
-from .deck_cards import read_deck
+from .deck_cards import Deck, read_deck
 from .effects import list_effects
 from .errors import errors_of
 from .facts import facts_of, write_table
+from .flat_deck import flat
 from .ladder import JOB, Ladder, Outcome
 from .page import accuracy_page, effects_page, what_seconds_are
 from .pictures import draw
@@ -121,7 +122,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def study(given: argparse.Namespace, runner: DeckRunner) -> int:
     """Runs the variants and writes what they show."""
-    deck = base_deck(read_deck(given.deck))
+    deck = base_deck(flat_deck(given, runner))
     if given.duration:
         deck = shortened(deck, given.duration)
     rungs = list_effects(deck) if given.effects else [*list_rungs(deck), *coupling_rungs(deck)]
@@ -152,6 +153,24 @@ def study(given: argparse.Namespace, runner: DeckRunner) -> int:
     return 0
 
 
+def flat_deck(given: argparse.Namespace, runner: DeckRunner) -> Deck:
+    """The deck without parts and instances, if the program takes what was made of it."""
+    deck = read_deck(given.deck)
+    keeps_c3d8 = any(option.startswith("--c3d8") for option in runner.options)
+    try:
+        new = flat(deck, keeps_c3d8)
+    except (LookupError, ValueError) as error:
+        say(f"parts and instances stay as they are: {error}")
+        return deck
+    if new is deck:
+        return deck
+    new.write(given.o / "flat.inp")
+    if faults := check(given.program, runner.options, given.o / "flat.inp"):
+        say(f"parts and instances stay as they are: {faults}")
+        return deck
+    return new
+
+
 def say(text: str) -> None:
     """Prints at once: a run may take long."""
     sys.stdout.write(text + "\n")
@@ -172,9 +191,14 @@ def header_of(given: argparse.Namespace, runner: DeckRunner, base: Outcome) -> l
         ["Machine", f"{machine['processor']}, {machine['processors']} processors, kernels "
                     f"{machine['blas_kernels']}, {machine['memory_mb']} MB"],
         ["Threads", str(given.threads)],
-        ["Model", f"{base.measured.unknowns:,} unknowns, {base.measured.increments:,} increments"],
+        ["Model", f"{base.measured.unknowns:,} unknowns, {count_of(base.measured.increments)}"],
         *([["Duration", part]] if given.duration else []),
     ]  # fmt: skip
+
+
+def count_of(increments: int) -> str:
+    """'1 increment', '1,001 increments'."""
+    return f"{increments:,} increment{'' if increments == 1 else 's'}"
 
 
 def write_files(folder: Path, facts: dict[str, Any]) -> None:

@@ -54,6 +54,7 @@ class Deck:
     """The cards of a deck in their order."""
 
     cards: list[Card]
+    files: dict[str, str] = field(default_factory=dict)  # texts that stand beside the deck
 
     def copy(self) -> Deck:
         return deepcopy(self)
@@ -92,6 +93,14 @@ class Deck:
 
     def text(self) -> str:
         return "".join(card.text() for card in self.cards)
+
+    def write(self, path: Path) -> None:
+        """Writes the deck and its files. What is there as it should be is left alone."""
+        texts = {path.name: self.text(), **self.files}
+        for name, text in texts.items():
+            file = path.parent / name
+            if not file.exists() or file.read_text(encoding="utf-8") != text:
+                file.write_text(text, encoding="utf-8")
 
 
 def read_deck(path: Path) -> Deck:

@@ -20,6 +20,17 @@ LAW_EFFECTS = {
     "TENSILE STRENGTH": "tensile strength of the joints",
     "GAP": "the gaps of the joints",
 }
+# Effects that are cards of their own
+CARDS = {
+    CONCRETE: "cracking of the concrete",
+    ("PLASTIC",): "yielding of the metal",
+    ("FRICTION",): "friction of the contact",
+    ("DAMPING",): "damping",
+    ("TEMPERATURE",): "changes of temperature",
+    ("MODEL CHANGE",): "construction in stages",
+    ("GROUT",): "grouting of the joints",
+    ("CLOAD",): "the point forces",
+}
 AXES = {"1": "x", "2": "y", "3": "z"}
 
 
@@ -32,8 +43,8 @@ def list_effects(deck: Deck) -> list[Rung]:
             found.append(Rung("effect", f"without {name}", 1.0, 1.0, change))
 
     laws, reservoirs = list(deck.of("JOINT LAW")), list(deck.of("RESERVOIR"))
-    for dof in sorted({card.value("DOF") for card in deck.of("BASE MOTION")}):
-        add(f"the motion along {AXES.get(dof, dof)}", True, without_motion(dof))
+    for dof in sorted(AXES):
+        add(f"the motion along {AXES[dof]}", is_moved(deck, dof), without_motion(dof))
     add("the water", bool(reservoirs), without_water)
     has_mass = any(card.value("ADDED MASS") not in ("", "NONE") for card in reservoirs)
     add("the added mass of the water", has_mass, dropped("RESERVOIR", "ADDED MASS", "DIRECTION"))
@@ -42,10 +53,12 @@ def list_effects(deck: Deck) -> list[Rung]:
     add("opening and sliding of the joints", deck.has("JOINT"), bonded)
     for name, words in LAW_EFFECTS.items():
         add(words, any(is_positive(card, name) for card in laws), without_value(name))
-    add("cracking of the concrete", deck.has(CONCRETE[0]), without_cards(CONCRETE))
-    add("damping", deck.has("DAMPING"), without_cards(("DAMPING",)))
-    weights = [card for card in deck.of("DLOAD") if any(is_weight(line) for line in card.lines)]
-    add("weight", bool(weights), without_weight)
+    for keywords, words in CARDS.items():
+        add(words, any(True for _ in deck.of(*keywords)), without_cards(keywords))
+    lines = [line for card in deck.of("DLOAD") for line in card.lines]
+    add("weight", any(map(is_weight, lines)), without_weight)
+    add("the pressures on faces", deck.has("DSLOAD") or any(map(is_pressure, lines)),
+        without_pressures)  # fmt: skip
     return found
 
 
@@ -54,8 +67,17 @@ def is_positive(card: Card, name: str) -> bool:
     return bool(value) and number_of(value) > 0.0
 
 
+def label_of(line: str) -> str:
+    """What a line of *DLOAD does: GRAV, P3, HP6, .."""
+    return [*line.split(","), ""][1].strip().upper()
+
+
 def is_weight(line: str) -> bool:
-    return len(line.split(",")) > 1 and line.split(",")[1].strip().upper() == "GRAV"
+    return label_of(line) == "GRAV"
+
+
+def is_pressure(line: str) -> bool:
+    return label_of(line).removeprefix("H").startswith("P")
 
 
 def without_cards(keywords: tuple[str, ...]) -> Callable[[Deck], Deck]:
@@ -67,10 +89,42 @@ def without_cards(keywords: tuple[str, ...]) -> Callable[[Deck], Deck]:
     return change
 
 
+def accelerated(deck: Deck) -> list[Card]:
+    """Supports whose acceleration is the motion of the base."""
+    return [card for card in deck.of("BOUNDARY") if card.value("TYPE") == "ACCELERATION"]
+
+
+def directions_of(line: str) -> range:
+    """The directions of a line of *BOUNDARY that names them by numbers."""
+    items = [item.strip() for item in [*line.split(","), "", ""]]
+    return range(int(items[1]), int(items[2] or items[1]) + 1)
+
+
+def is_moved(deck: Deck, dof: str) -> bool:
+    lines = [line for card in accelerated(deck) for line in card.lines]
+    return any(card.value("DOF") == dof for card in deck.of("BASE MOTION")) or any(
+        int(dof) in directions_of(line) for line in lines
+    )
+
+
 def without_motion(dof: str) -> Callable[[Deck], Deck]:
+    """Without base motions along an axis; supports that were accelerated are held."""
+
     def change(deck: Deck) -> Deck:
         new = deck.copy()
         new.without([card for card in new.of("BASE MOTION") if card.value("DOF") == dof])
+        for card in accelerated(new):
+            held = [line for line in card.lines if int(dof) in directions_of(line)]
+            lines = [line for line in card.lines if line not in held]
+            for line in held:
+                label, _, _, value = [*line.split(","), "", "", ""][:4]
+                lines += [f"{label}, {k}, {k}, {value}" for k in directions_of(line)
+                          if k != int(dof)]  # fmt: skip
+            kept = {name: text for name, text in card.parameters.items() if name == "OP"}
+            still = Card("BOUNDARY", kept, [f"{line.split(',')[0]}, {dof}, {dof}" for line in held])
+            place = next(i for i, other in enumerate(new.cards) if other is card)
+            card.lines = lines
+            new.cards[place : place + 1] = [c for c in (still, card) if c.lines]
         return new
 
     return change
@@ -119,10 +173,23 @@ def without_water(deck: Deck) -> Deck:
 
 
 def without_weight(deck: Deck) -> Deck:
+    return without_loads(deck, is_weight)
+
+
+def without_pressures(deck: Deck) -> Deck:
+    new = without_loads(deck, is_pressure)
+    new.without(list(new.of("DSLOAD")))
+    return new
+
+
+def without_loads(deck: Deck, is_unwanted: Callable[[str], bool]) -> Deck:
+    """Without some lines of *DLOAD, and without cards that have no line left."""
     new = deck.copy()
     for card in new.of("DLOAD"):
-        card.lines = [line for line in card.lines if not is_weight(line)]
-    new.without([card for card in new.of("DLOAD") if not card.lines])
+        had_lines = bool(card.lines)
+        card.lines = [line for line in card.lines if not is_unwanted(line)]
+        if had_lines and not card.lines:
+            new.without([card])
     return new
 
 

@@ -71,7 +71,10 @@ def errors_of(outcomes: list[Outcome]) -> list[Error]:
 def error_of(quantity: str, outcomes: list[Outcome]) -> Error:
     """Errors of one quantity."""
     base = outcomes[0]
-    time_limit, time = time_errors(values_of("increment", quantity, outcomes))
+    found = values_of("increment", quantity, outcomes)
+    time_limit, time = time_errors(found)
+    if len(found) == 1 and any(outcome.rung.axis == "increment" for outcome in outcomes):
+        time = {}  # other increments were not run: nothing is known
     start = base.measured.values[quantity]  # type: ignore[union-attr]
     limits = mesh_limits(start, values_of("mesh", quantity, outcomes))
     mesh: dict[str, float] = {}

@@ -41,7 +41,8 @@ def facts_of_error(error: Error, outcomes: list[Outcome]) -> dict[str, Any]:
         "quantity": error.quantity,
         "value": rounded(outcomes[0].measured.values[error.quantity]),  # type: ignore[union-attr]
         "limit": rounded(error.limit),
-        "increment": rounded(error.time[BASE]),
+        "increment": rounded(error.time[BASE]) if error.time else None,
+        "mesh": rounded(error.mesh[BASE]) if error.mesh else None,
         "iteration": rounded(error.iteration) if is_known else None,
     }
     total = error.total(BASE, BASE)
@@ -49,7 +50,6 @@ def facts_of_error(error: Error, outcomes: list[Outcome]) -> dict[str, Any]:
         return found | {"error": None, "choices": []}
     return found | {
         "uncertainty": rounded(error.uncertainty),
-        "mesh": rounded(error.mesh[BASE]),
         "error": rounded(total),
         "choices": [
             {"target": target} | (facts_of_choice(choice) if choice else {"choice": None})

@@ -73,7 +73,7 @@ class Ladder:
         self.run_one(first)
         if first.measured is None:
             raise RuntimeError(f"the deck as it is does not run: {first.why_not}")
-        found = [first, *(Outcome(rung, self.predict(rung, first)) for rung in self.rungs[1:])]
+        found = [first, *(self.planned(rung, first) for rung in self.rungs[1:])]
         self.say_plan(found)
         for outcome in found[1:]:
             if outcome.why_not:
@@ -88,6 +88,13 @@ class Ladder:
             self.run_one(outcome)
         return found
 
+    def planned(self, rung: Rung, base: Outcome) -> Outcome:
+        """A rung with its predicted time, or with the reason why it cannot be run."""
+        try:
+            return Outcome(rung, self.predict(rung, base))
+        except RefinementError as error:
+            return Outcome(rung, None, why_not=str(error))
+
     def delay(self) -> float:
         """How long a measured second takes: other programs may keep the machine busy."""
         return max(1.0, self.waited / self.worked) if self.worked > 1.0 else 1.0
@@ -96,7 +103,8 @@ class Ladder:
         """The predicted time of all rungs before they run."""
         self.say(f"predicted time of the variants, budget {self.budget:.3g} s:")
         for outcome in outcomes[1:]:
-            self.say(f"  {outcome.predicted or 0.0:8.3g} s  {outcome.name}")
+            if not outcome.why_not:
+                self.say(f"  {outcome.predicted or 0.0:8.3g} s  {outcome.name}")
         total = sum(outcome.predicted or 0.0 for outcome in outcomes)
         self.say(f"  {total:8.3g} s  in all")
 
@@ -114,11 +122,11 @@ class Ladder:
         return base.measured.seconds * factor
 
     def forecast(self, rung: Rung) -> float | None:
-        """What the program says that the deck of a rung takes [s]; None if it says nothing."""
-        try:
-            deck = self.write_deck(rung)
-        except RefinementError:
-            return None
+        """What the program says that the deck of a rung takes [s]; None if it says nothing.
+
+        Raises RefinementError.
+        """
+        deck = self.write_deck(rung)
         command = [str(self.runner.program), *self.runner.options, "--check", str(deck)]
         done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL)
         found = re.search(r"time +about (\S+) s", done.stdout.partition("Cost on this machine")[2])
@@ -131,11 +139,10 @@ class Ladder:
     def write_deck(self, rung: Rung) -> Path:
         """The deck of a rung; it is left alone if it is the same as before."""
         folder = self.folder_of(rung)
-        text = rung.change(self.base).text()
+        found = rung.change(self.base)
         folder.mkdir(parents=True, exist_ok=True)
         deck = folder / f"{JOB}.inp"
-        if not deck.exists() or deck.read_text(encoding="utf-8") != text:
-            deck.write_text(text, encoding="utf-8")
+        found.write(deck)
         return deck
 
     def is_kept(self, rung: Rung) -> bool:

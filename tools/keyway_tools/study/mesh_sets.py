@@ -8,6 +8,10 @@ from dataclasses import dataclass, field
 from .deck_cards import Card, Deck
 
 
+class RefinementError(ValueError):
+    """A deck whose mesh these modules do not change, with the reason."""
+
+
 @dataclass
 class MeshSets:
     """Coordinates by number; sets by name in capitals."""
@@ -20,9 +24,15 @@ class MeshSets:
         """Elements of a number or the name of a set."""
         return {int(label)} if label.isdigit() else self.element_sets[label.upper()]
 
+    def nodes_of(self, label: str) -> set[int]:
+        """Nodes of a number or the name of a set."""
+        return {int(label)} if label.isdigit() else self.node_sets[label.upper()]
+
 
 def read_sets(deck: Deck) -> MeshSets:
     """All nodes and sets, in the order of the deck."""
+    if deck.has("PART") or deck.has("INSTANCE"):
+        raise RefinementError("the mesh has parts and instances (*PART), which are not refined")
     sets = MeshSets()
     for card in deck.cards:
         if card.keyword == "NODE":

@@ -3,19 +3,29 @@
 A slice is refined in its plane alone.
 
 New nodes lie on straight edges and flat middles: the shape of the dam stays that of the coarse
-mesh. Sets of elements and surfaces follow their elements. Supports and initial values hold new
-nodes between old ones on the surface; forces (*CLOAD) and prints keep the old nodes.
+mesh. Sets of elements and surfaces follow their elements. Supports hold new nodes between old ones
+on the surface; temperatures and initial values of new nodes are means; forces (*CLOAD) and prints
+keep the old nodes.
 """
 
 from __future__ import annotations
 
+import re
 from collections import Counter, defaultdict
 from functools import reduce
 from itertools import product
 from math import gcd
 
-from .deck_cards import Card, Deck
-from .mesh_sets import MeshSets, back_of_slice, element_rows, list_card, read_sets
+from .deck_cards import Card, Deck, number_of
+from .mesh_sets import (
+    MeshSets,
+    RefinementError,
+    back_of_slice,
+    element_rows,
+    list_card,
+    read_sets,
+)
+from .refined_values import Key, add_values, mean
 
 BRICKS = ("C3D8", "C3D8I", "C3D8B", "C3D8R")
 # Corners of a brick on a lattice of 3 x 3 x 3 points, in the order of its nodes.
@@ -30,11 +40,8 @@ FACE_SIDES = {"1": (2, 0), "2": (2, 1), "3": (1, 0), "4": (0, 1), "5": (1, 1), "
 
 Corners = tuple[tuple[int, ...], ...]
 Side = tuple[int | None, ...]
-Key = tuple[tuple[int, int], ...]  # parents of a node and how often each counts
-
-
-class RefinementError(ValueError):
-    """A deck whose mesh this module does not refine, with the reason."""
+# Cards that name single nodes, for which new nodes have no counterpart
+RELATIONS = ("EQUATION", "MPC")
 
 
 def refine(deck: Deck) -> Deck:
@@ -58,6 +65,8 @@ class Refinement:
 
     def deck(self) -> Deck:
         """The refined deck."""
+        if relation := next(self.old.of(*RELATIONS), None):
+            raise RefinementError(f"*{relation.keyword} names nodes: new nodes would lack it")
         elements = [self.refine_elements(card) for card in self.old.of("ELEMENT")]
         self.find_surface()
         mesh = [self.node_card(), *elements, *self.set_cards()]
@@ -65,7 +74,9 @@ class Refinement:
                 ("NODE", "ELEMENT", "NSET", "ELSET", "INCLUDE")]  # fmt: skip
         heading = [card for card in rest if card.keyword == "HEADING"]
         others = [card for card in rest if card.keyword != "HEADING"]
-        return Deck([*heading, *mesh, *others])
+        new = Deck([*heading, *mesh, *others], dict(self.old.files))
+        add_values(new, self.sets, self.new_nodes)
+        return new
 
     def node_card(self) -> Card:
         """Old and new nodes."""
@@ -171,10 +182,10 @@ class Refinement:
             self.surface_keys.add(key_of(face))
             self.surface_keys |= {key_of([face[i - 1], face[i]]) for i in range(4)}
 
-    def grown(self, nodes: set[int]) -> list[int]:
-        """New nodes of the surface between nodes of a set."""
+    def grown(self, nodes: set[int]) -> list[tuple[Key, int]]:
+        """Parents and numbers of new nodes of the surface between nodes of a set."""
         return [
-            number for key, number in self.new_nodes.items()
+            (key, number) for key, number in self.new_nodes.items()
             if key in self.surface_keys and all(parent in nodes for parent, _ in key)
         ]  # fmt: skip
 
@@ -183,7 +194,7 @@ class Refinement:
         cards = []
         for name, nodes in self.sets.node_sets.items():
             cards.append(list_card("NSET", name, sorted(nodes)))
-            grown = [*sorted(nodes), *self.grown(nodes)]
+            grown = [*sorted(nodes), *(number for _, number in self.grown(nodes))]
             cards.append(list_card("NSET", grown_name(name), grown))
         for name, elements in self.sets.element_sets.items():
             children = [child for e in sorted(elements) for child, _ in self.children[e]]
@@ -192,12 +203,15 @@ class Refinement:
 
     def follow(self, card: Card) -> Card:
         """A card that names nodes or elements, for the refined mesh."""
+        is_of_nodes = card.keyword == "SURFACE" and card.value("TYPE") in ("NODE", "NODES")
+        if card.keyword == "BOUNDARY" or is_of_nodes:
+            return Card(card.keyword, card.parameters, self.grown_lines(card))
         if card.keyword == "SURFACE":
             return Card("SURFACE", card.parameters, self.surface_lines(card))
-        if card.keyword in ("BOUNDARY", "INITIAL CONDITIONS"):
-            return Card(card.keyword, card.parameters, self.grown_lines(card))
         if card.keyword == "DLOAD":
             return Card("DLOAD", card.parameters, self.load_lines(card))
+        if card.keyword == "MODEL CHANGE":
+            return Card("MODEL CHANGE", card.parameters, self.stage_lines(card))
         return card
 
     def surface_lines(self, card: Card) -> list[str]:
@@ -218,32 +232,48 @@ class Refinement:
                 if at[axis] in (side, None)]  # fmt: skip
 
     def grown_lines(self, card: Card) -> list[str]:
-        """Lines on nodes and sets, for the new nodes too."""
-        lines, single = [], defaultdict(set)
+        """Lines on nodes and sets, for the new nodes too; values of single nodes have means."""
+        lines: list[str] = []
+        single: dict[str, dict[int, tuple[float, ...]]] = defaultdict(dict)
         for line in card.lines:
             label, comma, rest = line.partition(",")
-            if label.strip().isdigit():
-                single[rest].add(int(label))
-                lines.append(line)
-            else:
+            if not label.strip().isdigit():
                 lines.append(f"{grown_name(label.strip().upper())}{comma}{rest}")
-        for rest, nodes in single.items():
-            lines += [f"{number},{rest}" for number in self.grown(nodes)]
+                continue
+            lines.append(line)
+            items = [item.strip() for item in rest.split(",")]
+            value = number_of(items[2]) if len(items) > 2 and items[2] else 0.0
+            single[", ".join(items[:2])][int(label)] = (value,)
+        for directions, values in single.items():
+            for key, number in self.grown(set(values)):
+                value = mean(key, values)[0]
+                row = [str(number), directions, repr(value) if value else ""]
+                lines.append(", ".join(row).rstrip(", "))
         return lines
 
     def load_lines(self, card: Card) -> list[str]:
-        """Weight acts on all children; a pressure P1 to P6 on those at the face."""
+        """Weight acts on all children; a pressure (P1 to P6, HP1 to HP6) on those at the face."""
         lines = []
         for line in card.lines:
             label, kind, *rest = (item.strip() for item in line.split(","))
-            if kind.upper().startswith("P") and kind[1:].isdigit():
-                found = self.children_on(label, kind[1:])
+            if pressure := re.fullmatch("H?P([1-6])", kind.upper()):
+                found = self.children_on(label, pressure[1])
             elif label.isdigit():
                 found = [child for child, _ in self.children[int(label)]]
             else:
                 lines.append(line)
                 continue
             lines += [", ".join([str(child), kind, *rest]) for child in found]
+        return lines
+
+    def stage_lines(self, card: Card) -> list[str]:
+        """The children of single elements; sets have them already."""
+        lines = []
+        for item in (item.strip() for line in card.lines for item in line.split(",")):
+            if item.isdigit():
+                lines += [str(child) for child, _ in self.children[int(item)]]
+            elif item:
+                lines.append(item)
         return lines
 
 

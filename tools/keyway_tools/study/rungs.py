@@ -14,6 +14,8 @@ REQUESTS = (
     "NODE FILE", "EL FILE", "OUTPUT", "NODE OUTPUT", "ELEMENT OUTPUT", "NODE PRINT", "EL PRINT",
     "JOINT PRINT", "RESTART",
 )  # fmt: skip
+JOINTS = ("JOINT", "CONTACT PAIR")
+INELASTIC = ("CONCRETE DAMAGED PLASTICITY", "PLASTIC", "USER MATERIAL")
 SIZES = (0, 2, 3)  # fields of *DYNAMIC: first, smallest and largest increment
 FINEST_INCREMENT = 0.125  # of the check of a ladder
 SLOWEST = 1.35  # exponent of the time of an increment over unknowns, three-dimensional meshes
@@ -38,7 +40,7 @@ def base_deck(deck: Deck) -> Deck:
     """The deck without output but the extremes of every step with displacements."""
     base = deck.copy()
     base.without(base.of(*REQUESTS, "ENVELOPE"))
-    has_joints = base.has("JOINT")
+    has_joints = any(base.has(keyword) for keyword in JOINTS)
     for step in base.steps():
         if any(card.keyword in ("STATIC", "DYNAMIC") for card in step):
             fields = [name for name in ENVELOPES if has_joints or name != "OPENING"]
@@ -135,7 +137,7 @@ def element_kind(kind: str) -> Callable[[Deck], Deck]:
 
 def tolerance_rungs(deck: Deck) -> list[Rung]:
     """Tolerances of the iteration, where there is one."""
-    if not (deck.has("JOINT") or deck.has("CONCRETE DAMAGED PLASTICITY")):
+    if not any(deck.has(keyword) for keyword in (*JOINTS, *INELASTIC)):
         return []
     return [
         Rung(
@@ -193,17 +195,18 @@ def stiffness_rung(factor: float) -> Rung:
 def solver_rungs(deck: Deck) -> list[Rung]:
     """Solvers: they cost time, and may change the results within the tolerances only."""
     found = []
-    is_elastic = not (deck.has("CONCRETE DAMAGED PLASTICITY") or deck.has("USER MATERIAL"))
+    is_elastic = not any(deck.has(keyword) for keyword in INELASTIC)
     if deck.has("DYNAMIC") and is_elastic:
         single = controls({"PRECISION": "SINGLE"})
         found.append(Rung("solver", "PRECISION=SINGLE", 1.0, 1.0, single))
-    if deck.has("JOINT"):
+    has_joints = any(deck.has(keyword) for keyword in JOINTS)
+    if has_joints:
         found.append(
             Rung("solver", "JOINT SOLVER=FULL", 1.5, 1.0, controls({"JOINT SOLVER": "FULL"}))
         )
     if (
         deck.has("DYNAMIC")
-        and deck.has("JOINT")
+        and has_joints
         and is_elastic
         and all(is_hht(card) for card in deck.of("DYNAMIC"))
     ):

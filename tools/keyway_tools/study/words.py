@@ -26,10 +26,7 @@ def sentences_of_quantity(found: dict[str, Any], seconds: float) -> list[str]:
     """Where the deck stands, and what to choose for each accuracy."""
     name = NAMES[found["quantity"]]
     if found["error"] is None:
-        return [
-            f"{name}: the error of the mesh is not known, as no refined mesh was run. The "
-            f"increment alone leaves {percent(found['increment'])}."
-        ]
+        return [f"{name}: {what_is_unknown(found)}"]
     if found["error"] > 1.0:
         return [f"{name}: does not converge on this ladder, so no number is given."]
     parts = ", ".join(f"{part} {percent(found[part])}" for part in ("increment", "mesh",
@@ -40,6 +37,18 @@ def sentences_of_quantity(found: dict[str, Any], seconds: float) -> list[str]:
         f"{percent(found['uncertainty'])}."
     ]
     return lines + [f"— {sentence_of_choice(choice)}" for choice in found["choices"]]
+
+
+def what_is_unknown(found: dict[str, Any]) -> str:
+    """Which errors have no number, and the one that has."""
+    parts = ("increment", "mesh")
+    missing = [part for part in parts if found[part] is None]
+    text = f"the error of the {' and that of the '.join(missing)} is not known, as no run with "
+    text += f"another {' or '.join(missing)} is there."
+    for part in parts:
+        if found[part]:
+            text += f" The {part} alone leaves {percent(found[part])}."
+    return text
 
 
 def sentence_of_choice(choice: dict[str, Any]) -> str:
