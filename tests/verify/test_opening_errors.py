@@ -87,7 +87,7 @@ def test_soft_springs(keyway):
     assert found["error"] == pytest.approx(found["mesh"] + found["iteration"])
     log = (run.folder / f"{run.job}.log").read_text(encoding="utf-8")
     (line,) = (x for x in log.splitlines() if "BED: largest opening" in x)
-    assert ", of which springs of joints give" in line
+    assert ", springs of joints contribute about" in line
     assert "joints " not in line.split("(mesh ")[1].split(")")[0]
 
 

@@ -120,6 +120,9 @@ class SiResults(Results):
             field: self._extremes(values, self._envelope_unit(field))
             for field, values in content.get("envelopes", {}).items()
         }
+        if isinstance(content.get("displacement"), dict):
+            moved = content["displacement"]
+            content["displacement"] = self._extremes(moved, self.units.length)
         content["joints"] = {
             name: {
                 key: self._extremes(value, self.units.of(key)) if isinstance(value, dict) else value

@@ -55,7 +55,7 @@ contains
       text = text//')'
     end if
     if (found%is_soft(value)) then
-      text = text//', of which springs of joints give '//as_short_text(found%joints)
+      text = text//', springs of joints contribute about '//as_short_text(found%joints)
     end if
     if (found%history < 0.0_rk) return
     text = text//', histories +-'//as_short_text(100.0_rk*found%history)//' % (time)'

@@ -69,6 +69,7 @@ def _run(results: SiResults, scales: Scales) -> dict[str, Any]:
         "header": header(results),
         "verdict": verdict(results),
         "numbers": numbers,
+        "has_stresses": any(row["unit"] == "MPa" for row in numbers),
         "has_errors": any(row["error"] for row in numbers),
         "estimates": estimates(results),
         "accuracy": accuracy(results),

@@ -115,9 +115,15 @@ def _number(count: int, noun: str) -> str:
 
 
 def key_numbers(results: SiResults) -> list[dict[str, Any]]:
-    """Extremes of the envelopes: label, value, unit, place, time, and the path in job.json."""
+    """Extremes of the envelopes and the largest displacement, which every run has: label, value,
+    unit, place, time, and the path in job.json."""
+    summary = results.si_summary
+    known = {name: (f"envelopes.{name}", found) for name, found in
+             summary.get("envelopes", {}).items()}  # fmt: skip
+    if "U" not in known and summary.get("displacement"):
+        known = {"U": ("displacement", summary["displacement"]), **known}
     rows = []
-    for name, values in results.si_summary.get("envelopes", {}).items():
+    for name, (path, values) in known.items():
         field = FIELDS.get(name)
         scale, unit = (field.scale, field.unit) if field else (1.0, "")
         for where in (w for w in WHERE if "value" in values.get(w, {})):
@@ -131,7 +137,7 @@ def key_numbers(results: SiResults) -> list[dict[str, Any]]:
                 "in_step": time_in_step(results, extreme.get("time")),
                 "x": extreme.get("x"),
                 "error": _estimate(results, name, scale, unit) if where == "anywhere" else "",
-                "path": f"envelopes.{name}.{where}.value",
+                "path": f"{path}.{where}.value",
             })  # fmt: skip
     return rows
 
@@ -171,7 +177,7 @@ def _estimate(results: SiResults, name: str, scale: float, unit: str) -> str:
         parts = (f"{part} {scale * found[part]:.4g}" for part in _PARTS if part in found)
         words = f"\u00b1 {scale * found['error']:.4g} {unit} ({', '.join(parts)})"
     if "springs" in found:
-        words += f"; springs of joints give {scale * found['springs']:.4g} {unit} of the value"
+        words += f"; springs of joints contribute about {scale * found['springs']:.4g} {unit}"
     if "history" in found:
         words += f"; histories \u00b1 {100.0 * found['history']:.2g} % (time)"
     return words
