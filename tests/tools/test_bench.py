@@ -23,7 +23,8 @@ def test_bench_measures_a_small_dam(program_path: Path, tmp_path: Path):
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.stderr == ""
     found = {figure["what"]: figure["value"] for figure in json.loads(figures.read_text())}
-    found.pop("linear increment / solve of CHOLMOD alone", None)  # a program of its own
+    bare = found.pop("linear increment / solve of CHOLMOD alone", None)
+    assert (bare is None) == ("--target bench_bare_solve" in done.stdout)  # a program of its own
     assert found.keys() == {
         "deck read and verified [s]",
         "static run / bare solver",

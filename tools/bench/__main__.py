@@ -22,7 +22,8 @@ cracks: a dam with two joints whose concrete cracks, Table 1 and a table of open
 solves, iterations, share of the laws. --refine divides its elements.
 
 Both, and run, count in solves of the program and in solves of CHOLMOD alone with the same matrix,
-before and after the run: build `bench_bare_solve` beside the program. Run leaves these out without.
+before and after the run: build `bench_bare_solve` beside the program. Without it run prints a line
+and leaves these figures out.
 
 reduced: a dam with the first of --joints joints, with the full and with the reduced model: time of
 an increment, error of the openings and its estimate.

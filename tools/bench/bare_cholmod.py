@@ -25,6 +25,13 @@ def bench_program(program: Program) -> Path:
     return program.path.parent / "bench/bench_bare_solve"
 
 
+def missing_program(program: Program) -> str:
+    """What to do where the program of the bare solves is missing."""
+    path = bench_program(program)
+    command = f"cmake --build {program.path.parent} --target bench_bare_solve"
+    return f"{path} is missing; build it with '{command}'"
+
+
 def measure_beside(
     program: Program, deck: Path, measure: Callable[[], Run]
 ) -> tuple[Run, BareSolve]:
@@ -42,10 +49,7 @@ def _seconds(program: Program, deck: Path) -> list[list[float]]:
     """
     path = bench_program(program)
     if not path.exists():
-        raise SystemExit(
-            f"bench: {path} is missing; build it with "
-            f"'cmake --build {program.path.parent} --target bench_bare_solve'"
-        )
+        raise SystemExit(f"bench: {missing_program(program)}")
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
     done = subprocess.run([str(path), str(deck)], capture_output=True, text=True, env=environment)
     if done.returncode:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from bare_cholmod import BareSolve, bench_program, measure_beside
+from bare_cholmod import BareSolve, bench_program, measure_beside, missing_program
 from measured_run import Program, Run
 from scenes import INCREMENT, dam_of_size, make_concrete, scaled_dam, write_deck
 
@@ -55,12 +55,15 @@ def measure_dynamic(program: Program, folder: Path, size: int, count: int) -> li
 
     The first over a solve of CHOLMOD alone, too, where the program of the bare solves is built.
     """
+    has_bare = bench_program(program).exists()
+    if not has_bare:
+        print(f"bench: no figure over bare solves: {missing_program(program)}", flush=True)
     mesh = dam_of_size(size)
     figures = []
     for has_envelopes in (False, True):
         name = f"dynamic_{size}_{has_envelopes:d}"
         deck = write_deck(folder, name, mesh, count * INCREMENT, has_envelopes=has_envelopes)
-        if bench_program(program).exists() and not has_envelopes:
+        if has_bare and not has_envelopes:
             run, bare = measure_beside(program, deck, partial(program.run, deck))
             figures.append(over_bare_solve(run, bare))
         else:
