@@ -124,6 +124,39 @@ def test_a_signal_before_the_results_are_open(program_path, tmp_path, number):
     check_next_run(program_path, out, path)
 
 
+# Holds a process for half a second where it has the lock of its file and has not noted it yet.
+SLOW_LOCK = """#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <sys/file.h>
+#include <time.h>
+int flock(int file, int way)
+{
+  struct timespec left = {0, 500000000};
+  int answer = ((int (*)(int, int))dlsym(RTLD_NEXT, "flock"))(file, way);
+  while ((way & LOCK_EX) && nanosleep(&left, &left) != 0) continue;
+  return answer;
+}
+"""
+
+
+def test_a_signal_while_the_lock_is_taken(program_path, tmp_path):
+    """Threads of OpenBLAS are there already, and the system may give them the signal."""
+    path, out, library = tmp_path / "job.inp", tmp_path / "out", tmp_path / "slow_lock.so"
+    path.write_text(SHORT)
+    (tmp_path / "slow_lock.c").write_text(SLOW_LOCK)
+    command = ["gcc", "-shared", "-fPIC", "-o", library, tmp_path / "slow_lock.c", "-ldl"]
+    subprocess.run(command, check=True)
+    process = subprocess.Popen(
+        [program_path, "-q", "-o", out, path],
+        env={**os.environ, "LD_PRELOAD": str(library), "OPENBLAS_NUM_THREADS": "2"},
+    )
+    while not (out / "job.lock").exists():
+        assert process.poll() is None
+    process.send_signal(signal.SIGTERM)
+    assert process.wait(10) == -signal.SIGTERM
+    check_next_run(program_path, out, path)
+
+
 def test_continued_without_checkpoint(program_path, tmp_path):
     path, out = tmp_path / "job.inp", tmp_path / "out"
     path.write_text(SHORT)

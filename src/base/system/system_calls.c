@@ -165,10 +165,12 @@ static void catch_one(int signal_number, void (*handler)(int)) {
 static const int stopping[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
 enum { num_stopping = sizeof stopping / sizeof stopping[0] };
 
-/* The first signal that asks the run to stop sets a flag alone. */
-void keyway_outlive_signal(void) {
-  for (int i = 0; i < num_stopping; i++) catch_one(stopping[i], ask_to_stop);
+static void catch_stopping(void (*handler)(int)) {
+  for (int i = 0; i < num_stopping; i++) catch_one(stopping[i], handler);
 }
+
+/* The first signal that asks the run to stop sets a flag alone. */
+void keyway_outlive_signal(void) { catch_stopping(ask_to_stop); }
 
 /* From now on signals stop the run after its increment, and a crash marks job.json at PATH. The empty
  * path: the run has ended, nothing is marked any more. */
@@ -205,13 +207,9 @@ static void end_unopened(int signal_number) {
   end_by(signal_number);
 }
 
-/* Signals that ask to stop wait until a lock is taken or not. */
-static void hold_signals(sigset_t *former) {
-  sigset_t held;
-  sigemptyset(&held);
-  for (int i = 0; i < num_stopping; i++) sigaddset(&held, stopping[i]);
-  sigprocmask(SIG_BLOCK, &held, former);
-}
+static volatile sig_atomic_t early_signal;
+
+static void note_early(int signal_number) { early_signal = signal_number; }
 
 /* What a lock file says: the process and its host, as "123 host". */
 static void read_holder(int file, char *holder, size_t room) {
@@ -301,15 +299,17 @@ static int take_lock(const char *path, char *holder, size_t room) {
 
 /* Takes the lock file PATH. Returns its descriptor, or -1: it cannot be made, -2: another process has
  * it, -3: it was left by a process of another host, -4: the disk is full. `holder`: who has it or has
- * left it, "" for none. */
+ * left it, "" for none.
+ *
+ * A signal that asks to stop waits until the lock is taken or not. It is noted, not blocked: another
+ * thread, such as one of OpenBLAS, would still get it and end the process. */
 int keyway_take_lock(const char *path, char *holder, size_t room) {
-  sigset_t former;
   int file;
-  hold_signals(&former);
+  if (!is_run_open) catch_stopping(note_early);
   file = take_lock(path, holder, room);
-  for (int i = 0; file >= 0 && !is_run_open && i < num_stopping; i++)
-    catch_one(stopping[i], end_unopened);
-  sigprocmask(SIG_SETMASK, &former, NULL);
+  if (is_run_open) return file;
+  catch_stopping(end_unopened);
+  if (early_signal) end_unopened(early_signal);
   return file;
 }
 
