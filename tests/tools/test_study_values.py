@@ -7,17 +7,18 @@ import numpy as np
 import pytest
 from harness import ROOT
 from keyway_tools.study.couplings import coupling_rungs
-from keyway_tools.study.deck_cards import Card, Deck, read_deck
+from keyway_tools.study.deck_cards import FLAGS, OF_SEVERAL_WORDS, Card, Deck, read_deck
 from keyway_tools.study.effects import list_effects
 from keyway_tools.study.errors import BASE, FINE_MESH, errors_of
 from keyway_tools.study.facts import facts_of
 from keyway_tools.study.flat_deck import flat
 from keyway_tools.study.ladder import Outcome
 from keyway_tools.study.measured import Measured
-from keyway_tools.study.mesh_sets import read_sets
+from keyway_tools.study.mesh_sets import read_sets, support_of
 from keyway_tools.study.refined_mesh import RefinementError, refine
 from keyway_tools.study.rungs import Rung, as_it_is, base_deck, list_rungs
 from keyway_tools.study.words import sentences_of_quantity
+from make_keywords import ask, read_families, read_keywords
 from tied_blocks import Blocks, node_set, state_of
 
 LAW = "*DENSITY\n2400.\n*ELASTIC\n2e10, 0.\n*EXPANSION\n1e-5\n"
@@ -156,6 +157,37 @@ def test_prescribed_values_of_single_nodes_have_means(tmp_path):
         assert ((str(node), "1") in found) == (x[node][0] == 0.0)
 
 
+SIDES = {"A": "BASE, 1, 3\nSIDE, 1\n", "B": "BASE, 1, 3\n*BOUNDARY\nSIDE, XSYMM\n"}
+
+
+@pytest.mark.parametrize("cards", [*SIDES.values(), "BASE, 1, 3\n{}*BOUNDARY\n{}"])
+def test_supports_of_several_sets_have_no_gap(tmp_path, cards):
+    """Base and side have no node in common: the new nodes between them are on a held face."""
+    blocks = brick()
+    on_base = set(blocks.side("A", "Z0"))
+    above = sorted(set(blocks.side("A", "X0")) - on_base)
+    cards = cards.format(*["".join(f"{n + 1}, 1, 1\n" for n in part) for part in
+                           (above[:2], above[2:])])  # fmt: skip
+    sets = node_set("BASE", sorted(on_base)) + node_set("SIDE", above)
+    text = blocks.deck({"": LAW}, f"{sets}*BOUNDARY\n{cards}")
+    fine = refine(deck_of(tmp_path, text + "*STEP\n*STATIC\n1., 1.\n*END STEP\n"))
+    new = read_sets(fine)
+    lines = [line for card in fine.of("BOUNDARY") for line in card.lines]
+    held = [node for line in lines for node in new.nodes_of(support_of(line)[0])
+            if 1 in support_of(line)[1]]  # fmt: skip
+    assert sorted(held) == sorted(n for n, x in new.nodes.items() if x[0] == 0.0 or x[2] == 0.0)
+
+
+def test_a_brick_between_two_supports_is_not_held(tmp_path):
+    """Base and top, one brick apart: the edges between them are free."""
+    blocks = Blocks()
+    blocks.add("A", *[(1, 0.0, 1.0)] * 3)
+    text = model(blocks, node_set("TOP", blocks.side("A", "Z1")) + "*BOUNDARY\nTOP, 1, 3\n")
+    fine = refine(deck_of(tmp_path, text + "*STEP\n*STATIC\n1., 1.\n*END STEP\n"))
+    lines = [line for card in fine.of("BOUNDARY") for line in card.lines]
+    assert lines == ["BASE_AND_NEW, 1, 3", "TOP_AND_NEW, 1, 3"]
+
+
 def test_stages_name_the_children_of_single_elements(tmp_path):
     step = "*STEP\n*STATIC\n*MODEL CHANGE, TYPE=ELEMENT, REMOVE\n5, 6, A\n*END STEP\n"
     (card,) = refine(deck_of(tmp_path, model(brick()) + step)).of("MODEL CHANGE")
@@ -263,3 +295,81 @@ BASE, 1, 2, 1.5
     dry = rungs[-1].change(deck)
     assert not dry.has("DSLOAD")
     assert not dry.has("DLOAD")
+
+
+ODD_DECK = """* Heading,
+x = 3, a text
+*node, nset=All
+1, 0., 0., 0.D0
+2, 1.D0, 0., 0.
+3, 1., 1., 0.
+4, 0., 1., 0.
+5, 0., 0., 1.
+6, 1., 0., 1.
+7, 1., 1., 1.
+8, 0., 1., 1.
+9, 2., 0., 0.
+10, 2., 1., 0.
+11, 2., 0., 1.
+12, 2., 1., 1.
+*Element, type=C3D8I, elset=Left
+1, 1, 2, 3, 4, 5, 6, 7, 8,
+*Element, type=C3D8I, elset="Right side",
+2, 2, 9, 10
+3, 6, 11, 12, 7
+*Elset, elset=Both
+Left, "right Side"
+*Nset, nset='The base',
+Generate
+1, 4, 1
+*nset, nset='The base'
+9, 10
+*material, name=m
+*elastic,
+2e10, 0.2
+*density,
+2400.
+*solidsection, elset=Both, material=m
+*boundary
+"THE BASE", pinned
+*step
+*static,
+1., 1.
+*dload
+"Right side", GRAV, 10., 0., 0., -1.
+*nodeprint, nset="The base"
+RF
+*endstep
+"""
+
+
+def test_odd_decks_are_read_as_the_program_reads_them(keyway, tmp_path):
+    """Exponents of Fortran, quotes, commas without meaning, elements on several lines, keywords
+    without blanks; a weight of 24 kN stays on the base."""
+    fine, _ = with_all_nodes(refine(deck_of(tmp_path, ODD_DECK)), "RF")
+    reaction = state_of(run(keyway, fine, "fine"), "EVERY", "RF")
+    assert reaction.sum(axis=0) == pytest.approx([0.0, 0.0, 24e3], abs=1e-6)
+
+
+def test_names_and_flags_of_the_reader_are_those_of_the_program(program_path):
+    """Of all keywords that the program takes."""
+    names = [name for _, names in read_families(ask(program_path)) for name in names]
+    pages = [page for name in names for page in read_keywords(ask(program_path, name))]
+    taken = {page.name.strip("*") for page in pages if page.place and not page.remark}
+    flags = {name for page in pages for title, rows in page.blocks if title == "Parameters"
+             for name, text in rows if "(flag)" in text and "refused" not in text}  # fmt: skip
+    assert set(OF_SEVERAL_WORDS) == {name for name in taken if " " in name}
+    assert set(FLAGS) == flags
+
+
+def test_data_lines_below_a_file_of_temperatures(tmp_path):
+    """They are final values, with no history of the file."""
+    (tmp_path / "warm.csv").write_text(
+        "node, 0, 2\n" + "".join(f"{n}, 1, 3\n" for n in range(1, 19))
+    )
+    cards = "*TEMPERATURE, INPUT=warm.csv\n" + "".join(f"{n}, 8.\n" for n in range(1, 28))
+    step = f"*STEP\n*STATIC\n1., 1.\n{cards}*END STEP\n"
+    fine = refine(deck_of(tmp_path, model(brick()) + step))
+    card = list(fine.of("TEMPERATURE"))[-1]
+    assert len(card.lines) == 125 - 27
+    assert {line.split(", ")[1] for line in card.lines} == {"8.0"}

@@ -1,7 +1,7 @@
 """A deck as a list of cards that can be changed and written again.
 
-The reader knows the grammar of decks (keyword lines, parameters, data lines, *INCLUDE), no meaning
-of keywords. Keyway itself checks the deck.
+The reader knows the grammar of decks (keyword lines, parameters, data lines, *INCLUDE), of keywords
+their names alone. Keyway itself checks the deck.
 """
 
 from __future__ import annotations
@@ -15,6 +15,21 @@ from pathlib import Path
 # Cards with files beside the deck: the file is named by this parameter.
 FILE_PARAMETER = "INPUT"
 LONGEST_LINE = 100
+# Keywords of several words: a deck may leave the blanks out
+OF_SEVERAL_WORDS = (
+    "END PART", "END INSTANCE", "END ASSEMBLY", "USER MATERIAL", "CONCRETE DAMAGED PLASTICITY",
+    "CONCRETE COMPRESSION HARDENING", "CONCRETE TENSION STIFFENING", "CONCRETE COMPRESSION DAMAGE",
+    "CONCRETE TENSION DAMAGE", "MATERIAL TEST", "SOLID SECTION", "JOINT LAW", "SURFACE INTERACTION",
+    "SURFACE BEHAVIOR", "CONTACT PAIR", "BASE MOTION", "INITIAL CONDITIONS", "END STEP",
+    "MODEL CHANGE", "NODE PRINT", "EL PRINT", "JOINT PRINT", "NODE FILE", "EL FILE", "NODE OUTPUT",
+    "ELEMENT OUTPUT",
+)  # fmt: skip
+WHOLE_NAMES = {name.replace(" ", ""): name for name in OF_SEVERAL_WORDS}
+# Parameters without a value: a line that begins with one may go on with those of the keyword
+FLAGS = (
+    "DIRECT", "FIELD", "GENERATE", "HISTORY", "INTERNAL", "MODAL", "PERTURBATION", "REDUCED",
+    "REMOVE", "SMALL SLIDING", "UNSORTED", "UNSYMM", "WRITE",
+)  # fmt: skip
 
 
 @dataclass
@@ -27,7 +42,7 @@ class Card:
 
     def value(self, name: str) -> str:
         """Value of a parameter in capitals; '' where there is none."""
-        return (self.parameters.get(name) or "").strip('"').upper()
+        return plain_name(self.parameters.get(name) or "")
 
     def text(self) -> str:
         """The card as lines of a deck."""
@@ -42,6 +57,11 @@ class Card:
             else:
                 row += f", {part}"
         return "\n".join([*rows, row, *self.lines]) + "\n"
+
+
+def plain_name(label: str) -> str:
+    """A name of a deck in capitals, without quotes and the blanks around it."""
+    return label.strip().strip("\"'").upper()
 
 
 def number_of(item: str) -> float:
@@ -132,23 +152,31 @@ def _cards_of_text(text: str) -> Iterator[Card]:
         line = raw.strip()
         if not line or line.startswith("**"):
             continue
+        is_open = is_open and not line.startswith("*") and _has_parameters(line)
         if is_open and card:
             is_open = _add_parameters(card, line)
         elif line.startswith("*"):
             if card:
                 yield card
             head, _, rest = line[1:].partition(",")
-            card = Card(" ".join(head.upper().split()))
+            name = " ".join(head.upper().split())
+            card = Card(WHOLE_NAMES.get(name.replace(" ", ""), name))
             is_open = bool(rest or line.endswith(",")) and _add_parameters(card, rest)
+            is_open = is_open and name != "HEADING"
         elif card:
             card.lines.append(line)
     if card:
         yield card
 
 
+def _has_parameters(line: str) -> bool:
+    """Whether a line below a comma goes on with the keyword; else the comma has no meaning."""
+    return "=" in line or " ".join(line.partition(",")[0].upper().split()) in FLAGS
+
+
 def _add_parameters(card: Card, text: str) -> bool:
     """Adds the parameters of a line; whether the next line goes on with them."""
-    for item in re.findall(r'(?:"[^"]*"|[^,])+', text):
+    for item in re.findall(r"""(?:"[^"]*"|'[^']*'|[^,])+""", text):
         name, equals, value = item.partition("=")
         name = " ".join(name.upper().split())
         if name:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from .deck_cards import Card, Deck, number_of
+from .mesh_sets import support_of
 from .rungs import Rung, as_it_is
 
 CONCRETE = (
@@ -94,16 +95,10 @@ def accelerated(deck: Deck) -> list[Card]:
     return [card for card in deck.of("BOUNDARY") if card.value("TYPE") == "ACCELERATION"]
 
 
-def directions_of(line: str) -> range:
-    """The directions of a line of *BOUNDARY that names them by numbers."""
-    items = [item.strip() for item in [*line.split(","), "", ""]]
-    return range(int(items[1]), int(items[2] or items[1]) + 1)
-
-
 def is_moved(deck: Deck, dof: str) -> bool:
     lines = [line for card in accelerated(deck) for line in card.lines]
     return any(card.value("DOF") == dof for card in deck.of("BASE MOTION")) or any(
-        int(dof) in directions_of(line) for line in lines
+        int(dof) in support_of(line)[1] for line in lines
     )
 
 
@@ -114,11 +109,11 @@ def without_motion(dof: str) -> Callable[[Deck], Deck]:
         new = deck.copy()
         new.without([card for card in new.of("BASE MOTION") if card.value("DOF") == dof])
         for card in accelerated(new):
-            held = [line for line in card.lines if int(dof) in directions_of(line)]
+            held = [line for line in card.lines if int(dof) in support_of(line)[1]]
             lines = [line for line in card.lines if line not in held]
             for line in held:
                 label, _, _, value = [*line.split(","), "", "", ""][:4]
-                lines += [f"{label}, {k}, {k}, {value}" for k in directions_of(line)
+                lines += [f"{label}, {k}, {k}, {value}" for k in support_of(line)[1]
                           if k != int(dof)]  # fmt: skip
             kept = {name: text for name, text in card.parameters.items() if name == "OP"}
             still = Card("BOUNDARY", kept, [f"{line.split(',')[0]}, {dof}, {dof}" for line in held])

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from .deck_cards import Card, Deck
+from .deck_cards import Card, Deck, number_of, plain_name
+
+NUM_NODES = {"JOINT8": 8, "IFACE4": 4}
 
 
 class RefinementError(ValueError):
@@ -22,11 +24,11 @@ class MeshSets:
 
     def elements_of(self, label: str) -> set[int]:
         """Elements of a number or the name of a set."""
-        return {int(label)} if label.isdigit() else self.element_sets[label.upper()]
+        return {int(label)} if label.isdigit() else self.element_sets[plain_name(label)]
 
     def nodes_of(self, label: str) -> set[int]:
         """Nodes of a number or the name of a set."""
-        return {int(label)} if label.isdigit() else self.node_sets[label.upper()]
+        return {int(label)} if label.isdigit() else self.node_sets[plain_name(label)]
 
 
 def read_sets(deck: Deck) -> MeshSets:
@@ -51,7 +53,7 @@ def read_nodes(card: Card, sets: MeshSets) -> list[int]:
     numbers = []
     for line in card.lines:
         number, *rest = line.split(",")
-        x = [float(item) if item.strip() else 0.0 for item in rest[:3]]
+        x = [number_of(item) if item.strip() else 0.0 for item in rest[:3]]
         x += [0.0] * (3 - len(x))
         sets.nodes[int(number)] = (x[0], x[1], x[2])
         numbers.append(int(number))
@@ -59,15 +61,16 @@ def read_nodes(card: Card, sets: MeshSets) -> list[int]:
 
 
 def element_rows(card: Card) -> Iterator[tuple[int, list[int]]]:
-    """Number and nodes of each element; a line that ends with a comma goes on in the next."""
-    row = ""
+    """Number and nodes of each element; a line with too few nodes goes on in the next."""
+    kind = card.value("TYPE")
+    wanted = 8 if kind.startswith("C3D8") else NUM_NODES.get(kind, 0)
+    row: list[int] = []
     for line in card.lines:
-        row += line
-        if row.rstrip().endswith(","):
+        row += [int(item) for item in line.split(",") if item.strip()]
+        if len(row) <= wanted or (not wanted and line.rstrip().endswith(",")):
             continue
-        number, *nodes = (int(item) for item in row.split(",") if item.strip())
-        yield number, nodes
-        row = ""
+        yield row[0], row[1:]
+        row = []
 
 
 def members(card: Card, sets: dict[str, set[int]]) -> set[int]:
@@ -80,7 +83,7 @@ def members(card: Card, sets: dict[str, set[int]]) -> set[int]:
             found.update(range(first, last + 1, *step))
             continue
         for item in items:
-            found |= {int(item)} if item.isdigit() else sets[item.upper()]
+            found |= {int(item)} if item.isdigit() else sets[plain_name(item)]
     return found
 
 
@@ -121,12 +124,14 @@ def held_nodes(deck: Deck, sets: MeshSets, dof: int) -> set[int]:
     found: set[int] = set()
     for card in deck.of("BOUNDARY"):
         for line in card.lines:
-            label, first, *rest = (item.strip().upper() for item in [*line.split(","), ""])
-            if first in SUPPORTS:
-                low, high = SUPPORTS[first]
-            else:
-                low = int(first)
-                high = int(rest[0]) if rest and rest[0] else low
-            if low <= dof <= high:
-                found |= {int(label)} if label.isdigit() else sets.node_sets.get(label, set())
+            label, directions, _ = support_of(line)
+            if dof in directions:
+                found |= sets.nodes_of(label)
     return found
+
+
+def support_of(line: str) -> tuple[str, range, float]:
+    """Node or set, directions and value of a line of *BOUNDARY."""
+    label, first, last, value = (plain_name(item) for item in [*line.split(","), "", ""][:4])
+    low, high = SUPPORTS.get(first) or (int(first), int(last or first))
+    return label, range(low, high + 1), number_of(value) if value else 0.0

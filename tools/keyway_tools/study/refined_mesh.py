@@ -16,7 +16,7 @@ from functools import reduce
 from itertools import product
 from math import gcd
 
-from .deck_cards import Card, Deck, number_of
+from .deck_cards import Card, Deck
 from .mesh_sets import (
     MeshSets,
     RefinementError,
@@ -25,7 +25,8 @@ from .mesh_sets import (
     list_card,
     read_sets,
 )
-from .refined_values import Key, add_values, mean
+from .refined_supports import Face, Supports, grown_name
+from .refined_values import Key, add_values
 
 BRICKS = ("C3D8", "C3D8I", "C3D8B", "C3D8R")
 # Corners of a brick on a lattice of 3 x 3 x 3 points, in the order of its nodes.
@@ -58,7 +59,8 @@ class Refinement:
         self.next_node = max(self.sets.nodes) + 1
         self.new_nodes: dict[Key, int] = {}
         self.children: dict[int, list[tuple[int, Side]]] = {}  # number and side
-        self.surface_keys: set[Key] = set()
+        self.surface_nodes: list[tuple[Key, int]] = []  # parents and numbers
+        self.faces: dict[Key, list[Face]] = defaultdict(list)  # of bricks, by parents
         self.next_element = 1
         self.doubled: dict[frozenset[int], int] = {}  # corner that counts twice in a triangle
         self.back = back_of_slice(deck, self.sets)  # nodes of one of the planes of a slice
@@ -69,6 +71,7 @@ class Refinement:
             raise RefinementError(f"*{relation.keyword} names nodes: new nodes would lack it")
         elements = [self.refine_elements(card) for card in self.old.of("ELEMENT")]
         self.find_surface()
+        self.supports = Supports(self.sets, self.surface_nodes, self.faces)
         mesh = [self.node_card(), *elements, *self.set_cards()]
         rest = [self.follow(card) for card in self.old.cards if card.keyword not in
                 ("NODE", "ELEMENT", "NSET", "ELSET", "INCLUDE")]  # fmt: skip
@@ -166,27 +169,30 @@ class Refinement:
 
     def find_surface(self) -> None:
         """Middles of edges and faces that belong to one brick alone, or to a joint."""
-        bricks: dict[frozenset[int], list[list[int]]] = defaultdict(list)
-        faces = []
+        bricks: dict[frozenset[int], list[tuple[list[int], list[int]]]] = defaultdict(list)
+        found: set[Key] = set()
         for card in self.old.of("ELEMENT"):
             for _, nodes in element_rows(card):
                 if card.value("TYPE") not in BRICKS:
-                    faces += [nodes[:4], nodes[4:]]
+                    found |= {key for face in (nodes[:4], nodes[4:]) for key in middles_of(face)}
                     continue
                 for corners in FACE_NODES.values():
                     face = [nodes[a] for a in corners]
                     if len(set(face)) > 2:
-                        bricks[frozenset(face)].append(face)
-        faces += [found[0] for found in bricks.values() if len(found) == 1]
-        for face in filter(None, faces):
-            self.surface_keys.add(key_of(face))
-            self.surface_keys |= {key_of([face[i - 1], face[i]]) for i in range(4)}
+                        bricks[frozenset(face)].append((face, nodes))
+        for corners, same in bricks.items():
+            if len(same) == 1:
+                face, nodes = same[0]
+                for key in middles_of(face):
+                    self.faces[key].append((corners, frozenset(nodes)))
+        found |= self.faces.keys()
+        self.surface_nodes = [item for item in self.new_nodes.items() if item[0] in found]
 
     def grown(self, nodes: set[int]) -> list[tuple[Key, int]]:
         """Parents and numbers of new nodes of the surface between nodes of a set."""
         return [
-            (key, number) for key, number in self.new_nodes.items()
-            if key in self.surface_keys and all(parent in nodes for parent, _ in key)
+            (key, number) for key, number in self.surface_nodes
+            if all(parent in nodes for parent, _ in key)
         ]  # fmt: skip
 
     def set_cards(self) -> list[Card]:
@@ -203,9 +209,10 @@ class Refinement:
 
     def follow(self, card: Card) -> Card:
         """A card that names nodes or elements, for the refined mesh."""
-        is_of_nodes = card.keyword == "SURFACE" and card.value("TYPE") in ("NODE", "NODES")
-        if card.keyword == "BOUNDARY" or is_of_nodes:
-            return Card(card.keyword, card.parameters, self.grown_lines(card))
+        if card.keyword == "BOUNDARY":
+            return Card("BOUNDARY", card.parameters, self.supports.lines_of(card))
+        if card.keyword == "SURFACE" and card.value("TYPE") in ("NODE", "NODES"):
+            return Card("SURFACE", card.parameters, self.node_lines(card))
         if card.keyword == "SURFACE":
             return Card("SURFACE", card.parameters, self.surface_lines(card))
         if card.keyword == "DLOAD":
@@ -231,25 +238,11 @@ class Refinement:
         return [child for e in sorted(elements) for child, at in self.children[e]
                 if at[axis] in (side, None)]  # fmt: skip
 
-    def grown_lines(self, card: Card) -> list[str]:
-        """Lines on nodes and sets, for the new nodes too; values of single nodes have means."""
-        lines: list[str] = []
-        single: dict[str, dict[int, tuple[float, ...]]] = defaultdict(dict)
-        for line in card.lines:
-            label, comma, rest = line.partition(",")
-            if not label.strip().isdigit():
-                lines.append(f"{grown_name(label.strip().upper())}{comma}{rest}")
-                continue
-            lines.append(line)
-            items = [item.strip() for item in rest.split(",")]
-            value = number_of(items[2]) if len(items) > 2 and items[2] else 0.0
-            single[", ".join(items[:2])][int(label)] = (value,)
-        for directions, values in single.items():
-            for key, number in self.grown(set(values)):
-                value = mean(key, values)[0]
-                row = [str(number), directions, repr(value) if value else ""]
-                lines.append(", ".join(row).rstrip(", "))
-        return lines
+    def node_lines(self, card: Card) -> list[str]:
+        """Lines of a surface of nodes, with the new nodes between all of them."""
+        labels = [line.split(",")[0].strip() for line in card.lines]
+        nodes = set().union(*map(self.sets.nodes_of, labels))
+        return [*card.lines, *(str(number) for _, number in self.grown(nodes))]
 
     def load_lines(self, card: Card) -> list[str]:
         """Weight acts on all children; a pressure (P1 to P6, HP1 to HP6) on those at the face."""
@@ -285,12 +278,15 @@ def corners_at(place: tuple[int, ...], corners, nodes: list[int]) -> list[int]:
     ]  # fmt: skip
 
 
+def middles_of(face: list[int]) -> set[Key]:
+    """Parents of the middles of a face and of its edges."""
+    if not face:
+        return set()
+    return {key_of(face), *(key_of([face[i - 1], face[i]]) for i in range(4))}
+
+
 def key_of(parents: list[int]) -> Key:
     """Parents with the shares that they have, in lowest terms."""
     counts = Counter(parents)
     common = reduce(gcd, counts.values())
     return tuple(sorted((node, count // common) for node, count in counts.items()))
-
-
-def grown_name(name: str) -> str:
-    return f"{name}_AND_NEW"

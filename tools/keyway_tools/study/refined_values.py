@@ -112,10 +112,9 @@ class Temperatures:
     ) -> Iterator[tuple[int, tuple[History, tuple[float, ...]]]]:
         """What the cards of a step say of each node, in their order."""
         for card in cards:
-            history = History(card.parameters.get("AMPLITUDE") or "")
+            amplitude = History(card.parameters.get("AMPLITUDE") or "")
             for times, label, values in rows_of(deck, card):
-                if times:
-                    history = History(times=times, clock=card.value("TIME"))
+                history = History(times=times, clock=card.value("TIME")) if times else amplitude
                 for node in self.sets.nodes_of(label):
                     yield node, (history, values)
 
@@ -155,8 +154,8 @@ def rows_of(
     if name := (card.parameters.get("INPUT") or "").strip('"'):
         text = deck.files.get(name) or Path(name).read_text(encoding="utf-8")
         times: tuple[str, ...] = ()
-        for line in text.splitlines():
-            if not line.strip() or line[0] in "*#":
+        for line in map(str.strip, text.splitlines()):
+            if not line or line[0] in "*#":
                 continue
             label, *items = (item.strip() for item in line.split(","))
             if label.upper() == "NODE":
