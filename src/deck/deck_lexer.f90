@@ -191,12 +191,10 @@ contains
     type(card), intent(inout) :: new
     type(card_parameter), intent(in) :: given
     type(diagnostic_list), intent(inout) :: faults
-    if (given%value_first <= given%value_last) then
-      if (scan(new%lines%body(given%value_first:given%value_first), quotes) == 1) then
-        call faults%add(severity_error, &
-                        new%lines%spot(given%value_row, given%value_first, given%value_last, &
-                                       new%keyword), 'a quote is not closed')
-      end if
+    if (has_open_quote(new%lines%body(given%value_first:given%value_last))) then
+      call faults%add(severity_error, &
+                      new%lines%spot(given%value_row, given%value_first, given%value_last, &
+                                     new%keyword), 'a quote is not closed')
     end if
     if (new%has(given%name)) then
       call faults%add(severity_error, &
@@ -206,6 +204,15 @@ contains
       new%parameters = [new%parameters, given]
     end if
   end subroutine add_parameter
+
+  !> Whether a value begins with a quote. Those around a value are not in it any more; a quoted name
+  !> before a point, as "Part 1-1".Set, keeps its quotes.
+  pure logical function has_open_quote(value)
+    character(*), intent(in) :: value
+    has_open_quote = .false.
+    if (scan(value, quotes) /= 1) return
+    has_open_quote = index(value(2:), value(:1)//'.') == 0
+  end function has_open_quote
 
   !> Finds the fields of all data lines.
   subroutine find_fields(new)

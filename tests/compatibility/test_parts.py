@@ -122,6 +122,16 @@ def test_weight_of_instances_is_carried_by_the_base(keyway):
     ]
 
 
+def test_instances_with_blanks_in_their_names(keyway):
+    """Abaqus quotes the name of the instance alone, in parameters as in data lines."""
+    text = assembly(30.0).replace("*Node File", "*Node Print, nset=Block-1.Base\nRF\n*Node File")
+    reaction = keyway(text, name="plain").csv("node_BLOCK-1.BASE")["RF3"]
+    text = text.replace("Block-1", '"Lower block"')
+    assert 'nset="Lower block".Base' in text
+    quoted = keyway(text, name="quoted").csv("node_LOWER_BLOCK.BASE")["RF3"]
+    assert quoted.tolist() == reaction.tolist()
+
+
 def test_c3d8_of_parts_can_be_chosen(keyway):
     tip = {}
     for option in ("--c3d8=full", "--c3d8=bbar", None):

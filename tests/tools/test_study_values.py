@@ -217,6 +217,9 @@ def test_instances_made_flat_are_the_same_model(keyway, tmp_path, name, angle):
     text = (ROOT / "tests/errors/base/assembly.inp").read_text()
     text = text.replace(" 1., 90.", f" 1., {angle!r}").replace("U.10", f"{name}.10")
     text = re.sub(r"=U\b", f"={name}", text).replace("C3D8I", "C3D8")
+    text = text.replace("*END STEP", f"*NODE PRINT, NSET={name}.5\nU\n*END STEP")
+    text = text.replace("*END PART\n*ASSEMBLY", "*NSET, NSET=5\n105\n*END PART\n*ASSEMBLY")
+    text = re.sub(r"(\*SOLID SECTION.*\n)", r"\g<1>1.,\n", text)
     made = flat(deck_of(tmp_path, text, "parts"))
     assert {card.value("TYPE") for card in made.of("ELEMENT")} == {"C3D8B"}
     moved = [run(keyway, deck, job).json["displacement"]["anywhere"]["value"] for deck, job in

@@ -114,13 +114,17 @@ def rewritten(card: Card, owner: Instance, instances: dict[str, Instance]) -> Ca
         for name in ("NSET", "ELSET", *(["NAME"] if card.keyword == "SURFACE" else [])):
             if card.value(name):
                 new.parameters[name] = plain(f"{owner.name}.{card.value(name)}")
+    else:
+        for name in new.parameters.keys() - {"INPUT"}:
+            if found := in_instance(card.value(name), instances):
+                new.parameters[name] = plain(".".join(found))
     scope = instances.get((new.parameters.pop("INSTANCE", "") or "").strip('"').upper(), owner)
     if card.keyword == "NODE":
         new.lines = [node_line(line, owner) for line in card.lines]
     elif card.keyword == "ELEMENT":
         new.lines = [", ".join(str(number + owner.offset) for number in [first, *nodes])
                      for first, nodes in element_rows(card)]  # fmt: skip
-    elif card.keyword != "HEADING":
+    elif card.keyword not in ("HEADING", "SOLID SECTION"):
         new.lines = [", ".join(items(card, line, scope, instances)) for line in card.lines]
     return new
 
@@ -136,14 +140,18 @@ def items(card: Card, line: str, scope: Instance, instances: dict[str, Instance]
     """The fields of a line: references in the first one, in all of a list, INSTANCE.X anywhere."""
     for k, item in enumerate(item.strip() for item in line.split(",")):
         is_step = "GENERATE" in card.parameters and k == 2
-        found = re.fullmatch(r'"?([^".]+)"?\.("?[^"]+"?)', item)
-        owner = instances.get(found[1].upper()) if found else None
-        if owner and found:
-            yield label(found[2].strip('"'), owner)
+        if found := in_instance(item, instances):
+            yield label(found[1], instances[found[0]])
         elif item and (k == 0 or card.keyword in LISTS) and not is_step:
             yield label(item, scope)
         else:
             yield item
+
+
+def in_instance(item: str, instances: dict[str, Instance]) -> tuple[str, str] | None:
+    """The instance and the name of INSTANCE.X, in capitals; None for other words."""
+    found = re.fullmatch(r'"?([^".]+)"?\.("?[^"]+"?)', item.upper())
+    return (found[1], found[2].strip('"')) if found and found[1] in instances else None
 
 
 def label(item: str, owner: Instance) -> str:
