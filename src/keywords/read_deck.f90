@@ -135,7 +135,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     call drop_inner_quotes(model%cards)
     call leave_out(model%cards, model%faces, faults)
-    call flatten(model%cards, list%specs, model%problem%instances, faults)
+    call flatten(model%cards, list%specs, model%outside, model%problem%instances, faults)
     call choose_element(model%cards, model%options%c3d8, size(model%problem%instances) > 0, faults)
   end subroutine make_flat
 

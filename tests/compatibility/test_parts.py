@@ -132,6 +132,26 @@ def test_instances_with_blanks_in_their_names(keyway):
     assert quoted.tolist() == reaction.tolist()
 
 
+def test_files_of_temperatures_name_nodes_as_data_lines_do(keyway):
+    """Both instances have a node 1; a node of one of them and a set of the other are warmed."""
+    rows = "Block-2.1, 5.\nBlock-1.Base, 3.\n"
+    (keyway.folder / "warm.csv").write_text(rows)
+    end = "*Node Print, nset=Every\nTEMP\n*Node File"
+    every = "*Nset, nset=Every, generate, instance=Block-{}\n1, 36\n"
+    text = assembly(0.0).replace("*Tie,", every.format(1) + every.format(2) + "*Tie,")
+    found = {}
+    for name, card in {
+        "file": "*Temperature, input=warm.csv\n",
+        "lines": f"*Temperature\n{rows}",
+    }.items():
+        table = keyway(text.replace("*Node File", card + end), name=name).csv("node_EVERY")
+        found[name] = dict(zip(table["node"].tolist(), table["TEMP"].tolist(), strict=True))
+    assert found["file"] == found["lines"]
+    assert {node for node, value in found["file"].items() if value} == {
+        *BLOCK.nodes_at(2, 0.0), 101,
+    }  # fmt: skip
+
+
 def test_c3d8_of_parts_can_be_chosen(keyway):
     tip = {}
     for option in ("--c3d8=full", "--c3d8=bbar", None):

@@ -213,11 +213,17 @@ def test_surfaces_of_nodes_have_the_new_nodes(program_path, tmp_path):
 @pytest.mark.parametrize("name", ["U", '"Upper 1-1"'])
 @pytest.mark.parametrize("angle", [90.0, 30.0])
 def test_instances_made_flat_are_the_same_model(keyway, tmp_path, name, angle):
-    """Two instances, one moved, rotated and held, under weight and pressure; and refined."""
+    """Two instances, one moved, rotated and held, under weight and pressure, and warmed at one node
+    by a file; and refined."""
     text = (ROOT / "tests/errors/base/assembly.inp").read_text()
     text = text.replace(" 1., 90.", f" 1., {angle!r}").replace("U.10", f"{name}.10")
     text = re.sub(r"=U\b", f"={name}", text).replace("C3D8I", "C3D8")
-    text = text.replace("*END STEP", f"*NODE PRINT, NSET={name}.5\nU\n*END STEP")
+    heat = f"*TEMPERATURE, INPUT=warm.csv\n*NODE PRINT, NSET={name}.5\nU\n"
+    text = text.replace("*END STEP", f"{heat}*END STEP").replace(
+        "*DENSITY", "*EXPANSION\n1e-5\n*DENSITY"
+    )
+    plain = name.replace(chr(34), "")
+    (tmp_path / "warm.csv").write_text(f"node, 0, 1\n{plain}.105, 0, 9.\nl.5, 0, 4.\n")
     text = text.replace("*END PART\n*ASSEMBLY", "*NSET, NSET=5\n105\n*END PART\n*ASSEMBLY")
     text = re.sub(r"(\*SOLID SECTION.*\n)", r"\g<1>1.,\n", text)
     made = flat(deck_of(tmp_path, text, "parts"))

@@ -1,7 +1,7 @@
 !> The flat model: the cards of a deck with parts as cards of a deck without them. The handlers of
 !> keywords see flat cards only; every word keeps its place in the deck.
 module flatten_assembly
-  use assembly_structure, only: find_structure, is_structural, model_structure
+  use assembly_structure, only: find_structure, is_structural, model_structure, part_instance
   use card_rewrite, only: card_rewriter
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
@@ -17,9 +17,10 @@ contains
 
   !> Makes the cards flat. A deck without parts stays as it is, without instances. After an error of
   !> the structure no card is left: all others would be its consequences.
-  subroutine flatten(cards, specs, instances, faults)
+  subroutine flatten(cards, specs, outside, instances, faults)
     type(card), allocatable, intent(inout) :: cards(:)
     type(keyword), intent(in) :: specs(:)
+    type(mesh_instance), intent(out) :: outside !< what stands outside the instances
     type(mesh_instance), allocatable, intent(out) :: instances(:)
     type(diagnostic_list), intent(inout) :: faults
     type(model_structure) :: structure
@@ -41,7 +42,7 @@ contains
       if (flat(i)%keyword == 'TIE') call adjust_tie(flat(i))
     end do
     call move_alloc(flat, cards)
-    call list_instances(structure, instances)
+    call list_instances(structure, outside, instances)
   end subroutine flatten
 
   !> INSTANCE= needs an assembly.
@@ -67,17 +68,28 @@ contains
     call words%finish(this)
   end subroutine adjust_tie
 
-  !> The instances with what is added to their numbers.
-  subroutine list_instances(structure, instances)
+  !> The instances with the range of their numbers and what is added to them.
+  subroutine list_instances(structure, outside, instances)
     type(model_structure), intent(in) :: structure
+    type(mesh_instance), intent(out) :: outside
     type(mesh_instance), allocatable, intent(out) :: instances(:)
     integer :: k
     allocate (instances(size(structure%instances) - 1))
+    outside = listed(structure%instances(1))
     do k = 1, size(instances)
-      instances(k)%name = structure%instances(k + 1)%name
-      instances(k)%part = structure%instances(k + 1)%part
-      instances(k)%nodes_added = structure%instances(k + 1)%nodes%offset
-      instances(k)%elements_added = structure%instances(k + 1)%elements%offset
+      instances(k) = listed(structure%instances(k + 1))
     end do
   end subroutine list_instances
+
+  !> An instance as the model has it.
+  pure function listed(instance) result(one)
+    type(part_instance), intent(in) :: instance
+    type(mesh_instance) :: one
+    one%name = instance%name
+    one%part = instance%part
+    one%first_node = instance%nodes%lowest
+    one%last_node = instance%nodes%highest
+    one%nodes_added = instance%nodes%offset
+    one%elements_added = instance%elements%offset
+  end function listed
 end module flatten_assembly

@@ -6,9 +6,10 @@ module temperature_file
   use diagnostics, only: diagnostic_list, place, severity_error
   use growing_lists, only: make_room
   use heat_plan, only: heat_rule
+  use instance_list, only: find_flat_node
   use kinds, only: rk
   use model_draft, only: draft
-  use parse_text, only: largest_number, parse_integer, parse_real, upper_case
+  use parse_text, only: largest_number, parse_real, upper_case
   use write_text, only: as_text
   implicit none
   private
@@ -178,14 +179,17 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable, intent(out) :: nodes(:)
+    character(:), allocatable :: expected
     integer :: id, found
-    logical :: is_integer
-    call parse_integer(word(reader, 1), id, is_integer)
-    if (is_integer) then
+    logical :: is_node
+    call find_flat_node(model%outside, model%problem%instances, word(reader, 1), id, is_node)
+    if (is_node) then
       found = model%node_position%find(id)
       nodes = pack([found], [found > 0])
-      if (found == 0) call fault(reader, 1, 'node '//word(reader, 1)//' does not exist', &
-                                 'a node of the model', faults)
+      if (found > 0) return
+      expected = 'a node of the model'
+      if (size(model%problem%instances) > 0) expected = 'a node outside the instances, INSTANCE.12'
+      call fault(reader, 1, 'node '//word(reader, 1)//' does not exist', expected, faults)
       return
     end if
     found = model%node_sets%find(upper_case(word(reader, 1)))

@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from .deck_cards import Card, Deck, number_of
 from .mesh_sets import element_rows
@@ -73,7 +74,23 @@ def flat(deck: Deck, keeps_c3d8: bool = False) -> Deck:
             card.parameters["TYPE"] = "C3D8B"
         if card.keyword == "TIE" and not {"ADJUST", "STIFFNESS"} & card.parameters.keys():
             card.parameters["ADJUST"] = "YES"
-    return Deck(cards, dict(deck.files))
+    new = Deck(cards, dict(deck.files))
+    for k, card in enumerate(new.of("TEMPERATURE"), 1):
+        if name := (card.parameters.get("INPUT") or "").strip("\"'"):
+            text = deck.files.get(name) or Path(name).read_text(encoding="utf-8")
+            new.files[f"flat_temperatures_{k}.csv"] = rows_rewritten(text, instances)
+            card.parameters["INPUT"] = f'"flat_temperatures_{k}.csv"'
+    return new
+
+
+def rows_rewritten(text: str, instances: dict[str, Instance]) -> str:
+    """The rows of a file of temperatures, with the names and numbers of the flat model."""
+    rows = []
+    for line in text.splitlines():
+        name, comma, rest = line.partition(",")
+        found = in_instance(name.strip(), instances)
+        rows.append((label(found[1], instances[found[0]]) if found else name) + comma + rest)
+    return "\n".join(rows) + "\n"
 
 
 def assembled(deck: Deck) -> Iterator[Card | Instance]:

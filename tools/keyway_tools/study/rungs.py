@@ -183,9 +183,9 @@ def stiffness_rung(factor: float) -> Rung:
         for card in new.of("JOINT LAW"):
             for name in ("KN", "KT"):
                 if name in card.parameters:
-                    card.parameters[name] = repr(float(card.parameters[name] or 0) * factor)
+                    card.parameters[name] = repr(number_of(card.parameters[name] or "0") * factor)
             if "KN" not in card.parameters:
-                thickness = float(card.parameters.get("THICKNESS") or 0.02)
+                thickness = number_of(card.parameters.get("THICKNESS") or "0.02")
                 card.parameters["THICKNESS"] = repr(thickness / factor)
         return new
 
