@@ -352,6 +352,16 @@ RF
 """
 
 
+def test_included_files_may_hold_data_alone(keyway, tmp_path):
+    """The file ends the data of the card above it, and the lines below go on with its last card."""
+    (tmp_path / "in").mkdir()
+    text = ODD_DECK.replace("9, 2., 0., 0.\n", "*include,\ninput=in/nodes.txt\n")
+    (tmp_path / "in/nodes.txt").write_text("9, 2., 0., 0.\n** remark\n*INCLUDE, INPUT=more.txt")
+    (tmp_path / "in/more.txt").write_text("10, 2., 1., 0.\n")
+    deck = deck_of(tmp_path, text.replace("\n10, 2., 1., 0.", "", 1))
+    assert deck == deck_of(tmp_path, ODD_DECK)
+
+
 def test_odd_decks_are_read_as_the_program_reads_them(keyway, tmp_path):
     """Exponents of Fortran, quotes, commas without meaning, elements on several lines, keywords
     without blanks; a weight of 24 kN stays on the base."""

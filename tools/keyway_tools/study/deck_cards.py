@@ -128,43 +128,65 @@ def read_deck(path: Path) -> Deck:
 
     Raises OSError for a file that cannot be read.
     """
-    return Deck(list(_read_cards(path.resolve())))
+    return Deck(list(_cards_of_lines(_lines_of(path.resolve()))))
 
 
-def _read_cards(path: Path) -> Iterator[Card]:
-    for card in _cards_of_text(path.read_text(encoding="utf-8", errors="replace")):
-        name = card.parameters.get(FILE_PARAMETER)
-        if name is None:
-            yield card
-            continue
-        place = (path.parent / name.strip('"')).resolve()
-        if card.keyword == "INCLUDE":
-            yield from _read_cards(place)
-        else:
-            card.parameters[FILE_PARAMETER] = f'"{place}"'
-            yield card
-
-
-def _cards_of_text(text: str) -> Iterator[Card]:
-    card = None
-    is_open = False  # the keyword line goes on in the next line
-    for raw in text.splitlines():
-        line = raw.strip()
+def _lines_of(path: Path) -> Iterator[tuple[str, Path]]:
+    """The lines of a file without comments, with the folder of their file. Those of an included
+    file stand in place of *INCLUDE, also among the data of a keyword."""
+    include, is_open = None, False
+    for line in map(str.strip, path.read_text(encoding="utf-8-sig", errors="replace").splitlines()):
         if not line or line.startswith("**"):
             continue
-        is_open = is_open and not line.startswith("*") and _has_parameters(line)
-        if is_open and card:
-            is_open = _add_parameters(card, line)
-        elif line.startswith("*"):
+        if include and is_open and not line.startswith("*") and _has_parameters(line):
+            is_open = _add_parameters(include, line)
+            continue
+        if include:
+            yield from _lines_of(_place_of(include, path.parent))
+            include = None
+        keyword, rest = _head_of(line)
+        if keyword == "INCLUDE":
+            include = Card(keyword)
+            is_open = _add_parameters(include, rest)
+        else:
+            yield line, path.parent
+    if include:
+        yield from _lines_of(_place_of(include, path.parent))
+
+
+def _head_of(line: str) -> tuple[str, str]:
+    """Keyword and parameters of a line; no keyword for data."""
+    if not line.startswith("*"):
+        return "", line
+    head, _, rest = line[1:].partition(",")
+    name = " ".join(head.upper().split())
+    return WHOLE_NAMES.get(name.replace(" ", ""), name), rest
+
+
+def _place_of(card: Card, folder: Path) -> Path:
+    """The file of a card; its path is relative to the file that names it."""
+    return (folder / (card.parameters[FILE_PARAMETER] or "").strip("\"'")).resolve()
+
+
+def _cards_of_lines(lines: Iterable[tuple[str, Path]]) -> Iterator[Card]:
+    card = None
+    is_open = False  # the keyword line goes on in the next line
+    for line, folder in lines:
+        keyword, rest = _head_of(line)
+        is_open = is_open and not keyword and _has_parameters(line)
+        if keyword:
             if card:
                 yield card
-            head, _, rest = line[1:].partition(",")
-            name = " ".join(head.upper().split())
-            card = Card(WHOLE_NAMES.get(name.replace(" ", ""), name))
-            is_open = bool(rest or line.endswith(",")) and _add_parameters(card, rest)
-            is_open = is_open and name != "HEADING"
+            card = Card(keyword)
+            is_open = (bool(rest) or line.endswith(",")) and _add_parameters(card, rest)
+            is_open = is_open and keyword != "HEADING"
+        elif is_open and card:
+            is_open = _add_parameters(card, line)
         elif card:
             card.lines.append(line)
+            continue
+        if card and card.parameters.get(FILE_PARAMETER):
+            card.parameters[FILE_PARAMETER] = f'"{_place_of(card, folder)}"'
     if card:
         yield card
 
