@@ -102,13 +102,24 @@ contains
       if (.not. is_number) then
         call faults%add(severity_error, spot_in_file(numbers%path, number, first, last, line, &
                                                      spot), &
-                        "found '"//line(first:last)//"'", 'a number')
+                        "found '"//line(first:last)//"'", expected_word(numbers%path, number))
         return
       end if
       used = used + 1
       numbers%line(used) = number
     end do
   end subroutine add_line
+
+  !> What a word should be. Above the values of a PEER file words are read without FORMAT=AT2 alone.
+  pure function expected_word(path, number) result(text)
+    character(*), intent(in) :: path
+    integer, intent(in) :: number !< of the line
+    character(:), allocatable :: text
+    text = 'a number'
+    if (number > num_at2_headers .or. len(path) < 4) return
+    if (upper_case(path(len(path) - 3:)) /= '.AT2') return
+    text = 'FORMAT=AT2 for a PEER record, or a number'
+  end function expected_word
 
   !> Place of a word in the file.
   pure function spot_in_file(path, number, first, last, line, named_at) result(spot)
