@@ -98,11 +98,13 @@ contains
       call make_room(numbers%values, used, 1)
       call make_room(numbers%line, used, 1)
       call parse_real(line(first:last), numbers%values(used + 1), is_number)
-      is_number = is_number .and. abs(numbers%values(used + 1)) <= largest_number
+      is_number = is_number .and. abs(numbers%values(used + 1)) <= largest_number &
+                  .and. .not. is_fraction(line, first, last)
       if (.not. is_number) then
         call faults%add(severity_error, spot_in_file(numbers%path, number, first, last, line, &
                                                      spot), &
-                        "found '"//line(first:last)//"'", expected_word(numbers%path, number))
+                        "found '"//line(first:last)//"'", &
+                        expected_word(numbers%path, number, is_fraction(line, first, last)))
         return
       end if
       used = used + 1
@@ -110,12 +112,23 @@ contains
     end do
   end subroutine add_line
 
+  !> Whether a word is what follows a decimal comma, as in 0,012: no number of its own begins so.
+  pure logical function is_fraction(line, first, last)
+    character(*), intent(in) :: line
+    integer, intent(in) :: first, last !< of the word
+    is_fraction = .false.
+    if (first == 1 .or. first == last) return
+    is_fraction = line(first - 1:first) == ',0' .and. verify(line(first:last), '0123456789') == 0
+  end function is_fraction
+
   !> What a word should be. Above the values of a PEER file words are read without FORMAT=AT2 alone.
-  pure function expected_word(path, number) result(text)
+  pure function expected_word(path, number, is_decimal) result(text)
     character(*), intent(in) :: path
     integer, intent(in) :: number !< of the line
+    logical, intent(in) :: is_decimal !< it follows a decimal comma
     character(:), allocatable :: text
     text = 'a number'
+    if (is_decimal) text = 'a number, with a point for its decimals: commas separate numbers'
     if (number > num_at2_headers .or. len(path) < 4) return
     if (upper_case(path(len(path) - 3:)) /= '.AT2') return
     text = 'FORMAT=AT2 for a PEER record, or a number'
