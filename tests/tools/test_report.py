@@ -4,6 +4,7 @@ The runs are short; the long deck whose page must stay below 15 MB is a long tes
 """
 
 import contextlib
+import hashlib
 import io
 import json
 import re
@@ -14,8 +15,9 @@ import pytest
 from harness import ROOT
 from keyway_tools.report import __main__ as report
 from keyway_tools.report.browser import find_browser, opened, print_pdf
-from keyway_tools.report.values import deck_of, title_of, verdict
-from keyway_tools.si_results import SiResults
+from keyway_tools.report.errors import error_beside, estimates
+from keyway_tools.report.values import deck_of, key_numbers, title_of, verdict
+from keyway_tools.si_results import SiResults, Units
 from stage_decks import build
 from stage_decks import lifts as column
 
@@ -225,9 +227,69 @@ def test_estimates_of_errors_are_shown_where_there_are_some(block, tmp_path):
     summary["accuracy"]["estimates"] = {"displacement": {"value": 9.0, "error": 1.2, "mesh": 1.1}}
     path.write_text(json.dumps(summary))
     text = page_of(tmp_path).read_text()
-    assert text.count("error 1.2, mesh 1.1") == 1  # among the estimates, in the units of the deck
     assert text.count("± 1200 mm (mesh 1100)") == 1  # beside the envelope, in its unit
+    assert "Other estimated errors" not in text
     assert "no estimate of those" not in text
+
+
+def test_other_estimates_are_told_in_words_and_in_the_units_of_the_page(block):
+    """In a deck in mm and MPa; what stands beside an envelope is not told again."""
+    results = SiResults(block, units=Units.parse("mm,MPa"))
+    results.summary["accuracy"]["estimates"] = {
+        "stress": {"value": 8.0, "error": 2.0, "relative": 0.25, "at": 1.5, "elastic_volume": 0.5},
+        "law": {"value": 9.0, "relative": 0.04, "stress": 0.3, "points": 7},
+        "displacement": {"value": 5.0, "error": 1.0, "mesh": 1.0, "iteration": 1e-9},
+        "opening": {"value": 4.0, "error": 0.5, "springs": 0.1, "joints": 0.5},
+        "new": {"value": 2.0},
+    }
+    assert estimates(results, ["Largest displacement"]) == [
+        ("Largest joint opening",
+         "± 0.5 mm (joints 0.5); springs of joints contribute about 0.1 mm"),
+        ("Mesh, in the stresses of the whole model",
+         "25 % in the energy norm, at 1.5 s; of the elastic part alone, 50 % of the volume"),
+        ("Increments, in the law of the solids",
+         "4 % of the dissipated energy, at most 0.3 MPa in a stress (7 points sampled)"),
+        ("new", "value 2"),
+    ]  # fmt: skip
+    assert error_beside(results, "U", 1e3, "mm") == "± 1 mm (mesh 1)"
+
+
+def test_cracks_without_damage_have_their_energy_and_no_place(block):
+    """A law without a damage variable: damage 0 everywhere occurs at no place."""
+    results = SiResults(block)
+    zero = {"value": 0.0, "time": 1.0, "x": [1.0, 2.0, 3.0]}
+    results.summary["envelopes"]["DAMAGET"] = {"anywhere": zero}
+    results.summary["damage"] = {
+        "inelastic": {"volume": 30.0}, "dissipated": {"cracking": 2e6, "crushing": 0.0}
+    }  # fmt: skip
+    rows = {row["label"]: row for row in key_numbers(results)}
+    assert rows["Largest damage in tension"]["x"] is None
+    assert rows["Largest damage in tension"]["time"] is None
+    energy = rows["Dissipated by cracking"]
+    assert (energy["value"], energy["unit"]) == (2.0, "MJ")
+    assert value_at(results.summary, energy["path"]) == 2e6
+    assert "Dissipated by crushing" not in rows
+    assert rows["Volume beyond elasticity"]["value"] == 30.0
+
+
+def test_deck_is_looked_for_above_the_results(block, tmp_path, monkeypatch):
+    """The run knows its deck by a name relative to where it started; the digest decides."""
+    text = b"*HEADING\nA dam\n** Shows: a remark\n*NODE\n"
+    folder = tmp_path / "study" / "results"
+    folder.mkdir(parents=True)
+    (tmp_path / "study" / "dam.inp").write_bytes(b"*HEADING\nAnother dam\n")
+    (tmp_path / "dam.inp").write_bytes(text)
+    for file in block.glob("block_on_joint.*"):
+        (folder / file.name).write_bytes(file.read_bytes())
+    monkeypatch.chdir("/")
+    results = SiResults(folder)
+    results.summary["deck"] = {"file": "dam.inp", "sha256": hashlib.sha256(text).hexdigest()}
+    assert deck_of(results).title == "A dam"
+    assert deck_of(results).caution == ""
+    results.summary["deck"]["sha256"] = "0" * 64
+    assert "has changed" in deck_of(results).caution
+    results.summary["deck"]["file"] = "no such deck.inp"
+    assert "neither here nor" in deck_of(results).caution
 
 
 def test_folder_without_results_is_refused(tmp_path, capsys):

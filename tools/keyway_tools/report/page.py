@@ -15,9 +15,10 @@ from ..dam_views import Faces
 from ..pictures_shapes import largest_state, masses_in_words
 from ..si_results import SiResults
 from .curves import ledger, plots
+from .errors import estimates
 from .scene import scene
 from .templates import render
-from .values import accuracy, deck_of, echo_of, estimates, header, joints, key_numbers, verdict
+from .values import accuracy, deck_of, echo_of, header, joints, key_numbers, verdict
 
 HERE = Path(__file__).parent
 
@@ -71,7 +72,7 @@ def _run(results: SiResults, scales: Scales) -> dict[str, Any]:
         "numbers": numbers,
         "has_stresses": any(row["unit"] == "MPa" for row in numbers),
         "has_errors": any(row["error"] for row in numbers),
-        "estimates": estimates(results),
+        "estimates": estimates(results, [row["label"] for row in numbers]),
         "accuracy": accuracy(results),
         "joints": joints(results),
         "frequencies": _frequencies(results),

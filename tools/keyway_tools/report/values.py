@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import re
 from dataclasses import dataclass
@@ -12,12 +13,11 @@ from ..colour_scale import FIELDS
 from ..result_files import leaves
 from ..results import why_incomplete
 from ..si_results import SiResults
+from .errors import error_beside, number_in_words
 
 WHERE = ("anywhere", "upstream", "downstream")
+DAMAGES = ("DAMAGET", "DAMAGEC")
 _JOINT_VALUES = (("opening", 1e3, "mm"), ("slip", 1e3, "mm"), ("pressure", 1e-6, "MPa"))
-# Estimates in job.json by the names of envelopes
-ESTIMATE_OF = {"U": "displacement", "OPENING": "opening", "S1": "S1", "S3": "S3"}
-_PARTS = ("time", "mesh", "joints", "iteration")  # of an error
 
 
 def header(results: SiResults) -> list[tuple[str, str]]:
@@ -35,7 +35,8 @@ def header(results: SiResults) -> list[tuple[str, str]]:
     if machine:
         rows.append(("Machine", _machine_in_words(machine)))
     model = summary.get("model", {})
-    rows.append(("Model", ", ".join(f"{count:,} {name}" for name, count in model.items())))
+    counts = (_number(count, name.removesuffix("s")) for name, count in model.items())
+    rows.append(("Model", ", ".join(counts)))
     ledger = summary.get("ledger", {})
     if "wall_s" in ledger:
         memory = ledger.get("peak_memory_mb", 0.0)
@@ -66,7 +67,8 @@ def verdict(results: SiResults) -> list[tuple[str, str]]:
         found = [("good", f"The run has finished: {_last_time(results)}.")]
     else:
         why = why_incomplete(results.folder, results.job)
-        found = [("bad", f"The run is incomplete ({status}): {why or 'no reason is known'}.")]
+        how = "" if status == "running" else f" ({status})"
+        found = [("bad", f"The run is incomplete{how}: {why or 'no reason is known'}.")]
         found.append(("fair", f"What follows holds up to there: {_last_time(results)}."))
     found += _stability(summary)
     warnings = summary.get("warnings", [])
@@ -128,6 +130,8 @@ def key_numbers(results: SiResults) -> list[dict[str, Any]]:
         scale, unit = (field.scale, field.unit) if field else (1.0, "")
         for where in (w for w in WHERE if "value" in values.get(w, {})):
             extreme = values[where]
+            if name in DAMAGES and not extreme["value"]:
+                extreme = {"value": 0.0}  # neither place nor time
             rows.append({
                 "label": field.label if field else name,
                 "where": "" if where == "anywhere" else where,
@@ -136,16 +140,28 @@ def key_numbers(results: SiResults) -> list[dict[str, Any]]:
                 "time": extreme.get("time"),
                 "in_step": time_in_step(results, extreme.get("time")),
                 "x": extreme.get("x"),
-                "error": _estimate(results, name, scale, unit) if where == "anywhere" else "",
+                "error": error_beside(results, name, scale, unit) if where == "anywhere" else "",
                 "path": f"{path}.{where}.value",
             })  # fmt: skip
+    return rows + _dissipated(results)
+
+
+def _dissipated(results: SiResults) -> list[dict[str, Any]]:
+    """What cracking and crushing have dissipated, and the volume beyond elasticity."""
+    damage = results.summary.get("damage", {})
+    energy, volume = 1e-6 * results.units.energy, results.units.length**3
+    rows = []
+    for label, path, scale, unit in (
+        ("Dissipated by cracking", "dissipated.cracking", energy, "MJ"),
+        ("Dissipated by crushing", "dissipated.crushing", energy, "MJ"),
+        ("Volume beyond elasticity", "inelastic.volume", volume, "m\u00b3"),
+    ):
+        part, key = path.split(".")
+        if value := damage.get(part, {}).get(key):
+            rows.append({"label": label, "where": "", "value": scale * value, "unit": unit,
+                         "time": None, "in_step": "", "x": None, "error": "",
+                         "path": f"damage.{path}"})  # fmt: skip
     return rows
-
-
-def _known_estimates(results: SiResults) -> dict[str, Any]:
-    """The estimates of errors in job.json, by quantity."""
-    known = results.summary.get("accuracy", {}).get("estimates", {})
-    return known if isinstance(known, dict) else {}
 
 
 def time_in_step(results: SiResults, time: float | None) -> str:
@@ -161,49 +177,6 @@ def time_in_step(results: SiResults, time: float | None) -> str:
     return f"{name} {time - start:.5g}"
 
 
-def _estimate(results: SiResults, name: str, scale: float, unit: str) -> str:
-    """The estimate of the error of an envelope in the unit of the page."""
-    known = _known_estimates(results)
-    if not known or name not in ESTIMATE_OF:
-        return ""
-    found = known.get(ESTIMATE_OF[name])
-    if not isinstance(found, dict):
-        return "not estimated"
-    if "singular" in found or "not_known" in found:
-        return _estimate_in_words(found)
-    scale *= results.units.length if name in ("U", "OPENING") else results.units.stress
-    words = "error not estimated"
-    if "error" in found:
-        parts = (f"{part} {scale * found[part]:.4g}" for part in _PARTS if part in found)
-        words = f"\u00b1 {scale * found['error']:.4g} {unit} ({', '.join(parts)})"
-    if "springs" in found:
-        words += f"; springs of joints contribute about {scale * found['springs']:.4g} {unit}"
-    if "history" in found:
-        words += f"; histories \u00b1 {100.0 * found['history']:.2g} % (time)"
-    return words
-
-
-def _estimate_in_words(found: Any) -> str:
-    if not isinstance(found, dict):
-        return _in_words(found)
-    if "singular" in found:
-        return f"a singular place ({found['singular']}): this stress grows with every refinement"
-    if "not_known" in found:
-        return f"not known: {found['not_known']}"
-    parts = [f"{key} {_in_words(value)}" for key, value in leaves(found, "") if key != "value"]
-    return ", ".join(parts)
-
-
-def estimates(results: SiResults) -> list[tuple[str, str, str]]:
-    """All estimates of errors: quantity, value, error and its parts, in the units of the deck."""
-    rows = []
-    for name, found in _known_estimates(results).items():
-        value = found.get("value") if isinstance(found, dict) else None
-        words = "" if value is None else _in_words(value)
-        rows.append((name.replace("_", " "), words, _estimate_in_words(found)))
-    return rows
-
-
 def accuracy(results: SiResults) -> list[tuple[str, str]]:
     """What job.json has under 'accuracy' beside the estimates, name and value."""
     known = results.summary.get("accuracy", {})
@@ -214,12 +187,9 @@ def accuracy(results: SiResults) -> list[tuple[str, str]]:
         worst = max(shares, key=lambda name: shares[name])
         rest["largest_penetration_over_opening"] = f"{shares[worst]:.4g} ({worst})"
     rows = leaves(rest, "")
-    return [(path.replace("_", " ").replace(".", ": "), _in_words(value)) for path, value in rows]
-
-
-def _in_words(value: Any) -> str:
-    """A number with four digits; a text as it is."""
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+    return [
+        (path.replace("_", " ").replace(".", ": "), number_in_words(value)) for path, value in rows
+    ]
 
 
 def joints(results: SiResults) -> list[dict[str, Any]]:
@@ -257,15 +227,12 @@ class DeckHeader:
 def deck_of(results: SiResults) -> DeckHeader:
     """The head of the deck, as far as the deck is still there."""
     deck = results.summary.get("deck", {})
-    path = Path(deck.get("file", ""))
-    if not path.is_absolute() and not path.exists():
-        path = results.folder / path
-    try:
-        content = path.read_bytes()
-    except OSError:
-        caution = "The deck is not where it was when it ran; its remarks cannot be shown."
+    content = _content_of_deck(results.folder, deck)
+    if content is None:
+        caution = "The deck is neither here nor in a folder above the results, so its remarks are "
+        caution += "not shown. Write the report in the folder in which the run was started."
         return DeckHeader(title_of(echo_of(results)), "", caution)
-    same = hashlib.sha256(content).hexdigest() == deck.get("sha256")
+    same = digest_of(content) == deck.get("sha256")
     caution = "" if same else "The deck has changed since the run: this is its text of today."
     text = content.decode("utf-8", "replace")
     remarks = []
@@ -275,6 +242,21 @@ def deck_of(results: SiResults) -> DeckHeader:
         elif line.startswith("*") and not line.upper().startswith("*HEADING"):
             break
     return DeckHeader(title_of(text), "\n".join(remarks).strip("\n"), caution)
+
+
+def _content_of_deck(folder: Path, deck: dict[str, Any]) -> bytes | None:
+    """The deck, whose name is relative to where the program ran: here, in the folder of the
+    results or in one above it. Of several files the one with the digest of the run."""
+    found = []
+    for place in (Path(), folder, *folder.resolve().parents):
+        with contextlib.suppress(OSError):
+            found.append((place / deck.get("file", "")).read_bytes())
+    same = (content for content in found if digest_of(content) == deck.get("sha256"))
+    return next(same, found[0] if found else None)
+
+
+def digest_of(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
 
 
 def title_of(text: str) -> str:
