@@ -15,6 +15,7 @@ from keyway_tools.box_mesh import box_mesh, stretched
 from keyway_tools.colour_scale import Scales, parse_ranges
 from keyway_tools.dam_views import Faces
 from keyway_tools.picture_style import Sheet
+from keyway_tools.pictures_damage import worst_element
 from keyway_tools.pictures_faces import plot_envelope
 from keyway_tools.pictures_joints import JointView, last_slips, ranges_of
 from keyway_tools.pictures_shapes import masses_in_words
@@ -170,6 +171,40 @@ def test_marks_and_notes_name_extreme_place_deck_and_date(dam_results, tmp_path)
     assert f", {results.x[:, 2].max():.5g}) m" in text
     assert files[1].read_bytes().startswith(b"%PDF")
     assert masses_in_words(np.array([0.0, 9.0e8, 1.0e6])) == "y 900, z 1 kt"
+
+
+def test_marks_are_the_extremes_of_faces_in_job_json(dam_results):
+    """Nodes of the crest between the faces are seen from both sides and belong to neither."""
+    faces = Faces(SiResults(dam_results))
+    for title, name in (("Upstream face", "upstream"), ("Downstream face", "downstream")):
+        shown = faces.shown_on(title)
+        assert len(shown) > 10
+        assert faces.results.face_flags(name)[shown].all()
+
+
+def test_means_of_points_are_named(dam_results, tmp_path, monkeypatch):
+    """job.json has the extremes of the points themselves: a picture of means must not deny them."""
+    results = SiResults(dam_results)
+    step = results.steps()[0]
+    step.envelopes["S1_POINT"] = step.envelopes["S1"]
+    monkeypatch.setattr(results, "envelope_time", lambda *_: np.zeros(len(results.x)))
+    with matplotlib.rc_context({"svg.fonttype": "none"}):
+        sheet = Sheet(tmp_path / "points", ("svg",), results.note)
+        (file,) = plot_envelope(Faces(results), step, "S1_POINT", Scales(), sheet)
+    text = file.read_text()
+    assert "extreme of the means 3" in text
+    assert "mean of the points around a node [MPa]" in text
+
+
+def test_cracks_without_damage_are_not_called_undamaged(dam_results):
+    """A law without *CONCRETE TENSION DAMAGE cracks and keeps its damage variable at zero."""
+    results = SiResults(dam_results)
+    faces = Faces(results)
+    damage = np.zeros(len(results.connectivity))
+    assert worst_element(faces, damage, "DAMAGET") == "no damage"
+    results.summary["damage"] = {"dissipated": {"cracking": 5.0, "crushing": 0.0}}
+    assert worst_element(faces, damage, "DAMAGET").startswith("0, though solids have cracked")
+    assert worst_element(faces, damage, "DAMAGEC") == "no damage"
 
 
 @pytest.mark.parametrize("kind", ["mp4", "gif"])

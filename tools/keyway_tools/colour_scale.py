@@ -14,6 +14,7 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 PERCENTILE = 99.0
+MEAN = "mean of the points around a node"
 SINGULAR = 1.25  # an extreme so much beyond the percentile does not set the scale
 
 
@@ -28,6 +29,7 @@ class Field:
     sign: float = 1.0  # -1: the extreme is the smallest value
     top: float | None = None  # end of the scale, where it is not the extreme
     may_be_singular: bool = False
+    on_nodes: str = ""  # what stands on nodes, where it is not the field itself
 
     def with_unit(self, value: float) -> str:
         """A value in words, as in '3.35 MPa'."""
@@ -44,8 +46,12 @@ FIELDS = {
     "S3": Field(
         "Largest principal compression", "MPa", 1.0e-6, "cividis", -1.0, may_be_singular=True
     ),
-    "S1_POINT": Field("Largest tension at integration points", "MPa", 1.0e-6, "magma_r"),
-    "S3_POINT": Field("Largest compression at integration points", "MPa", 1.0e-6, "cividis", -1.0),
+    "S1_POINT": Field(
+        "Largest tension at integration points", "MPa", 1.0e-6, "magma_r", on_nodes=MEAN
+    ),
+    "S3_POINT": Field(
+        "Largest compression at integration points", "MPa", 1.0e-6, "cividis", -1.0, on_nodes=MEAN
+    ),
     "OPENING": Field("Largest joint opening", "mm", 1.0e3, "viridis_r"),
     "SLIP": Field("Slip", "mm", 1.0e3, "cividis_r"),
     "U": Field("Largest displacement", "mm", 1.0e3, "viridis_r"),

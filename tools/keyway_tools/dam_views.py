@@ -56,7 +56,12 @@ class Faces:
         return normals
 
     def shown_on(self, title: str) -> np.ndarray:
-        """The nodes whose side of the skin a view shows."""
+        """The nodes of the face that a view shows, as job.json means it; else those whose side of
+        the skin it shows."""
+        face = {"Upstream face": "upstream", "Downstream face": "downstream"}.get(title)
+        on_face = self.nodes[self.results.face_flags(face)[self.nodes]] if face else ()
+        if len(on_face):
+            return on_face
         facing = self.normals[self.nodes] @ self.views[title].towards
         return self.nodes[facing > 0.05]
 

@@ -63,7 +63,8 @@ def plot_envelope(
     heading = f"{shown.label} over step {step.name.title()}\n"
     heading += _extreme_in_words(faces, step, name)
     marks = _marks(faces, values, shown)
-    label = shown.label.lower() + (f" [{shown.unit}]" if shown.unit else "")
+    label = shown.label.lower() + (f", {shown.on_nodes}" if shown.on_nodes else "")
+    label += f" [{shown.unit}]" if shown.unit else ""
     if level is not None:
         label += f"; blue line: {shown.with_unit(level)}"
     return compose(Drawing(pictures, limits, shown.colours, label, heading, marks), sheet)
@@ -77,7 +78,8 @@ def _extreme_in_words(faces: Faces, step: Step, name: str) -> str:
     when = faces.results.envelope_time(step, name)[place]
     inside = "" if np.any(faces.normals[place]) else ", inside the dam"
     where = place_of(faces.results.x[place])
-    return f"extreme {shown.with_unit(values[place])} at {where}, t = {when:.5g} s{inside}"
+    what = "extreme of the means" if shown.on_nodes else "extreme"
+    return f"{what} {shown.with_unit(values[place])} at {where}, t = {when:.5g} s{inside}"
 
 
 def _marks(faces: Faces, values: np.ndarray, shown: Field) -> dict[str, Mark]:
