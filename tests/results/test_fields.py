@@ -58,3 +58,13 @@ def test_an_unknown_field_names_the_nearest(program_path: Path, name: str, neare
     done = subprocess.run([program_path, "--fields", name], capture_output=True, text=True)
     assert done.returncode == 2
     assert f"unknown field '{name}'; did you mean '{nearest}'?" in done.stderr
+
+
+def test_an_envelope_in_two_cards_is_written_once(keyway) -> None:
+    """A field twice in the file stopped the run at its end, with 'disk full?'."""
+    deck = (ROOT / "input/cantilever.inp").read_text(encoding="utf-8")
+    deck = deck.replace("*END STEP", "*ENVELOPE\nS1\n*ENVELOPE\nU, S1\n*END STEP")
+    run = keyway(deck, name="twice")
+    with h5py.File(run.folder / "twice.h5") as file:
+        assert "S1_MAX" in file["steps/0001/envelopes"]
+        assert "U_MAX" in file["steps/0001/envelopes"]

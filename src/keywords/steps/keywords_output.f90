@@ -289,15 +289,19 @@ contains
     if (this%word('POSITION') /= 'POINTS') fields = [fields, 'OPENING ']
   end function fields_of_envelope
 
+  !> Fields of several cards in a step: each is recorded once.
   subroutine read_envelope(this, model, faults)
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     character(field_name_length), allocatable :: fields(:)
+    integer :: i
     fields = fields_of_envelope(this)
     call warn_of_repeats(this, faults)
     if (this%word('POSITION') == 'POINTS') call take_points(this, fields, faults)
-    model%now%envelope = [character(field_name_length) :: model%now%envelope, fields]
+    model%now%envelope = [character(field_name_length) :: model%now%envelope, &
+                          pack(fields, [(all(model%now%envelope /= fields(i)), &
+                                         i=1, size(fields))])]
   end subroutine read_envelope
 
   subroutine describe_preprint(spec)
