@@ -77,6 +77,17 @@ def test_largest_displacement_is_that_of_the_envelope(sliding):
     assert results["displacement"] == results["envelopes"]["U"]
 
 
+def test_cracks_without_damage_are_not_called_undamaged(keyway):
+    """A law without *CONCRETE TENSION DAMAGE: no place is named where damage is 0."""
+    deck = (INPUT / "petersson_beam.inp").read_text(encoding="utf-8")
+    deck = deck.replace("*END STEP", "*ENVELOPE\nDAMAGET\n*END STEP")
+    run = keyway(deck, name="cracked")
+    lines = (run.folder / "cracked.log").read_text(encoding="utf-8").splitlines()
+    assert "damage in tension 0, though solids have cracked: see *CONCRETE TENSION DAMAGE" in lines
+    assert any(line.startswith("largest S1 ") for line in lines)
+    assert not any("DAMAGET 0" in line for line in lines)
+
+
 def test_a_run_that_stops_has_the_closing_lines_in_its_log(keyway):
     deck = (INPUT / "sliding_block.inp").read_text(encoding="utf-8")
     motion = (INPUT / "sliding_block_base.txt").read_text(encoding="utf-8")

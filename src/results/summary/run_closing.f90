@@ -60,7 +60,7 @@ contains
     end do
   end function lines_of_modes
 
-  !> The extremes of *ENVELOPE, but those of displacements and joints, which have their own lines.
+  !> The extremes of *ENVELOPE, but those that have their own lines.
   function lines_of_envelopes(model, summary, record) result(text)
     type(problem), intent(in) :: model
     type(run_summary), intent(in) :: summary
@@ -70,7 +70,7 @@ contains
     text = ''
     do i = 1, size(record%envelopes)
       associate (item => record%envelopes(i))
-        if (item%name == 'OPENING' .or. item%name == 'U') cycle
+        if (any(item%name == [character(8) :: 'OPENING', 'U', 'DAMAGET', 'DAMAGEC'])) cycle
         if (.not. item%largest%at(1)%is_found) cycle
         text = text//nl//trim(merge('smallest', 'largest ', item%wants_smallest))//' '// &
                trim(item%name)//' '//described(item%largest%at(1), model, summary)// &
@@ -116,19 +116,27 @@ contains
     character(:), allocatable :: text
     text = ''
     if (.not. record%damage%is_present) return
-    text = line_of('tension', record%damage%tension)//line_of('compression', &
-                                                              record%damage%compression)
+    text = line_of('tension', record%damage%tension, record%damage%cracking, 'cracked')// &
+           line_of('compression', record%damage%compression, record%damage%crushing, &
+                   'been crushed')
     text = text//nl//'volume with damage in tension of '//as_text(levels(2))//' or more '// &
            as_short_text(record%damage%volume(2))//'; dissipated by cracking '// &
            as_short_text(record%damage%cracking)//', by crushing '// &
            as_short_text(record%damage%crushing)
   contains
-    !> One kind of damage.
-    function line_of(kind, largest) result(line)
+    !> One kind of damage. Concrete may crack without a damage variable: it keeps its stiffness.
+    function line_of(kind, largest, energy, verb) result(line)
       character(*), intent(in) :: kind
       type(damage_extreme), intent(in) :: largest
+      real(rk), intent(in) :: energy !< dissipated [J]
+      character(*), intent(in) :: verb
       character(:), allocatable :: line
       line = nl//'no damage in '//kind
+      if (energy > 0.0_rk) then
+        line = nl//'damage in '//kind//' 0, though solids have '//verb//': see *CONCRETE '// &
+               merge('TENSION    ', 'COMPRESSION', kind == 'tension')
+        line = trim(line)//' DAMAGE'
+      end if
       if (.not. largest%at%is_found) return
       line = nl//'largest damage in '//kind//' '//described(largest%at, model, summary)// &
              ', element '//as_text(largest%element)
