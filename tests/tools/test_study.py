@@ -12,7 +12,7 @@ import pytest
 from keyway_tools.results import Results
 from keyway_tools.study.couplings import chains, coupling_rungs, joints_on_surfaces
 from keyway_tools.study.deck_cards import Deck, number_of, read_deck
-from keyway_tools.study.effects import list_effects
+from keyway_tools.study.effects import bonded, change_in_words, list_effects
 from keyway_tools.study.errors import observed_order, time_errors
 from keyway_tools.study.ladder import Outcome
 from keyway_tools.study.measured import measure
@@ -267,6 +267,27 @@ def test_effects_of_an_earthquake_have_names():
     ]  # fmt: skip
     crack = base_deck(read_deck(INPUT / "cracking_monolith.inp"))
     assert "without cracking of the concrete" in [rung.name for rung in list_effects(crack)]
+
+
+def test_bonded_joints_do_not_open_before_their_grouting_either(program_path, tmp_path):
+    """A dam in three lifts: before *GROUT its joints are contact, whatever their law says."""
+    text = "--arc 14 --levels 6 --bottom 2 --thick 1 --joints 3 --lifts 3 --grouting 3 --no-rock"
+    command = [sys.executable, ROOT / "tools/make_dam.py", "-o", tmp_path / "dam.inp"]
+    subprocess.run([*command, *text.split()], check=True, capture_output=True)
+    deck = base_deck(read_deck(tmp_path / "dam.inp"))
+    free = run_deck(program_path, deck, tmp_path, "free")
+    closed = run_deck(program_path, bonded(deck), tmp_path, "closed")
+    opening = "joints.JOINT1.opening.anywhere.value"
+    assert free.find(opening) > 1e-6
+    assert closed.find(opening) < 1e-3 * free.find(opening)
+
+
+def test_large_changes_are_told_as_factors():
+    text = change_in_words("without the water", {"opening": 3.63, "stress": 0.5, "u": -0.2}, 0.1)
+    assert text == (
+        "Without the water the opening is 4.63 times as large, the stress is 50 % larger, "
+        "the u is 20 % smaller; the run takes 10 % less time."
+    )
 
 
 @pytest.fixture(scope="module")
