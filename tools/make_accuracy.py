@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from keyway_tools.study.facts import NAMES
+from keyway_tools.study.measured import time_in_words
 from keyway_tools.study.pictures import draw
 from keyway_tools.study.words import (
     percent,
@@ -28,7 +29,6 @@ from keyway_tools.study.words import (
     sentence_of_choice,
     sentence_of_place,
     signed,
-    time_in_words,
 )
 
 ROOT = Path(__file__).resolve().parents[1]

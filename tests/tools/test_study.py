@@ -282,6 +282,14 @@ def test_bonded_joints_do_not_open_before_their_grouting_either(program_path, tm
     assert closed.find(opening) < 1e-3 * free.find(opening)
 
 
+def test_a_file_in_place_of_the_folder_is_told(program_path, tmp_path):
+    (tmp_path / "study").write_text("")
+    deck = INPUT / "cantilever.inp"
+    call = [ROOT / "tools/accuracy", deck, "-o", "study", "--program", program_path.resolve()]
+    done = subprocess.run(call, capture_output=True, text=True, cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (1, "accuracy: 'study': File exists\n")
+
+
 def test_large_changes_are_told_as_factors():
     text = change_in_words("without the water", {"opening": 3.63, "stress": 0.5, "u": -0.2}, 0.1)
     assert text == (

@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from keyway_tools.deck_runs import DeckRunner
-from keyway_tools.program import command_name, given_program
+from keyway_tools.program import command_name, given_program, reason_of
 from keyway_tools.results import Results
 
 from .couplings import coupling_rungs
@@ -100,7 +100,6 @@ def main(arguments: list[str] | None = None) -> int:
         sys.stderr.write(faults)
         return 2
     given.o = given.o or Path(f"{given.deck.stem}_accuracy")
-    given.o.mkdir(parents=True, exist_ok=True)
     runner = DeckRunner(given.program, ["-j", str(given.threads), *options])
 
     def stop(*_: object) -> None:
@@ -115,13 +114,14 @@ def main(arguments: list[str] | None = None) -> int:
         runner.stop()
         sys.stderr.write("accuracy: stopped; the same call goes on, finished runs are kept\n")
         return 130
-    except RuntimeError as error:
-        sys.stderr.write(f"accuracy: {error}\n")
+    except (OSError, RuntimeError) as error:
+        sys.stderr.write(f"accuracy: {reason_of(error)}\n")
         return 1
 
 
 def study(given: argparse.Namespace, runner: DeckRunner) -> int:
     """Runs the variants and writes what they show."""
+    given.o.mkdir(parents=True, exist_ok=True)
     deck = base_deck(flat_deck(given, runner))
     if given.duration:
         deck = shortened(deck, given.duration)

@@ -13,7 +13,7 @@ from keyway_tools.deck_runs import DeckRunner, Record
 from keyway_tools.results import Results
 
 from .deck_cards import Deck
-from .measured import Measured, measure
+from .measured import Measured, measure, time_in_words
 from .refined_mesh import RefinementError
 from .rungs import Rung
 
@@ -67,8 +67,8 @@ class Ladder:
         first = Outcome(self.rungs[0], self.forecast(self.rungs[0]))
         if (first.predicted or 0.0) > self.budget and not self.is_kept(first.rung):
             raise RuntimeError(
-                f"the deck as it is would take about {first.predicted:.3g} s, the budget is "
-                f"{self.budget:.3g} s"
+                f"the deck as it is would take about {time_in_words(first.predicted or 0.0)}, "
+                f"the budget is {time_in_words(self.budget)}"
             )
         self.run_one(first)
         if first.measured is None:
@@ -82,7 +82,7 @@ class Ladder:
             left = self.budget - self.spent
             needed = self.delay() * (outcome.predicted or 0.0)
             if needed > left and not self.is_kept(outcome.rung):
-                outcome.why_not = f"would take about {needed:.3g} s: beyond the budget"
+                outcome.why_not = f"would take about {time_in_words(needed)}: beyond the budget"
                 self.say(f"{outcome.name}: {outcome.why_not}")
                 continue
             self.run_one(outcome)
@@ -101,12 +101,12 @@ class Ladder:
 
     def say_plan(self, outcomes: list[Outcome]) -> None:
         """The predicted time of all rungs before they run."""
-        self.say(f"predicted time of the variants, budget {self.budget:.3g} s:")
+        self.say(f"predicted time of the variants, budget {time_in_words(self.budget)}:")
         for outcome in outcomes[1:]:
             if not outcome.why_not:
-                self.say(f"  {outcome.predicted or 0.0:8.3g} s  {outcome.name}")
+                self.say(f"  {time_in_words(outcome.predicted or 0.0):>10}  {outcome.name}")
         total = sum(outcome.predicted or 0.0 for outcome in outcomes)
-        self.say(f"  {total:8.3g} s  in all")
+        self.say(f"  {time_in_words(total):>10}  in all")
 
     def predict(self, rung: Rung, base: Outcome) -> float:
         """Seconds of a rung, from those of the deck as it is.
@@ -162,7 +162,7 @@ class Ladder:
             outcome.why_not = str(error)
             self.say(f"{rung.name}: {error}")
             return
-        about = "" if outcome.predicted is None else f", about {outcome.predicted:.3g} s"
+        about = "" if outcome.predicted is None else f", about {time_in_words(outcome.predicted)}"
         self.say(f"{rung.name}{about} ..")
         self.runner.timeout = max(SHORTEST, self.budget - self.spent)
         started = time.monotonic()
@@ -180,7 +180,7 @@ class Ladder:
             self.waited += elapsed
             self.worked += outcome.measured.seconds
         kept = " (kept from an earlier call)" if record.was_kept else ""
-        self.say(f"{rung.name}: {outcome.measured.seconds:.3g} s{kept}")
+        self.say(f"{rung.name}: {time_in_words(outcome.measured.seconds)}{kept}")
 
     def measure(self, rung: Rung, record: Record) -> Measured:
         """The numbers of a run. One thread: its own seconds, whatever else the machine does."""

@@ -90,3 +90,12 @@ def node_volumes(results: Results) -> np.ndarray:
     total = np.zeros(len(results.x))
     np.add.at(total, corners.ravel(), np.repeat(volumes(dam) / 8.0, 8))
     return total
+
+
+def time_in_words(seconds: float) -> str:
+    """'23 s', '12 min', '3.1 h', '4 days'."""
+    for unit, size in (("days", 86400.0), ("h", 3600.0), ("min", 60.0)):
+        if seconds >= 2.0 * size:
+            number = seconds / size
+            return f"{number:.0f} {unit}" if number >= 9.95 else f"{number:.2g} {unit}"
+    return f"{seconds:.3g} s"

@@ -7,6 +7,7 @@ from typing import Any
 from .effects import change_in_words
 from .facts import NAMES
 from .ladder import Outcome
+from .measured import time_in_words
 
 
 def sentences(facts: dict[str, Any]) -> list[str]:
@@ -33,7 +34,7 @@ def sentences_of_quantity(found: dict[str, Any], seconds: float) -> list[str]:
                                                                     "iteration"))  # fmt: skip
     lines = [
         f"{name}: your deck has an error of about {percent(found['error'])} ({parts}) and takes "
-        f"{seconds:.3g} s. The limit {found['limit']:.4g} itself is known to "
+        f"{time_in_words(seconds)}. The limit {found['limit']:.4g} itself is known to "
         f"{percent(found['uncertainty'])}."
     ]
     return lines + [f"— {sentence_of_choice(choice)}" for choice in found["choices"]]
@@ -89,15 +90,6 @@ def sentence_of_place(place: dict[str, Any]) -> str:
         f"The largest S1 anywhere, at ({x}), grows by {100 * (place['growth'] - 1):.0f} % when the "
         "mesh is refined: a singular place, as in a re-entrant corner. No mesh gives its value."
     )
-
-
-def time_in_words(seconds: float) -> str:
-    """'23 s', '12 min', '3.1 h', '4 days'."""
-    for unit, size in (("days", 86400.0), ("h", 3600.0), ("min", 60.0)):
-        if seconds >= 2.0 * size:
-            number = seconds / size
-            return f"{number:.0f} {unit}" if number >= 9.95 else f"{number:.2g} {unit}"
-    return f"{seconds:.3g} s"
 
 
 def percent(share: float | None) -> str:
