@@ -11,6 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 sys.path.insert(0, str(ROOT / "tools/bench"))
 
+from cost_of_estimates import write_twin  # noqa: E402
 from cost_of_scale import LINEAR, Growth, ScaleBench, ScaleOptions  # noqa: E402
 from kept_rows import Row  # noqa: E402
 from measured_run import Program  # noqa: E402
@@ -66,3 +67,12 @@ def test_scale_leaves_out_what_finds_no_memory(tmp_path: Path, capsys: pytest.Ca
     growth = Growth("unknowns", LINEAR, [50_000], [[0.3, 1.9, 0.04, 0.05, 8.0, 400.0]])
     assert bench.linear_row(100_000, growth) is None
     assert capsys.readouterr().out.startswith("100000 unknowns: left out, needs about 1056 MB, 500")
+
+
+def test_twin_without_estimates_finds_the_files_of_its_deck(program_path: Path, tmp_path: Path):
+    """Its mesh beside it, and the records in a folder beside its own."""
+    for name in ("built_in_lifts", "cantilever"):
+        deck = next((ROOT / "input").rglob(f"{name}.inp"))
+        twin = write_twin(deck, tmp_path / name)
+        assert "*CONTROLS, ERROR ESTIMATE=OFF" in twin.read_text()
+        subprocess.run([program_path.resolve(), "--check", twin], check=True, capture_output=True)

@@ -73,12 +73,15 @@ def measure_estimates(program: Program, decks: list[Path], folder: Path) -> list
 
 
 def write_twin(deck: Path, folder: Path) -> Path:
-    """The deck without estimates, beside links to what is in its folder."""
-    folder.mkdir(parents=True)
-    twin = folder / deck.name
-    for path in deck.resolve().parent.iterdir():
-        if path.name != deck.name:
-            (folder / path.name).symlink_to(path)
+    """The deck without estimates, beside links to what is in its folder and in the one above: decks
+    name records as ../other/record.txt."""
+    home = deck.resolve().parent
+    twin = folder / home.name / deck.name
+    twin.parent.mkdir(parents=True)
+    for place, kept in ((home, deck.name), (home.parent, home.name)):
+        for path in place.iterdir():
+            if path.name != kept:
+                (folder / path.relative_to(home.parent)).symlink_to(path)
     text, changes = re.subn(
         r"(?m)^(\*(STATIC|DYNAMIC|FREQUENCY)\b)",
         r"*CONTROLS, ERROR ESTIMATE=OFF\n\1",
