@@ -6,6 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from brick_decks import elastic
+from keyway_tools.arch_dam import DamOptions, build_arch_dam
+from keyway_tools.arch_deck import DeckOptions, arch_dam_deck
+from keyway_tools.arch_rock import RockOptions
+from keyway_tools.arch_shape import ArchShape
 from keyway_tools.box_mesh import box_mesh, stretched
 from keyway_tools.deck_text import mesh_deck
 from uplift_decks import joined
@@ -68,3 +72,17 @@ MOTION = (
 )
 QUAKE = "*AMPLITUDE, NAME=QUAKE\n0., 0., 0.03, 1., 0.07, -1., 0.1, 0.\n"
 SPRINGS = "*TIE, NAME=T, STIFFNESS=1e11\nSOLE, ROOF\n"
+
+
+def stretched_dam() -> dict[str, str]:
+    """An arch dam of 14 832 unknowns, files by name: weight and water, five increments of motion.
+    Each of 8 layers of massless rock is 2.2 times as thick as the one before."""
+    rock = RockOptions(num_upstream=8, num_downstream=8, num_deep=8, growth=2.2)
+    mesh = build_arch_dam(ArchShape(), DamOptions(28, 12, 3, 4, num_joints=0, rock=rock))
+    options = DeckOptions(motions=("motion.txt",), duration=0.05, picture_frequency=10**6)
+    motion = "\n".join(f"{np.sin(20.0 * t):.9g}" for t in np.arange(0.0, 0.055, options.motion_dt))
+    return {
+        "job.inp": arch_dam_deck(mesh, "stretched rock", "mesh.inp", options),
+        "mesh.inp": mesh_deck(mesh, dict.fromkeys(mesh.brick_sets, "C3D8"), ""),
+        "motion.txt": motion + "\n",
+    }

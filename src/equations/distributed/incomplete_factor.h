@@ -9,8 +9,8 @@ struct incomplete_factor {
 };
 
 /* Gives a solver the matrix, and factors with the least shift that leaves a positive definite
- * preconditioner; a shift that was needed before is kept. No shift may suffice, and the matrix may
- * not be positive definite. */
+ * preconditioner, and up to 0.01 one that is not far from the matrix; a shift that was needed
+ * before is kept. No shift may suffice, and the matrix may not be positive definite. */
 PetscErrorCode set_up_incomplete(struct incomplete_factor *self, KSP solver, Mat blocks,
                                  int *is_definite);
 
