@@ -129,7 +129,8 @@ contains
     text = repeat(' ', min(0, self%failed_unknown))
   end function describe_none
 
-  !> Whether solves are iterations, and parts of the matrix can have factors of their own.
+  !> Whether the compliance of joints comes from factors of parts of the matrix: solves are
+  !> iterations, or the joints have too many unknowns for the end of the factor.
   logical function has_no_patches(self)
     class(equation_solver), intent(in) :: self
     has_no_patches = self%failed_unknown > huge(1) - 1
@@ -138,8 +139,10 @@ contains
   !> Takes the patch of this rank: the unknowns within some layers of neighbours of the seeds. What
   !> is outside does not move. All ranks call it together. A rank keeps its patch where it gives no
   !> seeds, and where the new one would be too large: `unknown` is then empty.
-  subroutine refuse_patch(self, seed, layers, most_rows, unknown, error)
+  subroutine refuse_patch(self, matrix, values, seed, layers, most_rows, unknown, error)
     class(equation_solver), intent(inout) :: self
+    type(pattern), intent(in) :: matrix !< as analysed
+    real(rk), intent(in) :: values(:) !< as in the last factor
     integer, intent(in) :: seed(:) !< unknowns
     integer, intent(in) :: layers, most_rows
     integer, allocatable, intent(out) :: unknown(:) !< of each row of the patch, 0 for none

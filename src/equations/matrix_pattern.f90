@@ -19,6 +19,8 @@ module matrix_pattern
     integer, allocatable :: group(:)
     !> Pairs of unknowns: a jump, and a displacement that it adds to; allocated with `group`
     integer, allocatable :: jump(:), joined(:)
+    !> Unknowns of joints stand anywhere in a factor: they are too many for its end
+    logical :: orders_freely = .false.
     logical :: is_symmetric = .true. !< lower triangle only
     integer, allocatable :: column_start(:) !< (num_total + 1), 1-based
     integer, allocatable :: row(:) !< ascending in each column (symmetric: the diagonal first)

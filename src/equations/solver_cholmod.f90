@@ -5,6 +5,7 @@ module solver_cholmod
   use kinds, only: rk, long
   use errors, only: error_type, raise, system_failed
   use factor_top, only: choose_top, top_of_factor
+  use matrix_parts, only: grow_part, list_neighbours, neighbour_lists, take_part
   use matrix_pattern, only: pattern
   use linear_solver, only: equation_solver, whole_factor
   use nested_dissection, only: dissect
@@ -24,10 +25,14 @@ module solver_cholmod
     type(c_ptr), private :: handle = c_null_ptr
     integer, private :: num_free = 0
     integer(c_int), allocatable, private :: start(:), row(:) !< pattern, 0-based
+    logical, private :: orders_freely = .false. !< the unknowns of joints
+    type(neighbour_lists), allocatable, private :: neighbours !< while parts are factored
+    class(equation_solver), allocatable, private :: part !< of the matrix
   contains
     procedure :: analyse, factorise, solve, statistics
     procedure :: take_schur_block, take_top, forward_substitute, backward_substitute
     procedure :: choose_active, substitute, keep_single, num_entries
+    procedure :: has_patches, take_patch, solve_patch, drop_patch
     final :: release
   end type cholmod_solver
 
@@ -144,6 +149,7 @@ contains
       return
     end if
     self%num_free = matrix%num_free
+    self%orders_freely = matrix%orders_freely
     if (self%num_free == 0) return
     call shift_pattern(matrix, self%start, self%row)
     if (self%uses_own_order) then
@@ -157,7 +163,8 @@ contains
         status = analyse_in_groups(self, matrix, order)
       else
         status = keyway_cholmod_analyse(self%handle, self%num_free, self%start, &
-                                        matrix%free_entries, self%row, matrix%num_last, &
+                                        matrix%free_entries, self%row, &
+                                        merge(0, matrix%num_last, matrix%orders_freely), &
                                         c_loc(order))
       end if
     end if
@@ -315,6 +322,52 @@ contains
       call raise(error, 'no memory to solve the equations', system_failed)
     end if
   end subroutine substitute
+
+  !> Whether the compliance of joints comes from factors of parts of the matrix.
+  logical function has_patches(self)
+    class(cholmod_solver), intent(in) :: self
+    has_patches = self%orders_freely .and. self%num_free > 0
+  end function has_patches
+
+  !> Factors the part of the matrix near the seeds.
+  subroutine take_patch(self, matrix, values, seed, layers, most_rows, unknown, error)
+    class(cholmod_solver), intent(inout) :: self
+    type(pattern), intent(in) :: matrix !< as analysed
+    real(rk), intent(in) :: values(:)
+    integer, intent(in) :: seed(:) !< unknowns
+    integer, intent(in) :: layers, most_rows
+    integer, allocatable, intent(out) :: unknown(:) !< of each row of the patch
+    type(error_type), allocatable, intent(out) :: error
+    type(pattern) :: part
+    real(rk), allocatable :: part_values(:)
+    if (.not. allocated(self%neighbours)) then
+      allocate (self%neighbours)
+      call list_neighbours(matrix, self%neighbours)
+    end if
+    call grow_part(self%neighbours, seed, layers, unknown)
+    if (size(unknown) > most_rows) unknown = [integer ::]
+    if (size(unknown) == 0) return
+    call take_part(matrix, values, unknown, part, part_values)
+    if (allocated(self%part)) deallocate (self%part)
+    allocate (cholmod_solver :: self%part)
+    call self%part%analyse(part, error)
+    if (.not. allocated(error)) call self%part%factorise(part, part_values, error)
+  end subroutine take_patch
+
+  !> Solves for columns over the part, in place.
+  subroutine solve_patch(self, b, error)
+    class(cholmod_solver), intent(inout) :: self
+    real(rk), intent(inout) :: b(:, :) !< (rows of the patch, right-hand sides)
+    type(error_type), allocatable, intent(out) :: error
+    call self%part%solve(b, error)
+  end subroutine solve_patch
+
+  !> Gives the memory of the part back.
+  subroutine drop_patch(self)
+    class(cholmod_solver), intent(inout) :: self
+    if (allocated(self%part)) deallocate (self%part)
+    if (allocated(self%neighbours)) deallocate (self%neighbours)
+  end subroutine drop_patch
 
   !> Size and memory of the factor.
   subroutine statistics(self, entries, bytes, peak_bytes)

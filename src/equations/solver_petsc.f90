@@ -264,8 +264,10 @@ contains
   end function has_patches
 
   !> Takes the patch of this rank.
-  subroutine take_patch(self, seed, layers, most_rows, unknown, error)
+  subroutine take_patch(self, matrix, values, seed, layers, most_rows, unknown, error)
     class(petsc_solver), intent(inout) :: self
+    type(pattern), intent(in) :: matrix !< as analysed
+    real(rk), intent(in) :: values(:) !< as in the last factor: PETSc has them
     integer, intent(in) :: seed(:) !< unknowns
     integer, intent(in) :: layers, most_rows
     integer, allocatable, intent(out) :: unknown(:) !< of each row of the patch, 0 for none

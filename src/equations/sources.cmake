@@ -6,12 +6,13 @@ set(sources
   distributed/petsc_equations.f90
   elimination/factor_top.f90
   elimination/group_dissection.f90
+  elimination/metis_bridge.c
   elimination/wider_pattern.f90
   global_vectors.f90
   linear_solver.f90
   low_rank/solver_low_rank.f90
+  matrix_parts.f90
   matrix_pattern.f90
-  metis_bridge.c
   nested_dissection.f90
   products/column_products.c
   products/column_products.f90

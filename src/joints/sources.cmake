@@ -8,6 +8,7 @@ set(sources
   compliance/joint_separators.f90
   compliance/jump_block.f90
   compliance/krylov_spaces.f90
+  compliance/learned_response.f90
   compliance/near_compliance.f90
   compliance/point_groups.f90
   compliance/selected_compliance.f90

@@ -49,8 +49,10 @@ contains
       call make_joint_solver(trim(name), balance)
     end if
     balance%controls = plan%controls
-    if (.not. allocated(system%matrix%group) .or. name /= condensed_solver &
-        .or. size(system%modal, 2) > 0) call check_memory(system%operator%num_points, error)
+    associate (matrix => system%matrix)
+      if (.not. (allocated(matrix%group) .or. matrix%orders_freely) .or. name /= condensed_solver &
+          .or. size(system%modal, 2) > 0) call check_memory(system%operator%num_points, error)
+    end associate
     call share_error(error)
     if (allocated(error)) return
     call make_solver(symmetric_solver, balance%factor, error, system%matrix%is_shared)

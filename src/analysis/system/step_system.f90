@@ -21,7 +21,7 @@ module step_system
   use guest_list, only: add_guest_matrices, any_has_matrix, guests_of_step
   use guest_type, only: guest_reference, damping_matrix, mass_matrix, stiffness_matrix
   use joint_operator, only: jump_operator, build_jump_operator
-  use joint_separators, only: find_separators
+  use joint_separators, only: find_separators, fits_the_end
   use ranks, only: add_over_ranks
   use step_loads, only: load_group, support, gather_loads, gather_supports
   use run_ledger, only: ledger
@@ -169,8 +169,7 @@ contains
       end associate
     end if
     call build_jump_operator(system%numbers, model%mesh, model%joints, system%operator)
-    call find_separators(system%numbers, system%operator, system%matrix%group, &
-                         system%matrix%jump, system%matrix%joined)
+    call place_joints(plan%procedure%has_inertia, system)
     call assemble_stiffness(model, system%numbers, system%matrix, system%stiffness, error)
     if (allocated(error)) return
     call add_guest_matrices(guests, stiffness_matrix, model, system%numbers, system%matrix, &
@@ -180,6 +179,19 @@ contains
     call diagonal(system%matrix, system%stiffness, system%diagonal)
     call costs%stop('assemble structure')
   end subroutine build_structure
+
+  !> Where the unknowns of many joints stand in a factor: anywhere in motion, where parts of the
+  !> matrix near each group give its compliance; else each group is a separator.
+  subroutine place_joints(has_inertia, system)
+    logical, intent(in) :: has_inertia
+    type(dam_system), intent(inout) :: system
+    associate (matrix => system%matrix)
+      matrix%orders_freely = has_inertia .and. .not. fits_the_end(system%operator, matrix%num_free)
+      if (matrix%orders_freely) return
+      call find_separators(system%numbers, system%operator, matrix%group, matrix%jump, &
+                           matrix%joined)
+    end associate
+  end subroutine place_joints
 
   !> The forces of elements at their origins and of their thermal strains, where the model has any.
   subroutine build_origins(model, now, system, costs, error)

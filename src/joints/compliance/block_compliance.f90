@@ -6,6 +6,7 @@
 module block_compliance
   use coupling_block, only: dense_block, make_block, transpose_block
   use kinds, only: rk, long
+  use learned_response, only: response_memory
   use point_groups, only: group_list
   use ranks, only: add_over_ranks
   implicit none
@@ -21,8 +22,9 @@ module block_compliance
     type(dense_block), allocatable :: block(:, :) !< (groups with jumps, groups with forces)
     !> Largest coupling that is left out, in blocks or in their accuracy; huge if it is not known
     real(rk) :: left_out = 0.0_rk
+    type(response_memory) :: learned !< of what is left out
   contains
-    procedure :: start, put, put_coupling, product, couple, num_entries, as_dense
+    procedure :: start, put, put_coupling, product, couple, learn, num_entries, as_dense
   end type compliance_blocks
 
 contains
@@ -33,6 +35,7 @@ contains
     type(group_list), intent(in) :: groups
     self%groups = groups
     self%left_out = huge(1.0_rk)
+    call self%learned%forget()
     if (allocated(self%block)) deallocate (self%block)
     allocate (self%block(groups%num_groups, groups%num_groups))
   end subroutine start
@@ -125,8 +128,27 @@ contains
     own_size = norm2(rest)
   end function own_size
 
-  !> y = G x. The sums have a fixed order, whatever the number of threads.
+  !> y = G x with what is known of the blocks that are left out.
   subroutine product(self, x, y)
+    class(compliance_blocks), intent(in) :: self
+    real(rk), intent(in) :: x(:) !< (rows) [N]
+    real(rk), intent(out) :: y(:) !< (rows) [m]
+    call multiply_blocks(self, x, y)
+    call self%learned%add_to(x, y)
+  end subroutine product
+
+  !> Learns from the exact jumps y by forces x what the blocks leave out.
+  subroutine learn(self, x, y)
+    class(compliance_blocks), intent(inout) :: self
+    real(rk), intent(in) :: x(:) !< (rows) [N]
+    real(rk), intent(in) :: y(:) !< (rows) [m]
+    real(rk) :: known(size(y))
+    call multiply_blocks(self, x, known)
+    call self%learned%learn(x, y - known)
+  end subroutine learn
+
+  !> y = G x with the blocks alone. The sums have a fixed order, whatever the number of threads.
+  subroutine multiply_blocks(self, x, y)
     class(compliance_blocks), intent(in) :: self
     real(rk), intent(in) :: x(:) !< (rows) [N]
     real(rk), intent(out) :: y(:) !< (rows) [m]
@@ -142,7 +164,7 @@ contains
     !$omp end parallel do
     if (self%groups%is_divided()) call add_over_ranks(sorted_y)
     y(self%groups%row) = sorted_y
-  end subroutine product
+  end subroutine multiply_blocks
 
   !> y = G x roughly, with some of the blocks.
   subroutine couple(self, takes_part, x, y)

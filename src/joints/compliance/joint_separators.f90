@@ -1,5 +1,6 @@
 !> Which unknowns separate the parts of the structure at joints: the jumps and the displacements
-!> that they add to, group by group. Each group is one separator in the order of elimination.
+!> that they add to, group by group. Each group is one separator in the order of elimination. In
+!> motion joints see so little of each other that the order need not keep them together.
 module joint_separators
   use dof_numbering, only: numbering
   use joint_operator, only: jump_operator
@@ -7,12 +8,19 @@ module joint_separators
   use point_groups, only: group_list, group_points
   implicit none
   private
-  public :: find_separators
+  public :: find_separators, fits_the_end
 
   !> Up to so many unknowns of joints stay together at the end of the factor.
   integer, parameter :: most_at_the_end = 4500
 
 contains
+
+  !> Whether the unknowns of joints are few enough for the end of the factor, which is dense.
+  pure logical function fits_the_end(operator, num_free)
+    type(jump_operator), intent(in) :: operator
+    integer, intent(in) :: num_free
+    fits_the_end = count(operator%unknown <= num_free) <= most_at_the_end
+  end function fits_the_end
 
   !> Group of each free unknown, 0 for none; not allocated where joints have few unknowns.
   subroutine find_separators(numbers, operator, group, jump, joined)
@@ -22,7 +30,7 @@ contains
     integer, allocatable, intent(out) :: jump(:), joined(:) !< pairs: a jump adds to a displacement
     type(group_list) :: groups
     integer :: g, r, k
-    if (count(operator%unknown <= numbers%num_free) <= most_at_the_end) return
+    if (fits_the_end(operator, numbers%num_free)) return
     call group_points(operator%first_point, operator%x, groups)
     allocate (group(numbers%num_free), source=0)
     do g = 1, groups%num_groups

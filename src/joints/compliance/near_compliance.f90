@@ -5,32 +5,35 @@
 !> In an increment of motion inertia screens what is further away than some elements. What these
 !> blocks leave out is made up for by solves with the whole K_0.
 module near_compliance
+  use, intrinsic :: iso_fortran_env, only: single => real32
   use block_compliance, only: compliance_blocks, own_size
   use errors, only: error_type
   use joint_operator, only: jump_operator
   use kinds, only: rk
   use linear_solver, only: equation_solver
+  use matrix_pattern, only: pattern
   use point_groups, only: group_list
   use ranks, only: add_over_ranks, is_true_everywhere, share_error
-  use sorted_lists, only: sorted_unique
+  use sorted_lists, only: place_in, sorted_unique
   implicit none
   private
   public :: find_near_rows
 
   !> Layers of elements around a group in the first part; each further part has twice as many.
-  integer, parameter :: first_layers = 3
+  integer, parameter :: first_layers = 4
   !> Rows of the largest part, unless the first one has more.
   integer, parameter :: most_rows = 120000
   !> Change of some columns by the last layers, over these columns, that needs no more layers. The
   !> error is then its square where it falls exponentially.
-  real(rk), parameter :: small_change = 5.0e-2_rk
+  real(rk), parameter :: small_change = 1.0e-2_rk
   integer, parameter :: num_samples = 12 !< columns that are compared
-  integer, parameter :: block_size = 48 !< right-hand sides solved at once
+  integer, parameter :: block_size = 64 !< right-hand sides solved at once
 
   !> The part of K_0 near a group.
   type :: near_part
     integer :: group = 0 !< of this rank, 0 for none
     integer, allocatable :: rows(:) !< rows of B of the group
+    integer, allocatable :: moved(:) !< rows of B that move with the part
     real(rk), allocatable :: spring(:) !< (rows) compliance of the joints' own springs [m/N]
     integer, allocatable :: seed(:) !< free unknowns of the group
     integer, allocatable :: place(:) !< (free unknowns) row of the part, 0 for none
@@ -40,10 +43,11 @@ module near_compliance
 contains
 
   !> Computes rows of G; each rank those of its own groups. All ranks call it together.
-  subroutine find_near_rows(factor, operator, num_free, spring, groups, blocks, error)
+  subroutine find_near_rows(factor, matrix, values, operator, spring, groups, blocks, error)
     class(equation_solver), intent(inout) :: factor !< of K_0, with parts
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: values(:) !< K_0
     type(jump_operator), intent(in) :: operator
-    integer, intent(in) :: num_free
     real(rk), intent(in) :: spring(:) !< (rows) compliance of the joints' own springs [m/N]
     type(group_list), intent(in) :: groups
     type(compliance_blocks), intent(out) :: blocks
@@ -59,10 +63,10 @@ contains
     round = 0
     do
       round = round + 1
-      call start_part(operator, num_free, spring, groups, own_group(groups, round), part)
+      call start_part(operator, matrix%num_free, spring, groups, own_group(groups, round), part)
       g = part%group
       if (is_true_everywhere(g == 0)) exit
-      call find_part(factor, operator, part, change(max(g, 1)), error)
+      call find_part(factor, matrix, values, operator, part, change(max(g, 1)), error)
       if (.not. allocated(error) .and. g > 0) then
         call find_group(factor, operator, groups, part, blocks, lengths(g, :), own(g), error)
       end if
@@ -124,8 +128,10 @@ contains
   !> Grows the part of a group until further layers change little, or it is all of the structure,
   !> or would be too large. Ranks whose parts have grown enough wait for the others. A group without
   !> free unknowns has no part: its faces are held, or not there in this stage.
-  subroutine find_part(factor, operator, part, change, error)
+  subroutine find_part(factor, matrix, values, operator, part, change, error)
     class(equation_solver), intent(inout) :: factor
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: values(:) !< K_0
     type(jump_operator), intent(in) :: operator
     type(near_part), intent(inout) :: part
     real(rk), intent(inout) :: change !< of some columns by the last layers
@@ -138,11 +144,11 @@ contains
     layers = first_layers
     most = huge(1)
     do
-      call factor%take_patch(part%seed, layers, most, unknown, error)
+      call factor%take_patch(matrix, values, part%seed, layers, most, unknown, error)
       if (allocated(error)) return
       if (.not. is_large) is_large = size(unknown) == 0
       if (.not. is_large) then
-        call place_unknowns(unknown, part)
+        call place_unknowns(operator, unknown, part)
         call take_sample(factor, operator, part, sample, error)
         if (.not. allocated(error)) call judge_part(sample, last, change, is_large)
       end if
@@ -179,17 +185,32 @@ contains
     unknowns = sorted_unique(pack(unknowns, unknowns <= num_free))
   end function unknowns_of
 
-  !> Where the unknowns stand in the part.
-  subroutine place_unknowns(unknown, part)
+  !> Where the unknowns stand in the part, and which jumps they move.
+  subroutine place_unknowns(operator, unknown, part)
+    type(jump_operator), intent(in) :: operator
     integer, intent(in) :: unknown(:) !< of each row of the part, 0 for none
     type(near_part), intent(inout) :: part
-    integer :: k
+    logical :: is_moved(size(operator%row_start) - 1)
+    integer :: k, r
     part%num_rows = size(unknown)
     part%place = 0
     do k = 1, size(unknown)
       if (unknown(k) > 0) part%place(unknown(k)) = k
     end do
+    do r = 1, size(is_moved)
+      is_moved(r) = any([(place_of(part, operator%unknown(k)) > 0, k=operator%row_start(r), &
+                          operator%row_start(r + 1) - 1)])
+    end do
+    part%moved = pack([(r, r=1, size(is_moved))], is_moved)
   end subroutine place_unknowns
+
+  !> Row of an unknown in the part, 0 for none.
+  pure integer function place_of(part, unknown) result(row)
+    type(near_part), intent(in) :: part
+    integer, intent(in) :: unknown
+    row = 0
+    if (unknown <= size(part%place)) row = part%place(unknown)
+  end function place_of
 
   !> What the structure adds to the springs in some columns of the own block.
   subroutine take_sample(factor, operator, part, sample, error)
@@ -205,7 +226,7 @@ contains
     chosen = [(1 + (i*(n - 1))/num_samples, i=0, min(n, num_samples) - 1)]
     call find_columns(factor, operator, part, part%rows(chosen), columns, error)
     if (allocated(error)) return
-    sample = columns(part%rows, :)
+    call take_rows(columns, part%moved, part%rows, sample)
     do i = 1, size(chosen)
       sample(chosen(i), i) = sample(chosen(i), i) - part%spring(chosen(i))
     end do
@@ -221,19 +242,20 @@ contains
     real(rk), intent(out) :: lengths(:) !< (groups) norms of the blocks [m/N]
     real(rk), intent(out) :: own !< size of the own block [m/N]
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: columns(:, :)
+    real(rk), allocatable :: columns(:, :), values(:, :)
     integer :: k
     lengths = 0.0_rk
     own = 0.0_rk
     call find_columns(factor, operator, part, part%rows, columns, error)
     if (allocated(error)) return
     do k = 1, groups%num_groups
-      associate (values => columns(groups%rows(k), :))
-        lengths(k) = norm2(values)
-        if (lengths(k) > 0.0_rk .or. k == part%group) then
-          blocks%block(part%group, k)%values = transpose(values)
-        end if
-      end associate
+      call take_rows(columns, part%moved, groups%rows(k), values)
+      lengths(k) = norm2(values)
+      if (k == part%group) then
+        blocks%block(k, k)%values = transpose(values)
+      else if (lengths(k) > 0.0_rk) then
+        blocks%block(part%group, k)%rounded = real(transpose(values), single)
+      end if
     end do
     associate (block => blocks%block(part%group, part%group)%values)
       block = 0.5_rk*(block + transpose(block))
@@ -241,23 +263,38 @@ contains
     end associate
   end subroutine find_group
 
-  !> Columns of G; rows of points outside of the part are zero.
+  !> Some rows of columns of G; rows that do not move with the part are zero.
+  subroutine take_rows(columns, moved, rows, values)
+    real(rk), intent(in) :: columns(:, :) !< (moved rows, columns)
+    integer, intent(in) :: moved(:) !< ascending
+    integer, intent(in) :: rows(:)
+    real(rk), allocatable, intent(out) :: values(:, :) !< (rows, columns)
+    integer :: i, k
+    allocate (values(size(rows), size(columns, 2)), source=0.0_rk)
+    if (size(moved) == 0) return
+    do i = 1, size(rows)
+      k = place_in(moved, rows(i))
+      if (moved(k) == rows(i)) values(i, :) = columns(k, :)
+    end do
+  end subroutine take_rows
+
+  !> Columns of G in the rows that move with the part.
   subroutine find_columns(factor, operator, part, rows, columns, error)
     class(equation_solver), intent(inout) :: factor
     type(jump_operator), intent(in) :: operator
     type(near_part), intent(in) :: part
     integer, intent(in) :: rows(:) !< the rows of B whose forces move the structure
-    real(rk), allocatable, intent(out) :: columns(:, :) !< (all rows, rows) [m/N]
+    real(rk), allocatable, intent(out) :: columns(:, :) !< (moved rows, rows) [m/N]
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: b(:, :)
     integer :: first, last, i, k, row
-    allocate (columns(size(operator%row_start) - 1, size(rows)), source=0.0_rk)
+    allocate (columns(size(part%moved), size(rows)), source=0.0_rk)
     do first = 1, size(rows), block_size
       last = min(first + block_size - 1, size(rows))
       allocate (b(part%num_rows, last - first + 1), source=0.0_rk)
       do i = first, last
         do k = operator%row_start(rows(i)), operator%row_start(rows(i) + 1) - 1
-          row = place_of(operator%unknown(k))
+          row = place_of(part, operator%unknown(k))
           if (row > 0) b(row, i - first + 1) = operator%coefficient(k)
         end do
       end do
@@ -269,21 +306,14 @@ contains
       deallocate (b)
     end do
   contains
-    !> Row of an unknown in the part, 0 for none.
-    pure integer function place_of(unknown) result(row_of_part)
-      integer, intent(in) :: unknown
-      row_of_part = 0
-      if (unknown <= size(part%place)) row_of_part = part%place(unknown)
-    end function place_of
-
     !> B times a column over the part.
     subroutine apply_rows(x, product)
       real(rk), intent(in) :: x(:)
-      real(rk), intent(inout) :: product(:) !< (all rows)
+      real(rk), intent(inout) :: product(:) !< (moved rows)
       integer :: r, m, place
       do r = 1, size(product)
-        do m = operator%row_start(r), operator%row_start(r + 1) - 1
-          place = place_of(operator%unknown(m))
+        do m = operator%row_start(part%moved(r)), operator%row_start(part%moved(r) + 1) - 1
+          place = place_of(part, operator%unknown(m))
           if (place > 0) product(r) = product(r) + operator%coefficient(m)*x(place)
         end do
       end do

@@ -138,6 +138,7 @@ contains
     if (length(b) > 0.0_rk) call add_solution(self, blocks, b, tolerance*length(b), .true., z)
     call blocks%couple(spread(spread(.true., 1, size(self%group)), 2, size(self%group)), z, &
                        correction)
+    call blocks%learned%add_to(z, correction)
     correction = response + correction
   end subroutine estimate
 
@@ -243,6 +244,7 @@ contains
       takes_part(g, g) = .not. self%group(g)%is_exact
     end do
     call blocks%couple(takes_part, p, moved)
+    call blocks%learned%add_to(p, moved)
     product = v
     do g = 1, size(self%group)
       if (self%group(g)%is_exact) cycle

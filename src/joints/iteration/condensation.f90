@@ -108,7 +108,7 @@ contains
     end if
     call self%costs%start('condense', 'joints', 'joint')
     call extract_schur_block(self%factor, operator, matrix, self%jumps)
-    call self%condense(matrix%num_free, error)
+    call self%condense(matrix, closed, error)
     call self%costs%stop()
     if (allocated(error)) return
     call self%keep_single(matrix, closed, pack(operator%unknown, &
@@ -116,9 +116,10 @@ contains
   end subroutine prepare_matrix
 
   !> Computes G, C and r.
-  subroutine condense(self, num_free, error)
+  subroutine condense(self, matrix, closed, error)
     class(condensed_equilibrium), intent(inout) :: self
-    integer, intent(in) :: num_free
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: closed(:) !< values of K_0
     type(error_type), allocatable, intent(out) :: error
     type(group_list) :: groups
     real(rk), allocatable :: spring(:)
@@ -129,8 +130,8 @@ contains
       missing = 1
       if (self%factor%has_patches()) then
         missing = 0
-        call find_near_rows(self%factor, operator, num_free, spring, groups, condensed%blocks, &
-                            error)
+        call find_near_rows(self%factor, matrix, closed, operator, spring, groups, &
+                            condensed%blocks, error)
         if (allocated(error)) return
       else if (self%jumps%top%is_there) then
         call use_many_threads(levels)
@@ -140,7 +141,7 @@ contains
         if (allocated(error)) return
       end if
       if (missing > 0) then
-        call condense_densely(self, num_free, spring, groups, &
+        call condense_densely(self, matrix%num_free, spring, groups, &
                               merge(smallest_coupling, 0.0_rk, self%jumps%is_there), error)
       end if
       if (allocated(error)) return

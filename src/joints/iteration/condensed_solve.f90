@@ -17,6 +17,7 @@ submodule(condensation) condensed_solve
   type :: pass_history
     real(rk) :: rough = 0.0_rk !< residual of a rough equilibrium over the drift
     real(rk) :: drift(2) = 0.0_rk !< of the last pass and the one before
+    logical :: learns = .false. !< what the blocks leave out, in place of Anderson's acceleration
     type(mixer) :: mixing !< Anderson's acceleration of the shift
     real(rk), allocatable :: shift(:) !< (rows) jumps by the blocks that are left out [m]
   end type pass_history
@@ -37,7 +38,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(joint_field) :: field, start
     type(pass_history) :: passes
-    real(rk), dimension(3, self%operator%num_points) :: excess, last_excess
+    real(rk), dimension(3, self%operator%num_points) :: excess, last_excess, exact
     real(rk), allocatable :: half(:)
     integer :: pass, iterations
     iterations = 0
@@ -48,6 +49,7 @@ contains
       if (allocated(error)) return
       call operator%jumps(x, field%response)
       field%response = field%response + balance%offset
+      exact = field%response
       call start_passes(self, balance, passes)
       do pass = 1, most_passes
         call self%costs%start('iterate', 'joints', 'joint')
@@ -66,6 +68,8 @@ contains
         if (is_last_pass(self, passes)) exit
         call find_drift(self, balance, new, excess - last_excess, half, x, field, error)
         if (allocated(error)) return
+        if (passes%learns) call learn(self, excess - last_excess, field%response - exact)
+        exact = field%response
         last_excess = excess
         if (field%drift <= admissible_drift(self) .and. .not. self%condensed%is_rough) exit
         call start_pass(self, field, passes)
@@ -86,13 +90,14 @@ contains
     self%condensed%rough_residual = 0.0_rk
     self%condensed%rough_share = 0.0_rk
     if (has_small_rest(self)) return
+    passes%learns = self%factor%has_patches() .and. .not. balance%is_static
     passes%rough = merge(rough_in_statics, rough_in_time, balance%is_static)
     self%condensed%rough_share = passes%rough
     allocate (passes%shift(size(self%condensed%k_ref)), source=0.0_rk)
   end subroutine start_passes
 
   !> The next pass starts from the exact jumps. Anderson's acceleration adds what further passes
-  !> would change.
+  !> would change, unless the blocks have learned it.
   subroutine start_pass(self, field, passes)
     class(condensed_equilibrium), intent(inout) :: self
     type(joint_field), intent(inout) :: field !< its response is exact
@@ -103,11 +108,22 @@ contains
     self%condensed%rough_share = 0.0_rk
     self%condensed%rough_residual = passes%rough*field%drift
     passes%drift = [field%drift, passes%drift(1)]
+    if (passes%learns) return
     change = reshape(field%response - field%jump, [size(change)])
     last = passes%shift
     call passes%mixing%advance(change, passes%shift)
     field%response = field%response + reshape(passes%shift - last - change, shape(field%response))
   end subroutine start_pass
+
+  !> Learns from the exact jumps by a change of the joint forces what the blocks leave out.
+  subroutine learn(self, change, jump)
+    class(condensed_equilibrium), intent(inout) :: self
+    real(rk), intent(in) :: change(:, :) !< (3, points) of the excess traction [Pa]
+    real(rk), intent(in) :: jump(:, :) !< (3, points) [m]
+    real(rk) :: force(3, size(change, 2))
+    force = self%weight*change*spread(self%operator%area, 1, 3)
+    call self%condensed%blocks%learn(reshape(force, [size(force)]), reshape(jump, [size(jump)]))
+  end subroutine learn
 
   !> Whether no drift is left to be expected. The solution is checked for a drift in any case.
   logical function is_last_pass(self, passes)

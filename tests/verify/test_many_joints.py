@@ -1,0 +1,66 @@
+"""Joints with more unknowns than the end of a factor holds: a dam with 40 joints of 1500 points.
+
+Under weight each joint is a separator of the factor. In motion the unknowns of so many joints stand
+anywhere in it. The compliance of each group comes from a part of the matrix near it, and solves
+with the whole matrix make up for the rest. The full Newton method, which does neither, is the
+reference.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import make_dam
+import numpy as np
+import pytest
+
+SIZES = "--joints 40 --arc 82 --levels 14 --bottom 20 --thick 4 --no-rock"
+TIGHT = "*CONTROLS, {solver}RESIDUAL=1e-10, INCREMENT=1e-8, ERROR ESTIMATE=OFF"
+
+
+def dam(folder: Path, solver: str = "") -> str:
+    """Weight and water, then 0.1 s of a motion of three components."""
+    time = 0.01 * np.arange(20)
+    files = []
+    for k, axis in enumerate("xyz"):
+        files.append(str(folder / f"motion_{axis}.txt"))
+        np.savetxt(files[-1], 20.0 / (k + 1) * np.sin(10.0 * np.pi * time + k))
+    options = ["--motion-unit", "M/S2", "--duration", "0.1", "--motion", *files]
+    assert make_dam.main(["-o", str(folder / "dam.inp"), *SIZES.split(), *options]) == 0
+    mesh = (folder / "dam_mesh.inp").read_text()
+    deck = (folder / "dam.inp").read_text().replace("*INCLUDE, INPUT=dam_mesh.inp\n", mesh)
+    for first in ("*DLOAD", "*DAMPING"):  # of both steps
+        deck = deck.replace(first, f"{TIGHT.format(solver=solver)}\n{first}")
+    return deck.replace("INPUT=dam_motion", f"INPUT={folder}/dam_motion")
+
+
+def histories(run) -> dict[str, np.ndarray]:
+    """Openings, slips and tractions of all joints over the largest of their kind."""
+    tables = {joint: run.csv(f"joint_{joint}") for joint in run.json["joints"]}
+    found = {}
+    for names in (("opening",), ("slip1", "slip2"), ("tn", "t1", "t2")):
+        size = max(np.abs(table[name]).max() for table in tables.values() for name in names)
+        found |= {f"{joint} {name}": table[name] / size
+                  for joint, table in tables.items() for name in names}  # fmt: skip
+    return found
+
+
+def test_two_threads_find_the_same(keyway, tmp_path):
+    """Joints open by millimetres, and the energy is balanced; 1e-8 as with the full method."""
+    one, two = (keyway(dam(tmp_path), "-j", str(n), name=f"threads_{n}") for n in (1, 2))
+    joints = one.json["joints"]
+    assert sum(joint["points"] for joint in joints.values()) >= 1500
+    assert max(one.csv(f"joint_{joint}")["opening"].max() for joint in joints) > 1e-3  # [m]
+    assert abs(one.csv("energy")["error"][-1]) < 1e-9  # increments end at 1e-10
+    other = histories(two)
+    for name, values in histories(one).items():
+        assert other[name] == pytest.approx(values, abs=1e-8), name
+
+
+@pytest.mark.full
+def test_the_full_method_finds_the_same(keyway, tmp_path):
+    """To 1e-8 of the largest value: increments end at 1e-10."""
+    near = histories(keyway(dam(tmp_path), name="near"))
+    full = histories(keyway(dam(tmp_path, "JOINT SOLVER=FULL, "), name="full"))
+    for name, values in full.items():
+        assert near[name] == pytest.approx(values, abs=1e-8), name
