@@ -120,6 +120,7 @@ contains
     part%group = group
     part%rows = [integer ::]
     if (group > 0) part%rows = groups%rows(group)
+    part%moved = [integer ::]
     part%spring = spring(part%rows)
     allocate (part%place(num_free), source=0)
     part%seed = unknowns_of(operator, num_free, part%rows)
@@ -289,6 +290,7 @@ contains
     real(rk), allocatable :: b(:, :)
     integer :: first, last, i, k, row
     allocate (columns(size(part%moved), size(rows)), source=0.0_rk)
+    if (part%num_rows == 0) return
     do first = 1, size(rows), block_size
       last = min(first + block_size - 1, size(rows))
       allocate (b(part%num_rows, last - first + 1), source=0.0_rk)
