@@ -19,7 +19,7 @@ module matrix_pattern
     integer, allocatable :: group(:)
     !> Pairs of unknowns: a jump, and a displacement that it adds to; allocated with `group`
     integer, allocatable :: jump(:), joined(:)
-    !> Unknowns of joints stand anywhere in a factor: they are too many for its end
+    !> Unknowns of joints are too many for the end of a factor and stand anywhere: none is last
     logical :: orders_freely = .false.
     logical :: is_symmetric = .true. !< lower triangle only
     integer, allocatable :: column_start(:) !< (num_total + 1), 1-based

@@ -23,9 +23,7 @@ contains
     integer, allocatable :: first(:), vertex_order(:)
     integer :: v, j, k, num_plain, status
     num_plain = matrix%num_free
-    if (.not. (allocated(matrix%group) .or. matrix%orders_freely)) then
-      num_plain = num_plain - matrix%num_last
-    end if
+    if (.not. allocated(matrix%group)) num_plain = num_plain - matrix%num_last
     call find_vertices(matrix, num_plain, first)
     call build_graph(matrix, first, graph%start, graph%neighbour)
     graph%weight = first(2:) - first(:size(first) - 1)

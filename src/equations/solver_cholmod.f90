@@ -163,8 +163,7 @@ contains
         status = analyse_in_groups(self, matrix, order)
       else
         status = keyway_cholmod_analyse(self%handle, self%num_free, self%start, &
-                                        matrix%free_entries, self%row, &
-                                        merge(0, matrix%num_last, matrix%orders_freely), &
+                                        matrix%free_entries, self%row, matrix%num_last, &
                                         c_loc(order))
       end if
     end if

@@ -187,7 +187,10 @@ contains
     type(dam_system), intent(inout) :: system
     associate (matrix => system%matrix)
       matrix%orders_freely = has_inertia .and. .not. fits_the_end(system%operator, matrix%num_free)
-      if (matrix%orders_freely) return
+      if (matrix%orders_freely) then
+        matrix%num_last = 0
+        return
+      end if
       call find_separators(system%numbers, system%operator, matrix%group, matrix%jump, &
                            matrix%joined)
     end associate

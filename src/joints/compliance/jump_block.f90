@@ -34,7 +34,6 @@ contains
     type(pattern), intent(in) :: matrix
     type(jump_schur_block), intent(out) :: jumps
     jumps%num_free = matrix%num_free
-    if (matrix%orders_freely) return
     if (allocated(matrix%group)) then
       call factor%take_top(pack(operator%unknown, operator%unknown <= matrix%num_free), jumps%top)
       jumps%is_there = jumps%top%is_there

@@ -41,7 +41,6 @@ contains
     real(rk), intent(in) :: force(:) !< (rows) [N]
     real(rk), intent(in) :: jump(:) !< (rows) [m]
     real(rk) :: rest(size(force)), part(most_kept), again(most_kept)
-    real(rk) :: size_of_rest
     if (.not. length(force) > 0.0_rk) return
     if (.not. allocated(self%force)) then
       allocate (self%force(size(force), most_kept), source=0.0_rk)
@@ -52,8 +51,7 @@ contains
     again = transposed_times_vector(self%force, rest)
     rest = rest - times_vector(self%force, again)
     part = part + again
-    size_of_rest = length(rest)
-    if (.not. size_of_rest > least_new*length(force)) return
+    if (.not. length(rest) > least_new*length(force)) return
     part(self%next) = 0.0_rk
     rest = force - times_vector(self%force, part)
     call replace_oldest(self, rest/length(rest), &
