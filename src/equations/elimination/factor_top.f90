@@ -165,7 +165,7 @@ contains
     class(top_of_factor), intent(in) :: self
     integer, intent(in) :: row(:), column(:) !< unknowns of the top
     real(rk), intent(out) :: block(:, :) !< (rows, columns)
-    integer, intent(out) :: missing !< entries outside of the pattern
+    integer, intent(out) :: missing !< entries outside of the pattern, -1: no memory
     missing = keyway_cholmod_inverse(self%handle, size(row), row - 1, size(column), column - 1, &
                                      block)
   end subroutine inverse_block

@@ -48,6 +48,8 @@ contains
       call top%invert_for(of_group(order(i))%unknown, has_failed)
       if (has_failed) exit
       call take_group(top, of_group, order(:i), spring, smallest, own, blocks, absent)
+      has_failed = absent < 0
+      if (has_failed) exit
       missing = missing + absent
       call top%release(of_group(order(i))%unknown)
     end do
@@ -81,11 +83,12 @@ contains
     real(rk), intent(in) :: smallest !< coupling of a block that is kept
     real(rk), intent(inout) :: own(:) !< (groups) sizes of own blocks [m/N]
     type(compliance_blocks), intent(inout) :: blocks
-    integer, intent(out) :: missing !< entries of the own block outside of the pattern
+    integer, intent(out) :: missing !< entries of the own block that are not there, -1: no memory
     real(rk), allocatable :: values(:, :)
     integer :: i, j, k, g, absent
     g = some(size(some))
     call take_block(top, of_group(g), of_group(g), values, missing)
+    if (missing < 0) return
     own(g) = own_size(values, spring(blocks%groups%rows(g)))
     call blocks%put(g, g, 1.0_rk, values, 0.0_rk)
     do i = 1, size(some) - 1
@@ -93,6 +96,8 @@ contains
       k = min(some(i), g)
       if (.not. are_known(top, of_group(j)%unknown, of_group(k)%unknown)) cycle
       call take_block(top, of_group(j), of_group(k), values, absent)
+      if (absent < 0) missing = absent
+      if (absent < 0) return
       call blocks%put_coupling(j, k, sqrt(own(j))*sqrt(own(k)), values, smallest)
     end do
   end subroutine take_group
@@ -153,12 +158,13 @@ contains
     type(top_of_factor), intent(in) :: top
     type(group_unknowns), intent(in) :: to, from
     real(rk), allocatable, intent(out) :: values(:, :) !< (rows, rows) [m/N]
-    integer, intent(out) :: missing
+    integer, intent(out) :: missing !< entries outside of the pattern, -1: no memory
     real(rk), allocatable :: inverse(:, :), column(:)
     integer :: r, c, k
     allocate (inverse(size(to%unknown), size(from%unknown)), column(size(to%unknown)))
     allocate (values(size(to%start) - 1, size(from%start) - 1))
     call top%inverse_block(to%unknown, from%unknown, inverse, missing)
+    if (missing < 0) return
     do c = 1, size(values, 2)
       column = 0.0_rk
       do k = from%start(c), from%start(c + 1) - 1

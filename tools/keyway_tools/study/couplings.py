@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from .deck_cards import Card, Deck, number_of
+from .deck_cards import Card, Deck, fields_of, number_of, quoted
 from .mesh_sets import element_rows, list_card, read_sets
 from .refined_mesh import BRICKS, FACE_NODES, RefinementError
 from .rungs import Rung
@@ -57,7 +57,7 @@ def exchanged(deck: Deck) -> Deck:
 
 
 def surfaces_of(card: Card) -> list[str]:
-    return [item.strip() for item in card.lines[0].split(",")[:2]]
+    return [item.strip() for item in fields_of(card.lines[0])[:2]]
 
 
 def joints_on_surfaces(deck: Deck) -> Deck:
@@ -160,15 +160,18 @@ def chains(deck: Deck) -> Deck:
             pairs.append(", ".join(map(str, [element + 1, *quad, *nodes])))
             element += 2
         points = [f"{twin}, {', '.join(map(repr, sets.nodes[old]))}" for old, twin in twins.items()]
+        quads_of, pairs_of, chain_of = (
+            quoted(f"{m}_OF_{name}") for m in ("QUADS", "PAIRS", "CHAIN")
+        )
         added += [
             Card("NODE", {}, points),
-            Card("ELEMENT", {"TYPE": "IFACE4", "ELSET": f"QUADS_OF_{name}"}, quads),
-            Card("ELEMENT", {"TYPE": "JOINT8", "ELSET": f"PAIRS_OF_{name}"}, pairs),
-            Card("INTERFACE", {"NAME": f"CHAIN_OF_{name}", "ELSET": f"QUADS_OF_{name}",
+            Card("ELEMENT", {"TYPE": "IFACE4", "ELSET": quads_of}, quads),
+            Card("ELEMENT", {"TYPE": "JOINT8", "ELSET": pairs_of}, pairs),
+            Card("INTERFACE", {"NAME": chain_of, "ELSET": quads_of,
                                "SURFACE": master}),
         ]  # fmt: skip
         joint.lines = []
-        joint.parameters["ELSET"] = f"PAIRS_OF_{name}"
+        joint.parameters["ELSET"] = pairs_of
         joint.parameters.pop("CLEARANCE", None)
     insert_before(new, "JOINT", added)
     return new
@@ -187,7 +190,7 @@ def facets_of(deck: Deck, surface: str) -> list[Facet]:
         if card.value("NAME") != surface.strip('"').upper():
             continue
         for line in card.lines:
-            label, face = (item.strip() for item in line.split(",")[:2])
+            label, face = (item.strip() for item in fields_of(line)[:2])
             for number in sorted(sets.elements_of(label)):
                 nodes = [rows[number][a] for a in FACE_NODES[face[1:]]]
                 found.append((str(number), face, nodes))
@@ -234,7 +237,7 @@ def stiffness_of(deck: Deck, surface: str) -> float:
         sum((a - b) ** 2 for a, b in zip(x[nodes[i]], x[nodes[i - 1]], strict=True)) ** 0.5
         for _, _, nodes in facets_of(deck, surface) for i in range(4) if nodes[i] != nodes[i - 1]
     ]  # fmt: skip
-    modulus = max(number_of(card.lines[0].split(",")[0]) for card in deck.of("ELASTIC"))
+    modulus = max(number_of(fields_of(card.lines[0])[0]) for card in deck.of("ELASTIC"))
     return STIFF_SPRINGS * modulus * len(edges) / sum(edges)
 
 

@@ -64,6 +64,22 @@ def plain_name(label: str) -> str:
     return label.strip().strip("\"'").upper()
 
 
+def quoted(name: str) -> str:
+    """A name as a deck has it: one with a comma has quotes."""
+    return f'"{name}"' if "," in name else name
+
+
+def fields_of(line: str) -> list[str]:
+    """The fields of a data line; commas within quotes belong to a name."""
+    fields = [""]
+    for piece in re.findall(r""""[^"]*"|'[^']*'|,|[^,"']+|.""", line):
+        if piece == ",":
+            fields.append("")
+        else:
+            fields[-1] += piece
+    return fields
+
+
 def number_of(item: str) -> float:
     """A number of a data line; Fortran's exponent D is one too. Raises ValueError."""
     return float(item.strip().lower().replace("d", "e"))

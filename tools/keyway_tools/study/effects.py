@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from .deck_cards import Card, Deck, number_of
+from .deck_cards import Card, Deck, fields_of, number_of
 from .mesh_sets import support_of
 from .rungs import Rung, as_it_is
 
@@ -70,7 +70,7 @@ def is_positive(card: Card, name: str) -> bool:
 
 def label_of(line: str) -> str:
     """What a line of *DLOAD does: GRAV, P3, HP6, .."""
-    return [*line.split(","), ""][1].strip().upper()
+    return [*fields_of(line), ""][1].strip().upper()
 
 
 def is_weight(line: str) -> bool:
@@ -112,11 +112,11 @@ def without_motion(dof: str) -> Callable[[Deck], Deck]:
             held = [line for line in card.lines if int(dof) in support_of(line)[1]]
             lines = [line for line in card.lines if line not in held]
             for line in held:
-                label, _, _, value = [*line.split(","), "", "", ""][:4]
+                label, _, _, value = [*fields_of(line), "", "", ""][:4]
                 lines += [f"{label}, {k}, {k}, {value}" for k in support_of(line)[1]
                           if k != int(dof)]  # fmt: skip
             kept = {name: text for name, text in card.parameters.items() if name == "OP"}
-            still = Card("BOUNDARY", kept, [f"{line.split(',')[0]}, {dof}, {dof}" for line in held])
+            still = Card("BOUNDARY", kept, [f"{fields_of(line)[0]}, {dof}, {dof}" for line in held])
             place = next(i for i, other in enumerate(new.cards) if other is card)
             card.lines = lines
             new.cards[place : place + 1] = [c for c in (still, card) if c.lines]

@@ -13,7 +13,7 @@ from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .deck_cards import Card, Deck, number_of
+from .deck_cards import Card, Deck, fields_of, number_of
 from .mesh_sets import element_rows
 
 FRAME = ("PART", "END PART", "ASSEMBLY", "END ASSEMBLY", "INSTANCE", "END INSTANCE")
@@ -33,7 +33,7 @@ class Instance:
 
     def placed(self, x: Vector) -> Vector:
         """A point of the part, moved and then rotated."""
-        rows = [[number_of(item) for item in line.split(",")] for line in self.lines]
+        rows = [[number_of(item) for item in fields_of(line)] for line in self.lines]
         if rows and len(rows[0]) <= 3:
             moved = [a + b for a, b in zip(x, [*rows.pop(0), 0.0, 0.0], strict=False)]
             x = (moved[0], moved[1], moved[2])
@@ -119,7 +119,7 @@ def assembled(deck: Deck) -> Iterator[Card | Instance]:
 def numbers_in(deck: Deck) -> Iterator[int]:
     """Numbers of all nodes and elements."""
     for card in deck.of("NODE"):
-        yield from (int(line.split(",")[0]) for line in card.lines)
+        yield from (int(fields_of(line)[0]) for line in card.lines)
     for card in deck.of("ELEMENT"):
         yield from (number for number, _ in element_rows(card))
 
@@ -147,7 +147,7 @@ def rewritten(card: Card, owner: Instance, instances: dict[str, Instance]) -> Ca
 
 
 def node_line(line: str, owner: Instance) -> str:
-    number, *rest = line.split(",")
+    number, *rest = fields_of(line)
     x = [number_of(item) if item.strip() else 0.0 for item in rest] + [0.0] * 3
     place = owner.placed((x[0], x[1], x[2]))
     return ", ".join([str(int(number) + owner.offset), *map(repr, place)])
@@ -155,7 +155,7 @@ def node_line(line: str, owner: Instance) -> str:
 
 def items(card: Card, line: str, scope: Instance, instances: dict[str, Instance]) -> Iterator[str]:
     """The fields of a line: references in the first one, in all of a list, INSTANCE.X anywhere."""
-    for k, item in enumerate(item.strip() for item in line.split(",")):
+    for k, item in enumerate(item.strip() for item in fields_of(line)):
         is_step = "GENERATE" in card.parameters and k == 2
         if found := in_instance(item, instances):
             yield label(found[1], instances[found[0]])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from .deck_cards import Card, Deck, number_of, plain_name
+from .deck_cards import Card, Deck, fields_of, number_of, plain_name, quoted
 
 NUM_NODES = {"JOINT8": 8, "IFACE4": 4}
 
@@ -52,7 +52,7 @@ def read_nodes(card: Card, sets: MeshSets) -> list[int]:
     """Adds the nodes of a card; their numbers."""
     numbers = []
     for line in card.lines:
-        number, *rest = line.split(",")
+        number, *rest = fields_of(line)
         x = [number_of(item) if item.strip() else 0.0 for item in rest[:3]]
         x += [0.0] * (3 - len(x))
         sets.nodes[int(number)] = (x[0], x[1], x[2])
@@ -66,7 +66,7 @@ def element_rows(card: Card) -> Iterator[tuple[int, list[int]]]:
     wanted = 8 if kind.startswith("C3D8") else NUM_NODES.get(kind, 0)
     row: list[int] = []
     for line in card.lines:
-        row += [int(item) for item in line.split(",") if item.strip()]
+        row += [int(item) for item in fields_of(line) if item.strip()]
         if len(row) <= wanted or (not wanted and line.rstrip().endswith(",")):
             continue
         yield row[0], row[1:]
@@ -77,7 +77,7 @@ def members(card: Card, sets: dict[str, set[int]]) -> set[int]:
     """Numbers of a card of a set: numbers, ranges (GENERATE), names of other sets."""
     found: set[int] = set()
     for line in card.lines:
-        items = [item.strip() for item in line.split(",") if item.strip()]
+        items = [item.strip() for item in fields_of(line) if item.strip()]
         if "GENERATE" in card.parameters:
             first, last, *step = map(int, items)
             found.update(range(first, last + 1, *step))
@@ -95,7 +95,7 @@ def add(sets: dict[str, set[int]], name: str, numbers) -> None:
 def list_card(keyword: str, name: str, numbers: list[int]) -> Card:
     """A set of numbers, eight to a line."""
     rows = [numbers[i : i + 8] for i in range(0, len(numbers), 8)]
-    return Card(keyword, {keyword: name}, [", ".join(map(str, row)) for row in rows])
+    return Card(keyword, {keyword: quoted(name)}, [", ".join(map(str, row)) for row in rows])
 
 
 SUPPORTS = {"ENCASTRE": (1, 3), "PINNED": (1, 3), "XSYMM": (1, 1), "YSYMM": (2, 2),
@@ -132,6 +132,6 @@ def held_nodes(deck: Deck, sets: MeshSets, dof: int) -> set[int]:
 
 def support_of(line: str) -> tuple[str, range, float]:
     """Node or set, directions and value of a line of *BOUNDARY."""
-    label, first, last, value = (plain_name(item) for item in [*line.split(","), "", ""][:4])
+    label, first, last, value = (plain_name(item) for item in [*fields_of(line), "", ""][:4])
     low, high = SUPPORTS.get(first) or (int(first), int(last or first))
     return label, range(low, high + 1), number_of(value) if value else 0.0

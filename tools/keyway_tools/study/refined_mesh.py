@@ -16,7 +16,7 @@ from functools import reduce
 from itertools import product
 from math import gcd
 
-from .deck_cards import Card, Deck
+from .deck_cards import Card, Deck, fields_of
 from .mesh_sets import (
     MeshSets,
     RefinementError,
@@ -225,7 +225,7 @@ class Refinement:
         """Faces of children on the faces of a surface."""
         lines = []
         for line in card.lines:
-            label, face = (item.strip() for item in line.split(",")[:2])
+            label, face = (item.strip() for item in fields_of(line)[:2])
             lines += [f"{child}, {face}" for child in self.children_on(label, face[1:])]
         return lines
 
@@ -240,7 +240,7 @@ class Refinement:
 
     def node_lines(self, card: Card) -> list[str]:
         """Lines of a surface of nodes, with the new nodes between all of them."""
-        labels = [line.split(",")[0].strip() for line in card.lines]
+        labels = [fields_of(line)[0].strip() for line in card.lines]
         nodes = set().union(*map(self.sets.nodes_of, labels))
         return [*card.lines, *(str(number) for _, number in self.grown(nodes))]
 
@@ -248,7 +248,7 @@ class Refinement:
         """Weight acts on all children; a pressure (P1 to P6, HP1 to HP6) on those at the face."""
         lines = []
         for line in card.lines:
-            label, kind, *rest = (item.strip() for item in line.split(","))
+            label, kind, *rest = (item.strip() for item in fields_of(line))
             if pressure := re.fullmatch("H?P([1-6])", kind.upper()):
                 found = self.children_on(label, pressure[1])
             elif label.isdigit():
@@ -262,7 +262,7 @@ class Refinement:
     def stage_lines(self, card: Card) -> list[str]:
         """The children of single elements; sets have them already."""
         lines = []
-        for item in (item.strip() for line in card.lines for item in line.split(",")):
+        for item in (item.strip() for line in card.lines for item in fields_of(line)):
             if item.isdigit():
                 lines += [str(child) for child, _ in self.children[int(item)]]
             elif item:

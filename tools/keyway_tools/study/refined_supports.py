@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass, field
 
-from .deck_cards import Card
+from .deck_cards import Card, fields_of, quoted
 from .mesh_sets import MeshSets, support_of
 from .refined_values import Key, mean
 
@@ -50,8 +50,8 @@ class Supports:
                     named[direction].single |= nodes
                 else:
                     named[direction].sets.append(nodes)
-            name = label if label.isdigit() else grown_name(label)
-            lines.append(",".join([name, *line.split(",")[1:]]))
+            name = label if label.isdigit() else quoted(grown_name(label))
+            lines.append(",".join([name, *fields_of(line)[1:]]))
         for direction, one in named.items():
             still = self.still.setdefault(direction, set())
             if card.value("TYPE") == "ACCELERATION":

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .deck_cards import Card, Deck, number_of
+from .deck_cards import Card, Deck, fields_of, number_of
 from .mesh_sets import MeshSets, RefinementError
 
 Key = tuple[tuple[int, int], ...]  # parents of a node and how often each counts
@@ -43,7 +43,7 @@ def initial_values(deck: Deck, sets: MeshSets) -> dict[tuple[str, str], dict[int
     for card in deck.of("INITIAL CONDITIONS"):
         kind = card.value("TYPE")
         for line in card.lines:
-            label, *rest = (item.strip() for item in line.split(","))
+            label, *rest = (item.strip() for item in fields_of(line))
             direction = "" if kind == "TEMPERATURE" else rest.pop(0)
             value = number_of(rest[0]) if rest and rest[0] else 0.0
             found[kind, direction].update(dict.fromkeys(sets.nodes_of(label), value))
@@ -157,11 +157,11 @@ def rows_of(
         for line in map(str.strip, text.splitlines()):
             if not line or line[0] in "*#":
                 continue
-            label, *items = (item.strip() for item in line.split(","))
+            label, *items = (item.strip() for item in fields_of(line))
             if label.upper() == "NODE":
                 times = tuple(items) if len(items) > 1 else ()
                 continue
             yield times, label, tuple(map(number_of, items))
     for line in card.lines:
-        label, value = line.split(",")[:2]
+        label, value = fields_of(line)[:2]
         yield (), label.strip(), (number_of(value),)

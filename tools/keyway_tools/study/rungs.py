@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from .deck_cards import Card, Deck, number_of
+from .deck_cards import Card, Deck, fields_of, number_of
 from .refined_mesh import BRICKS, refine
 
 # Extremes that every step records.
@@ -73,7 +73,7 @@ def scaled(factor: float) -> Callable[[Deck], Deck]:
     def change(deck: Deck) -> Deck:
         new = deck.copy()
         for card in new.of("DYNAMIC"):
-            items = card.lines[0].split(",")
+            items = fields_of(card.lines[0])
             for place in SIZES:
                 if place < len(items) and items[place].strip():
                     items[place] = repr(number_of(items[place]) * factor)
@@ -90,7 +90,7 @@ def shortened(deck: Deck, duration: float) -> Deck:
     """Dynamic steps that end after this time [s], where they are longer."""
     new = deck.copy()
     for card in new.of("DYNAMIC"):
-        items = card.lines[0].split(",")
+        items = fields_of(card.lines[0])
         if len(items) > 1 and number_of(items[1]) > duration:
             items[1] = repr(duration)
         card.lines[0] = ", ".join(item.strip() for item in items)
