@@ -95,8 +95,7 @@ contains
       call explain_failed_write(error, results%stem, .true.)
       call results%log%note(error%message)
       call results%finish(model, now, 'stopped', error%message, failure)
-      call results%log%note(closing_lines(model, results%summary, results%record, costs))
-      call results%log%note(text_of_ledger(costs))
+      call close_stopped_log(model, now, costs, results)
     else
       call results%finish(model, now, 'finished', '', failure)
       call results%log%say(closing_lines(model, results%summary, results%record, costs))
@@ -115,6 +114,24 @@ contains
     call explain_failed_write(error, results%stem, .true.)
     call mark_summary(results%stem//'.json', error%message)
   end subroutine run_alone
+
+  !> What a run that stopped has found, and its costs. They are on the screen, too, where it has
+  !> found something; the reason comes after them.
+  subroutine close_stopped_log(model, now, costs, results)
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    type(ledger), intent(in) :: costs
+    type(result_folder), intent(inout) :: results
+    character(:), allocatable :: found
+    found = closing_lines(model, results%summary, results%record, costs)
+    if (results%record%displacement%at(1)%is_found) then
+      call results%log%say('the run stopped at time '//as_text(now%total_time)// &
+                           '; what it has computed until then follows'//new_line('a')//found)
+    else
+      call results%log%note(found)
+    end if
+    call results%log%note(text_of_ledger(costs))
+  end subroutine close_stopped_log
 
   !> The summary of an earlier run in the folder, when a run could not open its results.
   subroutine mark_unopened(stem, is_continued)

@@ -94,6 +94,7 @@ def test_failed_run_leaves_the_ledger(keyway) -> None:
     motion = "sliding_block_base.txt"
     run = keyway(lifted, code=1, files={motion: (INPUT / motion).read_text()})
     assert run.json["status"] == "stopped"
+    assert "what it has computed" not in run.stderr  # no increment has been
     check_sums(run.json["ledger"])
     assert "iterate BED" in {part["name"] for part in run.json["ledger"]["parts"]}
     assert HEADING in " ".join((run.folder / "job.log").read_text().split())

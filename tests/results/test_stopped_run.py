@@ -56,6 +56,21 @@ S1, U
 """
 
 
+def test_a_stopped_run_says_what_it_has_found(keyway):
+    """On the screen as in job.json, before the reason; -q leaves the reason alone."""
+    deck = DECK.format(increments=27, duration=1, frequency=10)
+    run = keyway(deck, code=1)
+    lines = run.stderr.splitlines()
+    first = lines.index("the run stopped at time 0.27; what it has computed until then follows")
+    found = run.json["envelopes"]["U"]["anywhere"]
+    place = next(line for line in lines[first:] if line.startswith("largest displacement"))
+    assert float(place.split()[2]) == pytest.approx(found["value"], rel=1e-3)  # four digits
+    assert f"time {found['time']:g}" in place
+    quiet = keyway(deck, "-q", code=1)
+    assert "what it has computed" not in quiet.stderr
+    assert quiet.json["message"] in quiet.stderr
+
+
 def test_last_increment_of_a_stopped_run_is_written(keyway):
     run = keyway(DECK.format(increments=27, duration=1, frequency=10), code=1)
     assert list(run.csv("node_HEAD")["increment"]) == [0, 10, 20, 27]
