@@ -13,7 +13,7 @@ enum { trial_iterations = 20 };
 /* Largest eigenvalue of the matrix over its factor without a doubt about the factor. Pivots that
  * have nearly become negative leave larger ones: 19 at s = 0.001, 9 at 0.003 and 2.8 at 0.01 in an
  * arch dam on stretched rock, with 77, 59 and 49 iterations of multigrid. */
-static const double largest_of_sound = 3;
+static const double largest_of_good = 3;
 
 /* No larger shift for the sake of speed alone: from here on iterations without multigrid grow. */
 static const double shift_for_speed = 1e-2;
@@ -115,7 +115,7 @@ PetscErrorCode set_up_incomplete(struct incomplete_factor *self, KSP solver, Mat
     PetscCall(leave_out_empty(pc, blocks));
     PetscCall(try_factor(solver, blocks, &reason, &largest));
     is_poor = reason < 0 ? reason != KSP_DIVERGED_INDEFINITE_MAT
-                         : largest > largest_of_sound && self->shift < shift_for_speed;
+                         : largest > largest_of_good && self->shift < shift_for_speed;
   } while (is_poor && raise_shift(self));
   *is_definite = reason > 0;
   PetscCall(KSPSetUp(solver));

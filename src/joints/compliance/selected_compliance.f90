@@ -96,8 +96,10 @@ contains
       k = min(some(i), g)
       if (.not. are_known(top, of_group(j)%unknown, of_group(k)%unknown)) cycle
       call take_block(top, of_group(j), of_group(k), values, absent)
-      if (absent < 0) missing = absent
-      if (absent < 0) return
+      if (absent < 0) then
+        missing = absent
+        return
+      end if
       call blocks%put_coupling(j, k, sqrt(own(j))*sqrt(own(k)), values, smallest)
     end do
   end subroutine take_group

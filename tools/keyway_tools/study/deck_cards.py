@@ -214,7 +214,7 @@ def _has_parameters(line: str) -> bool:
 
 def _add_parameters(card: Card, text: str) -> bool:
     """Adds the parameters of a line; whether the next line goes on with them."""
-    for item in re.findall(r"""(?:"[^"]*"|'[^']*'|[^,])+""", text):
+    for item in fields_of(text):
         name, equals, value = item.partition("=")
         name = " ".join(name.upper().split())
         if name:

@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 
 from ..mesh_data import BRICK_FACES
-from ..study.deck_cards import Deck, read_deck
+from ..study.deck_cards import Deck, fields_of, read_deck
 from ..study.mesh_sets import MeshSets, element_rows, read_sets
 
 
@@ -82,7 +82,7 @@ def _face(
     found: list[list[int]] = []
     if card is not None:
         for line in card.lines:
-            label, face = (item.strip() for item in line.split(",")[:2])
+            label, face = (item.strip() for item in fields_of(line)[:2])
             corners = BRICK_FACES[int(face.upper().removeprefix("S")) - 1]
             own = [e for e in sets.elements_of(label) if e in elements]
             found += [[elements[e][k] for k in corners] for e in own]
