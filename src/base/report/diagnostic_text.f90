@@ -68,8 +68,8 @@ contains
     text = text//': '//printable(kind%name)
   end function further_errors
 
-  !> Positions of the errors by file and line, missing things last; errors of one line stay in the
-  !> order found.
+  !> Positions of the errors by file and line: first the errors that stand alone, then names that do
+  !> not exist, then what other cards lack; errors of one line stay in the order found.
   pure function order_by_place(list) result(order)
     type(diagnostic_list), intent(in) :: list
     integer :: order(list%num_kept)
@@ -79,7 +79,10 @@ contains
         if (list%errors(j)%spot%file == list%errors(i)%spot%file) exit
       end do
       file(i) = j
-      if (list%kinds%kinds(list%errors(i)%kind)%is_reference) file(i) = j + list%num_kept
+      associate (kind => list%kinds%kinds(list%errors(i)%kind))
+        if (kind%is_reference) file(i) = j + list%num_kept
+        if (kind%is_absence) file(i) = j + 2*list%num_kept
+      end associate
       do j = i - 1, 1, -1
         if (file(order(j)) < file(i) .or. file(order(j)) == file(i) .and. &
             list%errors(order(j))%spot%line <= list%errors(i)%spot%line) exit

@@ -2,7 +2,8 @@
 !> kind; so are references to one missing thing.
 !>
 !> A missing node, element, set or other name is often the consequence of another error, such as a
-!> misspelt keyword: such errors are listed after the others, and many of them as one.
+!> misspelt keyword: such errors are listed after the others, and many of them as one. So is what a
+!> card lacks, such as the stiffness of a material: these errors come last.
 module fault_kinds
   implicit none
   private
@@ -15,6 +16,7 @@ module fault_kinds
     integer :: num = 0 !< all
     integer :: first_line = 0, last_line = 0 !< of those that are not shown one by one
     logical :: is_reference = .false. !< something named does not exist
+    logical :: is_absence = .false. !< something has not what another card should give it
     integer :: most_shown = huge(1) !< if there are more, only one is shown
   end type fault_kind
 
@@ -58,12 +60,23 @@ contains
         kind%name = name
         kind%file = file
         kind%is_reference = is_reference
+        kind%is_absence = is_absence(problem)
         if (is_reference) kind%most_shown = merge(1, most_references, index(name, '''') > 0)
       end if
       kind%num = kind%num + 1
       if (kind%file /= file) kind%file = ''
     end associate
   end subroutine count_fault
+
+  !> Whether a problem says that a card which completes another is missing.
+  pure logical function is_absence(problem)
+    character(*), intent(in) :: problem
+    character(17), parameter :: signs(*) = [character(17) :: &
+                                            ' has no stiffness', ' has no *', 'no section', &
+                                            'no joint', 'belongs to no ', 'has a mass']
+    integer :: i
+    is_absence = any([(index(problem, trim(signs(i))) > 0, i=1, size(signs))])
+  end function is_absence
 
   !> Notes the line of an error that is not shown.
   subroutine note_line(self, number, line)
