@@ -17,6 +17,7 @@ from keyway_tools.report import __main__ as report
 from keyway_tools.report.browser import find_browser, opened, print_pdf
 from keyway_tools.report.errors import error_beside, estimates
 from keyway_tools.report.values import deck_of, key_numbers, title_of, verdict
+from keyway_tools.results import folder_and_job
 from keyway_tools.si_results import SiResults, Units
 from stage_decks import build
 from stage_decks import lifts as column
@@ -295,6 +296,15 @@ def test_deck_is_looked_for_above_the_results(block, tmp_path, monkeypatch):
 def test_folder_without_results_is_refused(tmp_path, capsys):
     assert report.main([str(tmp_path)]) == 2
     assert "no results of Keyway" in capsys.readouterr().err
+    assert report.main([str(tmp_path / "dam.inp")]) == 2
+    assert "nor results of a job of this name" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["dam.v2", "dam.v2.inp", "dam.v2.json", "dam.v2.h5"])
+def test_job_may_be_named_by_its_deck_or_a_file_of_it(tmp_path, name):
+    (tmp_path / "dam.v2.json").touch()
+    (tmp_path / "other.json").touch()
+    assert folder_and_job(tmp_path / name) == (tmp_path, "dam.v2")
 
 
 @pytest.mark.full

@@ -85,6 +85,7 @@ class JointPage:
         width = float(np.clip(height / tallest + 0.8, 1.9, 9.0))
         columns = max(1, min(len(joints), int(WIDEST / width)))
         rows = -(-len(joints) // columns)
+        columns = -(-len(joints) // rows)  # six joints in rows of three, not of five and one
         self.figure, axes = new_figure(
             rows, width=max(width * columns + 1.8, 8.0), row_height=height + 1.5, columns=columns,
             squeeze=False,

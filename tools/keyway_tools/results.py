@@ -30,10 +30,29 @@ ENVELOPE_NAMES = {
 _SOLIDS = ("C3D8", "C3D8B", "C3D8I", "C3D8R")
 
 
+KINDS = (".json", ".h5")  # of files that each job leaves
+
+
 def find_jobs(folder: Path) -> list[str]:
     """Names of the jobs whose fields (job.h5) lie in a folder."""
     checkpoints = (".ckpt", ".ckpt_old", ".ckpt_new")
     return sorted(path.stem for path in folder.glob("*.h5") if not path.stem.endswith(checkpoints))
+
+
+def folder_and_job(given: Path) -> tuple[Path, str | None]:
+    """The folder of results, and the job where a deck or a file of the results is given.
+
+    >>> folder_and_job(Path("."))
+    (PosixPath('.'), None)
+    """
+    if given.is_dir():
+        return given, None
+    for ending in (".inp", ".json", ".h5", ".log", ""):
+        job = given.name.removesuffix(ending)
+        has_ending = given.name.endswith(ending)
+        if has_ending and any((given.parent / f"{job}{kind}").is_file() for kind in KINDS):
+            return given.parent, job
+    return given, None
 
 
 def is_summary(path: Path) -> bool:
@@ -90,10 +109,11 @@ class Results:
     """The results of one job in a folder, each read at its first use."""
 
     def __init__(self, folder: Path | str, job: str | None = None):
-        self.folder = Path(folder)
+        self.folder, named = folder_and_job(Path(folder))
         if not self.folder.is_dir():
-            raise FileNotFoundError(f"there is no folder '{self.folder}'")
-        self.job = job or self._find_job()
+            what = f"there is no folder '{self.folder}', nor results of a job of this name"
+            raise FileNotFoundError(what)
+        self.job = job or named or self._find_job()
 
     def _find_job(self) -> str:
         jobs = [p.stem for p in sorted(self.folder.glob("*.json")) if is_summary(p)]

@@ -4,10 +4,10 @@
     keyway-plot RESULTS --animate mp4
     keyway-plot material CURVE.csv ... [--experiment POINTS.csv] [-o PICTURE.png]
 
-RESULTS is the folder that a run was given with -o. For each job in it: principal-stress,
-displacement and damage envelopes on the dam's faces and on sections, its damaged elements,
-openings, slip and state over the joints, openings in time, the stages of construction, the
-deformed shape, mode shapes, histories of nodes and energies, as far as the run has stored them.
+RESULTS is the folder that a run was given with -o, or a job in it as in out/dam.json. For each job:
+principal-stress, displacement and damage envelopes on the dam's faces and on sections, its damaged
+elements, openings, slip and state over the joints, openings in time, the stages of construction,
+the deformed shape, mode shapes, histories of nodes and energies, as far as the run has stored them.
 The pictures show MPa and mm; --units says what the deck has if it is not in m and Pa. The names of
 the pictures are printed.
 
@@ -40,7 +40,7 @@ from keyway_tools.pictures_curves import (
 from keyway_tools.pictures_joints import plot_joint_areas, plot_joint_slips, plot_joint_states
 from keyway_tools.pictures_material import COMPONENTS, plot_material, read_curve
 from keyway_tools.program import command_name, reason_of
-from keyway_tools.results import Step, find_jobs, why_incomplete
+from keyway_tools.results import Step, find_jobs, folder_and_job, why_incomplete
 from keyway_tools.si_results import SiResults, Units
 
 if TYPE_CHECKING:
@@ -121,7 +121,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("results", type=Path, nargs="+", help="folders of runs' results")
+    parser.add_argument("results", type=Path, nargs="+", help="folders of results, or jobs in them")
     parser.add_argument("-o", "--output", type=Path, help="folder of the pictures (RESULTS)")
     parser.add_argument("--job", help="only this job")
     what = "end of a scale: full, shared, FIELD=END; may be repeated"
@@ -153,8 +153,9 @@ def main(arguments: list[str] | None = None) -> int:
         return draw_material(arguments[1:])
     chosen = parse(arguments)
     found: list[SiResults] = []
-    for folder in chosen.results:
-        jobs = [chosen.job] if chosen.job else find_jobs(folder)
+    for given in chosen.results:
+        folder, job = folder_and_job(given)
+        jobs = [name] if (name := chosen.job or job) else find_jobs(folder)
         missing = [job for job in jobs if not (folder / f"{job}.h5").exists()]
         if missing or not jobs:
             what = f"{missing[0]}.h5" if missing else "job.h5"

@@ -2,10 +2,11 @@
 
     tools/report RESULTS ... [-o FILE.html] [--job NAME] [--range WHAT] [--units mm,MPa] [--pdf]
 
-RESULTS is the folder that a run was given with -o. The page JOB_report.html in it says how the run
-ended, shows the key numbers, the dam in space with its envelopes, joints, motion and modes, the
-histories, the cost, and what the deck assumes. Of two folders one page shows both runs side by
-side. --pdf prints the page too, by Chromium, Chrome or Edge.
+RESULTS is the folder that a run was given with -o, or a job in it as in out/dam.json. The page
+JOB_report.html in it says how the run ended, shows the key numbers, the dam in space with its
+envelopes, joints, motion and modes, the histories, the cost, and what the deck assumes. Of two
+folders one page shows both runs side by side. --pdf prints the page too, by Chromium, Chrome or
+Edge.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("results", type=Path, nargs="+", help="folders of runs' results")
+    parser.add_argument("results", type=Path, nargs="+", help="folders of results, or jobs in them")
     parser.add_argument("-o", "--output", type=Path, help="the page (JOB_report.html in RESULTS)")
     parser.add_argument("--job", help="the job, where a folder has several")
     what = "end of a scale of colours, as for plot.py: full, FIELD=END"
