@@ -34,7 +34,7 @@ from .flat_deck import flat
 from .ladder import JOB, Ladder, Outcome
 from .page import accuracy_page, effects_page, what_seconds_are
 from .pictures import draw
-from .rungs import base_deck, finer_rung, list_rungs, shortened
+from .rungs import Rung, base_deck, finer_rung, list_rungs, shortened
 from .words import effect_sentences, sentences
 
 # Folders of the deck as it is, in a ladder and among effects
@@ -125,9 +125,7 @@ def study(given: argparse.Namespace, runner: DeckRunner) -> int:
     deck = base_deck(flat_deck(given, runner))
     if given.duration:
         deck = shortened(deck, given.duration)
-    rungs = list_effects(deck) if given.effects else [*list_rungs(deck), *coupling_rungs(deck)]
-    if given.verify and not given.effects:
-        rungs.append(finer_rung(deck))
+    rungs = list_effects(deck) if given.effects else rungs_of(deck, given.verify)
     ladder = Ladder(deck, rungs, given.o, runner, given.budget, say)
     outcomes = ladder.run()
     header = header_of(given, runner, outcomes[0])
@@ -151,6 +149,12 @@ def study(given: argparse.Namespace, runner: DeckRunner) -> int:
         lines.append(meaning)
     say("\n".join([*lines, str(page)]))
     return 0
+
+
+def rungs_of(deck: Deck, is_verified: bool) -> list[Rung]:
+    """All variants; a run that verifies is finer than them, so that they are refined once only."""
+    found = [*list_rungs(deck, refines_twice=not is_verified), *coupling_rungs(deck)]
+    return [*found, finer_rung(deck)] if is_verified else found
 
 
 def flat_deck(given: argparse.Namespace, runner: DeckRunner) -> Deck:

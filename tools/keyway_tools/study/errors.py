@@ -3,10 +3,12 @@
 Increment: where three sizes converge regularly, Richardson's extrapolation with the order that they
 show gives the limit; else the finest run is the limit, and its distance to the next one is added.
 No increment has a smaller error than a finer one.
-Mesh and element: one refinement. The limit lies between the extrapolations of first order (corners)
-and of second order (smooth stresses); the error is the distance to the farther one. Errors of time,
-mesh and iteration are added, and their sum is multiplied by the safety factor of Roache (1994),
-Journal of Fluids Engineering 116, 405-413: 1.25 for limits that three sizes or two orders support.
+Mesh and element: one refinement or two. The limit lies between the extrapolations of first order
+(corners) and of second order (smooth stresses) from the two finest meshes, and of the order that
+three meshes show where they converge regularly; the error is the distance to the farthest one.
+Errors of time, mesh and iteration are added, and their sum is multiplied by the safety factor of
+Roache (1994), Journal of Fluids Engineering 116, 405-413: 1.25 for limits that three sizes or two
+orders support.
 """
 
 from __future__ import annotations
@@ -18,6 +20,7 @@ import numpy as np
 
 from .ladder import Outcome
 from .measured import QUANTITIES
+from .rungs import TWICE
 
 ORDERS = (0.5, 3.0)  # observed orders in time that count as regular
 GROWTH = 1.1  # a largest stress that grows by more with one refinement is at a singular place
@@ -56,6 +59,7 @@ class Choice:
     seconds: float  # predicted where the combination was not run
     error: float
     is_extrapolated: bool = False  # finer than all that was run
+    num_refined: int = 1  # refinements of the finest mesh that was run, where it is extrapolated
 
 
 def errors_of(outcomes: list[Outcome]) -> list[Error]:
@@ -145,11 +149,19 @@ def observed_order(values: np.ndarray) -> float | None:
 
 
 def mesh_limits(start: float, found: list[tuple[Outcome, float]]) -> list[float]:
-    """Extrapolations of first and second order from one refinement; empty without one."""
-    if not found:
+    """Extrapolations from the two finest meshes, of first and second order and of the order that
+    three meshes show; empty without a refinement."""
+    by_size = {outcome.rung.size: value for outcome, value in found}
+    values = [start]
+    while (size := 0.5 ** len(values)) in by_size:
+        values.append(by_size[size])
+    if len(values) == 1:
         return []
-    fine = found[0][1]
-    return [fine + (fine - start) / (2.0**order - 1.0) for order in (1, 2)]
+    orders = [1.0, 2.0]
+    if (order := observed_order(np.array(values))) is not None:
+        orders.append(order)
+    last, before = values[-1], values[-2]
+    return [last + (last - before) / (2.0**order - 1.0) for order in orders]
 
 
 def singular_place(outcomes: list[Outcome]) -> tuple[list[float], float] | None:
@@ -186,14 +198,19 @@ def choices_of(error: Error, outcomes: list[Outcome]) -> list[Choice | None]:
 def finer_choices(error: Error, seconds: dict[str, float], base: float) -> list[Choice]:
     """Meshes that are refined more often than any that was run: an error of first order is halved
     each time, and the time grows by the same factor."""
-    if FINE_MESH not in error.mesh or FINE_MESH not in seconds:
+    meshes = [name for name in (BASE, FINE_MESH, TWICE) if name in error.mesh and name in seconds]
+    if meshes[:2] != [BASE, FINE_MESH]:
         return []
-    ratio = seconds[FINE_MESH] / base
+    ratio = seconds[meshes[-1]] / seconds[meshes[-2]]
     found = []
     for times, (increment, in_time) in product(REFINEMENTS, error.time.items()):
-        in_space = error.mesh[BASE] / 2.0**times
+        more = times - (len(meshes) - 1)  # refinements beyond the finest mesh
+        if more < 1:
+            continue
+        in_space = error.mesh[meshes[-1]] / 2.0**more
         total = SAFETY * (in_time + in_space + error.iteration)
-        cost = seconds[increment] * ratio**times
+        cost = seconds[increment] / base * seconds[meshes[-1]] * ratio**more
         name = f"mesh refined {times} times"
-        found.append(Choice(error.quantity, 0.0, increment, name, cost, total, True))
+        is_finer = (True, len(meshes) - 1)
+        found.append(Choice(error.quantity, 0.0, increment, name, cost, total, *is_finer))
     return found

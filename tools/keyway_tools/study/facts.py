@@ -65,6 +65,7 @@ def facts_of_choice(choice: Choice) -> dict[str, Any]:
         "seconds": rounded(choice.seconds),
         "was_run": len(parts) < 2 and not choice.is_extrapolated,
         "is_extrapolated": choice.is_extrapolated,
+        "num_refined": choice.num_refined,
         "error": rounded(choice.error),
     }
 

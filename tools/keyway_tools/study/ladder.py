@@ -15,7 +15,7 @@ from keyway_tools.results import Results
 from .deck_cards import Deck
 from .measured import Measured, measure, time_in_words
 from .refined_mesh import RefinementError
-from .rungs import Rung
+from .rungs import TWICE, Rung
 
 # The order in which the budget is spent.
 PRIORITY = (
@@ -54,7 +54,7 @@ class Ladder:
         say: Callable[[str], None] = print,
     ):
         self.base = base
-        self.rungs = sorted(rungs, key=lambda rung: PRIORITY.index(rung.axis))
+        self.rungs = sorted(rungs, key=lambda r: (r.name == TWICE, PRIORITY.index(r.axis)))
         self.folder = folder
         self.runner = runner
         self.budget = budget  # seconds of all runs
@@ -79,6 +79,8 @@ class Ladder:
             if outcome.why_not:
                 self.say(f"{outcome.name}: {outcome.why_not}")
                 continue
+            if outcome.name == TWICE:
+                outcome.predicted = predicted_twice(found) or outcome.predicted
             left = self.budget - self.spent
             needed = self.delay() * (outcome.predicted or 0.0)
             if needed > left and not self.is_kept(outcome.rung):
@@ -115,7 +117,8 @@ class Ladder:
         """
         assert base.measured
         factor = rung.factor
-        if rung.axis in FORECAST_BY_COUNTS and base.predicted:
+        # The deck of a mesh that is refined twice is large: it is written when it is run.
+        if rung.axis in FORECAST_BY_COUNTS and rung.name != TWICE and base.predicted:
             found = self.forecast(rung)
             if found is not None:
                 factor = found / base.predicted
@@ -189,6 +192,15 @@ class Ladder:
         if is_alone(self.runner.options) and record.processor_s:
             found.seconds = record.processor_s
         return found
+
+
+def predicted_twice(found: Sequence[Outcome]) -> float | None:
+    """Seconds of the mesh refined twice: the second refinement multiplies the time as the first
+    did. None where the first was not run."""
+    base, once = found[0], next((o for o in found if o.rung.axis == "mesh"), None)
+    if not once or not once.measured or not base.measured:
+        return None
+    return once.measured.seconds**2 / base.measured.seconds
 
 
 def is_alone(options: list[str]) -> bool:

@@ -17,6 +17,7 @@ REQUESTS = (
 JOINTS = ("JOINT", "CONTACT PAIR")
 INELASTIC = ("CONCRETE DAMAGED PLASTICITY", "PLASTIC", "USER MATERIAL")
 SIZES = (0, 2, 3)  # fields of *DYNAMIC: first, smallest and largest increment
+TWICE = "mesh refined twice"  # name of a rung
 FINEST_INCREMENT = 0.125  # of the check of a ladder
 # A reduced model with its estimates over the full one: 2.1, 2.1, 1.1 and 0.6 in docs/accuracy.md,
 # less with more unknowns
@@ -51,7 +52,7 @@ def base_deck(deck: Deck) -> Deck:
     return base
 
 
-def list_rungs(deck: Deck) -> list[Rung]:
+def list_rungs(deck: Deck, refines_twice: bool = True) -> list[Rung]:
     """All rungs of a deck, the deck as it is first."""
     found = [Rung("base", "the deck as it is", 1.0, 1.0, as_it_is)]
     if deck.has("DYNAMIC"):
@@ -67,7 +68,13 @@ def list_rungs(deck: Deck) -> list[Rung]:
     if deck.has("JOINT LAW"):
         found += [stiffness_rung(factor) for factor in (0.1, 10.0)]
     found += solver_rungs(deck)
+    if refines_twice:
+        found.append(Rung("mesh", TWICE, 64.0**SLOWEST, 0.25, refined_twice))
     return found
+
+
+def refined_twice(deck: Deck) -> Deck:
+    return refine(refine(deck))
 
 
 def scaled(factor: float) -> Callable[[Deck], Deck]:
@@ -105,9 +112,9 @@ def finer_rung(deck: Deck) -> Rung:
     factor = 64.0**SLOWEST
 
     def change(deck: Deck) -> Deck:
-        return scaled(FINEST_INCREMENT)(refine(refine(deck)))
+        return scaled(FINEST_INCREMENT)(refined_twice(deck))
 
-    name = "mesh refined twice"
+    name = TWICE
     if deck.has("DYNAMIC"):
         name += f", increment x {FINEST_INCREMENT:g}"
         factor /= FINEST_INCREMENT

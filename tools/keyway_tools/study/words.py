@@ -58,7 +58,8 @@ def sentence_of_choice(choice: dict[str, Any]) -> str:
     if choice["choice"] is None:
         return f"{target}: beyond this ladder."
     if choice["is_extrapolated"]:
-        how = " (extrapolated from one refinement, of first order)"
+        from_what = "two refinements" if choice.get("num_refined") == 2 else "one refinement"
+        how = f" (extrapolated from {from_what}, of first order)"
     else:
         how = "" if choice["was_run"] else " (predicted)"
     return f"{target}: {choice['choice']}, about {time_in_words(choice['seconds'])}{how}."
