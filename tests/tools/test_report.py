@@ -9,6 +9,7 @@ import io
 import json
 import re
 import subprocess
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from harness import ROOT
 from keyway_tools.report import __main__ as report
 from keyway_tools.report.browser import find_browser, opened, print_pdf
 from keyway_tools.report.errors import error_beside, estimates
-from keyway_tools.report.values import deck_of, key_numbers, title_of, verdict
+from keyway_tools.report.values import deck_of, header, key_numbers, title_of, verdict
 from keyway_tools.results import folder_and_job
 from keyway_tools.si_results import SiResults, Units
 from stage_decks import build
@@ -298,6 +299,16 @@ def test_folder_without_results_is_refused(tmp_path, capsys):
     assert "no results of Keyway" in capsys.readouterr().err
     assert report.main([str(tmp_path / "dam.inp")]) == 2
     assert "nor results of a job of this name" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [(0.2443, "0.244 s"), (59.96, "60 s"), (1132.42, "18 min 52 s"), (3599.6, "1 h 0 min")],
+)
+def test_cost_is_in_minutes_where_it_is_long(seconds, words):
+    summary = {"ledger": {"wall_s": seconds, "peak_memory_mb": 1388.47}}
+    rows = header(SimpleNamespace(summary=summary, job="dam", date="2026-01-01"))
+    assert dict(rows)["Cost"] == f"{words}, 1,388 MB"
 
 
 @pytest.mark.parametrize("name", ["dam.v2", "dam.v2.inp", "dam.v2.json", "dam.v2.h5"])

@@ -40,8 +40,18 @@ def header(results: SiResults) -> list[tuple[str, str]]:
     ledger = summary.get("ledger", {})
     if "wall_s" in ledger:
         memory = ledger.get("peak_memory_mb", 0.0)
-        rows.append(("Cost", f"{ledger['wall_s']:.3g} s, {memory:.3g} MB"))
+        rows.append(("Cost", f"{_time_in_words(ledger['wall_s'])}, {memory:,.0f} MB"))
     return [(name, text) for name, text in rows if text]
+
+
+def _time_in_words(seconds: float) -> str:
+    """'0.244 s', '18 min 52 s', '2 h 5 min'."""
+    if seconds < 60.0:
+        return f"{seconds:.3g} s"
+    whole = round(seconds)
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60} s"
+    return f"{whole // 3600} h {whole % 3600 // 60} min"
 
 
 def _machine_in_words(machine: Any) -> str:
