@@ -126,7 +126,7 @@ contains
     found = closing_lines(model, results%summary, results%record, costs)
     if (results%record%displacement%at(1)%is_found) then
       call results%log%say('the run stopped at time '//as_text(now%total_time)// &
-                           '; what it has computed until then follows'//new_line('a')//found)
+                           ', after these'//new_line('a')//found)
     else
       call results%log%note(found)
     end if
