@@ -114,8 +114,10 @@ def test_a_signal_before_the_results_are_open(program_path, tmp_path, number):
     path.write_text(steel(SHORT))
     os.mkfifo(tmp_path / "pipe.inc")
     source.write_text(f"include '{tmp_path}/pipe.inc'\n")
+    # Tests that run under nohup would give their ignored SIGHUP to the program.
+    heard = ["env", "--default-signal=HUP"]
     process = subprocess.Popen(
-        [program_path, "-q", "-o", out, "--umat", source, path], start_new_session=True
+        [*heard, program_path, "-q", "-o", out, "--umat", source, path], start_new_session=True
     )
     while not (out / "job.lock").exists() or not (out / "job.lock").read_text():
         assert process.poll() is None

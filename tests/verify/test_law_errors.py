@@ -32,8 +32,11 @@ def led(path: str, increments: int) -> str:
     cards = CONCRETE[path].cards("STUFF") + "*SOLID SECTION, ELSET=BODY, MATERIAL=STUFF\n"
     cards += "*AMPLITUDE, NAME=FIRST\n0., 0., 0.5, 0.6, 1., 1.\n"
     cards += "*AMPLITUDE, NAME=LATER\n0., 0., 0.3, 0., 1., 1.\n"
-    cards += "*BOUNDARY\nSURFACE, 3, 3\n*STEP, INC=100000\n*STATIC, DIRECT\n"
-    cards += f"{1.0 / increments!r}, 1.\n*BOUNDARY, AMPLITUDE=FIRST\n{moved(1, stretch)}"
+    cards += "*BOUNDARY\nSURFACE, 3, 3\n*STEP, INC=100000\n*STATIC\n"
+    # No increment is larger than this. Where the inside of the block cracks here or there by
+    # round-off, an increment may find no equilibrium and is cut.
+    first = 1.0 / increments
+    cards += f"{first!r}, 1., 1e-7, {first!r}\n*BOUNDARY, AMPLITUDE=FIRST\n{moved(1, stretch)}"
     cards += f"*BOUNDARY, AMPLITUDE=LATER\n{moved(2, shear)}*END STEP\n"
     return brick_deck(mesh, "C3D8", cards)
 
