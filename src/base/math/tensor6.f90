@@ -73,17 +73,13 @@ contains
   pure function principal_values(t) result(values)
     real(rk), intent(in) :: t(6)
     real(rk) :: values(3)
-    real(rk) :: mean, s1, s2, s3, j2, j3, radius, cosine, third, single, half
-    mean = (t(1) + t(2) + t(3))/3.0_rk
-    s1 = t(1) - mean
-    s2 = t(2) - mean
-    s3 = t(3) - mean
-    j2 = 0.5_rk*(s1**2 + s2**2 + s3**2) + t(4)**2 + t(5)**2 + t(6)**2
+    real(rk) :: mean, j2, radius, cosine, third, single, half
+    mean = trace(t)/3.0_rk
+    j2 = second_invariant(t)
     cosine = 1.0_rk
     if (j2 > smallest_j2 .and. j2 < largest_j2) then
-      j3 = s1*s2*s3 + 2.0_rk*t(4)*t(5)*t(6) - s1*t(6)**2 - s2*t(5)**2 - s3*t(4)**2
       radius = 2.0_rk*sqrt(j2/3.0_rk)
-      cosine = 4.0_rk*j3/radius**3
+      cosine = 4.0_rk*third_invariant(t)/radius**3
     end if
     if (abs(cosine) < safe_cosine) then
       third = cosine_of_third(abs(cosine))
@@ -105,20 +101,35 @@ contains
   pure function values_from_plane(t) result(values)
     real(rk), intent(in) :: t(6)
     real(rk) :: values(3)
-    real(rk) :: mean, scale, s(6), j2, cosine, third
+    real(rk) :: mean, scale, s(6), single
+    logical :: is_pressure
+    call find_single_value(t, mean, scale, s, single, is_pressure)
+    values = mean
+    if (.not. is_pressure) values = mean + scale*values_around(s, single)
+  end function values_from_plane
+
+  !> The principal value of the deviator that is farthest from the two others.
+  pure subroutine find_single_value(t, mean, scale, s, single, is_pressure)
+    real(rk), intent(in) :: t(6)
+    real(rk), intent(out) :: mean, scale !< t = mean + scale*s
+    real(rk), intent(out) :: s(6) !< deviator, its largest component is 1
+    real(rk), intent(out) :: single !< of s
+    logical, intent(out) :: is_pressure !< there is no deviator but what the mean lost in rounding
+    real(rk) :: j2, cosine
     mean = trace(t)/3.0_rk
     s(1:3) = t(1:3) - mean
     s(4:6) = t(4:6)
     scale = max(abs(s(1)), abs(s(2)), abs(s(3)), abs(s(4)), abs(s(5)), abs(s(6)))
-    values = mean
-    if (scale < tiny(1.0_rk)) return
+    single = 0.0_rk
+    is_pressure = scale < tiny(1.0_rk)
+    if (is_pressure) return
     s = s/scale
     j2 = second_invariant(s)/3.0_rk
-    if (j2 < epsilon(j2)**2) return ! what the mean lost in rounding
+    is_pressure = j2 < epsilon(j2)**2
+    if (is_pressure) return
     cosine = 0.5_rk*third_invariant(s)/(j2*sqrt(j2))
-    third = cosine_of_third(min(1.0_rk, abs(cosine)))
-    values = mean + scale*values_around(s, sign(2.0_rk*sqrt(j2)*third, cosine))
-  end function values_from_plane
+    single = sign(2.0_rk*sqrt(j2)*cosine_of_third(min(1.0_rk, abs(cosine))), cosine)
+  end subroutine find_single_value
 
   !> cos(a/3) from cos(a) for a of 0 to 90 degrees: the root c of 4 c**3 - 3 c = cos(a) near 1.
   !> The cubic has an error below 5e-5, and a step of Newton squares it, times 1.7.
@@ -143,22 +154,15 @@ contains
     real(rk), intent(in) :: t(6)
     real(rk), intent(out) :: values(3)
     real(rk), intent(out) :: axes(3, 3) !< columns in the order of the values
-    real(rk) :: mean, scale, s(6), j2, cosine, single, pair(2), plane(3, 2), columns(3, 3)
-    mean = trace(t)/3.0_rk
-    s(1:3) = t(1:3) - mean
-    s(4:6) = t(4:6)
-    scale = max(abs(s(1)), abs(s(2)), abs(s(3)), abs(s(4)), abs(s(5)), abs(s(6)))
+    real(rk) :: mean, scale, s(6), single, pair(2), plane(3, 2), columns(3, 3)
+    logical :: is_pressure
+    call find_single_value(t, mean, scale, s, single, is_pressure)
     values = mean
     axes = 0.0_rk
     axes(1, 1) = 1.0_rk
     axes(2, 2) = 1.0_rk
     axes(3, 3) = 1.0_rk
-    if (scale < tiny(1.0_rk)) return
-    s = s/scale
-    j2 = second_invariant(s)/3.0_rk
-    if (j2 < epsilon(j2)**2) return ! what the mean lost in rounding
-    cosine = 0.5_rk*third_invariant(s)/(j2*sqrt(j2))
-    single = sign(2.0_rk*sqrt(j2)*cosine_of_third(min(1.0_rk, abs(cosine))), cosine)
+    if (is_pressure) return
     columns = as_matrix(s)
     call span_normal_plane(columns, single, plane(:, 1), plane(:, 2))
     call rotate_in_plane(columns, plane, pair)
