@@ -5,6 +5,7 @@
 !> misspelt keyword: such errors are listed after the others, and many of them as one. So is what a
 !> card lacks, such as the stiffness of a material: these errors come last.
 module fault_kinds
+  use message_catalogue, only: label_of_fault
   implicit none
   private
   public :: fault_kind, kind_list
@@ -60,23 +61,13 @@ contains
         kind%name = name
         kind%file = file
         kind%is_reference = is_reference
-        kind%is_absence = is_absence(problem)
+        kind%is_absence = label_of_fault(problem, '') == ' [incomplete-model]'
         if (is_reference) kind%most_shown = merge(1, most_references, index(name, '''') > 0)
       end if
       kind%num = kind%num + 1
       if (kind%file /= file) kind%file = ''
     end associate
   end subroutine count_fault
-
-  !> Whether a problem says that a card which completes another is missing.
-  pure logical function is_absence(problem)
-    character(*), intent(in) :: problem
-    character(17), parameter :: signs(*) = [character(17) :: &
-                                            ' has no stiffness', ' has no *', 'no section', &
-                                            'no joint', 'belongs to no ', 'has a mass']
-    integer :: i
-    is_absence = any([(index(problem, trim(signs(i))) > 0, i=1, size(signs))])
-  end function is_absence
 
   !> Notes the line of an error that is not shown.
   subroutine note_line(self, number, line)
