@@ -5,10 +5,10 @@ import json
 import pytest
 from harness import ROOT
 from keyway_tools.study.__main__ import main
-from keyway_tools.study.errors import BASE, FINE_MESH, choices_of, error_of
+from keyway_tools.study.errors import choices_of, error_of
 from keyway_tools.study.ladder import Outcome, predicted_twice
 from keyway_tools.study.measured import Measured
-from keyway_tools.study.rungs import TWICE, Rung, as_it_is
+from keyway_tools.study.rungs import BASE, ONCE, TWICE, Rung, as_it_is
 
 
 def outcome(axis, name, size, seconds, value):
@@ -20,7 +20,7 @@ def outcome(axis, name, size, seconds, value):
 
 def meshes(order):
     """Three meshes with errors of size**order, limit 1; each takes ten times as long."""
-    sizes = (("base", BASE, 1.0), ("mesh", FINE_MESH, 0.5), ("mesh", TWICE, 0.25))
+    sizes = (("base", BASE, 1.0), ("mesh", ONCE, 0.5), ("mesh", TWICE, 0.25))
     return [outcome(axis, name, size, 10.0**i, 1.0 + size**order)
             for i, (axis, name, size) in enumerate(sizes)]  # fmt: skip
 
@@ -29,7 +29,7 @@ def meshes(order):
 def test_limit_is_among_the_extrapolations_of_three_meshes(order):
     """The exact error of each mesh is not more than the error that is said."""
     found = error_of("displacement", meshes(order))
-    for name, size in ((BASE, 1.0), (FINE_MESH, 0.5), (TWICE, 0.25)):
+    for name, size in ((BASE, 1.0), (ONCE, 0.5), (TWICE, 0.25)):
         assert found.mesh[name] * found.limit >= size**order * (1.0 - 1e-12)
     once = error_of("displacement", meshes(order)[:2])
     assert found.uncertainty < once.uncertainty

@@ -9,14 +9,14 @@ from harness import ROOT
 from keyway_tools.study.couplings import coupling_rungs
 from keyway_tools.study.deck_cards import FLAGS, OF_SEVERAL_WORDS, Card, Deck, read_deck
 from keyway_tools.study.effects import list_effects
-from keyway_tools.study.errors import BASE, FINE_MESH, errors_of
+from keyway_tools.study.errors import errors_of
 from keyway_tools.study.facts import facts_of
 from keyway_tools.study.flat_deck import flat
 from keyway_tools.study.ladder import Outcome
 from keyway_tools.study.measured import Measured
 from keyway_tools.study.mesh_sets import read_sets, support_of
 from keyway_tools.study.refined_mesh import RefinementError, refine
-from keyway_tools.study.rungs import TWICE, Rung, as_it_is, base_deck, list_rungs
+from keyway_tools.study.rungs import BASE, ONCE, TWICE, Rung, as_it_is, base_deck, list_rungs
 from keyway_tools.study.words import sentences_of_quantity
 from make_keywords import ask, read_families, read_keywords
 from tied_blocks import Blocks, node_set, state_of
@@ -252,7 +252,7 @@ def test_parts_are_left_as_they_are_by_name(tmp_path):
 def test_increments_that_were_not_run_have_no_error_of_zero():
     """A budget for the refined mesh alone: the error of the increment is not known."""
     base = Outcome(Rung("base", BASE, 1.0, 1.0, as_it_is), 1.0, Measured(1.0, 1.0, 9, 5, 0))
-    fine = Outcome(Rung("mesh", FINE_MESH, 8.0, 0.5, as_it_is), 8.0, Measured(8.0, 1.0, 50, 5, 0))
+    fine = Outcome(Rung("mesh", ONCE, 8.0, 0.5, as_it_is), 8.0, Measured(8.0, 1.0, 50, 5, 0))
     half = Outcome(Rung("increment", "increment x 0.5", 2.0, 0.5, as_it_is), 2.0, why_not="late")
     base.measured.values["displacement"], fine.measured.values["displacement"] = 1.0, 1.1
     outcomes = [base, fine, half]

@@ -20,12 +20,11 @@ import numpy as np
 
 from .ladder import Outcome
 from .measured import QUANTITIES
-from .rungs import TWICE
+from .rungs import BASE, ONCE, TWICE
 
 ORDERS = (0.5, 3.0)  # observed orders in time that count as regular
 GROWTH = 1.1  # a largest stress that grows by more with one refinement is at a singular place
 SAFETY = 1.25
-BASE, FINE_MESH = "the deck as it is", "mesh refined"  # names of rungs
 REFINEMENTS = (2, 3, 4)  # of meshes that are extrapolated
 TARGETS = (0.10, 0.05, 0.02, 0.01)
 
@@ -58,8 +57,12 @@ class Choice:
     mesh: str
     seconds: float  # predicted where the combination was not run
     error: float
-    is_extrapolated: bool = False  # finer than all that was run
-    num_refined: int = 1  # refinements of the finest mesh that was run, where it is extrapolated
+    # Where it is finer than all that was run: refinements of the finest mesh that was; else 0
+    num_refined: int = 0
+
+    @property
+    def is_extrapolated(self) -> bool:
+        return self.num_refined > 0
 
 
 def errors_of(outcomes: list[Outcome]) -> list[Error]:
@@ -198,19 +201,19 @@ def choices_of(error: Error, outcomes: list[Outcome]) -> list[Choice | None]:
 def finer_choices(error: Error, seconds: dict[str, float], base: float) -> list[Choice]:
     """Meshes that are refined more often than any that was run: an error of first order is halved
     each time, and the time grows by the same factor."""
-    meshes = [name for name in (BASE, FINE_MESH, TWICE) if name in error.mesh and name in seconds]
-    if meshes[:2] != [BASE, FINE_MESH]:
+    meshes = [name for name in (BASE, ONCE, TWICE) if name in error.mesh and name in seconds]
+    if meshes[:2] != [BASE, ONCE]:
         return []
     ratio = seconds[meshes[-1]] / seconds[meshes[-2]]
+    num_run = len(meshes) - 1  # refinements of the finest mesh
     found = []
     for times, (increment, in_time) in product(REFINEMENTS, error.time.items()):
-        more = times - (len(meshes) - 1)  # refinements beyond the finest mesh
+        more = times - num_run
         if more < 1:
             continue
         in_space = error.mesh[meshes[-1]] / 2.0**more
         total = SAFETY * (in_time + in_space + error.iteration)
         cost = seconds[increment] / base * seconds[meshes[-1]] * ratio**more
         name = f"mesh refined {times} times"
-        is_finer = (True, len(meshes) - 1)
-        found.append(Choice(error.quantity, 0.0, increment, name, cost, total, *is_finer))
+        found.append(Choice(error.quantity, 0.0, increment, name, cost, total, num_run))
     return found

@@ -17,7 +17,8 @@ REQUESTS = (
 JOINTS = ("JOINT", "CONTACT PAIR")
 INELASTIC = ("CONCRETE DAMAGED PLASTICITY", "PLASTIC", "USER MATERIAL")
 SIZES = (0, 2, 3)  # fields of *DYNAMIC: first, smallest and largest increment
-TWICE = "mesh refined twice"  # name of a rung
+# Names of rungs
+BASE, ONCE, TWICE = "the deck as it is", "mesh refined", "mesh refined twice"
 FINEST_INCREMENT = 0.125  # of the check of a ladder
 # A reduced model with its estimates over the full one: 2.1, 2.1, 1.1 and 0.6 in docs/accuracy.md,
 # less with more unknowns
@@ -54,14 +55,14 @@ def base_deck(deck: Deck) -> Deck:
 
 def list_rungs(deck: Deck, refines_twice: bool = True) -> list[Rung]:
     """All rungs of a deck, the deck as it is first."""
-    found = [Rung("base", "the deck as it is", 1.0, 1.0, as_it_is)]
+    found = [Rung("base", BASE, 1.0, 1.0, as_it_is)]
     if deck.has("DYNAMIC"):
         found += [
             Rung("increment", f"increment x {factor:g}", 1.0 / factor, factor, scaled(factor))
             for factor in (2.0, 0.5, 0.25)
         ]
     found += element_rungs(deck)
-    found.append(Rung("mesh", "mesh refined", 8.0**SLOWEST, 0.5, refine))
+    found.append(Rung("mesh", ONCE, 8.0**SLOWEST, 0.5, refine))
     found += tolerance_rungs(deck)
     if any(is_hht(card) for card in deck.of("DYNAMIC")):
         found += [alpha_rung(alpha) for alpha in (0.0, -0.1)]
