@@ -15,7 +15,7 @@ import sys
 from pathlib import Path
 
 from keyway_tools.jinping.concrete import LAWS, RECOVERIES
-from keyway_tools.jinping.decks import DURATION, FULL, SMALL, JinpingDeck, write_deck
+from keyway_tools.jinping.decks import DURATION, FULL, INCREMENT, SMALL, JinpingDeck, write_deck
 
 INPUT = Path(__file__).resolve().parents[1] / "input"
 KEPT = {
@@ -37,6 +37,7 @@ def read_options(arguments: list[str] | None) -> argparse.Namespace:
     add("--recovery", choices=RECOVERIES, help="of stiffness in compression (ENERGY)")
     add("--no-outlets", action="store_true", help="leave out outlets, piers and corbel")
     add("--duration", type=float, help=f"of the motion [s] ({DURATION:g})")
+    add("--increment", type=float, help=f"of the motion [s] ({INCREMENT:g}; G_f: 0.01)")
     add("--motion-of", type=Path, default=INPUT / "xingbiling", help="folder of the motion")
     chosen, chosen.others = parser.parse_known_args(arguments)
     if chosen.deck is None and any(
@@ -59,6 +60,7 @@ def main(arguments: list[str] | None = None) -> int:
             has_outlets=not chosen.no_outlets,
             unknowns=chosen.unknowns or usual.unknowns,
             duration=chosen.duration or usual.duration,
+            increment=chosen.increment,
             options=tuple(chosen.others),
         )
         decks = {chosen.deck: one}

@@ -47,7 +47,13 @@ class JinpingDeck:
     has_outlets: bool = True
     unknowns: int = FULL
     duration: float = DURATION
+    increment: float | None = None  # [s]; None: that of the law
     options: tuple[str, ...] = ()  # further ones of tools/make_dam.py; the last of equal ones rules
+
+
+def increment_of(law: str) -> float:
+    """The increment of the dynamic step [s]."""
+    return INCREMENTS.get(law, INCREMENT)
 
 
 def deck_options(deck: JinpingDeck, path: Path, motion: Path) -> list[str]:
@@ -55,7 +61,7 @@ def deck_options(deck: JinpingDeck, path: Path, motion: Path) -> list[str]:
     options = ["-o", str(path), *SHAPE.split(), *MESH.split(), *LOADS.split()]
     if deck.has_outlets:
         options += [*UPPER_BLOCK.split(), *OUTLETS.split()]
-    increment = INCREMENTS.get(deck.law, INCREMENT)
+    increment = deck.increment or increment_of(deck.law)
     options += ["--increment", f"{increment:g}", "--picture-every", str(round(1.0 / increment))]
     options += ["--unknowns", str(deck.unknowns), "--duration", f"{deck.duration:g}"]
     options += ["--motion", *(str(motion / f"motion_{axis}.txt") for axis in "xyz")]
@@ -107,8 +113,8 @@ def notes_of(deck: JinpingDeck) -> list[str]:
         "Motion (assumed): that of input/xingbiling: x and y 0.269 g, z 2/3 of it, 20 s",
         "Damping (assumed): 5 % at 1 and 5 Hz, between which the first modes are, Rayleigh on the "
         "stiffness without damage",
-        f"Increments of {INCREMENTS.get(deck.law, INCREMENT):g} s (assumed): the paper does not "
-        "give its own",
+        f"Increments of {deck.increment or increment_of(deck.law):g} s (assumed): the paper does "
+        "not give its own",
         "Joint stiffness (paper_notes.md, 3): k_n = E / 2 cm = 1.25e12 Pa/m, "
         "k_t = k_n / (2 (1 + nu))",
     ]

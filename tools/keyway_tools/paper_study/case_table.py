@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 from dataclasses import replace
 
+from ..jinping.decks import increment_of
 from .cases import Case
 from .motions import Motion
 from .sizes import Size
@@ -78,15 +79,17 @@ LONGER = "--increment 0.008"  # than those of the large dam, for many runs [s]
 def _jinping(size: Size) -> list[Case]:
     """The dam of section 4.2."""
     common = f"--unknowns {size.jinping} --duration {size.duration:g}"
-    common += f" --picture-every {round(2.5 * size.frequency)}"  # as often as with 0.01 s
     rows = (
-        ("jinping", "outlets, Table 1", ""),
-        ("jinping_without_outlets", "no outlets, Table 1", " --no-outlets"),
-        ("jinping_fracture_energy", "outlets, G_f", " --law fracture-energy"),
+        ("jinping", "outlets, Table 1", "table1", ""),
+        ("jinping_without_outlets", "no outlets, Table 1", "table1", " --no-outlets"),
+        ("jinping_fracture_energy", "outlets, G_f", "fracture-energy", " --law fracture-energy"),
     )
-    return [
-        Case(name, "jinping", title, "make_jinping", common + more) for name, title, more in rows
-    ]
+    found = []
+    for name, title, law, more in rows:
+        # As often as with increments of 0.01 s, those of Xingbiling
+        every = f" --picture-every {round(0.01 / increment_of(law) * size.frequency)}"
+        found.append(Case(name, "jinping", title, "make_jinping", common + every + more))
+    return found
 
 
 def _sensitivity(size: Size) -> list[Case]:
