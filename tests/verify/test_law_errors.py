@@ -16,7 +16,7 @@ CONCRETE = {"shear follows": paper_concrete(), "crushing": Concrete(
 )}  # fmt: skip
 
 
-def led(path: str, increments: int) -> str:
+def led(path: str, increments: int, may_cut: bool = False) -> str:
     """A block whose surface moves as under a uniform strain: first along x, then shear is added."""
     mesh, number = box_mesh((3, 3, 3), stretched((1.0, 1.0, 1.0)))
     inside = set(number[1:-1, 1:-1, 1:-1].ravel().tolist())
@@ -32,18 +32,22 @@ def led(path: str, increments: int) -> str:
     cards = CONCRETE[path].cards("STUFF") + "*SOLID SECTION, ELSET=BODY, MATERIAL=STUFF\n"
     cards += "*AMPLITUDE, NAME=FIRST\n0., 0., 0.5, 0.6, 1., 1.\n"
     cards += "*AMPLITUDE, NAME=LATER\n0., 0., 0.3, 0., 1., 1.\n"
-    cards += "*BOUNDARY\nSURFACE, 3, 3\n*STEP, INC=100000\n*STATIC\n"
-    # No increment is larger than this. Where the inside of the block cracks here or there by
-    # round-off, an increment may find no equilibrium and is cut.
-    first = 1.0 / increments
-    cards += f"{first!r}, 1., 1e-7, {first!r}\n*BOUNDARY, AMPLITUDE=FIRST\n{moved(1, stretch)}"
+    cards += "*BOUNDARY\nSURFACE, 3, 3\n*STEP, INC=100000\n"
+    first = f"{1.0 / increments!r}"
+    cards += (
+        f"*STATIC\n{first}, 1., 1e-7, {first}\n" if may_cut else f"*STATIC, DIRECT\n{first}, 1.\n"
+    )
+    cards += f"*BOUNDARY, AMPLITUDE=FIRST\n{moved(1, stretch)}"
     cards += f"*BOUNDARY, AMPLITUDE=LATER\n{moved(2, shear)}*END STEP\n"
     return brick_deck(mesh, "C3D8", cards)
 
 
 @pytest.mark.parametrize("path", PATHS)
 def test_dissipated_energy(keyway, documented, path):
-    true = sum(keyway(led(path, 20 * FINE)).json["damage"]["dissipated"].values())
+    # The inside of the block cracks here or there by round-off: one of the many increments may find
+    # no equilibrium then, and is cut.
+    fine = keyway(led(path, 20 * FINE, may_cut=True))
+    true = sum(fine.json["damage"]["dissipated"].values())
     for increments in (20, 40):
         run = keyway(led(path, increments))
         found, own = run.json["accuracy"]["estimates"]["law"], run.json["damage"]["dissipated"]
