@@ -79,7 +79,7 @@ def test_openings(keyway, documented, tmp_path, element):
     path = tmp_path / "arch.inp"
     path.write_text(deck.replace("0.01, 1.", "0.004, 2.4"), encoding="utf-8")
     coarse = read_deck(path)
-    runs = [keyway(coarse.text()), keyway(refine(coarse).text())]
+    runs = [keyway(coarse.text(), name="coarse"), keyway(refine(coarse).text(), name="fine")]
     worst = 0.0
     for joint in ("JOINT1", "JOINT2"):
         (x, own), (fine_x, fine) = (openings(run, joint) for run in runs)
