@@ -3,6 +3,7 @@ set(sources
   checkpoints/checkpoint_identity.f90
   checkpoints/run_checkpoint.f90
   errors/dual_weighting.f90
+  errors/extreme_errors.f90
   errors/fitted_stress.f90
   errors/goal_errors.f90
   errors/place_errors.f90

@@ -114,6 +114,18 @@ def test_three_elements_across(keyway, element):
             assert low < found["mesh"] / abs(truth - found["value"]) < high
 
 
+def test_an_error_grows_with_its_stress(keyway):
+    """Whether an error is found at the end of the load or scaled from a smaller one."""
+    deck = pierced(8, "C3D8I")
+    once = keyway(deck, name="once")
+    often = keyway(deck.replace("*STATIC\n", "*STATIC, DIRECT\n.02, 1.\n"), name="often")
+    for name in ("S1", "S3"):
+        # Elastic stresses follow the load to round-off; residuals leave 1e-9.
+        assert estimates(often)[name]["mesh"] == pytest.approx(
+            estimates(once)[name]["mesh"], rel=1e-6
+        )
+
+
 def with_envelope(deck: str) -> str:
     return deck.replace("*END STEP", ENVELOPE + "*END STEP")
 

@@ -17,6 +17,7 @@ module envelopes
     real(rk), allocatable :: mean(:) !< (elements) largest element means, of fields with means
     type(extremes_by_face) :: largest !< of all steps with this envelope
     real(rk) :: error = -1.0_rk !< of the mesh in the extreme anywhere; < 0: place_errors
+    real(rk) :: found_at = 0.0_rk !< extreme of this step whose error was found, not scaled
     integer :: cause = 0 !< that makes the place of this extreme singular: singular_places
   end type envelope
 
@@ -33,6 +34,7 @@ contains
     item%row = row
     item%wants_smallest = wants_smallest
     item%is_empty = .true.
+    item%found_at = 0.0_rk
     if (.not. allocated(item%value)) allocate (item%value(num_nodes), item%time(num_nodes))
     item%value = 0.0_rk
     item%time = 0.0_rk

@@ -280,6 +280,7 @@ contains
     call file%put('mean', item%mean)
     call save_extremes('largest', item%largest, file)
     call file%put('error', item%error)
+    call file%put('found_at', item%found_at)
     call file%put('cause', item%cause)
   end subroutine save_envelope
 
@@ -298,6 +299,7 @@ contains
     call file%get('mean', item%mean)
     call load_extremes('largest', item%largest, file)
     call file%get('error', item%error)
+    call file%get('found_at', item%found_at)
     call file%get('cause', item%cause)
   end subroutine load_envelope
 

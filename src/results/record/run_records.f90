@@ -13,8 +13,8 @@ module run_records
   use law_fields, only: mean_of_elements
   use goal_errors, only: goal_error
   use path_errors, only: path_error
-  use place_errors, only: error_at_node, not_known
-  use singular_places, only: is_singular, singular_nodes
+  use extreme_errors, only: forget_error, update_error
+  use singular_places, only: singular_nodes
   use space_errors, only: space_error, note_space_error
   use stress_fields, only: recovered_fields
   use field_table, only: list_fields, find_field
@@ -275,35 +275,26 @@ contains
     if (.not. (item%name == 'S1' .or. item%name == 'S3')) return
     if (before%is_found .and. abs(item%largest%at(1)%value - before%value) <= 0.0_rk) return
     n = maxloc(merge(-values(solid_nodes), values(solid_nodes), item%wants_smallest), dim=1)
-    call self%note_error(model, now, costs, solid_nodes(n), item)
+    call self%note_error(model, now, costs, solid_nodes(n), before, item)
   end subroutine note_nodes
 
-  !> The error of an extreme that has grown. At a singular place there is none to find, but whether
-  !> inelastic solids have cracked there.
-  subroutine note_error(self, model, now, costs, node, item)
+  !> The error of an extreme that has grown.
+  subroutine note_error(self, model, now, costs, node, before, item)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(ledger), intent(in) :: costs
     integer, intent(in) :: node !< of the extreme
+    type(extreme), intent(in) :: before !< the extreme that has been exceeded
     type(envelope), intent(inout) :: item
-    item%error = not_known
-    item%cause = 0
-    if (.not. model%steps(now%step)%controls%estimates_errors) return
-    call costs%start('estimate', 'mesh', 'output')
-    item%cause = self%singular%cause_at(model, node)
-    if (.not. is_singular(item%cause) .or. has_inelastic(model)) then
-      item%error = error_at_node(model, now, self%stresses, node, merge(3, 1, item%wants_smallest))
+    if (.not. model%steps(now%step)%controls%estimates_errors) then
+      call forget_error(item)
+      return
     end if
+    call costs%start('estimate', 'mesh', 'output')
+    call update_error(model, now, self%stresses, self%singular, node, before, item)
     call costs%stop()
   end subroutine note_error
-
-  !> Whether solids can leave elasticity.
-  pure logical function has_inelastic(model)
-    type(problem), intent(in) :: model
-    has_inelastic = .false.
-    if (allocated(model%inelastic)) has_inelastic = size(model%inelastic) > 0
-  end function has_inelastic
 
   !> A field of joints: the extremes are those of the points; closed points count as 0.
   subroutine note_joints(self, model, now, on_nodes, item)
