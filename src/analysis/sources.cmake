@@ -49,6 +49,7 @@ set(sources
   state/increment_listener.f90
   state/modal_errors.f90
   state/path_errors.f90
+  state/path_twins.f90
   state/motion_archive.f90
   state/state_archive.f90
   state/state_transfer.f90

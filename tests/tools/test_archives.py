@@ -77,6 +77,16 @@ TYPES = (
         "path",
         "src/analysis/state/path_errors.f90",
     ),
+    Saved(
+        "twin_points",
+        "src/analysis/state/path_twins.f90",
+        (
+            ("src/analysis/state/path_twins.f90", "save_list"),
+            ("src/analysis/state/path_twins.f90", "load_list"),
+            (SAME_STATES, "compare_twins"),
+            (FULL_STATE, "fill_twins"),
+        ),
+    ),
     of_state("last_matrix", STATE, "matrix"),
     of_state("increment_control", "src/analysis/state/step_control.f90", "control"),
     of_state(

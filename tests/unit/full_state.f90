@@ -10,6 +10,7 @@ module full_state
   use thermal_strains, only: heat_field
   use modal_errors, only: modal_error
   use path_errors, only: path_error
+  use path_twins, only: twin_points
   implicit none
   private
   public :: make_full_state
@@ -49,6 +50,8 @@ contains
     call fill_points(now%points(1), n)
     call fill_points(points, n)
     allocate (now%guests(2)%item, source=points)
+    allocate (now%twins(2))
+    call fill_twins(now%twins(2), n)
   end subroutine make_full_state
 
   !> Temperatures.
@@ -140,12 +143,22 @@ contains
   subroutine fill_path(path, n)
     type(path_error), intent(inout) :: path
     integer, intent(inout) :: n
-    call fill(path%num_changes, n)
+    call fill(path%num_found, n)
     call fill(path%num_points, n)
     call fill(path%dissipated, n)
     call fill(path%difference, n)
     call fill(path%stress, n)
   end subroutine fill_path
+
+  !> Twins of the five points of the block.
+  subroutine fill_twins(twins, n)
+    type(twin_points), intent(inout) :: twins
+    integer, intent(inout) :: n
+    allocate (twins%block(5), twins%point(5))
+    call fill(twins%block, n)
+    call fill(twins%point, n)
+    call fill_points(twins%at, n)
+  end subroutine fill_twins
 
   !> Error in time.
   subroutine fill_accuracy(accuracy, n)

@@ -1,7 +1,6 @@
 !> Compares two states member by member and bit by bit. tests/tools/test_archives.py finds a
 !> component that is missing here.
 module same_states
-  use kinds, only: rk, long
   use step_control, only: increment_control
   use analysis_state, only: state, increment_status, energy_balance, last_matrix, motion, &
                             modal_motion, reduction_status, time_accuracy
@@ -10,16 +9,12 @@ module same_states
   use material_points, only: point_state
   use modal_errors, only: modal_error
   use path_errors, only: path_error
+  use path_twins, only: twin_points
+  use same_values, only: compare
   use testing, only: test_log, check
   implicit none
   private
-  public :: compare_states, compare
-
-  !> Two values of one kind and rank.
-  interface compare
-    module procedure compare_real, compare_integer, compare_logical, compare_reals_1, &
-      compare_reals_2, compare_reals_3, compare_integers_1, compare_logicals_1
-  end interface compare
+  public :: compare_states
 
 contains
 
@@ -49,6 +44,11 @@ contains
     do i = 1, size(a%guests)
       call compare_guests(log, what//'guests%', a%guests(i), b%guests(i))
     end do
+    call check(log, allocated(a%twins) .eqv. allocated(b%twins), what//'twins')
+    if (.not. (allocated(a%twins) .and. allocated(b%twins))) return
+    do i = 1, size(a%twins)
+      call compare_twins(log, what//'twins%', a%twins(i), b%twins(i))
+    end do
   end subroutine compare_states
 
   !> Histories of guests: of type point_state where there are any.
@@ -66,6 +66,16 @@ contains
       end select
     end select
   end subroutine compare_guests
+
+  !> Twins of points, if any.
+  subroutine compare_twins(log, what, a, b)
+    type(test_log), intent(inout) :: log
+    character(*), intent(in) :: what
+    type(twin_points), intent(in) :: a, b
+    call compare(log, what//'block', a%block, b%block)
+    call compare(log, what//'point', a%point, b%point)
+    if (a%num_twins() > 0) call compare_points(log, what//'at%', a%at, b%at)
+  end subroutine compare_twins
 
   !> Where the analysis is.
   subroutine compare_status(log, what, a, b)
@@ -147,7 +157,7 @@ contains
     type(test_log), intent(inout) :: log
     character(*), intent(in) :: what
     type(path_error), intent(in) :: a, b
-    call compare(log, what//'num_changes', a%num_changes, b%num_changes)
+    call compare(log, what//'num_found', a%num_found, b%num_found)
     call compare(log, what//'num_points', a%num_points, b%num_points)
     call compare(log, what//'dissipated', a%dissipated, b%dissipated)
     call compare(log, what//'difference', a%difference, b%difference)
@@ -305,86 +315,4 @@ contains
     call compare(log, what//'temperature', a%temperature, b%temperature)
     call compare(log, what//'thermal', a%thermal, b%thermal)
   end subroutine compare_points
-
-  !> A real, bit by bit.
-  subroutine compare_real(log, what, a, b)
-    type(test_log), intent(inout) :: log
-    character(*), intent(in) :: what
-    real(rk), intent(in) :: a, b
-    call check(log, transfer(a, 0_long) == transfer(b, 0_long), what)
-  end subroutine compare_real
-
-  !> An integer.
-  subroutine compare_integer(log, what, a, b)
-    type(test_log), intent(inout) :: log
-    character(*), intent(in) :: what
-    integer, intent(in) :: a, b
-    call check(log, a == b, what)
-  end subroutine compare_integer
-
-  !> A logical.
-  subroutine compare_logical(log, what, a, b)
-    type(test_log), intent(inout) :: log
-    character(*), intent(in) :: what
-    logical, intent(in) :: a, b
-    call check(log, a .eqv. b, what)
-  end subroutine compare_logical
-
-  !> An array of reals, bit by bit.
-  subroutine compare_reals_1(log, what, a, b)
-    type(test_log), intent(inout) :: log
-    character(*), intent(in) :: what
-    real(rk), allocatable, intent(in) :: a(:), b(:)
-    call check(log, allocated(a) .eqv. allocated(b), what//': allocated')
-    if (.not. allocated(a) .or. .not. allocated(b)) return
-    call check(log, all(shape(a) == shape(b)), what//': shape')
-    if (any(shape(a) /= shape(b))) return
-    call check(log, all(transfer(a, [0_long]) == transfer(b, [0_long])), what)
-  end subroutine compare_reals_1
-
-  !> An array of reals, bit by bit.
-  subroutine compare_reals_2(log, what, a, b)
-    type(test_log), intent(inout) :: log
-    character(*), intent(in) :: what
-    real(rk), allocatable, intent(in) :: a(:, :), b(:, :)
-    call check(log, allocated(a) .eqv. allocated(b), what//': allocated')
-    if (.not. allocated(a) .or. .not. allocated(b)) return
-    call check(log, all(shape(a) == shape(b)), what//': shape')
-    if (any(shape(a) /= shape(b))) return
-    call check(log, all(transfer(a, [0_long]) == transfer(b, [0_long])), what)
-  end subroutine compare_reals_2
-
-  !> An array of reals, bit by bit.
-  subroutine compare_reals_3(log, what, a, b)
-    type(test_log), intent(inout) :: log
-    character(*), intent(in) :: what
-    real(rk), allocatable, intent(in) :: a(:, :, :), b(:, :, :)
-    call check(log, allocated(a) .eqv. allocated(b), what//': allocated')
-    if (.not. allocated(a) .or. .not. allocated(b)) return
-    call check(log, all(shape(a) == shape(b)), what//': shape')
-    if (any(shape(a) /= shape(b))) return
-    call check(log, all(transfer(a, [0_long]) == transfer(b, [0_long])), what)
-  end subroutine compare_reals_3
-
-  !> A list of integers.
-  subroutine compare_integers_1(log, what, a, b)
-    type(test_log), intent(inout) :: log
-    character(*), intent(in) :: what
-    integer, allocatable, intent(in) :: a(:), b(:)
-    call check(log, allocated(a) .eqv. allocated(b), what//': allocated')
-    if (.not. allocated(a) .or. .not. allocated(b)) return
-    call check(log, size(a) == size(b), what//': size')
-    if (size(a) == size(b)) call check(log, all(a == b), what)
-  end subroutine compare_integers_1
-
-  !> A list of logicals.
-  subroutine compare_logicals_1(log, what, a, b)
-    type(test_log), intent(inout) :: log
-    character(*), intent(in) :: what
-    logical, allocatable, intent(in) :: a(:), b(:)
-    call check(log, allocated(a) .eqv. allocated(b), what//': allocated')
-    if (.not. allocated(a) .or. .not. allocated(b)) return
-    call check(log, size(a) == size(b), what//': size')
-    if (size(a) == size(b)) call check(log, all(a .eqv. b), what)
-  end subroutine compare_logicals_1
 end module same_states

@@ -11,6 +11,7 @@ module analysis_state
   use joint_law, only: joint_state
   use modal_errors, only: modal_error
   use path_errors, only: path_error
+  use path_twins, only: twin_points
   use material_points, only: point_state
   use step_control, only: increment_control
   use thermal_strains, only: heat_field
@@ -151,6 +152,7 @@ module analysis_state
     type(joint_state), allocatable :: joints(:) !< (joints of the problem)
     type(point_state), allocatable :: points(:) !< (inelastic blocks of the problem)
     type(history_slot), allocatable :: guests(:) !< (guests of the problem)
+    type(twin_points), allocatable :: twins(:) !< (materials) where errors of laws are estimated
   end type state
 
   type :: vibration_mode

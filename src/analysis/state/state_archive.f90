@@ -9,6 +9,7 @@ module state_archive
                             reduction_status, time_accuracy
   use modal_errors, only: load_timing, save_timing
   use path_errors, only: load_path, save_path
+  use path_twins, only: load_twins, save_twins
   use motion_archive, only: save_motion, load_motion
   use thermal_strains, only: heat_field
   use write_text, only: as_text
@@ -44,6 +45,7 @@ contains
     call save_motion(now%motion, file)
     call file%close_group()
     call save_histories(now, file)
+    call save_twins(now%twins, file)
     call file%close_group()
     call file%report(error)
   end subroutine save_state
@@ -69,6 +71,7 @@ contains
     call load_motion(now%motion, file)
     call file%close_group()
     call load_histories(now, file)
+    call load_twins(now%twins, file)
     call file%close_group()
     call file%report(error)
   end subroutine load_state

@@ -264,11 +264,7 @@ contains
       call method%solids%matrix%store(trial%matrix)
       call trial%control%accept(method%solids%effort(next%outcome%own_iterations()))
       if (allocated(next%weights)) call follow_error(plan, now, next, results)
-      if (method%solids%has_inelastic() .and. plan%controls%estimates_errors) then
-        call results%costs%start('estimate', 'law', 'output')
-        call sample_paths(model, method%solids%time, now%points, trial%points, trial%path)
-        call results%costs%stop()
-      end if
+      if (method%solids%has_inelastic()) call follow_law(model, plan, method, now, trial, results)
       call count_increment(plan, next%when, next%outcome, trial)
       call method%store_state(model, next%when, trial, results, error)
     end associate
@@ -277,6 +273,26 @@ contains
     next%control = now%control
     call close_increment(model, plan, now, results, error)
   end subroutine accept
+
+  !> What the laws of solids leave open within the increment. A step without estimates forgets the
+  !> twins: they would miss its increments.
+  subroutine follow_law(model, plan, method, now, trial, results)
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    class(integrator), intent(in) :: method
+    type(state), intent(inout) :: now, trial
+    class(listener), intent(inout) :: results
+    if (.not. plan%controls%estimates_errors) then
+      if (allocated(now%twins)) deallocate (now%twins)
+      if (allocated(trial%twins)) deallocate (trial%twins)
+      trial%path%num_points = 0
+      return
+    end if
+    call results%costs%start('estimate', 'law', 'output')
+    call move_alloc(now%twins, trial%twins)
+    call sample_paths(model, method%solids%time, now%points, trial%points, trial%twins, trial%path)
+    call results%costs%stop()
+  end subroutine follow_law
 
   !> The estimated error in time chooses the size of the next increment.
   subroutine follow_error(plan, now, next, results)

@@ -6,7 +6,7 @@ program test_hdf5_archive
   use errors, only: error_type
   use archive_type, only: archive
   use hdf5_archive, only: hdf5_store
-  use same_states, only: compare
+  use same_values, only: compare
   use testing, only: test_log, check, check_text
   implicit none
 

@@ -10,7 +10,7 @@ program test_record_archive
   use run_records, only: run_record
   use record_archive, only: save_record, load_record
   use row_model, only: make_row, put_at_wall, new_step
-  use same_states, only: compare
+  use same_values, only: compare
   use testing, only: test_log, check, check_text
   implicit none
 
@@ -98,6 +98,7 @@ contains
       record%envelopes(i)%time = record%envelopes(i)%time + 0.2_rk*i
       call fill_extremes(70.0_rk + i, record%envelopes(i)%largest)
       record%envelopes(i)%error = 79.0_rk + i
+      record%envelopes(i)%found_at = 89.0_rk + i
       record%envelopes(i)%cause = 1 + i
     end do
   end subroutine make_record
@@ -193,6 +194,7 @@ contains
         call compare(log, 'mean', x%mean, y%mean)
         call compare_extremes(log, 'largest', x%largest, y%largest)
         call compare(log, 'error', x%error, y%error)
+        call compare(log, 'found_at', x%found_at, y%found_at)
         call compare(log, 'cause', x%cause, y%cause)
       end associate
     end do
