@@ -1,6 +1,7 @@
 !> Peaks of the base motions of a step, for the summary of a model.
 module motion_peaks
   use amplitudes, only: one_g
+  use check_units, only: sign_of_other_units
   use kinds, only: rk
   use load_base_motion, only: base_motion
   use problem_definition, only: problem
@@ -12,7 +13,8 @@ module motion_peaks
 
 contains
 
-  !> ', peak 3.07 m/s2 = 0.313 g at t = 2.14 s' of a base motion; '' of other loads.
+  !> ', peak 3.07 m/s2 = 0.313 g at t = 2.14 s' of a base motion, without units where the deck is
+  !> not in SI; '' of other loads.
   pure function peak_of_motion(model, number, work) result(text)
     type(problem), intent(in) :: model
     integer, intent(in) :: number !< of the step
@@ -24,28 +26,31 @@ contains
     select type (motion => model%loads(work%load)%item)
     type is (base_motion)
       if (work%amplitude == 0) then
-        text = ', constant '//in_both_units(abs(work%end_factor))
+        text = ', constant '//in_units(model, abs(work%end_factor))
         return
       end if
       associate (record => model%amplitudes(work%amplitude))
         last = end_of_step(model, number, record%uses_total_time)
         i = max(maxloc(abs(record%value), dim=1, mask=record%time <= last), 1)
         peak = abs(work%end_factor*record%value(i))
-        text = ', peak '//in_both_units(peak)//' at t = '//as_text(record%time(i))//' s'
+        text = ', peak '//in_units(model, peak)//' at t = '//as_text(record%time(i))//' s'
       end associate
     end select
   end function peak_of_motion
 
-  !> '3.07 m/s2 = 0.313 g'.
-  pure function in_both_units(acceleration) result(text)
+  !> '3.07 m/s2 = 0.313 g'; '3070' where the deck is not in SI.
+  pure function in_units(model, acceleration) result(text)
+    type(problem), intent(in) :: model
     real(rk), intent(in) :: acceleration !< [m/s2]
     character(:), allocatable :: text
     character(24) :: room
+    text = as_text(acceleration)
+    if (sign_of_other_units(model%materials) /= '') return
     write (room, '(f0.4)') acceleration/one_g
     text = trim(room)
     if (text(1:1) == '.') text = '0'//text
     text = as_text(acceleration)//' m/s2 = '//text//' g'
-  end function in_both_units
+  end function in_units
 
   !> End of a step on its own clock or on that of the analysis [s].
   pure real(rk) function end_of_step(model, number, is_total)

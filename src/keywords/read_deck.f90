@@ -5,6 +5,9 @@ module read_deck
   use check_histories, only: warn_of_histories
   use check_idle_steps, only: warn_of_idle_steps
   use check_loads, only: warn_of_loads
+  use check_growth, only: warn_of_growth
+  use check_pressures, only: warn_of_pressures
+  use check_units, only: warn_of_units
   use check_mesh, only: warn_of_mesh
   use card_digests, only: digests_of_cards, list_input_files
   use check_names, only: verify_names
@@ -91,6 +94,9 @@ contains
     call warn_of_mesh(model, faults)
     call warn_of_unused(model, faults)
     call warn_of_loads(model, faults)
+    call warn_of_pressures(model, faults)
+    call warn_of_units(model, faults)
+    call warn_of_growth(model, faults)
     call warn_of_heat(model, faults)
     call warn_of_water(model, faults)
     call warn_of_nodes(model, faults)

@@ -9,14 +9,17 @@ set(sources
   assembly/keywords_assembly.f90
   assembly/leave_out_faces.f90
   assembly/plain_labels.f90
+  checks/check_growth.f90
   checks/check_histories.f90
   checks/check_idle_steps.f90
   checks/check_loads.f90
   checks/check_mesh.f90
   checks/check_names.f90
   checks/check_nodes.f90
+  checks/check_pressures.f90
   checks/check_repeats.f90
   checks/check_steps.f90
+  checks/check_units.f90
   checks/check_unused.f90
   checks/check_water.f90
   contact/finish_contact.f90

@@ -30,6 +30,12 @@ contains
                   'step or a set is not the one that was meant.', &
                   '*AMPLITUDE that no load names', &
                   'AMPLITUDE=NAME in the load')
+    call list%add('growing-set', &
+                  'gets members here that', &
+                  'A card takes the nodes or elements of a set as they stand above it. Members '// &
+                  'that the set gets further down do not belong to it. Abaqus takes the whole '// &
+                  'set.', &
+                  'Complete a set before its first use, or give the later members another set.')
     call list%add('parts-share-numbers', &
                   'instances share numbers', &
                   'Instances of an assembly use the same numbers for nodes and elements. In '// &
@@ -174,7 +180,8 @@ contains
   subroutine pages_from_acts_twice(list)
     type(page_list), intent(inout) :: list
     call list%add('acts-twice', &
-                  'acts twice|of both act|both act|both motions add|the last one acts|add '// &
+                  'acts twice|of both act|both act|both motions add|the last one acts|of an '// &
+                  'earlier step beside|add '// &
                   'up|both run|recorded once|counts once|written once|grouted twice|is there '// &
                   'already|is gone already|already, ', &
                   'The deck gives the same thing twice in a step. Loads add up; of values that '// &

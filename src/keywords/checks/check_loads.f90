@@ -1,5 +1,5 @@
 !> Warns of loads that are probably not meant: weight twice, a record that does not end at zero, a
-!> level above the crest, constants in SI in a deck in other units.
+!> level above the crest.
 module check_loads
   use amplitudes, only: amplitude
   use deck_scan, only: is_keyword, steps_of_cards
@@ -19,12 +19,6 @@ module check_loads
 
   real(rk), parameter :: small_share = 0.01_rk !< of the peak: the end of a record counts as zero
   real(rk), parameter :: round_off = 1.0e-9_rk
-  !> Densities of solids in SI lie above, in t/mm3 (1e-9) far below [kg/m3].
-  real(rk), parameter :: lightest_solid = 1.0_rk
-  !> Young's moduli of solids in SI lie above, in MPa below [Pa].
-  real(rk), parameter :: softest_solid = 1.0e6_rk
-  !> Range of g in m/s2 as decks write it.
-  real(rk), parameter :: least_g = 9.7_rk, largest_g = 10.1_rk
 
 contains
 
@@ -37,7 +31,6 @@ contains
     call warn_of_weights(model, step, faults)
     call warn_of_records(model, step, faults)
     call warn_of_levels(model, faults)
-    call warn_of_units(model, faults)
   end subroutine warn_of_loads
 
   !> Elements whose weight acts twice in one direction, in the first step that has any.
@@ -211,38 +204,4 @@ contains
                                'not act')
     end do
   end subroutine warn_of_levels
-
-  !> Defaults and constants in SI where the densities of the solids are not in kg/m3.
-  subroutine warn_of_units(model, faults)
-    type(draft), intent(in) :: model
-    type(diagnostic_list), intent(inout) :: faults
-    character(:), allocatable :: why
-    real(rk) :: heaviest, stiffest
-    integer :: i, line
-    heaviest = maxval([0.0_rk, model%problem%materials%density])
-    stiffest = maxval([0.0_rk, model%problem%materials%young])
-    if (heaviest >= lightest_solid) return
-    why = '*DENSITY of '//as_text(heaviest)
-    if (heaviest <= 0.0_rk) then
-      if (stiffest <= 0.0_rk .or. stiffest >= softest_solid) return
-      why = "Young's modulus of "//as_text(stiffest)
-    end if
-    why = ' in a deck with a '//why//', which is not in SI (t, mm, s: water 1e-9, g 9810)'
-    do i = 1, size(model%cards)
-      associate (this => model%cards(i))
-        if (is_keyword(this, 'RESERVOIR')) then
-          if (.not. this%has('DENSITY')) call this%warn(faults, 'DENSITY is 1000 by default'//why)
-          if (.not. this%has('GRAVITY')) call this%warn(faults, 'GRAVITY is 9.81 by default'//why)
-        else if (is_keyword(this, 'DLOAD')) then
-          do line = 1, this%num_lines
-            if (this%word_at(line, 2) /= 'GRAV') cycle
-            if (abs(abs(this%real_at(line, 3)) - 0.5_rk*(least_g + largest_g)) > &
-                0.5_rk*(largest_g - least_g)) cycle
-            call this%warn_at(faults, line, 3, 'gravity of '//this%text_at(line, 3)//why)
-            exit
-          end do
-        end if
-      end associate
-    end do
-  end subroutine warn_of_units
 end module check_loads

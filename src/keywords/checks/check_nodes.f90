@@ -33,7 +33,7 @@ contains
                  is_keyword(this, 'CLOAD')) then
           if (max(step(i), 1) /= s) call mark_held(model, max(step(i), 1), is_held)
           s = max(step(i), 1)
-          call warn_of_lines(this, model, is_held, faults)
+          call warn_of_lines(this, model, is_held, nodes_there(model, s), faults)
         end if
       end associate
     end do
@@ -41,11 +41,31 @@ contains
     call warn_of_second_values(model, faults)
   end subroutine warn_of_nodes
 
+  !> The nodes that have an element in a step.
+  function nodes_there(model, s) result(is_there)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: s !< step
+    logical :: is_there(model%problem%mesh%num_nodes)
+    integer :: e, n
+    is_there = model%has_element
+    if (.not. allocated(model%problem%stages%is_absent)) return
+    is_there = .false.
+    associate (mesh => model%problem%mesh)
+      do e = 1, mesh%num_elements
+        if (model%problem%stages%is_absent(e, s)) cycle
+        do n = 1, size(mesh%nodes, 1)
+          if (mesh%nodes(n, e) > 0) is_there(mesh%nodes(n, e)) = .true.
+        end do
+      end do
+    end associate
+  end function nodes_there
+
   !> The lines of *BOUNDARY, *CLOAD and *INITIAL CONDITIONS.
-  subroutine warn_of_lines(this, model, is_held, faults)
+  subroutine warn_of_lines(this, model, is_held, is_there, faults)
     type(card), intent(in) :: this
     type(draft), intent(in) :: model
     logical, intent(in) :: is_held(:, :) !< (3, nodes) in the step of the card
+    logical, intent(in) :: is_there(:) !< (nodes) has an element in this step
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable :: nodes(:)
     integer :: line
@@ -55,9 +75,29 @@ contains
         call warn_of_bare_nodes(this, line, nodes, model, 'its support has no effect', faults)
       else
         call warn_of_value(this, line, nodes, model, is_held, faults)
+        if (is_keyword(this, 'CLOAD')) call warn_of_absence(this, line, nodes, model, is_there, &
+                                                            faults)
       end if
     end do
   end subroutine warn_of_lines
+
+  !> A force on nodes whose elements *MODEL CHANGE has removed.
+  subroutine warn_of_absence(this, line, nodes, model, is_there, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line, nodes(:)
+    type(draft), intent(in) :: model
+    logical, intent(in) :: is_there(:) !< (nodes) has an element in this step
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: problem
+    integer, allocatable :: absent(:)
+    absent = pack(nodes, model%has_element(nodes) .and. .not. is_there(nodes))
+    if (size(absent) == 0) return
+    problem = 'node '//as_text(model%problem%mesh%node_id(absent(1)))// &
+              ' has no element in this step (*MODEL CHANGE): the force on it has no effect'
+    if (size(absent) > 1) problem = problem//'; also '//as_text(size(absent) - 1)// &
+                                    ' more of the set'
+    call this%warn_at(faults, line, 1, problem)
+  end subroutine warn_of_absence
 
   !> Nodes none of which has an element.
   subroutine warn_of_bare_nodes(this, line, nodes, model, why, faults)

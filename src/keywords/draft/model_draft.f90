@@ -156,6 +156,7 @@ module model_draft
     type(moved_direction) :: moved(3) !< accelerations of supports in this step
     logical :: has_new_output = .false. !< *NODE FILE or a similar keyword in this step
     integer :: output_frequency = 1 !< of the last *OUTPUT
+    integer :: next_checkpoint_frequency = -1 !< of a *RESTART before the next step; -1: none
     logical :: output_is_history = .false. !< the last *OUTPUT opened histories
     logical :: prints_given(size(kinds_of_prints)) = .false. !< kinds that this step has requested
   contains

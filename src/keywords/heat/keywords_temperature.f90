@@ -154,7 +154,8 @@ contains
     if (size(kept) > 0) call move_alloc(kept, model%now%heats)
   end subroutine keep_heats
 
-  !> The rules of the step before whose clock is the total time.
+  !> The rules of the step before whose clock is the total time, without the nodes to which a later
+  !> rule of that step has given a temperature that stays.
   subroutine find_kept(model, kept)
     type(draft), intent(in) :: model
     type(heat_rule), allocatable, intent(out) :: kept(:)
@@ -165,8 +166,24 @@ contains
       if (.not. allocated(before%heats)) return
       do i = 1, size(before%heats)
         if (.not. before%heats(i)%goes_on(model%problem%amplitudes)) cycle
-        kept = [kept, before%heats(i)]
+        kept = [kept, without_settled(model, before%heats(i), before%heats(i + 1:))]
       end do
     end associate
   end subroutine find_kept
+
+  !> A rule without the nodes of later rules whose temperature stays.
+  function without_settled(model, rule, later) result(rest)
+    type(draft), intent(in) :: model
+    type(heat_rule), intent(in) :: rule, later(:)
+    type(heat_rule) :: rest
+    logical :: is_settled(model%problem%mesh%num_nodes)
+    integer :: i
+    is_settled = .false.
+    do i = 1, size(later)
+      if (.not. later(i)%goes_on(model%problem%amplitudes)) is_settled(later(i)%nodes) = .true.
+    end do
+    rest = rule
+    rest%nodes = pack(rule%nodes,.not. is_settled(rule%nodes))
+    rest%value = rule%value(:, pack([(i, i=1, size(rule%nodes))],.not. is_settled(rule%nodes)))
+  end function without_settled
 end module keywords_temperature

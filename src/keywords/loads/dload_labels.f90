@@ -60,13 +60,14 @@ contains
                             num_faces=6, num_numbers=3, fewest_numbers=3, put=put_water)
   end subroutine list_labels
 
-  !> What the elements of a line are called.
+  !> What the elements of a line are called: 1 for 01.
   pure function elements_in_words(this, line) result(name)
     type(card), intent(in) :: this
     integer, intent(in) :: line
     character(:), allocatable :: name
     name = this%word_at(line, 1)
     if (len(name) == 0) name = 'ALL SOLIDS'
+    if (this%is_integer_at(line, 1)) name = as_text(this%integer_at(line, 1))
   end function elements_in_words
 
   !> Position of the label that a word names, 0 for another word.
@@ -163,7 +164,7 @@ contains
     target = elements_in_words(this, line)
     allocate (item, source=weight)
     call put_load(model, item, 'gravity '//target, 'DLOAD', target//' GRAV', &
-                  pattern_of(direction), this%real_at(line, 3), history)
+                  pattern_of(direction, size(elements)), this%real_at(line, 3), history)
   end subroutine put_gravity
 
   subroutine put_pressure(this, line, elements, history, model, faults)
@@ -232,16 +233,19 @@ contains
     push%kind = 'pressure'
     push%pressure = 1.0_rk
     push%faces = faces_of_elements(elements, face_of_word(this%word_at(line, 2)))
-    where_it_acts = this%word_at(line, 1)//' '//this%word_at(line, 2)
+    where_it_acts = elements_in_words(this, line)//' '//this%word_at(line, 2)
     allocate (item, source=push)
     call put_load(model, item, 'pressure '//where_it_acts, 'DLOAD', where_it_acts, &
-                  pattern_of([push%top, push%reference]), this%real_at(line, 3), history)
+                  pattern_of([push%top, push%reference], size(elements)), &
+                  this%real_at(line, 3), history)
   end subroutine put_push
 
-  !> Numbers as a text to compare: equal texts mean equal patterns.
-  pure function pattern_of(numbers) result(text)
+  !> Numbers as a text to compare: equal texts mean equal patterns. A set or a surface may have
+  !> grown since an earlier step.
+  pure function pattern_of(numbers, num_members) result(text)
     real(rk), intent(in) :: numbers(:)
-    character(24*size(numbers)) :: text
-    write (text, '(*(es24.16e3))') numbers
+    integer, intent(in) :: num_members !< elements of the set, or faces of the surface
+    character(24*(size(numbers) + 1)) :: text
+    write (text, '(*(es24.16e3))') numbers, real(num_members, rk)
   end function pattern_of
 end module dload_labels

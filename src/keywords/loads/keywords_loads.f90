@@ -215,7 +215,8 @@ contains
       allocate (item, source=push)
       call put_load(model, item, 'pressure '//this%word_at(line, 1), 'DSLOAD', &
                     this%word_at(line, 1)//trim(merge(' HP', '   ', push%is_hydrostatic)), &
-                    pattern_of([push%top, push%reference]), this%real_at(line, 3), history)
+                    pattern_of([push%top, push%reference], size(push%faces%element)), &
+                    this%real_at(line, 3), history)
     end do
   end subroutine read_dsload
 

@@ -10,6 +10,7 @@ module keywords_reservoir
   use model_draft, only: draft
   use named_things, only: find_surface_name, surface_names
   use nearest_words, only: nearest_word
+  use write_text, only: as_text
   implicit none
   private
   public :: describe_reservoir, read_reservoir
@@ -87,7 +88,8 @@ contains
     if (model%problem%upstream_surface == 0) model%problem%upstream_surface = found
     allocate (item, source=lake)
     call put_load(model, item, 'reservoir '//this%word('NAME'), 'RESERVOIR', this%word('NAME'), &
-                  pattern_of_card(this), 1.0_rk, 0)
+                  pattern_of_card(this)//as_text(size(model%problem%surfaces(found)%element)), &
+                  1.0_rk, 0)
   end subroutine read_reservoir
 
   !> All parameters as a text to compare: equal texts mean equal reservoirs.

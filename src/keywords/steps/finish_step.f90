@@ -32,6 +32,10 @@ contains
         new%damping = before%damping
       end associate
     end if
+    if (model%next_checkpoint_frequency >= 0) then
+      new%checkpoint_frequency = model%next_checkpoint_frequency
+      model%next_checkpoint_frequency = -1
+    end if
     model%now = new
     call keep_heats(model)
     model%step_origin = model%here(0)
@@ -82,19 +86,20 @@ contains
 
   !> Point forces without amplitude become two loads of the step: the initial forces, with a factor
   !> that falls to 0, and the final forces, with a factor that rises to 1. Forces with an amplitude
-  !> become one load for each amplitude.
+  !> become one load for each amplitude, which replaces the initial forces at once.
   subroutine collect_point_forces(model)
     type(draft), intent(inout) :: model
-    real(rk), allocatable :: force(:, :)
+    real(rk), allocatable :: force(:, :), previous(:, :)
     integer :: history
     allocate (model%now%loads(0))
     associate (table => model%point_forces)
       if (.not. any(table%is_set .or. abs(table%previous) > 0.0_rk)) return
       force = merge(table%value, 0.0_rk, table%history == 0)
-      if (all(abs(force - table%previous) <= 0.0_rk)) then
+      previous = merge(table%previous, 0.0_rk, table%history == 0)
+      if (all(abs(force - previous) <= 0.0_rk)) then
         call add_forces(model, force, 1.0_rk, 1.0_rk, 0)
       else
-        call add_forces(model, table%previous, 1.0_rk, 0.0_rk, 0)
+        call add_forces(model, previous, 1.0_rk, 0.0_rk, 0)
         call add_forces(model, force, 0.0_rk, 1.0_rk, 0)
       end if
     end associate

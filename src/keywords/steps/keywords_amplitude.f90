@@ -9,7 +9,7 @@ module keywords_amplitude
   use keywords_other, only: add_idle_parameters
   use kinds, only: rk
   use model_draft, only: draft
-  use record_units, only: choices_of_units, factor_of_unit, find_own_factor
+  use record_units, only: choices_of_units, factor_of_unit, settle_unit
   use write_text, only: as_text
   implicit none
   private
@@ -149,9 +149,7 @@ contains
         return
       end if
       call read_at2_header(numbers%path, this%place_of('INPUT'), faults, num_points, dt, unit)
-      if (num_points > 0 .and. .not. this%has('UNIT')) then
-        call find_own_factor(this, unit, faults, own_factor)
-      end if
+      if (num_points > 0) call settle_unit(this, unit, faults, own_factor)
       if (num_points > 0 .and. num_points /= size(numbers%values)) then
         call this%fault_parameter(faults, 'INPUT', 'the file holds '// &
                                   as_text(size(numbers%values))//' values', &

@@ -17,9 +17,9 @@ contains
     spec%name = 'RESTART'
     spec%family = 'output'
     spec%place = 'anywhere'
-    spec%meaning = 'Writes checkpoints from this step on: after every FREQUENCY-th '// &
-                   'increment and at the end of a step. keyway --continue goes on from '// &
-                   'the last one. Two are kept.'
+    spec%meaning = 'Writes checkpoints from this step on, or from the next one where it stands '// &
+                   'outside a step: after every FREQUENCY-th increment and at the end of a '// &
+                   'step. keyway --continue goes on from the last one. Two are kept.'
     spec%example = '*RESTART, WRITE, FREQUENCY=20'
     spec%most_lines = 0
     allocate (spec%parameters, source=[ &
@@ -40,12 +40,11 @@ contains
       call this%fault(faults, 'READ: a run goes on from its own checkpoint', &
                       'the same deck without this card, and the option --continue')
       return
-    else if (.not. model%is_in_step) then
-      call this%fault(faults, 'the keyword is outside a step', &
-                      'a place between *STEP and *END STEP')
-      return
     else if (.not. this%has('WRITE')) then
       call this%ignore(faults, 'has no effect: there is no WRITE')
+      return
+    else if (.not. model%is_in_step) then
+      model%next_checkpoint_frequency = this%integer('FREQUENCY')
       return
     end if
     model%now%checkpoint_frequency = this%integer('FREQUENCY')

@@ -11,7 +11,7 @@ module record_units
   use write_text, only: as_text
   implicit none
   private
-  public :: factor_of_unit, unit_in_header, find_own_factor, find_further_scale, choices_of_units
+  public :: factor_of_unit, unit_in_header, settle_unit, find_further_scale, choices_of_units
 
   character(*), parameter :: choices_of_units = 'G | M/S2 | CM/S2'
   character(*), parameter :: expected_unit = 'UNIT=G, M/S2 or CM/S2, and in SCALE only what '// &
@@ -56,6 +56,21 @@ contains
       if (unit /= '') return
     end do
   end function unit_in_header
+
+  !> The unit of an AT2 file: that of UNIT, which its header must not contradict, or that of the
+  !> header.
+  subroutine settle_unit(this, unit, faults, own_factor)
+    type(card), intent(in) :: this
+    character(*), intent(in) :: unit !< of the file, '' where the file does not name it
+    type(diagnostic_list), intent(inout) :: faults
+    real(rk), intent(inout) :: own_factor !< besides SCALE and UNIT
+    if (.not. this%has('UNIT')) then
+      call find_own_factor(this, unit, faults, own_factor)
+    else if (unit /= '' .and. this%word('UNIT') /= unit) then
+      call this%fault_parameter(faults, 'UNIT', 'the header of the file names the unit '//unit, &
+                                'no UNIT, or UNIT='//unit)
+    end if
+  end subroutine settle_unit
 
   !> Factor of the values of an *AMPLITUDE without UNIT whose file names a unit.
   subroutine find_own_factor(this, unit, faults, factor)

@@ -2,8 +2,8 @@
 !>
 !> Family and target (what the load acts on, and how) identify a load. A load given again in a later
 !> step with the same pattern changes its factor. With another pattern the old load fades to zero
-!> while the new one grows, which is linear interpolation between the two. Two loads given in one
-!> step both act.
+!> while the new one grows, which is linear interpolation between the two; where the new one follows
+!> an amplitude, the old one ends at once. Two loads given in one step both act.
 module load_books
   use growing_lists, only: make_room
   use kinds, only: rk
@@ -25,6 +25,7 @@ module load_books
     integer :: history = 0 !< amplitude, 0 for none
     logical :: is_new = .false. !< given in the step being read
     logical :: is_ending = .false. !< fades to zero in this step
+    logical :: is_replaced = .false. !< by a load with an amplitude: ends at once
   end type active_load
 
   type :: load_book
@@ -62,7 +63,9 @@ contains
     do while (i > 0)
       associate (old => self%entries(i))
         i = old%next
-        if (old%is_new .or. old%is_ending) cycle
+        if (old%is_new) cycle
+        old%is_replaced = history > 0
+        if (old%is_ending) cycle
         if (load == 0 .and. old%pattern == pattern) then
           load = old%load
           old%factor = factor
@@ -165,7 +168,7 @@ contains
     used = 0
     do i = 1, self%num_entries
       associate (now => self%entries(i))
-        if (now%is_ending .and. abs(now%previous) <= 0.0_rk) cycle
+        if (now%is_ending .and. (now%is_replaced .or. abs(now%previous) <= 0.0_rk)) cycle
         used = used + 1
         loads(used)%load = now%load
         loads(used)%start_factor = now%previous
@@ -185,6 +188,7 @@ contains
     integer :: i, used
     if (.not. allocated(self%entries)) return
     self%entries%is_new = .false.
+    self%entries%is_replaced = .false.
     if (is_perturbation) return
     used = 0
     self%first(:self%num_names) = 0

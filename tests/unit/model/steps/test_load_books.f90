@@ -17,6 +17,7 @@ program test_load_books
   histories(2)%uses_total_time = .true.
   call factor_changes()
   call pattern_changes()
+  call history_replaces()
   call new_clears()
   call amplitude_is_held()
   call perturbation_moves_nothing()
@@ -64,6 +65,20 @@ contains
     call book%end_step(histories, 1.0_rk, 2.0_rk, .false.)
     call check(log, size(book%loads_of_step()) == 1, 'what has faded is gone')
   end subroutine pattern_changes
+
+  !> A load with an amplitude has its value from the start of the step: what it replaces is gone.
+  subroutine history_replaces()
+    type(load_book) :: book
+    type(step_load), allocatable :: loads(:)
+    call give(book, 'down', 2.0_rk, 0, 1)
+    call book%end_step(histories, 1.0_rk, 1.0_rk, .false.)
+    call give(book, 'across', 4.0_rk, 1, 2)
+    loads = book%loads_of_step()
+    call check(log, size(loads) == 1, 'a load with an amplitude replaces the old pattern')
+    call check(log, loads(1)%load == 2, 'the new load acts')
+    call book%end_step(histories, 1.0_rk, 2.0_rk, .false.)
+    call check(log, size(book%loads_of_step()) == 1, 'the old pattern does not come back')
+  end subroutine history_replaces
 
   subroutine new_clears()
     type(load_book) :: book

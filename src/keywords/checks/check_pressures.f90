@@ -1,0 +1,94 @@
+!> Warns of a pressure of an earlier step that goes on beside a new one of its kind on the same face
+!> under another name: a load is replaced under its own name alone.
+module check_pressures
+  use deck_scan, only: is_keyword, steps_of_cards
+  use diagnostics, only: diagnostic_list
+  use dload_labels, only: elements_in_words
+  use kinds, only: rk
+  use load_pressure, only: pressure_load
+  use model_draft, only: draft
+  use step_plan, only: step_load
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: warn_of_pressures
+
+contains
+
+  !> The deck must have no errors.
+  subroutine warn_of_pressures(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i, k, element, s
+    do s = 2, size(model%problem%steps)
+      associate (before => model%problem%steps(s - 1)%loads, now => model%problem%steps(s)%loads)
+        do i = 1, size(now)
+          if (any(before%load == now(i)%load)) cycle
+          do k = 1, size(now)
+            if (.not. any(before%load == now(k)%load) .or. is_ending(now(k))) cycle
+            element = shared_element(model, now(k)%load, now(i)%load)
+            if (element == 0) cycle
+            call warn_of_both(model, s, element, now(k)%load, now(i)%load, faults)
+            exit
+          end do
+        end do
+      end associate
+    end do
+  end subroutine warn_of_pressures
+
+  !> Whether a load fades to zero in its step.
+  pure logical function is_ending(work)
+    type(step_load), intent(in) :: work
+    is_ending = work%amplitude == 0 .and. abs(work%end_factor) <= 0.0_rk
+  end function is_ending
+
+  !> An element with a face that two pressures of *DLOAD of one kind push; 0 for none.
+  pure integer function shared_element(model, first, second) result(element)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: first, second !< loads
+    integer :: i
+    element = 0
+    if (model%problem%loads(first)%item%family /= 'DLOAD') return
+    if (model%problem%loads(second)%item%family /= 'DLOAD') return
+    if (model%problem%loads(first)%item%target == model%problem%loads(second)%item%target) return
+    select type (old => model%problem%loads(first)%item)
+    type is (pressure_load)
+      select type (new => model%problem%loads(second)%item)
+      type is (pressure_load)
+        if (old%is_hydrostatic .neqv. new%is_hydrostatic) return
+        do i = 1, size(new%faces%element)
+          if (.not. any(old%faces%element == new%faces%element(i) .and. &
+                        old%faces%face == new%faces%face(i))) cycle
+          element = new%faces%element(i)
+          return
+        end do
+      end select
+    end select
+  end function shared_element
+
+  !> The warning, at the last card that gives the new load.
+  subroutine warn_of_both(model, s, element, first, second, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: s !< step
+    integer, intent(in) :: element !< position
+    integer, intent(in) :: first, second !< loads
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: step(size(model%cards))
+    integer :: found, i, line
+    step = steps_of_cards(model%cards)
+    found = model%procedure_card(s)
+    associate (loads => model%problem%loads)
+      do i = 1, size(step)
+        if (step(i) /= s .or. .not. is_keyword(model%cards(i), 'DLOAD')) cycle
+        do line = 1, model%cards(i)%num_lines
+          if (elements_in_words(model%cards(i), line)//' '//model%cards(i)%word_at(line, 2) == &
+              loads(second)%item%target) found = i
+        end do
+      end do
+      call model%cards(found)%warn( &
+        faults, 'element '//as_text(model%problem%mesh%element_id(element))//' keeps the '// &
+        "pressure '"//loads(first)%item%target//"' of an earlier step beside '"// &
+        loads(second)%item%target//"': a load is replaced under its own name, or with OP=NEW")
+    end associate
+  end subroutine warn_of_both
+end module check_pressures

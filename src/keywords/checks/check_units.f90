@@ -1,0 +1,99 @@
+!> Warns of defaults, constants and records in SI in a deck in other units, which the densities or
+!> Young's moduli of its solids show.
+module check_units
+  use deck_card, only: card
+  use deck_scan, only: is_keyword
+  use diagnostics, only: diagnostic_list
+  use kinds, only: rk
+  use material_law, only: material
+  use model_draft, only: draft
+  use write_text, only: as_text
+  implicit none
+  private
+  public :: sign_of_other_units, warn_of_units
+
+  !> Densities of solids in SI lie above, in t/mm3 (1e-9) far below [kg/m3].
+  real(rk), parameter :: lightest_solid = 1.0_rk
+  !> Young's moduli of solids in SI lie above, in MPa below [Pa].
+  real(rk), parameter :: softest_solid = 1.0e6_rk
+  !> Range of g in m/s2 as decks write it.
+  real(rk), parameter :: least_g = 9.7_rk, largest_g = 10.1_rk
+  !> A SCALE below scales a record, one above turns m/s2 into mm/s2.
+  real(rk), parameter :: largest_scale = 100.0_rk
+
+contains
+
+  !> What shows that a deck is not in SI: '*DENSITY of 2.4e-9'; '' for a deck in SI.
+  pure function sign_of_other_units(materials) result(words)
+    type(material), intent(in) :: materials(:)
+    character(:), allocatable :: words
+    real(rk) :: heaviest, stiffest
+    words = ''
+    heaviest = maxval([0.0_rk, materials%density])
+    stiffest = maxval([0.0_rk, materials%young])
+    if (heaviest >= lightest_solid) return
+    if (heaviest > 0.0_rk) then
+      words = '*DENSITY of '//as_text(heaviest)
+    else if (stiffest > 0.0_rk .and. stiffest < softest_solid) then
+      words = "Young's modulus of "//as_text(stiffest)
+    end if
+  end function sign_of_other_units
+
+  !> The deck must have no errors.
+  subroutine warn_of_units(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: why
+    integer :: i
+    why = sign_of_other_units(model%problem%materials)
+    if (why == '') return
+    why = ' in a deck with a '//why//', which is not in SI (t, mm, s: water 1e-9, g 9810)'
+    do i = 1, size(model%cards)
+      associate (this => model%cards(i))
+        if (is_keyword(this, 'RESERVOIR')) then
+          if (.not. this%has('DENSITY')) call this%warn(faults, 'DENSITY is 1000 by default'//why)
+          if (.not. this%has('GRAVITY')) call this%warn(faults, 'GRAVITY is 9.81 by default'//why)
+        else if (is_keyword(this, 'DLOAD')) then
+          call warn_of_gravity(this, why, faults)
+        else if (is_keyword(this, 'BASE MOTION')) then
+          call warn_of_record(this, model, why, faults)
+        end if
+      end associate
+    end do
+  end subroutine warn_of_units
+
+  !> A weight with g in m/s2.
+  subroutine warn_of_gravity(this, why, faults)
+    type(card), intent(in) :: this
+    character(*), intent(in) :: why
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: line
+    do line = 1, this%num_lines
+      if (this%word_at(line, 2) /= 'GRAV') cycle
+      if (abs(abs(this%real_at(line, 3)) - 0.5_rk*(least_g + largest_g)) > &
+          0.5_rk*(largest_g - least_g)) cycle
+      call this%warn_at(faults, line, 3, 'gravity of '//this%text_at(line, 3)//why)
+      exit
+    end do
+  end subroutine warn_of_gravity
+
+  !> A record that its unit has turned into m/s2.
+  subroutine warn_of_record(this, model, why, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    character(*), intent(in) :: why
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i
+    do i = 1, size(model%cards)
+      associate (record => model%cards(i))
+        if (.not. is_keyword(record, 'AMPLITUDE')) cycle
+        if (record%word('NAME') /= this%word('AMPLITUDE')) cycle
+        if (.not. record%has('UNIT') .and. record%word('FORMAT') /= 'AT2') cycle
+        if (abs(this%real('SCALE')*record%real('SCALE')) >= largest_scale) cycle
+        call this%warn(faults, "the record '"//this%text('AMPLITUDE')//"' is turned into m/s2"// &
+                       why//'; SCALE=1000 here turns it into mm/s2')
+        return
+      end associate
+    end do
+  end subroutine warn_of_record
+end module check_units
