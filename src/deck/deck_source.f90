@@ -3,6 +3,7 @@ module deck_source
   use deck_file, only: first_letter, load_file, path_beside
   use deck_words, only: is_blank, next_word, split_parameter
   use diagnostics, only: diagnostic_list, place, severity_error
+  use file_identity, only: is_same_file
   use parse_text, only: upper_case, without_blanks
   implicit none
   private
@@ -108,6 +109,7 @@ contains
     integer :: i
     do file = 1, size(source%files)
       if (source%files(file)%path == path) return
+      if (is_same_file(source%files(file)%path, path)) return
     end do
     file = 0
     call load_file(path, new%text, reason)

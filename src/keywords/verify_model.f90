@@ -26,6 +26,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     call verify_elements(model, faults)
     call verify_mass(model, faults)
+    call verify_modes(model, faults)
     call verify_velocities(model, faults)
     call verify_reduced_steps(model, faults)
     if (.not. faults%has_errors()) call verify_weight(model, faults)
@@ -105,6 +106,25 @@ contains
       return
     end do
   end subroutine verify_mass
+
+  !> A model has no more modes than free degrees of freedom. Those without mass, and those that ties
+  !> and equations hold, are known when the step is built.
+  subroutine verify_modes(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i, num_free
+    do i = 1, size(model%problem%steps)
+      associate (plan => model%problem%steps(i), this => model%cards(model%procedure_card(i)))
+        if (.not. plan%procedure%finds_modes .or. this%num_lines == 0) cycle
+        num_free = 3*count(model%has_element) - &
+                   count(model%has_element(plan%fixities%node))
+        if (plan%num_modes <= num_free) cycle
+        call this%fault_at(faults, 1, 1, "found '"//this%text_at(1, 1)//"'", &
+                           'at most '//as_text(num_free)//' modes: the model has no more free '// &
+                           'degrees of freedom')
+      end associate
+    end do
+  end subroutine verify_modes
 
   !> Gravity on a model without mass is reported at its first card.
   subroutine verify_weight(model, faults)

@@ -20,6 +20,7 @@ module keywords_output
   public :: read_files, read_fields, read_output, read_envelope, fields_of_envelope
 
   character, parameter :: nl = new_line('a')
+  real(rk), parameter :: round_off = 1.0e-9_rk
   character(*), parameter :: series = ' The fields go to the VTK series (job.pvd) and to '// &
                              'job.h5. The request stays for the next steps until a '// &
                              'step has its own.'
@@ -75,8 +76,8 @@ contains
                        field('HISTORY', kind_flag, 'histories of sets, as *NODE PRINT'), &
                        field('VARIABLE', kind_choice, 'requests at once, with FIELD: U, RF and '// &
                              'S, or all', choices='PRESELECT | ALL'), &
-                       field('NUMBER INTERVAL', kind_integer, 'outputs in a step, in place of '// &
-                             'FREQUENCY', lowest=1.0_rk), &
+                       field('NUMBER INTERVAL', kind_integer, 'most outputs in a step, in place '// &
+                             'of FREQUENCY', lowest=1.0_rk), &
                        field('TIME INTERVAL', kind_real, 'time between outputs, in place of '// &
                              'FREQUENCY', 's', lowest=0.0_rk, excludes_lowest=.true.)]
     call add_idle_parameters(spec, idle_of_output)
@@ -109,7 +110,8 @@ contains
     frequency = this%integer('FREQUENCY')
     associate (now => model%now)
       if (this%has('NUMBER INTERVAL')) then
-        frequency = nint(now%duration/(now%first_increment*this%integer('NUMBER INTERVAL')))
+        frequency = ceiling(now%duration/(now%first_increment*this%integer('NUMBER INTERVAL')) &
+                            - round_off)
       else if (this%has('TIME INTERVAL')) then
         frequency = nint(this%real('TIME INTERVAL')/now%first_increment)
       else
