@@ -76,8 +76,8 @@ contains
                        field('HISTORY', kind_flag, 'histories of sets, as *NODE PRINT'), &
                        field('VARIABLE', kind_choice, 'requests at once, with FIELD: U, RF and '// &
                              'S, or all', choices='PRESELECT | ALL'), &
-                       field('NUMBER INTERVAL', kind_integer, 'most outputs in a step, in place '// &
-                             'of FREQUENCY', lowest=1.0_rk), &
+                       field('NUMBER INTERVAL', kind_integer, 'largest number of outputs in a '// &
+                             'step, in place of FREQUENCY', lowest=1.0_rk), &
                        field('TIME INTERVAL', kind_real, 'time between outputs, in place of '// &
                              'FREQUENCY', 's', lowest=0.0_rk, excludes_lowest=.true.)]
     call add_idle_parameters(spec, idle_of_output)
