@@ -7,6 +7,7 @@ import json
 import signal
 import subprocess
 
+import numpy as np
 import pandas as pd
 import pytest
 from harness import ROOT
@@ -129,6 +130,13 @@ def test_a_column_of_numbers_and_words(program_path, tmp_path, monkeypatch, caps
     text = capsys.readouterr()
     assert "block_001.inp:" in text.out
     assert "wrote out/batch.csv" in text.err
+    # A case that has become bad has no results, although those of the earlier deck are there.
+    (tmp_path / "values.csv").write_text("FRICTION\n0.6\nnone\n")
+    assert batch.main([*words, "--", "-q"]) == 1
+    table = pd.read_csv("out/batch.csv")
+    assert list(table["status"]) == ["finished", "bad deck"]
+    assert np.isfinite(table["displacement"][0]) and np.isnan(table["displacement"][1])
+    assert "found 'none'" in table["message"][1]
 
 
 def test_fractiles_of_the_finished_cases(tmp_path):

@@ -44,6 +44,11 @@ class Record:
     message: str = ""
     was_kept: bool = False  # from an earlier call
 
+    @property
+    def has_results(self) -> bool:
+        """Whether the results in the folder are those of this run."""
+        return STATUS_OF_CODE.get(self.exit_code) != "bad deck"
+
     def write(self) -> None:
         text = json.dumps(asdict(self), indent=2)
         (Path(self.folder) / RECORD).write_text(text + "\n", encoding="utf-8")
@@ -228,8 +233,11 @@ def version_of(program: Path) -> str:
 
 
 def read_summary(deck: Path, record: Record) -> None:
-    """Takes extremes and message from the summary, if the run has written one."""
+    """Takes extremes and message from the summary, if the run has written one. A bad deck writes
+    none: that in the folder is of an earlier deck."""
     try:
+        if not record.has_results:
+            raise ValueError("no results")
         results = Results(record.folder, deck.stem)
         summary: dict[str, Any] = results.summary
     except (OSError, ValueError):

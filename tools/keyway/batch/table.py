@@ -79,7 +79,10 @@ def result_table(cases: list[Case], records: list[Record]) -> ResultTable:
     smallest, anywhere), `displacement`, `opening_NAME` and `slip_NAME` of each joint.
     """
     runs = [_run(record) for record in records]
-    extremes = [_extremes(case) for case in cases]
+    extremes = [
+        _extremes(case) if record.has_results else {}
+        for case, record in zip(cases, records, strict=True)
+    ]
     results = [*dict.fromkeys(name for one in extremes for name in one)]
     taken = {name for row in [*runs, *extremes] for name in row}
     found = []
