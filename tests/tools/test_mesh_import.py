@@ -191,6 +191,47 @@ def test_gmsh_file_with_wedges_and_cells_in_two_groups(wedge_file):
     assert "1 nodes belong to no solid; left out" in imported.notes
 
 
+def cube_file(path, names):
+    """A cube, its top and one corner in groups of these names, all with the number 1."""
+    x, bricks, node = grid((1, 1, 1))
+    top = [[node(0, 0, 1), node(1, 0, 1), node(1, 1, 1), node(0, 1, 1)]]
+    cells = [("hexahedron", bricks), ("quad", top), ("vertex", [[0]])]
+    mesh = meshio.Mesh(
+        x,
+        cells,
+        cell_data={"gmsh:physical": [[1]] * 3, "gmsh:geometrical": [[1]] * 3},
+        field_data={name: np.array([1, dim]) for dim, name in names.items()},
+    )
+    meshio.write(path, mesh, file_format="gmsh22", binary=False)
+    return path
+
+
+def test_a_number_is_that_of_one_dimension(tmp_path):
+    """Volume, face and point have the number 1, as Gmsh counts them."""
+    path = cube_file(tmp_path / "cube.msh", {3: "dam", 2: "up", 0: "Krone"})
+    imported = import_mesh(read_grouped_mesh(path), [], {})
+    assert set(imported.mesh.brick_sets) == {"DAM"}
+    assert set(imported.mesh.surfaces) == {"UP"}
+    assert list(imported.mesh.node_sets["KRONE"]) == [0]
+
+
+def test_groups_whose_names_become_one(tmp_path, capsys):
+    path = cube_file(tmp_path / "cube.msh", {3: "S\u00f6hle", 2: "S\u00e4hle", 0: "p"})
+    assert main([str(path)]) == 2
+    assert "would both be S_HLE" in capsys.readouterr().err
+    path = cube_file(tmp_path / "cube.msh", {3: "Gr\u00fcndung", 2: "up", 0: "p"})
+    assert main([str(path)]) == 0
+    assert "note: group 'Gr\u00fcndung' is GR_NDUNG in the deck" in capsys.readouterr().out
+
+
+def test_a_deck_with_parts_is_refused(tmp_path, capsys):
+    """meshio would read one part alone, without its place in the assembly."""
+    text = "*HEADING\n*Part, name=A\n*NODE\n1, 0., 0., 0.\n*End Part\n"
+    (tmp_path / "parts.inp").write_text(text)
+    assert main([str(tmp_path / "parts.inp"), "-o", str(tmp_path / "mesh.inp")]) == 2
+    assert "a deck with parts and instances" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("name", "expected"),
     [("joint 1", "JOINT_1"), ("2nd", "G2ND"), ("Fuß", "FU"), ("--", "GROUP"), ("a.b", "A_B")],
@@ -210,6 +251,7 @@ def test_what_cannot_be_read(tmp_path, capsys):
         (quads, "no hexahedra and no wedges"),
         (text, "not a mesh that meshio reads"),
         (tmp_path / "none.msh", "no such file"),
+        (tmp_path, "a folder; expected a mesh file"),
     ):
         assert main([str(path)]) == 2
         assert message in capsys.readouterr().err

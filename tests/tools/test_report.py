@@ -17,7 +17,7 @@ from harness import ROOT
 from keyway_tools.report import __main__ as report
 from keyway_tools.report.browser import find_browser, opened, print_pdf
 from keyway_tools.report.errors import error_beside, estimates
-from keyway_tools.report.values import deck_of, header, key_numbers, title_of, verdict
+from keyway_tools.report.values import accuracy, deck_of, header, key_numbers, title_of, verdict
 from keyway_tools.results import folder_and_job
 from keyway_tools.si_results import SiResults, Units
 from stage_decks import build
@@ -83,7 +83,7 @@ def test_page_shows_the_numbers_of_job_json(block):
         assert page.get_attribute("body", "data-failed") is None
     assert errors == []
     assert "finished" in verdict_text
-    assert {"envelopes.U.anywhere.value", "joints.BED.opening.anywhere.value"} <= {
+    assert {"displacement.anywhere.value", "joints.BED.opening.anywhere.value"} <= {
         path for path, _ in shown
     }
     for path, text in shown:
@@ -254,6 +254,19 @@ def test_other_estimates_are_told_in_words_and_in_the_units_of_the_page(block):
         ("new", "value 2"),
     ]  # fmt: skip
     assert error_beside(results, "U", 1e3, "mm") == "± 1 mm (mesh 1)"
+
+
+def test_a_run_killed_early_has_the_rows_of_its_energies(block, tmp_path):
+    """job.json is that of the start; the table of energies knows how far the run has come."""
+    for file in block.glob("block_on_joint*"):
+        if file.is_file():
+            (tmp_path / file.name).write_bytes(file.read_bytes())
+    results = SiResults(tmp_path)
+    results.summary.update(status="running", steps=[], displacement={}, envelopes={}, joints={})
+    text = " ".join(words for _, words in verdict(results))
+    assert "step 2, increment 4, time 2 s, by block_on_joint_energy.csv" in text
+    assert key_numbers(results) == []
+    assert accuracy(results) == []
 
 
 def test_cracks_without_damage_have_their_energy_and_no_place(block):

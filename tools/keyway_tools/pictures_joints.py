@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import h5py
 import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import BoundaryNorm, ListedColormap
@@ -17,10 +18,10 @@ from .picture_style import Sheet, headline, new_figure
 from .results import Step
 from .si_results import SiResults, saved_increments
 
-STATES = {-1: "shared node", 0: "open", 1: "stick", 2: "slip", 3: "bonded"}
+STATES = {-2: "not there", -1: "shared node", 0: "open", 1: "stick", 2: "slip", 3: "bonded"}
 SHOWN_IN_PLAN = 0.3  # of the area
 WIDEST = 13.0  # [inches]
-STATE_COLOURS = ("#FFFFFF", "#D55E00", "#C9DAE6", "#E69F00", "#0072B2")
+STATE_COLOURS = ("#EEEEEE", "#FFFFFF", "#D55E00", "#C9DAE6", "#E69F00", "#0072B2")
 
 
 class JointView:
@@ -209,18 +210,19 @@ def plot_joint_states(results: SiResults, sheet: Sheet) -> list[Path]:
     if not saved or not joints:
         return []
     areas = {name: results.file[f"joints/{name}/area"][:] for name in joints}
-    opened = [sum(a[g[n]["state"][:] == 0].sum() for n, a in areas.items()) for g, _ in saved]
+    opened = [sum(a[_states(g[n]) == 0].sum() for n, a in areas.items()) for g, _ in saved]
     group, time = saved[int(np.argmax(opened))]
     page = JointPage(results, joints)
     colours = ListedColormap(STATE_COLOURS)
-    norm = BoundaryNorm(np.arange(-1.5, 4.0), colours.N)
+    norm = BoundaryNorm(np.arange(-2.5, 4.0), colours.N)
     seen: set[int] = set()
     for name, joint in joints.items():
-        state = group[name]["state"][:].astype(int)
-        state = state[_point_of_corner(results, name, joint)]
-        seen |= set(state.tolist())
-        _fill_by_corner(page, name, state, colours, norm)
-        share = areas[name][group[name]["state"][:] == 0].sum() / max(areas[name].sum(), 1e-300)
+        states = _states(group[name])
+        corners = states[_point_of_corner(results, name, joint)]
+        seen |= set(corners.tolist())
+        _fill_by_corner(page, name, corners, colours, norm)
+        there = areas[name][states > -2].sum()
+        share = areas[name][states == 0].sum() / max(there, 1e-300)
         page.frame(name, f"{name}\n{100.0 * share:.3g} % open")
     handles = [
         Patch(fc=colours(norm(value)), ec="black", lw=0.5, label=text)
@@ -228,8 +230,17 @@ def plot_joint_states(results: SiResults, sheet: Sheet) -> list[Path]:
         if value in seen
     ]
     page.figure.legend(handles=handles, loc="outside right center")
-    headline(page.figure, f"State of joints at t = {time:.5g} s, with most area open")
+    most = ", with most area open" if max(opened) > 0.0 else ", no joint is open at a saved time"
+    headline(page.figure, f"State of joints at t = {time:.5g} s{most}")
     return sheet.save(page.figure)
+
+
+def _states(joint: h5py.Group) -> np.ndarray:
+    """States of the points of a joint; -2 where an element behind the point is absent."""
+    state = joint["state"][:].astype(int)
+    if "grouted" in joint:
+        state[joint["grouted"][:].ravel() == 0] = -2
+    return state
 
 
 def _fill_by_corner(page: JointPage, name: str, state: np.ndarray, colours, norm) -> None:

@@ -33,7 +33,7 @@ def import_mesh(
     `splits`: groups of faces along which the mesh is cut open; `pairs`: master and slave group of
     joints between faces at the same place.
     """
-    notes = turn_bricks(grouped)
+    notes = [*grouped.notes, *turn_bricks(grouped)]
     surfaces = find_surfaces(grouped, splits, notes)
     joints = split_mesh(grouped, splits) if splits else {}
     sides: dict[str, tuple[str, str]] = {}

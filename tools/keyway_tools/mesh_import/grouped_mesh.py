@@ -29,6 +29,9 @@ REFUSED = {
     "triangle6": "write a mesh of first order (Gmsh: Mesh.ElementOrder = 1)",
 }
 FACES = {"quad": 4, "triangle": 3}
+DIMENSIONS = {
+    **dict.fromkeys(CORNERS, 3), **dict.fromkeys(FACES, 2), "line": 1, "vertex": 0
+}  # fmt: skip
 NUMBERED = ("gmsh:physical", "cell_tags", "medit:ref")  # data that number the groups of cells
 
 
@@ -46,6 +49,7 @@ class GroupedMesh:
     brick_groups: dict[str, np.ndarray] = field(default_factory=dict)  # positions of bricks
     face_groups: dict[str, np.ndarray] = field(default_factory=dict)  # positions of faces
     node_groups: dict[str, np.ndarray] = field(default_factory=dict)  # positions of nodes
+    notes: list[str] = field(default_factory=list)  # what the user should know
 
 
 def deck_name(name: str) -> str:
@@ -56,8 +60,13 @@ def deck_name(name: str) -> str:
 
 def read_grouped_mesh(path: Path, scale: float = 1.0) -> GroupedMesh:
     """Nodes, bricks, faces and groups of a mesh file. Raises MeshError."""
+    if path.is_dir():
+        raise MeshError(f"{path}: a folder; expected a mesh file")
     if not path.is_file():
         raise MeshError(f"{path}: no such file")
+    if not scale > 0.0:
+        raise MeshError(f"--scale {scale:g}: expected a factor above 0")
+    notes = notes_of_deck(path) if path.suffix.lower() == ".inp" else []
     try:
         with contextlib.redirect_stdout(io.StringIO()):  # meshio prints what it does not know
             mesh = meshio.read(path)
@@ -67,19 +76,35 @@ def read_grouped_mesh(path: Path, scale: float = 1.0) -> GroupedMesh:
     x = np.zeros((len(mesh.points), 3))
     x[:, : mesh.points.shape[1]] = scale * mesh.points
     found = GroupedMesh(x, *(gather(mesh, kinds) for kinds in (CORNERS, FACES)))
-    groups = groups_of_cells(mesh)
+    groups, renamed = groups_of_cells(mesh)
+    found.notes = notes + renamed
     found.brick_groups = select(groups, mesh, CORNERS)
     found.face_groups = select(groups, mesh, FACES)
-    found.node_groups = {
-        deck_name(name): np.unique(np.asarray(members, dtype=int))
-        for name, members in mesh.point_sets.items()
-        if len(members)
-    }
+    found.node_groups = groups_of_points(mesh, groups)
     found.bricks, found.brick_groups = once(found.bricks, found.brick_groups)
     found.faces, found.face_groups = once(found.faces, found.face_groups)
     if not len(found.bricks):
         raise MeshError(f"{path}: no hexahedra and no wedges; expected a mesh of solids")
     return found
+
+
+def notes_of_deck(path: Path) -> list[str]:
+    """What is lost of a deck of Abaqus or CalculiX. Error: a deck with parts, of which one alone
+    would be read."""
+    words = {
+        line.partition(",")[0].strip("* \t\r\n").upper()
+        for line in path.read_text(encoding="utf-8", errors="replace").splitlines()
+        if line.startswith("*") and not line.startswith("**")
+    }
+    if words & {"PART", "INSTANCE", "ASSEMBLY"}:
+        raise MeshError(
+            f"{path}: a deck with parts and instances; expected a flat mesh: keyway reads such a "
+            "deck itself, with its sets, surfaces and ties"
+        )
+    lost = [f"*{word}" for word in ("SURFACE", "TIE", "BOUNDARY") if word in words]
+    if not lost:
+        return []
+    return [f"{', '.join(lost)} of the deck not taken: keyway reads the deck itself, with them"]
 
 
 def refuse_cells(path: Path, mesh: meshio.Mesh) -> None:
@@ -107,38 +132,88 @@ def gather(mesh: meshio.Mesh, kinds: dict) -> np.ndarray:
     return np.concatenate(rows).astype(int) if rows else np.zeros((0, width), dtype=int)
 
 
-def groups_of_cells(mesh: meshio.Mesh) -> dict[str, list[np.ndarray]]:
-    """For each named group its cells in each block, by position in the block."""
+def groups_of_cells(mesh: meshio.Mesh) -> tuple[dict[str, list[np.ndarray]], list[str]]:
+    """For each named group its cells in each block, by position in the block; what was renamed."""
     groups: dict[str, list[np.ndarray]] = {}
+    origins: dict[str, str] = {}
+    for name, own in [*named_groups(mesh), *numbered_groups(mesh)]:
+        word = deck_name(name)
+        if origins.setdefault(word, name).upper() != name.upper():
+            raise MeshError(
+                f"groups '{origins[word]}' and '{name}' would both be {word}; expected names that "
+                "differ in letters A to Z, digits and underscores"
+            )
+        # A name may be that of volumes and of faces, or of a set that is also numbered.
+        before = groups.get(word, [np.zeros(0, dtype=int)] * len(own))
+        groups[word] = [np.union1d(old, new) for old, new in zip(before, own, strict=True)]
+    notes = [f"group '{name}' is {word} in the deck" for word, name in origins.items()
+             if name.strip().upper() != word]  # fmt: skip
+    return groups, notes
+
+
+def named_groups(mesh: meshio.Mesh) -> list[tuple[str, list[np.ndarray]]]:
+    """Groups that the file names, with their cells in each block."""
+    found = []
     for name, members in mesh.cell_sets.items():
-        if name.startswith("gmsh:"):
-            continue
         own = [np.asarray(m, dtype=int) if m is not None else np.zeros(0, int) for m in members]
-        if any(m.size for m in own):
-            groups[deck_name(name)] = own
-    for data in NUMBERED:
-        if data not in mesh.cell_data:
-            continue
-        for name, numbers in names_of_numbers(mesh, data).items():
-            own = [np.flatnonzero(np.isin(v, numbers)) for v in mesh.cell_data[data]]
-            if deck_name(name) not in groups and any(m.size for m in own):
-                groups[deck_name(name)] = own
-    return groups
+        if not name.startswith("gmsh:") and any(m.size for m in own):
+            found.append((name, own))
+    return found
 
 
-def names_of_numbers(mesh: meshio.Mesh, data: str) -> dict[str, list[int]]:
-    """Names of the groups that a field numbers; a number without a name is its own."""
-    used = {int(v) for values in mesh.cell_data[data] for v in np.unique(values)} - {0}
-    names: dict[str, list[int]] = {}
+def numbered_groups(mesh: meshio.Mesh) -> list[tuple[str, list[np.ndarray]]]:
+    """Groups that a field numbers. A number is that of one dimension: a volume and a surface may
+    have the same."""
+    found = []
+    for data in (name for name in NUMBERED if name in mesh.cell_data):
+        for (name, dimension), numbers in names_of_numbers(mesh, data).items():
+            own = [
+                np.flatnonzero(np.isin(values, numbers) & fits(block.type, dimension))
+                for block, values in zip(mesh.cells, mesh.cell_data[data], strict=True)
+            ]
+            if any(m.size for m in own):
+                found.append((name, own))
+    return found
+
+
+def fits(kind: str, dimension: int | None) -> bool:
+    """Whether cells of a kind are of a dimension; None: any."""
+    return dimension is None or DIMENSIONS.get(kind) == dimension
+
+
+def names_of_numbers(mesh: meshio.Mesh, data: str) -> dict[tuple[str, int | None], list[int]]:
+    """Names and dimensions of the groups that a field numbers; a number without a name is its
+    own."""
+    names: dict[tuple[str, int | None], list[int]] = {}
     if data == "cell_tags":  # MED: a family of cells may be in several groups
         for number, own in getattr(mesh, "cell_tags", {}).items():
             for name in own:
-                names.setdefault(name, []).append(int(number))
+                names.setdefault((name, None), []).append(int(number))
         return names
-    known = {int(number): name for name, (number, _) in mesh.field_data.items()}
-    for number in sorted(used):
-        names.setdefault(known.get(number, f"GROUP_{number}"), []).append(number)
+    known = {(int(number), int(dim)): name for name, (number, dim) in mesh.field_data.items()}
+    for block, values in zip(mesh.cells, mesh.cell_data[data], strict=True):
+        dimension = DIMENSIONS.get(block.type)
+        for number in {int(v) for v in np.unique(values)} - {0}:
+            name = known.get((number, dimension), f"GROUP_{number}")
+            own = names.setdefault((name, dimension), [])
+            if number not in own:
+                own.append(number)
     return names
+
+
+def groups_of_points(mesh: meshio.Mesh, groups: dict) -> dict[str, np.ndarray]:
+    """Named groups of points: sets of the file, and groups of cells of one point."""
+    found: dict[str, np.ndarray] = {}
+    for name, members in mesh.point_sets.items():
+        if len(members):
+            found[deck_name(name)] = np.unique(np.asarray(members, dtype=int))
+    for name, members in groups.items():
+        own = [block.data[m].ravel() for block, m in zip(mesh.cells, members, strict=True)
+               if block.type == "vertex"]  # fmt: skip
+        nodes = np.unique(np.concatenate([np.zeros(0, dtype=int), *own])).astype(int)
+        if nodes.size:
+            found[name] = np.union1d(found.get(name, np.zeros(0, dtype=int)), nodes)
+    return found
 
 
 def once(cells: np.ndarray, groups: dict) -> tuple[np.ndarray, dict[str, np.ndarray]]:

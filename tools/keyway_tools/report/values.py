@@ -99,12 +99,26 @@ def _last_time(results: SiResults) -> str:
     """The end of the last step in words."""
     steps = results.summary.get("steps", [])
     if not steps:
-        return "no step was computed"
+        return _last_row(results)
     last = steps[-1]
     if last.get("procedure") == "frequency":
         return f"step {last['name']} with {_number(len(last.get('frequencies', [])), 'mode')}"
     increments = _number(last.get("increments", 0), "increment")
     return f"step {last['name']}, {increments} to {last.get('time', 0.0):.6g} s of the step"
+
+
+def _last_row(results: SiResults) -> str:
+    """The last increment in job_energy.csv: a run that was killed early has no step in job.json."""
+    try:
+        table = results.table("energy")
+        step, increment, time = (table[name][-1] for name in ("step", "increment", "time"))
+    except (OSError, KeyError, IndexError, ValueError):
+        return "no step was computed"
+    return (
+        f"step {step:.0f}, increment {increment:.0f}, time {time:.6g} s, by "
+        f"{results.job}_energy.csv; {results.job}.json was not yet written, so that numbers are "
+        "missing below, and pictures and tables are there"
+    )
 
 
 def _stability(summary: dict[str, Any]) -> list[tuple[str, str]]:
@@ -127,23 +141,26 @@ def _number(count: int, noun: str) -> str:
 
 
 def key_numbers(results: SiResults) -> list[dict[str, Any]]:
-    """Extremes of the envelopes and the largest displacement, which every run has: label, value,
-    unit, place, time, and the path in job.json."""
+    """Extremes of the run: label, value, unit, place, time, and the path in job.json. Displacements
+    and openings are those of all increments, the others those of the steps with *ENVELOPE."""
     summary = results.si_summary
-    known = {name: (f"envelopes.{name}", found) for name, found in
-             summary.get("envelopes", {}).items()}  # fmt: skip
-    if "U" not in known and summary.get("displacement"):
-        known = {"U": ("displacement", summary["displacement"]), **known}
+    known = {"U": ("displacement", summary.get("displacement") or {})}
+    known |= {name: (f"envelopes.{name}", found) for name, found in
+              summary.get("envelopes", {}).items() if name not in ("U", "OPENING")}  # fmt: skip
+    known["OPENING"] = ("joints", _largest_openings(summary.get("joints", {})))
     rows = []
     for name, (path, values) in known.items():
         field = FIELDS.get(name)
         scale, unit = (field.scale, field.unit) if field else (1.0, "")
+        label = field.label if field else name
+        if path.startswith("envelopes"):
+            label += _steps_of_envelope(results, name)
         for where in (w for w in WHERE if "value" in values.get(w, {})):
             extreme = values[where]
             if name in DAMAGES and not extreme["value"]:
                 extreme = {"value": 0.0}  # neither place nor time
             rows.append({
-                "label": field.label if field else name,
+                "label": label,
                 "where": "" if where == "anywhere" else where,
                 "value": scale * extreme["value"],
                 "unit": unit,
@@ -151,9 +168,30 @@ def key_numbers(results: SiResults) -> list[dict[str, Any]]:
                 "in_step": time_in_step(results, extreme.get("time")),
                 "x": extreme.get("x"),
                 "error": error_beside(results, name, scale, unit) if where == "anywhere" else "",
-                "path": f"{path}.{where}.value",
+                "path": extreme.get("path", f"{path}.{where}.value"),
             })  # fmt: skip
     return rows + _dissipated(results)
+
+
+def _largest_openings(joints: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """The largest opening of all joints anywhere and on each face, with its path in job.json."""
+    found: dict[str, dict[str, Any]] = {}
+    for where in WHERE:
+        for name, joint in joints.items():
+            extreme = joint.get("opening", {}).get(where, {})
+            if extreme.get("value", -1.0) > found.get(where, {}).get("value", -1.0):
+                found[where] = {**extreme, "path": f"joints.{name}.opening.{where}.value"}
+    return found
+
+
+def _steps_of_envelope(results: SiResults, name: str) -> str:
+    """' (2 of 5 steps)' where not all steps have an envelope."""
+    try:
+        steps = [step for step in results.steps() if step.procedure != "frequency"]
+    except (OSError, KeyError):
+        return ""
+    count = sum(name in step.envelopes for step in steps)
+    return f" ({count} of {len(steps)} steps)" if 0 < count < len(steps) else ""
 
 
 def _dissipated(results: SiResults) -> list[dict[str, Any]]:
@@ -190,6 +228,8 @@ def time_in_step(results: SiResults, time: float | None) -> str:
 def accuracy(results: SiResults) -> list[tuple[str, str]]:
     """What job.json has under 'accuracy' beside the estimates, name and value."""
     known = results.summary.get("accuracy", {})
+    if not any(step.get("increments") for step in results.summary.get("steps", [])):
+        return []
     rest = {key: value for key, value in known.items() if key not in ("estimates", "joints")}
     shares = {name: joint.get("penetration_over_opening", 0.0) for name, joint in
               known.get("joints", {}).items()}  # fmt: skip
