@@ -45,8 +45,13 @@ def test_a_folder_equals_itself(capsys, a):
     assert "equal within the tolerances" in text
 
 
-def test_another_name_and_another_order_of_rows_are_equal(capsys, tmp_path, a):
-    b = make_results(tmp_path / "b", job="copy", rows=ROWS[::-1])
+def test_another_name_and_another_order_of_rows_are_equal(capsys, tmp_path):
+    def named(job: str) -> dict:
+        files = [f"{job}.h5", f"{job}_node_TIP.csv", f"{job}_vtk/{job}_0001.vtu"]
+        return SUMMARY | {"files": files, "warnings": [f"decks/{job}.inp:3: *TIE: warning"]}
+
+    a = make_results(tmp_path / "a", summary=named("dam"))
+    b = make_results(tmp_path / "b", job="copy", rows=ROWS[::-1], summary=named("copy"))
     assert run(capsys, a, b)[0] == 0
 
 

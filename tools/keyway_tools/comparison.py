@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -253,11 +254,22 @@ def without(rules: Rules, *patterns: str) -> Rules:
     return replace(rules, patterns=ignored + rules.patterns)
 
 
+def summary_of(results: Results) -> dict:
+    """The leaves of job.json; names of files and places in the deck without the name of the job."""
+    leaves = read_json(results.path(".json"))
+    for key, text in leaves.items():
+        if key.startswith("files."):
+            leaves[key] = text.removeprefix(results.job).replace(f"/{results.job}_", "/_")
+        elif key.startswith("warnings."):
+            leaves[key] = re.sub(rf"^\S*{re.escape(results.job)}\.inp:", ":", str(text))
+    return leaves
+
+
 def compare_folders(a: Results, b: Results, rules: Rules) -> Report:
     """Summary, tables and HDF5 file of two runs; the VTK files hold the same data."""
     report = Report()
     summary = without(rules, *SUMMARY_IGNORED)
-    compare_files(report, a.path(".json"), b.path(".json"), summary, "summary")
+    compare_maps(report, "summary", summary_of(a), summary_of(b), summary)
     for table in sorted({*a.tables(), *b.tables()}):
         sides = [table in side.tables() for side in (a, b)]
         if all(sides):
