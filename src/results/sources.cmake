@@ -11,6 +11,7 @@ set(sources
   errors/solid_layers.f90
   errors/space_errors.f90
   errors/stress_polynomials.f90
+  errors/support_edges.f90
   fields/derived_fields.f90
   fields/error_fields.f90
   fields/field_help.f90

@@ -1,5 +1,6 @@
 !> Places where linear elasticity has no finite stress, found from the shape of the model alone
-!> (theory.md, 14.6): re-entrant edges and corners, and edges of supports that hold all directions.
+!> (theory.md, 14.6): re-entrant edges and corners, and edges of supports that hold all directions,
+!> not the places inside such a support.
 !> The stress there grows with every refinement of the mesh.
 module singular_places
   use dam_mesh, only: element_is_there, fe_mesh
@@ -8,6 +9,7 @@ module singular_places
   use problem_definition, only: problem
   use shape_hex8, only: derivative_at, edge_end, shape_at
   use small_matrix, only: cross_product, solve_dense
+  use support_edges, only: directions_held, is_inside_support
   implicit none
   private
   public :: singular_nodes, is_singular, words_of_cause
@@ -69,9 +71,12 @@ contains
     real(rk), intent(in) :: x(3) !< [m]
     real(rk) :: angle, whole
     integer :: held, n
-    cause = edge_of_support
     held = count(directions_held(model, x))
-    if (held == 3) return
+    cause = edge_of_support
+    if (held == 3) then
+      if (.not. is_inside_support(model, x)) return
+      held = 0 ! supports inside a face of the model make no place singular
+    end if
     cause = regular
     angle = angle_of_solids(model%mesh, x)
     do n = held, 0, -1
@@ -81,25 +86,6 @@ contains
       return
     end do
   end function find_cause
-
-  !> The directions that supports hold at the nodes of a place, in any step.
-  function directions_held(model, x) result(is_held)
-    type(problem), intent(in) :: model
-    real(rk), intent(in) :: x(3) !< [m]
-    logical :: is_held(3)
-    real(rk) :: size_of
-    integer :: i, k
-    is_held = .false.
-    size_of = near*maxval(maxval(model%mesh%x, dim=2) - minval(model%mesh%x, dim=2))/100.0_rk
-    do i = 1, size(model%steps)
-      associate (fixed => model%steps(i)%fixities)
-        do k = 1, size(fixed)
-          if (any(abs(model%mesh%x(:, fixed(k)%node) - x) > size_of)) cycle
-          is_held(fixed(k)%dof) = .true.
-        end do
-      end associate
-    end do
-  end function directions_held
 
   !> The solid angle that all solids fill around a place, those across joints and ties included.
   real(rk) function angle_of_solids(mesh, x) result(angle)
