@@ -41,6 +41,22 @@ def peak_line(program: Path, folder: Path, header: str, amplitude: str, motion: 
     return line
 
 
+def test_a_deck_in_millimetres(program_path, tmp_path) -> None:
+    """The summary says that the deck is not in SI, and gives the peak without a unit."""
+    deck = BASE.read_text(encoding="utf-8").replace("2400.", "2.4e-9").replace("22e9", "22e3")
+    deck = deck.replace(
+        "*STEP\n*STATIC\n*DLOAD\nDAM, GRAV, 9.81, 0., 0., -1.\n",
+        "*AMPLITUDE, NAME=QUAKE, UNIT=G\n0., 0., 0.5, 0.3, 1., 0.\n*STEP\n"
+        "*DYNAMIC\n0.01, 1.\n*BASE MOTION, DOF=1, AMPLITUDE=QUAKE, SCALE=1000.\n",
+    )
+    (tmp_path / "deck.inp").write_text(deck, encoding="utf-8")
+    command = [str(program_path.resolve()), "--check", "deck.inp"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert "not SI (a *DENSITY of 2.4e-9)" in done.stdout
+    assert ", peak 2943 at t = 0.5 s" in done.stdout
+    assert "warning" not in done.stderr
+
+
 @pytest.mark.parametrize(
     ("header", "amplitude", "motion", "expected"),
     [

@@ -1,5 +1,6 @@
 !> The summary of a model as text.
 module model_summary
+  use check_units, only: sign_of_other_units
   use dam_mesh, only: fe_mesh, named_set
   use joint_points, only: dam_joint
   use kinds, only: rk
@@ -26,7 +27,7 @@ contains
     text = 'Model'//nl//row('nodes', nodes_of(model%mesh))//nl// &
            row('elements', as_text(model%mesh%num_elements)//types_of(model))//nl// &
            row('mass', trim(merge('lumped    ', 'consistent', model%has_lumped_mass)))
-    text = text//titled('Node sets', sets_of('nodes', model%node_sets))// &
+    text = text//units_of(model)//titled('Node sets', sets_of('nodes', model%node_sets))// &
            titled('Element sets', sets_of('elements', model%element_sets))// &
            titled('Surfaces', surfaces_of(model))//titled('Materials', materials_of(model))// &
            titled('Joints', joints_of(model))//titled('Ties and interfaces', ties_of(model))// &
@@ -34,6 +35,15 @@ contains
            titled('Amplitudes', amplitudes_of(model))//titled('Loads', loads_of(model))// &
            steps_of(model)//titled('Material tests', tests_of(model))
   end function summary_of
+
+  !> A row where the deck is not in SI, whose units stand in the rows below.
+  pure function units_of(model) result(text)
+    type(problem), intent(in) :: model
+    character(:), allocatable :: text
+    text = sign_of_other_units(model%materials)
+    if (text /= '') text = nl//row('units', 'not SI (a '//text//'): read those of the deck in '// &
+                                   'place of m, kg and Pa')
+  end function units_of
 
   !> A title and the rows below it; nothing where there are no rows.
   pure function titled(title, rows) result(text)
