@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from .construction.heat import Temperatures
-from .construction.lifts import Construction, construction_steps
+from .construction.lifts import Construction, construction_steps, joints_there
 from .deck_text import comment
 from .mesh_data import BrickMesh
 
@@ -145,7 +145,7 @@ def _amplitudes(options: DeckOptions) -> list[str]:
 
 def _requests(mesh: BrickMesh, options: DeckOptions) -> list[str]:
     is_reduced = options.reduced is not None
-    parts = ["*NODE PRINT, NSET=CROWN_CREST", "U" if is_reduced else "U, A"]
+    parts = ["*NODE PRINT, NSET=CROWN_CREST", "U, A" if options.motions and not is_reduced else "U"]
     for name in mesh.joint_names:
         points = f"{name}_HISTORY" if f"{name}_HISTORY" in mesh.node_sets else f"{name}_CREST"
         parts += [f"*JOINT PRINT, JOINT={name}, NSET={points}"]
@@ -171,7 +171,8 @@ def _static_steps(mesh: BrickMesh, options: DeckOptions) -> list[str]:
     fields = ["*NODE FILE", "U, OPENING" if mesh.joint_names else "U", "*EL FILE", "SP, STAGE"]
     heat = options.heat
     cooling = heat.cooling_step if heat else None
-    parts = construction_steps(building, mesh.joint_names, fields, cooling)
+    joints = [joints_there(mesh, lift) for lift in building.grouted_after]
+    parts = construction_steps(building, joints, fields, cooling)
     parts += ["**", "** Water" if options.water_depth else "** Histories from here on"]
     parts += _static_step("WATER", _reservoir(options), mesh, options)
     return parts + (heat.season_step() if heat else [])
@@ -192,10 +193,10 @@ def _real(value: float) -> str:
 def _reservoir(options: DeckOptions) -> list[str]:
     if options.water_depth is None:
         return []
-    return [
-        f"*RESERVOIR, NAME=LAKE, SURFACE=UPSTREAM, LEVEL={options.water_depth:g}, BED=0.,",
-        f"   ADDED MASS=WESTERGAARD, DIRECTION={options.added_mass_direction}",
-    ]
+    lake = f"*RESERVOIR, NAME=LAKE, SURFACE=UPSTREAM, LEVEL={options.water_depth:g}, BED=0."
+    if not options.motions and options.num_modes == 0:
+        return [lake]  # the added mass acts in motion
+    return [f"{lake},", f"   ADDED MASS=WESTERGAARD, DIRECTION={options.added_mass_direction}"]
 
 
 def _dynamic_step(mesh: BrickMesh, options: DeckOptions) -> list[str]:

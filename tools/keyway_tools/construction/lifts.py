@@ -54,16 +54,30 @@ def name_lifts(mesh: BrickMesh, num_levels: int, num_lifts: int) -> None:
         mesh.element_sets[f"LIFT{lift + 1}"] = members
 
 
+def joints_there(mesh: BrickMesh, lift: int) -> list[str]:
+    """Names of the joints that have an element, or faces, between blocks of the lifts so far."""
+    bricks = np.concatenate([mesh.element_sets[f"LIFT{k}"] for k in range(1, lift + 1)])
+    nodes = np.unique(mesh.bricks[bricks])
+
+    def is_there(name: str) -> bool:
+        if name in mesh.joint_sets:
+            return bool(np.isin(mesh.joints[mesh.joint_sets[name]], nodes).all(axis=1).any())
+        sides = (mesh.surfaces[side] for side in mesh.surface_joints[name])
+        return all(np.isin([brick for brick, _ in faces], bricks).any() for faces in sides)
+
+    return [name for name in mesh.joint_names if is_there(name)]
+
+
 def construction_steps(
     building: Construction,
-    joints: list[str],
+    joints: list[list[str]],
     requests: list[str],
     cooling: Callable[[int], list[str]] | None = None,
 ) -> list[str]:
     """Cards of the steps from the first lift to the last grouting; the weight stays in all others.
 
-    `requests` are cards of output that the first step opens for all; `cooling` gives the cards of
-    the step before a campaign of grouting.
+    `joints` are those that each campaign of grouting reaches; `requests` are cards of output that
+    the first step opens for all; `cooling` gives the cards of the step before a campaign.
     """
     later = [f"LIFT{k}" for k in range(2, building.num_lifts + 1)]
     first = ["*DLOAD", "DAM, GRAV, 9.81, 0., 0., -1.", *requests]
@@ -77,7 +91,7 @@ def construction_steps(
             number = building.grouted_after.index(lift) + 1
             parts += cooling(number) if cooling else []
             pressure = f", PRESSURE={building.pressure:g}" if building.pressure else ""
-            cards = [f"*GROUT, JOINT={name}{pressure}" for name in joints]
+            cards = [f"*GROUT, JOINT={name}{pressure}" for name in joints[number - 1]]
             parts += static_step(f"GROUT{number}", cards)
     return parts
 
