@@ -5,6 +5,8 @@ from __future__ import annotations
 import dataclasses
 import re
 
+import brick_on_rock
+import numpy as np
 import pytest
 from dam_trials import DeckOptions, Trial
 from keyway_tools.arch_blocks import BlockOptions
@@ -107,3 +109,21 @@ def test_two_steps_in_a_row(keyway):
         assert found == pytest.approx(expected, abs=3.0 * ACCURACY * expected.max()), name
         for step in runs[name].json["steps"]:
             assert step["energy"]["error"] <= 1e-6
+
+
+@pytest.mark.parametrize(("rock_density", "tied"), [(0.0, True), (2600.0, True), (2600.0, False)])
+def test_a_model_of_few_unknowns(keyway, rock_density, tied):
+    """24 unknowns with or without mass, and a joint that stays closed: round-off is no shape.
+
+    ACCURACY is that of openings, of which there are none; displacements are off by up to 2.2 %.
+    With shapes of round-off they were off by 7 % to 1600 times, or not numbers."""
+    tables = []
+    for options in (", DIRECT", ", REDUCED"):
+        steps = brick_on_rock.shaken(0.1, options)
+        run = keyway(brick_on_rock.deck(steps, rock_density, tied), name=options[2:])
+        tables.append(run.csv("node_CREST"))
+        if options == ", REDUCED":
+            (found,) = run.json["accuracy"]["reduced"].values()
+            assert found["estimated_error"] <= ACCURACY
+    full, reduced = (np.stack([t[name] for name in ("U1", "U2", "U3")]) for t in tables)
+    assert np.abs(reduced - full).max() <= 0.1 * np.abs(full).max()

@@ -196,13 +196,12 @@ contains
                                        sqrt(maxval(self%basis%lambda))/two_pi, estimate)
       call say_model(now%reduction, plan%reduced%accuracy, results)
       if (plan%reduced%num_modes > 0 .or. estimate <= plan%reduced%accuracy) exit
-      if (wanted >= most_modes .or. self%basis%num_modes < wanted) exit
+      if (wanted >= most_modes .or. self%basis%num_shapes < wanted) exit
       wanted = min(most_modes, grown(wanted, estimate/plan%reduced%accuracy))
     end do
-    if (estimate <= plan%reduced%accuracy) return
-    call results%log%say('warning: the reduced model does not reach the ACCURACY of the step: '// &
-                         'the estimate is '//as_text(estimate)//'; take *DYNAMIC without '// &
-                         'REDUCED, or more MODES')
+    if (estimate < 1.0_rk .or. plan%reduced%num_modes > 0) return
+    call raise(error, 'no reduced model follows the step: its openings are not known within '// &
+               '100 %, or it finds no equilibrium; take *DYNAMIC without REDUCED')
   end subroutine build_model
 
   !> More modes, for an error that shall be smaller by a factor.

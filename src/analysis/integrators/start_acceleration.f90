@@ -17,6 +17,10 @@ module start_acceleration
   !> Forces that do not balance, over the loads: less is the remainder of the static step before,
   !> and not worth a factor.
   real(rk), parameter :: remainder = 1.0e-9_rk
+  !> Growth of the share of stiffness from one trial to the next, and trials. A static force on
+  !> massless parts leaves round-off that falls with the square of the share; the iteration grows.
+  real(rk), parameter :: growth = 10.0_rk
+  integer, parameter :: most_trials = 4
 
 contains
 
@@ -32,7 +36,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: values(:)
     logical :: is_definite, leaves_open
-    integer :: worst
+    integer :: trial, worst
     call find_acceleration(system%matrix, system%mass, r, a, is_definite)
     if (is_definite) return
     if (is_balanced(system%matrix%num_free, load, r)) then
@@ -41,11 +45,14 @@ contains
     end if
     leaves_open = .true.
     do
-      call add_small_stiffness(model, system, joints, leaves_open, values)
-      if (.not. allocated(values)) return ! no mass anywhere
-      call find_constrained_acceleration(system%matrix, system%mass, values, load, r, a, worst, &
-                                         error)
-      if (is_final(worst, error)) return
+      do trial = 1, most_trials
+        call add_small_stiffness(model, system, joints, leaves_open, growth**(trial - 1), values)
+        if (.not. allocated(values)) return ! no mass anywhere
+        call find_constrained_acceleration(system%matrix, system%mass, values, load, r, a, worst, &
+                                           error)
+        if (is_final(worst, error)) return
+        if (allocated(error)) exit ! a part is free, whatever the share
+      end do
       if (.not. leaves_open) exit
       leaves_open = .false.
     end do
@@ -90,11 +97,12 @@ contains
   end subroutine name_place
 
   !> Values of M + eps K with the joints in K; not allocated where nothing has mass.
-  subroutine add_small_stiffness(model, system, joints, leaves_open, values)
+  subroutine add_small_stiffness(model, system, joints, leaves_open, factor, values)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     type(joint_state), intent(in) :: joints(:)
     logical, intent(in) :: leaves_open !< open points have no stiffness
+    real(rk), intent(in) :: factor !< of the least eps
     real(rk), allocatable, intent(out) :: values(:)
     real(rk), allocatable :: k(:, :), stiffness(:)
     real(rk) :: eps
@@ -110,6 +118,6 @@ contains
     end do
     stiffness = system%stiffness
     call system%operator%add_stiffness(closed_tangent(k), system%matrix, stiffness)
-    values = system%mass + eps*stiffness
+    values = system%mass + factor*eps*stiffness
   end subroutine add_small_stiffness
 end module start_acceleration

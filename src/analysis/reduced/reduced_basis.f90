@@ -30,6 +30,7 @@ module reduced_basis
 
   type :: reduced_model
     integer :: num_modes = 0
+    integer :: num_shapes = 0 !< that the modes come from
     real(rk) :: shift = 0.0_rk !< s of the factor of K + s M; it holds free blocks [1/s2]
     real(rk), allocatable :: lambda(:) !< (modes) squared circular frequency [1/s2]
     real(rk), allocatable :: mode(:, :) !< (num_free, modes) Phi
@@ -53,6 +54,9 @@ module reduced_basis
   !> Keeps the stiffness of the ports definite where loads depend on each other.
   real(rk), parameter :: least_stiffness = 1.0e-7_rk
   integer, parameter :: num_probes = 30, num_samples = 8
+  !> Squared circular frequency of a mode without delay, over the shift, which has a period of 2000
+  !> increments: a period of a tenth of an increment.
+  real(rk), parameter :: static_over_shift = 4.0e8_rk
 
 contains
 
@@ -65,12 +69,15 @@ contains
     class(equilibrium_solver), intent(inout) :: solver
     type(reduced_model), intent(inout) :: basis !< with its forces
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: compliance(:, :), own(:, :), rotation(:, :)
+    real(rk), allocatable :: compliance(:, :), own(:, :), rotation(:, :), frequency(:)
     integer :: k
+    basis%num_shapes = size(shapes, 2)
+    call leave_out_static(system, stiffness, basis%shift, shapes, frequency, error)
+    if (allocated(error)) return
     basis%num_modes = size(shapes, 2)
     call find_port_compliance(system, solver, basis%force, basis%load_shape, compliance, error)
     if (allocated(error)) return
-    call make_static(system, stiffness, compliance, solver, basis, shapes, own, error)
+    call make_static(system, frequency, compliance, solver, basis, shapes, own, error)
     if (allocated(error)) return
     call find_modes(own, basis%lambda, rotation, error)
     if (allocated(error)) return
@@ -86,6 +93,31 @@ contains
     basis%probe = [(maxloc(abs(basis%mode(:, k)), 1), k=1, min(num_probes, basis%num_modes))]
     call round_ports(basis)
   end subroutine build_basis
+
+  !> Makes the shapes their own modes with K + s M, and leaves out those that follow their forces
+  !> without delay: the static response has them. What round-off makes of shapes without mass is
+  !> among them.
+  subroutine leave_out_static(system, stiffness, shift, shapes, frequency, error)
+    type(dam_system), intent(in) :: system
+    real(rk), intent(in) :: stiffness(:) !< values of K + s M
+    real(rk), intent(in) :: shift
+    real(rk), allocatable, intent(inout) :: shapes(:, :) !< (num_free, shapes)
+    real(rk), allocatable, intent(out) :: frequency(:) !< (shapes) squared, circular [1/s2]
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: work(:, :), own(:, :), rotation(:, :)
+    integer, allocatable :: kept(:)
+    integer :: k
+    allocate (work, mold=shapes)
+    call multiply_columns(system%matrix, stiffness, shapes, work)
+    own = transposed_times(shapes, work)
+    call find_modes(0.5_rk*(own + transpose(own)), frequency, rotation, error)
+    if (allocated(error)) return
+    kept = pack([(k, k=1, size(frequency))], frequency > 0.0_rk .and. &
+                frequency <= static_over_shift*shift)
+    if (size(kept) == 0) kept = [maxloc(frequency, 1)]
+    frequency = frequency(kept)
+    shapes = times(shapes, rotation(:, kept))
+  end subroutine leave_out_static
 
   !> Rounds the matrices that increments read, which take their time.
   subroutine round_ports(basis)
@@ -137,9 +169,9 @@ contains
   !> Makes the shapes orthogonal, with K + s M, to the part of the static response of the ports that
   !> is orthogonal to them with M: Psi - S (S^T K S)^-1 S^T K Psi, S = (I - Psi Psi^T M) K^-1 P^T.
   !> `own` is their stiffness afterwards.
-  subroutine make_static(system, stiffness, compliance, solver, basis, shapes, own, error)
+  subroutine make_static(system, frequency, compliance, solver, basis, shapes, own, error)
     type(dam_system), intent(in) :: system
-    real(rk), intent(in) :: stiffness(:)
+    real(rk), intent(in) :: frequency(:) !< (modes) squared, of the shapes [1/s2]
     real(rk), intent(in) :: compliance(:, :) !< (ports, ports) [m/N]
     class(equilibrium_solver), intent(inout) :: solver
     type(reduced_model), intent(in) :: basis
@@ -147,18 +179,13 @@ contains
     real(rk), allocatable, intent(out) :: own(:, :) !< (modes, modes)
     type(error_type), allocatable, intent(out) :: error
     real(rk), dimension(size(compliance, 1), size(shapes, 2)) :: path, moved, coupling
-    real(rk), allocatable :: work(:, :), frequency(:), rotation(:, :)
+    real(rk), allocatable :: work(:, :)
     integer :: k
-    allocate (work, mold=shapes)
-    call multiply_columns(system%matrix, stiffness, shapes, work)
-    own = transposed_times(shapes, work)
-    call find_modes(0.5_rk*(own + transpose(own)), frequency, rotation, error)
-    if (allocated(error)) return
-    own = 0.0_rk
+    allocate (own(size(frequency), size(frequency)), source=0.0_rk)
     do k = 1, size(frequency)
       own(k, k) = frequency(k)
     end do
-    shapes = times(shapes, rotation)
+    allocate (work, mold=shapes)
     call multiply_columns(system%mass_pattern, system%mass_entries, shapes, work)
     call solve_blocks(solver, work, error)
     if (allocated(error)) return

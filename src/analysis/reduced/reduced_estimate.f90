@@ -22,6 +22,8 @@ module reduced_estimate
 
   !> Error of a model over its difference from the model with half of the modes.
   real(rk), parameter :: share_of_difference = 0.7_rk
+  !> Openings below this share of the displacements count as closed joints.
+  real(rk), parameter :: smallest_share = 1.0e-4_rk
   !> Tolerances of the joints in these runs: far below the differences that matter, with fewer
   !> iterations.
   real(rk), parameter :: rough_residual = 1.0e-4_rk, rough_correction = 1.0e-2_rk
@@ -37,17 +39,28 @@ contains
     type(state), intent(in) :: start !< of the step, with its modes
     real(rk), intent(out) :: estimate
     real(rk), allocatable :: half(:, :), whole(:, :)
+    real(rk) :: difference, largest, motion
     integer :: n
-    call run_modes(model, plan, system, basis, max(1, basis%num_modes/2), start, half)
-    call run_modes(model, plan, system, basis, basis%num_modes, start, whole)
+    call run_modes(model, plan, system, basis, max(1, basis%num_modes/2), start, half, motion)
+    call run_modes(model, plan, system, basis, basis%num_modes, start, whole, motion)
     n = min(size(half, 2), size(whole, 2))
-    estimate = share_of_difference*maxval([0.0_rk, abs(whole(:, :n) - half(:, :n))]) &
-               /maxval([tiny(1.0_rk), abs(whole(:, :n))])
+    difference = share_of_difference*maxval([0.0_rk, abs(whole(:, :n) - half(:, :n))])
+    largest = maxval([tiny(1.0_rk), smallest_share*motion, abs(whole(:, :n))])
+    estimate = 1.0_rk
+    if (difference < largest) estimate = difference/largest
+    ! A run without equilibrium tells nothing good of the model.
+    if (n < num_increments_of(plan)) estimate = 1.0_rk
   end subroutine estimate_error
+
+  !> The increments of a step.
+  pure integer function num_increments_of(plan)
+    type(step), intent(in) :: plan
+    num_increments_of = ceiling(plan%duration/plan%first_increment - 1.0e-9_rk)
+  end function num_increments_of
 
   !> The histories of a run with the lowest modes: openings, or displacements without joints. Ends
   !> early at an increment without equilibrium.
-  subroutine run_modes(model, plan, system, basis, num_modes, start, histories)
+  subroutine run_modes(model, plan, system, basis, num_modes, start, histories, motion)
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan
     type(dam_system), intent(in) :: system
@@ -55,6 +68,7 @@ contains
     integer, intent(in) :: num_modes
     type(state), intent(in) :: start
     real(rk), allocatable, intent(out) :: histories(:, :) !< (points, increments) [m]
+    real(rk), intent(out) :: motion !< largest displacement of a probe [m]
     type(reduced_model) :: fewer
     type(reduced_matrices) :: matrices
     type(state), allocatable :: now, trial, other
@@ -76,7 +90,8 @@ contains
     when = step_time(is_dynamic=.true., start=start%step_start, duration=plan%duration)
     associate (first => start%motion%modal%start_factor)
       factors(:, 2) = load_factors(system%groups, model%amplitudes, when, first)
-      num_increments = ceiling(plan%duration/plan%first_increment - 1.0e-9_rk)
+      num_increments = num_increments_of(plan)
+      motion = 0.0_rk
       allocate (histories(num_watched(system%operator, fewer), num_increments))
       do i = 1, num_increments
         call when%set_end((i - 1)*plan%first_increment, plan%first_increment)
@@ -85,6 +100,7 @@ contains
         call take_reduced_increment(fewer, matrices, model, controls, factors, now, trial, outcome)
         if (.not. outcome%has_converged) exit
         call watch(fewer, system%operator, trial, histories(:, i))
+        motion = max(motion, maxval(abs(motion_of_probes(fewer, trial))))
         call move_alloc(now, other)
         call move_alloc(trial, now)
         call move_alloc(other, trial)
@@ -112,6 +128,18 @@ contains
     if (num_watched == 0) num_watched = size(basis%probe)
   end function num_watched
 
+  !> The displacements of the probes since the start of the step [m].
+  pure function motion_of_probes(basis, now) result(values)
+    type(reduced_model), intent(in) :: basis
+    type(state), intent(in) :: now
+    real(rk) :: values(size(basis%probe))
+    associate (port => now%motion%modal%port)
+      values = matmul(basis%mode(basis%probe, :), now%motion%modal%y) &
+               + matmul(basis%load_shape(basis%probe, :), &
+                        port(size(port) - size(basis%load_shape, 2) + 1:))
+    end associate
+  end function motion_of_probes
+
   !> The openings now, or the displacements of the probes.
   subroutine watch(basis, operator, now, values)
     type(reduced_model), intent(in) :: basis
@@ -120,8 +148,7 @@ contains
     real(rk), intent(out) :: values(:) !< [m]
     integer :: j
     if (operator%num_points == 0) then
-      values = matmul(basis%mode(basis%probe, :), now%motion%modal%y) &
-               + matmul(basis%load_shape(basis%probe, :), now%motion%modal%port)
+      values = motion_of_probes(basis, now)
       return
     end if
     do j = 1, size(now%joints)

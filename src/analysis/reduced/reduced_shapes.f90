@@ -19,8 +19,9 @@ module reduced_shapes
   private
   public :: find_shapes
 
-  !> A shape whose part beyond the others is less than this of its own size is left out.
-  real(rk), parameter :: least_part = 1.0e-5_rk
+  !> A shape whose part beyond the others is less than this of its own size is left out, and one
+  !> that loses half of this part when it is made orthogonal again: the part is round-off.
+  real(rk), parameter :: least_part = 1.0e-9_rk, least_rest = 0.5_rk
 
 contains
 
@@ -102,7 +103,7 @@ contains
     do pass = 1, 2
       call subtract_times(others, transposed_times(others, product), block)
       call multiply_columns(system%mass_pattern, system%mass_entries, block, product)
-      call separate(merge(least_part, 0.0_rk, pass == 1), block, product)
+      call separate(merge(least_part, least_rest, pass == 1), block, product)
     end do
   end subroutine orthonormalise
 

@@ -15,6 +15,7 @@ module run_records
   use path_errors, only: path_error
   use extreme_errors, only: forget_error, update_error
   use singular_places, only: singular_nodes
+  use write_text, only: as_text
   use space_errors, only: space_error, note_space_error
   use stress_fields, only: recovered_fields
   use field_table, only: list_fields, find_field
@@ -66,6 +67,7 @@ module run_records
     procedure :: has_envelope_of_nodes
     procedure :: largest_opening
     procedure, private :: check_law, check_time_stepping, check_crack_energy, has_warned
+    procedure, private :: check_reduction
     procedure, private :: update_envelope, note_nodes, note_points, note_joints, note_error
   end type run_record
 
@@ -134,6 +136,7 @@ contains
                           'RECOVERY=SIGN prevented equilibrium in an increment; the stiffness '// &
                           'recovery was fixed at its value from the start of the increment')
     end if
+    call self%check_reduction(model, now)
     call note_values(self%displacement, norm2(now%u, dim=1), model%mesh%x, self%skin%is_upstream, &
                      self%skin%is_downstream, now%total_time, wants_smallest=.false.)
     do j = 1, size(model%joints)
@@ -152,6 +155,19 @@ contains
     call note_space_error(model, now, self%stresses, self%space)
     call costs%stop()
   end subroutine note
+
+  !> Warns when a reduced model does not meet the accuracy of its step.
+  subroutine check_reduction(self, model, now)
+    class(run_record), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    associate (plan => model%steps(now%step), estimate => now%reduction%estimate)
+      if (now%reduction%num_modes == 0 .or. estimate <= plan%reduced%accuracy) return
+      call self%warn_once('step '//plan%name//': the reduced model does not reach the ACCURACY '// &
+                          'of the step: the estimate is '//as_text(estimate)//'; take *DYNAMIC '// &
+                          'without REDUCED, or more MODES')
+    end associate
+  end subroutine check_reduction
 
   !> Warns when the recovery of stiffness of concrete drives the motion: no increment cures this.
   subroutine check_law(self, model, now)
