@@ -58,7 +58,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add = parser.add_argument
     add("deck", type=Path, metavar="DECK")
     add("--budget", type=seconds, default=1200.0, metavar="TIME",
-        help="time for all runs, as 90s, 20m, 2h (20m)")  # fmt: skip
+        help="time for all runs, as 90s, 20m, 2h; a number alone is seconds (20m)")  # fmt: skip
     add("--effects", action="store_true", help="switch the effects off in turn")
     add("--verify", action="store_true", help="compare with a run finer than the ladder's finest")
     add("--duration", type=seconds, metavar="TIME",
