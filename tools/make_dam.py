@@ -34,6 +34,7 @@ from keyway_tools.arch_header import header
 from keyway_tools.arch_rock import RockOptions
 from keyway_tools.arch_shape import ArchShape
 from keyway_tools.arch_size import sized_dam, unknowns_of
+from keyway_tools.command import command
 from keyway_tools.construction.heat import name_campaigns
 from keyway_tools.construction.lifts import name_lifts
 from keyway_tools.construction.options import construction_of, temperatures_of
@@ -282,6 +283,7 @@ def build_dam(chosen: argparse.Namespace, shape: ArchShape, dam: DamOptions) -> 
     return build_block_dam(shape, dam, blocks)
 
 
+@command("make_dam")
 def main(arguments: list[str] | None = None) -> int:
     """Write the deck and its mesh; print the report."""
     chosen = read_options(arguments)

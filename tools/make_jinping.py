@@ -14,6 +14,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from keyway_tools.command import command
 from keyway_tools.jinping.concrete import LAWS, RECOVERIES
 from keyway_tools.jinping.decks import DURATION, FULL, INCREMENT, SMALL, JinpingDeck, write_deck
 
@@ -47,6 +48,7 @@ def read_options(arguments: list[str] | None) -> argparse.Namespace:
     return chosen
 
 
+@command("make_jinping")
 def main(arguments: list[str] | None = None) -> int:
     """Write one deck, or those of input/jinping."""
     chosen = read_options(arguments)

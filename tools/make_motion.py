@@ -20,6 +20,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
+from keyway_tools.command import command
 from keyway_tools.design_spectrum import VERTICAL_SHARE, DesignSpectrum
 from keyway_tools.ground_motion import Motion, MotionOptions, final_motion, fit_motion
 from keyway_tools.motion_files import plot_spectra, write_amplitude, write_summary
@@ -101,6 +102,7 @@ def draw(prefix: Path, motions: dict[str, Motion], peaks: dict[str, float], dt: 
     print("wrote", plot_accelerograms(records, components))
 
 
+@command("make_motion")
 def main(arguments: list[str] | None = None) -> int:
     """Fit the three components and write them."""
     chosen = read_options(arguments)

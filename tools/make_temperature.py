@@ -19,6 +19,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from keyway_tools.command import command
 from keyway_tools.temperature.climate import MONTHS, WARMEST, Air, Climate, Level, Water
 from keyway_tools.temperature.dam_in_deck import (
     Dam,
@@ -135,6 +136,7 @@ def show(dam: Dam, place: Place, wall: Wall, is_linear: bool) -> None:
         print(f"      falls by e over {fall:.1f} m: --linear keeps its mean and its moment")
 
 
+@command("make_temperature")
 def main(arguments: list[str] | None = None) -> int:
     """Write the field and its picture."""
     chosen = read_options(arguments)

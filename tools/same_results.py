@@ -23,6 +23,7 @@ from pathlib import Path
 import numpy as np
 from keyway.batch.cases import has_step
 from keyway.commands.batch import positive
+from keyway_tools.command import command
 from keyway_tools.deck_runs import digest_of, files_of
 from keyway_tools.written_values import Difference, compare_written
 
@@ -169,6 +170,7 @@ def run_all(options: argparse.Namespace, decks: dict[str, Path], folder: Path) -
     return all(same)
 
 
+@command("same_results")
 def main(arguments: list[str]) -> int:
     options = parse(arguments)
     try:

@@ -25,6 +25,7 @@ import sys
 from dataclasses import asdict
 from pathlib import Path
 
+from keyway_tools.command import command
 from keyway_tools.deck_runs import Record
 from keyway_tools.program import given_program, reason_of
 
@@ -148,6 +149,7 @@ def run_batch(options: argparse.Namespace) -> int:
     return 0 if all(record.status == "finished" for record in records) else 1
 
 
+@command("batch")
 def main(arguments: list[str] | None = None) -> int:
     """Run the decks and print the table."""
     options = parse(sys.argv[1:] if arguments is None else arguments)

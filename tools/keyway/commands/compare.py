@@ -20,7 +20,9 @@ else:
     import tomli as tomllib
 
 from keyway_tools import comparison
+from keyway_tools.command import command
 from keyway_tools.comparison import Report, Rules, Tolerance
+from keyway_tools.program import reason_of
 from keyway_tools.results import Results
 
 EPILOG = """tolerance file (TOML):
@@ -123,6 +125,7 @@ def write_json(report: Report, path: Path) -> None:
     path.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
 
 
+@command("compare")
 def main(arguments: list[str] | None = None) -> int:
     """Compare and print what differs."""
     options = parse(sys.argv[1:] if arguments is None else arguments)
@@ -130,7 +133,7 @@ def main(arguments: list[str] | None = None) -> int:
         rules = make_rules(options)
         report = compare(options.a, options.b, rules, options.job, options.table)
     except (OSError, ValueError, TypeError, KeyError) as error:
-        print(f"compare: {error}", file=sys.stderr)
+        print(f"compare: {reason_of(error)}", file=sys.stderr)
         return 2
     show(report, options.n)
     if options.json:

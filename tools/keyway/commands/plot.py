@@ -30,6 +30,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from keyway_tools.colour_scale import FIELDS, Scales, parse_levels, parse_ranges
+from keyway_tools.command import command
 from keyway_tools.picture_style import FORMATS, Sheet
 from keyway_tools.pictures_curves import (
     plot_damage_growth,
@@ -146,6 +147,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     return chosen
 
 
+@command("plot")
 def main(arguments: list[str] | None = None) -> int:
     """Draw every job of the folders."""
     arguments = sys.argv[1:] if arguments is None else arguments

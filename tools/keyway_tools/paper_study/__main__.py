@@ -19,6 +19,7 @@ import sys
 from datetime import datetime
 from pathlib import Path
 
+from ..command import command
 from ..deck_runs import DeckRunner
 from ..pictures_material import plot_material, read_curve
 from ..study.__main__ import seconds
@@ -69,6 +70,7 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
     return given
 
 
+@command("paper_study")
 def main(arguments: list[str] | None = None) -> int:
     """Run the cases and write the page."""
     given = parse(arguments)

@@ -21,8 +21,9 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from keyway_tools.command import command
 from keyway_tools.deck_runs import DeckRunner
-from keyway_tools.program import command_name, given_program, reason_of
+from keyway_tools.program import command_name, given_program
 from keyway_tools.results import Results
 
 from .couplings import coupling_rungs
@@ -81,6 +82,7 @@ def check(program: Path, options: list[str], deck: Path) -> str:
     return done.stderr if done.returncode else ""
 
 
+@command("accuracy")
 def main(arguments: list[str] | None = None) -> int:
     arguments = sys.argv[1:] if arguments is None else arguments
     options: list[str] = []
@@ -114,8 +116,8 @@ def main(arguments: list[str] | None = None) -> int:
         runner.stop()
         sys.stderr.write("accuracy: stopped; the same call goes on, finished runs are kept\n")
         return 130
-    except (OSError, RuntimeError) as error:
-        sys.stderr.write(f"accuracy: {reason_of(error)}\n")
+    except RuntimeError as error:
+        sys.stderr.write(f"accuracy: {error}\n")
         return 1
 
 
