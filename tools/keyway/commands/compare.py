@@ -22,6 +22,7 @@ else:
 from keyway_tools import comparison
 from keyway_tools.command import command
 from keyway_tools.comparison import Report, Rules, Tolerance
+from keyway_tools.option_types import count_from_zero, from_zero
 from keyway_tools.program import reason_of
 from keyway_tools.results import Results
 
@@ -45,8 +46,8 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add = parser.add_argument
     add("a", metavar="A", type=Path, help="results folder, or a file")
     add("b", metavar="B", type=Path, help="results folder or reference file")
-    add("--rel", type=float, help="relative tolerance of every column (1e-6)")
-    add("--abs", type=float, help="absolute tolerance of every column (1e-12)")
+    add("--rel", type=from_zero, help="relative tolerance of every column (1e-6)")
+    add("--abs", type=from_zero, help="absolute tolerance of every column (1e-12)")
     add("--tol", action="append", default=[], metavar="COLUMN=REL[,ABS]", help="of one column")
     add("--ignore", action="append", default=[], metavar="COLUMN", help="leave a column out")
     add("--tolerances", type=Path, metavar="FILE", help="tolerances in TOML, see below")
@@ -54,7 +55,12 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("--subset", action="store_true", help="B may hold less than A")
     add("--table", default="", help="the table a CSV reference belongs to, as in node_TIP")
     add("--job", default=None, help="the job, if a folder holds several")
-    add("-n", type=int, default=10, help="how many of the largest differences to show (10)")
+    add(
+        "-n",
+        type=count_from_zero,
+        default=10,
+        help="how many of the largest differences to show (10)",
+    )
     add("--json", type=Path, metavar="FILE", help="write the findings as JSON")
     return parser.parse_args(arguments)
 

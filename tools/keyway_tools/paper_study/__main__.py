@@ -21,6 +21,7 @@ from pathlib import Path
 
 from ..command import command
 from ..deck_runs import DeckRunner
+from ..option_types import count
 from ..pictures_material import plot_material, read_curve
 from ..study.__main__ import seconds
 from .case_table import list_cases
@@ -51,14 +52,12 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
         metavar="TIME",
         help="for all runs, as 90s, 20m, 2h; a number alone is seconds (no end)",
     )
-    add("-j", type=int, default=1, metavar="RUNS", help="runs at a time (1)")
-    add("--threads", type=int, help="of each run (processors / runs)")
+    add("-j", type=count, default=1, metavar="RUNS", help="runs at a time (1)")
+    add("--threads", type=count, help="of each run (processors / runs)")
     add("--program", type=Path, default=ROOT / "build/release/keyway", help="the program")
     add("--list", action="store_true", help="only print the cases and their commands")
     add("--no-page", action="store_true", help="only run")
     given = parser.parse_args(arguments)
-    if given.j < 1 or (given.threads or 1) < 1:
-        parser.error("-j and --threads take 1 or more")
     given.all_cases = list_cases(SIZES[given.size])
     try:
         given.chosen = choose(given.all_cases, given.cases)

@@ -23,6 +23,7 @@ from typing import Any
 
 from keyway_tools.command import command
 from keyway_tools.deck_runs import DeckRunner
+from keyway_tools.option_types import count
 from keyway_tools.program import command_name, given_program
 from keyway_tools.results import Results
 
@@ -65,7 +66,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("--duration", type=seconds, metavar="TIME",
         help="study the first so many seconds of each dynamic step alone")  # fmt: skip
     add("-o", type=Path, metavar="DIR", help="folder of the study (DECK's name with _accuracy)")
-    add("--threads", type=int, default=os.cpu_count() or 1, help="of each run (all processors)")
+    add("--threads", type=count, default=os.cpu_count() or 1, help="of each run (all processors)")
     add("--program", type=Path, help="the program (KEYWAY, build/release of the checkout, PATH)")
     return parser.parse_args(arguments)
 
