@@ -9,8 +9,9 @@ from pathlib import Path
 import make_dam
 import make_motion
 import pytest
-from keyway.commands import compare
+from keyway.commands import compare, plot
 from keyway_tools.command import command
+from keyway_tools.report.__main__ import main as report
 
 TOOLS = Path(__file__).resolve().parents[2] / "tools"
 SMALL = ["--arc", "10", "--levels", "3", "--no-rock"]
@@ -87,3 +88,12 @@ def test_findings_are_kept_when_nobody_reads_them(tmp_path):
     call += f"sys.exit(compare.main(['a.csv', 'b.csv', '--json', {str(found)!r}]))"
     assert run_piped(call, tmp_path) == ("", 1)
     assert not json.loads(found.read_text())["equal"]
+
+
+def test_a_summary_cut_short_is_said_with_its_name(tmp_path, capsys):
+    for name, text in (("job.json", '{"status": "fin'), ("job.h5", "")):
+        (tmp_path / name).write_text(text)
+    for name, main in (("plot", plot.main), ("report", report)):
+        assert main([str(tmp_path / "job.json")]) == 2
+        told = capsys.readouterr().err
+        assert told.startswith(f"{name}: {tmp_path / 'job.json'} cannot be read, it is not whole: ")

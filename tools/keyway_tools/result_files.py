@@ -39,8 +39,15 @@ def as_numbers(column: tuple[str, ...]) -> np.ndarray:
 
 def read_json(path: Path | str) -> dict[str, Any]:
     """Leaves of a JSON file under their paths, as in 'steps.0.energy.error'."""
-    content = json.loads(Path(path).read_text(encoding="utf-8"))
-    return dict(leaves(content, ""))
+    return dict(leaves(load_json(path), ""))
+
+
+def load_json(path: Path | str) -> Any:
+    """The content of a JSON file. Raises ValueError with the name of the file."""
+    try:
+        return json.loads(Path(path).read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise ValueError(f"{path} cannot be read, it is not whole: {error}") from None
 
 
 def leaves(value: Any, path: str) -> Iterator[tuple[str, Any]]:

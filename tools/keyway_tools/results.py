@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 
 from .joint_faces import JointFaces, read_joint_faces
-from .result_files import Table, as_array, read_table
+from .result_files import Table, as_array, load_json, read_table
 
 # Fields of *ENVELOPE and the names of their extremes in job.h5.
 ENVELOPE_NAMES = {
@@ -130,7 +130,7 @@ class Results:
     @cached_property
     def summary(self) -> dict[str, Any]:
         """The summary JOB.json."""
-        return json.loads(self.path(".json").read_text(encoding="utf-8"))
+        return load_json(self.path(".json"))
 
     def tables(self) -> list[str]:
         """Names of the tables, as in ['node_TIP', 'joint_J1']."""

@@ -13,6 +13,7 @@ import argparse
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -67,7 +68,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
 
 def make_rules(options: argparse.Namespace) -> Rules:
     """Tolerances of the file, then those of the command line, which take precedence."""
-    content = tomllib.loads(options.tolerances.read_text()) if options.tolerances else {}
+    content = read_tolerances(options.tolerances) if options.tolerances else {}
     columns = content.pop("column", {})
     given = {"relative": options.rel, "absolute": options.abs}
     content |= {name: value for name, value in given.items() if value is not None}
@@ -78,14 +79,56 @@ def make_rules(options: argparse.Namespace) -> Rules:
         rules.patterns.append((pattern, Tolerance(**(default.__dict__ | values))))
     for text in options.tol:
         column, _, numbers = text.rpartition("=")
-        if not column:
-            raise ValueError(f"--tol {text}: expected COLUMN=REL[,ABS]")
         relative, _, absolute = numbers.partition(",")
-        rules.patterns.append(
-            (column, Tolerance(float(relative), float(absolute or 0), options.by_column))
-        )
+        try:
+            size = from_zero(relative), from_zero(absolute or "0")
+        except argparse.ArgumentTypeError:
+            size = None
+        if not column or size is None:
+            raise ValueError(f"--tol {text}: expected COLUMN=REL[,ABS], numbers of 0 or more")
+        rules.patterns.append((column, Tolerance(*size, options.by_column)))
     rules.patterns += [(column, Tolerance(ignore=True)) for column in options.ignore]
     return rules
+
+
+def read_tolerances(path: Path) -> dict[str, Any]:
+    """The content of a file of tolerances. Raises ValueError."""
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}; expected TOML") from None
+    columns = content.get("column", {})
+    if not isinstance(columns, dict):
+        raise ValueError(f'{path}: column = {columns!r}: expected tables [column."PATTERN"]')
+    check_tolerance(f"{path}: ", content, ["relative", "absolute", "by_column", "column"])
+    for pattern, values in columns.items():
+        place = f'{path}: column."{pattern}"'
+        if not isinstance(values, dict):
+            raise ValueError(f'{place} = {values!r}: expected a table [column."{pattern}"]')
+        check_tolerance(f"{place}: ", values, ["relative", "absolute", "by_column", "ignore"])
+    return content
+
+
+def check_tolerance(place: str, values: dict[str, Any], known: list[str]) -> None:
+    """Names and values of a tolerance. Raises ValueError."""
+    for name, value in values.items():
+        if name not in known:
+            raise ValueError(f"{place}unknown '{name}'; expected {', '.join(known)}")
+        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        if name in ("relative", "absolute") and not (is_number and value >= 0):
+            raise ValueError(f"{place}{name} = {value!r}: expected a number of 0 or more")
+        if name in ("by_column", "ignore") and not isinstance(value, bool):
+            raise ValueError(f"{place}{name} = {value!r}: expected true or false")
+
+
+def warn_unused(rules: Rules, options: argparse.Namespace) -> None:
+    """Says which options of the command line have no effect: a name may have a typing error."""
+    given = [(f"--tol {text}", text.rpartition("=")[0]) for text in options.tol]
+    given += [(f"--ignore {text}", text) for text in options.ignore]
+    for option, pattern in given:
+        if pattern not in rules.used:
+            what = f"nothing that was compared has the name '{pattern}'"
+            print(f"compare: {option}: no effect, {what}", file=sys.stderr)
 
 
 def compare(a: Path, b: Path, rules: Rules, job: str | None = None, table: str = "") -> Report:
@@ -141,6 +184,7 @@ def main(arguments: list[str] | None = None) -> int:
     except (OSError, ValueError, TypeError, KeyError) as error:
         print(f"compare: {reason_of(error)}", file=sys.stderr)
         return 2
+    warn_unused(rules, options)
     show(report, options.n)
     if options.json:
         write_json(report, options.json)

@@ -165,6 +165,13 @@ def main(arguments: list[str] | None = None) -> int:
             return 2
         found += [SiResults(folder, job, chosen.units) for job in jobs]
     try:
+        for results in found:
+            if results.path(".json").exists():
+                _ = results.summary  # raises ValueError where it is not whole
+    except ValueError as error:
+        print(f"plot: {error}", file=sys.stderr)
+        return 2
+    try:
         draw(found, chosen)
     except OSError as error:  # the run is not at its end, or the disk is full
         print(f"plot: {reason_of(error)}", file=sys.stderr)
