@@ -44,6 +44,10 @@ ALL = {False: "the_deck_as_it_is", True: "all_effects"}
 UNITS = {"": 1.0, "s": 1.0, "m": 60.0, "h": 3600.0}
 
 
+class NothingToVaryError(Exception):
+    """A deck of which a study has no variant."""
+
+
 def seconds(text: str) -> float:
     """'90s', '20m' or '1.5h' in seconds."""
     found = re.fullmatch(r"([0-9.]+)\s*([smh]?)", text.strip())
@@ -117,18 +121,15 @@ def main(arguments: list[str] | None = None) -> int:
         runner.stop()
         sys.stderr.write("accuracy: stopped; the same call goes on, finished runs are kept\n")
         return 130
-    except RuntimeError as error:
+    except (NothingToVaryError, RuntimeError) as error:
         sys.stderr.write(f"accuracy: {error}\n")
-        return 1
+        return 2 if isinstance(error, NothingToVaryError) else 1
 
 
 def study(given: argparse.Namespace, runner: DeckRunner) -> int:
     """Runs the variants and writes what they show."""
     given.o.mkdir(parents=True, exist_ok=True)
-    deck = base_deck(flat_deck(given, runner))
-    if given.duration:
-        deck = shortened(deck, given.duration)
-    rungs = list_effects(deck) if given.effects else rungs_of(deck, given.verify)
+    deck, rungs = what_to_run(given, runner)
     ladder = Ladder(deck, rungs, given.o, runner, given.budget, say)
     outcomes = ladder.run()
     header = header_of(given, runner, outcomes[0])
@@ -152,6 +153,29 @@ def study(given: argparse.Namespace, runner: DeckRunner) -> int:
         lines.append(meaning)
     say("\n".join([*lines, str(page)]))
     return 0
+
+
+def what_to_run(given: argparse.Namespace, runner: DeckRunner) -> tuple[Deck, list[Rung]]:
+    """The deck of the study and its variants, itself first."""
+    deck = base_deck(flat_deck(given, runner))
+    if given.duration:
+        deck = shortened_deck(given, deck)
+    rungs = list_effects(deck) if given.effects else rungs_of(deck, given.verify)
+    if len(rungs) > 1:
+        return deck, rungs
+    what = "no effect to switch off: no joints, loads, motion, damping or nonlinear materials"
+    raise NothingToVaryError(f"{given.deck}: {what if given.effects else 'nothing to vary'}")
+
+
+def shortened_deck(given: argparse.Namespace, deck: Deck) -> Deck:
+    """The deck with shorter dynamic steps; says so where --duration changes none."""
+    new = shortened(deck, given.duration)
+    before, after = ([card.lines for card in one.of("DYNAMIC")] for one in (deck, new))
+    if before == after:
+        why = f"longer than {given.duration:g} s" if before else "at all"
+        say(f"--duration {given.duration:g}s: no effect, the deck has no dynamic step {why}")
+        given.duration = None
+    return new
 
 
 def rungs_of(deck: Deck, is_verified: bool) -> list[Rung]:
