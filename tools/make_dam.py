@@ -26,6 +26,7 @@ import sys
 from functools import partial
 from pathlib import Path
 
+import keyway_tools.own_python  # noqa: F401 - before packages
 from keyway_tools.arch_blocks import JOINS, build_block_dam
 from keyway_tools.arch_command import add_arch_options, block_options_of
 from keyway_tools.arch_dam import DamOptions, build_arch_dam

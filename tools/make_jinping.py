@@ -14,6 +14,7 @@ import argparse
 import sys
 from pathlib import Path
 
+import keyway_tools.own_python  # noqa: F401 - before packages
 from keyway_tools.command import command
 from keyway_tools.jinping.concrete import LAWS, RECOVERIES
 from keyway_tools.jinping.decks import DURATION, FULL, INCREMENT, SMALL, JinpingDeck, write_deck

@@ -19,6 +19,7 @@ import sys
 from dataclasses import asdict
 from pathlib import Path
 
+import keyway_tools.own_python  # noqa: F401 - before packages
 import numpy as np
 from keyway_tools.command import command
 from keyway_tools.design_spectrum import VERTICAL_SHARE, DesignSpectrum

@@ -18,6 +18,7 @@ import argparse
 import sys
 from pathlib import Path
 
+import keyway_tools.own_python  # noqa: F401 - before packages
 import numpy as np
 from keyway_tools.command import command
 from keyway_tools.option_types import above_zero, count, finite
