@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,12 @@ def read_table(path: Path | str) -> Table:
             raise ValueError(f"{path}:{number}: {len(row)} values, expected {len(header)}")
     columns = zip(*rows[1:], strict=True) if len(rows) > 1 else [()] * len(header)
     return {name: as_numbers(column) for name, column in zip(header, columns, strict=True)}
+
+
+def natural(name: str) -> list[tuple[bool, int, str]]:
+    """A key for sorting, by which JOINT2 comes before JOINT10."""
+    words = re.findall(r"\d+|\D+", name)
+    return [(not word.isdecimal(), int(word) if word.isdecimal() else 0, word) for word in words]
 
 
 def as_numbers(column: tuple[str, ...]) -> np.ndarray:
