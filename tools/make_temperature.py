@@ -22,6 +22,7 @@ import keyway_tools.own_python  # noqa: F401 - before packages
 import numpy as np
 from keyway_tools.command import command
 from keyway_tools.option_types import above_zero, count, finite
+from keyway_tools.program import reason_of
 from keyway_tools.temperature.climate import MONTHS, WARMEST, Air, Climate, Level, Water
 from keyway_tools.temperature.dam_in_deck import (
     Dam,
@@ -157,7 +158,7 @@ def main(arguments: list[str] | None = None) -> int:
         output.parent.mkdir(parents=True, exist_ok=True)
         write_field(output, dam, values, times, chosen.rock)
     except (OSError, ValueError) as fault:
-        print(f"make_temperature: {fault}", file=sys.stderr)
+        print(f"make_temperature: {reason_of(fault)}", file=sys.stderr)
         return 2
     show(dam, place, wall, chosen.linear)
     print(f"{len(times)} times, {values.min():.2f} to {values.max():.2f} degrees; wrote {output}")

@@ -3,6 +3,9 @@
 import subprocess
 from pathlib import Path
 
+import pytest
+from keyway_tools.study.__main__ import main
+
 ROOT = Path(__file__).resolve().parents[2]
 INPUT = ROOT / "input"
 
@@ -16,3 +19,10 @@ def test_options_without_effect_on_a_deck_are_said(program_path, tmp_path):
     assert done.returncode == 2
     assert "--duration 1s: no effect, the deck has no dynamic step at all" in done.stdout
     assert f"accuracy: {deck}: no effect to switch off: no joints, loads" in done.stderr
+
+
+def test_a_study_of_no_time_is_refused(capsys):
+    with pytest.raises(SystemExit) as stop:
+        main(["dam.inp", "--duration", "0"])
+    assert stop.value.code == 2
+    assert "--duration 0: expected a time above 0" in capsys.readouterr().err

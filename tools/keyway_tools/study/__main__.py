@@ -72,7 +72,10 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("-o", type=Path, metavar="DIR", help="folder of the study (DECK's name with _accuracy)")
     add("--threads", type=count, default=os.cpu_count() or 1, help="of each run (all processors)")
     add("--program", type=Path, help="the program (KEYWAY, build/release of the checkout, PATH)")
-    return parser.parse_args(arguments)
+    given = parser.parse_args(arguments)
+    if given.duration == 0.0:
+        parser.error("--duration 0: expected a time above 0")
+    return given
 
 
 def absolute_paths(options: list[str]) -> list[str]:
