@@ -3,6 +3,7 @@
 
 import sys
 
+import keyway_tools.own_python  # noqa: F401 - before packages
 from keyway.commands.batch import main
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ import textwrap
 from pathlib import Path
 from typing import Any
 
+import keyway_tools.own_python  # noqa: F401 - before packages
 from keyway_tools.study.facts import NAMES
 from keyway_tools.study.measured import time_in_words
 from keyway_tools.study.pictures import draw

@@ -26,6 +26,7 @@ import sys
 from functools import partial
 from pathlib import Path
 
+import keyway_tools.own_python  # noqa: F401 - before packages
 from keyway_tools.arch_blocks import JOINS, build_block_dam
 from keyway_tools.arch_command import add_arch_options, block_options_of
 from keyway_tools.arch_dam import DamOptions, build_arch_dam
@@ -34,6 +35,7 @@ from keyway_tools.arch_header import header
 from keyway_tools.arch_rock import RockOptions
 from keyway_tools.arch_shape import ArchShape
 from keyway_tools.arch_size import sized_dam, unknowns_of
+from keyway_tools.command import command
 from keyway_tools.construction.heat import name_campaigns
 from keyway_tools.construction.lifts import name_lifts
 from keyway_tools.construction.options import construction_of, temperatures_of
@@ -41,6 +43,7 @@ from keyway_tools.deck_text import mesh_deck
 from keyway_tools.joint_points import name_joint_points
 from keyway_tools.mesh_data import BrickMesh
 from keyway_tools.mesh_quality import find_faults, report
+from keyway_tools.option_types import above_zero, count, count_from_zero, finite, from_zero
 from keyway_tools.records.for_deck import motion_files
 from keyway_tools.records.record import FACTORS
 from keyway_tools.surface_fit import fit_report
@@ -52,19 +55,19 @@ def add_shape_options(parser: argparse.ArgumentParser) -> None:
     """Options that become an ArchShape."""
     default = ArchShape()
     group = parser.add_argument_group("shape of the dam and the valley [m, deg]")
-    for name, text in (
-        ("height", "of the crown cantilever"),
-        ("crest-arc", "length of the crest along its upstream edge"),
-        ("crest-thickness", "at the crest"),
-        ("base-thickness", "at the foot of the crown"),
-        ("crest-angle", "central angle of the crest"),
-        ("base-radius-ratio", "upstream radius at the base over that at the crest"),
-        ("crest-overhang", "slope of the upstream crown at the crest"),
-        ("vertical-tangent", "depth over height where the upstream crown is vertical"),
-        ("bottom-width", "of the valley; 0 for a sharp V"),
+    for name, kind, text in (
+        ("height", above_zero, "of the crown cantilever"),
+        ("crest-arc", above_zero, "length of the crest along its upstream edge"),
+        ("crest-thickness", above_zero, "at the crest"),
+        ("base-thickness", above_zero, "at the foot of the crown"),
+        ("crest-angle", above_zero, "central angle of the crest"),
+        ("base-radius-ratio", above_zero, "upstream radius at the base over that at the crest"),
+        ("crest-overhang", finite, "slope of the upstream crown at the crest"),
+        ("vertical-tangent", above_zero, "depth over height where the upstream crown is vertical"),
+        ("bottom-width", from_zero, "of the valley; 0 for a sharp V"),
     ):
         value = getattr(default, name.replace("-", "_"))
-        group.add_argument(f"--{name}", type=float, default=value, help=f"{text} ({value:g})")
+        group.add_argument(f"--{name}", type=kind, default=value, help=f"{text} ({value:g})")
 
 
 def add_mesh_options(parser: argparse.ArgumentParser) -> None:
@@ -81,9 +84,10 @@ def add_mesh_options(parser: argparse.ArgumentParser) -> None:
         ("rock-downstream", rock.num_downstream, "layers of rock downstream of the toe"),
         ("rock-deep", rock.num_deep, "layers of rock below and beside the dam"),
     ):
-        group.add_argument(f"--{name}", type=int, default=value, help=f"{text} ({value})")
+        kind = count_from_zero if name in ("bottom", "joints") else count
+        group.add_argument(f"--{name}", type=kind, default=value, help=f"{text} ({value})")
     group.add_argument(
-        "--extent", type=float, default=rock.extent, help="of the rock, in dam heights (1)"
+        "--extent", type=above_zero, default=rock.extent, help="of the rock, in dam heights (1)"
     )
     group.add_argument("--no-rock", action="store_true", help="fix the abutment instead")
     group.add_argument(
@@ -96,7 +100,7 @@ def add_block_options(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group(
         "blocks with separate meshes; the elements above are then cells of a lattice"
     )
-    group.add_argument("--refine", type=int, default=1, help="elements along a cell's side (1)")
+    group.add_argument("--refine", type=count, default=1, help="elements along a cell's side (1)")
     group.add_argument(
         "--fine",
         nargs="+",
@@ -104,13 +108,15 @@ def add_block_options(parser: argparse.ArgumentParser) -> None:
         metavar="B",
         help="blocks, 1 at the left end; B:REFINE:THICK for a mesh of that block alone",
     )
-    group.add_argument("--fine-refine", type=int, help="elements along a cell's side there (twice)")
-    group.add_argument("--fine-thick", type=int, help="through the thickness there (twice)")
     group.add_argument(
-        "--fine-above", type=float, default=0.0, help="only above this share of the height (0)"
+        "--fine-refine", type=count, help="elements along a cell's side there (twice)"
+    )
+    group.add_argument("--fine-thick", type=count, help="through the thickness there (twice)")
+    group.add_argument(
+        "--fine-above", type=from_zero, default=0.0, help="only above this share of the height (0)"
     )
     group.add_argument(
-        "--shift", type=float, default=0.0, help="levels there by this part of an element (0)"
+        "--shift", type=finite, default=0.0, help="levels there by this part of an element (0)"
     )
     group.add_argument(
         "--join",
@@ -124,7 +130,7 @@ def add_block_options(parser: argparse.ArgumentParser) -> None:
     )
     group.add_argument("--tie-all", action="store_true", help="tie all blocks to the rock")
     group.add_argument(
-        "--interface-stiffness", type=float, help="of the chain [Pa/m] (E of the concrete)"
+        "--interface-stiffness", type=above_zero, help="of the chain [Pa/m] (E of the concrete)"
     )
 
 
@@ -136,23 +142,25 @@ def add_deck_options(parser: argparse.ArgumentParser) -> None:
         "--note", action="append", default=[], help="'Head: text' for the header; may be repeated"
     )
     group.add_argument(
-        "--concrete", type=float, nargs=3, metavar=("E", "NU", "RHO"), default=DeckOptions.concrete
+        "--concrete", type=finite, nargs=3, metavar=("E", "NU", "RHO"), default=DeckOptions.concrete
     )
-    group.add_argument("--rock", type=float, nargs=2, metavar=("E", "NU"), default=DeckOptions.rock)
     group.add_argument(
-        "--kn", type=float, help="normal stiffness of the joints [Pa/m] (E / 0.02 m)"
+        "--rock", type=finite, nargs=2, metavar=("E", "NU"), default=DeckOptions.rock
     )
-    group.add_argument("--kt", type=float, help="shear stiffness [Pa/m] (kn / (2 (1 + nu)))")
     group.add_argument(
-        "--strength", type=float, default=0.0, help="tensile strength of the joints [Pa] (0)"
+        "--kn", type=above_zero, help="normal stiffness of the joints [Pa/m] (E / 0.02 m)"
     )
-    group.add_argument("--friction", type=float, default=0.6, help="of the joints (0.6)")
-    group.add_argument("--cohesion", type=float, default=0.0, help="of the joints [Pa] (0)")
+    group.add_argument("--kt", type=above_zero, help="shear stiffness [Pa/m] (kn / (2 (1 + nu)))")
+    group.add_argument(
+        "--strength", type=from_zero, default=0.0, help="tensile strength of the joints [Pa] (0)"
+    )
+    group.add_argument("--friction", type=from_zero, default=0.6, help="of the joints (0.6)")
+    group.add_argument("--cohesion", type=from_zero, default=0.0, help="of the joints [Pa] (0)")
     group.add_argument(
         "--bonded", action="store_true", help="joints that never open, as a run without joints"
     )
     group.add_argument(
-        "--water", type=float, help="depth of the water [m]; 0: empty (105/135.5 of the height)"
+        "--water", type=from_zero, help="depth of the water [m]; 0: empty (105/135.5 of the height)"
     )
     group.add_argument("--added-mass", choices=("DIAGONAL", "NORMAL"), default="DIAGONAL")
     group.add_argument(
@@ -165,26 +173,37 @@ def add_deck_options(parser: argparse.ArgumentParser) -> None:
         "make_motion.py --record reads",
     )
     group.add_argument(
-        "--motion-dt", type=float, default=0.01, help="time between values of one column [s] (0.01)"
+        "--motion-dt",
+        type=above_zero,
+        default=0.01,
+        help="time between values of one column [s] (0.01)",
     )
     group.add_argument(
         "--motion-unit", type=str.upper, choices=tuple(FACTORS), help="where records name none"
     )
-    group.add_argument("--duration", type=float, default=10.0, help="of the dynamic step [s] (10)")
     group.add_argument(
-        "--increment", type=float, default=0.01, help="of the dynamic step [s] (0.01)"
+        "--duration", type=above_zero, default=10.0, help="of the dynamic step [s] (10)"
     )
     group.add_argument(
-        "--damping", type=float, nargs=3, default=DeckOptions.damping, metavar=("RATIO", "F1", "F2")
+        "--increment", type=above_zero, default=0.01, help="of the dynamic step [s] (0.01)"
+    )
+    group.add_argument(
+        "--damping",
+        type=from_zero,
+        nargs=3,
+        default=DeckOptions.damping,
+        metavar=("RATIO", "F1", "F2"),
     )
     group.add_argument(
         "--picture-every",
-        type=int,
+        type=count,
         default=DeckOptions.picture_frequency,
         metavar="N",
         help="increments between two states of the fields (10)",
     )
-    group.add_argument("--modes", type=int, default=0, help="natural modes, in a separate step (0)")
+    group.add_argument(
+        "--modes", type=count_from_zero, default=0, help="natural modes, in a separate step (0)"
+    )
 
 
 def read_options(arguments: list[str] | None) -> argparse.Namespace:
@@ -233,8 +252,22 @@ def read_cards(file: Path | None) -> tuple[str, ...]:
     return tuple(line for line in lines if line and not line.startswith("**"))
 
 
+def check_materials(chosen: argparse.Namespace) -> None:
+    """Constants of concrete and rock, and the damping. Raises ValueError."""
+    for name in ("concrete", "rock"):
+        given = getattr(chosen, name)
+        modulus, ratio, *density = given
+        if modulus <= 0.0 or not -1.0 < ratio < 0.5 or min(density, default=0.0) < 0.0:
+            found = " ".join(f"{value:g}" for value in given)
+            rest = ", RHO of 0 or more" if density else ""
+            raise ValueError(f"--{name} {found}: expected E above 0, NU in -1..0.5{rest}")
+    if max(chosen.damping[1:]) <= 0.0:
+        raise ValueError("--damping: expected frequencies F1, F2 above 0")
+
+
 def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
     """DeckOptions from the command line; motion files relative to the deck."""
+    check_materials(chosen)
     folder = chosen.output.parent
     water = chosen.water
     if water is None:
@@ -282,6 +315,7 @@ def build_dam(chosen: argparse.Namespace, shape: ArchShape, dam: DamOptions) -> 
     return build_block_dam(shape, dam, blocks)
 
 
+@command("make_dam")
 def main(arguments: list[str] | None = None) -> int:
     """Write the deck and its mesh; print the report."""
     chosen = read_options(arguments)

@@ -16,6 +16,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+import keyway_tools.own_python  # noqa: F401 - before packages
 from keyway_tools.program import given_program
 
 ROOT = Path(__file__).resolve().parent.parent

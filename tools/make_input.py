@@ -10,6 +10,7 @@ import argparse
 import sys
 from pathlib import Path
 
+import keyway_tools.own_python  # noqa: F401 - before packages
 import make_dam
 import make_motion
 import make_temperature

@@ -14,8 +14,11 @@ import argparse
 import sys
 from pathlib import Path
 
+import keyway_tools.own_python  # noqa: F401 - before packages
+from keyway_tools.command import command
 from keyway_tools.jinping.concrete import LAWS, RECOVERIES
 from keyway_tools.jinping.decks import DURATION, FULL, INCREMENT, SMALL, JinpingDeck, write_deck
+from keyway_tools.option_types import above_zero, count
 
 INPUT = Path(__file__).resolve().parents[1] / "input"
 KEPT = {
@@ -32,12 +35,12 @@ def read_options(arguments: list[str] | None) -> argparse.Namespace:
     )
     add = parser.add_argument
     add("deck", type=Path, nargs="?", help="deck to write (all of input/jinping)")
-    add("--unknowns", type=int, help=f"at least ({FULL}; {SMALL} is a size for trials)")
+    add("--unknowns", type=count, help=f"at least ({FULL}; {SMALL} is a size for trials)")
     add("--law", choices=LAWS, help="of the concrete (table1)")
     add("--recovery", choices=RECOVERIES, help="of stiffness in compression (ENERGY)")
     add("--no-outlets", action="store_true", help="leave out outlets, piers and corbel")
-    add("--duration", type=float, help=f"of the motion [s] ({DURATION:g})")
-    add("--increment", type=float, help=f"of the motion [s] ({INCREMENT:g}; G_f: 0.01)")
+    add("--duration", type=above_zero, help=f"of the motion [s] ({DURATION:g})")
+    add("--increment", type=above_zero, help=f"of the motion [s] ({INCREMENT:g}; G_f: 0.01)")
     add("--motion-of", type=Path, default=INPUT / "xingbiling", help="folder of the motion")
     chosen, chosen.others = parser.parse_known_args(arguments)
     if chosen.deck is None and any(
@@ -47,6 +50,7 @@ def read_options(arguments: list[str] | None) -> argparse.Namespace:
     return chosen
 
 
+@command("make_jinping")
 def main(arguments: list[str] | None = None) -> int:
     """Write one deck, or those of input/jinping."""
     chosen = read_options(arguments)

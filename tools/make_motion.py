@@ -19,15 +19,19 @@ import sys
 from dataclasses import asdict
 from pathlib import Path
 
+import keyway_tools.own_python  # noqa: F401 - before packages
 import numpy as np
+from keyway_tools.command import command
 from keyway_tools.design_spectrum import VERTICAL_SHARE, DesignSpectrum
 from keyway_tools.ground_motion import Motion, MotionOptions, final_motion, fit_motion
 from keyway_tools.motion_files import plot_spectra, write_amplitude, write_summary
 from keyway_tools.motion_pictures import Accelerogram, plot_accelerograms
+from keyway_tools.option_types import above_zero, count_from_zero, from_zero
 from keyway_tools.records.command import add_options, make_from_records
 from keyway_tools.response_spectrum import GRAVITY
 
 DEFAULT_PGA = 0.269  # [g]
+FEWEST, MOST = 50.0, 1e6  # times dt in a duration
 
 
 def read_options(arguments: list[str] | None) -> argparse.Namespace:
@@ -37,16 +41,24 @@ def read_options(arguments: list[str] | None) -> argparse.Namespace:
     )
     spectrum, times = DesignSpectrum(), MotionOptions()
     parser.add_argument("-o", "--output", type=Path, default=Path("motion"), help="PREFIX (motion)")
-    parser.add_argument("--seed", type=int, default=1, help="of the random phases (1)")
-    parser.add_argument("--pga", type=float, help="horizontal peak [g] (0.269)")
-    parser.add_argument("--vertical", type=float, default=VERTICAL_SHARE, help="share (2/3)")
-    parser.add_argument("--plateau", type=float, default=spectrum.plateau, help="beta_max (2.5)")
-    parser.add_argument("--tg", type=float, default=spectrum.corner, help="T_g [s] (0.2)")
-    parser.add_argument("--decay", type=float, default=spectrum.decay, help="exponent (0.6)")
-    parser.add_argument("--duration", type=float, default=times.duration, help="[s] (10)")
-    parser.add_argument("--dt", type=float, help="[s] (0.01); of --record: in files of one column")
-    parser.add_argument("--rise", type=float, help="end of the envelope's rise [s] (0.1 duration)")
-    parser.add_argument("--strong", type=float, help="end of its level part [s] (0.6 duration)")
+    parser.add_argument("--seed", type=count_from_zero, default=1, help="of the random phases (1)")
+    parser.add_argument("--pga", type=above_zero, help="horizontal peak [g] (0.269)")
+    parser.add_argument("--vertical", type=from_zero, default=VERTICAL_SHARE, help="share (2/3)")
+    parser.add_argument(
+        "--plateau", type=above_zero, default=spectrum.plateau, help="beta_max (2.5)"
+    )
+    parser.add_argument("--tg", type=above_zero, default=spectrum.corner, help="T_g [s] (0.2)")
+    parser.add_argument("--decay", type=from_zero, default=spectrum.decay, help="exponent (0.6)")
+    parser.add_argument("--duration", type=above_zero, default=times.duration, help="[s] (10)")
+    parser.add_argument(
+        "--dt", type=above_zero, help="[s] (0.01); of --record: in files of one column"
+    )
+    parser.add_argument(
+        "--rise", type=above_zero, help="end of the envelope's rise [s] (0.1 duration)"
+    )
+    parser.add_argument(
+        "--strong", type=above_zero, help="end of its level part [s] (0.6 duration)"
+    )
     parser.add_argument("--format", choices=("VALUES", "PAIRS"), default="VALUES", dest="layout")
     parser.add_argument("--no-pictures", action="store_true")
     add_options(parser)
@@ -62,8 +74,12 @@ def refuse_record_options(chosen: argparse.Namespace) -> None:
 
 def times_of(chosen: argparse.Namespace) -> MotionOptions:
     """MotionOptions from the command line."""
-    if chosen.dt <= 0.0 or chosen.duration < 50.0 * chosen.dt:
-        raise ValueError("dt must be > 0 and the duration at least 50 dt")
+    steps = chosen.duration / chosen.dt
+    if not FEWEST <= steps <= MOST:
+        raise ValueError(
+            f"--duration {chosen.duration:g} with --dt {chosen.dt:g}: expected {FEWEST:g} to "
+            f"{MOST:g} times dt"
+        )
     rise = 0.1 * chosen.duration if chosen.rise is None else chosen.rise
     strong = 0.6 * chosen.duration if chosen.strong is None else chosen.strong
     if not 0.0 < rise <= strong < chosen.duration:
@@ -101,6 +117,7 @@ def draw(prefix: Path, motions: dict[str, Motion], peaks: dict[str, float], dt: 
     print("wrote", plot_accelerograms(records, components))
 
 
+@command("make_motion")
 def main(arguments: list[str] | None = None) -> int:
     """Fit the three components and write them."""
     chosen = read_options(arguments)

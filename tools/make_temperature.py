@@ -18,7 +18,11 @@ import argparse
 import sys
 from pathlib import Path
 
+import keyway_tools.own_python  # noqa: F401 - before packages
 import numpy as np
+from keyway_tools.command import command
+from keyway_tools.option_types import above_zero, count, finite
+from keyway_tools.program import reason_of
 from keyway_tools.temperature.climate import MONTHS, WARMEST, Air, Climate, Level, Water
 from keyway_tools.temperature.dam_in_deck import (
     Dam,
@@ -55,13 +59,13 @@ def add_mesh_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--upstream", default="UPSTREAM", help=f"{text} (UPSTREAM)")
     group.add_argument("--downstream", default="DOWNSTREAM", help=f"{text} (DOWNSTREAM)")
     group.add_argument(
-        "--diffusivity", type=float, default=1.0e-6, help="of the concrete [m2/s] (1e-6)"
+        "--diffusivity", type=above_zero, default=1.0e-6, help="of the concrete [m2/s] (1e-6)"
     )
     group.add_argument(
         "--linear", action="store_true", help="straight through the thickness: for coarse meshes"
     )
     group.add_argument(
-        "--rock", type=float, metavar="T", help="temperature of all other nodes (not written)"
+        "--rock", type=finite, metavar="T", help="temperature of all other nodes (not written)"
     )
 
 
@@ -69,34 +73,34 @@ def add_climate_options(parser: argparse.ArgumentParser) -> None:
     """Air, sun and water."""
     group = parser.add_argument_group("air and water")
     pair = ("MEAN", "AMPLITUDE")
-    group.add_argument("--air", type=float, nargs=2, required=True, metavar=pair, help="of a year")
+    group.add_argument("--air", type=finite, nargs=2, required=True, metavar=pair, help="of a year")
     group.add_argument(
-        "--warmest", type=float, default=WARMEST, metavar="MONTH", help=f"of the air ({WARMEST})"
+        "--warmest", type=finite, default=WARMEST, metavar="MONTH", help=f"of the air ({WARMEST})"
     )
     group.add_argument(
-        "--sun", type=float, nargs=2, default=(0.0, 0.0), metavar=pair, help="of dry faces (0 0)"
+        "--sun", type=finite, nargs=2, default=(0.0, 0.0), metavar=pair, help="of dry faces (0 0)"
     )
     group.add_argument(
-        "--water", type=float, nargs=3, metavar=("SURFACE", "AMPLITUDE", "BOTTOM"),
+        "--water", type=finite, nargs=3, metavar=("SURFACE", "AMPLITUDE", "BOTTOM"),
         help="annual mean and amplitude at the surface, mean at the bottom (no water)",
     )  # fmt: skip
     group.add_argument(
         "--level", nargs="+", metavar="Z", help="of the water: a height, or MONTH:HEIGHT words"
     )
-    group.add_argument("--bed", type=float, help="height of the bottom (foot of the face)")
+    group.add_argument("--bed", type=finite, help="height of the bottom (foot of the face)")
 
 
 def add_time_options(parser: argparse.ArgumentParser) -> None:
     """Times of the deck."""
     group = parser.add_argument_group("times of the deck")
     group.add_argument(
-        "--times", type=float, nargs="+", metavar="T", help="of the file (each month of a year)"
+        "--times", type=finite, nargs="+", metavar="T", help="of the file (each month of a year)"
     )
-    group.add_argument("--start", type=float, default=0.0, metavar="MONTH", help="at time 0 (0)")
+    group.add_argument("--start", type=finite, default=0.0, metavar="MONTH", help="at time 0 (0)")
     text = "length of a year in the deck's unit of time"
-    group.add_argument("--year", type=float, default=YEAR, help=f"{text} ({YEAR:.0f})")
+    group.add_argument("--year", type=above_zero, default=YEAR, help=f"{text} ({YEAR:.0f})")
     group.add_argument(
-        "--harmonics", type=int, help=f"of a year ({FEW}; {MANY} where the level changes)"
+        "--harmonics", type=count, help=f"of a year ({FEW}; {MANY} where the level changes)"
     )
 
 
@@ -135,6 +139,7 @@ def show(dam: Dam, place: Place, wall: Wall, is_linear: bool) -> None:
         print(f"      falls by e over {fall:.1f} m: --linear keeps its mean and its moment")
 
 
+@command("make_temperature")
 def main(arguments: list[str] | None = None) -> int:
     """Write the field and its picture."""
     chosen = read_options(arguments)
@@ -153,7 +158,7 @@ def main(arguments: list[str] | None = None) -> int:
         output.parent.mkdir(parents=True, exist_ok=True)
         write_field(output, dam, values, times, chosen.rock)
     except (OSError, ValueError) as fault:
-        print(f"make_temperature: {fault}", file=sys.stderr)
+        print(f"make_temperature: {reason_of(fault)}", file=sys.stderr)
         return 2
     show(dam, place, wall, chosen.linear)
     print(f"{len(times)} times, {values.min():.2f} to {values.max():.2f} degrees; wrote {output}")

@@ -3,6 +3,7 @@
 
 import sys
 
+import keyway_tools.own_python  # noqa: F401 - before packages
 from keyway_tools.paper_study.__main__ import main
 
 if __name__ == "__main__":

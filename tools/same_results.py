@@ -20,10 +20,12 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
 
+import keyway_tools.own_python  # noqa: F401 - before packages
 import numpy as np
 from keyway.batch.cases import has_step
-from keyway.commands.batch import positive
+from keyway_tools.command import command
 from keyway_tools.deck_runs import digest_of, files_of
+from keyway_tools.option_types import count, count_from_zero, from_zero
 from keyway_tools.written_values import Difference, compare_written
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -55,12 +57,12 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("before", metavar="BEFORE", type=Path, help="the program to compare with")
     add("after", metavar="AFTER", type=Path, help="the program to judge")
     add("decks", metavar="DECK", type=Path, nargs="*", help="further decks")
-    add("-j", metavar="N", type=positive, default=1, help="decks at a time (1)")
+    add("-j", metavar="N", type=count, default=1, help="decks at a time (1)")
     add("--threads", metavar="N[,M]", default="1", help="threads of BEFORE and of AFTER (1)")
     add("--only", metavar="TEXT", default="", help="decks whose name holds this text")
-    add("--tolerance", type=float, default=1e-12, help="largest difference allowed (1e-12)")
+    add("--tolerance", type=from_zero, default=1e-12, help="largest difference allowed (1e-12)")
     add("--ignore", action="append", default=[], metavar="PATTERN", help="leave these places out")
-    add("-n", type=int, default=10, help="differences to show of each deck (10)")
+    add("-n", type=count_from_zero, default=10, help="differences to show of each deck (10)")
     add(
         "--keep",
         type=Path,
@@ -169,6 +171,7 @@ def run_all(options: argparse.Namespace, decks: dict[str, Path], folder: Path) -
     return all(same)
 
 
+@command("same_results")
 def main(arguments: list[str]) -> int:
     options = parse(arguments)
     try:

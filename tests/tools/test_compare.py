@@ -191,3 +191,35 @@ def test_usage(capsys, tmp_path, monkeypatch, a, arguments):
     except SystemExit as stop:
         code = stop.code
     assert code == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ('relative = "a"', "relative = 'a': expected a number of 0 or more"),
+        ("absolute = -1", "absolute = -1: expected a number of 0 or more"),
+        ("relativ = 1", "unknown 'relativ'; expected relative, absolute, by_column, column"),
+        ("by_column = 1", "by_column = 1: expected true or false"),
+        ('[column."U1"]\nrel = 1', "column.\"U1\": unknown 'rel'; expected relative, absolute"),
+        ("column = 1", 'column = 1: expected tables [column."PATTERN"]'),
+        ("relative = ", "expected TOML"),
+    ],
+)
+def test_tolerance_files_that_cannot_be_used(capsys, tmp_path, a, text, expected):
+    file = tmp_path / "t.toml"
+    file.write_text(text)
+    assert compare.main([str(a), str(a), "--tolerances", str(file)]) == 2
+    told = capsys.readouterr().err
+    assert told.startswith(f"compare: {file}: ")
+    assert expected in told
+
+
+def test_options_without_effect_are_named(capsys, a):
+    options = ["--tol", "NOSUCH=1", "--tol", "U*=1", "--ignore", "NONE", "--ignore", "node_TIP:U1"]
+    assert compare.main([str(a), str(a), *options]) == 0
+    assert capsys.readouterr().err.splitlines() == [
+        "compare: --tol NOSUCH=1: no effect, nothing that was compared has the name 'NOSUCH'",
+        "compare: --ignore NONE: no effect, nothing that was compared has the name 'NONE'",
+    ]
+    assert compare.main([str(a), str(a), "--tol", "U1=x"]) == 2
+    assert "--tol U1=x: expected COLUMN=REL[,ABS], numbers of 0 or more" in capsys.readouterr().err

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -78,6 +79,7 @@ def test_no_case_starts_after_the_budget(tmp_path):
     outcomes = spent.run(case, 1)
     assert outcomes[0].record.status == "not run: the budget is spent"
     assert not log
+    assert not (tmp_path / "decks").exists()  # a mesh of full size takes long
 
 
 def test_cases_have_names_of_their_own_and_commands():
@@ -101,7 +103,8 @@ def test_cases_have_names_of_their_own_and_commands():
 
 def test_a_deck_that_cannot_be_made_stops_only_its_case(tmp_path):
     bad = Case("bad", "xingbiling", "bad", "make_dam", "--arc 3")
-    outcome = Study(tmp_path, None, 1.0, print).run([bad], 1)[0]
+    runner = SimpleNamespace(is_ending=False)
+    outcome = Study(tmp_path, runner, 1.0, print).run([bad], 1)[0]
     assert outcome.record.status == "no deck"
     assert "could not be made" in outcome.record.message
 

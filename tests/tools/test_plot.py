@@ -148,13 +148,13 @@ def test_runs_share_a_range(dam_results, tmp_path):
     write_results(small, mesh)
     both = [SiResults(small), SiResults(dam_results)]
     scales = shared_scales(both, Scales())
-    assert scales.given["S1"] == pytest.approx(3.0)
-    assert scales.given["OPENING"] == pytest.approx(5.0)
-    assert "DAMAGET" not in scales.given
+    assert scales.shared["S1"] == pytest.approx(3.0)
+    assert scales.shared["OPENING"] == pytest.approx(5.0)
+    assert "DAMAGET" not in scales.shared
     slips = [last_slips(results)[0].values() for results in both]
     largest = max((slip.max() for one in slips for slip in one), default=0.0)
     assert largest > 0.0
-    assert scales.given["SLIP"] == pytest.approx(1e3 * largest)
+    assert scales.shared["SLIP"] == pytest.approx(1e3 * largest)
 
 
 def test_marks_and_notes_name_extreme_place_deck_and_date(dam_results, tmp_path):

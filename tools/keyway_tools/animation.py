@@ -50,7 +50,7 @@ def _frames(faces: Faces, scales: Scales, saved: list[tuple[str, float]]) -> Ite
             page.set_dpi(100)
             page.canvas.draw()
             page.set_layout_engine("none")  # the layout of the first image serves all
-        headline(page, heading)
+        headline(page, heading, grows=False)
         for axis, picture in zip(page.axes, pictures.values(), strict=False):
             axis.images[0].set_data(picture.image)
         yield _pixels(page)

@@ -10,6 +10,7 @@ from .arch_curves import CURVES
 from .arch_dam import DamOptions
 from .arch_lattice import PartMesh
 from .construction.options import add_construction_options
+from .option_types import above_zero, count, finite
 from .outlets.options import add_outlet_options, outlet_options_of
 
 
@@ -19,13 +20,13 @@ def add_arch_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--arches", choices=tuple(CURVES), default="circular")
     group.add_argument(
         "--abutment-thickening",
-        type=float,
+        type=above_zero,
         default=1.0,
         help="thickness at the abutment over that at the crown, at each height (1)",
     )
     group.add_argument(
         "--joint-places",
-        type=float,
+        type=finite,
         nargs="+",
         default=[],
         metavar="S",
@@ -33,14 +34,14 @@ def add_arch_options(parser: argparse.ArgumentParser) -> None:
         "equal parts",
     )
     group.add_argument(
-        "--unknowns", type=int, help="scale all numbers of elements to have at least so many"
+        "--unknowns", type=count, help="scale all numbers of elements to have at least so many"
     )
     group.add_argument(
         "--concrete-cards", type=Path, metavar="FILE", help="cards that follow *ELASTIC of the dam"
     )
     group.add_argument(
         "--static-time",
-        type=float,
+        type=above_zero,
         default=1.0,
         metavar="SECONDS",
         help="time of the static step, for concrete with a viscosity (1)",
@@ -59,7 +60,7 @@ def add_arch_options(parser: argparse.ArgumentParser) -> None:
     )
     group.add_argument(
         "--reduced",
-        type=float,
+        type=above_zero,
         metavar="ERROR",
         help="reduced model in the dynamic step, with this error of openings, and without fields "
         "and stresses in any step",

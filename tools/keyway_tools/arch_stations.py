@@ -74,16 +74,41 @@ def joint_stations(
     equally.
     """
     arc = shape.crest_position(stations.angle)
-    if not places:
+    is_given = bool(places)
+    if not is_given:
         places = tuple(shape.crest_arc * (j + 1) / (num_joints + 1) for j in range(num_joints))
     found = []
     for place in sorted(places):
         target = place - 0.5 * shape.crest_arc
         station = int(np.argmin(np.abs(arc - abs(target))))
         found.append(station if target > 0.0 else -station)
-    inside = [abs(s) for s in found if stations.foot_slot[abs(s)] < len(stations.levels) - 1]
-    if len(set(found)) < len(places) or len(inside) < len(places):
-        raise ValueError(
-            f"{len(places)} joints do not fit into {2 * stations.count} columns of elements"
-        )
+    inside = [stations.foot_slot[abs(s)] < len(stations.levels) - 1 for s in found]
+    if len(set(found)) < len(places) or not all(inside):
+        reason = f"{len(places)} joints do not fit into {2 * stations.count} columns of elements"
+        if is_given:
+            reason = _why_not_there(shape, stations, sorted(places), found)
+        raise ValueError(reason)
     return found
+
+
+def _why_not_there(
+    shape: ArchShape, stations: Stations, places: list[float], found: list[int]
+) -> str:
+    """What is wrong with given places of joints, of which two are one, or one has no height."""
+    arc = shape.crest_position(stations.angle)
+    free = float(arc[stations.foot_slot < len(stations.levels) - 1].max())
+    first, last = 0.5 * shape.crest_arc - free, 0.5 * shape.crest_arc + free
+    step = float(np.diff(arc).min())
+    for place, station in zip(places, found, strict=True):
+        if abs(arc[abs(station)]) > free:
+            return (
+                f"--joint-places: {place:g} m is too near an end of the crest, or beyond it; "
+                f"expected {first:.5g} to {last:.5g} m with these elements"
+            )
+    same = next(k for k in range(1, len(found)) if found[k] == found[k - 1])
+    column = 0.5 * shape.crest_arc + np.sign(found[same]) * float(arc[abs(found[same])])
+    return (
+        f"--joint-places: {places[same - 1]:g} and {places[same]:g} m are nearest to one column of "
+        f"nodes, at {column:.5g} m; expected different columns, from {first:.5g} to {last:.5g} m "
+        f"and at least {step:.4g} m apart with these elements"
+    )

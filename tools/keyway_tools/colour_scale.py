@@ -84,15 +84,17 @@ class Scales:
 
     given: dict[str, float] = field(default_factory=dict)  # by field, in its unit, without sign
     is_full: bool = False  # to the extreme, whatever it is
+    shared: dict[str, float] = field(default_factory=dict)  # of all runs, as `given`
     levels: dict[str, float] = field(default_factory=dict)  # lines of equal values, by field
 
     def limits(self, name: str, values: np.ndarray) -> Limits:
         """Bands for values in SI units."""
         shown = FIELDS[name]
         extreme = shown.largest(values)
-        if name in self.given:
-            end = self.given[name]
-            remark = "range as given" if extreme > end * (1.0 + 1e-9) else ""
+        if name in self.given or name in self.shared:
+            end = self.given.get(name) or self.shared[name]
+            remark = "range as given" if name in self.given else "range shared by all runs"
+            remark = remark if extreme > end * (1.0 + 1e-9) else ""
         else:
             end = self.end(name, values)
             remark = f"colours end at {PERCENTILE:g} % of the nodes"

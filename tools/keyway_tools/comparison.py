@@ -51,12 +51,16 @@ class Rules:
     patterns: list[tuple[str, Tolerance]] = field(default_factory=list)
     fewer_columns: bool = False  # B may leave out columns, JSON keys and datasets
     fewer_rows: bool = False  # B may leave out rows and whole files
+    used: set[str] = field(default_factory=set)  # patterns that have matched a name
 
     def of(self, *names: str) -> Tolerance:
-        for pattern, tolerance in reversed(self.patterns):
-            if any(fnmatchcase(name, pattern) for name in names):
-                return tolerance
-        return self.default
+        found = [
+            (pattern, tolerance)
+            for pattern, tolerance in self.patterns
+            if any(fnmatchcase(name, pattern) for name in names)
+        ]
+        self.used.update(pattern for pattern, _ in found)
+        return found[-1][1] if found else self.default
 
 
 @dataclass(frozen=True)

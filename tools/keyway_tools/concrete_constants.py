@@ -5,6 +5,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from .command import EXIT_USAGE, command
+
 TABLES = (
     "CONCRETE TENSION STIFFENING",
     "CONCRETE TENSION DAMAGE",
@@ -125,15 +127,19 @@ def as_user_material(deck: str) -> str:
     return "\n".join([*text, ""])
 
 
-def main() -> None:
+@command("make_umat")
+def main() -> int:
     """Prints the cards of each concrete of a deck."""
     path = Path(sys.argv[1])
     found = materials_of(path.read_text(encoding="utf-8", errors="replace"))
     if not found:
-        sys.exit(f"{path}: no *CONCRETE DAMAGED PLASTICITY (*INCLUDE is not followed)")
+        what = "no *CONCRETE DAMAGED PLASTICITY (*INCLUDE is not followed)"
+        print(f"make_umat: {path}: {what}", file=sys.stderr)
+        return EXIT_USAGE
     for name, constants in found.items():
         print(f"*MATERIAL, NAME={name}\n{user_cards(constants)}", end="")
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

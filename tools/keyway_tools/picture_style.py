@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -43,6 +44,8 @@ _STYLE = {
     "svg.hashsalt": "keyway",
 }
 FORMATS = ("png", "svg", "pdf")
+WIDEST_TITLE = 0.98  # over the width of the figure
+LINE = 0.27  # [inches] of a title
 # No date of drawing in a file: the same data give the same bytes.
 _UNDATED = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
@@ -76,9 +79,37 @@ def new_figure(
     return plt.subplots(rows, columns, figsize=(width, row_height * rows + 0.6), **more)
 
 
-def headline(figure, text: str) -> None:
-    """The title of a figure, at its left border."""
-    figure.suptitle(text, x=0.01, ha="left")
+def headline(figure, text: str, grows: bool = True) -> None:
+    """The title of a figure, at its left border; lines that are too long are broken.
+
+    The figure grows by the lines more, unless it is to keep its size.
+    """
+    title = figure.suptitle(text, x=0.01, ha="left")
+    renderer = figure.canvas.get_renderer()
+
+    def width(words: str) -> float:
+        title.set_text(words)
+        return title.get_window_extent(renderer).width / figure.bbox.width
+
+    lines = [line for given in text.split("\n") for line in _broken(given, width)]
+    widest = width("\n".join(lines))
+    if widest > WIDEST_TITLE:  # a word that is longer than the figure is wide
+        title.set_fontsize(title.get_fontsize() * WIDEST_TITLE / widest)
+    more = len(lines) - 1 - text.count("\n")
+    if more and grows:
+        figure.set_figheight(figure.get_figheight() + more * LINE)
+
+
+def _broken(line: str, width: Callable[[str], float]) -> list[str]:
+    """Parts of a line that fit into the figure, broken at blanks."""
+    parts = [""]
+    for word in line.split(" "):
+        longer = f"{parts[-1]} {word}" if parts[-1] else word
+        if parts[-1] and width(longer) > WIDEST_TITLE:
+            parts.append(word)
+        else:
+            parts[-1] = longer
+    return parts
 
 
 def hide_frame(axis) -> None:

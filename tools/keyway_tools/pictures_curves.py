@@ -73,7 +73,7 @@ def _opening_panel(axis, table: dict[str, np.ndarray], steps: set[int]) -> None:
 
 
 def plot_nodes(results: SiResults, sheet: Sheet) -> list[Path]:
-    """Displacements of every *NODE PRINT in time, one panel a direction."""
+    """Displacements of every *NODE PRINT in time, one row a direction, columns as of openings."""
     curves = []
     nodes = [name for name in results.tables() if name.startswith("node_")]
     for name in nodes:
@@ -84,18 +84,25 @@ def plot_nodes(results: SiResults, sheet: Sheet) -> list[Path]:
             curves.append((f"{title}, node {node}", table, rows))
     if not curves:
         return []
-    figure, axes = new_figure(3, width=12.0, row_height=2.2, sharex=True)
-    for label, table, rows in curves[:MOST_CURVES]:
-        for axis, direction in zip(axes, "123", strict=True):
-            values = 1000.0 * table[f"U{direction}"][rows]
-            axis.plot(table["time"][rows], values, lw=1.0, label=label)
-    for axis, direction in zip(axes, "123", strict=True):
+    columns = _columns(results, [table for _, table, _ in curves])
+    figure, axes = new_figure(
+        3, width=12.0 + 4.0 * (len(columns) - 1), row_height=2.2, columns=len(columns),
+        sharex="col", squeeze=False,
+    )  # fmt: skip
+    for column, (kind, steps) in zip(axes.T, columns.items(), strict=True):
+        for label, table, rows in curves[:MOST_CURVES]:
+            shown = rows[np.isin(table["step"][rows], list(steps))]
+            for axis, direction in zip(column, "123", strict=True):
+                values = 1000.0 * table[f"U{direction}"][shown]
+                axis.plot(table["time"][shown], values, lw=1.0, label=label)
+        for axis in column:
+            axis.margins(x=0.0)
+        column[0].set_title(f"Displacements relative to the base{', ' if kind else ''}{kind}")
+        column[-1].set_xlabel("time of the deck" if kind == STATIC else "time [s]")
+    for axis, direction in zip(axes[:, 0], "123", strict=True):
         axis.set_ylabel(f"U{direction} [mm]")
-        axis.margins(x=0.0)
-    axes[0].set_title("Displacements relative to the base")
-    axes[0].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-    axes[-1].set_xlabel("time [s]")
-    figure.align_ylabels()
+    axes[0, -1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    figure.align_ylabels(axes[:, 0])
     return sheet.save(figure)
 
 

@@ -53,7 +53,7 @@ def worst_element(faces: Faces, damage: np.ndarray, name: str) -> str:
         return (
             f"0, though solids have {verb}: see *CONCRETE {kind} DAMAGE" if energy else "no damage"
         )
-    where = place_of(results.x[results.connectivity[worst]].mean(axis=0))
+    where = place_of(results.x[results.connectivity[worst]].mean(axis=0), faces.size)
     return f"extreme {damage[worst]:.3g} in element {results.element_id[worst]}, centre {where}"
 
 

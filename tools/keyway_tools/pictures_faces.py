@@ -40,9 +40,16 @@ class Drawing:
     marks: dict[str, Mark] = field(default_factory=dict)
 
 
-def place_of(x: np.ndarray) -> str:
-    """A place in words."""
-    return "(" + ", ".join(f"{0.0 if abs(v) < 5e-3 else v:.5g}" for v in x) + ") m"
+def place_of(x: np.ndarray, size: float) -> str:
+    """A place in words, in a body of this size [m]; round-off is zero."""
+    least = min(5e-3, 5e-5 * size)
+
+    def word(v: float) -> str:
+        if abs(v) < least:
+            return "0"
+        return f"{v:.1f}" if abs(v) >= 1e5 else f"{v:.5g}"
+
+    return f"({', '.join(word(float(v)) for v in x)}) m"
 
 
 def plot_envelope(
@@ -77,7 +84,7 @@ def _extreme_in_words(faces: Faces, step: Step, name: str) -> str:
     place = faces.nodes[np.nanargmax(shown.sign * values[faces.nodes])]
     when = faces.results.envelope_time(step, name)[place]
     inside = "" if np.any(faces.normals[place]) else ", inside the dam"
-    where = place_of(faces.results.x[place])
+    where = place_of(faces.results.x[place], faces.size)
     what = "extreme of the means" if shown.on_nodes else "extreme"
     return f"{what} {shown.with_unit(values[place])} at {where}, t = {when:.5g} s{inside}"
 

@@ -36,7 +36,7 @@ def plot_section(faces: Faces, step: Step, name: str, scales: Scales, sheet: She
     picture = render(cut, view, paint)
     number = shown.with_unit(shown.scale * values[place])
     heading = f"{shown.label}: section from face to face\nextreme {number} at "
-    heading += f"{place_of(faces.results.x[place])}, step {step.name.title()}"
+    heading += f"{place_of(faces.results.x[place], faces.size)}, step {step.name.title()}"
     marks = {"": Mark(view.project(faces.results.x[place]), number)}
     label = f"{shown.label.lower()} [{shown.unit}]"
     return compose(Drawing({"": picture}, limits, shown.colours, label, heading, marks), sheet)

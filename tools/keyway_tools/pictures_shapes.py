@@ -89,7 +89,8 @@ def plot_modes(faces: Faces, sheet: Sheet, most: int = 6) -> list[Path]:
     bar = figure.colorbar(shades, ax=axes.ravel().tolist(), shrink=0.6, aspect=30)
     bar.set_label("size of the shape over its largest")
     titles = " and ".join(title.lower() for title in views if title)
-    headline(figure, f"Mode shapes{', ' + titles if titles else ''}")
+    part = f", the first {count} of {len(hz)}" if count < len(hz) else ""
+    headline(figure, f"Mode shapes{', ' + titles if titles else ''}{part}")
     return sheet.save(figure)
 
 

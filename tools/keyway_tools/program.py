@@ -48,6 +48,8 @@ def reason_of(error: Exception) -> str:
     """What a command says of an error: of one of the system the file and the reason."""
     if isinstance(error, OSError) and error.strerror and error.filename:
         return f"'{error.filename}': {error.strerror}"
+    if isinstance(error, KeyError) and error.args:
+        return str(error.args[0])  # without the marks around a name
     return str(error)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,12 @@ def read_table(path: Path | str) -> Table:
     return {name: as_numbers(column) for name, column in zip(header, columns, strict=True)}
 
 
+def natural(name: str) -> list[tuple[bool, int, str]]:
+    """A key for sorting, by which JOINT2 comes before JOINT10."""
+    words = re.findall(r"\d+|\D+", name)
+    return [(not word.isdecimal(), int(word) if word.isdecimal() else 0, word) for word in words]
+
+
 def as_numbers(column: tuple[str, ...]) -> np.ndarray:
     """The column as numbers if every field is one or empty (NaN), else as texts."""
     try:
@@ -39,8 +46,15 @@ def as_numbers(column: tuple[str, ...]) -> np.ndarray:
 
 def read_json(path: Path | str) -> dict[str, Any]:
     """Leaves of a JSON file under their paths, as in 'steps.0.energy.error'."""
-    content = json.loads(Path(path).read_text(encoding="utf-8"))
-    return dict(leaves(content, ""))
+    return dict(leaves(load_json(path), ""))
+
+
+def load_json(path: Path | str) -> Any:
+    """The content of a JSON file. Raises ValueError with the name of the file."""
+    try:
+        return json.loads(Path(path).read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise ValueError(f"{path} cannot be read, it is not whole: {error}") from None
 
 
 def leaves(value: Any, path: str) -> Iterator[tuple[str, Any]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fcntl
+import glob
 import json
 import socket
 from dataclasses import dataclass
@@ -14,7 +15,7 @@ import h5py
 import numpy as np
 
 from .joint_faces import JointFaces, read_joint_faces
-from .result_files import Table, as_array, read_table
+from .result_files import Table, as_array, load_json, natural, read_table
 
 # Fields of *ENVELOPE and the names of their extremes in job.h5.
 ENVELOPE_NAMES = {
@@ -130,13 +131,13 @@ class Results:
     @cached_property
     def summary(self) -> dict[str, Any]:
         """The summary JOB.json."""
-        return json.loads(self.path(".json").read_text(encoding="utf-8"))
+        return load_json(self.path(".json"))
 
     def tables(self) -> list[str]:
-        """Names of the tables, as in ['node_TIP', 'joint_J1']."""
+        """Names of the tables, as in ['node_TIP', 'joint_J1']; numbers in them count up."""
         start = f"{self.job}_"
-        return sorted(p.stem.removeprefix(start) for p in self.folder.glob("*.csv") if
-                      p.name.startswith(start))  # fmt: skip
+        found = (p.stem for p in self.folder.glob(f"{glob.escape(start)}*.csv"))
+        return sorted((name.removeprefix(start) for name in found), key=natural)
 
     def table(self, name: str) -> Table:
         """Columns of the table JOB_NAME.csv."""
@@ -292,8 +293,8 @@ class Results:
         return {name: data[:, k] for k, name in enumerate(names)}
 
     def joint_names(self) -> list[str]:
-        """Names of the joints."""
-        return list(self.file.get("joints", {}))
+        """Names of the joints; numbers in them count up."""
+        return sorted(self.file.get("joints", {}), key=natural)
 
     def joint_faces(self, name: str) -> JointFaces | None:
         """The polygons of a joint."""

@@ -24,4 +24,4 @@ def shared_scales(all_results: list[SiResults], scales: Scales) -> Scales:
         slips = [np.zeros(1), *last_slips(results)[0].values()]
         ends["SLIP"] = max(ends.get("SLIP", 0.0), scales.end("SLIP", np.concatenate(slips)))
     found = {name: end for name, end in ends.items() if end > 0.0 and not FIELDS[name].top}
-    return replace(scales, given=found | scales.given)
+    return replace(scales, shared=found)

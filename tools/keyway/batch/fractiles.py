@@ -67,6 +67,8 @@ def _draw(results: dict[str, np.ndarray], folder: Path) -> list[Path]:
             label = f"{100.0 * fractile:.0f} %: {value:.3g}"
             axis.plot(value, fractile, "o", label=label)
         axis.set(xlabel=name, ylim=(0.0, 1.02))
+        axis.locator_params(axis="x", nbins=4)
+        axis.ticklabel_format(axis="x", scilimits=(-3, 4))
         axis.legend(loc="lower right", fontsize=10)
     for axis in axes.flat[len(names) :]:
         axis.set_visible(False)

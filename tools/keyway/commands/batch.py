@@ -25,7 +25,9 @@ import sys
 from dataclasses import asdict
 from pathlib import Path
 
+from keyway_tools.command import command
 from keyway_tools.deck_runs import Record
+from keyway_tools.option_types import above_zero, count
 from keyway_tools.program import given_program, reason_of
 
 from keyway.batch.cases import BatchError, Case, cases_of_decks, cases_of_table
@@ -56,17 +58,17 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("-o", type=Path, default=Path("results"), metavar="DIR", help="folder of results (results)")
     add("--table", type=Path, metavar="CSV", help="values of the cases; DECKS is one template")
     add("--on", type=place, default="local", help="local, slurm or dask://HOST:PORT (local)")
-    add("-j", type=positive, metavar="RUNS", help="runs at a time (1; on Slurm 20)")
-    add("--threads", type=positive, help="threads of each run (processors / runs; else 1)")
-    add("--timeout", type=float, metavar="SECONDS", help="ends a run that takes longer")
+    add("-j", type=count, metavar="RUNS", help="runs at a time (1; on Slurm 20)")
+    add("--threads", type=count, help="threads of each run (processors / runs; else 1)")
+    add("--timeout", type=above_zero, metavar="SECONDS", help="ends a run that takes longer")
     add("--again", action="store_true", help="run finished decks again")
     add("--program", type=Path, help="the program (KEYWAY, build/release of the checkout, PATH)")
     add("--json", metavar="FILE", help="write the table also as JSON; -: only JSON, on stdout")
     slurm = parser.add_argument_group("on Slurm")
     text = "of each job (three times the forecast of --check, and 10 minutes)"
-    slurm.add_argument("--minutes", type=positive, help=text)
+    slurm.add_argument("--minutes", type=count, help=text)
     text = "MB of each job (1.5 times the forecast of --check, and 200 MB)"
-    slurm.add_argument("--memory", type=positive, help=text)
+    slurm.add_argument("--memory", type=count, help=text)
     slurm.add_argument("--sbatch", action="append", default=[], metavar="OPTION",
                        help="further option of sbatch; may be repeated")  # fmt: skip
     result = parser.parse_args(arguments)
@@ -85,13 +87,6 @@ def place(text: str) -> str:
     if text in ("local", "slurm") or text.startswith(("dask://", "tcp://")):
         return text
     raise argparse.ArgumentTypeError(f"'{text}'; expected local, slurm or dask://HOST:PORT")
-
-
-def positive(text: str) -> int:
-    value = int(text)
-    if value < 1:
-        raise ValueError
-    return value
 
 
 def say(text: str) -> None:
@@ -148,6 +143,7 @@ def run_batch(options: argparse.Namespace) -> int:
     return 0 if all(record.status == "finished" for record in records) else 1
 
 
+@command("batch")
 def main(arguments: list[str] | None = None) -> int:
     """Run the decks and print the table."""
     options = parse(sys.argv[1:] if arguments is None else arguments)

@@ -13,6 +13,7 @@ import argparse
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -20,7 +21,10 @@ else:
     import tomli as tomllib
 
 from keyway_tools import comparison
+from keyway_tools.command import command
 from keyway_tools.comparison import Report, Rules, Tolerance
+from keyway_tools.option_types import count_from_zero, from_zero
+from keyway_tools.program import reason_of
 from keyway_tools.results import Results
 
 EPILOG = """tolerance file (TOML):
@@ -43,8 +47,8 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add = parser.add_argument
     add("a", metavar="A", type=Path, help="results folder, or a file")
     add("b", metavar="B", type=Path, help="results folder or reference file")
-    add("--rel", type=float, help="relative tolerance of every column (1e-6)")
-    add("--abs", type=float, help="absolute tolerance of every column (1e-12)")
+    add("--rel", type=from_zero, help="relative tolerance of every column (1e-6)")
+    add("--abs", type=from_zero, help="absolute tolerance of every column (1e-12)")
     add("--tol", action="append", default=[], metavar="COLUMN=REL[,ABS]", help="of one column")
     add("--ignore", action="append", default=[], metavar="COLUMN", help="leave a column out")
     add("--tolerances", type=Path, metavar="FILE", help="tolerances in TOML, see below")
@@ -52,14 +56,19 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("--subset", action="store_true", help="B may hold less than A")
     add("--table", default="", help="the table a CSV reference belongs to, as in node_TIP")
     add("--job", default=None, help="the job, if a folder holds several")
-    add("-n", type=int, default=10, help="how many of the largest differences to show (10)")
+    add(
+        "-n",
+        type=count_from_zero,
+        default=10,
+        help="how many of the largest differences to show (10)",
+    )
     add("--json", type=Path, metavar="FILE", help="write the findings as JSON")
     return parser.parse_args(arguments)
 
 
 def make_rules(options: argparse.Namespace) -> Rules:
     """Tolerances of the file, then those of the command line, which take precedence."""
-    content = tomllib.loads(options.tolerances.read_text()) if options.tolerances else {}
+    content = read_tolerances(options.tolerances) if options.tolerances else {}
     columns = content.pop("column", {})
     given = {"relative": options.rel, "absolute": options.abs}
     content |= {name: value for name, value in given.items() if value is not None}
@@ -70,14 +79,56 @@ def make_rules(options: argparse.Namespace) -> Rules:
         rules.patterns.append((pattern, Tolerance(**(default.__dict__ | values))))
     for text in options.tol:
         column, _, numbers = text.rpartition("=")
-        if not column:
-            raise ValueError(f"--tol {text}: expected COLUMN=REL[,ABS]")
         relative, _, absolute = numbers.partition(",")
-        rules.patterns.append(
-            (column, Tolerance(float(relative), float(absolute or 0), options.by_column))
-        )
+        try:
+            size = from_zero(relative), from_zero(absolute or "0")
+        except argparse.ArgumentTypeError:
+            size = None
+        if not column or size is None:
+            raise ValueError(f"--tol {text}: expected COLUMN=REL[,ABS], numbers of 0 or more")
+        rules.patterns.append((column, Tolerance(*size, options.by_column)))
     rules.patterns += [(column, Tolerance(ignore=True)) for column in options.ignore]
     return rules
+
+
+def read_tolerances(path: Path) -> dict[str, Any]:
+    """The content of a file of tolerances. Raises ValueError."""
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}; expected TOML") from None
+    columns = content.get("column", {})
+    if not isinstance(columns, dict):
+        raise ValueError(f'{path}: column = {columns!r}: expected tables [column."PATTERN"]')
+    check_tolerance(f"{path}: ", content, ["relative", "absolute", "by_column", "column"])
+    for pattern, values in columns.items():
+        place = f'{path}: column."{pattern}"'
+        if not isinstance(values, dict):
+            raise ValueError(f'{place} = {values!r}: expected a table [column."{pattern}"]')
+        check_tolerance(f"{place}: ", values, ["relative", "absolute", "by_column", "ignore"])
+    return content
+
+
+def check_tolerance(place: str, values: dict[str, Any], known: list[str]) -> None:
+    """Names and values of a tolerance. Raises ValueError."""
+    for name, value in values.items():
+        if name not in known:
+            raise ValueError(f"{place}unknown '{name}'; expected {', '.join(known)}")
+        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        if name in ("relative", "absolute") and not (is_number and value >= 0):
+            raise ValueError(f"{place}{name} = {value!r}: expected a number of 0 or more")
+        if name in ("by_column", "ignore") and not isinstance(value, bool):
+            raise ValueError(f"{place}{name} = {value!r}: expected true or false")
+
+
+def warn_unused(rules: Rules, options: argparse.Namespace) -> None:
+    """Says which options of the command line have no effect: a name may have a typing error."""
+    given = [(f"--tol {text}", text.rpartition("=")[0]) for text in options.tol]
+    given += [(f"--ignore {text}", text) for text in options.ignore]
+    for option, pattern in given:
+        if pattern not in rules.used:
+            what = f"nothing that was compared has the name '{pattern}'"
+            print(f"compare: {option}: no effect, {what}", file=sys.stderr)
 
 
 def compare(a: Path, b: Path, rules: Rules, job: str | None = None, table: str = "") -> Report:
@@ -123,6 +174,7 @@ def write_json(report: Report, path: Path) -> None:
     path.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
 
 
+@command("compare")
 def main(arguments: list[str] | None = None) -> int:
     """Compare and print what differs."""
     options = parse(sys.argv[1:] if arguments is None else arguments)
@@ -130,8 +182,9 @@ def main(arguments: list[str] | None = None) -> int:
         rules = make_rules(options)
         report = compare(options.a, options.b, rules, options.job, options.table)
     except (OSError, ValueError, TypeError, KeyError) as error:
-        print(f"compare: {error}", file=sys.stderr)
+        print(f"compare: {reason_of(error)}", file=sys.stderr)
         return 2
+    warn_unused(rules, options)
     show(report, options.n)
     if options.json:
         write_json(report, options.json)

@@ -30,6 +30,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from keyway_tools.colour_scale import FIELDS, Scales, parse_levels, parse_ranges
+from keyway_tools.command import command
 from keyway_tools.picture_style import FORMATS, Sheet
 from keyway_tools.pictures_curves import (
     plot_damage_growth,
@@ -146,6 +147,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     return chosen
 
 
+@command("plot")
 def main(arguments: list[str] | None = None) -> int:
     """Draw every job of the folders."""
     arguments = sys.argv[1:] if arguments is None else arguments
@@ -162,6 +164,13 @@ def main(arguments: list[str] | None = None) -> int:
             print(f"plot: no {what} in {folder}; give the folder of a run", file=sys.stderr)
             return 2
         found += [SiResults(folder, job, chosen.units) for job in jobs]
+    try:
+        for results in found:
+            if results.path(".json").exists():
+                _ = results.summary  # raises ValueError where it is not whole
+    except ValueError as error:
+        print(f"plot: {error}", file=sys.stderr)
+        return 2
     try:
         draw(found, chosen)
     except OSError as error:  # the run is not at its end, or the disk is full

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from ..option_types import above_zero, count, finite, from_zero
 from .heat import Temperatures
 from .lifts import Construction
 
@@ -11,12 +12,12 @@ from .lifts import Construction
 def add_construction_options(parser: argparse.ArgumentParser) -> None:
     """Options that become a Construction."""
     group = parser.add_argument_group("construction")
-    group.add_argument("--lifts", type=int, help="build the dam in so many lifts (at once)")
+    group.add_argument("--lifts", type=count, help="build the dam in so many lifts (at once)")
     text = "grout the joints after these lifts (never: they have their law from the start)"
-    group.add_argument("--grouting", type=int, nargs="+", default=[], metavar="LIFT", help=text)
-    group.add_argument("--grout-pressure", type=float, default=0.0, help="[Pa] (0)")
+    group.add_argument("--grouting", type=count, nargs="+", default=[], metavar="LIFT", help=text)
+    group.add_argument("--grout-pressure", type=from_zero, default=0.0, help="[Pa] (0)")
     group.add_argument(
-        "--temperatures", type=float, nargs=3, metavar=("ALPHA", "PLACING", "CLOSURE"),
+        "--temperatures", type=finite, nargs=3, metavar=("ALPHA", "PLACING", "CLOSURE"),
         help="expansion [1/K], temperatures of fresh concrete and at grouting [deg C]",
     )  # fmt: skip
     text = "file of make_temperature.py beside the deck, then the duration in its unit of time and "
@@ -48,9 +49,9 @@ def temperatures_of(chosen: argparse.Namespace) -> Temperatures | None:
         return Temperatures(*chosen.temperatures)
     file, *times = chosen.seasons
     try:
-        duration, increment = map(float, times)
-    except ValueError:
+        duration, increment = map(above_zero, times)
+    except argparse.ArgumentTypeError:
         raise ValueError(
-            f"--seasons {' '.join(chosen.seasons)}: expected a file and two numbers"
+            f"--seasons {' '.join(chosen.seasons)}: expected a file and two numbers above 0"
         ) from None
     return Temperatures(*chosen.temperatures, file, duration, increment)

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..option_types import above_zero, count, count_from_zero
+
 
 @dataclass(frozen=True)
 class OutletOptions:
@@ -116,8 +118,10 @@ def add_outlet_options(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group(
         "outlets through a block with a separate mesh (--fine); heights over the crown's foot [m]"
     )
-    group.add_argument("--outlets", type=int, default=0, help="side by side in one block (0)")
-    group.add_argument("--outlet-block", type=int, help="from 1 at the left end (the middle one)")
+    group.add_argument(
+        "--outlets", type=count_from_zero, default=0, help="side by side in one block (0)"
+    )
+    group.add_argument("--outlet-block", type=count, help="from 1 at the left end (the middle one)")
     for name, text in (
         ("outlet-width", "width (7 %% of the width of the crest between joints)"),
         ("outlet-sill", "height of the sill (0.72 of the dam)"),
@@ -126,9 +130,9 @@ def add_outlet_options(parser: argparse.ArgumentParser) -> None:
         ("pier-top", "height of the top of the piers (0.84 of the dam)"),
         ("corbel-depth", "depth of the corbel below the sill (0.06 of the dam)"),
     ):
-        group.add_argument(f"--{name}", type=float, help=text)
+        group.add_argument(f"--{name}", type=above_zero, help=text)
     group.add_argument(
-        "--pier-layers", type=int, default=3, help="elements along piers and corbel (3)"
+        "--pier-layers", type=count, default=3, help="elements along piers and corbel (3)"
     )
 
 

@@ -19,13 +19,15 @@ import sys
 from datetime import datetime
 from pathlib import Path
 
+from ..command import command
 from ..deck_runs import DeckRunner
+from ..option_types import count
 from ..pictures_material import plot_material, read_curve
 from ..study.__main__ import seconds
 from .case_table import list_cases
 from .cases import choose
 from .page import write_page
-from .runner import Study
+from .runner import LEFT_OUT, Study
 from .sizes import SIZES
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -43,15 +45,19 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
     add("-o", type=Path, default=ROOT / "results" / "paper_study", metavar="DIR", help="folder")
     add("--size", choices=tuple(SIZES), default="full", help="of all dams (full)")
     add("--cases", nargs="+", default=[], metavar="PATTERN", help="names or groups, as in 'xing*'")
-    add("--budget", type=seconds, default=float("inf"), metavar="TIME", help="90s, 20m or 2h")
-    add("-j", type=int, default=1, metavar="RUNS", help="runs at a time (1)")
-    add("--threads", type=int, help="of each run (processors / runs)")
+    add(
+        "--budget",
+        type=seconds,
+        default=float("inf"),
+        metavar="TIME",
+        help="for all runs, as 90s, 20m, 2h; a number alone is seconds (no end)",
+    )
+    add("-j", type=count, default=1, metavar="RUNS", help="runs at a time (1)")
+    add("--threads", type=count, help="of each run (processors / runs)")
     add("--program", type=Path, default=ROOT / "build/release/keyway", help="the program")
     add("--list", action="store_true", help="only print the cases and their commands")
     add("--no-page", action="store_true", help="only run")
     given = parser.parse_args(arguments)
-    if given.j < 1 or (given.threads or 1) < 1:
-        parser.error("-j and --threads take 1 or more")
     given.all_cases = list_cases(SIZES[given.size])
     try:
         given.chosen = choose(given.all_cases, given.cases)
@@ -63,6 +69,7 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
     return given
 
 
+@command("paper_study")
 def main(arguments: list[str] | None = None) -> int:
     """Run the cases and write the page."""
     given = parse(arguments)
@@ -90,6 +97,8 @@ def main(arguments: list[str] | None = None) -> int:
     if runner.is_ending:  # Python drops an exception that is raised in one of its clean-ups
         sys.stderr.write("paper_study: stopped; the same call goes on, finished cases are kept\n")
         return EXIT_INTERRUPTED
+    if left_out := [o.case.name for o in outcomes if o.record.status == LEFT_OUT]:
+        say(f"{len(left_out)} of {len(outcomes)} cases were {LEFT_OUT}")
     if not given.no_page:
         shown = study.with_kept(outcomes, given.all_cases)
         say(str(write_page(given.o, header_of(given, runner), shown, concrete(given))))

@@ -11,8 +11,10 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..deck_runs import DeckRunner, Record
+from ..deck_runs import DeckRunner, Record, earlier_record
 from .cases import Case, Log
+
+LEFT_OUT = "not run: the budget is spent"
 
 
 @dataclass(frozen=True)
@@ -58,7 +60,7 @@ class Study:
         known = {outcome.case.name: outcome for outcome in outcomes}
         for case in cases:
             folder = self.folder / "runs" / case.name
-            if case.name in known or not folder.exists():
+            if case.name in known or not has_finished(folder):
                 continue
             deck = self.deck_of(case)
             if self.runner.is_kept(deck, folder):
@@ -74,13 +76,15 @@ class Study:
 
     def _run(self, case: Case) -> Record:
         folder = self.folder / "runs" / case.name
-        left_out = Record("", str(folder), "not run: the budget is spent")
+        left_out = Record("", str(folder), LEFT_OUT)
+        if self._is_over() and not has_finished(folder):  # its deck may take minutes to make
+            return left_out
         try:
             deck = self.deck_of(case)
         except (RuntimeError, ValueError, OSError) as fault:
             return Record("", str(folder), "no deck", message=str(fault))
         if not self.runner.is_kept(deck, folder):
-            if time.monotonic() > self.until or self.runner.is_ending:
+            if self._is_over():
                 return left_out
             if shutil.disk_usage(self.folder).free < 1 << 30:
                 return Record("", str(folder), "not run: less than 1 GB of the disk is free")
@@ -89,3 +93,13 @@ class Study:
         kept = " (kept)" if record.was_kept else f", {record.wall_s:.1f} s"
         self.log(f"{case.name}: {record.status}{kept}")
         return record
+
+    def _is_over(self) -> bool:
+        """Whether no case may start any more."""
+        return time.monotonic() > self.until or self.runner.is_ending
+
+
+def has_finished(folder: Path) -> bool:
+    """Whether some run, perhaps of an older deck, has finished in the folder."""
+    earlier = earlier_record(folder)
+    return earlier is not None and earlier.status == "finished"

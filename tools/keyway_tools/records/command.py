@@ -12,6 +12,7 @@ from ..design_spectrum import DesignSpectrum
 from ..ground_motion import final_motion
 from ..motion_files import write_amplitude
 from ..motion_pictures import Accelerogram, plot_accelerograms
+from ..option_types import above_zero, finite
 from ..response_spectrum import GRAVITY
 from .pictures import plot_spectra
 from .read_record import read_record
@@ -43,17 +44,17 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--axes", nargs="+", choices=AXES, help="axis of each component in order (x y z)"
     )
-    group.add_argument("--cut", nargs=2, type=float, metavar=("START", "END"), help="part [s]")
-    group.add_argument("--resample", type=float, metavar="DT", help="time between values [s]")
+    group.add_argument("--cut", nargs=2, type=finite, metavar=("START", "END"), help="part [s]")
+    group.add_argument("--resample", type=above_zero, metavar="DT", help="time between values [s]")
     group.add_argument(
         "--fit",
         nargs=2,
-        type=float,
+        type=above_zero,
         metavar=("T1", "T2"),
         help="scale all components by one factor, so that the horizontal spectra fit the design "
         "spectrum over these periods [s]; without --fit, --pga scales to that peak",
     )
-    group.add_argument("--factor", type=float, help="multiply all components")
+    group.add_argument("--factor", type=finite, help="multiply all components")
     group.add_argument("--baseline", action="store_true", help="correct the base line")
 
 
@@ -89,9 +90,6 @@ def check_options(chosen: argparse.Namespace) -> None:
     """Options that exclude each other."""
     if chosen.factor is not None and (chosen.pga is not None or chosen.fit):
         raise RecordError("--factor together with --pga or --fit; expected one way to scale")
-    for name, value in (("--resample", chosen.resample), ("--dt", chosen.dt)):
-        if value is not None and value <= 0.0:
-            raise RecordError(f"{name} {value:g}; expected a time above zero")
 
 
 def make_from_records(chosen: argparse.Namespace, default_pga: float) -> None:

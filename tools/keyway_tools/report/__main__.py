@@ -16,6 +16,7 @@ import sys
 from pathlib import Path
 
 from ..colour_scale import Scales, parse_ranges
+from ..command import command
 from ..program import command_name, reason_of
 from ..results import Results
 from ..si_results import SiResults, Units
@@ -46,6 +47,7 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
     return chosen
 
 
+@command("report")
 def main(arguments: list[str] | None = None) -> int:
     """Write the pages and print their names."""
     chosen = parse(arguments)

@@ -21,8 +21,10 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from keyway_tools.command import command
 from keyway_tools.deck_runs import DeckRunner
-from keyway_tools.program import command_name, given_program, reason_of
+from keyway_tools.option_types import count
+from keyway_tools.program import command_name, given_program
 from keyway_tools.results import Results
 
 from .couplings import coupling_rungs
@@ -42,6 +44,10 @@ ALL = {False: "the_deck_as_it_is", True: "all_effects"}
 UNITS = {"": 1.0, "s": 1.0, "m": 60.0, "h": 3600.0}
 
 
+class NothingToVaryError(Exception):
+    """A deck of which a study has no variant."""
+
+
 def seconds(text: str) -> float:
     """'90s', '20m' or '1.5h' in seconds."""
     found = re.fullmatch(r"([0-9.]+)\s*([smh]?)", text.strip())
@@ -58,15 +64,18 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add = parser.add_argument
     add("deck", type=Path, metavar="DECK")
     add("--budget", type=seconds, default=1200.0, metavar="TIME",
-        help="time for all runs, as 90s, 20m, 2h (20m)")  # fmt: skip
+        help="time for all runs, as 90s, 20m, 2h; a number alone is seconds (20m)")  # fmt: skip
     add("--effects", action="store_true", help="switch the effects off in turn")
     add("--verify", action="store_true", help="compare with a run finer than the ladder's finest")
     add("--duration", type=seconds, metavar="TIME",
         help="study the first so many seconds of each dynamic step alone")  # fmt: skip
     add("-o", type=Path, metavar="DIR", help="folder of the study (DECK's name with _accuracy)")
-    add("--threads", type=int, default=os.cpu_count() or 1, help="of each run (all processors)")
+    add("--threads", type=count, default=os.cpu_count() or 1, help="of each run (all processors)")
     add("--program", type=Path, help="the program (KEYWAY, build/release of the checkout, PATH)")
-    return parser.parse_args(arguments)
+    given = parser.parse_args(arguments)
+    if given.duration == 0.0:
+        parser.error("--duration 0: expected a time above 0")
+    return given
 
 
 def absolute_paths(options: list[str]) -> list[str]:
@@ -81,6 +90,7 @@ def check(program: Path, options: list[str], deck: Path) -> str:
     return done.stderr if done.returncode else ""
 
 
+@command("accuracy")
 def main(arguments: list[str] | None = None) -> int:
     arguments = sys.argv[1:] if arguments is None else arguments
     options: list[str] = []
@@ -114,18 +124,15 @@ def main(arguments: list[str] | None = None) -> int:
         runner.stop()
         sys.stderr.write("accuracy: stopped; the same call goes on, finished runs are kept\n")
         return 130
-    except (OSError, RuntimeError) as error:
-        sys.stderr.write(f"accuracy: {reason_of(error)}\n")
-        return 1
+    except (NothingToVaryError, RuntimeError) as error:
+        sys.stderr.write(f"accuracy: {error}\n")
+        return 2 if isinstance(error, NothingToVaryError) else 1
 
 
 def study(given: argparse.Namespace, runner: DeckRunner) -> int:
     """Runs the variants and writes what they show."""
     given.o.mkdir(parents=True, exist_ok=True)
-    deck = base_deck(flat_deck(given, runner))
-    if given.duration:
-        deck = shortened(deck, given.duration)
-    rungs = list_effects(deck) if given.effects else rungs_of(deck, given.verify)
+    deck, rungs = what_to_run(given, runner)
     ladder = Ladder(deck, rungs, given.o, runner, given.budget, say)
     outcomes = ladder.run()
     header = header_of(given, runner, outcomes[0])
@@ -149,6 +156,29 @@ def study(given: argparse.Namespace, runner: DeckRunner) -> int:
         lines.append(meaning)
     say("\n".join([*lines, str(page)]))
     return 0
+
+
+def what_to_run(given: argparse.Namespace, runner: DeckRunner) -> tuple[Deck, list[Rung]]:
+    """The deck of the study and its variants, itself first."""
+    deck = base_deck(flat_deck(given, runner))
+    if given.duration:
+        deck = shortened_deck(given, deck)
+    rungs = list_effects(deck) if given.effects else rungs_of(deck, given.verify)
+    if len(rungs) > 1:
+        return deck, rungs
+    what = "no effect to switch off: no joints, loads, motion, damping or nonlinear materials"
+    raise NothingToVaryError(f"{given.deck}: {what if given.effects else 'nothing to vary'}")
+
+
+def shortened_deck(given: argparse.Namespace, deck: Deck) -> Deck:
+    """The deck with shorter dynamic steps; says so where --duration changes none."""
+    new = shortened(deck, given.duration)
+    before, after = ([card.lines for card in one.of("DYNAMIC")] for one in (deck, new))
+    if before == after:
+        why = f"longer than {given.duration:g} s" if before else "at all"
+        say(f"--duration {given.duration:g}s: no effect, the deck has no dynamic step {why}")
+        given.duration = None
+    return new
 
 
 def rungs_of(deck: Deck, is_verified: bool) -> list[Rung]:

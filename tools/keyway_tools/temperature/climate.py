@@ -104,6 +104,8 @@ class Level:
     def parse(words: list[str]) -> Level:
         """A level from one number, or from MONTH:HEIGHT words. Raises ValueError."""
         try:
+            if not all(np.isfinite(float(n)) for word in words for n in word.split(":")):
+                raise ValueError
             if len(words) == 1 and ":" not in words[0]:
                 return Level((0.0,), (float(words[0]),))
             pairs = sorted(tuple(map(float, word.split(":"))) for word in words)

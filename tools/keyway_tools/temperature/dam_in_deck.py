@@ -40,6 +40,9 @@ def read_dam(path: Path, dam: str, upstream: str, downstream: str) -> Dam:
     if not path.is_file():
         raise ValueError(f"there is no deck '{path}'")
     deck = read_deck(path)
+    if deck.has("PART") or deck.has("INSTANCE"):
+        what = "the mesh has parts and instances (*PART)"
+        raise ValueError(f"{path}: {what}; expected *NODE and *ELEMENT outside of parts")
     sets = read_sets(deck)
     if dam.upper() not in sets.element_sets:
         raise ValueError(
