@@ -84,6 +84,16 @@ def test_times_of_output(tmp_path, keyway, card, frames):
     assert {"U", "RF", "S"} <= fields_of_last_step(run)
 
 
+def test_number_of_outputs_in_a_later_step(tmp_path, keyway):
+    """A request of the first step, of 2 increments, gives 5 outputs in the second one, of 20."""
+    card = "*Output, field, variable=PRESELECT, number interval=5\n"
+    path = deck_with(tmp_path, card, "*STATIC, DIRECT\n0.5, 1.")
+    later = "*STEP\n*DYNAMIC, DIRECT\n0.01, 0.2\n*END STEP\n"
+    path.write_text(path.read_text() + later)
+    steps = keyway(path).results.file["steps"]
+    assert [len(steps[f"{step:04d}/increments"]) for step in (1, 2)] == [2, 5]
+
+
 # Cards as manuals, models of users and preprocessors have them; abbreviated and misspelt ones too.
 ASKED = [
     "*Output, field, freq=5\n*Node output\nU,",

@@ -17,7 +17,7 @@ module model_draft
   use load_books, only: load_book
   use problem_definition, only: problem
   use set_lists, only: set_list
-  use step_plan, only: step
+  use step_plan, only: output_rhythm, step
   use print_kinds, only: kinds_of_prints
   implicit none
   private
@@ -155,7 +155,7 @@ module model_draft
     real(rk) :: total_time = 0.0_rk !< at the start of the step [s]
     type(moved_direction) :: moved(3) !< accelerations of supports in this step
     logical :: has_new_output = .false. !< *NODE FILE or a similar keyword in this step
-    integer :: output_frequency = 1 !< of the last *OUTPUT
+    type(output_rhythm) :: rhythm !< of the last *OUTPUT
     integer :: next_checkpoint_frequency = -1 !< of a *RESTART before the next step; -1: none
     logical :: output_is_history = .false. !< the last *OUTPUT opened histories
     logical :: prints_given(size(kinds_of_prints)) = .false. !< kinds that this step has requested

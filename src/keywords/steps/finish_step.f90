@@ -5,7 +5,7 @@ module finish_step
   use load_point, only: point_load
   use model_draft, only: draft, add_load
   use node_dofs, only: num_directions
-  use step_plan, only: field_request, print_request, step, step_fixity, step_load
+  use step_plan, only: field_request, output_rhythm, print_request, step, step_fixity, step_load
   use write_text, only: as_text
   use applied_load, only: load
   implicit none
@@ -42,7 +42,7 @@ contains
     model%is_in_step = .true.
     model%supports%is_new = .false.
     model%has_new_output = .false.
-    model%output_frequency = 1
+    model%rhythm = output_rhythm()
     model%output_is_history = .false.
     model%prints_given = .false.
   end subroutine open_step
@@ -52,6 +52,7 @@ contains
     type(draft), intent(inout) :: model
     logical :: is_perturbation
     real(rk) :: end_time
+    call set_frequencies(model)
     call collect_point_forces(model)
     call collect_fixities(model)
     model%now%loads = [model%now%loads, model%active_loads%loads_of_step()]
@@ -68,6 +69,30 @@ contains
     model%procedure_card = [model%procedure_card, model%current_procedure]
     model%is_in_step = .false.
   end subroutine close_step
+
+  !> Increments between the outputs of requests whose cards give times or numbers: by the increment
+  !> of each step.
+  subroutine set_frequencies(model)
+    type(draft), intent(inout) :: model
+    integer :: i
+    associate (now => model%now)
+      if (.not. now%first_increment > 0.0_rk) return
+      do i = 1, size(now%outputs)
+        if (is_timed(now%outputs(i)%rhythm)) now%outputs(i)%frequency = &
+          now%outputs(i)%rhythm%increments_between(now%duration, now%first_increment)
+      end do
+      do i = 1, size(now%prints)
+        if (is_timed(now%prints(i)%rhythm)) now%prints(i)%frequency = &
+          now%prints(i)%rhythm%increments_between(now%duration, now%first_increment)
+      end do
+    end associate
+  end subroutine set_frequencies
+
+  !> Whether a card gives times or a number of outputs.
+  pure logical function is_timed(rhythm)
+    type(output_rhythm), intent(in) :: rhythm
+    is_timed = rhythm%most > 0 .or. rhythm%interval > 0.0_rk
+  end function is_timed
 
   subroutine collect_fixities(model)
     type(draft), intent(inout) :: model

@@ -12,7 +12,7 @@ module keywords_output
   use keywords_print, only: add_frequency, fields_of, read_histories
   use kinds, only: rk
   use model_draft, only: draft
-  use step_plan, only: field_name_length, field_request
+  use step_plan, only: field_name_length, field_request, output_rhythm
   implicit none
   private
   public :: describe_node_file, describe_el_file, describe_output, describe_node_output
@@ -20,7 +20,6 @@ module keywords_output
   public :: read_files, read_fields, read_output, read_envelope, fields_of_envelope
 
   character, parameter :: nl = new_line('a')
-  real(rk), parameter :: round_off = 1.0e-9_rk
   character(*), parameter :: series = ' The fields go to the VTK series (job.pvd) and to '// &
                              'job.h5. The request stays for the next steps until a '// &
                              'step has its own.'
@@ -90,10 +89,13 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(field_request) :: new
     if (.not. model%is_in_step) call this%warn(faults, 'is outside a step')
-    model%output_frequency = frequency_of(this, model)
+    model%rhythm = output_rhythm(this%integer('FREQUENCY'))
+    if (this%has('NUMBER INTERVAL')) model%rhythm%most = this%integer('NUMBER INTERVAL')
+    if (this%has('TIME INTERVAL')) model%rhythm%interval = this%real('TIME INTERVAL')
     model%output_is_history = this%has('HISTORY')
     if (.not. this%has('VARIABLE') .or. model%output_is_history) return
-    new%frequency = model%output_frequency
+    new%frequency = model%rhythm%frequency
+    new%rhythm = model%rhythm
     if (this%word('VARIABLE') == 'ALL') then
       new%fields = [character(field_name_length) :: words_of(choices_of('NODE FILE')), &
                     words_of(choices_of('EL FILE'))]
@@ -102,24 +104,6 @@ contains
     end if
     call add_files(new, model)
   end subroutine read_output
-
-  !> Increments between outputs. Where the card gives times, of the first increment of the step.
-  pure integer function frequency_of(this, model) result(frequency)
-    type(card), intent(in) :: this
-    type(draft), intent(in) :: model
-    frequency = this%integer('FREQUENCY')
-    associate (now => model%now)
-      if (this%has('NUMBER INTERVAL')) then
-        frequency = ceiling(now%duration/(now%first_increment*this%integer('NUMBER INTERVAL')) &
-                            - round_off)
-      else if (this%has('TIME INTERVAL')) then
-        frequency = nint(this%real('TIME INTERVAL')/now%first_increment)
-      else
-        return
-      end if
-    end associate
-    frequency = max(1, frequency)
-  end function frequency_of
 
   !> The words of a list 'U | V'.
   pure function words_of(list) result(words)
@@ -171,7 +155,7 @@ contains
     if (model%output_is_history) then
       call read_histories(this, model, faults)
     else
-      call take_files(this, model%output_frequency, model, faults)
+      call take_files(this, model%rhythm, model, faults)
     end if
   end subroutine read_fields
 
@@ -180,13 +164,13 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    call take_files(this, this%integer('FREQUENCY'), model, faults)
+    call take_files(this, output_rhythm(this%integer('FREQUENCY')), model, faults)
   end subroutine read_files
 
   !> The fields of a card for the files of fields.
-  subroutine take_files(this, frequency, model, faults)
+  subroutine take_files(this, rhythm, model, faults)
     type(card), intent(in) :: this
-    integer, intent(in) :: frequency
+    type(output_rhythm), intent(in) :: rhythm
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(field_request) :: new
@@ -202,7 +186,8 @@ contains
     if (this%has('VARIABLE')) then
       if (this%word('VARIABLE') == 'ALL') new%fields = words_of(choices)
     end if
-    new%frequency = frequency
+    new%frequency = rhythm%frequency
+    new%rhythm = rhythm
     if (size(new%fields) > 0) call add_files(new, model)
   end subroutine take_files
 

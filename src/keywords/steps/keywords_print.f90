@@ -13,7 +13,7 @@ module keywords_print
   use nearest_words, only: nearest_word
   use print_kinds, only: file_pattern, kinds_of_prints, prints_of_elements, prints_of_joints, &
                          prints_of_nodes
-  use step_plan, only: field_name_length, print_request
+  use step_plan, only: field_name_length, output_rhythm, print_request
   implicit none
   private
   public :: describe_node_print, describe_el_print, describe_joint_print
@@ -98,13 +98,13 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    call add_nodes(this, this%integer('FREQUENCY'), model, faults)
+    call add_nodes(this, output_rhythm(this%integer('FREQUENCY')), model, faults)
   end subroutine read_node_print
 
   !> The history of a set of nodes.
-  subroutine add_nodes(this, frequency, model, faults)
+  subroutine add_nodes(this, rhythm, model, faults)
     type(card), intent(in) :: this
-    integer, intent(in) :: frequency
+    type(output_rhythm), intent(in) :: rhythm
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(print_request) :: new
@@ -114,7 +114,8 @@ contains
     end if
     new%kind = prints_of_nodes
     new%name = this%word('NSET')
-    new%frequency = frequency
+    new%frequency = rhythm%frequency
+    new%rhythm = rhythm
     call nodes_of_set(this, 'NSET', model, faults, new%members)
     call take_fields(this, choices_of('NODE PRINT'), 'U', faults, new%fields)
     if (size(new%fields) > 0) call add_request(new, model)
@@ -126,9 +127,9 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     if (this%spec%name == 'NODE OUTPUT') then
-      call add_nodes(this, model%output_frequency, model, faults)
+      call add_nodes(this, model%rhythm, model, faults)
     else
-      call add_elements(this, model%output_frequency, model, faults)
+      call add_elements(this, model%rhythm, model, faults)
     end if
   end subroutine read_histories
 
@@ -150,13 +151,13 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    call add_elements(this, this%integer('FREQUENCY'), model, faults)
+    call add_elements(this, output_rhythm(this%integer('FREQUENCY')), model, faults)
   end subroutine read_el_print
 
   !> The history of a set of elements.
-  subroutine add_elements(this, frequency, model, faults)
+  subroutine add_elements(this, rhythm, model, faults)
     type(card), intent(in) :: this
-    integer, intent(in) :: frequency
+    type(output_rhythm), intent(in) :: rhythm
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(print_request) :: new
@@ -166,7 +167,8 @@ contains
     end if
     new%kind = prints_of_elements
     new%name = this%word('ELSET')
-    new%frequency = frequency
+    new%frequency = rhythm%frequency
+    new%rhythm = rhythm
     call elements_of_set(this, 'ELSET', model, faults, new%members)
     if (.not. all(is_solid(model%problem%mesh%element_type(new%members)))) then
       call this%fault_parameter(faults, 'ELSET', 'the set contains elements that are not '// &

@@ -7,7 +7,7 @@ module step_plan
   private
   public :: step, step_load, step_fixity, print_request, field_request, step_controls
   public :: step_damping, step_reduction, initial_value, step_procedure, field_name_length
-  public :: grouting
+  public :: grouting, output_rhythm
 
   integer, parameter :: field_name_length = 8 !< of names of fields that a deck may give
 
@@ -30,6 +30,15 @@ module step_plan
     integer :: amplitude = 0 !< 0 for none
   end type step_fixity
 
+  !> How often a request writes, as its card says.
+  type :: output_rhythm
+    integer :: frequency = 1 !< every so many increments
+    integer :: most = 0 !< NUMBER INTERVAL: outputs in a step; 0: not given
+    real(rk) :: interval = 0.0_rk !< TIME INTERVAL; 0: not given [s]
+  contains
+    procedure :: increments_between
+  end type output_rhythm
+
   !> *NODE PRINT, *EL PRINT or *JOINT PRINT.
   type :: print_request
     integer :: kind = 0 !< position in `kinds_of_prints`
@@ -38,12 +47,14 @@ module step_plan
     integer, allocatable :: near_nodes(:) !< *JOINT PRINT, NSET: only the points nearest to them
     character(field_name_length), allocatable :: fields(:) !< 'U', 'V', 'S', ...
     integer :: frequency = 1 !< every so many increments
+    type(output_rhythm) :: rhythm !< of the card
   end type print_request
 
   !> *NODE FILE, *EL FILE, *NODE OUTPUT, *ELEMENT OUTPUT: fields of the VTK series and job.h5.
   type :: field_request
     character(field_name_length), allocatable :: fields(:)
     integer :: frequency = 1
+    type(output_rhythm) :: rhythm !< of the card
   end type field_request
 
   !> *CONTROLS; the defaults are documented in the keyword's specification.
@@ -141,7 +152,22 @@ module step_plan
   !> step: a record of 60 s may be cut as often as one of 5 s.
   real(rk), parameter :: smallest_of_duration = 1.0e-5_rk !< static, as in Abaqus
   real(rk), parameter :: smallest_of_increment = 1.0e-3_rk !< over the first increment
+  real(rk), parameter :: round_off = 1.0e-9_rk !< of a number of increments
+
 contains
+
+  !> Increments from one output to the next in a step. Where the card gives times, of the first
+  !> increment.
+  pure integer function increments_between(self, duration, first_increment) result(count)
+    class(output_rhythm), intent(in) :: self
+    real(rk), intent(in) :: duration, first_increment !< of the step [s]
+    count = self%frequency
+    if (self%most > 0) then
+      count = max(1, ceiling(duration/(first_increment*self%most) - round_off))
+    else if (self%interval > 0.0_rk) then
+      count = max(1, nint(self%interval/first_increment))
+    end if
+  end function increments_between
 
   !> Whether loads ramp over the step, without inertia.
   elemental logical function is_static(self)
