@@ -17,6 +17,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from ..command import command
 from ..deck_text import id_lines, mesh_deck
 from ..mesh_quality import find_faults, report
 from ..program import command_name
@@ -62,6 +63,7 @@ def pairs_of(words: list[str]) -> dict[str, tuple[str, str]]:
     return pairs
 
 
+@command("mesh")
 def main(arguments: list[str] | None = None) -> int:
     """Read, build, write; say what was found."""
     chosen = parse(arguments)
