@@ -287,7 +287,7 @@ def test_a_file_in_place_of_the_folder_is_told(program_path, tmp_path):
     deck = INPUT / "cantilever.inp"
     call = [ROOT / "tools/accuracy", deck, "-o", "study", "--program", program_path.resolve()]
     done = subprocess.run(call, capture_output=True, text=True, cwd=tmp_path)
-    assert (done.returncode, done.stderr) == (1, "accuracy: 'study': File exists\n")
+    assert (done.returncode, done.stderr) == (2, "accuracy: 'study': File exists\n")
 
 
 def test_large_changes_are_told_as_factors():
