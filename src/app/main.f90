@@ -49,7 +49,9 @@ program keyway
   call costs%open(started_at)
   call costs%start('start', 'program', 'run')
   call parse_command_line(options, error)
-  if (.not. allocated(error) .and. len(options%deck) > 0) call restart_with_fast_libraries()
+  if (.not. allocated(error) .and. len(options%deck) > 0) then
+    call restart_with_fast_libraries(int(options%num_threads, c_int))
+  end if
   call start_ranks()
   if (.not. allocated(error)) call adapt_options(options, error)
   call end_on(error)

@@ -112,21 +112,25 @@ static int has_old_kernels(void)
 /* Two libraries make choices when they are loaded, so the program starts itself again with the
  * choices made. An OpenBLAS older than the processor falls back to kernels of 2004, five times
  * slower. Threads of OpenMP that wait for work keep their cores busy for milliseconds: the serial
- * solves between short loops then find none free. */
-void keyway_restart_with_fast_libraries(void)
+ * solves between short loops then find none free. OpenBLAS starts a thread for each core, which
+ * waits busily for a tenth of a second, unless it has a number of `threads` (0: as many as cores). */
+void keyway_restart_with_fast_libraries(int threads)
 {
-  char path[4096];
+  char path[4096], number[16];
   int is_old = has_old_kernels();
   int is_spinning = !getenv("OMP_WAIT_POLICY") && !getenv("GOMP_SPINCOUNT");
+  int is_wasteful = threads > 0 && !getenv("OPENBLAS_NUM_THREADS");
   char **words;
   ssize_t length;
-  if (!is_old && !is_spinning) return;
+  if (!is_old && !is_spinning && !is_wasteful) return;
   length = readlink("/proc/self/exe", path, sizeof path - 1);
   words = command_line();
   if (length <= 0 || !words) return;
   path[length] = '\0';
   if (is_old) setenv("OPENBLAS_CORETYPE", fitting_kernels(), 1);
   if (is_spinning) setenv("OMP_WAIT_POLICY", "PASSIVE", 1);
+  snprintf(number, sizeof number, "%d", threads);
+  if (is_wasteful) setenv("OPENBLAS_NUM_THREADS", number, 1);
   execv(path, words);
   free(words); /* only reached when the start failed: go on slowly */
 }

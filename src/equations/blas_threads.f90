@@ -40,8 +40,11 @@ module blas_threads
 
     !> Restarts the program if OpenBLAS does not know the processor or if idle threads would keep
     !> their cores busy; must be the first call of the program.
-    subroutine restart_with_fast_libraries() bind(c, name='keyway_restart_with_fast_libraries')
+    subroutine restart_with_fast_libraries(threads) &
+      bind(c, name='keyway_restart_with_fast_libraries')
+      import :: c_int
       implicit none
+      integer(c_int), value :: threads !< that the user has chosen, 0: all
     end subroutine restart_with_fast_libraries
   end interface
 

@@ -36,7 +36,7 @@ program bench_bare_solve
   type(dam_system) :: system
   type(ledger) :: costs
   integer(c_int), allocatable, target :: order(:)
-  call restart_with_fast_libraries()
+  call restart_with_fast_libraries(0)
   call build_matrix()
   call plan_order()
   call time_solves(c_loc(order))

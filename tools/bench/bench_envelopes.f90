@@ -31,7 +31,7 @@ program bench_envelopes
   real(rk) :: solve
   integer :: sizes(4), k
   character(20) :: word
-  call restart_with_fast_libraries()
+  call restart_with_fast_libraries(0)
   do k = 1, 4
     call get_command_argument(k, word)
     read (word, *) sizes(k)

@@ -34,7 +34,7 @@ program bench_linear
   real(rk) :: cpu_start
   integer :: sizes(4), k, j
   character(20) :: word
-  call restart_with_fast_libraries()
+  call restart_with_fast_libraries(0)
   do k = 1, 4
     call get_command_argument(k, word)
     read (word, *) sizes(k)
