@@ -92,7 +92,7 @@ class Scales:
         shown = FIELDS[name]
         extreme = shown.largest(values)
         if name in self.given or name in self.shared:
-            end = self.given.get(name) or self.shared[name]
+            end = (self.shared | self.given)[name]
             remark = "range as given" if name in self.given else "range shared by all runs"
             remark = remark if extreme > end * (1.0 + 1e-9) else ""
         else:

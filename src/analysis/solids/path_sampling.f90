@@ -27,18 +27,19 @@ contains
     type(point_state), intent(in) :: old(:), new(:) !< (blocks) at its start and at its end
     type(twin_points), allocatable, intent(inout) :: twins(:) !< (materials)
     type(path_error), intent(inout) :: path
-    integer :: m
+    integer :: m, own_stride
     real(rk) :: before
     if (.not. allocated(twins)) allocate (twins(size(model%materials)))
     path%num_points = 0
     path%dissipated = 0.0_rk
     before = path%difference
+    own_stride = merge(short_stride, stride, num_points_of(model%inelastic) < few_points)
     path%difference = 0.0_rk
     do m = 1, size(twins)
       if (.not. allocated(model%materials(m)%law)) cycle
       if (.not. model%materials(m)%law%may_be_tried) cycle
       call forget_twins_at_rest(old, twins(m))
-      call add_twins(model, m, old, new, twins(m), path%num_found)
+      call add_twins(model, m, own_stride, old, new, twins(m), path%num_found)
       if (twins(m)%num_twins() == 0) cycle
       call follow(model%materials(m)%law, model%inelastic, time, old, new, twins(m))
       call compare(model%inelastic, new, twins(m), path)
@@ -56,15 +57,15 @@ contains
   end subroutine forget_twins_at_rest
 
   !> Adds twins of points of one material that begin to dissipate.
-  subroutine add_twins(model, material, old, new, twins, num_found)
+  subroutine add_twins(model, material, own_stride, old, new, twins, num_found)
     type(problem), intent(in) :: model
     integer, intent(in) :: material
+    integer, intent(in) :: own_stride !< of points that begin to dissipate
     type(point_state), intent(in) :: old(:), new(:)
     type(twin_points), intent(inout) :: twins
     integer, intent(inout) :: num_found !< points that have begun
     integer, allocatable :: block(:), point(:)
-    integer :: i, own_stride, p
-    own_stride = merge(short_stride, stride, num_points_of(model%inelastic) < few_points)
+    integer :: i, p
     allocate (block(0), point(0))
     do i = 1, size(new)
       if (model%inelastic(i)%material /= material .or. all(new(i)%is_elastic)) cycle

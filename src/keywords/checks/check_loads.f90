@@ -15,7 +15,7 @@ module check_loads
   use write_text, only: as_text
   implicit none
   private
-  public :: warn_of_loads
+  public :: card_of_dload, warn_of_loads
 
   real(rk), parameter :: small_share = 0.01_rk !< of the peak: the end of a record counts as zero
   real(rk), parameter :: round_off = 1.0e-9_rk
@@ -43,7 +43,7 @@ contains
       call find_second_weight(model, s, first, second, e)
       if (second == 0) cycle
       associate (loads => model%problem%loads)
-        call model%cards(card_of_weight(model, step, s, loads(second)%item%target))%warn( &
+        call model%cards(card_of_dload(model, step, s, loads(second)%item%target))%warn( &
           faults, 'the weight of element '//as_text(model%problem%mesh%element_id(e))// &
           ' acts twice in step '//as_text(s)//": '"//loads(first)%item%target//"' and '"// &
           loads(second)%item%target//"' add up")
@@ -108,22 +108,22 @@ contains
     number = size(list, 2)
   end subroutine find_direction
 
-  !> The last card that gives a weight, up to a step.
-  pure integer function card_of_weight(model, step, s, target) result(found)
+  !> The last card that gives a load of *DLOAD, up to a step.
+  pure integer function card_of_dload(model, step, s, target) result(found)
     type(draft), intent(in) :: model
     integer, intent(in) :: step(:) !< of each card
     integer, intent(in) :: s !< step
-    character(*), intent(in) :: target !< of the load: 'DAM GRAV'
+    character(*), intent(in) :: target !< of the load: 'DAM GRAV', 'DAM P3'
     integer :: i, line
     found = model%procedure_card(s)
     do i = 1, size(step)
       if (step(i) > s .or. .not. is_keyword(model%cards(i), 'DLOAD')) cycle
       do line = 1, model%cards(i)%num_lines
-        if (model%cards(i)%word_at(line, 2) /= 'GRAV') cycle
-        if (elements_in_words(model%cards(i), line)//' GRAV' == target) found = i
+        if (elements_in_words(model%cards(i), line)//' '//model%cards(i)%word_at(line, 2) &
+            == target) found = i
       end do
     end do
-  end function card_of_weight
+  end function card_of_dload
 
   !> Records of base motion whose end value acts on.
   subroutine warn_of_records(model, step, faults)

@@ -1,9 +1,9 @@
 !> Warns of a pressure of an earlier step that goes on beside a new one of its kind on the same face
 !> under another name: a load is replaced under its own name alone.
 module check_pressures
-  use deck_scan, only: is_keyword, steps_of_cards
+  use check_loads, only: card_of_dload
+  use deck_scan, only: steps_of_cards
   use diagnostics, only: diagnostic_list
-  use dload_labels, only: elements_in_words
   use kinds, only: rk
   use load_pressure, only: pressure_load
   use model_draft, only: draft
@@ -46,6 +46,7 @@ contains
   pure integer function shared_element(model, first, second) result(element)
     type(draft), intent(in) :: model
     integer, intent(in) :: first, second !< loads
+    integer, allocatable :: pushed(:) !< (elements) a bit for each face of the first load
     integer :: i
     element = 0
     if (model%problem%loads(first)%item%family /= 'DLOAD') return
@@ -56,12 +57,17 @@ contains
       select type (new => model%problem%loads(second)%item)
       type is (pressure_load)
         if (old%is_hydrostatic .neqv. new%is_hydrostatic) return
-        do i = 1, size(new%faces%element)
-          if (.not. any(old%faces%element == new%faces%element(i) .and. &
-                        old%faces%face == new%faces%face(i))) cycle
-          element = new%faces%element(i)
-          return
+        allocate (pushed(model%problem%mesh%num_elements), source=0)
+        do i = 1, size(old%faces%element)
+          associate (e => old%faces%element(i))
+            pushed(e) = ibset(pushed(e), old%faces%face(i))
+          end associate
         end do
+        do i = 1, size(new%faces%element)
+          element = new%faces%element(i)
+          if (btest(pushed(element), new%faces%face(i))) return
+        end do
+        element = 0
       end select
     end select
   end function shared_element
@@ -73,18 +79,10 @@ contains
     integer, intent(in) :: element !< position
     integer, intent(in) :: first, second !< loads
     type(diagnostic_list), intent(inout) :: faults
-    integer :: step(size(model%cards))
-    integer :: found, i, line
-    step = steps_of_cards(model%cards)
-    found = model%procedure_card(s)
+    integer :: found
+    found = card_of_dload(model, steps_of_cards(model%cards), s, &
+                          model%problem%loads(second)%item%target)
     associate (loads => model%problem%loads)
-      do i = 1, size(step)
-        if (step(i) /= s .or. .not. is_keyword(model%cards(i), 'DLOAD')) cycle
-        do line = 1, model%cards(i)%num_lines
-          if (elements_in_words(model%cards(i), line)//' '//model%cards(i)%word_at(line, 2) == &
-              loads(second)%item%target) found = i
-        end do
-      end do
       call model%cards(found)%warn( &
         faults, 'element '//as_text(model%problem%mesh%element_id(element))//' keeps the '// &
         "pressure '"//loads(first)%item%target//"' of an earlier step beside '"// &

@@ -171,11 +171,7 @@ def main(arguments: list[str] | None = None) -> int:
     except ValueError as error:
         print(f"plot: {error}", file=sys.stderr)
         return 2
-    try:
-        draw(found, chosen)
-    except OSError as error:  # the run is not at its end, or the disk is full
-        print(f"plot: {reason_of(error)}", file=sys.stderr)
-        return 2
+    draw(found, chosen)
     return 0
 
 

@@ -65,11 +65,7 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"report: {reason_of(error)}", file=sys.stderr)
         return 2
     pages = [found] if len(found) == 2 else [[results] for results in found]
-    try:
-        return max(write(runs, chosen) for runs in pages)
-    except OSError as error:  # the folder may not be written
-        print(f"report: {reason_of(error)}", file=sys.stderr)
-        return 2
+    return max(write(runs, chosen) for runs in pages)
 
 
 def write(runs: list[SiResults], chosen: argparse.Namespace) -> int:
