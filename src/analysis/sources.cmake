@@ -24,8 +24,10 @@ set(sources
   reduced/reduced_increment.f90
   reduced/reduced_nodes.f90
   reduced/reduced_ports.f90
+  reduced/reduced_rest.f90
   reduced/reduced_scheme.f90
   reduced/reduced_shapes.f90
+  reduced/shape_modes.f90
   solids/active_unknowns.f90
   solids/block_answers.f90
   solids/changing_elements.f90

@@ -24,6 +24,7 @@ set(sources
   math/dense_products.f90
   math/fused_products.c
   math/mixed_products.f90
+  math/pivoted_cholesky.f90
   math/row_tables.f90
   math/small_matrix.f90
   math/sorted_lists.f90

@@ -44,8 +44,8 @@ module reduced_integrator
     procedure :: store_state
   end type reduced_method
 
-  !> Shift of the stiffness, times the square of the increment: a period of 2000 increments.
-  real(rk), parameter :: shift_of_increment = 1.0e-5_rk
+  !> Smallest shift of the stiffness, times the square of an increment: a period of 2000 increments.
+  real(rk), parameter :: smallest_shift = 1.0e-5_rk
 
   !> Forces that are not balanced at the start of a step, over the internal forces, below which they
   !> are the remainder of an iteration.
@@ -220,17 +220,16 @@ contains
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
     type(reduced_model) :: fresh
-    real(rk), allocatable :: values(:), shapes(:, :)
+    real(rk), allocatable :: shapes(:, :)
     fresh%force = self%basis%force
     fresh%start_traction = self%basis%start_traction
     fresh%starts_balanced = self%basis%starts_balanced
-    fresh%shift = shift_of_increment/plan%first_increment**2
-    values = self%system%stiffness + fresh%shift*self%system%mass
-    call find_shapes(model, self%system, values, loads_of_shapes(self), wanted, &
-                     self%solids%solver, shapes, error)
+    fresh%shift = smallest_shift/plan%first_increment**2
+    call find_shapes(model, self%system, loads_of_shapes(self), wanted, self%solids%solver, &
+                     shapes, fresh%shift, error)
     if (allocated(error)) return
     call results%costs%start('reduce', 'structure', 'solver')
-    call build_basis(self%system, values, shapes, self%solids%solver, fresh, error)
+    call build_basis(self%system, plan%first_increment, shapes, self%solids%solver, fresh, error)
     call results%costs%stop()
     self%basis = fresh
   end subroutine build_basis_of

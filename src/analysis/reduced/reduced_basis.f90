@@ -7,7 +7,6 @@
 module reduced_basis
   use, intrinsic :: iso_fortran_env, only: single => real32
   use column_products, only: multiply_columns
-  use dense_factor, only: factorise_dense, lu_factor, solve_factored
   use dense_products, only: times, transposed_times
   use equilibrium, only: equilibrium_solver
   use errors, only: error_type
@@ -16,6 +15,8 @@ module reduced_basis
   use kinds, only: rk
   use mixed_products, only: rounded
   use reduced_ports, only: find_port_compliance, forces_of, rows_of, solve_blocks
+  use reduced_rest, only: find_rest, rest_compliance, rest_response, separate_shapes, static_rest
+  use shape_modes, only: find_shape_modes
   use step_system, only: dam_system
   use symmetric_modes, only: find_modes
   implicit none
@@ -37,10 +38,12 @@ module reduced_basis
     !> (ports, modes) P Phi and (ports, ports) P R P^T, rounded to single precision: increments read
     !> `path_read` and `residual_read`, the same values
     real(rk), allocatable :: path(:, :), residual(:, :)
+    !> (ports, modes) static response of the modes to the ports, P Phi/(lambda + s), not rounded
+    real(rk), allocatable :: share(:, :)
     real(single), allocatable :: path_read(:, :), residual_read(:, :)
     real(rk), allocatable :: damping(:, :) !< (modes, modes) Phi^T C Phi [1/s]
-    real(rk) :: residual_mass = 0.0_rk !< mass of the rest over its stiffness [s2]
-    real(rk) :: residual_damping = 0.0_rk !< damping of the rest over its stiffness [s]
+    !> Stiffness, mass and damping of the rest over its stiffness with the shift [-, s2, s]
+    real(rk) :: residual_stiffness = 1.0_rk, residual_mass = 0.0_rk, residual_damping = 0.0_rk
     real(rk), allocatable :: force(:, :) !< (num_total, loads) f_k [N]
     real(rk), allocatable :: start_traction(:, :) !< (3, points) of the joints at the start [Pa]
     !> The last load but one, forces that are not balanced at the start, is round-off or what an
@@ -51,20 +54,20 @@ module reduced_basis
     integer, allocatable :: probe(:) !< unknowns with the largest displacement of some modes
   end type reduced_model
 
-  !> Keeps the stiffness of the ports definite where loads depend on each other.
-  real(rk), parameter :: least_stiffness = 1.0e-7_rk
   integer, parameter :: num_probes = 30, num_samples = 8
-  !> Squared circular frequency of a mode without delay, over the shift, which has a period of 2000
-  !> increments: a period of a tenth of an increment.
-  real(rk), parameter :: static_over_shift = 4.0e8_rk
+  !> Squared circular frequency of a mode without delay, times that of an increment: a period of a
+  !> tenth of an increment.
+  real(rk), parameter :: highest = 4.0e3_rk
+  !> Least stiffness of the rest without the shift, over that with it.
+  real(rk), parameter :: least_share = 0.1_rk
 
 contains
 
   !> Builds the model from shapes that are orthonormal with M. The solver holds the factor of
   !> K + s M without joints.
-  subroutine build_basis(system, stiffness, shapes, solver, basis, error)
+  subroutine build_basis(system, dt, shapes, solver, basis, error)
     type(dam_system), intent(in) :: system
-    real(rk), intent(in) :: stiffness(:) !< values of K + s M
+    real(rk), intent(in) :: dt !< increment [s]
     real(rk), allocatable, intent(inout) :: shapes(:, :) !< (num_free, shapes) not allocated after
     class(equilibrium_solver), intent(inout) :: solver
     type(reduced_model), intent(inout) :: basis !< with its forces
@@ -72,7 +75,7 @@ contains
     real(rk), allocatable :: compliance(:, :), own(:, :), rotation(:, :), frequency(:)
     integer :: k
     basis%num_shapes = size(shapes, 2)
-    call leave_out_static(system, stiffness, basis%shift, shapes, frequency, error)
+    call leave_out_static(system, basis%shift, highest/dt**2, shapes, frequency, error)
     if (allocated(error)) return
     basis%num_modes = size(shapes, 2)
     call find_port_compliance(system, solver, basis%force, basis%load_shape, compliance, error)
@@ -84,10 +87,7 @@ contains
     basis%mode = times(shapes, rotation)
     deallocate (shapes)
     call spread_modes(system, basis)
-    call remove_modes(basis, compliance)
-    call move_alloc(compliance, basis%residual)
-    call sample_rest(system, solver, basis, error)
-    if (allocated(error)) return
+    call remove_modes(basis)
     basis%lambda = max(0.0_rk, basis%lambda - basis%shift)
     call weigh_rest(basis)
     basis%probe = [(maxloc(abs(basis%mode(:, k)), 1), k=1, min(num_probes, basis%num_modes))]
@@ -97,26 +97,21 @@ contains
   !> Makes the shapes their own modes with K + s M, and leaves out those that follow their forces
   !> without delay: the static response has them. What round-off makes of shapes without mass is
   !> among them.
-  subroutine leave_out_static(system, stiffness, shift, shapes, frequency, error)
+  subroutine leave_out_static(system, shift, most, shapes, frequency, error)
     type(dam_system), intent(in) :: system
-    real(rk), intent(in) :: stiffness(:) !< values of K + s M
-    real(rk), intent(in) :: shift
+    real(rk), intent(in) :: shift !< [1/s2]
+    real(rk), intent(in) :: most !< frequency that is kept, squared and circular [1/s2]
     real(rk), allocatable, intent(inout) :: shapes(:, :) !< (num_free, shapes)
     real(rk), allocatable, intent(out) :: frequency(:) !< (shapes) squared, circular [1/s2]
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: work(:, :), own(:, :), rotation(:, :)
-    integer, allocatable :: kept(:)
-    integer :: k
-    allocate (work, mold=shapes)
-    call multiply_columns(system%matrix, stiffness, shapes, work)
-    own = transposed_times(shapes, work)
-    call find_modes(0.5_rk*(own + transpose(own)), frequency, rotation, error)
+    real(rk), allocatable :: rotation(:, :)
+    integer :: num_kept
+    call find_shape_modes(system, system%stiffness + shift*system%mass, shapes, frequency, &
+                          rotation, error)
     if (allocated(error)) return
-    kept = pack([(k, k=1, size(frequency))], frequency > 0.0_rk .and. &
-                frequency <= static_over_shift*shift)
-    if (size(kept) == 0) kept = [maxloc(frequency, 1)]
-    frequency = frequency(kept)
-    shapes = times(shapes, rotation(:, kept))
+    num_kept = max(min(1, size(frequency)), count(frequency <= most))
+    frequency = frequency(:num_kept)
+    shapes = times(shapes, rotation(:, :num_kept))
   end subroutine leave_out_static
 
   !> Rounds the matrices that increments read, which take their time.
@@ -166,74 +161,34 @@ contains
     call round_ports(fewer)
   end subroutine keep_modes
 
-  !> Makes the shapes orthogonal, with K + s M, to the part of the static response of the ports that
-  !> is orthogonal to them with M: Psi - S (S^T K S)^-1 S^T K Psi, S = (I - Psi Psi^T M) K^-1 P^T.
+  !> The static response that the shapes leave out, R, and the shapes orthogonal to it with K + s M.
   !> `own` is their stiffness afterwards.
   subroutine make_static(system, frequency, compliance, solver, basis, shapes, own, error)
     type(dam_system), intent(in) :: system
     real(rk), intent(in) :: frequency(:) !< (modes) squared, of the shapes [1/s2]
     real(rk), intent(in) :: compliance(:, :) !< (ports, ports) [m/N]
     class(equilibrium_solver), intent(inout) :: solver
-    type(reduced_model), intent(in) :: basis
+    type(reduced_model), intent(inout) :: basis
     real(rk), intent(inout) :: shapes(:, :) !< (num_free, modes) Psi
     real(rk), allocatable, intent(out) :: own(:, :) !< (modes, modes)
     type(error_type), allocatable, intent(out) :: error
-    real(rk), dimension(size(compliance, 1), size(shapes, 2)) :: path, moved, coupling
-    real(rk), allocatable :: work(:, :)
+    type(static_rest) :: rest
     integer :: k
     allocate (own(size(frequency), size(frequency)), source=0.0_rk)
     do k = 1, size(frequency)
       own(k, k) = frequency(k)
     end do
-    allocate (work, mold=shapes)
-    call multiply_columns(system%mass_pattern, system%mass_entries, shapes, work)
-    call solve_blocks(solver, work, error)
+    if (basis%starts_balanced) rest%left_out = size(compliance, 1) - 1
+    call find_rest(system, basis%force, compliance, solver, shapes, own, rest, error)
     if (allocated(error)) return
-    do k = 1, size(shapes, 2)
-      path(:, k) = rows_of(system, basis%force, shapes(:, k))
-      moved(:, k) = rows_of(system, basis%force, work(:, k))
-    end do
-    coupling = path - matmul(moved, own)
-    call condense_ports(compliance, path, moved, own, basis%starts_balanced, coupling)
-    own = own - transposed_times(path - matmul(moved, own), coupling)
+    basis%residual = rest_compliance(rest)
+    call sample_rest(system, rest, shapes, solver, basis, error)
+    if (allocated(error)) return
+    call separate_shapes(system, basis%force, rest, solver, shapes, own, error)
     own = 0.5_rk*(own + transpose(own))
-    do k = 1, size(shapes, 2)
-      work(:, k) = forces_of(system, basis%force, coupling(:, k))
-    end do
-    call solve_blocks(solver, work, error)
-    if (allocated(error)) return
-    shapes = shapes + times(shapes, transposed_times(moved, coupling)) - work
   end subroutine make_static
 
-  !> Replaces S^T K Psi by (S^T K S)^-1 S^T K Psi.
-  subroutine condense_ports(compliance, path, moved, own, starts_balanced, coupling)
-    real(rk), intent(in) :: compliance(:, :) !< (ports, ports) P K^-1 P^T
-    real(rk), intent(in) :: path(:, :), moved(:, :) !< (ports, modes) P Psi, P K^-1 M Psi
-    real(rk), intent(in) :: own(:, :) !< (modes, modes) Psi^T K Psi
-    logical, intent(in) :: starts_balanced !< the last port but one takes no part
-    real(rk), intent(inout) :: coupling(:, :) !< (ports, modes)
-    type(lu_factor) :: factor
-    real(rk), allocatable :: matrix(:, :)
-    real(rk) :: scale(size(compliance, 1))
-    integer :: i
-    matrix = compliance - times(moved, transpose(path)) &
-             - times(path - times(moved, own), transpose(moved))
-    do i = 1, size(scale)
-      scale(i) = 0.0_rk
-      if (compliance(i, i) > 0.0_rk) scale(i) = 1.0_rk/sqrt(compliance(i, i))
-    end do
-    if (starts_balanced) scale(size(scale) - 1) = 0.0_rk
-    do i = 1, size(scale)
-      matrix(:, i) = scale*matrix(:, i)*scale(i)
-      matrix(i, i) = matrix(i, i) + least_stiffness
-    end do
-    coupling = spread(scale, 2, size(coupling, 2))*coupling
-    call factorise_dense(matrix, factor)
-    call solve_factored(factor, coupling)
-    coupling = spread(scale, 2, size(coupling, 2))*coupling
-  end subroutine condense_ports
-
-  !> Ports and damping of the modes.
+  !> Ports and damping of the modes. The frequencies contain the shift.
   subroutine spread_modes(system, basis)
     type(dam_system), intent(in) :: system
     type(reduced_model), intent(inout) :: basis
@@ -241,8 +196,11 @@ contains
     integer :: k
     allocate (basis%path(num_rows(system%operator%num_points) + size(basis%force, 2), &
                          basis%num_modes))
+    allocate (basis%share, mold=basis%path)
     do k = 1, basis%num_modes
-      basis%path(:, k) = rounded(rows_of(system, basis%force, basis%mode(:, k)))
+      basis%share(:, k) = rows_of(system, basis%force, basis%mode(:, k))
+      basis%path(:, k) = rounded(basis%share(:, k))
+      basis%share(:, k) = basis%share(:, k)/basis%lambda(k)
     end do
     allocate (viscous, mold=basis%mode)
     call system%find_damping_forces(basis%mode, viscous)
@@ -250,47 +208,40 @@ contains
     basis%damping = 0.5_rk*(basis%damping + transpose(basis%damping))
   end subroutine spread_modes
 
-  !> The part of the compliance and of the responses to loads that the modes leave out. The
-  !> frequencies contain the shift.
-  subroutine remove_modes(basis, compliance)
+  !> The part of the responses to loads that the modes leave out. The frequencies contain the shift.
+  subroutine remove_modes(basis)
     type(reduced_model), intent(inout) :: basis
-    real(rk), intent(inout) :: compliance(:, :) !< (ports, ports) [m/N]
-    real(rk) :: scaled(size(compliance, 1), basis%num_modes)
     integer :: first
-    scaled = basis%path/spread(sqrt(basis%lambda), 1, size(scaled, 1))
-    compliance = compliance - times(scaled, transpose(scaled))
-    first = size(scaled, 1) - size(basis%force, 2) + 1
-    basis%load_shape = basis%load_shape &
-                       - matmul(basis%mode, transpose(basis%path(first:, :) &
-                                                      /spread(basis%lambda, 1, &
-                                                              size(basis%force, 2))))
+    first = size(basis%share, 1) - size(basis%force, 2) + 1
+    basis%load_shape = basis%load_shape - times(basis%mode, transpose(basis%share(first:, :)))
   end subroutine remove_modes
 
   !> Responses of the rest to some forces on the joints.
-  subroutine sample_rest(system, solver, basis, error)
+  subroutine sample_rest(system, rest, shapes, solver, basis, error)
     type(dam_system), intent(in) :: system
+    type(static_rest), intent(in) :: rest
+    real(rk), intent(in) :: shapes(:, :) !< (num_free, modes) that it was found with
     class(equilibrium_solver), intent(inout) :: solver
-    type(reduced_model), intent(inout) :: basis !< its frequencies contain the shift
+    type(reduced_model), intent(inout) :: basis
     type(error_type), allocatable, intent(out) :: error
-    real(rk) :: rest(system%matrix%num_free, num_samples)
+    real(rk), allocatable :: response(:, :)
     real(rk), dimension(system%matrix%num_total) :: x, product
-    integer :: i, k, n, free
+    integer :: i, k, n
     n = num_rows(system%operator%num_points)
-    free = system%matrix%num_free
     allocate (basis%sample%force(size(basis%residual, 1), num_samples), source=0.0_rk)
     do k = 1, num_samples
       do i = 1, n
         basis%sample%force(i, k) = system%operator%area(1 + (i - 1)/3)*sin(1.7_rk*i*k + k)
       end do
       if (n == 0) basis%sample%force(1 + mod(k - 1, max(1, size(basis%force, 2) - 2)), k) = 1.0_rk
-      rest(:, k) = forces_of(system, basis%force, basis%sample%force(:, k))
     end do
-    call solve_blocks(solver, rest, error)
+    call rest_response(system, basis%force, rest, solver, shapes, basis%sample%force, response, &
+                       error)
     if (allocated(error)) return
     x = 0.0_rk
     do k = 1, num_samples
       associate (force => basis%sample%force(:, k), sample => basis%sample)
-        x(:free) = rest(:, k) - matmul(basis%mode, matmul(force, basis%path)/basis%lambda)
+        x(:system%matrix%num_free) = response(:, k)
         sample%stiffness = sample%stiffness + sum(force*matmul(basis%residual, force))
         call multiply(system%mass_pattern, system%mass_entries, x, product)
         sample%mass = sample%mass + sum(x*product)
@@ -300,15 +251,17 @@ contains
     end do
   end subroutine sample_rest
 
-  !> Mass and damping of the rest over its stiffness.
+  !> Stiffness, mass and damping of the rest over its stiffness with the shift.
   subroutine weigh_rest(basis)
     type(reduced_model), intent(inout) :: basis
     associate (sample => basis%sample)
+      basis%residual_stiffness = 1.0_rk
       basis%residual_mass = 0.0_rk
       basis%residual_damping = 0.0_rk
       if (.not. sample%stiffness > 0.0_rk) return
       basis%residual_mass = sample%mass/sample%stiffness
       basis%residual_damping = sample%damping/sample%stiffness
+      basis%residual_stiffness = max(least_share, 1.0_rk - basis%shift*basis%residual_mass)
     end associate
   end subroutine weigh_rest
 
@@ -327,8 +280,7 @@ contains
     call solve_blocks(solver, x, error)
     if (allocated(error)) return
     do k = 1, size(port, 2)
-      x(:, k) = x(:, k) - matmul(basis%mode, matmul(port(:, k), basis%path) &
-                                 /(basis%lambda + basis%shift))
+      x(:, k) = x(:, k) - matmul(basis%mode, matmul(port(:, k), basis%share))
     end do
   end subroutine residual_response
 end module reduced_basis

@@ -98,7 +98,8 @@ contains
     integer :: last
     last = size(modal%rest)
     stored_strain = modal%rest(last) + sum(basis%path(last, :)*modal%y) &
-                    + 0.5_rk*(sum(basis%lambda*modal%y**2) + sum(modal%port*modal%rest))
+                    + 0.5_rk*(sum(basis%lambda*modal%y**2) &
+                              + basis%residual_stiffness*sum(modal%port*modal%rest))
   end function stored_strain
 
   !> Kinetic energy.
@@ -121,14 +122,15 @@ contains
     call gather_tractions(operator, after%joints, traction)
     force = port_forces(operator, scheme, factors, before%motion, traction)
     associate (old => before%motion%modal, new => after%motion%modal, &
-               bulk => 1.0_rk + scheme%alpha, beta => basis%residual_damping)
+               bulk => 1.0_rk + scheme%alpha, beta => basis%residual_damping, &
+               share => basis%residual_stiffness)
       inertial_work = work(new%y - old%y, old%acceleration, &
                            scheme%alpha*(basis%lambda*old%y + viscous(:, 1)) &
                            - bulk*(basis%lambda*new%y + viscous(:, 2)) &
                            + mixed_transposed_times(basis%path_read, force)) &
                       + work(new%rest - old%rest, basis%residual_mass*old%port_acceleration, &
-                             force - bulk*(new%port + beta*new%port_rate) &
-                             + scheme%alpha*(old%port + beta*old%port_rate))
+                             force - bulk*(share*new%port + beta*new%port_rate) &
+                             + scheme%alpha*(share*old%port + beta*old%port_rate))
     end associate
   end function inertial_work
 

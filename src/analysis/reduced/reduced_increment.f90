@@ -128,7 +128,8 @@ contains
       call predict(scheme, old%port, old%port_rate, old%port_acceleration, port, port_rate)
       rest = basis%residual_mass*scheme%acceleration_of_x*port &
              - bulk*basis%residual_damping*port_rate &
-             + scheme%alpha*(old%port + basis%residual_damping*old%port_rate)
+             + scheme%alpha*(basis%residual_stiffness*old%port &
+                             + basis%residual_damping*old%port_rate)
     end associate
   end subroutine sum_known_forces
 

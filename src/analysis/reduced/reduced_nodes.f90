@@ -73,8 +73,7 @@ contains
     if (allocated(error)) return
     do row = 1, size(followed%start)
       followed%port(row, :) = rows_of(system, basis%force, response(:, row)) &
-                              - matmul(basis%path, followed%mode(row, :) &
-                                       /(basis%lambda + basis%shift))
+                              - matmul(basis%share, followed%mode(row, :))
     end do
   end subroutine find_followed
 

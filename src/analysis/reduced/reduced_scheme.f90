@@ -61,7 +61,8 @@ contains
     if (operator%num_points > few_points) call use_many_threads(levels)
     call invert_modes(basis, scheme, self%inverse)
     self%rest = basis%residual_mass*scheme%acceleration_of_x &
-                + (1.0_rk + scheme%alpha)*(1.0_rk + scheme%velocity_of_x*basis%residual_damping)
+                + (1.0_rk + scheme%alpha)*(basis%residual_stiffness &
+                                           + scheme%velocity_of_x*basis%residual_damping)
     jump = basis%path(:num_rows(operator%num_points), :)
     self%compliance = times(jump, times(self%inverse, transpose(jump)))
     self%compliance = self%compliance + basis%residual(:size(jump, 1), :size(jump, 1))/self%rest

@@ -3,7 +3,8 @@
 !> closed joints by static responses without mass, which takes many shapes.
 !>
 !> For each state of the joints they span the block Krylov space of K^-1 M that starts with the
-!> static responses to the loads (Wilson, Yuan & Dickens 1982).
+!> static responses to the loads (Wilson, Yuan & Dickens 1982). They are measured by the stiffness:
+!> where rock has no mass, a shape of little mass would be large there, if its mass were one.
 module reduced_shapes
   use column_products, only: multiply_columns
   use dense_products, only: subtract_times, transposed_times
@@ -14,35 +15,44 @@ module reduced_shapes
   use joint_iteration, only: closed_tangent
   use kinds, only: rk
   use problem_definition, only: problem
+  use shape_modes, only: find_shape_modes
   use step_system, only: dam_system
   implicit none
   private
   public :: find_shapes
 
+  !> The largest shift over the smallest one. Between them it is the lowest squared frequency of the
+  !> dam with closed joints. The larger the shift, the less round-off is in the responses of blocks
+  !> which only joints hold.
+  real(rk), parameter :: largest_shift = 1.0e4_rk
   !> A shape whose part beyond the others is less than this of its own size is left out, and one
   !> that loses half of this part when it is made orthogonal again: the part is round-off.
   real(rk), parameter :: least_part = 1.0e-9_rk, least_rest = 0.5_rk
 
 contains
 
-  !> Finds the shapes, orthonormal with M. The solver then holds the factor of K + s M.
-  subroutine find_shapes(model, system, shifted, loads, num_wanted, solver, shapes, error)
+  !> Finds the shapes, orthonormal with K and a small shift. The solver then holds the factor of
+  !> K + s M.
+  subroutine find_shapes(model, system, loads, num_wanted, solver, shapes, shift, error)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
-    real(rk), intent(in) :: shifted(:) !< values of K + s M
     real(rk), intent(in) :: loads(:, :) !< (num_free, loads) [N]
     integer, intent(in) :: num_wanted
     class(equilibrium_solver), intent(inout) :: solver
     real(rk), allocatable, intent(out) :: shapes(:, :) !< (num_free, shapes)
+    real(rk), intent(inout) :: shift !< s, on entry the smallest one [1/s2]
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: k_ref(:, :), values(:)
+    real(rk), allocatable :: k_ref(:, :), values(:), measure(:)
+    real(rk) :: smallest
     integer :: state, num_states, num_shapes
     num_states = merge(3, 1, system%operator%num_points > 0)
     allocate (shapes(system%matrix%num_free, num_wanted))
     num_shapes = 0
+    smallest = shift
+    measure = system%stiffness + shift*system%mass
     call reference_stiffness(model%joints, system%operator, k_ref)
     do state = num_states, 1, -1
-      values = shifted
+      values = system%stiffness + shift*system%mass
       if (state == 2) k_ref(2:3, :) = 0.0_rk
       if (state > 1) call system%operator%add_stiffness(closed_tangent(k_ref), system%matrix, &
                                                         values)
@@ -51,49 +61,70 @@ contains
       call solver%costs%stop()
       if (allocated(error)) return
       call solver%costs%start('solve', 'shapes', 'solver')
-      call add_krylov(system, loads, (num_wanted - num_shapes)/state, solver, shapes, num_shapes, &
-                      error)
+      call add_krylov(system, measure, loads, (num_wanted - num_shapes)/state, solver, shapes, &
+                      num_shapes, error)
       call solver%costs%stop()
       if (allocated(error)) return
+      if (state > 1 .and. state == num_states) then
+        shift = lowest_frequency(system, values, shapes(:, :num_shapes)) - smallest
+        shift = min(max(shift, smallest), largest_shift*smallest)
+      end if
     end do
     shapes = shapes(:, :num_shapes)
   end subroutine find_shapes
 
-  !> Adds shapes of one state of the joints.
-  subroutine add_krylov(system, loads, num_new, solver, shapes, num_shapes, error)
+  !> The lowest squared circular frequency of some shapes.
+  real(rk) function lowest_frequency(system, stiffness, shapes) result(lowest)
     type(dam_system), intent(in) :: system
+    real(rk), intent(in) :: stiffness(:) !< values of K
+    real(rk), intent(in) :: shapes(:, :) !< (num_free, shapes)
+    type(error_type), allocatable :: error
+    real(rk), allocatable :: rotation(:, :), frequency(:)
+    call find_shape_modes(system, stiffness, shapes, frequency, rotation, error)
+    lowest = 0.0_rk
+    if (size(frequency) > 0 .and. .not. allocated(error)) lowest = frequency(1)
+  end function lowest_frequency
+
+  !> Adds shapes of one state of the joints.
+  subroutine add_krylov(system, measure, loads, num_new, solver, shapes, num_shapes, error)
+    type(dam_system), intent(in) :: system
+    real(rk), intent(in) :: measure(:) !< values of the stiffness that measures shapes
     real(rk), intent(in) :: loads(:, :) !< (num_free, loads) [N]
     integer, intent(in) :: num_new
     class(equilibrium_solver), intent(inout) :: solver
     real(rk), intent(inout), contiguous :: shapes(:, :)
     integer, intent(inout) :: num_shapes
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: block(:, :), product(:, :)
+    real(rk), allocatable :: block(:, :), force(:, :)
     integer :: last, num_taken
     last = num_shapes + num_new
-    block = loads
-    do while (num_shapes < last .and. size(block, 2) > 0)
+    force = loads
+    do while (num_shapes < last .and. size(force, 2) > 0)
+      call move_alloc(force, block)
       call solver%factor%solve(block, error)
       if (allocated(error)) return
-      call orthonormalise(system, shapes(:, :num_shapes), block, product)
+      call orthonormalise(system, measure, shapes(:, :num_shapes), block)
       num_taken = min(size(block, 2), last - num_shapes)
       shapes(:, num_shapes + 1:num_shapes + num_taken) = block(:, :num_taken)
       num_shapes = num_shapes + num_taken
-      block = product(:, :num_taken)
+      allocate (force(size(block, 1), num_taken))
+      call multiply_columns(system%mass_pattern, system%mass_entries, block(:, :num_taken), force)
     end do
   end subroutine add_krylov
 
-  !> Makes the shapes of a block orthogonal to the others and to each other with M, twice against
-  !> round-off, and their size one. Shapes without a part beyond the others are taken out.
-  subroutine orthonormalise(system, others, block, product)
+  !> Makes the shapes of a block orthogonal to the others and to each other with the stiffness,
+  !> twice against round-off, and their size one. Shapes without a part beyond the others are taken
+  !> out.
+  subroutine orthonormalise(system, measure, others, block)
     type(dam_system), intent(in) :: system
+    real(rk), intent(in) :: measure(:) !< values of the stiffness
     real(rk), intent(in), contiguous :: others(:, :) !< (num_free, shapes)
     real(rk), allocatable, intent(inout) :: block(:, :) !< (num_free, shapes)
-    real(rk), allocatable, intent(out) :: product(:, :) !< M times the block
+    real(rk), allocatable :: product(:, :) ! stiffness times the block
     real(rk) :: length(size(block, 2))
     integer :: pass, k
     allocate (product, mold=block)
-    call multiply_columns(system%mass_pattern, system%mass_entries, block, product)
+    call multiply_columns(system%matrix, measure, block, product)
     do k = 1, size(length)
       length(k) = sqrt(max(0.0_rk, dot(block(:, k), product(:, k))))
       if (.not. length(k) > 0.0_rk) cycle
@@ -102,7 +133,7 @@ contains
     end do
     do pass = 1, 2
       call subtract_times(others, transposed_times(others, product), block)
-      call multiply_columns(system%mass_pattern, system%mass_entries, block, product)
+      call multiply_columns(system%matrix, measure, block, product)
       call separate(merge(least_part, least_rest, pass == 1), block, product)
     end do
   end subroutine orthonormalise
@@ -111,7 +142,7 @@ contains
   !> longer than `least` then are taken out.
   subroutine separate(least, block, product)
     real(rk), intent(in) :: least
-    real(rk), allocatable, intent(inout) :: block(:, :), product(:, :) !< and M times the block
+    real(rk), allocatable, intent(inout) :: block(:, :), product(:, :) !< and its forces
     real(rk) :: length
     integer :: k, j, n
     n = 0
