@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 from collections.abc import Callable
 from pathlib import Path
 
@@ -19,6 +20,12 @@ NOT_NUMERICAL = {
     "test_little_memory.py", "test_lock_is_given_back.py", "test_moved_and_paused.py",
     "test_starts_together.py",
 }  # fmt: skip
+
+
+# A shell that starts the tests in the background has them ignore SIGINT, and so would the programs
+# that they start.
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

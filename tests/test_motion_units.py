@@ -71,6 +71,8 @@ def test_a_deck_in_millimetres(program_path, tmp_path) -> None:
         # The user's conversion is not repeated; its digits are kept.
         ("UNITS OF G", ", SCALE=9.80665", "", PEAK * 9.80665),
         ("UNITS OF G", "", ", SCALE=9.80665", PEAK * 9.80665),
+        ("no unit", ", UNIT=G", ", SCALE=9.80665", PEAK * 9.80665),
+        ("UNITS OF G", ", UNIT=G, SCALE=9.80665", "", PEAK * 9.80665),
     ],
 )
 def test_peak(program_path, tmp_path, header, amplitude, motion, expected) -> None:

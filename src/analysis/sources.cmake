@@ -8,11 +8,13 @@ set(sources
   integrators/integrator_catalogue.f90
   integrators/integrator_type.f90
   integrators/massless_acceleration.f90
+  integrators/motion_goes_on.f90
   integrators/reduced_integrator.f90
   integrators/start_acceleration.f90
   integrators/static_duals.f90
   integrators/static_increment.f90
   integrators/static_integrator.f90
+  integrators/support_rates.f90
   modes/eigen_modes.f90
   modes/modal_damping.f90
   modes/opening_error.f90

@@ -7,7 +7,7 @@ module constraint_elimination
   use guest_type, only: guest_slot
   use joint_points, only: dam_joint
   use step_plan, only: step_fixity
-  use node_dofs, only: dof_map, displacement_dofs
+  use node_dofs, only: dof_map, displacement_dofs, num_directions
   use dof_numbering, only: numbering, linear_links, number_unknowns
   use jump_links, only: nodal_points, link_nodes
   implicit none
@@ -47,6 +47,7 @@ contains
     do k = 1, size(fixities)
       is_fixed(fixities(k)%dof, fixities(k)%node) = .true.
     end do
+    call add_held_bases(mesh, is_fixed, is_used)
     call list_points(joints, points)
     if (size(points%slave) > 0) points%is_light = nodes_of_quads(mesh)
     call ties_of(guests, ties)
@@ -56,6 +57,22 @@ contains
     call mark_last(joints, links%first_jump, is_used, links%is_last)
     call number_unknowns(dofs, is_used, is_fixed, links, numbers, error)
   end subroutine number_step
+
+  !> Marks nodes of joint elements that supports hold in all directions: a base without solids. It
+  !> moves as the supports do, and has their reactions.
+  pure subroutine add_held_bases(mesh, is_fixed, is_used)
+    type(fe_mesh), intent(in) :: mesh
+    logical, intent(in) :: is_fixed(:, :) !< (components, nodes)
+    logical, intent(inout) :: is_used(:) !< (nodes)
+    integer :: e, k
+    do e = 1, mesh%num_elements
+      if (mesh%element_type(e) /= 'JOINT8') cycle
+      do k = 1, size(mesh%nodes, 1)
+        if (mesh%nodes(k, e) == 0) cycle
+        if (all(is_fixed(:num_directions, mesh%nodes(k, e)))) is_used(mesh%nodes(k, e)) = .true.
+      end do
+    end do
+  end subroutine add_held_bases
 
   !> Leaves out the ties of nodes that are absent, or that follow an absent node.
   subroutine keep_present(mesh, ties)

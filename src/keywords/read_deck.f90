@@ -128,7 +128,7 @@ contains
       allocate (problem%steps(count([(model%cards(i)%keyword == 'STEP', i=1, size(model%cards))])))
     end associate
     allocate (model%surface_origin(0), model%material_origin(0), model%test_origin(0))
-    allocate (model%record_factor(0))
+    allocate (model%record_unit(0), model%record_factor(0))
     allocate (model%sections(0), model%laws(0), model%joints(0))
     allocate (model%material_requests(0), model%procedure_card(0), model%ties(0))
     allocate (model%interfaces(0), model%interactions(0), model%clearances(0))

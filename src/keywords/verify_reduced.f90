@@ -43,7 +43,7 @@ contains
     end do
   end subroutine verify_reduced_steps
 
-  !> Solids that crack or yield.
+  !> Solids that crack or yield; materials that no element has are warned of elsewhere.
   subroutine refuse_solids(model, s, faults)
     type(draft), intent(in) :: model
     integer, intent(in) :: s !< step
@@ -53,6 +53,7 @@ contains
       associate (material => model%problem%materials(i))
         if (.not. allocated(material%law)) cycle
         if (.not. material%law%is_nonlinear) cycle
+        if (.not. any(model%problem%mesh%material_of_element == i)) cycle
         call refuse(model, s, 'material '//material%name//' is not linear elastic, and a '// &
                     'reduced model holds linear elastic solids with joints', faults)
         return

@@ -43,6 +43,7 @@ set(sources
   record/requested_fields.f90
   record/result_writer.f90
   record/run_records.f90
+  record/run_warnings.f90
   result_files.f90
   summary/rank_json.f90
   summary/run_closing.f90

@@ -60,6 +60,34 @@ def test_an_unknown_field_names_the_nearest(program_path: Path, name: str, neare
     assert f"unknown field '{name}'; did you mean '{nearest}'?" in done.stderr
 
 
+NODAL, ELEMENTAL = "*NODE FILE\nU\n", "*EL FILE\nS\n"
+OF_OUTPUT = "*OUTPUT, FIELD\n*NODE OUTPUT\nRF\n"
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "expected"),
+    [
+        (NODAL + ELEMENTAL, "", {"U", "S"}),
+        (NODAL + ELEMENTAL, "*NODE FILE\nRF\n", {"RF", "S"}),
+        (NODAL + ELEMENTAL, "*EL FILE\nE\n", {"U", "E"}),
+        (NODAL + ELEMENTAL, "*NODE FILE, FREQUENCY=0\n", {"S"}),
+        (NODAL + ELEMENTAL, OF_OUTPUT, {"RF"}),
+        ("*OUTPUT, FIELD, VARIABLE=PRESELECT\n", "*NODE FILE\nU\n", {"U", "S"}),
+    ],
+)
+def test_requests_of_a_later_step(keyway, first, second, expected) -> None:
+    """Those for nodes, or for elements, replace their own kind; *OUTPUT, FIELD replaces both."""
+    deck = (ROOT / "input/cantilever.inp").read_text(encoding="utf-8")
+    cards = deck.split("*END STEP")[0].splitlines(keepends=True)
+    start = max(i for i, line in enumerate(cards) if line.startswith("*STEP"))
+    load = [line for line in cards[start:] if not line.startswith(("*NODE", "*EL", "U", "S"))]
+    text = "".join([*cards[:start], *load, first, "*END STEP\n*STEP\n*STATIC\n"])
+    run = keyway(f"{text}{second}*END STEP\n", name="two_steps")
+    with h5py.File(run.folder / "two_steps.h5") as file:
+        (last,) = file["steps/0002/increments"].values()
+        assert set(last) & {"U", "RF", "S", "E"} == expected
+
+
 def test_an_envelope_in_two_cards_is_written_once(keyway) -> None:
     """A field twice in the file stopped the run at its end, with 'disk full?'."""
     deck = (ROOT / "input/cantilever.inp").read_text(encoding="utf-8")

@@ -102,6 +102,17 @@ def test_pnewdt_gives_the_requested_increment(keyway):
     assert set(table["SDV1"][table["time"] == times[-1]]) == {float(len(times))}
 
 
+def test_pnewdt_without_strain_is_no_fault(keyway, tmp_path):
+    """A routine that bounds DTIME asks for less in the call that gives the stiffness, too."""
+    source = (HERE / "wants_less.for").read_text(encoding="utf-8")
+    changed = re.sub(r"(?m)^  if \(biggest.*$", "  if (dtime > 0.06d0) pnewdt = 0.5d0", source)
+    assert changed != source
+    (tmp_path / "bounded.for").write_text(changed, encoding="utf-8")
+    text = deck(f"{YOUNG}, 0.25", 1, steps=pull(0.4))
+    run = keyway(text, "--umat", str(tmp_path / "bounded.for"))
+    assert np.diff(np.unique(run.csv("el_BAR")["time"]), prepend=0.0).max() <= 0.06
+
+
 def test_uexternaldb_is_called_for_increments_and_steps(keyway):
     second = pull(0.5).replace("PULL", "HOLD")
     text = deck(f"{YOUNG}, 0.25", 3, steps=pull(0.25) + "\n" + second)

@@ -56,6 +56,21 @@ def test_stiffness_by_default_is_that_of_a_layer(keyway, meshes):
     assert opening == pytest.approx(-PRESSURE * (HEIGHT / 6.0) / 3e10, rel=1e-6)
 
 
+@pytest.mark.parametrize("law", ["PENETRATION=1e-9", "KN=1e8, PENETRATION=1e-9"])
+def test_frequencies_are_those_of_rigid_contact(keyway, law):
+    """KN controls the iteration alone; rigid contact is that of a stiff spring, 1e15 Pa/m."""
+    cards = static(weight()) + "*STEP\n*FREQUENCY\n3\n*END STEP\n"
+    found, expected = (
+        [
+            mode["hz"]
+            for mode in keyway(column(text).deck(cards), name=name).json["steps"][1]["frequencies"]
+        ]
+        for name, text in (("contact", f"{law}, FRICTION=0.6"), ("spring", "KN=1e15, KT=6e11"))
+    )
+    # KT is E/THICKNESS/(2(1 + nu)), with a Poisson ratio of 0 and 0.02 m: 7.5e11.
+    assert found == pytest.approx(expected, rel=2e-3)
+
+
 def test_a_bonded_joint_keeps_its_stiffness(keyway):
     """With a tensile strength KN stays E/THICKNESS, and bonded points sink by it."""
     law = "PENETRATION=1e-9, TENSILE STRENGTH=1e6, THICKNESS=0.5"

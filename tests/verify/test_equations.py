@@ -52,6 +52,22 @@ def test_a_lever(keyway, first):
     assert run.csv("energy")["error"].max() < 1e-9
 
 
+def test_sets_in_the_order_of_the_deck(keyway):
+    """Nodes of UNSORTED sets are pairs as the deck lists them; others by their ids."""
+    blocks = Blocks()
+    blocks.add("LEFT", (2, 0, 1), (1, 0, 1), (1, 0, 1))
+    blocks.add("RIGHT", (3, 0, 1), (1, 2, 3), (1, 0, 1))
+    a, b = blocks.side("LEFT", "X1") + 1, blocks.side("RIGHT", "X1") + 1
+    lines = [f"*NSET, NSET=A, UNSORTED\n{a[0]}\n*NSET, NSET=A\n{a[1]}, {a[2]}, {a[3]}\n"]
+    lines.append(f"*NSET, NSET=B, UNSORTED\n{b[3]}, {b[0]}, {b[1]}, {b[3]}, {b[2]}\n")
+    lines.append(hold(blocks, "LEFT_X0", "RIGHT_X0") + equations("A, 1, 1., B, 1, -1."))
+    deck = blocks.deck({"": ELASTIC}, "".join(lines))
+    load = f"*CLOAD\n{a[0]}, 1, 1e3\n{a[1]}, 1, 2e3\n{a[2]}, 1, -1e3\n"
+    u = state_of(keyway(deck + static(load)), "ALL")[:, 0]
+    assert np.ptp(u[a - 1]) > 1e-7
+    assert u[a - 1] == pytest.approx(u[[b[3] - 1, b[0] - 1, b[1] - 1, b[2] - 1]], rel=SAME)
+
+
 def test_terms_of_other_directions(keyway):
     """u_A along x equals minus u_B along y: the bar B, free along y only, is
     sheared, k_s = G A/L with nu = 0."""

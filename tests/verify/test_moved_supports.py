@@ -1,12 +1,17 @@
-"""A body strained by its supports alone: the reference force is that of the reactions."""
+"""Bodies that their supports strain or move: blocks by hand."""
+
+from __future__ import annotations
 
 import numpy as np
+import pytest
 from brick_decks import brick_deck, elastic, last_state
+from joint_decks import Block
 from keyway_tools.box_mesh import box_mesh, stretched
 
 
 def test_a_strained_block_is_at_rest_in_statics_and_dynamics(keyway):
-    """A cube between a fixed and a lowered face, sides held: linear; 1e-12 of it is round-off."""
+    """A cube between a fixed and a lowered face, sides held: linear; 1e-12 of it is round-off. The
+    reference force is that of the reactions."""
     mesh, number = box_mesh((2, 2, 2), stretched((1.0, 1.0, 1.0)))
     mesh.node_sets["ALL"] = number.ravel()
     mesh.node_sets["BOTTOM"] = number[:, :, 0].ravel()
@@ -18,3 +23,69 @@ def test_a_strained_block_is_at_rest_in_statics_and_dynamics(keyway):
     u = last_state(run, "ALL")
     assert np.abs(u[:, 2] + 1.0e-3 * mesh.x[:, 2]).max() < 1e-15
     assert [step["increments"] for step in run.json["steps"]] == [1, 10]
+
+
+WEIGHT = "*STEP\n*STATIC\n*DLOAD\nBLOCK, GRAV, 9.81, 0., 0., -1.\n"
+RF = "*NODE PRINT, NSET=BASE\nU, RF\n*END STEP\n"
+
+
+@pytest.mark.parametrize("base_is_slave", [False, True])
+def test_a_base_that_belongs_to_joints_alone(keyway, base_is_slave):
+    """It has the reactions of the joint, and moves where it is moved: the block goes with it."""
+    law = "KN=1e10, KT=1e10, FRICTION=0.8"
+    block = Block(size=(2.0, 1.0, 1.5), density=2000.0, law=law, base_is_slave=base_is_slave)
+    steps = WEIGHT + "*NODE PRINT, NSET=TOP\nU\n" + RF
+    steps += "*STEP\n*STATIC, DIRECT\n0.25, 1.\n*BOUNDARY\nBASE, 3, 3, 0.01\nBASE, 1, 1, -0.002\n"
+    run = keyway(block.deck(steps + "*END STEP\n"))
+    base, top = run.csv("node_BASE"), run.csv("node_TOP")
+    weight = 2000.0 * 9.81 * 3.0
+    for step, increment in ((1, 1), (2, 1), (2, 4)):
+        now = (base["step"] == step) & (base["increment"] == increment)
+        assert base["RF3"][now].sum() == pytest.approx(weight, rel=1e-9)
+        assert np.abs(base["RF1"][now].sum()) < 1e-6 * weight
+    last = top["step"] == 2
+    share = top["increment"][last] / 4.0
+    start = top["U3"][top["step"] == 1].mean()
+    assert top["U3"][last] == pytest.approx(start + 0.01 * share, abs=1e-9)
+    assert top["U1"][last] == pytest.approx(-0.002 * share, abs=1e-9)
+
+
+@pytest.mark.parametrize("alpha", [0.0, -0.05])
+@pytest.mark.parametrize("increment", [0.01, 0.0025])
+def test_a_history_of_displacements(keyway, alpha, increment):
+    """u = (1 - cos(w t))^2 in steps of 0.01 s: rates are those of the history, and the reaction is
+    the mass times the acceleration of a stiff block.
+
+    By Newmark's formulas each corner of the table starts a swing of the support: with increments of
+    a quarter of its steps the reaction was 20 to 300 times too large."""
+    time = np.linspace(0.0, 0.5, 51)
+    omega, size = 2.0 * np.pi / 0.5, 0.001
+    path = size * (1.0 - np.cos(omega * time)) ** 2
+    table = "".join(f"{t:.4f}, {u:.12g}\n" for t, u in zip(time, path, strict=True))
+    mesh, number = box_mesh((1, 1, 1), stretched((1.0, 1.0, 1.0)))
+    mesh.node_sets["BASE"] = number[:, :, 0].ravel()
+    damped = elastic(3e10, 0.0, 2400.0).replace("*DENSITY", "*DAMPING, BETA=1e-3\n*DENSITY")
+    cards = f"{damped}*AMPLITUDE, NAME=PATH\n{table}*BOUNDARY\nBASE, 2, 3\n"
+    cards += f"*STEP, INC=1000\n*DYNAMIC, DIRECT, ALPHA={alpha}\n{increment}, 0.5\n"
+    cards += "*BOUNDARY, AMPLITUDE=PATH\nBASE, 1, 1, 1.\n*NODE PRINT, NSET=BASE\nU, V, A, RF\n"
+    run = keyway(brick_deck(mesh, "C3D8", cards + "*END STEP\n"))
+    found = run.csv("node_BASE")
+    one = found["node"] == found["node"][0]
+    t = found["time"][one]
+    s, c = np.sin(omega * t), np.cos(omega * t)
+    speed = 2.0 * size * omega * (1.0 - c) * s
+    rate = 2.0 * size * omega**2 * (s**2 + (1.0 - c) * c)
+    # The table has corners: between them the speed is that of a chord. Where increments are finer
+    # than the table, the acceleration of a corner stands in one increment, and the block answers
+    # to it: means over a step of the table are compared, of forces in the mean square.
+    assert found["V1"][one] == pytest.approx(speed, abs=0.08 * np.abs(speed).max())
+    force = found["RF1"].reshape(len(t), -1).sum(axis=1)
+    width = round(0.01 / increment)
+    mean, right, pushed = (
+        np.convolve(values, np.ones(width) / width, "valid")
+        for values in (found["A1"][one], rate, force)
+    )
+    assert mean == pytest.approx(right, abs=0.12 * np.abs(rate).max())
+    assert np.linalg.norm(pushed - 2400.0 * right) <= 0.2 * np.linalg.norm(2400.0 * right)
+    assert np.abs(found["A1"][one]).max() <= 1.2 * width * np.abs(rate).max()
+    assert run.json["steps"][0]["energy"]["error"] < 1e-9

@@ -57,10 +57,29 @@ def test_histories(keyway, documented, kind):
 def test_a_rocking_body_has_no_estimate(keyway):
     """The motion depends on each impact: the run says so, in job.json and at its end."""
     run = keyway(shaken("rocking", 0.01, printed=False))
-    assert estimate(run)["not_known"] == "time, mesh: a body rocks"
+    assert estimate(run)["not_known"] == "time, mesh: a body rocks or slides"
     assert "time" not in estimate(run)
     text = (run.folder / "job.log").read_text(encoding="utf-8")
-    assert "not known: a body rocks" in text
+    assert "not known: a body rocks or slides" in text
+
+
+@pytest.mark.parametrize("controls", ["", "*CONTROLS, ACCURACY=0.05\n"])
+def test_a_block_that_slides_has_no_histories(keyway, controls):
+    """An error of a slip stays in all that follows, and modes do not see it: 0.01 % were said where
+    1.5 % were true. With ACCURACY the run says so."""
+    block = Block(size=(1.0, 1.0, 0.1), density=2000.0, law="KN=1e11, KT=1e11, FRICTION=0.3")
+    times = np.arange(0.0, 1.0, 0.01)
+    motion = amplitude("MOVE", times, 6.0 * np.sin(4.0 * np.pi * times))
+    step = dynamic("*BASE MOTION, DOF=1, AMPLITUDE=MOVE\n", 0.001, 0.9)
+    if controls:
+        step = step.replace(", DIRECT", "").replace("*DYNAMIC", f"{controls}*DYNAMIC", 1)
+    deck = block.deck(static(weight()) + step).replace("*STEP", f"{motion}*STEP", 1)
+    run = keyway(deck)
+    assert run.json["joints"]["BED"]["slip"]["anywhere"]["value"] > 1e-3
+    text = (run.folder / "job.log").read_text(encoding="utf-8")
+    assert "histories" not in text
+    assert "history" not in run.json["accuracy"]["estimates"].get("displacement", {})
+    assert ("ACCURACY does not bound" in text) == bool(controls)
 
 
 def test_arch(keyway, documented):

@@ -111,6 +111,14 @@ def test_two_steps_in_a_row(keyway):
             assert step["energy"]["error"] <= 1e-6
 
 
+def test_a_material_of_no_element(keyway):
+    """Its law is not that of the model."""
+    plastic = "*MATERIAL, NAME=STEEL\n*ELASTIC\n2e11, 0.3\n*PLASTIC\n3e8, 0.\n4e8, 0.1\n*BOUNDARY"
+    text = brick_on_rock.deck(brick_on_rock.shaken(0.1, ", REDUCED"), 2600.0)
+    run = keyway(text.replace("*BOUNDARY", plastic, 1))
+    assert run.json["steps"][1]["increments"] == 10
+
+
 @pytest.mark.parametrize(("rock_density", "tied"), [(0.0, True), (2600.0, True), (2600.0, False)])
 def test_a_model_of_few_unknowns(keyway, rock_density, tied):
     """24 unknowns with or without mass, and a joint that stays closed: round-off is no shape.

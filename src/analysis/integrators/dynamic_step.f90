@@ -14,10 +14,12 @@ module dynamic_step
   use guest_forces, only: has_histories
   use step_system, only: dam_system, build_structure, build_inertia, build_damping, &
                          build_loads, build_origins
-  use step_loads, only: step_time, external_force, prescribed_values
+  use step_loads, only: step_time, external_force
   use start_acceleration, only: find_start
+  use support_rates, only: find_support_rates
   use energy_account, only: open_account
   use run_ledger, only: ledger
+  use motion_goes_on, only: has_same_unknowns, keep_accelerations, keep_joints, unbalanced_force
   use solid_iteration, only: solid_solver
   implicit none
   private
@@ -26,18 +28,22 @@ module dynamic_step
   !> In free flight all forces are round-off: the residual is then measured against this fraction of
   !> the force that would stop the dam within the increment.
   real(rk), parameter :: stopping_share = 1.0e-3_rk
+  !> A change of the forces between two steps, over the forces, that is none.
+  real(rk), parameter :: round_off = 1.0e-9_rk
 
 contains
 
   !> Builds the equations of a step, its motion and its solids.
-  subroutine build_dynamic_step(model, plan, system, solids, now, results, error)
+  subroutine build_dynamic_step(model, plan, system, solids, now, last, results, error)
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan
     type(dam_system), intent(inout) :: system
     type(solid_solver), intent(inout) :: solids
     type(state), intent(inout) :: now !< at the start of the step
+    type(motion), intent(out) :: last !< at the end of the step before
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
+    last = now%motion
     associate (costs => results%costs)
       call build_structure(model, plan, system, costs, error)
       if (.not. allocated(error)) call build_inertia(model, plan, system, costs, error)
@@ -49,6 +55,7 @@ contains
     end associate
     now%num_unknowns = system%matrix%num_free
     call start_motion(system%numbers, model%joints, now, has_inertia=.true.)
+    call keep_joints(last, plan, system%operator%num_points, now)
     call solids%open(model, system, plan, now)
   end subroutine build_dynamic_step
 
@@ -63,10 +70,11 @@ contains
     type(state), intent(inout) :: now !< at the start of the step
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
-    call build_dynamic_step(model, plan, system, solids, now, results, error)
+    type(motion) :: last
+    call build_dynamic_step(model, plan, system, solids, now, last, results, error)
     if (allocated(error)) return
     call results%costs%start('solve', 'initial acceleration', 'solver')
-    call start_forces(system, solids, model, plan, now, results%costs, error)
+    call start_forces(system, solids, model, plan, last, now, results%costs, error)
     call results%costs%stop()
     if (allocated(error)) return
     call results%costs%start('recover', 'energy', 'solver')
@@ -98,57 +106,81 @@ contains
     solids%solver%may_repeat = has_active_part .and. .not. plan%controls%keeps_single
   end subroutine make_step_solver
 
-  !> Forces at the start of the step and the acceleration that balances them. Supports that follow
-  !> an amplitude start with its velocity.
-  subroutine start_forces(system, solids, model, plan, now, costs, error)
+  !> Forces at the start of the step and the acceleration that balances them: all of them, or after
+  !> another dynamic step what has changed. Supports that follow an amplitude start with its
+  !> velocity.
+  subroutine start_forces(system, solids, model, plan, last, now, costs, error)
     type(dam_system), intent(inout) :: system
     type(solid_solver), intent(inout) :: solids
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan
+    type(motion), intent(in) :: last !< at the end of the step before
     type(state), intent(inout) :: now
     type(ledger), intent(in) :: costs
     type(error_type), allocatable, intent(out) :: error
     type(step_time) :: when
-    logical :: has_changed
+    logical :: has_changed, goes_on
     when = step_time(is_dynamic=.true., start=now%total_time, duration=plan%duration)
     associate (own => now%motion)
+      goes_on = has_same_unknowns(last, plan, own)
       call update_uplift(model, system%operator, now%joints, system%groups, costs, has_changed)
       call external_force(system%groups, model%amplitudes, when, own%external)
-      call start_supports(model, system, when, 1.0e-3_rk*plan%first_increment, own%v)
+      call find_support_rates(model, system, when, plan%first_increment, own%v, own%a)
       call solids%start_lost_damping(model, system, plan, now)
       call multiply(system%matrix, system%mass, own%v, own%momentum)
       call system%find_damping_force(own%v, own%viscous)
       call sum_contact(system%operator, now)
-      call find_start(model, system, now%joints, own%external, &
-                      own%external - own%internal - own%viscous - own%contact, own%a, error)
-      if (allocated(error)) return
-      call multiply(system%matrix, system%mass, own%a, own%inertia)
-      own%balanced = own%inertia
+      if (goes_on) then
+        call keep_accelerations(last, own)
+        call change_acceleration(model, system, last, now, error)
+        call multiply(system%matrix, system%mass, own%a, own%inertia)
+      else
+        call start_anew(model, system, now, error)
+        call multiply(system%matrix, system%mass, own%a, own%inertia)
+        own%balanced = own%inertia
+      end if
     end associate
   end subroutine start_forces
 
-  !> Velocities of supports that follow an amplitude; other supports have none.
-  subroutine start_supports(model, system, when, instant, v)
+  !> The acceleration that balances all forces, those by the acceleration of supports among them.
+  subroutine start_anew(model, system, now, error)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
-    type(step_time), intent(in) :: when
-    real(rk), intent(in) :: instant !< a small part of the increment [s]
-    real(rk), intent(inout) :: v(:)
-    real(rk) :: first(size(v)), last(size(v))
-    type(step_time) :: later
-    integer :: i
-    first = 0.0_rk
-    last = 0.0_rk
-    later = when
-    later%now = when%now + instant
-    call prescribed_values(system%supports, model%amplitudes, when, first)
-    call prescribed_values(system%supports, model%amplitudes, later, last)
-    do i = 1, size(system%supports)
-      associate (k => system%supports(i)%unknown)
-        v(k) = (last(k) - first(k))/instant
-      end associate
-    end do
-  end subroutine start_supports
+    type(state), intent(inout) :: now
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), dimension(size(now%motion%a)) :: given, force
+    associate (own => now%motion, n => system%matrix%num_free)
+      given = own%a
+      given(:n) = 0.0_rk
+      call multiply(system%matrix, system%mass, given, force)
+      call find_start(model, system, now%joints, own%external, unbalanced_force(own) - force, &
+                      own%a, error)
+      if (.not. allocated(error)) own%a(n + 1:) = given(n + 1:)
+    end associate
+  end subroutine start_anew
+
+  !> Adds the acceleration by forces that have changed since the step before, those by the
+  !> acceleration of supports among them, if they are more than round-off.
+  subroutine change_acceleration(model, system, last, now, error)
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    type(motion), intent(in) :: last !< at the end of the step before
+    type(state), intent(inout) :: now
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), dimension(size(now%motion%a)) :: change, given, more
+    associate (own => now%motion, n => system%matrix%num_free)
+      given = own%a - last%a
+      given(:n) = 0.0_rk
+      call multiply(system%matrix, system%mass, given, change)
+      change = unbalanced_force(own) - unbalanced_force(last) - change
+      if (length(change(:n)) <= round_off*max(length(own%external(:n)), &
+                                              length(own%internal(:n)))) return
+      call find_start(model, system, now%joints, own%external, change, more, error)
+      if (allocated(error)) return
+      own%a(:n) = own%a(:n) + more(:n)
+      own%balanced = own%balanced + change
+    end associate
+  end subroutine change_acceleration
 
   !> The largest force in the balance: the reference of the residual [N].
   real(rk) function largest_force(moving, num_free, joint_weight, dt) result(force)

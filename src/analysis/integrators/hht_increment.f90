@@ -16,6 +16,7 @@ submodule(hht_integrator) hht_increment
   use joint_forces, only: gather_jumps
   use increment_balance, only: increment_task
   use step_equilibrium, only: add_moving_supports
+  use support_rates, only: find_support_rates, has_moving_supports
   implicit none
 
   !> Floor of the reference force, as a fraction of norm(diag(K) q): far above the round-off of K q.
@@ -70,6 +71,9 @@ contains
       call sum_known_forces(system, scheme, old, new%external, rhs)
       task%balance%rhs = rhs(:n)
       call add_moving_supports(system, self%solids%values, moved, task%balance%rhs)
+      if (has_moving_supports(system)) then
+        call set_support_rates(model, system, scheme, when, old, moved, task)
+      end if
       call task%balance%set_jumps(system%operator, task%start, before%joints)
       task%balance%guess = task%balance%guess + scheme%dt*old%jump_rate
       task%balance%reference_force = largest_force(old, n, scheme%joint_weight, scheme%dt)
@@ -81,9 +85,47 @@ contains
         task%velocity_of_x = scheme%velocity_of_x
         task%velocity = old%v + (1.0_rk - scheme%gamma)*scheme%dt*old%a + scheme%velocity_of_x &
                         *(moved - scheme%dt*old%v - scheme%dt**2*(0.5_rk - scheme%beta)*old%a)
+        if (allocated(task%support_v)) task%velocity(n + 1:) = task%support_v(n + 1:)
       end if
     end associate
   end subroutine pose_task
+
+  !> Rates of the supports at the end, and forces by what Newmark's formulas make of them beyond.
+  subroutine set_support_rates(model, system, scheme, when, old, moved, task)
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    type(hht), intent(in) :: scheme
+    type(step_time), intent(in) :: when !< the end of the increment
+    type(motion), intent(in) :: old
+    real(rk), intent(in) :: moved(:) !< (num_total) in the increment [m]
+    type(increment_task), intent(inout) :: task
+    real(rk), dimension(size(moved)) :: v, a, force
+    associate (n => system%matrix%num_free)
+      allocate (task%support_v(size(moved)), task%support_a(size(moved)), source=0.0_rk)
+      call find_support_rates(model, system, when, scheme%dt, task%support_v, task%support_a)
+      call newmark_rates(scheme, old, moved, v, a)
+      v = task%support_v - v
+      a = task%support_a - a
+      v(:n) = 0.0_rk
+      a(:n) = 0.0_rk
+      call multiply(system%mass_pattern, system%mass_entries, a, force)
+      task%balance%rhs = task%balance%rhs - force(:n)
+      call system%find_damping_force(v, force)
+      task%balance%rhs = task%balance%rhs - (1.0_rk + scheme%alpha)*force(:n)
+    end associate
+  end subroutine set_support_rates
+
+  !> Rates at the end of an increment by Newmark's formulas.
+  pure subroutine newmark_rates(scheme, old, moved, v, a)
+    type(hht), intent(in) :: scheme
+    type(motion), intent(in) :: old
+    real(rk), intent(in) :: moved(:) !< (num_total) in the increment [m]
+    real(rk), intent(out) :: v(:), a(:) !< (num_total)
+    associate (dt => scheme%dt)
+      a = scheme%acceleration_of_x*(moved - dt*old%v - dt**2*(0.5_rk - scheme%beta)*old%a)
+      v = old%v + (1.0_rk - scheme%gamma)*dt*old%a + scheme%gamma*dt*a
+    end associate
+  end subroutine newmark_rates
 
   !> The right-hand side, all rows; prescribed ones are not used. With u1 = u0 the acceleration is
   !> -p/(beta dt^2), p = dt v0 + dt^2 (1/2 - beta) a0.
@@ -121,15 +163,16 @@ contains
     type(state), intent(in) :: before
     type(state), intent(inout) :: after
     associate (old => before%motion, new => after%motion, dt => scheme%dt, &
-               rest => (1.0_rk - scheme%gamma)*scheme%dt, bulk => 1.0_rk + scheme%alpha)
+               rest => (1.0_rk - scheme%gamma)*scheme%dt, bulk => 1.0_rk + scheme%alpha, &
+               n => system%matrix%num_free)
       new%q = task%start + task%x
-      new%a = scheme%acceleration_of_x*(new%q - old%q - dt*old%v &
-                                        - dt**2*(0.5_rk - scheme%beta)*old%a)
-      new%v = old%v + rest*old%a + scheme%gamma*dt*new%a
+      call newmark_rates(scheme, old, new%q - old%q, new%v, new%a)
+      if (allocated(task%support_a)) new%a(n + 1:) = task%support_a(n + 1:)
       call multiply(system%mass_pattern, system%mass_entries, new%a, new%inertia)
       new%momentum = old%momentum + rest*old%inertia + scheme%gamma*dt*new%inertia
       call system%find_damping_force(new%a, new%viscous_rate)
       new%viscous = old%viscous + rest*old%viscous_rate + scheme%gamma*dt*new%viscous_rate
+      if (allocated(task%support_v)) call move_supports(system, scheme, task%support_v, old, new)
       call system%find_elastic(new%q, new%elastic)
       call solids%set_internal(new)
       new%balanced = bulk*(new%external - new%viscous - new%internal) &
@@ -138,6 +181,25 @@ contains
     call carry_correction(scheme, before%motion, after%motion)
     call add_joints(system, scheme, before, after)
   end subroutine correct
+
+  !> Velocities of supports, momentum and damping by what they are beyond the sum of accelerations.
+  subroutine move_supports(system, scheme, v, old, new)
+    type(dam_system), intent(in) :: system
+    type(hht), intent(in) :: scheme
+    real(rk), intent(in) :: v(:) !< (num_total) of prescribed unknowns at the end [m/s]
+    type(motion), intent(in) :: old
+    type(motion), intent(inout) :: new
+    real(rk), dimension(size(v)) :: more, force
+    associate (n => system%matrix%num_free, dt => scheme%dt)
+      more = v - old%v - dt*((1.0_rk - scheme%gamma)*old%a + scheme%gamma*new%a)
+      more(:n) = 0.0_rk
+      new%v(n + 1:) = v(n + 1:)
+      call multiply(system%mass_pattern, system%mass_entries, more, force)
+      new%momentum = new%momentum + force
+      call system%find_damping_force(more, force)
+      new%viscous = new%viscous + force
+    end associate
+  end subroutine move_supports
 
   !> The force that corrects the work in the balance: with the implicit impulse of joints, (7.3).
   subroutine carry_correction(scheme, old, new)
@@ -185,9 +247,11 @@ contains
       call gather_jumps(system%operator, before%joints, last_jump)
       call gather_jumps(system%operator, after%joints, new%jump_rate)
       new%jump_rate = (new%jump_rate - last_jump)/scheme%dt
-      if (.not. scheme%carries_impulse) return
       call gather_tractions(system%operator, after%joints, traction)
-      new%carried = scheme%joint_weight*traction + scheme%old_joint_weight*old%carried
+      new%carried = traction
+      if (scheme%carries_impulse) then
+        new%carried = scheme%joint_weight*traction + scheme%old_joint_weight*old%carried
+      end if
     end associate
   end subroutine carry_joints
 end submodule hht_increment

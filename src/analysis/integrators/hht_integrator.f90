@@ -22,8 +22,9 @@ module hht_integrator
   use kept_solvers, only: solver_shelf
   use energy_account, only: add_dynamic_work
   use solid_iteration, only: solid_solver
+  use support_rates, only: has_moving_supports
   use state_transfer, only: store_motion
-  use opening_error, only: error_of_opening, mesh_error_of_opening, note_opening
+  use opening_error, only: error_of_opening, mesh_error_of_opening, note_opening, rocks
   use time_error, only: error_modes, is_worth_its_cost, make_error_modes, note_largest, &
                         note_lost_forces, start_mesh_error, start_modal_error, take_modal_error
   use integrator_type, only: integrator
@@ -126,6 +127,8 @@ contains
       call take_modal_error(self%modes, self%scheme%dt, now%motion, own, moved)
       call note_largest(self%system%numbers, self%modes, now%u, own)
       results%time_error = [own%largest, own%at_largest, own%most/max(tiny(1.0_rk), own%motion)]
+      ! Histories of bodies that rock or slide do not follow the modes.
+      if (rocks(own) .or. now%energy%friction > 0.0_rk) results%time_error(3) = -1.0_rk
       if (size(now%joints) == 0 .and. allocated(own%softer)) then
         results%mesh_error(of_displacement) = abs(own%mesh_at_largest)
       else if (size(now%joints) > 0) then
@@ -144,8 +147,10 @@ contains
     type(state), intent(inout) :: now
     associate (own => now%motion, n => system%matrix%num_total, p => system%operator%num_points)
       allocate (own%viscous_rate(n), source=0.0_rk)
-      allocate (own%carried(3, p), own%jump_rate(3, p), source=0.0_rk)
-      call gather_tractions(system%operator, now%joints, own%carried)
+      if (.not. allocated(own%carried)) then
+        allocate (own%carried(3, p), own%jump_rate(3, p), source=0.0_rk)
+        call gather_tractions(system%operator, now%joints, own%carried)
+      end if
       call system%find_damping_force(own%a, own%viscous_rate)
     end associate
   end subroutine start_rates
@@ -233,6 +238,7 @@ contains
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
     logical :: has_changed
+    real(rk) :: excess
     call results%costs%start('iterate', 'structure', 'solver')
     call update_uplift(model, self%system%operator, before%joints, self%system%groups, &
                        results%costs, has_changed)
@@ -241,21 +247,34 @@ contains
     if (allocated(error) .or. .not. outcome%has_converged) return
     after%joint_condition = max(after%joint_condition, self%solids%solver%condition)
     call results%costs%start('recover', 'energy', 'solver')
-    call add_dynamic_work(model, self%system, before, after, &
-                          newmark_excess(self%scheme, before%motion, after%motion))
+    excess = newmark_excess(self%scheme, before%motion, after%motion, self%system%matrix%num_free)
+    if (has_moving_supports(self%system)) then
+      after%energy%external = after%energy%external &
+                              + kinetic_excess(before%motion, after%motion) - excess
+    end if
+    call add_dynamic_work(model, self%system, before, after, excess)
     call results%costs%stop()
   end subroutine advance
 
-  !> Change of the kinetic energy beyond du . M a_mean (7.4).
-  real(rk) function newmark_excess(scheme, old, new) result(excess)
+  !> Change of the kinetic energy beyond du . M a_mean in free unknowns (7.4). Supports have a part
+  !> only where they follow an amplitude, and then other rates than those of Newmark's formulas.
+  real(rk) function newmark_excess(scheme, old, new, n) result(excess)
     type(hht), intent(in) :: scheme
     type(motion), intent(in) :: old, new
+    integer, intent(in) :: n !< free unknowns
     real(rk) :: du_dma, da_ma, da_dma
-    du_dma = dot(new%q - old%q, new%inertia - old%inertia)
-    da_ma = work(new%a - old%a, old%inertia, new%inertia)
-    da_dma = dot(new%a - old%a, new%inertia - old%inertia)
+    du_dma = dot(new%q(:n) - old%q(:n), new%inertia(:n) - old%inertia(:n))
+    da_ma = work(new%a(:n) - old%a(:n), old%inertia(:n), new%inertia(:n))
+    da_dma = dot(new%a(:n) - old%a(:n), new%inertia(:n) - old%inertia(:n))
     associate (g => scheme%gamma - 0.5_rk, b => scheme%beta - 0.5_rk*scheme%gamma)
       excess = g*du_dma - b*scheme%dt**2*(da_ma + g*da_dma)
     end associate
   end function newmark_excess
+
+  !> Change of the kinetic energy beyond du . M a_mean, from its values.
+  real(rk) function kinetic_excess(old, new) result(excess)
+    type(motion), intent(in) :: old, new
+    excess = 0.5_rk*(dot(new%v, new%momentum) - dot(old%v, old%momentum)) &
+             - work(new%q - old%q, old%inertia, new%inertia)
+  end function kinetic_excess
 end module hht_integrator

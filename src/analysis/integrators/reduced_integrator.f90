@@ -1,7 +1,7 @@
 !> Dynamic steps with a reduced model of the linear structure (theory.md, 7.4): modes of the open
 !> structure and the static response of the rest; the joints keep all their points.
 module reduced_integrator
-  use analysis_state, only: modal_motion, reduction_status, state
+  use analysis_state, only: modal_motion, motion, reduction_status, state
   use dynamic_step, only: build_dynamic_step
   use energy_account, only: open_account
   use equilibrium, only: balance_outcome
@@ -79,8 +79,9 @@ contains
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
     type(modal_motion) :: loaded
+    type(motion) :: last
     if (now%increment > 0) loaded = now%motion%modal
-    call build_dynamic_step(model, plan, self%system, self%solids, now, results, error)
+    call build_dynamic_step(model, plan, self%system, self%solids, now, last, results, error)
     if (allocated(error)) return
     now%motion%modal = loaded
     call make_equilibrium(plan, self%system, .true., self%solids%solver, error)
@@ -142,6 +143,7 @@ contains
         modal%start = own%q
         allocate (modal%start_traction(3, system%operator%num_points))
         call gather_tractions(system%operator, now%joints, modal%start_traction)
+        if (allocated(own%carried)) modal%start_traction = own%carried
         allocate (modal%start_factor(n), source=0.0_rk)
         associate (factor => load_factors(system%groups, model%amplitudes, when, &
                                           modal%start_factor))
@@ -293,7 +295,7 @@ contains
       modal%rest_rate = modal%port
       modal%rest_acceleration = modal%port
       own%carried = modal%start_traction
-      own%jump_rate = 0.0_rk*own%carried
+      if (.not. allocated(own%jump_rate)) own%jump_rate = 0.0_rk*own%carried
       own%v(:n) = matmul(basis%mode, modal%rate)
       own%a(:n) = matmul(basis%mode, modal%acceleration)
       call multiply(system%matrix, system%mass, own%v, own%momentum)

@@ -9,7 +9,7 @@ module opening_error
   use small_matrix, only: solve_dense
   implicit none
   private
-  public :: note_opening, error_of_opening, mesh_error_of_opening
+  public :: note_opening, error_of_opening, mesh_error_of_opening, rocks
 
   !> Added to the diagonal of the sums, over its mean: modes that hardly move explain nothing.
   real(rk), parameter :: share = 1.0e-3_rk

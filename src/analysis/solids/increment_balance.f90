@@ -16,6 +16,9 @@ module increment_balance
     real(rk), allocatable :: start(:) !< (num_total) u at x = 0, supports in place [m]
     real(rk), allocatable :: velocity(:) !< (num_total) at x = 0; dynamic steps only [m/s]
     real(rk) :: velocity_of_x = 0.0_rk !< dv/dx [1/s]
+    !> (num_total) rates of prescribed unknowns at the end; dynamic steps whose supports follow an
+    !> amplitude only [m/s], [m/s2]
+    real(rk), allocatable :: support_v(:), support_a(:)
     real(rk), allocatable :: x(:) !< (num_total) solution; zero on prescribed unknowns [m]
     real(rk) :: reference_force = 0.0_rk !< largest known force [N]
     logical :: counts_reactions = .false. !< reactions are part of the reference force

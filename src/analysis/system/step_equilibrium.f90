@@ -26,6 +26,10 @@ module step_equilibrium
   !> where jumps are unknowns.
   integer, parameter :: num_dense = 3
 
+  !> Stiffness of closed contact without penetration, over those of its law: frequencies differ by
+  !> some 1e-4 from those of rigid contact.
+  real(rk), parameter :: closed_over_normal = 1.0e3_rk, closed_over_slip = 1.0e2_rk
+
 contains
 
   !> Linear without joints, else by *CONTROLS, JOINT SOLVER. Only full Newton combines joints with
@@ -126,6 +130,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: reference(:, :)
     call reference_stiffness(model%joints, system%operator, reference)
+    call stiffen_contact(model, system, reference)
     allocate (closed, source=system%stiffness)
     call system%operator%add_stiffness(closed_tangent(reference), system%matrix, closed)
     call costs%start('analyse', 'structure', 'solver')
@@ -136,6 +141,23 @@ contains
     balance%costs = costs
     call prepare_equilibrium(model, system, closed, 1.0_rk, balance, error)
   end subroutine factorise_closed
+
+  !> Contact without penetration has a stiffness that controls its iteration alone. Closed, it is
+  !> far stiffer.
+  subroutine stiffen_contact(model, system, stiffness)
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    real(rk), intent(inout) :: stiffness(:, :) !< (3, points) [Pa/m]
+    integer :: j
+    do j = 1, size(model%joints)
+      if (.not. model%joints(j)%law%penetration > 0.0_rk) cycle
+      associate (first => system%operator%first_point(j), &
+                 last => system%operator%first_point(j + 1) - 1)
+        stiffness(1, first:last) = max(closed_over_normal*stiffness(1, first:last), &
+                                       closed_over_slip*stiffness(2, first:last))
+      end associate
+    end do
+  end subroutine stiffen_contact
 
   !> Gives modal damping to the solver; acts from `prepare_equilibrium` on.
   subroutine set_modal_damping(system, factor, balance)

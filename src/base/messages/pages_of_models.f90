@@ -158,7 +158,7 @@ contains
                   'LEVEL=105 where the dam stands at z = 400 to 535', &
                   'LEVEL=505, BED=400')
     call list%add('units', &
-                  'not in SI|must have the same unit', &
+                  'not in SI|must have the same unit|as the conversion of the', &
                   'The numbers of the deck are of another system of units than the defaults of '// &
                   'the keyword (1000 kg/m3, 9.81 m/s2), or of two systems.', &
                   'Use one system in the whole deck and give DENSITY and GRAVITY in it. With '// &
@@ -167,7 +167,8 @@ contains
                   'DENSITY=1e-9, GRAVITY=9810')
     call list%add('motion-record', &
                   ''''' ends at|'''' begins at|the peak of the record|all values of '// &
-                  'amplitude|record of acceleration: its values|goes on after', &
+                  'amplitude|record of acceleration: its values|goes on after|continues at '// &
+                  'its last', &
                   'A history does not fit the step: it begins or ends elsewhere, does not come '// &
                   'to rest, is zero, or has peaks between the increments.', &
                   'Compare the times of the history with those of the step. make_motion.py '// &

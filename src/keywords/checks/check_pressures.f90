@@ -1,11 +1,14 @@
-!> Warns of a pressure of an earlier step that goes on beside a new one of its kind on the same face
-!> under another name: a load is replaced under its own name alone.
+!> Warns of a pressure, or of water, of an earlier step that goes on beside a new one of its kind on
+!> the same face under another name: a load is replaced under its own name alone.
 module check_pressures
+  use applied_load, only: load
   use check_loads, only: card_of_dload
-  use deck_scan, only: steps_of_cards
+  use dam_mesh, only: surface
+  use deck_scan, only: is_keyword, steps_of_cards
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
   use load_pressure, only: pressure_load
+  use load_reservoir, only: reservoir_load
   use model_draft, only: draft
   use step_plan, only: step_load
   use write_text, only: as_text
@@ -42,35 +45,47 @@ contains
     is_ending = work%amplitude == 0 .and. abs(work%end_factor) <= 0.0_rk
   end function is_ending
 
-  !> An element with a face that two pressures of *DLOAD of one kind push; 0 for none.
+  !> An element with a face that two loads of one kind push; 0 for none.
   pure integer function shared_element(model, first, second) result(element)
     type(draft), intent(in) :: model
     integer, intent(in) :: first, second !< loads
+    type(surface) :: old, new
     integer, allocatable :: pushed(:) !< (elements) a bit for each face of the first load
-    integer :: i
+    integer :: i, old_kind, new_kind
     element = 0
-    if (model%problem%loads(first)%item%family /= 'DLOAD') return
-    if (model%problem%loads(second)%item%family /= 'DLOAD') return
-    if (model%problem%loads(first)%item%target == model%problem%loads(second)%item%target) return
-    select type (old => model%problem%loads(first)%item)
-    type is (pressure_load)
-      select type (new => model%problem%loads(second)%item)
-      type is (pressure_load)
-        if (old%is_hydrostatic .neqv. new%is_hydrostatic) return
-        allocate (pushed(model%problem%mesh%num_elements), source=0)
-        do i = 1, size(old%faces%element)
-          associate (e => old%faces%element(i))
-            pushed(e) = ibset(pushed(e), old%faces%face(i))
-          end associate
-        end do
-        do i = 1, size(new%faces%element)
-          element = new%faces%element(i)
-          if (btest(pushed(element), new%faces%face(i))) return
-        end do
-        element = 0
-      end select
-    end select
+    associate (loads => model%problem%loads)
+      if (loads(first)%item%family /= loads(second)%item%family) return
+      if (loads(first)%item%target == loads(second)%item%target) return
+      call find_faces(loads(first)%item, old, old_kind)
+      call find_faces(loads(second)%item, new, new_kind)
+    end associate
+    if (old_kind /= new_kind .or. new_kind == 0) return
+    allocate (pushed(model%problem%mesh%num_elements), source=0)
+    do i = 1, size(old%element)
+      pushed(old%element(i)) = ibset(pushed(old%element(i)), old%face(i))
+    end do
+    do i = 1, size(new%element)
+      element = new%element(i)
+      if (btest(pushed(element), new%face(i))) return
+    end do
+    element = 0
   end function shared_element
+
+  !> The faces that a load pushes, and its kind: 0 for a load without faces.
+  pure subroutine find_faces(item, faces, kind)
+    class(load), intent(in) :: item
+    type(surface), intent(out) :: faces
+    integer, intent(out) :: kind
+    kind = 0
+    select type (item)
+    type is (pressure_load)
+      kind = merge(2, 1, item%is_hydrostatic)
+      faces = item%faces
+    type is (reservoir_load)
+      kind = 3
+      faces = item%faces
+    end select
+  end subroutine find_faces
 
   !> The warning, at the last card that gives the new load.
   subroutine warn_of_both(model, s, element, first, second, faults)
@@ -79,14 +94,40 @@ contains
     integer, intent(in) :: element !< position
     integer, intent(in) :: first, second !< loads
     type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: what
     integer :: found
-    found = card_of_dload(model, steps_of_cards(model%cards), s, &
-                          model%problem%loads(second)%item%target)
     associate (loads => model%problem%loads)
+      found = card_of(model, s, loads(second)%item)
+      what = 'pressure'
+      if (loads(second)%item%family == 'RESERVOIR') what = 'water of *RESERVOIR'
       call model%cards(found)%warn( &
         faults, 'element '//as_text(model%problem%mesh%element_id(element))//' keeps the '// &
-        "pressure '"//loads(first)%item%target//"' of an earlier step beside '"// &
+        what//" '"//loads(first)%item%target//"' of an earlier step beside '"// &
         loads(second)%item%target//"': a load is replaced under its own name, or with OP=NEW")
     end associate
   end subroutine warn_of_both
+
+  !> The last card that gives a load, up to a step.
+  pure integer function card_of(model, s, item) result(found)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: s !< step
+    class(load), intent(in) :: item
+    integer :: step(size(model%cards)), i, line
+    step = steps_of_cards(model%cards)
+    if (item%family == 'DLOAD') then
+      found = card_of_dload(model, step, s, item%target)
+      return
+    end if
+    found = model%procedure_card(s)
+    do i = 1, size(step)
+      if (step(i) > s .or. .not. is_keyword(model%cards(i), item%family)) cycle
+      if (item%family == 'RESERVOIR') then
+        if (model%cards(i)%word('NAME') == item%target) found = i
+        cycle
+      end if
+      do line = 1, model%cards(i)%num_lines
+        if (model%cards(i)%word_at(line, 1) == item%target) found = i
+      end do
+    end do
+  end function card_of
 end module check_pressures

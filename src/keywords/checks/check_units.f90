@@ -53,6 +53,10 @@ contains
         if (is_keyword(this, 'RESERVOIR')) then
           if (.not. this%has('DENSITY')) call this%warn(faults, 'DENSITY is 1000 by default'//why)
           if (.not. this%has('GRAVITY')) call this%warn(faults, 'GRAVITY is 9.81 by default'//why)
+        else if (is_keyword(this, 'JOINT LAW')) then
+          if (.not. (this%has('THICKNESS') .or. this%has('KN'))) then
+            call this%warn(faults, 'THICKNESS, which KN comes from, is 0.02 by default'//why)
+          end if
         else if (is_keyword(this, 'DLOAD')) then
           call warn_of_gravity(this, why, faults)
         else if (is_keyword(this, 'BASE MOTION')) then

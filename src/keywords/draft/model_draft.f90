@@ -123,6 +123,7 @@ module model_draft
     type(mesh_instance) :: outside !< what stands outside the instances of parts
     type(face_element_list) :: faces !< elements of faces beside the solids
     type(origin), allocatable :: surface_origin(:), material_origin(:), test_origin(:)
+    character(5), allocatable :: record_unit(:) !< (amplitudes) UNIT, '' for none
     real(rk), allocatable :: record_factor(:) !< (amplitudes) of a unit that only the file names
     logical :: is_from_cae = .false. !< a comment names Abaqus/CAE
     logical, allocatable :: has_element(:) !< (nodes) an element has the node
@@ -154,7 +155,9 @@ module model_draft
     integer :: current_procedure = 0 !< card of the procedure of the step being read
     real(rk) :: total_time = 0.0_rk !< at the start of the step [s]
     type(moved_direction) :: moved(3) !< accelerations of supports in this step
-    logical :: has_new_output = .false. !< *NODE FILE or a similar keyword in this step
+    logical :: holds_motion = .false. !< a base motion of an earlier step keeps its last value
+    logical :: has_new_nodal = .false. !< *NODE FILE or a similar keyword in this step
+    logical :: has_new_elemental = .false. !< *EL FILE or a similar keyword in this step
     type(output_rhythm) :: rhythm !< of the last *OUTPUT
     integer :: next_checkpoint_frequency = -1 !< of a *RESTART before the next step; -1: none
     logical :: output_is_history = .false. !< the last *OUTPUT opened histories

@@ -8,9 +8,10 @@ module named_things
   use model_draft, only: draft
   use nearest_words, only: nearest_word
   use set_lists, only: set_list
+  use sorted_lists, only: sorted_unique
   implicit none
   private
-  public :: nodes_at, elements_at, elements_of_set, nodes_of_set
+  public :: nodes_at, nodes_in_order_at, elements_at, elements_of_set, nodes_of_set
   public :: find_surface_name, find_surface_at, find_amplitude, find_material
   public :: joint_names, set_names, surface_names, longest_name
 
@@ -26,6 +27,39 @@ contains
     call members_at(this, line, field, 'node', model%node_position, model%node_sets, faults, &
                     members)
   end subroutine nodes_at
+
+  !> Nodes of a field as *EQUATION and *MPC pair them: those of a set with UNSORTED in the order of
+  !> the deck, those of other sets by ascending ids.
+  subroutine nodes_in_order_at(this, line, field, model, faults, members)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line, field
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, allocatable, intent(out) :: members(:)
+    integer :: found
+    call nodes_at(this, line, field, model, faults, members)
+    found = 0
+    if (.not. this%is_integer_at(line, field)) then
+      found = model%node_sets%find(this%word_at(line, field))
+    end if
+    if (found > 0) then
+      if (allocated(model%node_sets%sets(found)%in_order)) then
+        members = model%node_sets%sets(found)%in_order
+        return
+      end if
+    end if
+    call sort_by_id(model, members)
+  end subroutine nodes_in_order_at
+
+  !> Sorts the nodes of a set by their ids.
+  subroutine sort_by_id(model, nodes)
+    type(draft), intent(in) :: model
+    integer, intent(inout) :: nodes(:)
+    integer, allocatable :: ids(:)
+    integer :: k
+    ids = sorted_unique(model%problem%mesh%node_id(nodes))
+    nodes = [(model%node_position%find(ids(k)), k=1, size(ids))]
+  end subroutine sort_by_id
 
   !> Positions of the element or of the elements of the set named in a field; empty after a fault.
   subroutine elements_at(this, line, field, model, faults, members)

@@ -5,9 +5,8 @@ module keywords_equation
   use keyword_spec, only: field, keyword, kind_flag, kind_text
   use kinds, only: rk
   use model_draft, only: draft
-  use named_things, only: nodes_at
+  use named_things, only: nodes_in_order_at
   use node_dofs, only: num_directions
-  use sorted_lists, only: sorted_unique
   use write_text, only: as_text
   implicit none
   private
@@ -35,9 +34,9 @@ contains
                    'first term depends on the others: no support, tie or other equation '// &
                    'may hold it. Other terms may '// &
                    'be supported or depend on further ones. Node sets of one size stand for '// &
-                   'one equation for each node, in the order of the ids; a single node '// &
-                   'goes with all of them. A node without elements is an unknown '// &
-                   'of its own in the '// &
+                   'one equation for each node, in the order of the ids, or in that of the '// &
+                   'deck for sets with UNSORTED; a single node goes with all of them. '// &
+                   'A node without elements is an unknown of its own in the '// &
                    'directions of its terms (different_meshes.md, 13.10).'
     spec%example = '*EQUATION'//nl//'3'//nl//'12, 1, 1., 47, 1, -0.5, 53, 1, -0.5'
     spec%checks_own_data = .true.
@@ -148,8 +147,7 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(term), intent(inout) :: new
-    call nodes_at(this, line, first, model, faults, new%nodes)
-    call sort_by_id(model, new%nodes)
+    call nodes_in_order_at(this, line, first, model, faults, new%nodes)
     if (this%is_integer_at(line, first + 1)) new%direction = this%integer_at(line, first + 1)
     if (new%direction < 1 .or. new%direction > num_directions) then
       call this%fault_at(faults, line, first + 1, "found '"//this%text_at(line, first + 1)//"'", &
@@ -162,16 +160,6 @@ contains
                          'a coefficient, a number')
     end if
   end subroutine read_term
-
-  !> Sorts the nodes of a set by their ids.
-  subroutine sort_by_id(model, nodes)
-    type(draft), intent(in) :: model
-    integer, intent(inout) :: nodes(:)
-    integer, allocatable :: ids(:)
-    integer :: k
-    ids = sorted_unique(model%problem%mesh%node_id(nodes))
-    nodes = [(model%node_position%find(ids(k)), k=1, size(ids))]
-  end subroutine sort_by_id
 
   !> One equation for each node of the sets.
   subroutine add_equations(this, line, terms, model, faults)
@@ -204,7 +192,8 @@ contains
     spec%meaning = 'Constraints between nodes, as equations. TIE and PIN: the first node has '// &
                    'the displacements of the second. LINEAR: the first node lies between the '// &
                    'two others and moves with the line between them. Node sets of one size '// &
-                   'stand for their nodes in the order of the ids.'
+                   'stand for their nodes in the order of the ids, or in that of the deck for '// &
+                   'sets with UNSORTED.'
     spec%example = '*MPC'//nl//'TIE, 12, 47'
     spec%fewest_lines = 1
     spec%checks_own_data = .true.
@@ -252,8 +241,7 @@ contains
     integer :: nodes(num_nodes), k, i, direction, num_before
     num_before = faults%num_errors
     do k = 1, num_nodes
-      call nodes_at(this, line, k + 1, model, faults, terms(k)%nodes)
-      call sort_by_id(model, terms(k)%nodes)
+      call nodes_in_order_at(this, line, k + 1, model, faults, terms(k)%nodes)
       if (size(terms(k)%nodes) == size(terms(1)%nodes) .or. size(terms(k)%nodes) == 1) cycle
       call this%fault_at(faults, line, k + 1, 'found '//as_text(size(terms(k)%nodes))//' nodes', &
                          'as many nodes as the first set, or one')

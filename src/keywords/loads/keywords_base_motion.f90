@@ -47,7 +47,8 @@ contains
     integer :: history
     call find_amplitude(this, model, faults, history)
     if (history == 0) return
-    call find_further_scale(this, model%record_factor(history), faults, scale)
+    call find_further_scale(this, trim(model%record_unit(history)), &
+                            model%record_factor(history), faults, scale)
     shaking%kind = 'base motion'
     shaking%dof = this%integer('DOF')
     allocate (item, source=shaking)

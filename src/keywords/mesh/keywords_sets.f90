@@ -54,7 +54,8 @@ contains
               field('GENERATE', kind_flag, 'each line holds: first, last, step (1)'), &
               field('INSTANCE', kind_word, 'in an *ASSEMBLY: instance of the ids and sets'), &
               field('INTERNAL', kind_flag, 'a set that Abaqus/CAE has named, a set like others'), &
-              field('UNSORTED', kind_flag, 'the order of the ids is kept, as it always is')])
+              field('UNSORTED', kind_flag, 'nodes keep their order where *EQUATION and '// &
+                    '*MPC pair them')])
     allocate (spec%columns, source=[ &
               field('member', kind_reference, 'id of a '//kind//' or name of a set, any '// &
                     'number in a line')])
@@ -66,6 +67,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable :: members(:)
     call collect_members(this, 'node', model, faults, members)
+    if (this%has('UNSORTED')) call model%node_sets%keep_order(this%word('NSET'))
     call model%node_sets%add(this%word('NSET'), members)
   end subroutine read_nset
 

@@ -41,7 +41,8 @@ contains
     model%step_origin = model%here(0)
     model%is_in_step = .true.
     model%supports%is_new = .false.
-    model%has_new_output = .false.
+    model%has_new_nodal = .false.
+    model%has_new_elemental = .false.
     model%rhythm = output_rhythm()
     model%output_is_history = .false.
     model%prints_given = .false.

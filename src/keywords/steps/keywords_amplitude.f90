@@ -9,7 +9,7 @@ module keywords_amplitude
   use keywords_other, only: add_idle_parameters
   use kinds, only: rk
   use model_draft, only: draft
-  use record_units, only: choices_of_units, factor_of_unit, settle_unit
+  use record_units, only: choices_of_units, factor_beside_scale, settle_unit
   use write_text, only: as_text
   implicit none
   private
@@ -78,12 +78,15 @@ contains
     own_factor = 1.0_rk
     if (faults%num_errors == num_before) then
       call shape_history(this, numbers, faults, new, own_factor)
-      if (allocated(new%value)) new%value = new%value*factor_of_unit(this%word('UNIT'))*own_factor
+      if (allocated(new%value)) then
+        new%value = new%value*factor_beside_scale(this, this%word('UNIT'), faults)*own_factor
+      end if
     end if
     if (.not. allocated(new%time)) new%time = [0.0_rk] ! the name exists, its faults are reported
     if (.not. allocated(new%value)) new%value = [0.0_rk]
     model%problem%amplitudes = [model%problem%amplitudes, new]
     model%record_factor = [model%record_factor, own_factor]
+    model%record_unit = [character(len(model%record_unit)) :: model%record_unit, this%word('UNIT')]
   end subroutine read_amplitude
 
   !> The numbers of the card or of its file.

@@ -133,6 +133,10 @@ contains
     type(step_damping), intent(inout) :: damping
     type(diagnostic_list), intent(inout) :: faults
     call refuse_parameters(this, [character(7) :: 'MODES', 'HIGHEST'], 'with MODAL only', faults)
+    if (abs(this%real('RATIO')) <= 0.0_rk .and. .not. (this%has('F1') .or. this%has('F2'))) then
+      damping%ratio = 0.0_rk
+      return
+    end if
     if (.not. (this%has('F1') .and. this%has('F2'))) then
       call this%fault(faults, 'parameter '//trim(merge('F2', 'F1', this%has('F1')))// &
                       ' is missing', 'F1 and F2 [Hz] of Rayleigh damping, or MODAL')

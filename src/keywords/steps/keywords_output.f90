@@ -22,7 +22,7 @@ module keywords_output
   character, parameter :: nl = new_line('a')
   character(*), parameter :: series = ' The fields go to the VTK series (job.pvd) and to '// &
                              'job.h5. The request stays for the next steps until a '// &
-                             'step has its own.'
+                             'step has its own, or an *OUTPUT, FIELD.'
   !> Of *NODE FILE and *EL FILE in CalculiX, of *NODE OUTPUT and *ELEMENT OUTPUT in Abaqus.
   character(16), parameter :: idle_of_files(14) = [ &
                               'NSET            ', 'ELSET           ', 'GLOBAL          ', &
@@ -93,15 +93,21 @@ contains
     if (this%has('NUMBER INTERVAL')) model%rhythm%most = this%integer('NUMBER INTERVAL')
     if (this%has('TIME INTERVAL')) model%rhythm%interval = this%real('TIME INTERVAL')
     model%output_is_history = this%has('HISTORY')
-    if (.not. this%has('VARIABLE') .or. model%output_is_history) return
+    if (.not. this%has('VARIABLE')) return
+    if (model%output_is_history) then
+      call this%ignore(faults, 'VARIABLE='//this%word('VARIABLE')//' with HISTORY has no '// &
+                       'effect here: a history names its set and its fields')
+      return
+    end if
+    call clear_files(model, .true., .true.)
     new%frequency = model%rhythm%frequency
     new%rhythm = model%rhythm
-    if (this%word('VARIABLE') == 'ALL') then
-      new%fields = [character(field_name_length) :: words_of(choices_of('NODE FILE')), &
-                    words_of(choices_of('EL FILE'))]
-    else
-      new%fields = [character(field_name_length) :: 'U', 'RF', 'S']
-    end if
+    new%fields = [character(field_name_length) :: 'U', 'RF']
+    if (this%word('VARIABLE') == 'ALL') new%fields = words_of(choices_of('NODE FILE'))
+    call add_files(new, model)
+    new%is_of_elements = .true.
+    new%fields = [character(field_name_length) :: 'S']
+    if (this%word('VARIABLE') == 'ALL') new%fields = words_of(choices_of('EL FILE'))
     call add_files(new, model)
   end subroutine read_output
 
@@ -155,6 +161,7 @@ contains
     if (model%output_is_history) then
       call read_histories(this, model, faults)
     else
+      call clear_files(model, .true., .true.)
       call take_files(this, model%rhythm, model, faults)
     end if
   end subroutine read_fields
@@ -175,9 +182,10 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(field_request) :: new
     character(:), allocatable :: choices, usual
+    new%is_of_elements = index(this%spec%name, 'NODE') == 0
     choices = choices_of('EL FILE')
     usual = 'S'
-    if (index(this%spec%name, 'NODE') > 0) then
+    if (.not. new%is_of_elements) then
       choices = choices_of('NODE FILE')
       usual = 'U'
     end if
@@ -191,17 +199,30 @@ contains
     if (size(new%fields) > 0) call add_files(new, model)
   end subroutine take_files
 
-  !> Adds a request. The first request of a step replaces those of earlier steps.
+  !> Adds a request. The first one of a step for nodes, or for elements, replaces those of earlier
+  !> steps.
   subroutine add_files(new, model)
     type(field_request), intent(in) :: new
     type(draft), intent(inout) :: model
-    if (.not. model%has_new_output) then
-      deallocate (model%now%outputs)
-      allocate (model%now%outputs(0))
-    end if
-    model%has_new_output = .true.
+    call clear_files(model,.not. new%is_of_elements, new%is_of_elements)
     if (new%frequency > 0) model%now%outputs = [model%now%outputs, new]
   end subroutine add_files
+
+  !> Leaves out requests of earlier steps, once in a step: by *OUTPUT those for nodes and elements.
+  subroutine clear_files(model, of_nodes, of_elements)
+    type(draft), intent(inout) :: model
+    logical, intent(in) :: of_nodes, of_elements
+    type(field_request), allocatable :: kept(:)
+    logical :: leaves_nodal, leaves_elemental
+    leaves_nodal = of_nodes .and. .not. model%has_new_nodal
+    leaves_elemental = of_elements .and. .not. model%has_new_elemental
+    allocate (kept, source=pack(model%now%outputs, &
+                                .not. merge(leaves_elemental, leaves_nodal, &
+                                            model%now%outputs%is_of_elements)))
+    call move_alloc(kept, model%now%outputs)
+    model%has_new_nodal = model%has_new_nodal .or. of_nodes
+    model%has_new_elemental = model%has_new_elemental .or. of_elements
+  end subroutine clear_files
 
   subroutine describe_envelope(spec)
     type(keyword), intent(out) :: spec

@@ -56,9 +56,7 @@ contains
       return
     end if
     call open_step(model)
-    if (model%active_loads%holds('BASE MOTION')) then
-      call this%warn(faults, 'the base motion of an earlier step continues at its last value')
-    end if
+    model%holds_motion = model%active_loads%holds('BASE MOTION')
     if (this%has('NAME')) model%now%name = this%word('NAME')
     model%now%max_increments = this%integer('INC')
     if (this%has('NLGEOM') .and. this%word('NLGEOM') /= 'NO') then
@@ -103,6 +101,10 @@ contains
     call close_accelerations(model, faults)
     call check_joint_forces(model, faults)
     call set_accuracy_limits(model, faults)
+    if (model%holds_motion .and. model%now%procedure%has_inertia) then
+      call model%cards(model%step_origin%card)%warn( &
+        faults, 'the base motion of an earlier step continues at its last value')
+    end if
     call close_step(model)
   end subroutine read_end_step
 

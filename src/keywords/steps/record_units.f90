@@ -12,6 +12,7 @@ module record_units
   implicit none
   private
   public :: factor_of_unit, unit_in_header, settle_unit, find_further_scale, choices_of_units
+  public :: factor_beside_scale
 
   character(*), parameter :: choices_of_units = 'G | M/S2 | CM/S2'
   character(*), parameter :: expected_unit = 'UNIT=G, M/S2 or CM/S2, and in SCALE only what '// &
@@ -32,6 +33,19 @@ contains
     if (unit == 'G') factor = one_g
     if (unit == 'CM/S2') factor = 0.01_rk
   end function factor_of_unit
+
+  !> Factor of UNIT besides SCALE: 1 where SCALE is the conversion.
+  real(rk) function factor_beside_scale(this, unit, faults) result(factor)
+    class(card), intent(in) :: this
+    character(*), intent(in) :: unit !< of the record, '' for none
+    type(diagnostic_list), intent(inout) :: faults
+    factor = factor_of_unit(unit)
+    if (abs(factor - 1.0_rk) <= 0.0_rk) return
+    if (.not. is_conversion(this%real('SCALE'), factor)) return
+    factor = 1.0_rk
+    call this%warn(faults, 'SCALE='//this%text('SCALE')//' is taken as the conversion of the '// &
+                   'record to m/s2, which UNIT='//unit//' asks for as well')
+  end function factor_beside_scale
 
   !> The unit that a line of a header names, '' without one: '.. IN UNITS OF G', 'units: cm/sec2'.
   pure function unit_in_header(line) result(unit)
@@ -89,13 +103,19 @@ contains
     call settle_scale(this, factor_of_unit(unit), faults, factor)
   end subroutine find_own_factor
 
-  !> SCALE of a *BASE MOTION whose record was turned into m/s2 by a unit that only its file names.
-  subroutine find_further_scale(this, own_factor, faults, scale)
+  !> SCALE of a *BASE MOTION whose record was turned into m/s2, by UNIT or by a unit that only its
+  !> file names.
+  subroutine find_further_scale(this, unit, own_factor, faults, scale)
     type(card), intent(in) :: this
-    real(rk), intent(in) :: own_factor !< that turned the record into m/s2, 1 for none
+    character(*), intent(in) :: unit !< UNIT of the record, '' for none
+    real(rk), intent(in) :: own_factor !< of the unit that the file names, 1 for none
     type(diagnostic_list), intent(inout) :: faults
     real(rk), intent(out) :: scale
     real(rk) :: factor
+    if (unit /= '') then
+      scale = this%real('SCALE')*factor_beside_scale(this, unit, faults)/factor_of_unit(unit)
+      return
+    end if
     call settle_scale(this, own_factor, faults, factor)
     scale = this%real('SCALE')*factor/own_factor
   end subroutine find_further_scale

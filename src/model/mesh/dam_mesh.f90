@@ -32,7 +32,8 @@ module dam_mesh
   !> A set of nodes or elements: positions in the mesh, ascending, each once.
   type :: named_set
     character(:), allocatable :: name !< upper case
-    integer, allocatable :: members(:)
+    integer, allocatable :: members(:) !< ascending positions
+    integer, allocatable :: in_order(:) !< as the deck gives them; sets with UNSORTED only
   end type named_set
 
   !> A surface: faces S1..S6 of solid elements (CalculiX numbering, see mesh_faces).

@@ -14,6 +14,7 @@ module set_lists
   contains
     procedure :: find
     procedure :: add => add_members
+    procedure :: keep_order
     procedure :: trimmed
   end type set_list
 
@@ -35,6 +36,9 @@ contains
     call self%names%find_or_add(name, i)
     if (i <= self%num_sets) then
       self%sets(i)%members = sorted_unique([self%sets(i)%members, members])
+      if (allocated(self%sets(i)%in_order)) then
+        self%sets(i)%in_order = first_of_each([self%sets(i)%in_order, members])
+      end if
       return
     end if
     call double_list(self)
@@ -42,6 +46,31 @@ contains
     self%sets(self%num_sets)%name = name
     self%sets(self%num_sets)%members = sorted_unique(members)
   end subroutine add_members
+
+  !> From now on a set keeps the order of its members too: *EQUATION and *MPC pair nodes by it. The
+  !> set is made if there is none.
+  pure subroutine keep_order(self, name)
+    class(set_list), intent(inout) :: self
+    character(*), intent(in) :: name !< upper case
+    integer :: i
+    call self%add(name, [integer ::])
+    i = self%names%find(name)
+    if (.not. allocated(self%sets(i)%in_order)) self%sets(i)%in_order = self%sets(i)%members
+  end subroutine keep_order
+
+  !> The numbers of a list without those that it has had before.
+  pure function first_of_each(list) result(firsts)
+    integer, intent(in) :: list(:) !< positive
+    integer, allocatable :: firsts(:)
+    logical :: is_new(size(list)), is_seen(maxval([0, list]))
+    integer :: k
+    is_seen = .false.
+    do k = 1, size(list)
+      is_new(k) = .not. is_seen(list(k))
+      is_seen(list(k)) = .true.
+    end do
+    firsts = pack(list, is_new)
+  end function first_of_each
 
   !> The sets in use.
   pure function trimmed(self) result(sets)

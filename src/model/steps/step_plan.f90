@@ -55,6 +55,7 @@ module step_plan
     character(field_name_length), allocatable :: fields(:)
     integer :: frequency = 1
     type(output_rhythm) :: rhythm !< of the card
+    logical :: is_of_elements = .false. !< of *EL FILE, else of *NODE FILE
   end type field_request
 
   !> *CONTROLS; the defaults are documented in the keyword's specification.

@@ -41,7 +41,8 @@ contains
     has_time = self%at_time > 0.0_rk .and. abs(self%at_time - largest) <= roundoff*largest
   end function has_time
 
-  !> Whether this result has no error in time because it does not follow the modes: a body rocks.
+  !> Whether this result has no error in time because it does not follow the modes: a body rocks or
+  !> slides.
   pure logical function is_stray(self, largest)
     class(goal_error), intent(in) :: self
     real(rk), intent(in) :: largest !< of the run [m]
