@@ -89,3 +89,23 @@ def test_a_history_of_displacements(keyway, alpha, increment):
     assert np.linalg.norm(pushed - 2400.0 * right) <= 0.2 * np.linalg.norm(2400.0 * right)
     assert np.abs(found["A1"][one]).max() <= 1.2 * width * np.abs(rate).max()
     assert run.json["steps"][0]["energy"]["error"] < 1e-9
+
+
+def test_a_support_that_goes_fades(keyway):
+    """A bar is pushed by 1 mm and let go in four increments: the reaction falls in equal parts, as
+    loads that are taken away do, and the bar with it. All energy is given back."""
+    mesh, number = box_mesh((1, 1, 3), stretched((1.0, 1.0, 3.0)))
+    mesh.node_sets |= {"BASE": number[:, :, 0].ravel(), "TOP": number[:, :, -1].ravel()}
+    cards = elastic(20e9, 0.0) + "*BOUNDARY\nBASE, 1, 3\n"
+    cards += "*STEP\n*STATIC, DIRECT\n0.5, 1.\n*BOUNDARY\nTOP, 3, 3, -1e-3\n"
+    cards += "*NODE PRINT, NSET=TOP\nU, RF\n*END STEP\n"
+    cards += "*STEP\n*STATIC, DIRECT\n0.25, 1.\n*BOUNDARY, OP=NEW\nBASE, 1, 3\n*END STEP\n"
+    run = keyway(brick_deck(mesh, "C3D8", cards))
+    table = run.csv("node_TOP")
+    now = table["step"] == 2
+    share = table["increment"][now] / 4.0
+    assert table["U3"][now] == pytest.approx(-1e-3 * (1.0 - share), abs=1e-15)
+    assert np.all(table["RF3"][now] == 0.0)
+    energy = run.csv("energy")
+    assert energy["external"][-1] == pytest.approx(0.0, abs=1e-9 * energy["external"].max())
+    assert energy["numerical"] == pytest.approx(0.0, abs=1e-9 * energy["external"].max())

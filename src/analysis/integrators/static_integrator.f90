@@ -15,7 +15,7 @@ module static_integrator
   use equilibrium, only: balance_outcome
   use guest_forces, only: has_histories
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium
-  use step_system, only: build_structure, build_loads, build_origins
+  use step_system, only: dam_system, build_structure, build_loads, build_origins
   use step_loads, only: step_time, external_force
   use tangent_choice, only: tangent, choose_tangents
   use energy_account, only: open_account, add_static_work
@@ -98,13 +98,47 @@ contains
                           step_time(start=now%total_time, duration=plan%duration), own%external)
       call sum_contact(self%system%operator, now)
       own%balanced = own%external - own%internal - own%contact
-      if (.not. plan%changes_stage) return
-      own%release = -own%balanced
+      if (plan%changes_stage) then
+        own%release = -own%balanced
+      else if (frees_supports(plan, now)) then
+        own%release = forces_of_freed(self%system, plan, now)
+      else
+        return
+      end if
       own%release(self%system%matrix%num_free + 1:) = 0.0_rk
       own%external = own%external + own%release
       own%balanced = own%balanced + own%release
     end associate
   end subroutine start_forces
+
+  !> Whether a support of the step before, with a reaction, is not there any more.
+  pure logical function frees_supports(plan, now)
+    type(step), intent(in) :: plan
+    type(state), intent(in) :: now !< at the start of the step
+    frees_supports = .false.
+    if (allocated(now%reaction)) frees_supports = any(abs(reactions_of_freed(plan, now)) > 0.0_rk)
+  end function frees_supports
+
+  !> Reactions of supports that are not there any more: they fade in the step.
+  pure function reactions_of_freed(plan, now) result(force)
+    type(step), intent(in) :: plan
+    type(state), intent(in) :: now !< at the start of the step
+    real(rk) :: force(size(now%reaction, 1), size(now%reaction, 2)) !< (3, nodes) [N]
+    integer :: k
+    force = now%reaction
+    do k = 1, size(plan%fixities)
+      force(plan%fixities(k)%dof, plan%fixities(k)%node) = 0.0_rk
+    end do
+  end function reactions_of_freed
+
+  !> The same in the unknowns of the step.
+  pure function forces_of_freed(system, plan, now) result(force)
+    type(dam_system), intent(in) :: system
+    type(step), intent(in) :: plan
+    type(state), intent(in) :: now !< at the start of the step
+    real(rk) :: force(system%matrix%num_total) !< [N]
+    call system%numbers%reduce(reactions_of_freed(plan, now), force)
+  end function forces_of_freed
 
   !> One increment. Water is where the joints are open at its end.
   subroutine advance(self, model, when, before, after, results, outcome, error)

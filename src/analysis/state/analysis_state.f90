@@ -120,8 +120,8 @@ module analysis_state
     !> (num_total) first [m/s] and second [m/s2] divided difference of q over the last increments;
     !> with *CONTROLS, ACCURACY only
     real(rk), allocatable :: slope(:), bend(:)
-    !> (num_total) force that balances what the change of a stage has left without balance, part of
-    !> `external`; it falls to zero in its step [N]
+    !> (num_total) force that balances what the change of a stage, or supports that are gone, have
+    !> left without balance, part of `external`; it falls to zero in its static step [N]
     real(rk), allocatable :: release(:)
     real(rk), allocatable :: carried(:, :) !< (3, points) t* of the implicit joint impulse [Pa]
     real(rk), allocatable :: jump_rate(:, :) !< (3, points) in the last increment [m/s]

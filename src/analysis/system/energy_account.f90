@@ -63,7 +63,7 @@ contains
     associate (old => before%motion, new => after%motion, n => system%matrix%num_free)
       du = new%q - old%q
       call add_external(du, n, old, new, after%energy)
-      if (allocated(new%release)) then
+      if (allocated(new%release) .and. model%steps(after%step)%changes_stage) then
         released = work(du, old%release, new%release)
         after%energy%stages = after%energy%stages + released
         after%energy%external = after%energy%external - released
