@@ -6,7 +6,6 @@
 !> Loads f_k and joints are the ports P: only their rows of Phi and R are kept.
 module reduced_basis
   use, intrinsic :: iso_fortran_env, only: single => real32
-  use column_products, only: multiply_columns
   use dense_products, only: times, transposed_times
   use equilibrium, only: equilibrium_solver
   use errors, only: error_type
