@@ -34,6 +34,8 @@ module analysis_state
     real(rk) :: temperature = 0.0_rk !< work of the thermal strain: less the stress times its change
     real(rk) :: initial = 0.0_rk !< kinetic and strain energy at the start of the analysis
     real(rk) :: error = 0.0_rk, largest = 0.0_rk
+  contains
+    procedure :: shows_sliding
   end type energy_balance
 
   !> The reduced model of the step, and its error.
@@ -160,7 +162,18 @@ module analysis_state
     real(rk) :: effective_mass(3) = 0.0_rk !< in x, y, z [kg]
     real(rk), allocatable :: shape(:, :) !< (3, nodes), unit modal mass
   end type vibration_mode
+
+  !> Work of friction over the largest energy from which on points slide in earnest. Bending columns
+  !> whose feet open slip a little, 2 %, and follow their modes.
+  real(rk), parameter :: sliding_share = 0.05_rk
+
 contains
+
+  !> Whether sliding decides the motion.
+  pure logical function shows_sliding(self)
+    class(energy_balance), intent(in) :: self
+    shows_sliding = self%friction > sliding_share*self%largest
+  end function shows_sliding
 
   !> The largest error so far over the largest displacement.
   pure real(rk) function relative(self)

@@ -6,8 +6,6 @@ submodule(run_records) run_warnings
   !> Energy that the time stepping may add in a dynamic step, over the largest energy of the
   !> balance. In docs/theory.md, 7.2, stable schemes add 2 %, others 100 %.
   real(rk), parameter :: largest_gain = 0.1_rk
-  !> Work of friction over the largest energy: less is no sliding that counts.
-  real(rk), parameter :: small_friction = 1.0e-3_rk
 
   !> Energy that solids may dissipate in one static increment, over the largest energy of the
   !> balance. A crack in stable growth takes a few percent; a crack that snaps back takes most of
@@ -54,7 +52,7 @@ contains
     type(state), intent(in) :: now
     associate (plan => model%steps(now%step))
       if (.not. plan%follows_accuracy()) return
-      if (now%energy%friction <= small_friction*now%energy%largest) return
+      if (.not. now%energy%shows_sliding()) return
       call self%warn_once('step '//plan%name//': points of joints slide, and ACCURACY does not '// &
                           'bound the error of their slips; compare with increments of half the '// &
                           'size')
