@@ -2,6 +2,7 @@
 module read_deck
   use problem_definition, only: problem ! first: gfortran 12 fails to write the module otherwise
   use card_check, only: check_card, match_card
+  use check_bases, only: warn_of_bases
   use check_histories, only: warn_of_histories
   use check_idle_steps, only: warn_of_idle_steps
   use check_loads, only: warn_of_loads
@@ -99,6 +100,7 @@ contains
     call warn_of_growth(model, faults)
     call warn_of_heat(model, faults)
     call warn_of_water(model, faults)
+    call warn_of_bases(model, faults)
     call warn_of_nodes(model, faults)
     call warn_of_histories(model, faults)
     call warn_of_idle_steps(model, faults)

@@ -9,6 +9,7 @@ set(sources
   assembly/keywords_assembly.f90
   assembly/leave_out_faces.f90
   assembly/plain_labels.f90
+  checks/check_bases.f90
   checks/check_growth.f90
   checks/check_histories.f90
   checks/check_idle_steps.f90

@@ -109,3 +109,59 @@ def test_a_support_that_goes_fades(keyway):
     energy = run.csv("energy")
     assert energy["external"][-1] == pytest.approx(0.0, abs=1e-9 * energy["external"].max())
     assert energy["numerical"] == pytest.approx(0.0, abs=1e-9 * energy["external"].max())
+
+
+def shaken_bar(parts: list[float], base: str, more: str = "") -> str:
+    """A bar of two bricks on a base with these cards in each step; the base is in direction 3."""
+    mesh, number = box_mesh((1, 1, 2), stretched((1.0, 1.0, 4.0)))
+    mesh.node_sets |= {"BASE": number[:, :, 0].ravel(), "TOP": number[:, :, -1].ravel()}
+    history = "".join(f"{t:.3f}, {np.sin(17.0 * t) ** 2:.12g}\n" for t in np.arange(0, 1, 0.01))
+    cards = elastic(2e10, 0.2, 2400.0) + "*BOUNDARY\nBASE, 1, 3\n"
+    cards += f"*AMPLITUDE, NAME=PATH, TIME=TOTAL TIME\n{history}"
+    for i, length in enumerate(parts):
+        cards += f"*STEP\n*DYNAMIC, DIRECT\n0.005, {length}\n{base}{more if i == 1 else ''}"
+        cards += "*NODE PRINT, NSET=TOP\nU, V, A\n*NODE PRINT, NSET=BASE\nU, V, A, RF\n*END STEP\n"
+    return brick_deck(mesh, "C3D8", cards)
+
+
+FOLLOWS = "*BOUNDARY, AMPLITUDE=PATH\nBASE, 3, 3, 0.01\n"
+
+
+def test_a_history_over_several_steps(keyway):
+    """Rates at the ends of steps are those of the history, which goes on: the same in one step."""
+    whole = keyway(shaken_bar([0.4], FOLLOWS), name="whole")
+    parts = keyway(shaken_bar([0.1, 0.005, 0.095, 0.2], FOLLOWS), name="parts")
+    for name in ("node_TOP", "node_BASE"):
+        expected, found = whole.csv(name), parts.csv(name)
+        for column in set(expected) - {"step", "increment", "time", "node"}:
+            one = expected[column][expected["increment"] > 0]
+            other = found[column][found["increment"] > 0]
+            assert other == pytest.approx(one, abs=1e-9 * max(np.abs(one).max(), 1e-9)), column
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        "*BOUNDARY, OP=NEW\nBASE, 1, 3\nTOP, 1, 1\n",
+        "*BOUNDARY, OP=NEW\nBASE, 1, 2\n",
+        "*BOUNDARY\nBASE, 3, 3, 0.002\n",
+        "*CLOAD\nTOP, 3, 1e6\n",
+        "*DAMPING, RATIO=0.1, F1=5., F2=50.\n",
+    ],
+)
+@pytest.mark.parametrize("first", ["", FOLLOWS], ids=["at rest", "moves"])
+def test_what_changes_between_two_steps(keyway, change, first):
+    """Supports that go, come or jump, loads and damping: the energy balance closes."""
+    push = "*CLOAD\nTOP, 1, 2e5\n"
+    text = shaken_bar([0.1, 0.1], push, change)
+    run = keyway(text.replace(push, first + push, 1))
+    assert [step["increments"] for step in run.json["steps"]] == [20, 20]
+    assert max(step["energy"]["error"] for step in run.json["steps"]) < 1e-9
+
+
+def test_a_base_that_is_held_in_part_is_warned_of(keyway):
+    """Without solids it has no unknowns then, and stays where it is."""
+    block = Block(size=(1.0, 1.0, 1.0), law="KN=1e10, KT=1e10, FRICTION=0.8")
+    deck = block.deck(WEIGHT + "*END STEP\n").replace("BASE, 1, 3", "BASE, 3, 3\nBOTTOM, 1, 2")
+    run = keyway(deck)
+    assert "belongs to joint elements alone and is held in some directions" in run.stderr

@@ -122,7 +122,7 @@ contains
     logical :: has_changed, goes_on
     when = step_time(is_dynamic=.true., start=now%total_time, duration=plan%duration)
     associate (own => now%motion)
-      goes_on = has_same_unknowns(last, plan, own)
+      goes_on = has_same_unknowns(last, model, now%step, own)
       call update_uplift(model, system%operator, now%joints, system%groups, costs, has_changed)
       call external_force(system%groups, model%amplitudes, when, own%external)
       call find_support_rates(model, system, when, plan%first_increment, own%v, own%a)
@@ -134,6 +134,7 @@ contains
         call keep_accelerations(last, own)
         call change_acceleration(model, system, last, now, error)
         call multiply(system%matrix, system%mass, own%a, own%inertia)
+        own%balanced = own%inertia + (last%balanced - last%inertia)
       else
         call start_anew(model, system, now, error)
         call multiply(system%matrix, system%mass, own%a, own%inertia)
@@ -143,42 +144,44 @@ contains
   end subroutine start_forces
 
   !> The acceleration that balances all forces, those by the acceleration of supports among them.
+  !> Joints act by the tractions that the step before has passed on, if any.
   subroutine start_anew(model, system, now, error)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     type(state), intent(inout) :: now
     type(error_type), allocatable, intent(out) :: error
-    real(rk), dimension(size(now%motion%a)) :: given, force
+    real(rk), dimension(size(now%motion%a)) :: given, force, passed_on
     associate (own => now%motion, n => system%matrix%num_free)
       given = own%a
       given(:n) = 0.0_rk
       call multiply(system%matrix, system%mass, given, force)
-      call find_start(model, system, now%joints, own%external, unbalanced_force(own) - force, &
-                      own%a, error)
+      force = unbalanced_force(own) - force
+      if (allocated(own%carried)) then
+        passed_on = 0.0_rk
+        call system%operator%add_forces(own%carried, passed_on)
+        force = force + own%contact - passed_on
+      end if
+      call find_start(model, system, now%joints, own%external, force, own%a, error)
       if (.not. allocated(error)) own%a(n + 1:) = given(n + 1:)
     end associate
   end subroutine start_anew
 
-  !> Adds the acceleration by forces that have changed since the step before, those by the
-  !> acceleration of supports among them, if they are more than round-off.
+  !> Adds the acceleration by what has changed since the step before: forces, mass and the
+  !> acceleration of supports, if that is more than round-off.
   subroutine change_acceleration(model, system, last, now, error)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     type(motion), intent(in) :: last !< at the end of the step before
     type(state), intent(inout) :: now
     type(error_type), allocatable, intent(out) :: error
-    real(rk), dimension(size(now%motion%a)) :: change, given, more
+    real(rk), dimension(size(now%motion%a)) :: change, more
     associate (own => now%motion, n => system%matrix%num_free)
-      given = own%a - last%a
-      given(:n) = 0.0_rk
-      call multiply(system%matrix, system%mass, given, change)
-      change = unbalanced_force(own) - unbalanced_force(last) - change
+      call multiply(system%matrix, system%mass, own%a, change)
+      change = unbalanced_force(own) - unbalanced_force(last) + last%inertia - change
       if (length(change(:n)) <= round_off*max(length(own%external(:n)), &
                                               length(own%internal(:n)))) return
       call find_start(model, system, now%joints, own%external, change, more, error)
-      if (allocated(error)) return
-      own%a(:n) = own%a(:n) + more(:n)
-      own%balanced = own%balanced + change
+      if (.not. allocated(error)) own%a(:n) = own%a(:n) + more(:n)
     end associate
   end subroutine change_acceleration
 

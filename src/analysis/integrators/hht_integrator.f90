@@ -257,7 +257,7 @@ contains
   end subroutine advance
 
   !> Change of the kinetic energy beyond du . M a_mean in free unknowns (7.4). Supports have a part
-  !> only where they follow an amplitude, and then other rates than those of Newmark's formulas.
+  !> only where they move, and then other rates than those of Newmark's formulas.
   real(rk) function newmark_excess(scheme, old, new, n) result(excess)
     type(hht), intent(in) :: scheme
     type(motion), intent(in) :: old, new

@@ -2,11 +2,13 @@
 !>
 !> At the end of an increment the acceleration does not balance the forces of that instant, but
 !> weighted ones (7.1), and joints by the traction t* of their impulse (7.3). Both therefore pass to
-!> the next step. Only what changes between the steps, loads and damping, changes the acceleration.
+!> the next step. Only what changes between the steps changes the acceleration: loads, damping and
+!> mass.
 module motion_goes_on
   use analysis_state, only: motion, state
   use global_vectors, only: largest_entry
   use kinds, only: rk
+  use problem_definition, only: problem
   use step_plan, only: step
   implicit none
   private
@@ -30,16 +32,36 @@ contains
   end subroutine keep_joints
 
   !> Whether accelerations and forces of the step before are those of the same unknowns: of a step
-  !> with all its unknowns, no reduced model.
-  logical function has_same_unknowns(last, plan, own) result(is_same)
+  !> with all its unknowns, no reduced model, and the same supports.
+  logical function has_same_unknowns(last, model, number, own) result(is_same)
     type(motion), intent(in) :: last !< at the end of the step before
-    type(step), intent(in) :: plan
+    type(problem), intent(in) :: model
+    integer, intent(in) :: number !< of the step
     type(motion), intent(in) :: own !< at the start of the step
     is_same = .false.
-    if (plan%changes_stage .or. .not. allocated(last%viscous_rate)) return
+    if (model%steps(number)%changes_stage .or. .not. allocated(last%viscous_rate)) return
     if (size(last%q) /= size(own%q)) return
-    is_same = are_equal(last%q, own%q) .and. are_equal(last%v, own%v) .and. are_equal(last%a, own%a)
+    if (.not. has_same_supports(model, number)) return
+    is_same = are_equal(last%q, own%q)
+    if (is_same) is_same = are_equal(last%v, own%v)
+    if (is_same) is_same = are_equal(last%a, own%a)
   end function has_same_unknowns
+
+  !> Whether the last step before that moved the dam held the same displacements.
+  pure logical function has_same_supports(model, number) result(is_same)
+    type(problem), intent(in) :: model
+    integer, intent(in) :: number !< of the step
+    integer :: before
+    is_same = .false.
+    do before = number - 1, 1, -1
+      if (.not. model%steps(before)%procedure%finds_modes) exit
+    end do
+    if (before == 0) return
+    associate (old => model%steps(before)%fixities, new => model%steps(number)%fixities)
+      if (size(old) /= size(new)) return
+      is_same = all(old%node == new%node .and. old%dof == new%dof)
+    end associate
+  end function has_same_supports
 
   !> Whether two vectors differ by round-off alone.
   logical function are_equal(x, y)
@@ -47,15 +69,14 @@ contains
     are_equal = largest_entry(abs(x - y)) <= same_share*largest_entry(abs(x))
   end function are_equal
 
-  !> Takes over the forces that belong to the accelerations.
+  !> Takes over what belongs to the accelerations.
   subroutine keep_accelerations(last, own)
     type(motion), intent(in) :: last !< at the end of the step before
     type(motion), intent(inout) :: own !< at the start of the step
     if (allocated(last%carried_correction)) own%carried_correction = last%carried_correction
-    own%balanced = last%balanced
   end subroutine keep_accelerations
 
-  !> Forces that the inertia balances [N].
+  !> Forces that the inertia balances [N], joints by their laws.
   pure function unbalanced_force(own) result(force)
     type(motion), intent(in) :: own
     real(rk) :: force(size(own%q))

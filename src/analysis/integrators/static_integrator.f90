@@ -102,6 +102,9 @@ contains
         own%release = -own%balanced
       else if (frees_supports(plan, now)) then
         own%release = forces_of_freed(self%system, plan, now)
+        ! After a dynamic step the reaction contains inertia and damping, which do not act any more.
+        if (follows_motion(model, now%step)) own%release = merge(-own%balanced, 0.0_rk, &
+                                                                 abs(own%release) > 0.0_rk)
       else
         return
       end if
@@ -110,6 +113,19 @@ contains
       own%balanced = own%balanced + own%release
     end associate
   end subroutine start_forces
+
+  !> Whether the last step before that changed the dam was dynamic.
+  pure logical function follows_motion(model, number)
+    type(problem), intent(in) :: model
+    integer, intent(in) :: number !< of the step
+    integer :: before
+    follows_motion = .false.
+    do before = number - 1, 1, -1
+      if (model%steps(before)%procedure%finds_modes) cycle
+      follows_motion = model%steps(before)%procedure%has_inertia
+      return
+    end do
+  end function follows_motion
 
   !> Whether a support of the step before, with a reaction, is not there any more.
   pure logical function frees_supports(plan, now)

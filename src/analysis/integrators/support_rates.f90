@@ -1,56 +1,81 @@
-!> Velocities and accelerations of supports that follow an amplitude (theory.md, 7.1).
+!> Velocities and accelerations of supports that move in a dynamic step (theory.md, 7.1).
 !>
 !> They are central differences of the history over two increments. By Newmark's formulas each
 !> corner of a history would start a swing of the support that no force damps.
 module support_rates
+  use amplitudes, only: amplitude
   use kinds, only: rk
   use problem_definition, only: problem
-  use step_loads, only: prescribed_values, step_time
+  use step_loads, only: factor_at, step_time, support
   use step_system, only: dam_system
   implicit none
   private
   public :: find_support_rates, has_moving_supports
 
+  !> Times that differ by less, over an increment, are one.
+  real(rk), parameter :: roundoff = 1.0e-6_rk
+
 contains
 
-  !> Whether a support of the step follows an amplitude.
+  !> Whether a support moves in the step: with an amplitude, or at once.
   pure logical function has_moving_supports(system)
     type(dam_system), intent(in) :: system
-    has_moving_supports = any(system%supports%amplitude > 0)
+    associate (supports => system%supports)
+      has_moving_supports = any(supports%amplitude > 0 .or. &
+                                abs(supports%value - supports%start_value) > 0.0_rk)
+    end associate
   end function has_moving_supports
 
-  !> Rates of all supports at a time; zero for those without an amplitude. At both ends of the step
-  !> they are those of the parabola through the nearest three points of the history; the velocity is
-  !> not above the slope of the last chord, so that a motion that starts smoothly starts from rest.
+  !> Rates of all supports at a time; zero for those without an amplitude.
   subroutine find_support_rates(model, system, when, increment, v, a)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     type(step_time), intent(in) :: when
     real(rk), intent(in) :: increment !< [s]
     real(rk), intent(inout) :: v(:), a(:) !< (num_total) [m/s], [m/s2]; others are kept
-    real(rk) :: u(size(v), -1:1), h
-    type(step_time) :: middle, instant
     integer :: i
-    h = min(increment, 0.5_rk*when%duration)
-    middle = when
-    middle%now = min(max(when%now, h), when%duration - h)
-    instant = middle
-    do i = -1, 1
-      instant%now = middle%now + i*h
-      call prescribed_values(system%supports, model%amplitudes, instant, u(:, i))
-    end do
     do i = 1, size(system%supports)
-      associate (k => system%supports(i)%unknown)
-        v(k) = 0.0_rk
-        a(k) = 0.0_rk
-        if (system%supports(i)%amplitude == 0) cycle
-        a(k) = (u(k, 1) - 2.0_rk*u(k, 0) + u(k, -1))/h**2
-        v(k) = (u(k, 1) - u(k, -1))/(2.0_rk*h) + a(k)*(when%now - middle%now)
-        if (when%now < middle%now) v(k) = nearer_zero(v(k), (u(k, 0) - u(k, -1))/h)
-        if (when%now > middle%now) v(k) = nearer_zero(v(k), (u(k, 1) - u(k, 0))/h)
+      associate (item => system%supports(i))
+        v(item%unknown) = 0.0_rk
+        a(item%unknown) = 0.0_rk
+        if (item%amplitude == 0) cycle
+        call differentiate(item, model%amplitudes, when, increment, v(item%unknown), &
+                           a(item%unknown))
       end associate
     end do
   end subroutine find_support_rates
+
+  !> Rates of one support. Where its history begins or ends, with the analysis or, in the time of a
+  !> step, with the step, they are those of the parabola through the nearest three points; the
+  !> velocity is not above the slope of the chord there, so that a motion that starts smoothly
+  !> starts from rest.
+  pure subroutine differentiate(item, histories, when, increment, v, a)
+    type(support), intent(in) :: item
+    type(amplitude), intent(in) :: histories(:)
+    type(step_time), intent(in) :: when
+    real(rk), intent(in) :: increment !< [s]
+    real(rk), intent(out) :: v, a
+    real(rk) :: u(-1:1), h, shift
+    type(step_time) :: instant
+    integer :: i
+    h = increment
+    instant = when
+    if (histories(item%amplitude)%uses_total_time) then
+      instant%now = max(when%now, h - when%start)
+    else
+      h = min(h, 0.5_rk*when%duration)
+      instant%now = min(max(when%now, h), when%duration - h)
+    end if
+    shift = when%now - instant%now
+    do i = -1, 1
+      instant%now = when%now - shift + i*h
+      u(i) = factor_at(item%start_value, item%value, item%amplitude, histories, instant)
+    end do
+    a = (u(1) - 2.0_rk*u(0) + u(-1))/h**2
+    v = (u(1) - u(-1))/(2.0_rk*h) + a*shift
+    if (shift < -roundoff*h) v = nearer_zero(v, (u(0) - u(-1))/h)
+    if (shift > roundoff*h) v = nearer_zero(v, (u(1) - u(0))/h)
+  end subroutine differentiate
 
   !> Of two slopes the one nearer to zero; zero where their signs differ.
   pure real(rk) function nearer_zero(x, y) result(slope)

@@ -82,7 +82,8 @@ contains
     real(rk), allocatable :: rotation(:, :), frequency(:)
     call find_shape_modes(system, stiffness, shapes, frequency, rotation, error)
     lowest = 0.0_rk
-    if (size(frequency) > 0 .and. .not. allocated(error)) lowest = frequency(1)
+    if (allocated(error)) return
+    if (size(frequency) > 0) lowest = frequency(1)
   end function lowest_frequency
 
   !> Adds shapes of one state of the joints.

@@ -11,7 +11,7 @@ module keywords_sets
                           kind_word
   use mesh_faces, only: count_corners, face_nodes
   use model_draft, only: draft, origin
-  use named_things, only: elements_at, find_surface_name, nodes_at
+  use named_things, only: elements_at, find_surface_name, nodes_at, nodes_in_order_at
   use surface_of_faces, only: find_set_faces
   use surface_of_nodes, only: find_faces
   use write_text, only: as_text
@@ -54,8 +54,8 @@ contains
               field('GENERATE', kind_flag, 'each line holds: first, last, step (1)'), &
               field('INSTANCE', kind_word, 'in an *ASSEMBLY: instance of the ids and sets'), &
               field('INTERNAL', kind_flag, 'a set that Abaqus/CAE has named, a set like others'), &
-              field('UNSORTED', kind_flag, 'nodes keep their order where *EQUATION and '// &
-                    '*MPC pair them')])
+              field('UNSORTED', kind_flag, 'nodes keep the order of the deck where '// &
+                    '*EQUATION and *MPC pair them; elements need no order')])
     allocate (spec%columns, source=[ &
               field('member', kind_reference, 'id of a '//kind//' or name of a set, any '// &
                     'number in a line')])
@@ -106,7 +106,11 @@ contains
                              kind//' or the name of a set')
           cycle
         end if
-        if (kind == 'node') call nodes_at(this, line, i, model, faults, some)
+        if (kind == 'node' .and. this%has('UNSORTED')) then
+          call nodes_in_order_at(this, line, i, model, faults, some)
+        else if (kind == 'node') then
+          call nodes_at(this, line, i, model, faults, some)
+        end if
         if (kind == 'element') call elements_at(this, line, i, model, faults, some)
         call append(members, used, some)
       end do

@@ -7,6 +7,7 @@ module moved_supports
   use kinds, only: rk
   use load_base_motion, only: base_motion
   use model_draft, only: draft, moved_direction
+  use record_units, only: repeats_unit
   use write_text, only: as_text
   implicit none
   private
@@ -37,6 +38,11 @@ contains
       end if
       now%moves(nodes) = .true.
     end associate
+    if (repeats_unit(trim(model%record_unit(history)), value)) then
+      call this%fault_at(faults, line, 4, 'UNIT turns the record into m/s2 already; the factor '// &
+                         this%text_at(line, 4)//' would do it twice', 'a factor that scales it')
+      return
+    end if
     if (abs(model%record_factor(history) - 1.0_rk) <= 0.0_rk .or. &
         abs(value - 1.0_rk) <= 0.0_rk) return
     call this%fault_at(faults, line, 4, 'the file of the record names its unit; the factor '// &

@@ -12,7 +12,7 @@ module record_units
   implicit none
   private
   public :: factor_of_unit, unit_in_header, settle_unit, find_further_scale, choices_of_units
-  public :: factor_beside_scale
+  public :: factor_beside_scale, repeats_unit
 
   character(*), parameter :: choices_of_units = 'G | M/S2 | CM/S2'
   character(*), parameter :: expected_unit = 'UNIT=G, M/S2 or CM/S2, and in SCALE only what '// &
@@ -40,8 +40,7 @@ contains
     character(*), intent(in) :: unit !< of the record, '' for none
     type(diagnostic_list), intent(inout) :: faults
     factor = factor_of_unit(unit)
-    if (abs(factor - 1.0_rk) <= 0.0_rk) return
-    if (.not. is_conversion(this%real('SCALE'), factor)) return
+    if (.not. repeats_unit(unit, this%real('SCALE'))) return
     factor = 1.0_rk
     call this%warn(faults, 'SCALE='//this%text('SCALE')//' is taken as the conversion of the '// &
                    'record to m/s2, which UNIT='//unit//' asks for as well')
@@ -140,6 +139,14 @@ contains
                               as_text(of_unit)//' m/s2; SCALE='//this%text('SCALE')// &
                               ' is ambiguous', 'in *AMPLITUDE '//expected_unit)
   end subroutine settle_scale
+
+  !> Whether a scale is the conversion that a unit asks for as well.
+  pure logical function repeats_unit(unit, scale)
+    character(*), intent(in) :: unit !< '' for none
+    real(rk), intent(in) :: scale
+    repeats_unit = abs(factor_of_unit(unit) - 1.0_rk) > 0.0_rk .and. &
+                   is_conversion(scale, factor_of_unit(unit))
+  end function repeats_unit
 
   pure logical function is_conversion(scale, factor)
     real(rk), intent(in) :: scale, factor
