@@ -215,7 +215,7 @@ contains
     type(modal_error), intent(inout) :: own
     real(rk) :: largest
     integer :: node
-    node = maxloc(norm2(u, dim=1), dim=1)
+    node = maxloc(u(1, :)**2 + u(2, :)**2 + u(3, :)**2, dim=1)
     largest = norm2(u(:, node))
     if (largest <= own%largest) return
     own%largest = largest
