@@ -19,7 +19,7 @@ contains
   subroutine pages_from_no_effect(list)
     type(page_list), intent(inout) :: list
     call list%add('no-effect', &
-                  'held in some directions|has no effect|have no effect|nothing uses|'// &
+                  'not held in all directions|has no effect|have no effect|nothing uses|'// &
                   'not written|sets the initial '// &
                   'velocities|belongs to no element|has no field|the jump of|ends the step '// &
                   'earlier|fields stay zero|sliding is small|strains and rotations are '// &

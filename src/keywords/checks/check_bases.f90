@@ -1,5 +1,5 @@
-!> Warns of nodes of joint elements without solids that supports hold in some directions alone: they
-!> have no unknowns, and stay where they are in all directions.
+!> Warns of nodes of joint elements without solids that supports do not hold in all directions: they
+!> have no unknowns, and stand at their places.
 module check_bases
   use diagnostics, only: diagnostic_list
   use model_draft, only: draft
@@ -27,11 +27,14 @@ contains
           held(fixed(k)%node) = held(fixed(k)%node) + 1
         end do
       end associate
-      node = findloc(is_bare .and. held > 0 .and. held < num_directions, .true., 1)
+      ! A node without any support may follow others by an equation.
+      node = findloc(is_bare .and. held < num_directions &
+                     .and. (held > 0 .or. model%equations%num == 0), .true., 1)
       if (node == 0) cycle
       call model%cards(model%procedure_card(s))%warn( &
         faults, 'node '//as_text(model%problem%mesh%node_id(node))//' belongs to joint '// &
-        'elements alone and is held in some directions: it stays where it is in all of them', &
+        'elements alone and is not held in all directions: it stands at its place, without '// &
+        'reactions', &
         'supports in all directions')
       return
     end do
