@@ -14,6 +14,7 @@ module static_integrator
   use increment_listener, only: listener
   use equilibrium, only: balance_outcome
   use guest_forces, only: has_histories
+  use motion_goes_on, only: step_before
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium
   use step_system, only: dam_system, build_structure, build_loads, build_origins
   use step_loads, only: step_time, external_force
@@ -114,17 +115,14 @@ contains
     end associate
   end subroutine start_forces
 
-  !> Whether the last step before that changed the dam was dynamic.
+  !> Whether the last step before that took time was dynamic.
   pure logical function follows_motion(model, number)
     type(problem), intent(in) :: model
     integer, intent(in) :: number !< of the step
     integer :: before
     follows_motion = .false.
-    do before = number - 1, 1, -1
-      if (model%steps(before)%procedure%finds_modes) cycle
-      follows_motion = model%steps(before)%procedure%has_inertia
-      return
-    end do
+    before = step_before(model, number)
+    if (before > 0) follows_motion = model%steps(before)%procedure%has_inertia
   end function follows_motion
 
   !> Whether a support of the step before, with a reaction, is not there any more.
